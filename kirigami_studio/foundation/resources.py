@@ -1,0 +1,31 @@
+"""Where the bundled files are, in an installed wheel and in an editable checkout alike."""
+
+from __future__ import annotations
+
+from functools import cache
+from pathlib import Path
+
+from kirigami_studio.foundation.errors import KirigamiError
+
+
+@cache
+def resource_root() -> Path:
+    """Return the folder that holds ``models/``, ``silhouettes/``, ``icons/`` and the rest.
+
+    A wheel carries them as ``kirigami_studio/resources``; a checkout has them beside the package.
+
+    Raises
+    ------
+    KirigamiError
+        Neither place exists: the installation is incomplete.
+    """
+    package = Path(__file__).resolve().parents[1]
+    for root in (package / "resources", package.parent / "resources"):
+        if (root / "silhouettes").is_dir():
+            return root
+    raise KirigamiError(f"The bundled files are missing beside {package}; install Kirigami Studio again.")
+
+
+def resource(*parts: str) -> Path:
+    """Return the path of one bundled file or folder, e.g. ``resource("models", "prior.safetensors")``."""
+    return resource_root().joinpath(*parts)
