@@ -1,0 +1,21 @@
+"""Ratio field -> exact geometry of compact reconfigurable parallelogram quad kirigami.
+
+Vocabulary
+----------
+void (i, j)
+    Parallelogram hole, ``i`` counted from the top, ``j`` from the left; corners counter-clockwise
+    p0 left, p1 bottom, p2 right, p3 top.  *Even* when ``i + j`` is even, else *odd*.
+panel (I, J)
+    Rigid tile; an m x n array of voids has (m+1) x (n+1) panels.
+hinge node
+    A corner that neighbouring panels share.  *Edge node*: a panel corner on the sheet's edge.
+ratio
+    ``x = |p1 - p0| / |p3 - p0|`` of a void (paper, Sec. 2.1).
+compact sheet
+    The state phi = pi: every void a closed slit, the sheet a plain rectangle with its top left
+    corner at (0, 0), x to the right, y up.
+phi
+    Deployment angle in radians: pi compact, 0 the second compact state.
+
+May import ``foundation`` only; torch only in ``batched``.
+"""

@@ -1,0 +1,107 @@
+"""The design variables: one positive side ratio per void."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from kirigami_studio.foundation.errors import GridError, RatioError
+
+SMALLEST_GRID = 2
+LARGEST_GRID = 64
+
+FloatArray = npt.NDArray[np.float64]
+
+
+def check_grid(rows: int, columns: int) -> None:
+    """Refuse grids outside 2 x 2 .. 64 x 64.
+
+    Raises
+    ------
+    GridError
+        With both numbers in the sentence.
+    """
+    if not all(isinstance(count, (int, np.integer)) and not isinstance(count, bool) for count in (rows, columns)):
+        raise GridError(f"A grid must have whole numbers of voids each way, got {rows!r} x {columns!r}.")
+    if not all(SMALLEST_GRID <= count <= LARGEST_GRID for count in (rows, columns)):
+        raise GridError(f"A grid must have {SMALLEST_GRID} to {LARGEST_GRID} voids each way, got {rows} x {columns}.")
+
+
+def frozen(values: npt.ArrayLike) -> FloatArray:
+    """Return a read-only float64 copy."""
+    array = np.array(values, dtype=np.float64)
+    array.setflags(write=False)
+    return array
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class RatioField:
+    """Side ratios of all voids (the paper's x).
+
+    Attributes
+    ----------
+    ratio : (m, n) float, dimensionless, > 0
+        Row 0 is the top row of the sheet.
+    """
+
+    ratio: FloatArray
+
+    def __post_init__(self) -> None:
+        ratio = _table(self.ratio)
+        if ratio.ndim != 2:
+            raise RatioError(f"Ratios must have shape (m, n), got {ratio.shape}.")
+        check_grid(*ratio.shape)
+        if not np.all(np.isfinite(ratio)):
+            row, column = np.argwhere(~np.isfinite(ratio))[0]
+            raise RatioError(f"Ratio at void ({row}, {column}) is {ratio[row, column]}; it must be finite.")
+        if not np.all(ratio > 0):
+            row, column = np.argwhere(ratio <= 0)[0]
+            raise RatioError(f"Ratio at void ({row}, {column}) is {ratio[row, column]:g}; it must be above 0.")
+        object.__setattr__(self, "ratio", ratio)
+
+    @classmethod
+    def uniform(cls, rows: int, columns: int) -> RatioField:
+        """All ratios 1: the plain rotating-squares sheet, the floor that every score is compared with."""
+        check_grid(rows, columns)
+        return cls(np.ones((rows, columns)))
+
+    @classmethod
+    def from_log10(cls, z: npt.ArrayLike) -> RatioField:
+        """Ratios ``10**z`` (paper, Appendix "Dataset generation")."""
+        with np.errstate(over="ignore", under="ignore"):  # the constructor names the place
+            return cls(np.power(10.0, _table(z)))
+
+    @property
+    def rows(self) -> int:
+        return int(self.ratio.shape[0])
+
+    @property
+    def columns(self) -> int:
+        return int(self.ratio.shape[1])
+
+    @property
+    def log10(self) -> FloatArray:
+        """The generator's variable ``z = log10 x``, shape (m, n)."""
+        return np.log10(self.ratio)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, RatioField) and np.array_equal(self.ratio, other.ratio)
+
+    def __hash__(self) -> int:
+        return hash((self.ratio.shape, self.ratio.tobytes()))
+
+    def __reduce__(self) -> tuple[type[RatioField], tuple[FloatArray]]:
+        # Through the constructor: numpy forgets the read-only flag when it unpickles.
+        return RatioField, (self.ratio,)
+
+
+def _table(values: npt.ArrayLike) -> FloatArray:
+    """Read-only float64 copy, or a sentence instead of numpy's own error."""
+    try:
+        if np.iscomplexobj(values):
+            raise TypeError("complex numbers")
+        return frozen(values)
+    except (TypeError, ValueError, OverflowError):
+        raise RatioError("Ratios must be an (m, n) table of numbers.") from None

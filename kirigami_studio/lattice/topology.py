@@ -1,0 +1,127 @@
+"""Which node belongs to which void, panel and outline: constant for a grid, shared by all its designs.
+
+Nodes come in two families, each indexed like the void whose corner it is:
+
+* ``h[i, j]`` is p0 of void (i, j) and p2 of void (i, j-1); rows i = -1 .. m, columns j = 0 .. n;
+* ``v[i, j]`` is p3 of void (i, j) and p1 of void (i-1, j); rows i = 0 .. m, columns j = -1 .. n.
+
+Rows -1 and m of h and columns -1 and n of v are edge nodes that belong to one panel only.  Panel (I, J) has the
+corners h[I-1, J] (top), v[I, J-1] (left), h[I, J] (bottom), v[I, J] (right): the same rule in the interior, on the edge
+and in the corners of the sheet.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
+import numpy.typing as npt
+
+from kirigami_studio.lattice.ratio_field import FloatArray, check_grid
+
+IntArray = npt.NDArray[np.intp]
+BoolArray = npt.NDArray[np.bool_]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Topology:
+    """Index tables of an m x n grid.
+
+    Attributes
+    ----------
+    h : (m + 2, n + 1) int
+        Node number of ``h[i, j]`` at position ``[i + 1, j]``.
+    v : (m + 1, n + 2) int
+        Node number of ``v[i, j]`` at position ``[i, j + 1]``.
+    void_nodes : (m, n, 4) int
+        p0, p1, p2, p3 of every void.
+    panel_nodes : (m + 1, n + 1, 4) int
+        Corners of every panel, counter-clockwise: top, left, bottom, right.
+    outline_nodes : (4 (m + n) + 4,) int
+        The sheet's boundary, counter-clockwise, at any angle.
+    outline_at_zero : (2 (m + n) + 4,) int
+        The same at phi = 0, where the two unit edges at each edge hinge have zipped shut: hinge and one twin left out.
+    uniform_nodes : (N, 2) float, unit cells
+        Compact node positions for all ratios 1; exact for the nodes in ``fixed``.
+    fixed : (N,) bool
+        Nodes that lie on the sheet's edge in the compact state (the boundary anchors B).
+    even_void : (m, n) bool
+        True where i + j is even: the slit is vertical in the compact sheet.
+    """
+
+    rows: int
+    columns: int
+    h: IntArray
+    v: IntArray
+    void_nodes: IntArray
+    panel_nodes: IntArray
+    outline_nodes: IntArray
+    outline_at_zero: IntArray
+    uniform_nodes: FloatArray
+    fixed: BoolArray
+    even_void: BoolArray
+
+    @property
+    def node_count(self) -> int:
+        return int(self.uniform_nodes.shape[0])
+
+
+@cache
+def topology(rows: int, columns: int) -> Topology:
+    """Return the (cached) tables of an m x n grid.
+
+    Raises
+    ------
+    GridError
+        Fewer than 2 or more than 64 voids in one direction.
+    """
+    check_grid(rows, columns)
+    m, n = rows, columns
+    h = np.arange((m + 2) * (n + 1)).reshape(m + 2, n + 1)
+    v = h.size + np.arange((m + 1) * (n + 2)).reshape(m + 1, n + 2)
+    uniform = np.concatenate([_uniform_h(m, n), _uniform_v(m, n)]) * (1.0, -1.0)
+    on_edge = np.isin(uniform[:, 0], (0, n + 1)) | np.isin(uniform[:, 1], (0, -(m + 1)))
+    outline, zipped = _outline(h, v)
+    tables = Topology(
+        rows=m,
+        columns=n,
+        h=h,
+        v=v,
+        void_nodes=np.stack([h[1:-1, :-1], v[1:, 1:-1], h[1:-1, 1:], v[:-1, 1:-1]], axis=-1),
+        panel_nodes=np.stack([h[:-1], v[:, :-1], h[1:], v[:, 1:]], axis=-1),
+        outline_nodes=outline,
+        outline_at_zero=outline[~(zipped & on_edge[outline]) & ~np.roll(zipped & on_edge[outline], 1)],
+        uniform_nodes=uniform,
+        fixed=on_edge,
+        even_void=np.add.outer(np.arange(m), np.arange(n)) % 2 == 0,
+    )
+    for table in (tables.h, tables.v, tables.void_nodes, tables.panel_nodes, tables.outline_nodes,
+                  tables.outline_at_zero, tables.uniform_nodes, tables.fixed, tables.even_void):  # fmt: skip
+        table.setflags(write=False)
+    return tables
+
+
+def _uniform_h(m: int, n: int) -> FloatArray:
+    """Compact (x, depth) of h for all ratios 1: the middle of an even void, the left end of an odd one."""
+    i, j = np.meshgrid(np.arange(-1, m + 1), np.arange(n + 1), indexing="ij")
+    return np.stack([np.where((i + j) % 2 == 0, j + 1, j), i + 1], axis=-1).reshape(-1, 2).astype(np.float64)
+
+
+def _uniform_v(m: int, n: int) -> FloatArray:
+    """Compact (x, depth) of v for all ratios 1: the top end of an even void, the middle of an odd one."""
+    i, j = np.meshgrid(np.arange(m + 1), np.arange(-1, n + 1), indexing="ij")
+    return np.stack([j + 1, np.where((i + j) % 2 == 0, i, i + 1)], axis=-1).reshape(-1, 2).astype(np.float64)
+
+
+def _outline(h: IntArray, v: IntArray) -> tuple[IntArray, BoolArray]:
+    """Boundary loop, counter-clockwise from the top left, and a mask of its hinge nodes.
+
+    Edge nodes and hinge nodes alternate along each side; the panel at a sheet corner contributes two edge nodes.
+    """
+    left = np.stack([v[:, 0], h[1:, 0]], axis=1).ravel()[:-1]  # v[0,-1] h[0,0] v[1,-1] .. v[m,-1]
+    bottom = np.stack([h[-1, :], v[-1, 1:]], axis=1).ravel()[:-1]
+    right = np.stack([v[:, -1], h[1:, -1]], axis=1).ravel()[:-1][::-1]
+    top = np.stack([h[0, :], v[0, 1:]], axis=1).ravel()[:-1][::-1]
+    hinge = [np.arange(side.size) % 2 == 1 for side in (left, bottom, right, top)]
+    return np.concatenate([left, bottom, right, top]), np.concatenate(hinge)
