@@ -1,0 +1,109 @@
+"""Checks on an SVG document before it is unfolded: no entities, no bombs, no parts that are never painted."""
+
+from __future__ import annotations
+
+import re
+import xml.etree.ElementTree as ElementTree
+from xml.etree.ElementTree import Element
+
+from kirigami_studio.foundation.errors import TargetError
+from kirigami_studio.foundation.units import MM_PER_INCH
+
+#: ``use`` elements repeat others; a drawing that unfolds to more elements than this is no outline.
+MOST_ELEMENTS = 100_000
+
+#: Parts that paint nothing by themselves; svgelements would draw the shapes inside some of them.
+UNPAINTED = frozenset({"mask", "marker", "pattern", "clipPath", "foreignObject", "script", "metadata", "filter"})
+
+REAL_LENGTH = re.compile(r"\s*\+?(\d+\.?\d*|\.\d+)(mm|cm|in|pt|pc)\s*", re.IGNORECASE)
+MM_PER_UNIT = {"mm": 1.0, "cm": 10.0, "in": MM_PER_INCH, "pt": MM_PER_INCH / 72.0, "pc": MM_PER_INCH / 6.0}
+
+
+def checked_svg(content: bytes) -> tuple[bytes, float | None, tuple[str, ...]]:
+    """Return a document that is safe to unfold.
+
+    Returns
+    -------
+    content : bytes
+        The document without unpainted parts, symbols moved into definitions.
+    width_mm : float or None
+        Width of the page, when it is stated in mm, cm, in, pt or pc.
+    notes : tuple of str
+
+    Raises
+    ------
+    TargetError
+        Compressed, with entity declarations, not well-formed, not SVG, or unfolding without end.
+    """
+    if content.startswith(b"\x1f\x8b"):
+        raise TargetError("The file is compressed (SVGZ); save it as plain SVG.")
+    # Without the zero bytes UTF-16 text is searched as well.
+    if b"<!entity" in content.replace(b"\0", b"").lower():
+        raise TargetError("The file declares XML entities, which are not read for safety; save it as plain SVG.")
+    try:
+        root = ElementTree.fromstring(content)
+    except ElementTree.ParseError as error:
+        raise TargetError(f"The file is not well-formed SVG ({error}); save it again as plain SVG.") from error
+    if _tag(root) != "svg":
+        raise TargetError(f"The file is XML but not SVG: its root is <{_tag(root)}>; save it as plain SVG.")
+    _refuse_bombs(root)
+    clipped = any(element.get("clip-path") or element.get("mask") for element in root.iter())
+    _drop_unpainted(root)
+    notes = ("Clip paths and masks are ignored; cut the shape itself if it looks different.",) if clipped else ()
+    width = REAL_LENGTH.fullmatch(root.get("width", ""))
+    width_mm = float(width[1]) * MM_PER_UNIT[width[2].lower()] if width else None
+    return ElementTree.tostring(root), width_mm, notes
+
+
+def _tag(element: Element) -> str:
+    """Tag without its namespace; comments and instructions have none."""
+    return element.tag.rsplit("}", 1)[-1] if isinstance(element.tag, str) else ""
+
+
+def _reference(element: Element) -> str:
+    return (element.get("href") or element.get("{http://www.w3.org/1999/xlink}href") or "").removeprefix("#")
+
+
+def _refuse_bombs(root: Element) -> None:
+    """Count the elements after every ``use`` is replaced by what it refers to.
+
+    Raises
+    ------
+    TargetError
+        More than ``MOST_ELEMENTS``, or an element that contains itself.
+    """
+    named = {name: element for element in root.iter() if (name := element.get("id"))}
+    counted: dict[Element, int] = {}
+    inside: set[Element] = set()
+
+    def count(element: Element) -> int:
+        if element in counted:
+            return counted[element]
+        if element in inside:
+            raise TargetError(f"The drawing uses <{_tag(element)}> inside itself; save it as plain SVG.")
+        inside.add(element)
+        total = 1 + sum(count(child) for child in element)
+        if _tag(element) == "use" and (target := named.get(_reference(element))) is not None:
+            total += count(target)
+        inside.discard(element)
+        counted[element] = total
+        return total
+
+    if (total := count(root)) > MOST_ELEMENTS:
+        raise TargetError(
+            f"The drawing unfolds to {total:.3g} elements, more than {MOST_ELEMENTS}; export the outline alone."
+        )
+
+
+def _drop_unpainted(root: Element) -> None:
+    """Remove what paints nothing; a symbol becomes a group in definitions, drawn only where it is used."""
+    for parent in list(root.iter()):
+        namespace = parent.tag[: parent.tag.index("}") + 1] if isinstance(parent.tag, str) and "}" in parent.tag else ""
+        for child in list(parent):
+            if _tag(child) in UNPAINTED:
+                parent.remove(child)
+            elif _tag(child) == "symbol":
+                child.tag = f"{namespace}g"
+                shelf = Element(f"{namespace}defs")
+                shelf.append(child)
+                parent[list(parent).index(child)] = shelf
