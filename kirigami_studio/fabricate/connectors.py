@@ -1,0 +1,176 @@
+"""Shorten cuts at their T-junctions so that the finished connector has the width asked for.
+
+A tip burns half a kerf ahead of its centre line and the through cut half a kerf towards it, so the centre line stops
+where its perpendicular distance to the through cut is ``width + kerf``; along a cut that meets it at an angle theta
+that is ``(width + kerf) / sin(theta)`` before the junction.  At the sheet's edge only the tip burns into the nominal
+sheet (the outline runs half a kerf outside): ``(width + kerf / 2) / sin(theta)``.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from kirigami_studio.fabricate.slits import SHEET_EDGE, CutTable
+from kirigami_studio.foundation.errors import FabricationError
+from kirigami_studio.lattice.ratio_field import FloatArray
+from kirigami_studio.lattice.topology import IntArray
+
+#: A cut shorter than this (mm), or than twice the kerf, is a burned dot and separates nothing.
+SHORTEST_CUT_MM = 0.1
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Hinges:
+    """The connectors of a finished sheet, numbered as in :class:`CutTable`.
+
+    Attributes
+    ----------
+    position : (H, 2) float, mm
+        T-junctions in the plan's frame.
+    cut, end, through : (H,) int
+        Number of the shortened cut, which end of it, and the cut it rests on (or ``SHEET_EDGE``).
+    requested_mm, finished_mm : (H,) float
+        Width asked for, and the width measured between the shortened cuts after the kerf.
+    """
+
+    position: FloatArray
+    cut: IntArray
+    end: IntArray
+    through: IntArray
+    requested_mm: FloatArray
+    finished_mm: FloatArray
+
+    def __post_init__(self) -> None:
+        for array in (self.position, self.cut, self.end, self.through, self.requested_mm, self.finished_mm):
+            array.setflags(write=False)
+
+    def __len__(self) -> int:
+        return int(self.position.shape[0])
+
+
+def hinge_widths(count: int, default_mm: float, single_mm: Mapping[int, float] | None = None) -> FloatArray:
+    """Return the finished width of every hinge: the default, except where ``single_mm`` names a hinge.
+
+    Raises
+    ------
+    FabricationError
+        A width that is not finite and positive, or a hinge number that does not exist.
+    """
+    widths = np.full(count, check_length("The connector width", default_mm))
+    for hinge, width in (single_mm or {}).items():
+        if not 0 <= hinge < count:
+            raise FabricationError(f"There is no hinge {hinge}: this sheet has hinges 0 to {count - 1}.")
+        widths[hinge] = check_length(f"The connector width of hinge {hinge}", width)
+    return widths
+
+
+def check_length(what: str, value: float, zero_allowed: bool = False) -> float:
+    """Return a length in mm as float, or refuse it by name.
+
+    Raises
+    ------
+    FabricationError
+        Not a number, not finite, negative, or zero where that makes no sense.
+    """
+    try:
+        length = float(value)
+    except (TypeError, ValueError):
+        raise FabricationError(f"{what} must be a number of millimetres, got {value!r}.") from None
+    if not math.isfinite(length) or length < 0 or (length == 0 and not zero_allowed):
+        bound = "0 mm or more" if zero_allowed else "above 0 mm"
+        raise FabricationError(f"{what} must be {bound}, got {length:g} mm; type a positive width in millimetres.")
+    return length
+
+
+def shorten(
+    lines: FloatArray, table: CutTable, size: tuple[float, float], widths: FloatArray, kerf_mm: float
+) -> FloatArray:
+    """Pull every cut end back from its T-junction.
+
+    Parameters
+    ----------
+    lines : (C, 2, 2) float, mm
+        Cuts from junction to junction, as :func:`sheet_lines` returns them.
+    table : CutTable
+    size : (width, height), mm
+        Nominal sheet.
+    widths : (H,) float, mm
+        Finished width of each hinge.
+    kerf_mm : float
+
+    Returns
+    -------
+    shortened : (C, 2, 2) float, mm
+
+    Raises
+    ------
+    FabricationError
+        A cut has no room for its connectors; the sentence names the cut, its length and what to change.
+    """
+    length = np.linalg.norm(lines[:, 1] - lines[:, 0], axis=1)
+    along = (lines[:, 1] - lines[:, 0]) / length[:, None]
+    tip = lines[table.hinge_cut, table.hinge_end]
+    on_edge = table.hinge_through == SHEET_EDGE
+    through = np.where(on_edge[:, None], edge_directions(tip, size), along[table.hinge_through])
+    own = along[table.hinge_cut]
+    sine = np.abs(own[:, 0] * through[:, 1] - own[:, 1] * through[:, 0])
+    gap = widths + np.where(on_edge, 0.5 * kerf_mm, kerf_mm)
+    trims = np.zeros((table.cut_count, 2))
+    trims[table.hinge_cut, table.hinge_end] = gap / sine
+    _refuse_cuts_without_room(table, length, trims, widths, kerf_mm)
+    shortened: FloatArray = lines + np.stack([trims[:, :1] * along, -trims[:, 1:] * along], axis=1)
+    return shortened
+
+
+def edge_directions(points: FloatArray, size: tuple[float, float]) -> FloatArray:
+    """Direction of the sheet side nearest to each point: (P, 2) unit vectors along x or y."""
+    x, y = points[:, 0], points[:, 1]
+    to_vertical = np.minimum(x, size[0] - x)
+    to_horizontal = np.minimum(y, size[1] - y)
+    return np.where((to_vertical < to_horizontal)[:, None], [0.0, 1.0], [1.0, 0.0])
+
+
+def _refuse_cuts_without_room(
+    table: CutTable, length: FloatArray, trims: FloatArray, widths: FloatArray, kerf_mm: float
+) -> None:
+    needed = trims.sum(axis=1) + max(SHORTEST_CUT_MM, 2.0 * kerf_mm)
+    if np.all(length >= needed):
+        return
+    # Angles do not change with the size of the sheet: growing it by the worst ratio is enough for all cuts.
+    worst = int(np.argmax(np.round(needed / length, 9)))
+    raise FabricationError(
+        f"The {table.label(worst)} is {length[worst]:.2f} mm long, but connectors of "
+        f"{widths[table.hinge_cut == worst].max():g} mm and a kerf of {kerf_mm:g} mm need {needed[worst]:.2f} mm; make "
+        f"the sheet at least {math.ceil(100.0 * needed[worst] / length[worst]) / 100.0:.2f} times wider or the "
+        f"connectors narrower ({int(np.sum(length < needed))} cuts are too short)."
+    )
+
+
+def finished_widths(lines: FloatArray, table: CutTable, outline: FloatArray, kerf_mm: float) -> FloatArray:
+    """Measure each connector: distance of the shortened tip to the shortened cut it rests on, less the kerf.
+
+    Parameters
+    ----------
+    lines : (C, 2, 2) float, mm
+        Shortened cuts.
+    outline : (4, 2) float, mm
+        Centre line of the outline cut, a rectangle.
+
+    Returns
+    -------
+    finished : (H,) float, mm
+    """
+    tip = lines[table.hinge_cut, table.hinge_end]
+    start, stop = lines[table.hinge_through, 0], lines[table.hinge_through, 1]
+    run = stop - start
+    along = np.sum((tip - start) * run, axis=1) / np.sum(run * run, axis=1)
+    nearest = start + np.clip(along, 0.0, 1.0)[:, None] * run
+    to_cut = np.linalg.norm(tip - nearest, axis=1)
+    low, high = outline.min(axis=0), outline.max(axis=0)
+    to_edge = np.minimum(tip - low, high - tip).min(axis=1)
+    finished: FloatArray = np.where(table.hinge_through == SHEET_EDGE, to_edge, to_cut) - kerf_mm
+    return finished

@@ -1,0 +1,257 @@
+"""The cut plan: every path of the job in mm, in the order of cutting, with what is known about the finished sheet."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from enum import Enum
+from functools import cached_property
+
+import numpy as np
+
+from kirigami_studio.fabricate import ordering, timing
+from kirigami_studio.fabricate.connectors import Hinges, check_length, finished_widths, hinge_widths, shorten
+from kirigami_studio.fabricate.kerf import OVERCUT_MM, edge_cut_paths, outline_path
+from kirigami_studio.fabricate.material import Material, default_material
+from kirigami_studio.fabricate.slits import CutTable, cut_table, sheet_lines
+from kirigami_studio.foundation.errors import FabricationError
+from kirigami_studio.lattice.deployment import Deployment
+from kirigami_studio.lattice.ratio_field import FloatArray
+
+SMALLEST_SHEET_MM = 5.0
+LARGEST_SHEET_MM = 3000.0
+#: Coordinates are rounded to this many decimals (mm), so that equal points are equal in every file.
+DECIMALS = 4
+#: A connector counts as wider than asked above this difference (mm).
+WIDER_MM = 1e-3
+
+
+class Layer(Enum):
+    """Groups of paths that a machine may treat differently; the values are the layer names in files."""
+
+    SLITS = "SLITS"
+    EDGE_SLITS = "EDGE_SLITS"
+    OUTLINE = "OUTLINE"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class CutPath:
+    """One cut without lifting.
+
+    Attributes
+    ----------
+    points : (P, 2) float, mm
+        In the direction of cutting; the first point of a closed path is not repeated.
+    layer : Layer
+    closed : bool
+    cut : int
+        Number of the cut in :class:`CutTable`, -1 for the outline.
+    """
+
+    points: FloatArray
+    layer: Layer
+    closed: bool
+    cut: int = -1
+
+    def __post_init__(self) -> None:
+        self.points.setflags(write=False)
+
+    @property
+    def travelled(self) -> FloatArray:
+        """Points as the head visits them; a closed path comes back to its first point."""
+        return np.concatenate([self.points, self.points[:1]]) if self.closed else self.points
+
+    @property
+    def length(self) -> float:
+        """Cut length, mm."""
+        return float(timing.segment_lengths(self.travelled).sum())
+
+
+@dataclass(frozen=True, eq=False)
+class CutPlan:
+    """A job for the cutter.
+
+    Attributes
+    ----------
+    paths : tuple of CutPath
+        In the order of cutting: slits, edge cuts, outline.  Smallest coordinates are 0, y up.
+    size_mm : (width, height)
+        The finished sheet.
+    connector_mm, kerf_mm, overcut_mm : float
+        Finished connector width asked for, full cut width, reach of edge cuts beyond the outline.
+    hinges : Hinges
+    material : Material
+    design_hash : str
+        Identifies the ratios that the plan was made from.
+    notes : tuple of str
+        Sentences that a person should read before cutting.
+    """
+
+    paths: tuple[CutPath, ...]
+    size_mm: tuple[float, float]
+    connector_mm: float
+    kerf_mm: float
+    overcut_mm: float
+    hinges: Hinges
+    material: Material
+    design_hash: str
+    notes: tuple[str, ...] = ()
+
+    @cached_property
+    def cut_length_mm(self) -> float:
+        return sum(path.length for path in self.paths)
+
+    @cached_property
+    def travel_mm(self) -> float:
+        """Way with the beam off, from the origin to the first cut and between cuts."""
+        return float(timing.travel_lengths([path.travelled for path in self.paths]).sum())
+
+    @cached_property
+    def seconds_estimate(self) -> float:
+        return timing.job_seconds([path.travelled for path in self.paths], self.material)
+
+    @property
+    def min_connector_mm(self) -> float:
+        """Smallest finished connector."""
+        return float(self.hinges.finished_mm.min())
+
+    @property
+    def bounds_mm(self) -> tuple[float, float]:
+        """Width and height of everything the head cuts, overcuts included; the lower corner is (0, 0)."""
+        corner = np.concatenate([path.points for path in self.paths]).max(axis=0)
+        return float(corner[0]), float(corner[1])
+
+    def on_layer(self, layer: Layer) -> tuple[CutPath, ...]:
+        """The paths of one layer, in the order of cutting."""
+        return tuple(path for path in self.paths if path.layer is layer)
+
+
+def plan_cuts(
+    deployment: Deployment,
+    width_mm: float = 100.0,
+    connector_mm: float | None = None,
+    kerf_mm: float | None = None,
+    material: Material | None = None,
+    single_widths_mm: Mapping[int, float] | None = None,
+    overcut_mm: float = OVERCUT_MM,
+) -> CutPlan:
+    """Turn a design into a job for the cutter.
+
+    Parameters
+    ----------
+    deployment : Deployment
+    width_mm : float
+        Width of the finished sheet, 5 to 3000 mm; the height follows from the grid.
+    connector_mm, kerf_mm : float, optional
+        Finished connector width and full cut width; the material's values unless given.
+    material : Material, optional
+        The default preset unless given.
+    single_widths_mm : mapping of hinge number to width, optional
+        Finished widths of single hinges, numbered as in :class:`CutTable`.
+    overcut_mm : float
+        Reach of edge cuts beyond the outline.
+
+    Raises
+    ------
+    FabricationError
+        A size, width or kerf that makes no sense, or a cut without room for its connectors.
+    """
+    material = material or default_material()
+    width = check_length("The sheet width", width_mm)
+    connector = check_length("The connector width", material.connector_mm if connector_mm is None else connector_mm)
+    kerf = check_length("The kerf", material.kerf_mm if kerf_mm is None else kerf_mm, zero_allowed=True)
+    overcut = check_length("The overcut", overcut_mm)
+    table = cut_table(deployment.field.rows, deployment.field.columns)
+    lines, size = sheet_lines(deployment, width)
+    junctions = lines[table.hinge_cut, table.hinge_end]
+    _check_size(size)
+    widths = hinge_widths(table.hinge_count, connector, single_widths_mm)
+    lines = shorten(lines, table, size, widths, kerf)
+    edges = edge_cut_paths(lines, table, size, kerf, overcut)
+    origin = np.concatenate([*edges, outline_path(size, kerf)]).min(axis=0)
+    outline = _on_grid(outline_path(size, kerf) - origin)
+    lines = _on_grid(lines - origin)
+    edges = [_on_grid(path - origin) for path in edges]
+    hinges = Hinges(
+        position=_on_grid(junctions - origin),
+        cut=table.hinge_cut,
+        end=table.hinge_end,
+        through=table.hinge_through,
+        requested_mm=widths,
+        finished_mm=finished_widths(lines, table, outline, kerf),
+    )
+    return CutPlan(
+        paths=_in_cutting_order(table, lines, edges, outline, size),
+        size_mm=size,
+        connector_mm=connector,
+        kerf_mm=kerf,
+        overcut_mm=overcut,
+        hinges=hinges,
+        material=material,
+        design_hash=_design_hash(deployment),
+        notes=_notes(hinges, material, connector, kerf),
+    )
+
+
+def _on_grid(points: FloatArray) -> FloatArray:
+    """Round coordinates, and make every zero a positive one."""
+    rounded: FloatArray = np.round(points, DECIMALS) + 0.0
+    return rounded
+
+
+def _design_hash(deployment: Deployment) -> str:
+    ratio = deployment.field.ratio
+    content = f"{ratio.shape}".encode() + np.ascontiguousarray(ratio, dtype="<f8").tobytes()
+    return hashlib.sha256(content).hexdigest()[:16]
+
+
+def _check_size(size: tuple[float, float]) -> None:
+    if min(size) < SMALLEST_SHEET_MM or max(size) > LARGEST_SHEET_MM:
+        raise FabricationError(
+            f"A sheet of {size[0]:g} x {size[1]:g} mm cannot be planned; both sides must lie between "
+            f"{SMALLEST_SHEET_MM:g} and {LARGEST_SHEET_MM:g} mm, so change the sheet width."
+        )
+
+
+def _in_cutting_order(
+    table: CutTable, lines: FloatArray, edges: list[FloatArray], outline: FloatArray, size: tuple[float, float]
+) -> tuple[CutPath, ...]:
+    order = ordering.serpentine(table)
+    backwards = ordering.shortest_flips(lines[order], np.zeros(2))
+    paths = [
+        CutPath(lines[cut, ::-1].copy() if flip else lines[cut].copy(), Layer.SLITS, False, int(cut))
+        for cut, flip in zip(order, backwards, strict=True)
+    ]
+    mouths = np.array([path[0] for path in edges])
+    for index in ordering.around(mouths, paths[-1].points[-1], size):
+        paths.append(CutPath(edges[index], Layer.EDGE_SLITS, False, table.slit_count + int(index)))
+    nearest = int(np.argmin(np.linalg.norm(outline - paths[-1].points[-1], axis=1)))
+    paths.append(CutPath(np.roll(outline, -nearest, axis=0), Layer.OUTLINE, True))
+    return tuple(paths)
+
+
+def _notes(hinges: Hinges, material: Material, connector: float, kerf: float) -> tuple[str, ...]:
+    notes = []
+    if not material.calibrated:
+        notes.append(f"The preset {material.name!r} is uncalibrated: cut a test piece first.")
+    narrowest = float(hinges.requested_mm.min())
+    if narrowest < material.min_ligament_mm:
+        notes.append(
+            f"Connectors of {narrowest:g} mm are below the {material.min_ligament_mm:g} mm that {material.name!r} "
+            f"is known to bear; they may tear."
+        )
+    wider = hinges.finished_mm - hinges.requested_mm > WIDER_MM
+    if np.any(wider):
+        where = hinges.position[int(np.argmax(hinges.finished_mm - hinges.requested_mm))]
+        notes.append(
+            f"{int(wider.sum())} of {len(hinges)} connectors come out wider than asked, because the slit they rest on "
+            f"ends before them (widest {hinges.finished_mm.max():.3f} mm near x = {where[0]:.1f}, "
+            f"y = {where[1]:.1f} mm); a larger sheet or narrower connectors avoid it."
+        )
+    if connector + kerf < 2.0 * material.join_tolerance_mm:
+        notes.append(
+            f"Cut ends lie {connector + kerf:.3f} mm apart: programs that join gaps up to "
+            f"{material.join_tolerance_mm:g} mm may close them; switch joining off when importing."
+        )
+    return tuple(notes)

@@ -1,0 +1,139 @@
+"""Which nodes each cut joins and what each of its ends rests on: constant for a grid, shared by all its designs.
+
+In the compact sheet the four corners of a void are collinear.  An even void is the slit p3 -> p1, an odd one p0 -> p2;
+its other two corners are the T-junctions where neighbouring cuts end on it, one from each side.  At edge positions
+whose hinge node lies inside, an edge cut runs from the two coincident edge nodes to that hinge node.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
+
+from kirigami_studio.lattice.deployment import Deployment
+from kirigami_studio.lattice.ratio_field import FloatArray
+from kirigami_studio.lattice.topology import IntArray, Topology, topology
+
+#: ``hinge_through`` of a cut end that rests on the sheet's edge.
+SHEET_EDGE = -1
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class CutTable:
+    """All cuts and hinges of an m x n grid.
+
+    Cuts are numbered with the slits first, in row order of their voids, then the edge cuts: left and right side from
+    the top, top and bottom side from the left.  Every cut end on a T-junction is one hinge.
+
+    Attributes
+    ----------
+    ends : (C, 2) int
+        Node numbers of both ends; an edge cut starts at the sheet's edge.
+    slit_count : int
+        m n; cut c < slit_count is the slit of void ``divmod(c, n)``.
+    hinge_cut, hinge_end : (H,) int
+        The cut and the end (0 or 1) that a hinge shortens.
+    hinge_through : (H,) int
+        The cut that this end rests on, or ``SHEET_EDGE``.
+    hinge_node : (H,) int
+        The node at the T-junction; no two hinges share one.
+    """
+
+    rows: int
+    columns: int
+    ends: IntArray
+    slit_count: int
+    hinge_cut: IntArray
+    hinge_end: IntArray
+    hinge_through: IntArray
+    hinge_node: IntArray
+
+    @property
+    def cut_count(self) -> int:
+        return int(self.ends.shape[0])
+
+    @property
+    def hinge_count(self) -> int:
+        return int(self.hinge_node.size)
+
+    def label(self, cut: int) -> str:
+        """Return how to name a cut to a person, e.g. ``"slit of void (2, 3)"``; rows count from the top, from 0."""
+        if cut < self.slit_count:
+            row, column = divmod(cut, self.columns)
+            return f"slit of void ({row}, {column})"
+        through = self.hinge_through[2 * self.slit_count + cut - self.slit_count]
+        row, column = divmod(int(through), self.columns)
+        return f"edge cut at void ({row}, {column})"
+
+
+@cache
+def cut_table(rows: int, columns: int) -> CutTable:
+    """Return the (cached) cuts of an m x n grid.
+
+    Raises
+    ------
+    GridError
+        Fewer than 2 or more than 64 voids in one direction.
+    """
+    tables = topology(rows, columns)
+    p0, p1, p2, p3 = np.moveaxis(tables.void_nodes.reshape(-1, 4), 1, 0)
+    even = tables.even_void.ravel()
+    slits = np.stack([np.where(even, p3, p0), np.where(even, p1, p2)], axis=1)
+    edge = _edge_cuts(tables)
+    ends = np.concatenate([slits, edge])
+    # The middles of a slit are the corners that are not its ends.
+    resting_on = np.full(tables.node_count, SHEET_EDGE)
+    resting_on[np.stack([np.where(even, p0, p3), np.where(even, p2, p1)])] = np.arange(even.size)
+    slit_number = np.arange(even.size)
+    edge_number = even.size + np.arange(len(edge))
+    node = np.concatenate([slits.ravel(), edge[:, 1]])
+    table = CutTable(
+        rows=rows,
+        columns=columns,
+        ends=ends,
+        slit_count=even.size,
+        hinge_cut=np.concatenate([np.repeat(slit_number, 2), edge_number]),
+        hinge_end=np.concatenate([np.tile([0, 1], even.size), np.ones(len(edge), dtype=np.intp)]),
+        hinge_through=resting_on[node],
+        hinge_node=node,
+    )
+    for array in (table.ends, table.hinge_cut, table.hinge_end, table.hinge_through, table.hinge_node):
+        array.setflags(write=False)
+    return table
+
+
+def _edge_cuts(tables: Topology) -> IntArray:
+    """Return (edge node, hinge node inside) of every edge cut: (E, 2) int."""
+    inner_outer = [
+        (tables.h[1:-1, 0], tables.v[:-1, 0]),  # left: h[i, 0], twins v[i, -1] and v[i + 1, -1]
+        (tables.h[1:-1, -1], tables.v[:-1, -1]),  # right
+        (tables.v[0, 1:-1], tables.h[0, :-1]),  # top: v[0, j], twins h[-1, j] and h[-1, j + 1]
+        (tables.v[-1, 1:-1], tables.h[-1, :-1]),  # bottom
+    ]
+    pairs = np.concatenate([np.stack([outer, inner], axis=1) for inner, outer in inner_outer])
+    chosen: IntArray = pairs[~tables.fixed[pairs[:, 1]]]
+    return chosen
+
+
+def sheet_lines(deployment: Deployment, width_mm: float) -> tuple[FloatArray, tuple[float, float]]:
+    """Place the uncut-short cuts on the compact sheet in mm.
+
+    Parameters
+    ----------
+    deployment : Deployment
+    width_mm : float
+        Finished width of the sheet; the height follows from the grid.
+
+    Returns
+    -------
+    lines : (C, 2, 2) float, mm
+        Start and end of every cut, from T-junction to T-junction; sheet's bottom left corner at (0, 0), y up.
+    size : (width, height), mm
+    """
+    table = cut_table(deployment.field.rows, deployment.field.columns)
+    low, high = deployment.compact.min(axis=0), deployment.compact.max(axis=0)
+    scale = width_mm / (high[0] - low[0])
+    lines = (deployment.compact[table.ends] - low) * scale
+    return lines, (width_mm, float((high[1] - low[1]) * scale))

@@ -1,0 +1,102 @@
+"""The physics check, on good plans and on ones made bad."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from shapely.geometry import LineString, Polygon, box
+
+from kirigami_studio.fabricate.checks import Severity, check_plan
+from kirigami_studio.fabricate.cut_plan import CutPath, Layer, plan_cuts
+from kirigami_studio.fabricate.finished_sheet import overlap_length, remaining_pieces, smallest_ligament
+from kirigami_studio.lattice.deployment import Deployment
+
+MakeDesign = Callable[..., Deployment]
+
+
+@pytest.mark.parametrize(("rows", "columns"), [(2, 2), (4, 5), (10, 10)])
+def test_that_a_planned_sheet_stays_in_one_piece_and_nothing_is_cut_twice(
+    rows: int, columns: int, make_design: MakeDesign
+) -> None:
+    for seed in range(3):
+        report = check_plan(plan_cuts(make_design(rows, columns, seed)))
+        assert report.ok and report.problems == ()
+        assert report.pieces == 1
+        assert report.overlap_mm < 1e-9
+        assert report.min_connector_mm == pytest.approx(0.2, abs=1e-3)
+        assert report.min_ligament_mm == pytest.approx(report.min_connector_mm, abs=1e-9)
+
+
+def test_that_a_kerf_wider_than_the_gap_frees_every_panel(make_design: MakeDesign) -> None:
+    plan = plan_cuts(make_design(4, 5), connector_mm=0.2, kerf_mm=0.02)
+    report = check_plan(plan, kerf_mm=0.3)
+    assert not report.ok
+    assert report.pieces == 5 * 6
+    assert report.min_connector_mm < 0
+    pieces = next(problem for problem in report.problems if "30 pieces" in problem.text)
+    assert pieces.severity is Severity.ERROR and pieces.where is not None
+
+
+def test_that_a_kerf_somewhat_wider_than_planned_is_reported_with_a_place(make_design: MakeDesign) -> None:
+    report = check_plan(plan_cuts(make_design(4, 5), connector_mm=0.2, kerf_mm=0.02), kerf_mm=0.15)
+    assert report.pieces == 1 and not report.ok
+    assert "narrower than asked" in report.problems[0].text
+    assert report.problems[0].where is not None
+
+
+def test_that_one_cut_made_twice_is_found(make_design: MakeDesign) -> None:
+    plan = plan_cuts(make_design(4, 4))
+    doubled = replace(plan, paths=(plan.paths[0], *plan.paths))
+    report = check_plan(doubled)
+    assert not report.ok
+    assert report.overlap_mm == pytest.approx(plan.paths[0].length)
+
+
+def test_that_a_cut_that_runs_through_a_connector_is_found(make_design: MakeDesign) -> None:
+    plan = plan_cuts(make_design(4, 4, spread=0.0))
+    slit = plan.paths[5]
+    longer = slit.points + np.stack([slit.points[0] - slit.points[1], slit.points[1] - slit.points[0]]) * 0.2
+    faulty = replace(plan, paths=(*plan.paths[:5], CutPath(longer, Layer.SLITS, False, slit.cut), *plan.paths[6:]))
+    report = check_plan(faulty)
+    assert not report.ok
+    assert report.min_ligament_mm < 0
+    assert any("leave only" in problem.text and problem.where is not None for problem in report.problems)
+
+
+def test_that_a_connector_below_what_the_material_bears_is_a_warning(make_design: MakeDesign) -> None:
+    report = check_plan(plan_cuts(make_design(4, 4), connector_mm=0.05))
+    assert report.ok
+    assert [problem.severity for problem in report.problems] == [Severity.WARNING]
+
+
+def test_that_planning_and_checking_576_voids_takes_below_two_seconds(make_design: MakeDesign) -> None:
+    design = make_design(24, 24)
+    start = time.process_time()
+    report = check_plan(plan_cuts(design))
+    assert time.process_time() - start < 2.0
+    assert report.ok and report.pieces == 1
+
+
+def test_that_a_blade_without_kerf_still_parts_the_sheet() -> None:
+    across = LineString([(-1.0, 5.0), (11.0, 5.0)])
+    assert len(remaining_pieces(box(0, 0, 10, 10), [across], 0.0)) == 2
+    assert len(remaining_pieces(box(0, 0, 10, 10), [LineString([(1.0, 5.0), (11.0, 5.0)])], 0.0)) == 1
+
+
+def test_that_the_narrowest_place_is_measured_and_located() -> None:
+    cuts = [LineString([(1, 5), (4, 5)]), LineString([(4.5, 2), (4.5, 8)]), LineString([(8, 2), (8, 9.7)])]
+    between = smallest_ligament(cuts, None, 0.1)
+    assert between is not None
+    assert (between.width_mm, between.where) == (pytest.approx(0.4), pytest.approx((4.25, 5.0)))
+    edge = smallest_ligament(cuts, Polygon(box(0, 0, 10, 10)).exterior, 0.1)
+    assert edge is not None and edge.width_mm == pytest.approx(0.2)
+    assert smallest_ligament([], None, 0.1) is None
+
+
+def test_that_overlaps_are_measured_but_crossings_are_not() -> None:
+    assert overlap_length([LineString([(0, 0), (4, 0)]), LineString([(3, 0), (9, 0)])]) == pytest.approx(1.0)
+    assert overlap_length([LineString([(0, 0), (4, 4)]), LineString([(0, 4), (4, 0)])]) == pytest.approx(0.0)

@@ -1,0 +1,60 @@
+"""Material presets."""
+
+from __future__ import annotations
+
+import dataclasses
+from pathlib import Path
+
+import pytest
+
+from kirigami_studio.fabricate.material import default_material, find_material, presets, read_preset
+from kirigami_studio.foundation.errors import FabricationError
+from kirigami_studio.foundation.resources import resource
+
+
+def test_that_the_four_presets_are_bundled_and_none_claims_to_be_calibrated() -> None:
+    assert list(presets()) == ["film-uv", "card-co2", "drag-knife", "pet-co2"]
+    assert not any(material.calibrated for material in presets().values())
+    assert all(material.connector_mm > material.min_ligament_mm for material in presets().values())
+    assert presets()["drag-knife"].kerf_mm == 0.0
+
+
+def test_that_a_material_is_found_by_key_or_full_name_in_any_case() -> None:
+    assert find_material(" PET-CO2 ").key == "pet-co2"
+    assert find_material(default_material().name.upper()) == default_material()
+
+
+def test_that_an_unknown_material_is_refused_with_the_known_ones() -> None:
+    with pytest.raises(FabricationError, match=r"'oak'.*film-uv.*pet-co2"):
+        find_material("oak")
+
+
+@pytest.mark.parametrize(
+    ("change", "expected"),
+    [
+        (("kerf_mm = 0.02", "kerf_mm = -0.02"), "kerf_mm must be a number 0 or more, got -0.02"),
+        (("kerf_mm = 0.02", "kerf_mm = nan"), "kerf_mm must be a number"),
+        (("speed_mm_s = 100.0", "speed_mm_s = 0"), "speed_mm_s must be a number above 0"),
+        (("calibrated = false", 'calibrated = "no"'), "calibrated must be a bool"),
+        (("calibrated = false", ""), "lacks calibrated"),
+        (("calibrated = false", "calibrated = false\nkerf = 1.0"), "unknown entries kerf"),
+        (("calibrated = false", "calibrated = ="), "cannot be read"),
+    ],
+)
+def test_that_a_faulty_preset_is_refused_by_name(tmp_path: Path, change: tuple[str, str], expected: str) -> None:
+    text = resource("materials", "film-uv.toml").read_text(encoding="utf-8")
+    assert change[0] in text
+    faulty = tmp_path / "mine.toml"
+    faulty.write_text(text.replace(*change), encoding="utf-8")
+    with pytest.raises(FabricationError, match=expected):
+        read_preset(faulty)
+
+
+def test_that_a_missing_preset_file_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(FabricationError, match=r"nowhere\.toml"):
+        read_preset(tmp_path / "nowhere.toml")
+
+
+def test_that_a_preset_cannot_be_changed_in_place() -> None:
+    with pytest.raises(dataclasses.FrozenInstanceError):
+        default_material().kerf_mm = 1.0  # type: ignore[misc]
