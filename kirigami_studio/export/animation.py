@@ -1,0 +1,87 @@
+"""Deployment from the compact sheet to the target angle -> looping GIF."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from io import BytesIO
+from pathlib import Path
+
+import numpy as np
+from PIL import Image
+
+from kirigami_studio.export.exporter import ExportJob
+from kirigami_studio.export.picture import Frame, draw_layout
+from kirigami_studio.export.verified import write_verified
+from kirigami_studio.foundation.errors import ExportError
+from kirigami_studio.lattice.ratio_field import FloatArray
+
+FRAMES = 40
+FRAME_MS = 50
+#: The first and the last frame stay this long (ms).
+HOLD_MS = 900
+LONGEST_SIDE = 480
+#: Colours of the shared palette; the picture has few and their blends.
+PALETTE_COLOURS = 64
+
+
+@dataclass(frozen=True, slots=True)
+class GifExporter:
+    """Deployment as GIF."""
+
+    extension: str = ".gif"
+    name: str = "GIF animation of the deployment"
+
+    def write(self, job: ExportJob, path: Path) -> None:
+        """Write the motion from phi = pi to the job's angle."""
+        write_animation(job, path)
+
+
+def frame_angles(phi: float, frames: int) -> FloatArray:
+    """Angles from pi to ``phi``, slow at both ends: (frames,) float, radians."""
+    time = np.linspace(0.0, 1.0, frames)
+    eased = 0.5 - 0.5 * np.cos(math.pi * time)
+    angles = math.pi + (phi - math.pi) * eased
+    angles[-1] = phi
+    return angles
+
+
+def write_animation(job: ExportJob, path: str | Path, frames: int = FRAMES, longest: int = LONGEST_SIDE) -> int:
+    """Write the motion and return the number of frames.
+
+    Raises
+    ------
+    ExportError
+        Fewer than 2 frames, an unwritable place, or a file that did not read back.
+    """
+    if frames < 2:
+        raise ExportError(f"An animation needs at least 2 frames, got {frames}.")
+    pictures = _pictures(job, frames, longest)
+    durations = [HOLD_MS] + [FRAME_MS] * (frames - 2) + [HOLD_MS]
+    stream = BytesIO()
+    pictures[0].save(
+        stream, format="GIF", save_all=True, append_images=pictures[1:], duration=durations, loop=0, optimize=False
+    )
+
+    def verify(written: Path) -> None:
+        with Image.open(written) as read:
+            found = int(getattr(read, "n_frames", 1))
+            if found != frames or read.size != pictures[0].size:
+                raise ExportError(f"The GIF did not read back: {found} frames instead of {frames}.")
+
+    write_verified(Path(path), stream.getvalue(), verify)
+    return frames
+
+
+def _pictures(job: ExportJob, frames: int, longest: int) -> list[Image.Image]:
+    """All frames in one constant frame box and one palette."""
+    panels = job.deployment.topology.panel_nodes
+    poses = [job.placed_nodes(float(angle)) for angle in frame_angles(job.phi, frames)]
+    box = Frame.around(poses if job.target is None else [*poses, job.target], longest)
+    drawn = [draw_layout(nodes[panels], box, job.target) for nodes in poses]
+    # Open and closed states together show every colour.
+    sample = Image.new("RGB", (box.pixels[0], 2 * box.pixels[1]))
+    sample.paste(drawn[frames // 2], (0, 0))
+    sample.paste(drawn[-1], (0, box.pixels[1]))
+    shared = sample.quantize(colors=PALETTE_COLOURS)
+    return [picture.quantize(palette=shared, dither=Image.Dither.NONE) for picture in drawn]

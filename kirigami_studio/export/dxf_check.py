@@ -1,0 +1,231 @@
+"""Judge any cut file: units, layers, doubles, gaps in the outline, pieces and the narrowest ligament."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import shapely
+from shapely.geometry import LineString, Polygon
+from shapely.geometry.base import BaseGeometry
+
+from kirigami_studio.export.dxf_content import DrawnPath, DxfContent, read_content
+from kirigami_studio.fabricate.checks import OVERLAP_TOLERANCE_MM, Problem, Severity
+from kirigami_studio.fabricate.cut_plan import LARGEST_SHEET_MM, SMALLEST_SHEET_MM, Layer
+from kirigami_studio.fabricate.finished_sheet import overlap_length, remaining_pieces, smallest_ligament
+from kirigami_studio.foundation.errors import ExportError
+
+#: Machine programs choose the operation by these words in a layer's name (MeerK40t, K40 Whisperer).
+TRAP_WORDS = ("CUT", "ENGRAVE")
+#: Ends nearer than this (mm) count as the same point.
+SAME_POINT_MM = 1e-4
+#: An outline whose ends miss each other by less than this (mm) was meant to be closed.
+NEARLY_CLOSED_MM = 0.5
+
+
+@dataclass(frozen=True, slots=True)
+class FileReport:
+    """What is in a cut file.
+
+    Attributes
+    ----------
+    path : Path
+    problems : tuple of Problem
+    unit : str
+        "mm", another unit's name, or "none".
+    layers : tuple of str
+        Layers that hold entities.
+    path_count : int
+        Curves that can be cut.
+    cut_length_mm, overlap_mm : float
+        Length of all curves, and how much of it lies on another curve.
+    bounds_mm : (width, height)
+        Extent of all curves.
+    kerf_mm : float
+        The kerf that pieces and ligaments were computed with.
+    pieces : int or None
+        Pieces of the sheet after cutting; None without a closed outline.
+    min_ligament_mm : float or None
+        Finished width of the narrowest place between two cuts.
+    """
+
+    path: Path
+    problems: tuple[Problem, ...]
+    unit: str
+    layers: tuple[str, ...]
+    path_count: int
+    cut_length_mm: float
+    overlap_mm: float
+    bounds_mm: tuple[float, float]
+    kerf_mm: float
+    pieces: int | None
+    min_ligament_mm: float | None
+
+    @property
+    def ok(self) -> bool:
+        """No errors; there may be warnings."""
+        return not any(problem.severity is Severity.ERROR for problem in self.problems)
+
+
+def check_file(path: str | Path, kerf_mm: float | None = None) -> FileReport:
+    """Read a DXF of any origin and list what would go wrong on the cutter.
+
+    Parameters
+    ----------
+    path : str or Path
+    kerf_mm : float, optional
+        Full cut width; else what the file says of itself, else 0.
+
+    Raises
+    ------
+    ExportError
+        The file is missing or not a DXF, or the kerf makes no sense.
+    """
+    content = read_content(Path(path))
+    kerf = _kerf(content, kerf_mm)
+    problems = [*content.problems, *_layer_problems(content.layers)]
+    if not content.paths:
+        problems.append(Problem("The file holds nothing that can be cut."))
+        return FileReport(Path(path), tuple(problems), content.unit, content.layers, 0, 0.0, 0.0, (0.0, 0.0), kerf,
+                          None, None)  # fmt: skip
+    lines = [LineString(drawn.points) for drawn in content.paths]
+    size = np.ptp(np.concatenate([drawn.points for drawn in content.paths]), axis=0)
+    bounds = (float(size[0]), float(size[1]))
+    overlap = max(overlap_length(lines), 0.0)
+    problems += [*_size_problems(bounds), *_double_problems(content.paths, overlap)]
+    outline = _find_outline(content.paths, problems)
+    pieces, ligament = _physics(content.paths, outline, kerf, problems)
+    length = float(sum(line.length for line in lines))
+    return FileReport(Path(path), tuple(problems), content.unit, content.layers, len(lines), length, overlap, bounds,
+                      kerf, pieces, ligament)  # fmt: skip
+
+
+def _kerf(content: DxfContent, kerf_mm: float | None) -> float:
+    text = content.facts.get("KERF_MM", "0") if kerf_mm is None else kerf_mm
+    try:
+        kerf = float(text)
+    except (TypeError, ValueError):
+        kerf = float("nan")
+    if not 0.0 <= kerf <= LARGEST_SHEET_MM:
+        raise ExportError(f"The kerf must be a width in mm of 0 or more, got {text!r}; give the cut's full width.")
+    return kerf
+
+
+def _layer_problems(layers: Sequence[str]) -> list[Problem]:
+    trapped = [name for name in layers if any(word in name.upper() for word in TRAP_WORDS)]
+    if not trapped:
+        return []
+    return [
+        Problem(
+            f"Layer names with CUT or ENGRAVE in them ({', '.join(trapped)}) choose an operation by themselves in "
+            f"MeerK40t and K40 Whisperer, so that lines are cut twice or engraved; rename them."
+        )
+    ]
+
+
+def _size_problems(bounds: tuple[float, float]) -> list[Problem]:
+    if max(bounds) <= LARGEST_SHEET_MM and max(bounds) >= SMALLEST_SHEET_MM:
+        return []
+    return [
+        Problem(
+            f"The drawing is {bounds[0]:g} x {bounds[1]:g} mm, outside {SMALLEST_SHEET_MM:g} to "
+            f"{LARGEST_SHEET_MM:g} mm; its unit is probably wrong."
+        )
+    ]
+
+
+def _double_problems(paths: Sequence[DrawnPath], overlap: float) -> list[Problem]:
+    seen: Counter[tuple[tuple[float, float], ...]] = Counter()
+    for drawn in paths:
+        points = np.round(drawn.points / SAME_POINT_MM).astype(np.int64)
+        for start, stop in zip(points[:-1].tolist(), points[1:].tolist(), strict=True):
+            seen[tuple(sorted((tuple(start), tuple(stop))))] += 1
+    doubles = [(ends, count) for ends, count in seen.items() if count > 1 and ends[0] != ends[1]]
+    problems = []
+    if doubles:
+        (x, y), _ = doubles[0][0]
+        where = (x * SAME_POINT_MM, y * SAME_POINT_MM)
+        problems.append(
+            Problem(
+                f"{sum(count - 1 for _, count in doubles)} lines are drawn more than once, the first at "
+                f"x = {where[0]:.2f}, y = {where[1]:.2f}; they would be cut twice, so delete the duplicates.",
+                Severity.ERROR,
+                where,
+            )
+        )
+    if overlap > OVERLAP_TOLERANCE_MM:
+        problems.append(Problem(f"{overlap:.3f} mm of the cuts overlap other cuts; join or trim them."))
+    return problems
+
+
+def _find_outline(paths: Sequence[DrawnPath], problems: list[Problem]) -> Polygon | None:
+    """Return the area inside the outline; note when it is open, crosses itself or is missing.
+
+    The outline is what the OUTLINE layer holds; in a foreign file, the largest closed contour, be it one path or a
+    chain of lines that meet.
+    """
+    own = [drawn for drawn in paths if drawn.layer == Layer.OUTLINE.value]
+    rings = [Polygon(drawn.points) for drawn in own or paths if drawn.closed and len(drawn.points) > 3]
+    if not rings:
+        chains = _chains(own or paths)
+        rings = [Polygon(chain.coords) for chain in chains if chain.is_closed and len(chain.coords) > 3]
+        if not rings:
+            problems.append(_open_outline(chains))
+            return None
+        text = "The outline consists of lines that meet but is no closed polyline; some machines see it as open."
+        problems.append(Problem(text, Severity.WARNING))
+    outline = max(rings, key=lambda ring: float(ring.area))
+    if not outline.is_valid:
+        where = shapely.get_coordinates(outline)[0]
+        problems.append(
+            Problem("The outline crosses itself; redraw it.", Severity.ERROR, (float(where[0]), float(where[1])))
+        )
+        return None
+    return outline
+
+
+def _chains(paths: Sequence[DrawnPath]) -> list[LineString]:
+    """Join lines whose ends meet, each piece of line used once."""
+    snapped = shapely.set_precision(shapely.multilinestrings([LineString(drawn.points) for drawn in paths]), 1e-6)
+    merged = shapely.line_merge(shapely.union_all(snapped))
+    return [part for part in shapely.get_parts(merged) if isinstance(part, LineString)]
+
+
+def _open_outline(chains: Sequence[LineString]) -> Problem:
+    gaps = [(chain.length, shapely.Point(chain.coords[0]).distance(shapely.Point(chain.coords[-1])), chain)
+            for chain in chains]  # fmt: skip
+    nearly = [entry for entry in gaps if entry[1] < NEARLY_CLOSED_MM and entry[0] > SMALLEST_SHEET_MM]
+    if not nearly:
+        return Problem("The file has no closed outline, so the sheet would not come free; add one closed contour.")
+    _, gap, chain = max(nearly, key=lambda entry: entry[0])
+    x, y = chain.coords[0]
+    text = f"The outline is open by {gap:.3f} mm at x = {x:.2f}, y = {y:.2f}; close it."
+    return Problem(text, Severity.ERROR, (float(x), float(y)))
+
+
+def _physics(
+    paths: Sequence[DrawnPath], outline: Polygon | None, kerf: float, problems: list[Problem]
+) -> tuple[int | None, float | None]:
+    """Cut the sheet: number of pieces and narrowest ligament."""
+    if outline is None:
+        return None, None
+    ring = outline.exterior
+    near_ring = ring.buffer(SAME_POINT_MM)
+    inner = [drawn for drawn in paths if not LineString(drawn.points).within(near_ring)]
+    holes = [Polygon(drawn.points) for drawn in inner if drawn.closed and len(drawn.points) > 3]
+    sheet: BaseGeometry = outline.difference(shapely.union_all([hole for hole in holes if hole.is_valid]))
+    cuts = _chains(inner) if inner else []
+    pieces = len(remaining_pieces(sheet, cuts, kerf))
+    if pieces != 1:
+        problems.append(
+            Problem(f"The sheet falls into {pieces} pieces with a kerf of {kerf:g} mm; leave wider connectors.")
+        )
+    ligament = smallest_ligament(cuts, ring, kerf)
+    if ligament is None:
+        return pieces, None
+    if ligament.width_mm <= 0 and pieces == 1:
+        problems.append(Problem("Cuts run into each other.", Severity.WARNING, ligament.where))
+    return pieces, ligament.width_mm

@@ -1,0 +1,56 @@
+"""Deployed layout over its target -> PNG preview."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from io import BytesIO
+from pathlib import Path
+
+from PIL import Image
+
+from kirigami_studio.export.exporter import ExportJob
+from kirigami_studio.export.picture import Frame, draw_layout
+from kirigami_studio.export.verified import write_verified
+from kirigami_studio.foundation.errors import ExportError
+
+LONGEST_SIDE = 900
+
+
+@dataclass(frozen=True, slots=True)
+class PngExporter:
+    """Preview as PNG."""
+
+    extension: str = ".png"
+    name: str = "PNG picture of the deployed layout"
+
+    def write(self, job: ExportJob, path: Path) -> None:
+        """Write the layout at the job's angle."""
+        write_png(job, path)
+
+
+def write_png(job: ExportJob, path: str | Path, longest: int = LONGEST_SIDE) -> None:
+    """Write the layout at the target angle over the target.
+
+    Raises
+    ------
+    ExportError
+        The place cannot be written, or the file did not read back.
+    """
+    image = preview(job, longest)
+    stream = BytesIO()
+    image.save(stream, format="PNG", optimize=True)
+
+    def verify(written: Path) -> None:
+        with Image.open(written) as read:
+            read.load()
+            if read.size != image.size:
+                raise ExportError(f"The PNG did not read back: {read.size} instead of {image.size} pixels.")
+
+    write_verified(Path(path), stream.getvalue(), verify)
+
+
+def preview(job: ExportJob, longest: int = LONGEST_SIDE) -> Image.Image:
+    """Draw the layout at the target angle over the target."""
+    nodes = job.placed_nodes(job.phi)
+    clouds = [nodes] if job.target is None else [nodes, job.target]
+    return draw_layout(nodes[job.deployment.topology.panel_nodes], Frame.around(clouds, longest), job.target)

@@ -1,0 +1,62 @@
+"""Which exporter writes which extension."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from kirigami_studio.export.animation import GifExporter
+from kirigami_studio.export.dxf import write_dxf
+from kirigami_studio.export.exporter import Exporter, ExportJob
+from kirigami_studio.export.pdf import PdfExporter
+from kirigami_studio.export.png import PngExporter
+from kirigami_studio.export.svg import SvgExporter
+from kirigami_studio.foundation.errors import ExportError
+
+
+@dataclass(frozen=True, slots=True)
+class DxfExporter:
+    """Cut plan as DXF."""
+
+    extension: str = ".dxf"
+    name: str = "DXF cut file"
+
+    def write(self, job: ExportJob, path: Path) -> None:
+        """Write the job's cut plan in its DXF version and profile."""
+        write_dxf(job.required_plan, path, job.dxf_version, job.profile)
+
+
+def exporters() -> Mapping[str, Exporter]:
+    """Return all exporters by extension (lower case, with the dot), cut files first."""
+    known: tuple[Exporter, ...] = (DxfExporter(), SvgExporter(), PdfExporter(), PngExporter(), GifExporter())
+    return {exporter.extension: exporter for exporter in known}
+
+
+def find_exporter(path: str | Path) -> Exporter:
+    """Return the exporter for a file name.
+
+    Raises
+    ------
+    ExportError
+        Unknown or missing extension; the sentence lists the known ones.
+    """
+    known = exporters()
+    extension = Path(path).suffix.lower()
+    if extension not in known:
+        shown = f"{extension} files" if extension else "a file without extension"
+        raise ExportError(f"Cannot write {shown} ({path}); use one of {', '.join(known)}.")
+    return known[extension]
+
+
+def export(job: ExportJob, path: str | Path) -> Path:
+    """Write one file of the kind that its extension names, and return its path.
+
+    Raises
+    ------
+    ExportError
+        Unknown extension, missing plan, unwritable place, or a file that did not pass its own re-reading.
+    """
+    goal = Path(path)
+    find_exporter(goal).write(job, goal)
+    return goal

@@ -1,0 +1,123 @@
+"""Cut plan or deployed layout -> SVG in true millimetres."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from xml.etree import ElementTree
+
+import numpy as np
+
+from kirigami_studio.export import palette
+from kirigami_studio.export.exporter import ExportJob
+from kirigami_studio.export.palette import hexadecimal
+from kirigami_studio.export.profile import BLUE, GREEN, RED, Profile, find_profile
+from kirigami_studio.export.verified import write_verified
+from kirigami_studio.fabricate.cut_plan import CutPlan, Layer
+from kirigami_studio.foundation.errors import ExportError
+from kirigami_studio.lattice.ratio_field import FloatArray
+
+NAMESPACE = "http://www.w3.org/2000/svg"
+#: Line width (mm) of cut lines; laser drivers take anything thinner than 0.1 mm as a line to cut.
+CUT_LINE_MM = 0.05
+LAYOUT_MARGIN_MM = 5.0
+ACI_COLOUR = {RED: (255, 0, 0), GREEN: (0, 255, 0), BLUE: (0, 0, 255)}
+
+
+@dataclass(frozen=True, slots=True)
+class SvgExporter:
+    """Cut plan as SVG."""
+
+    extension: str = ".svg"
+    name: str = "SVG cut file"
+
+    def write(self, job: ExportJob, path: Path) -> None:
+        """Write the job's cut plan."""
+        write_cut_svg(job.required_plan, path, find_profile(job.profile))
+
+
+def write_cut_svg(plan: CutPlan, path: str | Path, profile: Profile) -> None:
+    """Write a plan as true-size SVG, one group for each layer, paths in cutting order.
+
+    Raises
+    ------
+    ExportError
+        The place cannot be written, or the file did not read back.
+    """
+    width, height = plan.bounds_mm
+    root = _root(width, height, f"Kirigami cut plan, sheet {plan.size_mm[0]:g} x {plan.size_mm[1]:g} mm")
+    for layer in Layer:
+        colour = hexadecimal(ACI_COLOUR[profile.colour[layer]])
+        group = ElementTree.SubElement(
+            root, "g", {"id": layer.value, "fill": "none", "stroke": colour, "stroke-width": f"{CUT_LINE_MM:g}"}
+        )
+        for cut in plan.on_layer(layer):
+            ElementTree.SubElement(group, "path", {"d": _path_data(cut.points, height, cut.closed)})
+    _write(root, Path(path), len(plan.paths), (width, height))
+
+
+def write_layout_svg(job: ExportJob, path: str | Path, width_mm: float = 100.0) -> None:
+    """Draw the deployed layout over the target, at the size it has when the compact sheet is ``width_mm`` wide.
+
+    Raises
+    ------
+    ExportError
+        The place cannot be written, or the file did not read back.
+    """
+    tables = job.deployment.topology
+    compact_width = float(np.ptp(job.deployment.compact[:, 0]))
+    scale = width_mm / compact_width / job.transform.scale
+    nodes = job.placed_nodes(job.phi) * scale
+    target = None if job.target is None else np.asarray(job.target, dtype=np.float64) * scale
+    everything = nodes if target is None else np.concatenate([nodes, target])
+    low = everything.min(axis=0) - LAYOUT_MARGIN_MM
+    width, height = (float(side) for side in everything.max(axis=0) + LAYOUT_MARGIN_MM - low)
+    root = _root(width, height, f"Kirigami layout at {np.degrees(job.phi):g} degrees")
+    groups: list[tuple[str, dict[str, str], list[FloatArray]]] = [
+        ("TARGET_AREA", {"fill": hexadecimal(palette.TARGET_FILL)}, [] if target is None else [target]),
+        ("VOIDS", {"fill": hexadecimal(palette.VOID)}, list(nodes[tables.void_nodes].reshape(-1, 4, 2))),
+        ("PANELS", {"fill": hexadecimal(palette.PANEL), "stroke": hexadecimal(palette.PANEL_EDGE),
+                    "stroke-width": "0.15", "stroke-linejoin": "round"},
+         list(nodes[tables.panel_nodes].reshape(-1, 4, 2))),
+        ("TARGET", {"fill": "none", "stroke": hexadecimal(palette.TARGET_EDGE), "stroke-width": "0.5"},
+         [] if target is None else [target]),
+    ]  # fmt: skip
+    count = 0
+    for name, attributes, polygons in groups:
+        group = ElementTree.SubElement(root, "g", {"id": name, **attributes})
+        for polygon in polygons:
+            ElementTree.SubElement(group, "path", {"d": _path_data(polygon - low, height, closed=True)})
+            count += 1
+    _write(root, Path(path), count, (width, height))
+
+
+def _root(width: float, height: float, title: str) -> ElementTree.Element:
+    size = {"width": f"{_number(width)}mm", "height": f"{_number(height)}mm"}
+    view = f"0 0 {_number(width)} {_number(height)}"
+    root = ElementTree.Element("svg", {"xmlns": NAMESPACE, "version": "1.1", **size, "viewBox": view})
+    ElementTree.SubElement(root, "title").text = title
+    return root
+
+
+def _number(value: float) -> str:
+    """Shortest text with four decimals at most."""
+    return f"{value + 0.0:.4f}".rstrip("0").rstrip(".")
+
+
+def _path_data(points: FloatArray, height: float, closed: bool) -> str:
+    """SVG path data; y is turned over because SVG counts it downwards."""
+    pairs = [f"{_number(x)},{_number(height - y)}" for x, y in points.tolist()]
+    return "M " + " L ".join(pairs) + (" Z" if closed else "")
+
+
+def _write(root: ElementTree.Element, path: Path, paths: int, size: tuple[float, float]) -> None:
+    ElementTree.indent(root)
+    content = ElementTree.tostring(root, encoding="utf-8", xml_declaration=True)
+
+    def verify(written: Path) -> None:
+        read = ElementTree.parse(written).getroot()
+        found = len(read.findall(f".//{{{NAMESPACE}}}path"))
+        if found != paths or read.get("width") != f"{_number(size[0])}mm":
+            raise ExportError(f"The SVG did not read back: {found} paths instead of {paths}. Nothing was written.")
+
+    write_verified(path, content, verify)
