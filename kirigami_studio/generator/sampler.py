@@ -1,0 +1,77 @@
+"""Draw K candidate fields for one target in one batch."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+import numpy as np
+import torch
+from torch import Tensor
+
+from kirigami_studio.generator.conditioning import normalised, turned
+from kirigami_studio.generator.flow import integrate
+from kirigami_studio.generator.pose import square_pose
+from kirigami_studio.generator.resize import resize_fields
+from kirigami_studio.generator.weights import Model
+from kirigami_studio.lattice.ratio_field import FloatArray, RatioField
+from kirigami_studio.target.outline import Outline
+
+#: Fields stay where the training data are: x in [0.1, 10].
+Z_LIMIT = 1.0
+#: Fractional part of the golden ratio: consecutive multiples spread evenly over an interval.
+GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
+
+
+def draw_fields(
+    model: Model, target: Outline, grid: tuple[int, int], k: int, seed: int, steps: int
+) -> tuple[RatioField, ...]:
+    """Sample ``k`` ratio fields for ``target``.
+
+    Candidate i depends on the seed and i alone, so asking for more keeps the first ones.  Candidate 0 sees the target
+    upright; the others also see it in quarter turns (an exact symmetry of even grids) and, every second one, in poses
+    between, because which way a drawing lies on the sheet is a choice.
+
+    Parameters
+    ----------
+    model : Model
+    target : Outline
+    grid : (rows, columns)
+        Other grids than the network's are reached by interpolation, see ``resize``.
+    k, seed, steps : int
+    """
+    shape = model.network.shape
+    noise = np.random.default_rng(seed).standard_normal((k, shape.rows * shape.columns)) * shape.z_scale
+    with torch.inference_mode(), _one_thread():
+        code = model.network.code(posed(target, k))
+        z = integrate(model.network, torch.tensor(noise, dtype=torch.float32), code, steps)
+    fields = np.clip(z.double().numpy().reshape(k, shape.rows, shape.columns), -Z_LIMIT, Z_LIMIT)
+    resized: FloatArray = np.clip(resize_fields(fields, *grid), -Z_LIMIT, Z_LIMIT)
+    return tuple(RatioField.from_log10(np.round(field, 6)) for field in resized)
+
+
+def posed(target: Outline, k: int) -> Tensor:
+    """The target's polygon in the pose of each candidate: (k, L, 2), unit area about the centroid."""
+    polygon = normalised(torch.tensor(target.points, dtype=torch.float32)[None])
+    upright = -square_pose(polygon)
+    angles = upright + torch.tensor([pose_angle(i) for i in range(k)], dtype=torch.float32)
+    return turned(polygon.expand(k, -1, -1), angles)
+
+
+def pose_angle(index: int) -> float:
+    """Rotation of the target for candidate ``index``, radians: 0, then quarter turns alternating with poses between."""
+    quarter = 0.5 * math.pi * ((index // 2) % 4)
+    between = 0.5 * math.pi * ((index * GOLDEN) % 1.0) if index % 2 else 0.0
+    return quarter + between
+
+
+@contextmanager
+def _one_thread() -> Iterator[None]:
+    """Run torch on one thread: results do not depend on the machine's core count, and the window keeps a core."""
+    before = torch.get_num_threads()
+    torch.set_num_threads(1)
+    try:
+        yield
+    finally:
+        torch.set_num_threads(before)

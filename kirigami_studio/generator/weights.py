@@ -1,0 +1,147 @@
+"""Bundled weights: find, verify, load.
+
+``resources/models/manifest.json`` names each variant's file, its SHA-256 and the network's shape; the file is
+safetensors in half precision, so loading runs no code.  Training hands over exactly these two things.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from safetensors.torch import load as load_tensors
+from safetensors.torch import save as save_tensors
+
+from kirigami_studio.foundation.errors import ModelError, UsageError
+from kirigami_studio.foundation.files import write_atomically
+from kirigami_studio.foundation.resources import resource
+from kirigami_studio.generator.network import NetworkShape, VelocityNetwork
+
+MANIFEST = "manifest.json"
+FORMAT = 1
+
+
+@dataclass(frozen=True, slots=True)
+class Model:
+    """A network ready to sample.
+
+    Attributes
+    ----------
+    variant : str
+    network : VelocityNetwork
+        In evaluation mode, float32.
+    digest : str
+        SHA-256 of the weight file, recorded in every project and export.
+    """
+
+    variant: str
+    network: VelocityNetwork
+    digest: str
+
+
+def model_folder() -> Path:
+    """Folder of the bundled weights."""
+    return resource("models")
+
+
+def variants(folder: Path | None = None) -> tuple[str, ...]:
+    """Names of the variants that the manifest offers, in its order; reads no weights.
+
+    Raises
+    ------
+    ModelError
+        The manifest is missing or damaged.
+    """
+    return tuple(_manifest(folder or model_folder())["variants"])
+
+
+def digest_of(variant: str, folder: Path | None = None) -> str:
+    """SHA-256 that the manifest promises for a variant."""
+    return str(_entry(variant, folder or model_folder())["sha256"])
+
+
+@cache
+def load_model(variant: str, folder: Path | None = None) -> Model:
+    """Load a variant once per process.
+
+    Raises
+    ------
+    UsageError
+        No such variant.
+    ModelError
+        The weights are missing, altered, or of another shape than the manifest says.
+    """
+    place = folder or model_folder()
+    entry = _entry(variant, place)
+    path = place / str(entry["file"])
+    try:
+        content = path.read_bytes()
+    except OSError as error:
+        raise ModelError(
+            f"The weights {path.name} of variant '{variant}' are missing; install Kirigami Studio again."
+        ) from error
+    digest = hashlib.sha256(content).hexdigest()
+    if digest != entry["sha256"]:
+        raise ModelError(
+            f"The weights {path.name} are damaged (checksum {digest[:12]}, expected {str(entry['sha256'])[:12]}); "
+            "install Kirigami Studio again."
+        )
+    try:
+        network = VelocityNetwork(NetworkShape(**entry["shape"]))
+        network.load_state_dict({name: value.float() for name, value in load_tensors(content).items()})
+    except Exception as error:  # safetensors and torch raise many kinds; all mean the same to the user
+        raise ModelError(f"The weights {path.name} do not fit the network that the manifest describes.") from error
+    return Model(variant, network.eval().requires_grad_(False), digest)
+
+
+def store_model(variant: str, network: VelocityNetwork, folder: Path, about: dict[str, object]) -> Path:
+    """Write weights in half precision and enter them in the folder's manifest.
+
+    Parameters
+    ----------
+    variant : str
+    network : VelocityNetwork
+    folder : Path
+    about : dict
+        What the model card's table needs: how it was trained, what it scored.
+
+    Returns
+    -------
+    path : Path
+        The safetensors file.
+    """
+    tensors = {name: value.detach().cpu().half().contiguous() for name, value in network.state_dict().items()}
+    content = save_tensors(tensors, metadata={"variant": variant, "format": str(FORMAT)})
+    path = folder / f"{variant}.safetensors"
+    write_atomically(path, content)
+    empty: dict[str, Any] = {"format": FORMAT, "variants": {}}
+    manifest = _manifest(folder) if (folder / MANIFEST).exists() else empty
+    manifest["variants"][variant] = {
+        "file": path.name,
+        "sha256": hashlib.sha256(content).hexdigest(),
+        "shape": network.shape.to_json(),
+        "about": about,
+    }
+    write_atomically(folder / MANIFEST, (json.dumps(manifest, indent=2) + "\n").encode())
+    return path
+
+
+def _manifest(folder: Path) -> dict[str, Any]:
+    try:
+        manifest = json.loads((folder / MANIFEST).read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        raise ModelError(f"No readable list of generator models in {folder}; install Kirigami Studio again.") from error
+    if not isinstance(manifest, dict) or manifest.get("format") != FORMAT or "variants" not in manifest:
+        raise ModelError(f"The list of generator models in {folder} is of a format this version cannot read.")
+    return manifest
+
+
+def _entry(variant: str, folder: Path) -> dict[str, Any]:
+    offered: dict[str, dict[str, Any]] = _manifest(folder)["variants"]
+    if variant not in offered:
+        raise UsageError(f"There is no generator variant '{variant}'; available: {', '.join(offered)}.")
+    return offered[variant]
