@@ -1,0 +1,57 @@
+"""Resumable state of a training run: raw and averaged weights, optimiser, step, settings."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import torch
+
+from kirigami_studio.foundation.errors import ModelError
+
+
+@dataclass(slots=True)
+class Checkpoint:
+    """Everything a run needs to go on exactly where it stopped.
+
+    Attributes
+    ----------
+    step : int
+        Finished optimiser steps.
+    network, average : dict of tensors
+        Raw weights and their exponential moving average.
+    optimiser : dict
+    settings : dict
+        The run's settings, compared on resume.
+    generator : tensor
+        State of the noise generator.
+    """
+
+    step: int
+    network: dict[str, torch.Tensor]
+    average: dict[str, torch.Tensor]
+    optimiser: dict[str, Any]
+    settings: dict[str, Any]
+    generator: torch.Tensor
+
+    def save(self, path: Path) -> None:
+        """Write beside the old checkpoint, then rename: an interrupted save loses nothing."""
+        temporary = path.with_suffix(".partial")
+        torch.save({name: getattr(self, name) for name in self.__slots__}, temporary)
+        temporary.replace(path)
+
+    @classmethod
+    def load(cls, path: Path) -> Checkpoint:
+        """Read a checkpoint (weights-only unpickling: no code is run).
+
+        Raises
+        ------
+        ModelError
+            The file is damaged or not a checkpoint.
+        """
+        try:
+            content = torch.load(path, map_location="cpu", weights_only=True)
+            return cls(**content)
+        except Exception as error:  # torch raises many kinds on a damaged file
+            raise ModelError(f"The checkpoint {path} cannot be read; delete it to start afresh.") from error

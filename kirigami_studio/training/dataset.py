@@ -1,0 +1,157 @@
+"""The paper's data protocol: draw fields, keep the feasible ones, render 128 x 128 masks, split, verify.
+
+A split is an .npz archive with ``ratios`` (N, m, n) float64, ``masks`` (N, 128, 128) bool (row 0 on top) and ``about``
+(a JSON string: family, seed, counts of discarded candidates by reason).
+"""
+
+from __future__ import annotations
+
+import io
+import json
+from collections import Counter
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+import torch
+from numpy.random import Generator
+from scipy.ndimage import binary_fill_holes, label
+
+from kirigami_studio.evaluate.feasibility import TAU_OVERLAP, invalid_quads, overlap_ratio
+from kirigami_studio.evaluate.silhouette import rasterise
+from kirigami_studio.foundation.errors import KirigamiError, UsageError
+from kirigami_studio.foundation.files import write_atomically
+from kirigami_studio.lattice.batched import BatchedLattice
+from kirigami_studio.lattice.deployment import deploy
+from kirigami_studio.lattice.ratio_field import FloatArray, RatioField
+from kirigami_studio.training.corpus import zero_outline
+from kirigami_studio.training.fields import sobol_fields, structured_fields
+
+FAMILIES = ("sobol", "structured")
+#: Split sizes of the paper (Appendix "Dataset generation") and the seed offsets that keep splits independent.
+SPLITS = {"train": (5000, 0), "validation": (500, 1), "test": (500, 2)}
+MASK_SIZE = 128
+#: A mask that fills less or more of its 128 x 128 image than this is no silhouette (digest: 3-97 %).
+FILL_RANGE = (0.03, 0.97)
+VERIFIED_SAMPLES = 128
+VERIFIED_IOU = 0.999
+BATCH = 256
+
+
+@dataclass(frozen=True, slots=True)
+class Split:
+    """Feasible designs and their silhouettes at phi = 0.
+
+    Attributes
+    ----------
+    ratios : (N, m, n) float64
+    masks : (N, 128, 128) bool
+    about : dict
+        Provenance: family, seed, grid, how many candidates were discarded and why.
+    """
+
+    ratios: FloatArray
+    masks: npt.NDArray[np.bool_]
+    about: dict[str, object]
+
+    def save(self, path: Path) -> None:
+        """Write the archive atomically."""
+        buffer = io.BytesIO()
+        np.savez_compressed(buffer, ratios=self.ratios, masks=self.masks, about=np.array(json.dumps(self.about)))
+        write_atomically(path, buffer.getvalue())
+
+
+def generate_split(
+    family: str, count: int, seed: int, grid: tuple[int, int] = (10, 10), report: Callable[[int], None] = lambda _: None
+) -> Split:
+    """Draw fields until ``count`` of them are feasible.
+
+    Parameters
+    ----------
+    family : str
+        ``sobol`` or ``structured``, see :mod:`kirigami_studio.training.fields`.
+    count : int
+    seed : int
+        Splits with different seeds are independent.
+    grid : (rows, columns)
+    report : callable
+        Told the number of designs kept so far.
+
+    Raises
+    ------
+    UsageError
+        Unknown family or a count below 1.
+    """
+    if count < 1:
+        raise UsageError(f"A data set needs at least 1 sample, got {count}.")
+    discarded: Counter[str] = Counter()
+    ratios: list[FloatArray] = []
+    masks: list[npt.NDArray[np.bool_]] = []
+    lattice = BatchedLattice(*grid, dtype=torch.float64)
+    for fields in _batches(family, grid, seed):
+        outlines = zero_outline(lattice, torch.tensor(fields)).numpy()
+        for z, outline in zip(fields, outlines, strict=True):
+            field = RatioField.from_log10(z)
+            mask = rasterise(outline, MASK_SIZE)
+            reason = _fault(field, mask)
+            if reason is not None:
+                discarded[reason] += 1
+                continue
+            ratios.append(field.ratio)
+            masks.append(mask)
+            if len(ratios) == count:
+                about = {"family": family, "seed": seed, "grid": list(grid), "phi": 0.0, "discarded": dict(discarded)}
+                return Split(np.stack(ratios), np.stack(masks), about)
+        report(len(ratios))
+    raise KirigamiError("The field sequence ended early.")
+
+
+def verify(split: Split, seed: int = 0) -> float:
+    """Re-render random samples through the single-design decoder; returns the smallest IoU with the stored masks.
+
+    Raises
+    ------
+    KirigamiError
+        A mask differs from its design by more than the protocol allows (IoU below 0.999).
+    """
+    chosen = np.random.default_rng(seed).choice(
+        len(split.ratios), min(VERIFIED_SAMPLES, len(split.ratios)), replace=False
+    )
+    worst = 1.0
+    for index in chosen:
+        again = rasterise(deploy(RatioField(split.ratios[index])).outline(0.0), MASK_SIZE)
+        stored = split.masks[index]
+        worst = min(worst, float((again & stored).sum() / (again | stored).sum()))
+    if worst < VERIFIED_IOU:
+        raise KirigamiError(f"Verification failed: a stored mask agrees with its design to IoU {worst:.4f} only.")
+    return worst
+
+
+def _batches(family: str, grid: tuple[int, int], seed: int) -> Iterator[FloatArray]:
+    """Endless candidate fields of one family."""
+    if family == "sobol":
+        drawn = 0
+        while True:
+            yield sobol_fields(BATCH, *grid, seed=seed, skip=drawn)
+            drawn += BATCH
+    if family == "structured":
+        rng: Generator = np.random.default_rng(seed)
+        while True:
+            yield structured_fields(BATCH, *grid, rng)
+    raise UsageError(f"Unknown family '{family}'; choose one of {', '.join(FAMILIES)}.")
+
+
+def _fault(field: RatioField, mask: npt.NDArray[np.bool_]) -> str | None:
+    """Why the protocol discards this design, or None."""
+    deployment = deploy(field)
+    if invalid_quads(deployment, 0.0):
+        return "invalid quad"
+    if overlap_ratio(deployment, 0.0) > TAU_OVERLAP:
+        return "overlap"
+    if not FILL_RANGE[0] <= mask.mean() <= FILL_RANGE[1]:
+        return "fill"
+    if label(mask)[1] != 1 or binary_fill_holes(mask).sum() != mask.sum():
+        return "topology"
+    return None

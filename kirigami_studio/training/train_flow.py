@@ -1,0 +1,259 @@
+"""Train the prior: conditional flow matching on z = log10 x (paper, Eq. CFM).
+
+One command for CPU and GPU, resumable: the run folder holds ``checkpoint.pt``, ``log.jsonl`` and, at the end,
+``prior.safetensors``.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+
+import torch
+from torch import Tensor
+
+from kirigami_studio.foundation.errors import ModelError
+from kirigami_studio.generator.conditioning import condition, turned
+from kirigami_studio.generator.network import NetworkShape, VelocityNetwork
+from kirigami_studio.generator.pose import square_pose
+from kirigami_studio.training.checkpoint import Checkpoint
+from kirigami_studio.training.corpus import Chunk, Corpus, zero_outline
+from kirigami_studio.training.coupling import pair_noise
+from kirigami_studio.training.fields import mixed_fields
+
+WARM_UP_STEPS = 200
+
+
+@dataclass(frozen=True, slots=True)
+class FlowSettings:
+    """Settings of one training run.
+
+    Attributes
+    ----------
+    steps : int
+        Optimiser steps in all; the learning rate falls to zero along a cosine.
+    batch : int
+        Targets a step.
+    noises : int
+        Noise draws (and times t) for each target: the encoder runs once for all of them.
+    learning_rate, weight_decay : float
+    average_decay : float
+        Of the exponential moving average that is shipped.
+    outline_weight : float
+        Weight of the squared outline error (unit-area lengths) of the predicted design, through the exact decoder,
+        times t^2; on the draw with the largest t of each target.
+    coupling : str
+        See :mod:`kirigami_studio.training.coupling`.
+    chunk, passes : int
+        Designs generated together, and how often each is visited before the next chunk.
+    vertex_noise : float
+        Standard deviation of outline vertices in unit-area lengths (a pixel of 128 is about 0.009).
+    turn_noise : float, radians
+        Standard deviation of the target's rotation against the sheet.
+    shift_noise : float
+        Standard deviation of the contour's start, in point spacings.
+    seed : int
+    shape : NetworkShape
+    """
+
+    steps: int = 12_000
+    batch: int = 96
+    noises: int = 3
+    learning_rate: float = 1e-3
+    weight_decay: float = 0.01
+    average_decay: float = 0.999
+    outline_weight: float = 50.0
+    coupling: str = "independent"
+    chunk: int = 32_768
+    passes: int = 2
+    vertex_noise: float = 0.003
+    turn_noise: float = 0.02
+    shift_noise: float = 0.3
+    seed: int = 0
+    shape: NetworkShape = field(default_factory=NetworkShape)
+
+    def to_json(self) -> dict[str, object]:
+        return asdict(self)
+
+
+def train_flow(
+    settings: FlowSettings,
+    folder: Path,
+    device: torch.device,
+    validate: Callable[[VelocityNetwork], dict[str, float]],
+    *,
+    seconds: float = math.inf,
+    validate_every: int = 2000,
+) -> Iterator[dict[str, float]]:
+    """Train, or go on training, in ``folder``; yields one record per validation.
+
+    Parameters
+    ----------
+    settings : FlowSettings
+    folder : Path
+        Created if needed; a checkpoint found there is resumed.
+    device : torch.device
+    validate : callable
+        Maps the averaged network to figures for the log.
+    seconds : float
+        Stop with a checkpoint after this wall time even if steps remain.
+    validate_every : int
+        Steps between validations; each also writes a checkpoint.
+
+    Raises
+    ------
+    ModelError
+        The checkpoint in ``folder`` belongs to other settings.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    run = _Run(settings, folder / "checkpoint.pt", device)
+    began = time.perf_counter()
+    running = 0.0
+    while run.step < settings.steps:
+        loss = run.advance()
+        running = loss if run.step == 1 else running + 0.02 * (loss - running)
+        out_of_time = time.perf_counter() - began > seconds
+        if run.step % validate_every == 0 or run.step == settings.steps or out_of_time:
+            run.save()
+            record = {"step": float(run.step), "loss": running, "seconds": time.perf_counter() - began}
+            record |= validate(run.averaged())
+            with (folder / "log.jsonl").open("a", encoding="utf-8") as log:
+                log.write(json.dumps(record) + "\n")
+            yield record
+        if out_of_time:
+            break
+
+
+def finished_network(settings: FlowSettings, folder: Path, device: torch.device) -> VelocityNetwork:
+    """The averaged network of the checkpoint in ``folder``: what is shipped."""
+    return _Run(settings, folder / "checkpoint.pt", device).averaged()
+
+
+class _Run:
+    """The mutable part of a training run."""
+
+    def __init__(self, settings: FlowSettings, path: Path, device: torch.device) -> None:
+        self.settings, self.path, self.device = settings, path, device
+        torch.manual_seed(settings.seed)
+        self.network = VelocityNetwork(settings.shape).to(device)
+        self.average = {name: value.detach().clone() for name, value in self.network.state_dict().items()}
+        self.optimiser = torch.optim.AdamW(
+            self.network.parameters(), lr=settings.learning_rate, betas=(0.9, 0.99), weight_decay=settings.weight_decay
+        )
+        self.generator = torch.Generator(device=device).manual_seed(settings.seed)
+        self.corpus = Corpus(
+            mixed_fields, settings.shape.rows, settings.shape.columns, settings.seed, settings.chunk, device
+        )
+        self.step = 0
+        self._chunk: tuple[int, Chunk] | None = None
+        if path.exists():
+            self._resume()
+
+    def advance(self) -> float:
+        """One optimiser step; returns the flow-matching loss."""
+        for group in self.optimiser.param_groups:
+            group["lr"] = self.settings.learning_rate * schedule(self.step, self.settings.steps)
+        z, polygons = self._batch()
+        loss = self._loss(z, polygons)
+        self.optimiser.zero_grad(set_to_none=True)
+        loss.backward()
+        torch.nn.utils.clip_grad_norm_(self.network.parameters(), 1.0)
+        self.optimiser.step()
+        self.step += 1
+        decay = min(self.settings.average_decay, (1 + self.step) / (10 + self.step))
+        with torch.no_grad():
+            names, values = zip(*self.network.state_dict().items(), strict=True)
+            torch._foreach_lerp_([self.average[name] for name in names], list(values), 1 - decay)
+        return float(loss.detach())
+
+    def averaged(self) -> VelocityNetwork:
+        """A copy of the network with the averaged weights."""
+        network = VelocityNetwork(self.settings.shape).to(self.device)
+        network.load_state_dict(self.average)
+        return network.eval()
+
+    def save(self) -> None:
+        Checkpoint(
+            self.step,
+            self.network.state_dict(),
+            self.average,
+            self.optimiser.state_dict(),
+            self.settings.to_json(),
+            self.generator.get_state(),
+        ).save(self.path)
+
+    def _resume(self) -> None:
+        state = Checkpoint.load(self.path)
+        if state.settings != self.settings.to_json():
+            raise ModelError(f"The checkpoint {self.path} was made with other settings; choose another folder.")
+        self.network.load_state_dict(state.network)
+        self.average = {name: value.to(self.device) for name, value in state.average.items()}
+        self.optimiser.load_state_dict(state.optimiser)
+        self.generator.set_state(state.generator)
+        self.step = state.step
+
+    def _batch(self) -> tuple[Tensor, Tensor]:
+        """Targets of this step: a fixed permutation of the chunk for every pass."""
+        settings = self.settings
+        per_pass = settings.chunk // settings.batch
+        sweep, place = divmod(self.step, per_pass)
+        number = sweep // settings.passes
+        if self._chunk is None or self._chunk[0] != number:
+            self._chunk = number, self.corpus.chunk(number)
+        order = torch.Generator().manual_seed(1_000_003 * settings.seed + sweep)
+        picked = torch.randperm(settings.chunk, generator=order)[place * settings.batch : (place + 1) * settings.batch]
+        chunk = self._chunk[1]
+        picked = picked.to(self.device)
+        return chunk.z[picked], chunk.polygons[picked]
+
+    def _loss(self, z: Tensor, polygons: Tensor) -> Tensor:
+        settings, draws = self.settings, self.settings.noises
+        seen, shift = self._as_seen(polygons)
+        code = self.network.code(seen, shift).repeated(draws)
+        target = z.repeat_interleave(draws, dim=0)
+        noise = self._normal(target.shape) * settings.shape.z_scale
+        if settings.coupling != "independent":
+            described = condition(seen, settings.shape.condition_layout, shift).repeat_interleave(draws, dim=0)
+            noise = pair_noise(settings.coupling, noise, target, described)
+        t = torch.rand(target.shape[0], generator=self.generator, device=self.device)
+        between = noise + t[:, None] * (target - noise)
+        velocity = self.network(between, t, code)
+        flow = (velocity - (target - noise)).square().mean()
+        if not settings.outline_weight:
+            return flow
+        late = t.view(-1, draws).argmax(dim=1) + torch.arange(len(z), device=self.device) * draws
+        predicted = between[late] + (1 - t[late, None]) * velocity[late]
+        return flow + settings.outline_weight * (t[late].square() * self._outline_error(predicted, z)).mean()
+
+    def _outline_error(self, predicted: Tensor, z: Tensor) -> Tensor:
+        """Mean squared distance of corresponding outline vertices at phi = 0, per design, unit-area lengths squared."""
+        lattice = self.corpus.lattice
+        both = torch.cat([predicted.clamp(-1.5, 1.5), z]).view(-1, lattice.rows, lattice.columns)
+        outline = zero_outline(lattice, both)
+        outline = outline - outline.mean(dim=1, keepdim=True)
+        ours, theirs = outline.split(len(z))
+        sheet_area = (lattice.rows + 1) * (lattice.columns + 1)
+        return (ours - theirs).square().sum(dim=-1).mean(dim=1) / sheet_area
+
+    def _as_seen(self, polygons: Tensor) -> tuple[Tensor, Tensor]:
+        """Targets as they will arrive, a little turned and rasterised, and a shift of where their contour starts."""
+        settings = self.settings
+        moved = polygons + settings.vertex_noise * self._normal(polygons.shape)
+        moved = turned(moved, settings.turn_noise * self._normal(polygons.shape[:1]))
+        moved = turned(moved, -square_pose(moved))
+        return moved, settings.shift_noise * self._normal(polygons.shape[:1])
+
+    def _normal(self, shape: torch.Size) -> Tensor:
+        return torch.randn(shape, generator=self.generator, device=self.device)
+
+
+def schedule(step: int, steps: int) -> float:
+    """Learning rate factor: linear warm-up, then a cosine to zero."""
+    if step < WARM_UP_STEPS:
+        return (step + 1) / WARM_UP_STEPS
+    progress = (step - WARM_UP_STEPS) / max(1, steps - WARM_UP_STEPS)
+    return 0.5 * (1 + math.cos(math.pi * min(1.0, progress)))
