@@ -1,0 +1,150 @@
+"""``design``: the whole way from targets to ranked candidates and a folder of files."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import math
+from pathlib import Path
+
+from kirigami_studio import __version__
+from kirigami_studio.cli.console import ProgressLine, plain, print_json, say
+from kirigami_studio.cli.fabrication import material_settings, plan_for
+from kirigami_studio.cli.inputs import is_batch, parse_grid, read_targets
+from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.export.exporter import ExportJob
+from kirigami_studio.export.png import write_png
+from kirigami_studio.export.registry import export
+from kirigami_studio.export.svg import write_layout_svg
+from kirigami_studio.foundation.errors import Cancelled
+from kirigami_studio.foundation.files import write_atomically
+from kirigami_studio.lattice.deployment import deploy
+from kirigami_studio.pipeline.events import Finished, Progress, Result
+from kirigami_studio.pipeline.request import Request
+from kirigami_studio.pipeline.run import run
+from kirigami_studio.project.document import Document
+from kirigami_studio.project.settings import DesignSettings, FabricationSettings
+from kirigami_studio.project.store import save
+from kirigami_studio.target.outline import Outline
+
+
+def design(arguments: argparse.Namespace) -> int:
+    """Design every target; one JSON object a line for many, files only where --out is given."""
+    grid = parse_grid(arguments.grid)
+    fabrication = material_settings(arguments)
+    batch = is_batch(arguments.targets)
+    line = ProgressLine()
+    used: set[str] = set()
+    for named in read_targets(arguments.targets, arguments.threshold):
+        request = Request(
+            named.value, grid, arguments.phi, arguments.k, arguments.seed, arguments.variant, arguments.steps
+        )
+        result = _run(request, line)
+        folder = None if arguments.out is None else Path(arguments.out)
+        if folder is not None and batch:
+            folder = folder / _folder_name(named.name, used)
+        files = {} if folder is None else write_files(result, fabrication, folder)
+        answer = summary(result) | {"files": files}
+        if batch:
+            print_json({"source": named.name} | answer)
+        elif arguments.json:
+            print_json(answer)
+        else:
+            _tell(named.value, result, files)
+    return 0
+
+
+def summary(result: Result) -> dict[str, object]:
+    """The JSON answer of ``design`` without the files."""
+    return {
+        "candidates": [candidate_json(candidate) for candidate in result.candidates],
+        "best": candidate_json(result.best),
+        "seconds": result.seconds,
+        "forward_evaluations": result.forward_evaluations,
+    }
+
+
+def candidate_json(candidate: Candidate) -> dict[str, object]:
+    """One entry of ``candidates``: the ratios, the score and the provenance."""
+    return {
+        "ratio": candidate.field.ratio,
+        **candidate.score.to_json(),
+        "seed": candidate.seed,
+        "index": candidate.index,
+        "polished": candidate.polished,
+    }
+
+
+def write_files(result: Result, fabrication: FabricationSettings, folder: Path) -> dict[str, str]:
+    """Write the project, the cut file, the layout, a preview and the candidates; returns their paths by role.
+
+    The bytes depend on the request alone: wall time is not written.
+    """
+    request, best = result.request, result.best
+    deployment = deploy(best.field)
+    job = ExportJob(
+        deployment, request.phi, plan_for(deployment, fabrication), request.target.points, best.score.transform
+    )
+    paths = {
+        "project": folder / "design.kiri",
+        "cut": folder / "cut.dxf",
+        "layout": folder / "layout.svg",
+        "preview": folder / "preview.png",
+        "candidates": folder / "candidates.json",
+    }
+    save(document_of(result, fabrication), paths["project"])
+    export(job, paths["cut"])
+    write_layout_svg(job, paths["layout"])
+    write_png(job, paths["preview"])
+    listing = {"candidates": [candidate_json(candidate) for candidate in result.candidates]}
+    write_atomically(paths["candidates"], (json.dumps(plain(listing)) + "\n").encode())
+    return {role: str(path) for role, path in paths.items()}
+
+
+def document_of(result: Result, fabrication: FabricationSettings) -> Document:
+    """The project that the window would have after the same run."""
+    from kirigami_studio.generator.weights import digest_of
+
+    request = result.request
+    settings = DesignSettings(request.grid, request.phi, request.k, request.seed, request.variant, request.steps)
+    provenance = {
+        "application": f"kirigami-studio {__version__}",
+        "model": request.variant,
+        "model_sha256": digest_of(request.variant),
+    }
+    return Document(request.target, settings, result.candidates, 0, fabrication, provenance)
+
+
+def _run(request: Request, line: ProgressLine) -> Result:
+    for event in run(request):
+        if isinstance(event, Progress):
+            line.show(event.message)
+        elif isinstance(event, Finished):
+            line.clear()
+            return event.result
+    raise Cancelled("The run ended without a result.")
+
+
+def _folder_name(name: str, used: set[str]) -> str:
+    """A file-system name for a batch input, made unique."""
+    stem = Path(name.split("[")[0]).stem + name[len(name.split("[")[0]) :]
+    clean = "".join(letter if letter.isalnum() or letter in "-_" else "_" for letter in stem).strip("_") or "target"
+    unique, number = clean, 2
+    while unique in used:
+        unique, number = f"{clean}_{number}", number + 1
+    used.add(unique)
+    return unique
+
+
+def _tell(target: Outline, result: Result, files: dict[str, str]) -> None:
+    score = result.best.score
+    for note in target.notes:
+        say(f"{target.name}: {note}")
+    say(
+        f"{target.name}: best of {len(result.candidates)} has sIoU {score.siou:.4f} "
+        f"({score.siou_gain:+.4f} over the uniform layout), TV {score.tv:.3f}, "
+        f"{'feasible' if score.feasible else 'not feasible'} at {math.degrees(result.request.phi):.0f} degrees; "
+        f"{result.seconds:.1f} s"
+    )
+    for path in files.values():
+        say(f"  {path}")

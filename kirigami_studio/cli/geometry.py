@@ -1,0 +1,113 @@
+"""``decode``, ``score`` and ``siou``: one stage each, on any number of inputs."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import math
+from pathlib import Path
+
+from kirigami_studio.cli.console import plain, print_json, say
+from kirigami_studio.cli.inputs import is_batch, parse_grid, read_fields, read_mask, read_targets
+from kirigami_studio.evaluate.feasibility import invalid_quads, overlap_ratio, path_contact
+from kirigami_studio.evaluate.score import evaluate
+from kirigami_studio.evaluate.siou import mask_siou
+from kirigami_studio.foundation.errors import AngleError, RatioError, UsageError
+from kirigami_studio.foundation.files import write_atomically
+from kirigami_studio.lattice.deployment import check_phi, deploy
+from kirigami_studio.lattice.ratio_field import RatioField
+
+
+def decode(arguments: argparse.Namespace) -> int:
+    """Print the exact layout of each ratio field."""
+    phi = check_phi(arguments.phi)
+    batch = is_batch(arguments.ratios)
+    for named in read_fields(arguments.ratios):
+        _check_grid(arguments.grid, named.value, named.name)
+        answer = decoded(named.value, phi)
+        if batch:
+            answer = {"source": named.name} | answer
+        _deliver(arguments, answer, named.name, batch, "layout")
+        if not arguments.json and not batch:
+            say(
+                f"{named.value.rows} x {named.value.columns} voids at {math.degrees(phi):.1f} degrees: area "
+                f"{answer['area']:.4f} unit cells, {answer['n_invalid']} invalid, overlap {answer['overlap_ratio']:.4f}"
+            )
+    return 0
+
+
+def decoded(field: RatioField, phi: float) -> dict[str, object]:
+    """The JSON answer of ``decode`` for one field at ``phi`` radians, in unit cells."""
+    deployment = deploy(field)
+    contact = path_contact(deployment, phi)
+    return {
+        "phi": phi,
+        "grid": [field.rows, field.columns],
+        "void_corners": deployment.voids(phi),
+        "panels": deployment.panels(phi).reshape(-1, 4, 2),
+        "outline": deployment.outline(phi),
+        "area": deployment.area(phi),
+        "n_invalid": invalid_quads(deployment, phi),
+        "overlap_ratio": overlap_ratio(deployment, phi),
+        "contact": None if contact is None else contact.to_json(),
+    }
+
+
+def score(arguments: argparse.Namespace) -> int:
+    """Print how well each field shows its target."""
+    *ratio_sources, target_source = arguments.inputs
+    if not ratio_sources:
+        raise UsageError("score needs ratio fields and then a target: score RATIOS [RATIOS ...] TARGET.")
+    phi = target_angle(arguments.phi)
+    fields = list(read_fields(ratio_sources))
+    targets = list(read_targets([target_source]))
+    if len(targets) not in (1, len(fields)):
+        raise UsageError(f"{len(fields)} ratio fields need 1 target or {len(fields)} of them, got {len(targets)}.")
+    if len(targets) == 1:
+        targets = targets * len(fields)
+    batch = is_batch(ratio_sources) or is_batch([target_source])
+    for field, target in zip(fields, targets, strict=True):
+        result = evaluate(deploy(field.value), target.value, phi)
+        if batch:
+            print_json({"source": field.name, "target": target.name} | result.to_json())
+        elif arguments.json:
+            print_json(result.to_json())
+        else:
+            verdict = "feasible" if result.feasible else "not feasible"
+            say(
+                f"sIoU {result.siou:.4f} ({result.siou_gain:+.4f} over the uniform layout), exact IoU "
+                f"{result.iou_exact:.4f}, TV {result.tv:.3f}, {verdict}"
+            )
+    return 0
+
+
+def siou(arguments: argparse.Namespace) -> int:
+    """Print the similarity-aligned IoU of two mask images."""
+    value, transform = mask_siou(read_mask(Path(arguments.mask_a)), read_mask(Path(arguments.mask_b)))
+    if arguments.json:
+        print_json({"siou": value, "transform": transform.to_json()})
+    else:
+        say(f"sIoU {value:.4f}")
+    return 0
+
+
+def target_angle(phi: float) -> float:
+    """Accept a target angle in [0, pi)."""
+    if not 0.0 <= phi < math.pi:
+        raise AngleError(f"The target angle must lie in [0, pi) radians, got {phi:g}; 0 is the usual choice.")
+    return phi
+
+
+def _check_grid(grid: str | None, field: RatioField, name: str) -> None:
+    if grid is not None and parse_grid(grid) != (field.rows, field.columns):
+        raise RatioError(f"{name} holds a {field.rows} x {field.columns} field, not {grid}.")
+
+
+def _deliver(arguments: argparse.Namespace, answer: dict[str, object], name: str, batch: bool, kind: str) -> None:
+    """Print, and write a file where one was asked for."""
+    if arguments.json or batch:
+        print_json(answer)
+    if arguments.out is not None:
+        stem = Path(name).stem.replace("[", "_").replace("]", "")
+        target = Path(arguments.out) / f"{stem}.{kind}.json" if batch else Path(arguments.out)
+        write_atomically(target, (json.dumps(plain(answer)) + "\n").encode())

@@ -1,0 +1,124 @@
+"""``train``, ``dataset`` and ``benchmark``: the rooms beside the app, loaded only when asked for."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from collections.abc import Callable
+from pathlib import Path
+
+from kirigami_studio.cli.console import ProgressLine, plain, print_json, say
+from kirigami_studio.cli.inputs import parse_grid
+from kirigami_studio.foundation.errors import UsageError
+from kirigami_studio.foundation.files import write_atomically
+
+
+def dataset(arguments: argparse.Namespace) -> int:
+    """Generate, verify and write the splits of one family."""
+    from kirigami_studio.training.dataset import SPLITS, generate_split, verify
+
+    grid = parse_grid(arguments.grid)
+    line = ProgressLine()
+    files: dict[str, str] = {}
+    for name, (size, offset) in SPLITS.items():
+        if arguments.split not in ("all", name):
+            continue
+        count = arguments.count or size
+        split = generate_split(
+            arguments.family,
+            count,
+            arguments.seed * len(SPLITS) + offset,
+            grid,
+            lambda done, name=name, count=count: line.show(f"{name}: {done} of {count}"),  # type: ignore[misc]
+        )
+        worst = verify(split)
+        path = Path(arguments.out) / f"{arguments.family}-{name}.npz"
+        split.save(path)
+        line.clear()
+        files[name] = str(path)
+        if not arguments.json:
+            say(f"{path}: {count} designs, re-rendered IoU >= {worst:.4f}, discarded {split.about['discarded']}")
+    if arguments.json:
+        print_json({"files": files})
+    return 0
+
+
+def train(arguments: argparse.Namespace) -> int:
+    """Train the prior, or go on training it, and write its weights into the run folder."""
+    from kirigami_studio.generator.weights import store_model
+    from kirigami_studio.training.device import training_device
+    from kirigami_studio.training.train_flow import FlowSettings, finished_network, train_flow
+    from kirigami_studio.training.validation import validator
+
+    if arguments.minutes is not None and arguments.minutes <= 0:
+        raise UsageError(f"--minutes must be above 0, got {arguments.minutes:g}.")
+    device = training_device(arguments.device, arguments.threads)
+    settings = FlowSettings(
+        steps=arguments.steps,
+        batch=arguments.batch,
+        coupling=arguments.coupling,
+        outline_weight=arguments.outline_weight,
+        seed=arguments.seed,
+    )
+    folder = Path(arguments.out)
+    seconds = float("inf") if arguments.minutes is None else 60.0 * arguments.minutes
+    record: dict[str, float] = {}
+    for record in train_flow(
+        settings, folder, device, validator(200, device), seconds=seconds, validate_every=arguments.validate_every
+    ):
+        if not arguments.json:
+            say(" ".join(f"{key} {value:.4f}" for key, value in record.items()))
+    path = store_model("prior", finished_network(settings, folder, device), folder, {"validation": record})
+    if arguments.json:
+        print_json({"files": [str(path)], "record": record})
+    else:
+        say(f"Weights: {path}")
+    return 0
+
+
+def benchmark(arguments: argparse.Namespace) -> int:
+    """Run one suite, print its figures and write them where asked."""
+    line = ProgressLine()
+    results = SUITES[arguments.suite](arguments, line)
+    line.clear()
+    if arguments.out is not None:
+        write_atomically(Path(arguments.out), (json.dumps(plain(results), indent=2) + "\n").encode())
+    if arguments.json:
+        print_json(results)
+    else:
+        say(json.dumps(plain(results), indent=2))
+    return 0
+
+
+def _generator_suite(arguments: argparse.Namespace, line: ProgressLine) -> dict[str, object]:
+    """The bundled generator on the test splits of both families."""
+    from kirigami_studio.benchmark.generator_suite import measure_generator
+    from kirigami_studio.training.dataset import SPLITS, generate_split
+
+    size, offset = SPLITS["test"]
+    results: dict[str, object] = {}
+    for family in ("structured", "sobol"):
+        split = generate_split(family, arguments.count or size, arguments.data_seed * len(SPLITS) + offset)
+        results[family] = measure_generator(
+            split.masks,
+            arguments.variant,
+            k=arguments.k,
+            steps=arguments.steps,
+            seeds=tuple(arguments.seeds),
+            report=lambda done, total, family=family: line.show(f"{family}: {done} of {total}"),  # type: ignore[misc]
+        )
+    return results
+
+
+def _lattice_suite(arguments: argparse.Namespace, line: ProgressLine) -> dict[str, object]:
+    """Timings of the exact geometry, with the ratio to the marching reference."""
+    from kirigami_studio.benchmark.lattice_timing import lattice_timings
+
+    line.show("Timing the lattice")
+    return dict(lattice_timings())
+
+
+SUITES: dict[str, Callable[[argparse.Namespace, ProgressLine], dict[str, object]]] = {
+    "generator": _generator_suite,
+    "lattice": _lattice_suite,
+}

@@ -1,0 +1,218 @@
+"""The command table: every option with its help and an example, read by one small loop."""
+
+from __future__ import annotations
+
+import argparse
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from importlib import import_module
+from typing import Any
+
+from kirigami_studio import __version__
+from kirigami_studio.cli.inputs import parse_angle
+from kirigami_studio.foundation.errors import UsageError
+
+Option = tuple[tuple[str, ...], dict[str, Any]]
+
+
+@dataclass(frozen=True, slots=True)
+class Command:
+    """One sub-command.
+
+    Attributes
+    ----------
+    name, about : str
+    run : str
+        ``module:function`` inside this package, imported when the command is called.
+    options : tuple
+        ``add_argument`` calls.
+    examples : tuple of str
+    """
+
+    name: str
+    about: str
+    run: str
+    options: tuple[Option, ...]
+    examples: tuple[str, ...]
+
+
+def option(*names: str, **settings: Any) -> Option:
+    """One ``add_argument`` call."""
+    return names, settings
+
+
+def angle(text: str) -> float:
+    """``parse_angle`` with argparse's kind of error."""
+    try:
+        return parse_angle(text)
+    except UsageError as error:
+        raise argparse.ArgumentTypeError(str(error)) from error
+
+
+def positive(text: str) -> float:
+    """A finite number above 0."""
+    value = number(text)
+    if value <= 0:
+        raise argparse.ArgumentTypeError(f"must be above 0, got {text}")
+    return value
+
+
+def number(text: str) -> float:
+    """A finite number."""
+    try:
+        value = float(text)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"must be a number, got '{text}'") from None
+    if not math.isfinite(value):
+        raise argparse.ArgumentTypeError(f"must be finite, got {text}")
+    return value
+
+
+JSON = option("--json", action="store_true", help="print JSON on standard output and nothing else")
+PHI = option(
+    "--phi", type=angle, default=0.0, metavar="ANGLE",
+    help="deployment angle in radians (0.5, pi/3) or degrees (30deg); pi = compact, default 0",
+)  # fmt: skip
+WIDTHS = (
+    option("--width-mm", type=positive, default=None, help="finished width of the sheet (default: the project's, 100)"),
+    option("--material", default=None, help="material preset, see 'kirigami-studio materials'"),
+    option("--connector-mm", type=positive, default=None, help="finished ligament width; default from the material"),
+    option("--kerf-mm", type=number, default=None, help="width of the cut; default from the material"),
+)
+
+COMMANDS: tuple[Command, ...] = (
+    Command("design", "from a target silhouette to ranked candidates and a cut file", "design:design", (
+        option("targets", nargs="+", metavar="TARGET",
+               help="image, SVG, DXF, JSON, library name, folder or .npz of masks"),
+        option("--out", default=None, help="folder for design.kiri, cut.dxf, layout.svg, preview.png, candidates.json"),
+        option("--threshold", type=number, default=None, help="grey level that bounds an image's shape, 0..1 (default: auto)"),
+        option("--k", type=int, default=32, help="number of candidates (default 32)"),
+        option("--seed", type=int, default=0, help="same seed, same result (default 0)"),
+        option("--grid", default="10x10", help="voids, ROWSxCOLUMNS (default 10x10)"),
+        PHI,
+        option("--variant", default="prior", help="generator variant, see 'kirigami-studio variants' (default prior)"),
+        option("--steps", type=int, default=4, help="Euler steps of the flow (default 4)"),
+        *WIDTHS,
+        JSON,
+    ), (
+        "kirigami-studio design heart --out out/heart",
+        "kirigami-studio design drawing.svg --k 8 --grid 12x12 --json",
+        "kirigami-studio design masks.npz --k 1 --json",
+    )),
+    Command("decode", "exact layout of ratio fields", "geometry:decode", (
+        option("ratios", nargs="+", metavar="RATIOS", help=".json, .npy, folder or .npz with 'ratios'"),
+        PHI,
+        option("--grid", default=None, help="expected grid, ROWSxCOLUMNS (default: from the file)"),
+        option("--out", default=None, help="also write the JSON here (a folder for many inputs)"),
+        JSON,
+    ), ("kirigami-studio decode ratios.json --phi pi/2 --json",)),
+    Command("score", "how well ratio fields show a target", "geometry:score", (
+        option("inputs", nargs="+", metavar="RATIOS... TARGET", help="ratio fields, then one target (or as many)"),
+        PHI,
+        JSON,
+    ), ("kirigami-studio score ratios.json heart --json", "kirigami-studio score fields.npz masks.npz")),
+    Command("siou", "similarity-aligned IoU of two mask images", "geometry:siou", (
+        option("mask_a", help="mask image, bright inside"),
+        option("mask_b", help="mask image, bright inside"),
+        JSON,
+    ), ("kirigami-studio siou result.png target.png",)),
+    Command("export", "write a saved project as a cut or picture file", "fabrication:export", (
+        option("project", help="a .kiri project"),
+        option("--out", required=True, help="file to write: .dxf .svg .pdf .png .gif"),
+        *WIDTHS,
+        option("--profile", default=None, help="machine profile of DXF files"),
+        option("--dxf-version", default="R2010", choices=("R2010", "R12"), help="DXF dialect (default R2010)"),
+        JSON,
+    ), ("kirigami-studio export heart.kiri --out heart.dxf --width-mm 80 --connector-mm 0.6",)),
+    Command("check", "re-read a cut file and list what is wrong with it", "fabrication:check", (
+        option("file", help="a .dxf file"),
+        JSON,
+    ), ("kirigami-studio check heart.dxf",)),
+    Command("animate", "deployment from the compact sheet to the target angle", "fabrication:animate", (
+        option("project", help="a .kiri project"),
+        option("--out", required=True, help="a .gif file to write"),
+        JSON,
+    ), ("kirigami-studio animate heart.kiri --out heart.gif",)),
+    Command("targets", "list the library silhouettes", "listing:targets", (JSON,), ("kirigami-studio targets",)),
+    Command("materials", "list the material presets", "listing:materials", (JSON,), ("kirigami-studio materials",)),
+    Command("variants", "list the bundled generator variants", "listing:variants", (JSON,),
+            ("kirigami-studio variants",)),
+    Command("dataset", "generate and verify training data by the paper's protocol", "learning:dataset", (
+        option("family", choices=("sobol", "structured"), help="distribution of the ratio fields"),
+        option("--out", required=True, help="folder for FAMILY-SPLIT.npz"),
+        option("--split", default="all", choices=("all", "train", "validation", "test"),
+               help="default all: 5000/500/500"),
+        option("--count", type=int, default=None, help="other number of designs than the protocol's"),
+        option("--grid", default="10x10", help="voids, ROWSxCOLUMNS (default 10x10)"),
+        option("--seed", type=int, default=0, help="default 0"),
+        JSON,
+    ), ("kirigami-studio dataset sobol --out data --split test",)),
+    Command("train", "train a generator; resumes from the checkpoint in its folder", "learning:train", (
+        option("stage", choices=("prior",), help="what to train"),
+        option("--out", required=True, help="run folder: checkpoint, log, weights"),
+        option("--steps", type=int, default=12_000, help="optimiser steps in all (default 12000)"),
+        option("--minutes", type=float, default=None, help="stop with a checkpoint after this time"),
+        option("--batch", type=int, default=96, help="targets a step (default 96)"),
+        option("--coupling", default="independent", choices=("independent", "ot", "conditional-ot"),
+               help="pairing of noise and designs (default independent)"),
+        option("--outline-weight", type=float, default=50.0, help="weight of the outline error (default 50)"),
+        option("--validate-every", type=int, default=500, help="steps between validations (default 500)"),
+        option("--threads", type=int, default=1, help="processor threads (default 1)"),
+        option("--device", default="auto", help="auto, cpu or cuda (default auto)"),
+        option("--seed", type=int, default=0, help="default 0"),
+        JSON,
+    ), ("kirigami-studio train prior --out runs/prior --device auto",)),
+    Command("benchmark", "measure the generator or the lattice", "learning:benchmark", (
+        option("suite", choices=("generator", "lattice"), help="what to measure"),
+        option("--out", default=None, help="also write the results here (.json)"),
+        option("--variant", default="prior", help="generator variant (default prior)"),
+        option("--count", type=int, default=None, help="targets of each family (default 500)"),
+        option("--k", type=int, default=1, help="samples a target (default 1)"),
+        option("--steps", type=int, default=4, help="Euler steps (default 4)"),
+        option("--seeds", type=int, nargs="+", default=[0, 1, 2], help="sampling seeds (default 0 1 2)"),
+        option("--data-seed", type=int, default=0, help="seed of the test splits (default 0)"),
+        JSON,
+    ), ("kirigami-studio benchmark generator --count 100 --json", "kirigami-studio benchmark lattice")),
+)  # fmt: skip
+
+
+def build_parser() -> argparse.ArgumentParser:
+    """Build the parser from the table."""
+    parser = argparse.ArgumentParser(
+        prog="kirigami-studio",
+        description="From a silhouette to a cutter-ready kirigami sheet. Without a command the window opens.",
+    )
+    parser.add_argument("--version", action="version", version=f"kirigami-studio {__version__}")
+    parser.set_defaults(run=open_window)
+    commands = parser.add_subparsers(title="commands", metavar="COMMAND")
+    for command in COMMANDS:
+        child = commands.add_parser(
+            command.name,
+            help=command.about,
+            description=command.about[0].upper() + command.about[1:] + ".",
+            epilog="examples:\n" + "\n".join(f"  {example}" for example in command.examples),
+            formatter_class=argparse.RawDescriptionHelpFormatter,
+        )
+        for names, settings in command.options:
+            child.add_argument(*names, **settings)
+        child.set_defaults(run=_late(command.run))
+    return parser
+
+
+def open_window(arguments: argparse.Namespace) -> int:
+    """Open the studio; Qt is loaded here and not before."""
+    from kirigami_studio.gui.application import run
+
+    return run([])
+
+
+def _late(place: str) -> Callable[[argparse.Namespace], int]:
+    """Import a command's function only when it is called: ``--help`` and the window stay quick."""
+
+    def call(arguments: argparse.Namespace) -> int:
+        module, function = place.split(":")
+        code: int = getattr(import_module(f"kirigami_studio.cli.{module}"), function)(arguments)
+        return code
+
+    return call

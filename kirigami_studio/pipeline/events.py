@@ -1,0 +1,66 @@
+"""What a run tells its host, in order: Started, then Progress and CandidateFound, then Finished."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.pipeline.request import Request
+
+
+@dataclass(frozen=True, slots=True)
+class Started:
+    """The run has begun; ``total`` candidates are coming."""
+
+    total: int
+
+
+@dataclass(frozen=True, slots=True)
+class Progress:
+    """``done`` of ``total`` units are finished; ``message`` is fit for a status line."""
+
+    done: int
+    total: int
+    message: str
+
+
+@dataclass(frozen=True, slots=True)
+class CandidateFound:
+    """Candidate number ``index`` (order of sampling) has been decoded and scored."""
+
+    index: int
+    candidate: Candidate
+
+
+@dataclass(frozen=True, slots=True)
+class Result:
+    """All candidates, best first.
+
+    Attributes
+    ----------
+    request : Request
+    candidates : tuple of Candidate
+    forward_evaluations : int
+        Number of decoded and scored designs, the paper's #F.
+    seconds : float
+        Wall time of the run; the only part that differs between two equal requests.
+    """
+
+    request: Request
+    candidates: tuple[Candidate, ...]
+    forward_evaluations: int
+    seconds: float
+
+    @property
+    def best(self) -> Candidate:
+        return self.candidates[0]
+
+
+@dataclass(frozen=True, slots=True)
+class Finished:
+    """The run is complete."""
+
+    result: Result
+
+
+Event = Started | Progress | CandidateFound | Finished

@@ -1,0 +1,53 @@
+"""What a person asked for: everything that decides the result, and nothing else."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from kirigami_studio.foundation.errors import AngleError, UsageError
+from kirigami_studio.lattice.ratio_field import check_grid
+from kirigami_studio.target.outline import Outline
+
+LARGEST_K = 1024
+LARGEST_STEPS = 64
+
+
+@dataclass(frozen=True, slots=True)
+class Request:
+    """One design task.  The same request gives the same candidates, bit by bit.
+
+    Attributes
+    ----------
+    target : Outline
+    grid : (rows, columns) voids, 2..64 each
+    phi : float, radians, in [0, pi)
+        Deployment angle at which the sheet should show the target; 0 is the second compact state.
+    k : int, 1..1024
+        Number of candidates.
+    seed : int, >= 0
+    variant : str
+        Name of a bundled generator variant, see :func:`kirigami_studio.generator.weights.variants`.
+    steps : int, 1..64
+        Euler steps of the flow.
+    """
+
+    target: Outline
+    grid: tuple[int, int] = (10, 10)
+    phi: float = 0.0
+    k: int = 32
+    seed: int = 0
+    variant: str = "prior"
+    steps: int = 4
+
+    def __post_init__(self) -> None:
+        check_grid(*self.grid)
+        if not 0.0 <= self.phi < math.pi:
+            raise AngleError(f"The target angle must lie in [0, pi) radians, got {self.phi:g}; 0 is the usual choice.")
+        for name, value, low, high in (
+            ("candidates (k)", self.k, 1, LARGEST_K),
+            ("Euler steps", self.steps, 1, LARGEST_STEPS),
+            ("the seed", self.seed, 0, 2**63 - 1),
+        ):
+            if isinstance(value, bool) or not isinstance(value, int) or not low <= value <= high:
+                raise UsageError(f"The number for {name} must be a whole number from {low} to {high}, got {value!r}.")

@@ -1,0 +1,202 @@
+"""The command-line contract, through the real entry point."""
+
+from __future__ import annotations
+
+import json
+import math
+import subprocess
+import sys
+from pathlib import Path
+
+import ezdxf
+import numpy as np
+import pytest
+from PIL import Image
+
+from kirigami_studio.cli import main
+from kirigami_studio.lattice.deployment import deploy
+from kirigami_studio.lattice.ratio_field import RatioField
+
+FIELD = np.array([[1.0, 2.0, 0.5], [0.8, 1.5, 1.0]])
+
+
+@pytest.fixture
+def ratios(tmp_path: Path) -> Path:
+    path = tmp_path / "ratios.json"
+    path.write_text(json.dumps({"ratio": FIELD.tolist()}))
+    return path
+
+
+def answer(capsys: pytest.CaptureFixture[str], *argv: object) -> dict:
+    code = main([str(word) for word in argv])
+    captured = capsys.readouterr()
+    assert code == 0, captured.err
+    assert captured.err == ""
+    (line,) = captured.out.splitlines()
+    return json.loads(line)
+
+
+def refusal(capsys: pytest.CaptureFixture[str], *argv: object) -> tuple[int, str]:
+    code = main([str(word) for word in argv])
+    captured = capsys.readouterr()
+    assert captured.out == ""
+    assert "Traceback" not in captured.err
+    assert len(captured.err.splitlines()) == 1
+    return code, captured.err
+
+
+def test_that_decode_answers_with_the_exact_layout(capsys: pytest.CaptureFixture[str], ratios: Path) -> None:
+    layout = answer(capsys, "decode", ratios, "--phi", "pi/2", "--json")
+    deployment = deploy(RatioField(FIELD))
+    assert np.allclose(layout["void_corners"], deployment.voids(math.pi / 2))
+    assert np.array(layout["panels"]).shape == (12, 4, 2)
+    assert layout["area"] == pytest.approx(deployment.area(math.pi / 2))
+    assert layout["n_invalid"] == 0
+    assert layout["contact"] is None
+
+
+def test_that_the_compact_sheet_starts_at_the_origin(capsys: pytest.CaptureFixture[str], ratios: Path) -> None:
+    corners = np.array(answer(capsys, "decode", ratios, "--phi", "pi", "--json")["outline"])
+    assert np.allclose(corners.min(axis=0), (0, -3))
+    assert np.allclose(corners.max(axis=0), (4, 0))
+
+
+def test_that_score_answers_with_all_promised_keys(capsys: pytest.CaptureFixture[str], ratios: Path) -> None:
+    score = answer(capsys, "score", ratios, "heart", "--json")
+    promised = {"siou", "siou_gain", "iou_exact", "tv", "feasible", "n_invalid", "overlap_ratio", "transform"}
+    assert promised <= score.keys()
+    assert 0 < score["siou"] <= 1
+
+
+def test_that_batches_answer_one_object_a_line(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    np.savez(tmp_path / "fields.npz", ratios=np.stack([FIELD, 1 / FIELD]))
+    assert main(["score", str(tmp_path / "fields.npz"), "circle"]) == 0
+    lines = [json.loads(line) for line in capsys.readouterr().out.splitlines()]
+    assert [line["source"] for line in lines] == ["fields.npz[0]", "fields.npz[1]"]
+
+
+def test_that_siou_of_a_turned_mask_is_nearly_one(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    mask = np.zeros((128, 128), dtype=np.uint8)
+    mask[20:100, 30:60] = 255
+    mask[80:100, 30:90] = 255
+    Image.fromarray(mask).save(tmp_path / "a.png")
+    Image.fromarray(np.rot90(mask)).save(tmp_path / "b.png")
+    assert answer(capsys, "siou", tmp_path / "a.png", tmp_path / "b.png", "--json")["siou"] > 0.98
+
+
+@pytest.mark.torch
+def test_that_a_design_becomes_checked_files_with_the_same_bytes(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    folders = [tmp_path / name for name in ("first", "second")]
+    answers = [answer(capsys, "design", "star", "--k", 3, "--out", folder, "--json") for folder in folders]
+    assert len(answers[0]["candidates"]) == 3
+    assert answers[0]["best"] == answers[0]["candidates"][0]
+    assert answers[0]["forward_evaluations"] == 3
+    for name in ("design.kiri", "cut.dxf", "layout.svg", "preview.png", "candidates.json"):
+        first, second = ((folder / name).read_bytes() for folder in folders)
+        assert first == second, name
+    assert answer(capsys, "check", folders[0] / "cut.dxf", "--json")["ok"]
+    assert ezdxf.readfile(folders[0] / "cut.dxf").header["$INSUNITS"] == 4
+
+
+@pytest.mark.torch
+def test_that_a_saved_project_is_exported_to_every_kind_of_file(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    answer(capsys, "design", "heart", "--k", 1, "--grid", "4x5", "--out", tmp_path, "--json")
+    project = tmp_path / "design.kiri"
+    for suffix in ("dxf", "svg", "pdf", "png", "gif"):
+        report = answer(
+            capsys,
+            "export",
+            project,
+            "--out",
+            tmp_path / f"x.{suffix}",
+            "--width-mm",
+            80,
+            "--connector-mm",
+            0.8,
+            "--json",
+        )
+        assert Path(report["files"][0]).stat().st_size > 500
+        assert report["pieces"] == 1
+        assert report["min_connector_mm"] == pytest.approx(0.8, abs=1e-3)
+    document = ezdxf.readfile(tmp_path / "x.dxf")
+    assert document.header["$EXTMAX"][0] == pytest.approx(80, abs=1.0)
+    assert answer(capsys, "animate", project, "--out", tmp_path / "y.gif", "--json")["frames"] > 10
+
+
+@pytest.mark.torch
+def test_that_many_targets_are_designed_in_order(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["design", "circle", "drop", "--k", "1"]) == 0
+    lines = [json.loads(line) for line in capsys.readouterr().out.splitlines()]
+    assert [line["source"] for line in lines] == ["circle", "drop"]
+    assert all(line["files"] == {} for line in lines)
+
+
+@pytest.mark.parametrize(
+    ("code", "argv"),
+    [
+        (1, ["design", "unicorn", "--k", "1"]),
+        (1, ["design", "missing.png", "--k", "1"]),
+        (2, ["design", "heart", "--k", "0"]),
+        (2, ["design", "heart", "--grid", "1x1"]),
+        (2, ["design", "heart", "--grid", "ten"]),
+        (2, ["design", "heart", "--phi", "pi"]),
+        (2, ["design", "heart", "--variant", "psychic", "--k", "1"]),
+        (1, ["design", "heart", "--material", "adamantium"]),
+        (1, ["decode", "missing.json"]),
+        (1, ["score", "missing.json", "heart"]),
+        (2, ["score", "heart"]),
+        (1, ["export", "missing.kiri", "--out", "x.dxf"]),
+        (1, ["export", "missing.kiri", "--out", "x.doc"]),
+        (1, ["check", "missing.dxf"]),
+        (2, ["animate", "missing.kiri", "--out", "x.mp4"]),
+        (2, ["train", "prior", "--out", "nowhere", "--minutes", "0"]),
+    ],
+)
+def test_that_bad_requests_end_in_one_sentence(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, code: int, argv: list[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert refusal(capsys, *argv)[0] == code
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_that_an_unwritable_folder_is_refused_in_one_sentence(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path, ratios: Path
+) -> None:
+    (tmp_path / "file").write_text("in the way")
+    code = main(["decode", str(ratios), "--json", "--out", str(tmp_path / "file" / "layout.json")])
+    assert code == 1
+    assert "Cannot write" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("argv", [["--nonsense"], ["design"], ["design", "heart", "--k", "many"], ["decode"]])
+def test_that_wrong_usage_exits_with_two(argv: list[str]) -> None:
+    with pytest.raises(SystemExit) as stopped:
+        main(argv)
+    assert stopped.value.code == 2
+
+
+@pytest.mark.parametrize("listing", ["targets", "materials", "variants"])
+def test_that_listings_are_json_and_lines(capsys: pytest.CaptureFixture[str], listing: str) -> None:
+    names = answer(capsys, listing, "--json")[listing]
+    assert main([listing]) == 0
+    assert capsys.readouterr().out.split() == names
+    assert names
+
+
+def test_that_every_command_shows_examples() -> None:
+    for command in ("design", "decode", "score", "siou", "export", "check", "animate", "train", "dataset", "benchmark"):
+        shown = subprocess.run(
+            [sys.executable, "-m", "kirigami_studio", command, "--help"], capture_output=True, text=True, check=True
+        ).stdout
+        assert f"kirigami-studio {command}" in shown.split("examples:")[1]
+
+
+def test_that_datasets_are_written_and_verified(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    answered = answer(capsys, "dataset", "structured", "--out", tmp_path, "--split", "test", "--count", 4, "--json")
+    with np.load(answered["files"]["test"]) as archive:
+        assert archive["masks"].shape == (4, 128, 128)

@@ -1,0 +1,145 @@
+"""What the command line accepts as input."""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from kirigami_studio.cli.inputs import is_batch, parse_angle, parse_grid, read_fields, read_mask, read_targets
+from kirigami_studio.foundation.errors import GridError, KirigamiError, RatioError, TargetError, UsageError
+
+
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [("0", 0.0), ("0.5", 0.5), ("30deg", math.pi / 6), ("pi", math.pi), ("pi/3", math.pi / 3), ("2pi/3", 2 * math.pi / 3),
+     ("0.25*pi", math.pi / 4), (".5", 0.5), ("1e-3", 1e-3)],
+)  # fmt: skip
+def test_that_angles_are_read_in_radians_and_degrees(text: str, value: float) -> None:
+    assert parse_angle(text) == pytest.approx(value)
+
+
+@pytest.mark.parametrize("text", ["", "nan", "inf", "thirty", "pi/0", "1/2", "-1", "30 degrees"])
+def test_that_other_angles_are_refused(text: str) -> None:
+    with pytest.raises(UsageError):
+        parse_angle(text)
+
+
+def test_that_a_grid_is_rows_by_columns() -> None:
+    assert parse_grid("8x12") == (8, 12)
+    for text in ("", "8", "8x", "8*12", "x", "8x12x3", "1.5x2"):
+        with pytest.raises(GridError):
+            parse_grid(text)
+
+
+def test_that_fields_come_from_json_npy_archives_and_folders(tmp_path: Path) -> None:
+    ratio = np.random.default_rng(0).uniform(0.5, 2, (3, 4))
+    (tmp_path / "a.json").write_text(json.dumps({"ratio": ratio.tolist()}))
+    np.save(tmp_path / "b.npy", ratio)
+    np.savez(tmp_path / "c.npz", ratios=np.stack([ratio, 2 * ratio]))
+    values = [named.value.ratio for named in read_fields([str(tmp_path)])]
+    assert len(values) == 4
+    assert all(np.array_equal(value, ratio) for value in values[:3])
+    assert np.array_equal(values[3], 2 * ratio)
+
+
+@pytest.mark.parametrize(
+    ("name", "content"),
+    [
+        ("empty.json", b""),
+        ("list.json", b"[1, 2]"),
+        ("flat.json", b'{"ratio": [1, 2, 3, 4]}'),
+        ("ragged.json", b'{"ratio": [[1, 2], [3]]}'),
+        ("text.json", b'{"ratio": [["a", "b"], ["c", "d"]]}'),
+        ("nan.json", b'{"ratio": [[1, NaN], [1, 1]]}'),
+        ("zero.json", b'{"ratio": [[1, 0], [1, 1]]}'),
+        ("negative.json", b'{"ratio": [[1, -2], [1, 1]]}'),
+        ("tiny.json", b'{"ratio": [[1]]}'),
+        ("binary.json", b"\xff\xfe\x00\x01"),
+        ("deep.json", b"[" * 100_000),
+        ("broken.npy", b"\x93NUMPY\x01\x00"),
+        ("empty.npy", b""),
+        ("other.txt", b"1 1"),
+    ],
+)
+def test_that_bad_ratio_files_are_refused_with_their_name(tmp_path: Path, name: str, content: bytes) -> None:
+    path = tmp_path / name
+    path.write_bytes(content)
+    with pytest.raises(KirigamiError, match=path.stem):
+        list(read_fields([str(path)]))
+
+
+def test_that_pickled_arrays_are_not_loaded(tmp_path: Path) -> None:
+    np.save(tmp_path / "object.npy", np.array([{"a": 1}], dtype=object), allow_pickle=True)
+    with pytest.raises(RatioError):
+        list(read_fields([str(tmp_path / "object.npy")]))
+
+
+def test_that_a_missing_file_is_named(tmp_path: Path) -> None:
+    with pytest.raises(RatioError, match=r"nowhere\.json"):
+        list(read_fields([str(tmp_path / "nowhere.json")]))
+
+
+def test_that_masks_in_an_archive_become_targets(tmp_path: Path) -> None:
+    masks = np.zeros((2, 64, 64), dtype=bool)
+    masks[0, 10:50, 20:40] = True
+    masks[1, 5:60, 5:60] = True
+    np.savez(tmp_path / "masks.npz", masks=masks)
+    targets = [named.value for named in read_targets([str(tmp_path / "masks.npz")])]
+    spans = [np.ptp(target.points, axis=0) for target in targets]
+    assert spans[0][1] / spans[0][0] == pytest.approx(2.0, rel=0.05)
+    assert spans[1][1] / spans[1][0] == pytest.approx(1.0, rel=0.02)
+
+
+def test_that_an_archive_without_masks_says_what_it_holds(tmp_path: Path) -> None:
+    np.savez(tmp_path / "other.npz", pictures=np.zeros((1, 4, 4)))
+    with pytest.raises(UsageError, match="pictures"):
+        list(read_targets([str(tmp_path / "other.npz")]))
+
+
+def test_that_a_blank_mask_in_an_archive_is_located(tmp_path: Path) -> None:
+    np.savez(tmp_path / "blank.npz", masks=np.zeros((1, 32, 32), dtype=bool))
+    with pytest.raises(TargetError, match=r"blank\.npz\[0\]"):
+        list(read_targets([str(tmp_path / "blank.npz")]))
+
+
+def test_that_a_damaged_archive_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "bad.npz").write_bytes(b"PK\x03\x04 and then nothing")
+    with pytest.raises(KirigamiError, match=r"bad\.npz"):
+        list(read_targets([str(tmp_path / "bad.npz")]))
+
+
+def test_that_mask_images_are_bright_inside(tmp_path: Path) -> None:
+    picture = np.zeros((8, 8), dtype=np.uint8)
+    picture[2:5, 3:7] = 255
+    Image.fromarray(picture).save(tmp_path / "mask.png")
+    assert read_mask(tmp_path / "mask.png").sum() == 12
+    (tmp_path / "mask.txt").write_text("no image")
+    with pytest.raises(TargetError):
+        read_mask(tmp_path / "mask.txt")
+
+
+def test_that_several_inputs_count_as_a_batch(tmp_path: Path) -> None:
+    assert not is_batch(["heart"])
+    assert is_batch(["heart", "star"])
+    assert is_batch([str(tmp_path)])
+    assert is_batch(["fields.npz"])
+
+
+def test_that_a_threshold_decides_what_a_grey_image_shows(tmp_path: Path) -> None:
+    grey = np.full((80, 80), 255, dtype=np.uint8)
+    grey[10:70, 10:70] = 160
+    grey[30:50, 20:60] = 20
+    Image.fromarray(grey).save(tmp_path / "grey.png")
+    spans = [
+        np.ptp(next(iter(read_targets([str(tmp_path / "grey.png")], threshold))).value.points, axis=0)
+        for threshold in (0.3, 0.8)
+    ]
+    assert spans[0][0] / spans[0][1] == pytest.approx(2.0, rel=0.05)
+    assert spans[1][0] / spans[1][1] == pytest.approx(1.0, rel=0.05)
+    with pytest.raises(UsageError, match="between 0 and 1"):
+        list(read_targets([str(tmp_path / "grey.png")], 2.0))

@@ -1,0 +1,96 @@
+"""From request to ranked candidates, with the bundled model."""
+
+from __future__ import annotations
+
+import math
+import pickle
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.foundation.errors import AngleError, Cancelled, GridError, UsageError
+from kirigami_studio.pipeline.events import CandidateFound, Finished, Progress, Started
+from kirigami_studio.pipeline.rank import ranked
+from kirigami_studio.pipeline.request import Request
+from kirigami_studio.pipeline.run import best_of, run
+from kirigami_studio.target.library import load
+
+pytestmark = pytest.mark.torch
+
+
+@pytest.fixture(scope="module")
+def request_for_heart() -> Request:
+    return Request(load("heart"), k=4, seed=3)
+
+
+def test_that_events_come_in_order(request_for_heart: Request) -> None:
+    events = list(run(request_for_heart))
+    assert events[0] == Started(4)
+    assert isinstance(events[1], Progress)
+    assert [event.index for event in events if isinstance(event, CandidateFound)] == [0, 1, 2, 3]
+    assert isinstance(events[-1], Finished)
+    assert events[-1].result.forward_evaluations == 4
+
+
+def test_that_the_same_request_gives_the_same_candidates(request_for_heart: Request) -> None:
+    first, second = best_of(request_for_heart), best_of(request_for_heart)
+    assert first.candidates == second.candidates
+
+
+def test_that_candidates_are_ranked_best_first(request_for_heart: Request) -> None:
+    candidates = best_of(replace(request_for_heart, k=8)).candidates
+    siou = [candidate.score.siou for candidate in candidates if candidate.score.feasible]
+    assert siou == sorted(siou, reverse=True)
+    feasible = [candidate.score.feasible for candidate in candidates]
+    assert feasible == sorted(feasible, reverse=True)
+
+
+def test_that_an_infeasible_design_ranks_behind_a_worse_feasible_one(request_for_heart: Request) -> None:
+    good, other = best_of(replace(request_for_heart, k=2)).candidates
+    broken = Candidate(good.field, replace(good.score, feasible=False), good.seed, good.index)
+    assert ranked([broken, other]) == (other, broken)
+
+
+def test_that_a_cancelled_run_stops_between_candidates(request_for_heart: Request) -> None:
+    seen = []
+    with pytest.raises(Cancelled, match="2 of 4"):
+        seen.extend(run(request_for_heart, cancel=lambda: len(seen) >= 6))
+    assert not any(isinstance(event, Finished) for event in seen)
+
+
+def test_that_a_request_survives_pickling(request_for_heart: Request) -> None:
+    assert pickle.loads(pickle.dumps(request_for_heart)) == request_for_heart
+
+
+def test_that_a_partly_deployed_target_is_scored_at_its_angle() -> None:
+    result = best_of(Request(load("square"), grid=(6, 6), phi=math.pi / 3, k=1))
+    assert 0 < result.best.score.siou <= 1
+    assert np.isfinite(result.best.score.iou_exact)
+
+
+@pytest.mark.parametrize(
+    ("changes", "error"),
+    [
+        ({"k": 0}, UsageError),
+        ({"k": 5000}, UsageError),
+        ({"k": 2.5}, UsageError),
+        ({"k": True}, UsageError),
+        ({"seed": -1}, UsageError),
+        ({"steps": 0}, UsageError),
+        ({"grid": (1, 10)}, GridError),
+        ({"grid": (10, 65)}, GridError),
+        ({"phi": -0.1}, AngleError),
+        ({"phi": math.pi}, AngleError),
+        ({"phi": math.nan}, AngleError),
+    ],
+)
+def test_that_impossible_requests_are_refused(request_for_heart: Request, changes: dict, error: type) -> None:
+    with pytest.raises(error):
+        replace(request_for_heart, **changes)
+
+
+def test_that_an_unknown_variant_is_refused_before_any_candidate(request_for_heart: Request) -> None:
+    with pytest.raises(UsageError, match="prior"):
+        list(run(replace(request_for_heart, variant="psychic")))
