@@ -1,0 +1,32 @@
+"""One scored design with its provenance: what the gallery shows, a run yields and a project keeps."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from kirigami_studio.evaluate.score import Score
+from kirigami_studio.lattice.ratio_field import RatioField
+
+
+@dataclass(frozen=True, slots=True)
+class Candidate:
+    """A ratio field, its score and where it came from.
+
+    Attributes
+    ----------
+    field : RatioField
+    score : Score
+        Against the request's target at the request's angle.
+    seed : int
+        Seed of the run that drew it.
+    index : int
+        Its place in that run's sampling order.
+    polished : bool
+        Whether a fit on the exact geometry has improved it after sampling.
+    """
+
+    field: RatioField
+    score: Score
+    seed: int
+    index: int
+    polished: bool = False

@@ -1,0 +1,152 @@
+"""Is the design physical?  Invalid quads, overlap, and contact on the way from the compact sheet.
+
+Panels are rigid, voids are parallelograms and angles around a node always sum to 2 pi, so the sheet maps one to one as
+long as its outline does not cross itself: overlap and contact are read off one polygon per angle.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+import shapely
+
+from kirigami_studio.evaluate.boundary import PlaneArray, as_plane, as_points
+from kirigami_studio.evaluate.crossing import deepest_crossing
+from kirigami_studio.evaluate.similarity import FloatArray
+from kirigami_studio.lattice.deployment import ZIPPED_BELOW, Deployment, check_phi
+
+#: Largest overlap ratio that still counts as feasible (paper, tau_ov).
+TAU_OVERLAP = 0.02
+
+#: Quads with less area (unit cells squared) have collapsed; rounding leaves 1e-13.
+COLLAPSED = 1e-10
+
+#: Vertices are snapped to this grid (unit cells) before a union.
+UNION_GRID = 1e-9
+
+#: Angles at which the way from the compact sheet to the target is looked at.
+PATH_ANGLES = 32
+
+#: Accuracy of the first contact angle, radians.
+CONTACT_ACCURACY = 1e-4
+
+
+@dataclass(frozen=True, slots=True)
+class Contact:
+    """First self-contact of the outline on the way from the compact sheet to the target angle.
+
+    Attributes
+    ----------
+    phi : float, radians
+        Largest angle found at which the outline crosses itself, exact to 1e-4.
+    where : (x, y) float, unit cells
+        Place of the crossing in the layout's own frame at that angle.
+    """
+
+    phi: float
+    where: tuple[float, float]
+
+    def to_json(self) -> dict[str, object]:
+        """Plain numbers: ``phi`` (radians) and ``where`` [x, y]."""
+        return {"phi": self.phi, "where": list(self.where)}
+
+
+def invalid_quads(deployment: Deployment, phi: float) -> int:
+    """Number of collapsed, inverted or self-crossing quads (the paper's N_inv).
+
+    Panels count at every angle; voids count for 0 < phi < pi only, since they are closed at both ends of the motion.
+    """
+    quads = _quads(deployment, phi)
+    following = np.roll(quads, -1, axis=1)
+    cross = quads[..., 0] * following[..., 1] - quads[..., 1] * following[..., 0]
+    area = 0.5 * cross.sum(axis=1)
+    collapsed = area < COLLAPSED
+    a, b, c, d = np.moveaxis(quads, 1, 0)
+    crossing = _edges_cross(a, b, c, d) | _edges_cross(b, c, d, a)
+    return int(np.count_nonzero(collapsed | crossing))
+
+
+def overlap_ratio(deployment: Deployment, phi: float) -> float:
+    """Share of material lost to overlap, ``1 - A_union / sum A`` (the paper's r_ov), by exact polygon union.
+
+    An outline that does not cross itself means no overlap at all, which spares the union.
+    """
+    outline = deployment.outline(phi)
+    if shapely.is_valid(shapely.Polygon(outline)) or deepest_crossing(as_plane(outline)) is None:
+        return 0.0
+    quads = np.asarray(shapely.polygons(_quads(deployment, phi)), dtype=object)
+    quads = quads[shapely.is_valid(quads)]
+    total = float(shapely.area(quads).sum())
+    if total <= 0.0:
+        return 1.0
+    # Without a grid, neighbours whose shared edge differs by rounding make the union lose whole panels.
+    union = float(shapely.area(shapely.union_all(quads, grid_size=UNION_GRID)))
+    return min(1.0, max(0.0, 1.0 - union / total))
+
+
+def path_contact(deployment: Deployment, phi_target: float) -> Contact | None:
+    """First angle between the compact sheet and the target at which the outline crosses itself.
+
+    Looks at 32 angles including the target and bisects between the last free and the first crossing one.  Edges that
+    only touch (edge hinges zipping shut at phi = 0, edge cuts closed at pi) are no contact.
+    """
+    target = check_phi(phi_target)
+    angles = np.linspace(math.pi, target, PATH_ANGLES + 1)[1:]
+    outlines = outline_path(deployment, angles)
+    at_target = as_plane(deployment.outline(target))
+    clear = np.append(
+        shapely.is_valid(shapely.polygons(as_points(outlines[:-1]))),
+        shapely.is_valid(shapely.Polygon(as_points(at_target))),
+    )
+    for index in np.flatnonzero(~clear):
+        place = deepest_crossing(at_target if index == PATH_ANGLES - 1 else outlines[index])
+        if place is not None:
+            free = math.pi if index == 0 else float(angles[index - 1])
+            return _first_contact(deployment, free, float(angles[index]), place)
+    return None
+
+
+def outline_path(deployment: Deployment, angles: FloatArray) -> PlaneArray:
+    """Outlines at several angles at once: (A, L) complex, unit cells, edge hinges included.
+
+    ``P(phi) = R(-a) U + R(+a) V`` with 2a = pi - phi, for the outline's nodes only.
+    """
+    nodes = deployment.topology.outline_nodes
+    turn = np.exp(0.5j * (math.pi - angles))[:, np.newaxis]
+    path: PlaneArray = np.conj(turn) * as_plane(deployment.even_part[nodes]) + turn * as_plane(
+        deployment.odd_part[nodes]
+    )
+    return path
+
+
+def _first_contact(deployment: Deployment, free: float, crossed: float, place: complex) -> Contact:
+    """Bisect between a free and a crossing angle."""
+    while free - crossed > CONTACT_ACCURACY:
+        middle = 0.5 * (free + crossed)
+        found = deepest_crossing(outline_path(deployment, np.array([middle]))[0])
+        if found is None:
+            free = middle
+        else:
+            crossed, place = middle, found
+    return Contact(crossed, (place.real, place.imag))
+
+
+def _quads(deployment: Deployment, phi: float) -> FloatArray:
+    """The quads that the paper's checks look at: panels, and voids while they are open: (Q, 4, 2)."""
+    panels = deployment.panels(phi).reshape(-1, 4, 2)
+    if not ZIPPED_BELOW < check_phi(phi) < math.pi - ZIPPED_BELOW:
+        return panels
+    return np.concatenate([panels, deployment.voids(phi).reshape(-1, 4, 2)])
+
+
+def _edges_cross(a: FloatArray, b: FloatArray, c: FloatArray, d: FloatArray) -> npt.NDArray[np.bool_]:
+    """Whether segments ab and cd cross properly, row by row of (Q, 2) arrays."""
+    return (_side(a, b, c) * _side(a, b, d) < 0.0) & (_side(c, d, a) * _side(c, d, b) < 0.0)
+
+
+def _side(a: FloatArray, b: FloatArray, p: FloatArray) -> FloatArray:
+    side: FloatArray = (b - a)[:, 0] * (p - a)[:, 1] - (b - a)[:, 1] * (p - a)[:, 0]
+    return side

@@ -1,0 +1,117 @@
+"""Polygon -> square mask: the raster on which the paper compares silhouettes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from kirigami_studio.evaluate.boundary import as_plane, checked_polygon, scan_crossings
+from kirigami_studio.evaluate.similarity import FloatArray
+from kirigami_studio.foundation.errors import KirigamiError
+
+MaskArray = npt.NDArray[np.bool_]
+
+#: Pixels each way of the paper's masks.
+MASK_SIZE = 128
+
+#: Larger masks would not fit into memory on an ordinary machine.
+LARGEST_MASK = 8192
+
+
+@dataclass(frozen=True, slots=True)
+class Frame:
+    """Where the pixels of a mask lie in the plane; row 0 on top, y up.
+
+    Attributes
+    ----------
+    left, top : float
+        Upper left corner of pixel (0, 0).
+    pixel : float, > 0
+        Side of a pixel, in the units of the polygon.
+    rows, columns : int
+    """
+
+    left: float
+    top: float
+    pixel: float
+    rows: int
+    columns: int
+
+    @classmethod
+    def around(cls, polygon: FloatArray, size: int = MASK_SIZE) -> Frame:
+        """The square frame that the longer side of the polygon's bounding box fills, centred on its midpoint."""
+        low, high = polygon.min(axis=0), polygon.max(axis=0)
+        side = float((high - low).max())
+        centre = 0.5 * (low + high)
+        return cls(float(centre[0]) - 0.5 * side, float(centre[1]) + 0.5 * side, side / size, size, size)
+
+    def covering(self, polygon: FloatArray) -> Frame:
+        """The same pixels, continued so far that the polygon (L, 2) lies inside as well."""
+        low, high = polygon.min(axis=0), polygon.max(axis=0)
+        before = max(0, _pixels(self.left - low[0], self.pixel)), max(0, _pixels(high[1] - self.top, self.pixel))
+        right, bottom = self.left + self.columns * self.pixel, self.top - self.rows * self.pixel
+        after = max(0, _pixels(high[0] - right, self.pixel)), max(0, _pixels(bottom - low[1], self.pixel))
+        return Frame(
+            self.left - before[0] * self.pixel,
+            self.top + before[1] * self.pixel,
+            self.pixel,
+            self.rows + before[1] + after[1],
+            self.columns + before[0] + after[0],
+        )
+
+
+def _pixels(length: float, pixel: float) -> int:
+    return int(np.ceil(length / pixel))
+
+
+def rasterise(polygon: npt.ArrayLike, size: int = MASK_SIZE) -> MaskArray:
+    """Fill a polygon into a square mask.
+
+    Parameters
+    ----------
+    polygon : (L, 2) float
+        y up, any place and size.
+    size : int, 2..8192
+        Pixels each way; the longer side of the bounding box fills it, the other is centred.
+
+    Returns
+    -------
+    mask : (size, size) bool
+        True where the pixel's centre is inside; row 0 on top.
+
+    Raises
+    ------
+    KirigamiError
+        A polygon without area or with values that are not finite, or an impossible size.
+    """
+    points = checked_polygon(polygon)
+    if isinstance(size, bool) or not isinstance(size, int | np.integer) or not 2 <= size <= LARGEST_MASK:
+        raise KirigamiError(f"The mask size must be a whole number from 2 to {LARGEST_MASK} pixels, got {size!r}.")
+    return rasterise_in_frame(points, Frame.around(points, int(size)))
+
+
+def rasterise_in_frame(polygon: npt.ArrayLike, frame: Frame) -> MaskArray:
+    """Fill a polygon into a given frame, so that several shapes share their pixels.
+
+    Pixels whose centre has a winding number other than 0 are filled: a sheet that overlaps itself is still filled.
+
+    Parameters
+    ----------
+    polygon : (L, 2) float
+        Parts outside the frame are cut off.
+    frame : Frame
+
+    Returns
+    -------
+    mask : (frame.rows, frame.columns) bool
+    """
+    plane = as_plane(checked_polygon(polygon))
+    bottom = frame.top - (frame.rows - 0.5) * frame.pixel
+    line, crossing, downward = scan_crossings(plane, bottom, frame.pixel, frame.rows)
+    column = np.ceil((crossing - frame.left) / frame.pixel - 0.5).astype(np.intp)
+    change = np.zeros((frame.rows, frame.columns + 1), dtype=np.intp)
+    np.add.at(change, (frame.rows - 1 - line, np.clip(column, 0, frame.columns)), downward)
+    filled: MaskArray = np.cumsum(change[:, :-1], axis=1) != 0
+    return filled

@@ -1,0 +1,81 @@
+"""Orientation-preserving similarity transforms of the plane."""
+
+from __future__ import annotations
+
+import cmath
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from kirigami_studio.foundation.errors import KirigamiError
+
+FloatArray = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class Similarity:
+    """Scale, then rotate about the origin, then shift: ``q = scale R(angle) p + shift``.
+
+    Attributes
+    ----------
+    scale : float, > 0
+        Length in the new frame of one unit of the old frame.
+    angle : float, radians
+        Counter-clockwise rotation, kept in (-pi, pi].
+    shift : (x, y) float, units of the new frame
+    """
+
+    scale: float = 1.0
+    angle: float = 0.0
+    shift: tuple[float, float] = (0.0, 0.0)
+
+    def __post_init__(self) -> None:
+        scale, angle = float(self.scale), float(self.angle)
+        shift = (float(self.shift[0]), float(self.shift[1]))
+        if not (math.isfinite(scale) and scale > 0 and math.isfinite(angle) and all(map(math.isfinite, shift))):
+            raise KirigamiError(
+                f"A similarity needs a positive scale and finite numbers, got scale {scale:g}, angle {angle:g}, "
+                f"shift ({shift[0]:g}, {shift[1]:g})."
+            )
+        object.__setattr__(self, "scale", scale)
+        object.__setattr__(self, "angle", cmath.phase(cmath.exp(1j * angle)) if abs(angle) > math.pi else angle)
+        object.__setattr__(self, "shift", shift)
+
+    @classmethod
+    def from_complex(cls, factor: complex, shift: complex) -> Similarity:
+        """Build from ``q = factor p + shift`` with points read as complex numbers x + iy."""
+        return cls(abs(factor), cmath.phase(factor), (shift.real, shift.imag))
+
+    @property
+    def factor(self) -> complex:
+        """Scale and rotation as one complex number."""
+        return cmath.rect(self.scale, self.angle)
+
+    @property
+    def matrix(self) -> FloatArray:
+        """(2, 3) float: ``q = matrix[:, :2] @ p + matrix[:, 2]``."""
+        a = self.factor
+        return np.array([[a.real, -a.imag, self.shift[0]], [a.imag, a.real, self.shift[1]]])
+
+    def apply(self, points: npt.ArrayLike) -> FloatArray:
+        """Transform points (..., 2)."""
+        matrix = self.matrix
+        moved: FloatArray = np.asarray(points, dtype=np.float64) @ matrix[:, :2].T + matrix[:, 2]
+        return moved
+
+    def inverse(self) -> Similarity:
+        """The transform that undoes this one."""
+        factor = 1.0 / self.factor
+        return Similarity.from_complex(factor, -factor * complex(*self.shift))
+
+    def compose(self, first: Similarity) -> Similarity:
+        """The transform that applies ``first`` and then this one."""
+        return Similarity.from_complex(
+            self.factor * first.factor, self.factor * complex(*first.shift) + complex(*self.shift)
+        )
+
+    def to_json(self) -> dict[str, object]:
+        """Plain numbers: ``scale``, ``angle`` (radians) and ``shift`` [x, y]."""
+        return {"scale": self.scale, "angle": self.angle, "shift": list(self.shift)}

@@ -1,0 +1,104 @@
+"""Scores: what they say, that batches agree, and that the floor is the uniform layout."""
+
+from __future__ import annotations
+
+import json
+import math
+
+import numpy as np
+import pytest
+
+from kirigami_studio.evaluate.score import evaluate, evaluate_many
+from kirigami_studio.evaluate.silhouette import rasterise
+from kirigami_studio.evaluate.similarity import Similarity
+from kirigami_studio.evaluate.siou import mask_siou
+from kirigami_studio.foundation.errors import AngleError
+from kirigami_studio.lattice.deployment import Deployment, deploy
+from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.target import library
+from kirigami_studio.target.outline import Outline
+
+
+def random_deployment(seed: int, phi_spread: float = 1.0) -> Deployment:
+    return deploy(RatioField.from_log10(np.random.default_rng(seed).uniform(-phi_spread, phi_spread, (10, 10))))
+
+
+@pytest.mark.parametrize("phi", [0.0, 0.9])
+def test_that_a_design_matches_its_own_silhouette_fully(phi: float) -> None:
+    sheet = random_deployment(3)
+    target = Outline.from_points(Similarity(0.2, 1.0).apply(sheet.outline(phi)))
+    score = evaluate(sheet, target, phi)
+    assert score.iou_exact > 0.9999
+    assert score.siou > 0.999
+    assert score.siou_gain == score.siou - score.uniform_siou > 0.05
+    assert score.feasible
+
+
+def test_that_the_transform_lays_the_layout_over_the_target() -> None:
+    sheet, target = random_deployment(4), library.load("heart")
+    score = evaluate(sheet, target)
+    laid = score.transform.apply(sheet.outline(0.0))
+    assert score.transform.scale**2 * sheet.area(0.0) == pytest.approx(1.0, abs=0.25)
+    assert np.abs(laid.mean(axis=0)).max() < 0.3
+
+
+@pytest.mark.parametrize(("seed", "name", "phi"), [(1, "heart", 0.0), (2, "star", 0.7), (5, "hexagon", 0.0)])
+def test_that_raster_masks_and_polygons_tell_the_same_score(seed: int, name: str, phi: float) -> None:
+    sheet, target = random_deployment(seed), library.load(name)
+    score = evaluate(sheet, target, phi)
+    assert score.siou == pytest.approx(mask_siou(rasterise(sheet.outline(phi)), rasterise(target.points))[0], abs=0.01)
+    assert score.siou == pytest.approx(score.iou_exact, abs=0.005)
+
+
+def test_that_the_uniform_layout_gains_nothing() -> None:
+    score = evaluate(deploy(RatioField.uniform(6, 8)), library.load("circle"))
+    assert score.siou_gain == 0.0
+    assert score.iou_exact == score.uniform_iou
+    assert (score.tv, score.tv_log10, score.feasible) == (0.0, 0.0, True)
+
+
+def test_that_the_floor_belongs_to_the_sheet_of_the_design() -> None:
+    stretched = deploy(RatioField.uniform(6, 6), cell=(3.0, 1.0))
+    assert evaluate(stretched, library.load("circle")).siou_gain == 0.0
+
+
+def test_that_perturbing_a_match_lowers_its_score() -> None:
+    z = np.random.default_rng(8).uniform(-0.5, 0.5, (8, 8))
+    target = Outline.from_points(deploy(RatioField.from_log10(z)).outline(0.0))
+    noise = np.random.default_rng(9).normal(size=z.shape)
+    scores = [evaluate(deploy(RatioField.from_log10(z + s * noise)), target).siou for s in (0.0, 0.2, 0.6)]
+    assert scores[0] > scores[1] + 0.005 > scores[2] + 0.01
+
+
+def test_that_a_batch_scores_as_its_members_do() -> None:
+    sheets, target = [random_deployment(seed) for seed in range(5)], library.load("star")
+    assert evaluate_many(sheets, target, 0.3) == [evaluate(sheet, target, 0.3) for sheet in sheets]
+    assert evaluate_many([], target) == []
+
+
+def test_that_designs_of_several_grids_can_be_scored_together() -> None:
+    sheets = [deploy(RatioField.uniform(*grid)) for grid in ((4, 4), (6, 5), (4, 4))]
+    scores = evaluate_many(sheets, library.load("hexagon"))
+    assert scores == [evaluate(sheet, library.load("hexagon")) for sheet in sheets]
+
+
+def test_that_a_contact_on_the_way_makes_a_design_infeasible(colliding: Deployment) -> None:
+    score = evaluate(colliding, library.load("circle"))
+    assert score.contact is not None
+    assert score.n_invalid == 0
+    assert score.overlap_ratio <= 0.02
+    assert not score.feasible
+
+
+def test_that_json_holds_the_keys_of_the_command_line(colliding: Deployment) -> None:
+    told = json.loads(json.dumps(evaluate(colliding, library.load("circle")).to_json()))
+    wanted = {"siou", "siou_gain", "iou_exact", "tv", "feasible", "n_invalid", "overlap_ratio", "contact", "transform"}
+    assert wanted <= told.keys()
+    assert set(told["contact"]) == {"phi", "where"}
+    assert set(told["transform"]) == {"scale", "angle", "shift"}
+
+
+@pytest.mark.parametrize("phi", [math.nan, -1.0, 3.5])
+def test_that_impossible_angles_are_refused(phi: float) -> None:
+    with pytest.raises(AngleError):
+        evaluate(random_deployment(0), library.load("heart"), phi)
