@@ -1,9 +1,10 @@
-"""sIoU of two masks: the paper's silhouette similarity, symmetric and without a canvas to fall off.
+"""sIoU of two masks: the paper's silhouette similarity, symmetric and with (almost) no canvas to fall off.
 
 As in the paper's appendix ("Silhouette similarity metric") the masks are aligned by a similarity transform (boundary
 Procrustes start, principal axes otherwise, refinement), one is drawn into the pixels of the other, and the IoU is taken
-at 128 x 128.  Two differences make it a measure: pixels that leave the canvas still count, and both directions are
-averaged, so that swapping the masks changes nothing.
+at 128 x 128.  Two differences make it a measure: only a rim of three pixels around the canvas is left out, where the
+paper leaves out all that falls off its image grid, and both directions are averaged, so that swapping the masks changes
+nothing.
 """
 
 from __future__ import annotations
@@ -20,6 +21,11 @@ from kirigami_studio.evaluate.alignment import align
 from kirigami_studio.evaluate.boundary import checked_polygon
 from kirigami_studio.evaluate.mask import FittedMask
 from kirigami_studio.evaluate.similarity import FloatArray, Similarity
+
+#: Pixels beyond the canvas that do not count.  Silhouettes fill their image, so even good matches lose a pixel or two
+#: there, and the paper's numbers do not see them: with 3 all reference values on good matches are met within 0.0075
+#: (0: within 0.0144), while poor matches gain 0.005 on average (the full crop: 0.023, up to 0.18).
+RIM = 3
 
 #: Rotations tried for silhouettes with holes or several pieces, whose outer contour does not say all.
 RAGGED_RING = 48
@@ -156,10 +162,20 @@ def _drawn_iou(moving: FittedMask, fixed: FittedMask, pose: Similarity, crop: bo
     height, width = moving.coverage.shape
     corners = pose.apply([(0.0, 0.0), (width, 0.0), (width, height), (0.0, height)])
     beyond = float(np.maximum(-corners, corners - fixed.coverage.shape[::-1]).max())
-    margin = max(0, math.ceil(beyond))
+    margin = max(0, math.ceil(beyond)) + RIM
     drawn = moving.drawn(pose, fixed.coverage.shape, margin) >= 0.5
     still = np.pad(fixed.filled, margin)
+    rows, columns = (slice(max(0, part.start + margin), part.stop + margin) for part in fixed.canvas)
     if crop:
-        rows, columns = (slice(max(0, part.start + margin), part.stop + margin) for part in fixed.canvas)
         drawn, still = drawn[rows, columns], still[rows, columns]
+    else:
+        rim = np.zeros(drawn.shape, dtype=np.bool_)
+        rim[_widened(rows), _widened(columns)] = True
+        rim[rows, columns] = False
+        drawn, still = drawn & ~rim, still & ~rim
     return float(np.count_nonzero(drawn & still) / np.count_nonzero(drawn | still))
+
+
+def _widened(part: slice) -> slice:
+    """A range of pixels with the rim on both sides."""
+    return slice(max(0, part.start - RIM), part.stop + RIM)
