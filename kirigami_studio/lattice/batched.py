@@ -18,7 +18,7 @@ from torch import Tensor
 
 from kirigami_studio.foundation.errors import RatioError
 from kirigami_studio.lattice.compact import barycentric_stencil
-from kirigami_studio.lattice.deployment import even_panel_part
+from kirigami_studio.lattice.outline_map import even_part_of_outline
 from kirigami_studio.lattice.ratio_field import FloatArray
 from kirigami_studio.lattice.topology import IntArray, topology
 
@@ -158,11 +158,7 @@ class BatchedLattice:
         """The constant matrix that maps compact nodes to U on the outline loop."""
         tables = self.tables
         loop = tables.outline_nodes
-        matrix = np.empty((loop.size, tables.node_count))
-        for start in range(0, tables.node_count, 512):
-            basis = np.eye(tables.node_count)[:, start : start + 512]
-            matrix[:, start : start + 512] = even_panel_part(basis, tables)[loop]
-        self._even = self._float(matrix)
+        self._even = self._float(even_part_of_outline(self.rows, self.columns))
         self._loop = self._index(loop)
         self.unzipped = self._index(np.flatnonzero(np.isin(loop, tables.outline_at_zero)))
 

@@ -1,0 +1,69 @@
+# Kirigami Studio.  `make run` and `make test` are all a fresh clone needs; both set up .venv first.
+PYTHON ?= python3
+BIN := .venv/bin
+STAMP := .venv/.setup-done
+TORCH_INDEX := https://download.pytorch.org/whl/cpu
+
+# Designs are small: more threads only get in each other's way.
+export OMP_NUM_THREADS ?= 2
+export PIP_DISABLE_PIP_VERSION_CHECK := 1
+
+# Values and geometry; the readers of files and the raster scores take longer and wait for `make test`.
+QUICK_TESTS := tests/architecture tests/property $(wildcard $(addprefix tests/unit/,foundation lattice evaluate fabricate project)) \
+  --ignore=tests/unit/evaluate/test_siou.py
+
+.PHONY: help setup run test quick lint bench demo clean
+.DEFAULT_GOAL := help
+
+help:
+	@echo "make setup   create .venv with everything the program and its tests need"
+	@echo "make run     open the studio (without a display: play the session off-screen into out/)"
+	@echo "make test    lint, then every test"
+	@echo "make quick   the tests that need neither Qt nor torch, in under 20 seconds"
+	@echo "make lint    ruff, mypy and the import contracts"
+	@echo "make bench   print the timings of the exact geometry"
+	@echo "make demo    design a heart on the command line into out/heart"
+	@echo "make clean   remove what the other targets made, .venv excepted"
+
+setup: $(STAMP)
+
+# torch first and by itself: only it needs the extra index, and only once.
+$(STAMP): pyproject.toml setup.py packaging/constraints-cpu.txt packaging/system_libraries.sh
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' \
+	  || { echo "Kirigami Studio needs Python 3.11 or newer; name one with: make PYTHON=/path/to/python3 $(MAKECMDGOALS)"; exit 1; }
+	@sh packaging/system_libraries.sh
+	test -x $(BIN)/python || $(PYTHON) -m venv .venv
+	$(BIN)/python -m pip install -q --retries 1 --extra-index-url $(TORCH_INDEX) -c packaging/constraints-cpu.txt torch
+	$(BIN)/python -m pip install -q -c packaging/constraints-cpu.txt -e '.[test,lint]'
+	@touch $@
+
+run: setup
+	@if [ -n "$$DISPLAY$$WAYLAND_DISPLAY" ] || [ "$$(uname)" = Darwin ]; then \
+	  $(BIN)/kirigami-studio; \
+	else \
+	  echo "No display here: playing the session off-screen; pictures and the cut file go to out/"; \
+	  QT_QPA_PLATFORM=offscreen $(BIN)/python -m kirigami_studio.gui.offscreen_session --out out; \
+	fi
+
+test: lint
+	QT_QPA_PLATFORM=offscreen $(BIN)/python -m pytest
+
+quick: setup
+	HYPOTHESIS_PROFILE=quick $(BIN)/python -m pytest -p no:pytest-qt -p no:benchmark \
+	  -m "not slow and not torch and not qt" $(QUICK_TESTS)
+
+lint: setup
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+
+bench: setup
+	$(BIN)/python -m kirigami_studio.benchmark.lattice_timing
+
+demo: setup
+	$(BIN)/kirigami-studio design heart --k 8 --out out/heart
+
+clean:
+	rm -rf out build dist *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis .import_linter_cache .benchmarks
+	find kirigami_studio tests packaging -name __pycache__ -prune -exec rm -rf {} +

@@ -1,0 +1,11 @@
+"""Claims of speed and quality -> figures that a command reproduces.
+
+Vocabulary
+----------
+suite
+    One set of measurements that belong together; returns a frozen value, the host prints it.
+reference path
+    The slow, readable way of computing the same thing; speeds are quoted as ratios to it.
+
+May import every room but ``gui`` and ``training``, which are strangers.
+"""

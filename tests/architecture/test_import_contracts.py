@@ -1,0 +1,129 @@
+"""The rooms import each other in one direction only, and a contract counts only once it was seen to break."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+
+
+@dataclass(frozen=True)
+class Fault:
+    """A forbidden import, planted in module ``room.planted`` (or at the end of a single-file room)."""
+
+    room: str
+    statement: str
+    contract: str
+    reported: str
+
+    @property
+    def name(self) -> str:
+        return f"{self.room} must not: {self.statement}"
+
+
+ONE_WAY = "Data flows one way; rooms beside each other are strangers"
+FAULTS = (
+    Fault("lattice", "import kirigami_studio.evaluate", ONE_WAY, "kirigami_studio.evaluate"),
+    Fault("lattice", "import kirigami_studio.target", ONE_WAY, "kirigami_studio.target"),
+    Fault("evaluate", "import kirigami_studio.fabricate", ONE_WAY, "kirigami_studio.fabricate"),
+    Fault("generator", "import kirigami_studio.evaluate", ONE_WAY, "kirigami_studio.evaluate"),
+    Fault("polish", "import kirigami_studio.export", ONE_WAY, "kirigami_studio.export"),
+    Fault("export", "import kirigami_studio.pipeline", ONE_WAY, "kirigami_studio.pipeline"),
+    Fault("project", "import kirigami_studio.pipeline", ONE_WAY, "kirigami_studio.pipeline"),
+    Fault("gui", "import kirigami_studio.training", ONE_WAY, "kirigami_studio.training"),
+    Fault("foundation", "import kirigami_studio.lattice", ONE_WAY, "kirigami_studio.lattice"),
+    Fault("evaluate", "import torch", "The exact core never reaches torch", "torch"),
+    Fault("lattice", "from torch import nn", "The exact core never reaches torch", "torch"),
+    Fault("project", "def load():\n    import torch", "The exact core never reaches torch", "torch"),
+    Fault("gui", "import torch", "The hosts leave torch to the generator", "torch"),
+    Fault("pipeline", "import torch", "The hosts leave torch to the generator", "torch"),
+    Fault(
+        "evaluate",
+        "from kirigami_studio.lattice import batched",
+        "Batched decoding is for the rooms that know torch",
+        "kirigami_studio.lattice.batched",
+    ),
+    Fault("project", "from PySide6 import QtCore", "Only the window knows Qt", "PySide6"),
+    Fault("export", "import pyqtgraph", "Only the window knows Qt", "pyqtgraph"),
+    Fault("cli", "import PySide6", "Only the window knows Qt", "PySide6"),
+    Fault("fabricate", "import ezdxf", "DXF is spoken in export.dxf and target.read_dxf only", "ezdxf"),
+    Fault("target", "import ezdxf.math", "DXF is spoken in export.dxf and target.read_dxf only", "ezdxf"),
+    Fault("foundation", "import scipy", "The ground floor stands on numpy at most", "scipy"),
+)
+
+
+def lint_imports(folder: Path) -> tuple[int, str]:
+    """Run the contracts of ``folder``/pyproject.toml on the package in ``folder``."""
+    tool = "import sys; from importlinter.cli import lint_imports_command; sys.exit(lint_imports_command())"
+    environment = os.environ | {"PYTHONPATH": str(folder), "COLUMNS": "300", "NO_COLOR": "1"}
+    done = subprocess.run(
+        [sys.executable, "-c", tool, "--no-cache"],
+        cwd=folder,
+        env=environment,
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=False,
+    )
+    return done.returncode, done.stdout + done.stderr
+
+
+def copy_package(repository: Path, folder: Path) -> Path:
+    """Copy what the contracts look at."""
+    shutil.copytree(
+        repository / "kirigami_studio", folder / "kirigami_studio", ignore=shutil.ignore_patterns("__pycache__")
+    )
+    shutil.copy(repository / "pyproject.toml", folder)
+    return folder / "kirigami_studio"
+
+
+def planted_module(package: Path, fault: Fault) -> str:
+    """Write the fault and return the dotted name of the module that holds it."""
+    room = package / fault.room
+    if room.is_dir():
+        name = f"planted_{FAULTS.index(fault)}"
+        (room / f"{name}.py").write_text(fault.statement + "\n")
+        return f"kirigami_studio.{fault.room}.{name}"
+    with room.with_suffix(".py").open("a") as stream:
+        stream.write("\n" + fault.statement + "\n")
+    return f"kirigami_studio.{fault.room}"
+
+
+@pytest.fixture(scope="module")
+def faulty_report(repository: Path, tmp_path_factory: pytest.TempPathFactory) -> tuple[str, dict[Fault, str]]:
+    """The linter's report on a copy with every fault planted, and where each fault is."""
+    folder = tmp_path_factory.mktemp("faulty")
+    package = copy_package(repository, folder)
+    places = {fault: planted_module(package, fault) for fault in FAULTS}
+    status, report = lint_imports(folder)
+    assert status == 1, report
+    return report, places
+
+
+def test_that_the_import_contracts_hold(repository: Path) -> None:
+    status, report = lint_imports(repository)
+    assert status == 0, report
+
+
+@pytest.mark.parametrize("fault", FAULTS, ids=lambda fault: fault.name)
+def test_that_a_planted_import_breaks_its_contract(fault: Fault, faulty_report: tuple[str, dict[Fault, str]]) -> None:
+    report, places = faulty_report
+    assert f"{fault.contract} BROKEN" in report
+    section = report.split("Broken contracts")[-1]
+    chain = rf"{re.escape(places[fault])} -> {re.escape(fault.reported)}\b"
+    assert re.search(chain, section), f"no line {chain} in:\n{section}"
+
+
+def test_that_a_new_room_needs_a_decision(repository: Path, tmp_path: Path) -> None:
+    package = copy_package(repository, tmp_path)
+    (package / "attic").mkdir()
+    (package / "attic" / "__init__.py").write_text('"""A room that no layer names."""\n')
+    status, report = lint_imports(tmp_path)
+    assert status == 1
+    assert "attic" in report

@@ -1,0 +1,39 @@
+"""Settings that every test shares: off-screen Qt, few threads, repeatable property tests."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+# Before numpy, torch or Qt are loaded anywhere.
+os.environ.setdefault("OMP_NUM_THREADS", "2")
+os.environ.setdefault("QT_QPA_PLATFORM", "offscreen")
+
+import pytest
+from hypothesis import HealthCheck, settings
+
+REPOSITORY = Path(__file__).resolve().parents[1]
+
+# The same examples on every run: a red test is red for everybody.  HYPOTHESIS_PROFILE=search looks for new ones.
+_COMMON = {"deadline": None, "suppress_health_check": [HealthCheck.too_slow], "print_blob": True}
+settings.register_profile("quick", max_examples=10, derandomize=True, **_COMMON)
+settings.register_profile("repeatable", max_examples=50, derandomize=True, **_COMMON)
+settings.register_profile("search", max_examples=1000, **_COMMON)
+settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "repeatable"))
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """Let golden files be written anew on purpose."""
+    parser.addoption("--update-goldens", action="store_true", help="write golden files instead of comparing with them")
+
+
+@pytest.fixture(scope="session")
+def repository() -> Path:
+    """The checkout's root folder."""
+    return REPOSITORY
+
+
+@pytest.fixture(scope="session")
+def oracle_file() -> Path:
+    """Layouts computed by the paper authors' released implementation (data only)."""
+    return REPOSITORY / "tests" / "data" / "oracles" / "reference_layouts.npz"

@@ -1,0 +1,51 @@
+"""A file appears whole or not at all."""
+
+from __future__ import annotations
+
+import os
+import stat
+from pathlib import Path
+
+import pytest
+
+from kirigami_studio.foundation.errors import ExportError
+from kirigami_studio.foundation.files import write_atomically
+
+
+def test_that_a_file_is_written_into_folders_that_did_not_exist(tmp_path: Path) -> None:
+    path = tmp_path / "a" / "b" / "cut.dxf"
+    write_atomically(path, b"0\nEOF\n")
+    assert path.read_bytes() == b"0\nEOF\n"
+    assert stat.S_IMODE(path.stat().st_mode) == 0o644
+
+
+def test_that_an_older_file_is_replaced_and_nothing_else_is_left(tmp_path: Path) -> None:
+    path = tmp_path / "cut.dxf"
+    path.write_bytes(b"old")
+    write_atomically(path, b"new")
+    assert path.read_bytes() == b"new"
+    assert [entry.name for entry in tmp_path.iterdir()] == ["cut.dxf"]
+
+
+def test_that_an_old_file_survives_a_failure_on_the_last_step(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = tmp_path / "cut.dxf"
+    path.write_bytes(b"old")
+
+    def disk_full(*_: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(os, "fsync", disk_full)
+    with pytest.raises(ExportError, match=r"cut\.dxf: No space left on device"):
+        write_atomically(path, b"new")
+    assert path.read_bytes() == b"old"
+    assert [entry.name for entry in tmp_path.iterdir()] == ["cut.dxf"]
+
+
+def test_that_a_folder_in_the_way_is_a_sentence(tmp_path: Path) -> None:
+    (tmp_path / "cut.dxf").mkdir()
+    with pytest.raises(ExportError, match="Cannot write"):
+        write_atomically(tmp_path / "cut.dxf", b"x")
+    (tmp_path / "file").write_bytes(b"")
+    with pytest.raises(ExportError, match="Choose another folder"):
+        write_atomically(tmp_path / "file" / "cut.dxf", b"x")
+    assert sorted(entry.name for entry in tmp_path.iterdir()) == ["cut.dxf", "file"]
