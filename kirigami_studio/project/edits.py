@@ -1,0 +1,148 @@
+"""The named changes a person can make: each takes a document and returns an edit, none alters anything."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+from typing import TypedDict, Unpack
+
+from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.project.document import Document
+from kirigami_studio.target.outline import Outline
+
+
+@dataclass(frozen=True, slots=True)
+class Edit:
+    """A new document and what led to it.
+
+    Attributes
+    ----------
+    label : str
+        As it follows the word Undo: "Choose design 3".
+    document : Document
+    merge_key : str or None
+        Consecutive edits of one key are steps of one drag and undo together.
+    """
+
+    label: str
+    document: Document
+    merge_key: str | None = None
+
+
+class SettingsChange(TypedDict, total=False):
+    """Fields of :class:`DesignSettings` that an edit may replace."""
+
+    grid: tuple[int, int]
+    phi: float
+    k: int
+    seed: int
+    variant: str
+    steps: int
+
+
+class FabricationChange(TypedDict, total=False):
+    """Fields of :class:`FabricationSettings` that an edit may replace."""
+
+    width_mm: float
+    material: str
+    connector_mm: float | None
+    kerf_mm: float | None
+
+
+_NAMES = {
+    "grid": "the grid",
+    "phi": "the target angle",
+    "k": "the number of candidates",
+    "seed": "the seed",
+    "variant": "the generator",
+    "steps": "the number of steps",
+    "width_mm": "the sheet's width",
+    "material": "the material",
+    "connector_mm": "the connector width",
+    "kerf_mm": "the kerf",
+}
+
+
+def set_target(document: Document, target: Outline) -> Edit:
+    """Take another target; the designs of the old one go."""
+    changed = replace(document, target=target, candidates=(), chosen=None, provenance={})
+    return Edit(f"Set target {target.name}", changed)
+
+
+def edit_target(document: Document, target: Outline, gesture: str) -> Edit:
+    """Reshape the target by a gesture such as "Rotate target"; the steps of one drag undo together."""
+    changed = replace(document, target=target, candidates=(), chosen=None, provenance={})
+    return Edit(gesture, changed, merge_key=f"target:{gesture}")
+
+
+def set_settings(document: Document, **changes: Unpack[SettingsChange]) -> Edit:
+    """Change how the next run searches.
+
+    Raises
+    ------
+    GridError, AngleError, UsageError
+        The number does not fit; see :class:`DesignSettings`.
+    """
+    changed = replace(document, settings=replace(document.settings, **changes))
+    return Edit(_label(changes), changed, merge_key=_merge_key("settings", changes))
+
+
+def set_candidates(
+    document: Document,
+    candidates: Iterable[Candidate],
+    provenance: Mapping[str, str],
+    target: Outline | None = None,
+) -> Edit:
+    """Take the designs of a finished run, best first, and choose the best.
+
+    ``target`` is the one that the run was made for, if the document should return to it.
+    """
+    found = tuple(candidates)
+    changed = replace(
+        document,
+        target=document.target if target is None else target,
+        candidates=found,
+        chosen=0 if found else None,
+        provenance=provenance,
+    )
+    count = len(found)
+    return Edit(f"Generate {count} design{'' if count == 1 else 's'}", changed)
+
+
+def replace_candidate(document: Document, index: int, candidate: Candidate, gesture: str) -> Edit:
+    """Put an improved design in the place of candidate ``index`` and choose it."""
+    candidates = list(document.candidates)
+    candidates[index] = candidate
+    return Edit(gesture, replace(document, candidates=tuple(candidates), chosen=index))
+
+
+def choose(document: Document, index: int | None) -> Edit:
+    """Put candidate ``index`` on the stage, or none.
+
+    Raises
+    ------
+    ProjectError
+        There is no such candidate.
+    """
+    label = "Choose no design" if index is None else f"Choose design {index + 1}"
+    return Edit(label, replace(document, chosen=index))
+
+
+def set_fabrication(document: Document, **changes: Unpack[FabricationChange]) -> Edit:
+    """Change how the design is cut; dragging one slider is one undo step.
+
+    Raises
+    ------
+    UsageError
+        The number does not fit; see :class:`FabricationSettings`.
+    """
+    changed = replace(document, fabrication=replace(document.fabrication, **changes))
+    return Edit(_label(changes), changed, merge_key=_merge_key("fabrication", changes))
+
+
+def _label(changes: Mapping[str, object]) -> str:
+    return "Change " + " and ".join(_NAMES[name] for name in changes)
+
+
+def _merge_key(room: str, changes: Mapping[str, object]) -> str:
+    return f"{room}:{','.join(sorted(changes))}"

@@ -1,0 +1,120 @@
+"""Undo and redo by snapshots: documents are frozen and small, so every step keeps a whole one."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from kirigami_studio.project.document import Document
+from kirigami_studio.project.edits import Edit
+
+#: Steps that are kept; a document of 32 candidates at 10 x 10 is about 40 kB.
+LONGEST_HISTORY = 200
+
+
+@dataclass(frozen=True, slots=True)
+class _Step:
+    """The edit that was applied and the document before it."""
+
+    before: Document
+    edit: Edit
+
+
+class History:
+    """The present document with the way back and forth.
+
+    Parameters
+    ----------
+    document : Document
+        Where the history starts; counts as saved.
+    limit : int
+        Number of steps that can be undone.
+    """
+
+    def __init__(self, document: Document | None = None, limit: int = LONGEST_HISTORY) -> None:
+        self._limit = limit
+        self.restart(document or Document())
+
+    def restart(self, document: Document, saved: bool = True) -> None:
+        """Forget every step and start from ``document`` (a new or an opened project)."""
+        self._document = document
+        self._saved: Document | None = document if saved else None
+        self._done: list[_Step] = []
+        self._undone: list[_Step] = []
+        self._drag_open = False
+
+    @property
+    def document(self) -> Document:
+        """The present document."""
+        return self._document
+
+    @property
+    def unsaved(self) -> bool:
+        """Whether the present document differs from the saved one."""
+        return self._document is not self._saved and self._document != self._saved
+
+    @property
+    def undo_label(self) -> str | None:
+        """What Undo would take back, or None when there is nothing."""
+        return self._done[-1].edit.label if self._done else None
+
+    @property
+    def redo_label(self) -> str | None:
+        """What Redo would bring again, or None when there is nothing."""
+        return self._undone[-1].edit.label if self._undone else None
+
+    def apply(self, edit: Edit) -> bool:
+        """Make the edit's document the present one.
+
+        A step of the drag that is under way joins the step before it.  Returns False, and keeps the history as it is,
+        when the edit changes nothing.
+        """
+        if edit.document == self._document:
+            return False
+        if self._continues_drag(edit):
+            before = self._done.pop().before
+            if before == edit.document:  # dragged back to where it began
+                self._document = before
+                self._drag_open = False
+                return True
+        else:
+            before = self._document
+            self._undone.clear()
+        self._done.append(_Step(before, edit))
+        del self._done[: -self._limit]
+        self._document = edit.document
+        self._drag_open = edit.merge_key is not None
+        return True
+
+    def end_drag(self) -> None:
+        """The mouse was released: the next edit is a step of its own."""
+        self._drag_open = False
+
+    def undo(self) -> bool:
+        """Go one step back; False when there is none."""
+        self._drag_open = False
+        if not self._done:
+            return False
+        step = self._done.pop()
+        self._undone.append(step)
+        self._document = step.before
+        return True
+
+    def redo(self) -> bool:
+        """Go one undone step forth; False when there is none."""
+        self._drag_open = False
+        if not self._undone:
+            return False
+        step = self._undone.pop()
+        self._done.append(step)
+        self._document = step.edit.document
+        return True
+
+    def mark_saved(self) -> None:
+        """The present document is on disk now."""
+        self._saved = self._document
+        self._drag_open = False
+
+    def _continues_drag(self, edit: Edit) -> bool:
+        return bool(
+            self._drag_open and self._done and edit.merge_key and self._done[-1].edit.merge_key == edit.merge_key
+        )

@@ -1,0 +1,118 @@
+"""JSON read field by field: every surprise becomes a sentence that names the place."""
+
+from __future__ import annotations
+
+import json
+import math
+from typing import Any, NoReturn
+
+from kirigami_studio.foundation.errors import ProjectError
+
+LARGEST_NUMBER = 1e300
+_NOT_GIVEN = object()
+
+
+def read_json(content: bytes, place: str) -> object:
+    """Parse strict JSON: no NaN, no infinity.
+
+    Raises
+    ------
+    ProjectError
+        Not UTF-8, not JSON, or nested beyond reason.
+    """
+    try:
+        return json.loads(content.decode("utf-8"), parse_constant=_refuse_constant)
+    except (ValueError, RecursionError) as error:
+        raise ProjectError(f"{place} is not readable as JSON ({error})") from error
+
+
+def _refuse_constant(name: str) -> NoReturn:
+    raise ValueError(f"{name} is not a number")
+
+
+class Record:
+    """One JSON object.
+
+    Parameters
+    ----------
+    value : object
+        What the parser made of it.
+    place : str
+        Its name in messages, e.g. ``design.json.settings``.
+
+    Raises
+    ------
+    ProjectError
+        From every method: the field is missing or of another kind.
+    """
+
+    def __init__(self, value: object, place: str) -> None:
+        if not isinstance(value, dict):
+            raise ProjectError(f"{place} is not a JSON object")
+        self._value: dict[str, Any] = value
+        self._place = place
+
+    def number(self, name: str) -> float:
+        value = self._get(name)
+        if isinstance(value, bool) or not isinstance(value, (int, float)) or not _fits(value):
+            self._refuse(name, "a number", value)
+        return float(value)
+
+    def whole(self, name: str) -> int:
+        value = self._get(name)
+        if isinstance(value, bool) or not isinstance(value, int):
+            self._refuse(name, "a whole number", value)
+        return int(value)
+
+    def flag(self, name: str) -> bool:
+        value = self._get(name)
+        if not isinstance(value, bool):
+            self._refuse(name, "true or false", value)
+        return bool(value)
+
+    def text(self, name: str) -> str:
+        value = self._get(name)
+        if not isinstance(value, str):
+            self._refuse(name, "a text", value)
+        return str(value)
+
+    def list(self, name: str) -> list[Any]:
+        value = self._get(name)
+        if not isinstance(value, list):
+            self._refuse(name, "a list", value)
+        return list(value)
+
+    def texts(self, name: str) -> dict[str, str]:
+        value = self._get(name)
+        if not isinstance(value, dict) or not all(isinstance(text, str) for text in value.values()):
+            self._refuse(name, "a table of texts", value)
+        return dict(value)
+
+    def pair(self, name: str) -> tuple[float, float]:
+        """Two numbers."""
+        values = self.list(name)
+        if len(values) != 2:
+            self._refuse(name, "two numbers", values)
+        both = Record(dict(zip("01", values, strict=True)), f"{self._place}.{name}")
+        return both.number("0"), both.number("1")
+
+    def record(self, name: str) -> Record:
+        return Record(self._get(name), f"{self._place}.{name}")
+
+    def holds(self, name: str) -> bool:
+        """Whether the field is there and not null."""
+        return self._value.get(name) is not None
+
+    def _get(self, name: str) -> Any:
+        value = self._value.get(name, _NOT_GIVEN)
+        if value is _NOT_GIVEN:
+            raise ProjectError(f"{self._place} lacks {name!r}")
+        return value
+
+    def _refuse(self, name: str, wanted: str, value: object) -> NoReturn:
+        shown = repr(value) if len(repr(value)) <= 60 else repr(value)[:57] + "..."
+        raise ProjectError(f"{self._place}.{name} must be {wanted}, got {shown}")
+
+
+def _fits(value: float) -> bool:
+    return abs(value) <= LARGEST_NUMBER and not math.isnan(value)

@@ -1,0 +1,41 @@
+"""Lift project files of older versions: one function per version, applied one after the other.
+
+``MIGRATIONS[v]`` takes the members of a version ``v`` file and returns those of version ``v + 1``.  Version 1 is the
+first, so the table is empty; a change of the format raises :data:`CURRENT_VERSION` and adds one entry, never edits one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from types import MappingProxyType
+
+from kirigami_studio.foundation.errors import ProjectError
+
+#: The members of a project file by name; the manifest is not among them.
+Members = Mapping[str, bytes]
+Migration = Callable[[Members], Members]
+
+CURRENT_VERSION = 1
+MIGRATIONS: Mapping[int, Migration] = MappingProxyType({})
+
+
+def migrate(
+    members: Members, version: int, current: int = CURRENT_VERSION, table: Mapping[int, Migration] = MIGRATIONS
+) -> Members:
+    """Return the members as the current version has them.
+
+    Raises
+    ------
+    ProjectError
+        The file is newer than this program, or older than its oldest migration.
+    """
+    if version > current:
+        raise ProjectError(
+            f"it was saved by a newer Kirigami Studio (format {version}, this one reads up to {current}); "
+            "update the program"
+        )
+    for step in range(version, current):
+        if step not in table:
+            raise ProjectError(f"its format {version} is older than anything this program can read")
+        members = table[step](members)
+    return members

@@ -1,0 +1,110 @@
+"""The numbers of a document that a person sets: for the search, and for the cutter."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from kirigami_studio.fabricate.material import DEFAULT_PRESET
+from kirigami_studio.foundation.errors import AngleError, GridError, UsageError
+from kirigami_studio.lattice.ratio_field import check_grid
+
+LARGEST_SHEET_MM = 10_000.0
+
+
+@dataclass(frozen=True, slots=True)
+class DesignSettings:
+    """How candidates are searched for.
+
+    Attributes
+    ----------
+    grid : (rows, columns) voids, 2..64 each
+    phi : float, radians, in [0, pi)
+        Angle at which the sheet should show the target.
+    k : int, >= 1
+        Number of candidates.
+    seed : int, >= 0
+    variant : str
+        Name of the generator variant.
+    steps : int, >= 1
+        Euler steps of the flow.
+
+    Raises
+    ------
+    GridError, AngleError, UsageError
+        With the number that does not fit.
+    """
+
+    grid: tuple[int, int] = (10, 10)
+    phi: float = 0.0
+    k: int = 32
+    seed: int = 0
+    variant: str = "prior"
+    steps: int = 4
+
+    def __post_init__(self) -> None:
+        grid = tuple(self.grid)
+        if len(grid) != 2 or not all(_is_whole(count) for count in grid):
+            raise GridError(f"A grid needs two whole numbers (rows, columns), got {self.grid!r}.")
+        check_grid(*grid)
+        object.__setattr__(self, "grid", grid)
+        if not _is_number(self.phi) or not 0.0 <= self.phi < math.pi:
+            raise AngleError(f"The target angle must lie in [0, pi) radians, got {self.phi!r}; 0 is the usual choice.")
+        for name, value, lowest in (
+            ("number of candidates", self.k, 1),
+            ("seed", self.seed, 0),
+            ("number of steps", self.steps, 1),
+        ):
+            if not _is_whole(value) or value < lowest:
+                raise UsageError(f"The {name} must be a whole number from {lowest} on, got {value!r}.")
+        if not isinstance(self.variant, str) or not self.variant:
+            raise UsageError(f"The generator variant must be a name, got {self.variant!r}.")
+
+
+@dataclass(frozen=True, slots=True)
+class FabricationSettings:
+    """How the chosen design is cut.
+
+    Attributes
+    ----------
+    width_mm : float, > 0
+        Width of the flat sheet.
+    material : str
+        Key of a material preset.
+    connector_mm : float or None
+        Finished width of a connector; None takes the material's own.
+    kerf_mm : float or None
+        Width of the cut; None takes the material's own.
+
+    Raises
+    ------
+    UsageError
+        With the number that does not fit.
+    """
+
+    width_mm: float = 100.0
+    material: str = DEFAULT_PRESET
+    connector_mm: float | None = None
+    kerf_mm: float | None = None
+
+    def __post_init__(self) -> None:
+        if not _is_number(self.width_mm) or not 0 < self.width_mm <= LARGEST_SHEET_MM:
+            raise UsageError(
+                f"The sheet's width must be above 0 and at most {LARGEST_SHEET_MM:g} mm, got {self.width_mm!r}."
+            )
+        if not isinstance(self.material, str) or not self.material:
+            raise UsageError(f"The material must be the name of a preset, got {self.material!r}.")
+        for name, value, zero_allowed in (("connector", self.connector_mm, False), ("kerf", self.kerf_mm, True)):
+            if value is None:
+                continue
+            if not _is_number(value) or value < 0 or (value == 0 and not zero_allowed) or value > LARGEST_SHEET_MM:
+                bound = "0 mm or more" if zero_allowed else "above 0 mm"
+                raise UsageError(f"The {name} width must be {bound} and no wider than a sheet, got {value!r}.")
+
+
+def _is_whole(value: object) -> bool:
+    return isinstance(value, int) and not isinstance(value, bool)
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, (int, float)) and not isinstance(value, bool) and math.isfinite(value)

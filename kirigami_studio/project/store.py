@@ -1,0 +1,136 @@
+"""Document <-> ``.kiri`` file: a zip that appears whole or not at all, and is read with suspicion."""
+
+from __future__ import annotations
+
+import io
+import json
+import zipfile
+import zlib
+from pathlib import Path
+
+from kirigami_studio import __version__
+from kirigami_studio.foundation.errors import KirigamiError, ProjectError
+from kirigami_studio.foundation.files import write_atomically
+from kirigami_studio.project.codec import decode, encode
+from kirigami_studio.project.document import Document
+from kirigami_studio.project.json_record import Record, read_json
+from kirigami_studio.project.migrations import CURRENT_VERSION, Members, migrate
+
+SUFFIX = ".kiri"
+MANIFEST = "manifest.json"
+FORMAT = "kirigami-studio project"
+
+#: 1024 candidates at 64 x 64 are 34 MB of ratios; whatever unpacks to more is no project.
+LARGEST_FILE = 64 * 2**20
+LARGEST_CONTENT = 128 * 2**20
+MOST_MEMBERS = 16
+#: The zip format's first day: the same document gives the same bytes on every day.
+_FIXED_DATE = (1980, 1, 1, 0, 0, 0)
+
+
+def save(document: Document, path: Path | str) -> None:
+    """Write the project file; an older one at ``path`` survives any failure.
+
+    Raises
+    ------
+    ExportError
+        The file cannot be written.
+    """
+    write_atomically(Path(path), pack(document))
+
+
+def pack(document: Document) -> bytes:
+    """Return the project file's bytes; equal documents give equal bytes."""
+    manifest = {"format": FORMAT, "version": CURRENT_VERSION, "app_version": __version__}
+    members = {MANIFEST: json.dumps(manifest, indent=1).encode(), **encode(document)}
+    stream = io.BytesIO()
+    with zipfile.ZipFile(stream, "w") as archive:
+        for name, content in members.items():
+            entry = zipfile.ZipInfo(name, _FIXED_DATE)
+            entry.compress_type = zipfile.ZIP_DEFLATED
+            entry.create_system = 3
+            entry.external_attr = 0o644 << 16
+            archive.writestr(entry, content)
+    return stream.getvalue()
+
+
+def load(path: Path | str) -> Document:
+    """Read a project file.
+
+    Raises
+    ------
+    ProjectError
+        No such file, no project, damaged, or of a newer version; the sentence says which and what to try.
+    """
+    path = Path(path)
+    content = _read_file(path)
+    try:
+        members = _unpack(content)
+        version = _version(members)
+    except KirigamiError as error:
+        raise _damaged(path, error) from error
+    try:
+        members = migrate(members, version)
+    except ProjectError as error:
+        raise ProjectError(f"The project {path} cannot be opened: {error}.") from error
+    try:
+        return decode(members)
+    except KirigamiError as error:
+        raise _damaged(path, error) from error
+
+
+def _damaged(path: Path, error: KirigamiError) -> ProjectError:
+    reason = str(error).rstrip(".")
+    return ProjectError(f"The project {path} cannot be opened: {reason}. Try an earlier copy of the file.")
+
+
+def _version(members: Members) -> int:
+    """Format version by the manifest."""
+    if MANIFEST not in members:
+        raise ProjectError(f"it lacks {MANIFEST}")
+    manifest = Record(read_json(members[MANIFEST], MANIFEST), MANIFEST)
+    version = manifest.whole("version")
+    if manifest.text("format") != FORMAT or version < 1:
+        raise ProjectError(f"{MANIFEST} does not describe a project")
+    return version
+
+
+def _read_file(path: Path) -> bytes:
+    try:
+        if path.stat().st_size > LARGEST_FILE:
+            raise ProjectError(
+                f"The file {path} is larger than any project ({LARGEST_FILE // 2**20} MB); choose a {SUFFIX} file."
+            )
+        return path.read_bytes()
+    except OSError as error:
+        raise ProjectError(f"The project {path} cannot be read: {error.strerror or error}. Check its name.") from error
+    except ValueError as error:  # a null character in the name
+        raise ProjectError(f"{str(path)!r} is no file name ({error}); choose a {SUFFIX} file.") from error
+
+
+def _unpack(content: bytes) -> Members:
+    """Read every member of the zip, all of them within one size limit whatever their headers claim."""
+    members: dict[str, bytes] = {}
+    budget = LARGEST_CONTENT
+    try:
+        with zipfile.ZipFile(io.BytesIO(content)) as archive:
+            entries = archive.infolist()
+            if len(entries) > MOST_MEMBERS:
+                raise ProjectError(f"it holds {len(entries)} members, at most {MOST_MEMBERS} are allowed")
+            for entry in entries:
+                members[entry.filename] = _read_member(archive, entry, budget)
+                budget -= len(members[entry.filename])
+    except (zipfile.BadZipFile, zlib.error, EOFError, OSError, ValueError, RuntimeError) as error:
+        # RuntimeError: zipfile's word for an encrypted member.
+        raise ProjectError(f"it is not a project file, or it is damaged ({str(error)[:80]})") from error
+    return members
+
+
+def _read_member(archive: zipfile.ZipFile, entry: zipfile.ZipInfo, budget: int) -> bytes:
+    if entry.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
+        raise ProjectError(f"its member {entry.filename[:40]!r} is packed in a way that no project uses")
+    with archive.open(entry) as stream:
+        content = stream.read(budget + 1)
+    if len(content) > budget:
+        raise ProjectError(f"it unpacks to more than {LARGEST_CONTENT // 2**20} MB, which no project needs")
+    return content

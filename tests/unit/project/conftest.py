@@ -1,0 +1,60 @@
+"""A document with everything in it, made without a generator."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.evaluate.feasibility import Contact
+from kirigami_studio.evaluate.score import Score
+from kirigami_studio.evaluate.similarity import Similarity
+from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.project.document import Document
+from kirigami_studio.project.settings import DesignSettings, FabricationSettings
+from kirigami_studio.target.outline import Outline
+
+
+@pytest.fixture
+def pentagon() -> Outline:
+    angles = np.arange(5) * 2 * math.pi / 5 + 0.1
+    return Outline.from_points(40 * np.stack([np.cos(angles), np.sin(angles)], axis=1), "pentagon", unit="mm")
+
+
+@pytest.fixture
+def candidates() -> tuple[Candidate, ...]:
+    rng = np.random.default_rng(7)
+    return tuple(_candidate(RatioField.from_log10(rng.uniform(-1, 1, (4, 5))), index) for index in range(3))
+
+
+def _candidate(field: RatioField, index: int) -> Candidate:
+    contact = Contact(0.25, (1.5, -2.125)) if index == 1 else None
+    score = Score(
+        siou=0.9 + index / 30,
+        siou_gain=0.1 / 3,
+        uniform_siou=0.8,
+        iou_exact=0.91,
+        uniform_iou=0.79,
+        tv=1.7,
+        tv_log10=0.3,
+        feasible=contact is None,
+        n_invalid=0,
+        overlap_ratio=1e-17,
+        contact=contact,
+        transform=Similarity(0.1234567890123, -0.7, (0.1, -0.2)),
+    )
+    return Candidate(field, score, seed=11, index=index, polished=index == 2)
+
+
+@pytest.fixture
+def document(pentagon: Outline, candidates: tuple[Candidate, ...]) -> Document:
+    return Document(
+        target=pentagon,
+        settings=DesignSettings(grid=(4, 5), phi=0.125, k=3, seed=11, variant="prior", steps=8),
+        candidates=candidates,
+        chosen=1,
+        fabrication=FabricationSettings(width_mm=120.0, connector_mm=0.35, kerf_mm=0.0),
+        provenance={"app_version": "0.1.0", "model": "prior", "model_hash": "0f" * 32},
+    )

@@ -1,0 +1,270 @@
+"""A project file gives back the very document, and a bad one gives a sentence."""
+
+from __future__ import annotations
+
+import io
+import json
+import struct
+import zipfile
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from kirigami_studio.foundation.errors import ExportError, ProjectError
+from kirigami_studio.project import store
+from kirigami_studio.project.document import Document
+from kirigami_studio.project.migrations import MIGRATIONS, Members, migrate
+
+Change = Callable[[dict[str, bytes]], None]
+
+
+def members_of(document: Document) -> dict[str, bytes]:
+    with zipfile.ZipFile(io.BytesIO(store.pack(document))) as archive:
+        return {name: archive.read(name) for name in archive.namelist()}
+
+
+def write_members(path: Path, members: dict[str, bytes]) -> Path:
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, content in members.items():
+            archive.writestr(name, content)
+    return path
+
+
+def array_file(table: np.ndarray) -> bytes:
+    stream = io.BytesIO()
+    np.save(stream, table)
+    return stream.getvalue()
+
+
+def test_that_a_project_comes_back_as_it_was(document: Document, tmp_path: Path) -> None:
+    store.save(document, tmp_path / "a.kiri")
+    again = store.load(tmp_path / "a.kiri")
+    assert again == document
+    assert again.target is not None and document.target is not None
+    assert (again.target.name, again.target.size, again.target.unit) == ("pentagon", document.target.size, "mm")
+    assert not again.candidates[0].field.ratio.flags.writeable
+
+
+def test_that_an_empty_project_comes_back_as_it_was(tmp_path: Path) -> None:
+    store.save(Document(), tmp_path / "new.kiri")
+    assert store.load(tmp_path / "new.kiri") == Document()
+
+
+def test_that_equal_documents_give_equal_bytes(document: Document, tmp_path: Path) -> None:
+    store.save(document, tmp_path / "a.kiri")
+    store.save(store.load(tmp_path / "a.kiri"), tmp_path / "b.kiri")
+    assert (tmp_path / "a.kiri").read_bytes() == (tmp_path / "b.kiri").read_bytes()
+
+
+def test_that_the_manifest_names_format_and_versions(document: Document) -> None:
+    manifest = json.loads(members_of(document)["manifest.json"])
+    assert manifest["version"] == 1
+    assert manifest["app_version"]
+
+
+def test_that_a_failed_save_keeps_the_old_project(document: Document, tmp_path: Path) -> None:
+    blocked = tmp_path / "folder.kiri"
+    blocked.mkdir()
+    with pytest.raises(ExportError, match=r"folder\.kiri"):
+        store.save(document, blocked)
+    assert [path.name for path in tmp_path.iterdir()] == ["folder.kiri"]
+
+
+def test_that_a_missing_project_is_a_sentence(tmp_path: Path) -> None:
+    with pytest.raises(ProjectError, match=r"gone\.kiri cannot be read"):
+        store.load(tmp_path / "gone.kiri")
+    with pytest.raises(ProjectError, match="cannot be read"):
+        store.load(tmp_path)
+    with pytest.raises(ProjectError, match="no file name"):
+        store.load("a\0b.kiri")
+
+
+@pytest.mark.parametrize("content", [b"", b"PK", b"not a zip at all" * 100, b"\x89PNG\r\n\x1a\n"])
+def test_that_another_kind_of_file_is_a_sentence(content: bytes, tmp_path: Path) -> None:
+    (tmp_path / "x.kiri").write_bytes(content)
+    with pytest.raises(ProjectError, match="not a project file"):
+        store.load(tmp_path / "x.kiri")
+
+
+def test_that_a_newer_project_asks_for_an_update(document: Document, tmp_path: Path) -> None:
+    members = members_of(document)
+    members["manifest.json"] = members["manifest.json"].replace(b'"version": 1', b'"version": 2')
+    with pytest.raises(ProjectError, match=r"newer .*format 2.* up to 1.*update the program\.$"):
+        store.load(write_members(tmp_path / "newer.kiri", members))
+
+
+def test_that_every_truncation_is_refused_or_whole(document: Document, tmp_path: Path) -> None:
+    whole = store.pack(document)
+    path = tmp_path / "cut.kiri"
+    for length in range(0, len(whole), 97):
+        path.write_bytes(whole[:length])
+        with pytest.raises(ProjectError):
+            store.load(path)
+
+
+def test_that_no_flipped_byte_gives_a_traceback(document: Document, tmp_path: Path) -> None:
+    whole = bytearray(store.pack(document))
+    path = tmp_path / "flipped.kiri"
+    refused = 0
+    for place in range(0, len(whole), 13):
+        damaged = bytearray(whole)
+        damaged[place] ^= 0xFF
+        path.write_bytes(damaged)
+        try:
+            assert store.load(path) == document  # a date or a comment: nothing that matters
+        except ProjectError:
+            refused += 1
+    assert refused > len(whole) / 13 / 2
+
+
+def drop(name: str) -> Change:
+    return lambda members: members.__delitem__(name)
+
+
+def put(name: str, content: bytes) -> Change:
+    return lambda members: members.__setitem__(name, content)
+
+
+def edit(*keys: str | int, to: object) -> Change:
+    """Replace one value deep inside design.json."""
+
+    def change(members: dict[str, bytes]) -> None:
+        design = json.loads(members["design.json"])
+        place = design
+        for key in keys[:-1]:
+            place = place[key]
+        place[keys[-1]] = to
+        members["design.json"] = json.dumps(design).encode()
+
+    return change
+
+
+def with_nan(members: dict[str, bytes]) -> None:
+    table = np.load(io.BytesIO(members["ratios.npy"]))
+    table[1, 2, 3] = np.nan
+    members["ratios.npy"] = array_file(table)
+
+
+def claiming(shape: str) -> bytes:
+    """An array file whose header promises far more than it holds."""
+    header = f"{{'descr': '<f8', 'fortran_order': False, 'shape': {shape}, }}".ljust(117) + "\n"
+    return b"\x93NUMPY\x01\x00" + struct.pack("<H", len(header)) + header.encode()
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        (drop("manifest.json"), "lacks manifest.json"),
+        (drop("design.json"), "lacks design.json"),
+        (drop("ratios.npy"), "lacks ratios.npy"),
+        (put("manifest.json", b"{"), "manifest.json is not readable as JSON"),
+        (put("manifest.json", b'{"format": "comic book archive", "version": 1}'), "does not describe a project"),
+        (put("manifest.json", b'{"format": "kirigami-studio project", "version": "1"}'), "whole number, got '1'"),
+        (put("manifest.json", b'{"format": "kirigami-studio project", "version": 0}'), "does not describe"),
+        (put("design.json", b"\xff\xfe"), "not readable as JSON"),
+        (put("design.json", b"[" * 100_000), "not readable as JSON"),
+        (put("design.json", b"[]"), "not a JSON object"),
+        (put("ratios.npy", b"junk"), "not an array file"),
+        (put("ratios.npy", claiming("(3, 4000000, 5000000)")), "should hold"),
+        (put("ratios.npy", claiming("(3, -4, -5)")), "ratios.npy"),
+        (put("ratios.npy", array_file(np.ones((2, 4, 5)))), "must hold 3 tables"),
+        (put("ratios.npy", array_file(np.ones((3, 4)))), "must hold 3 tables"),
+        (put("ratios.npy", array_file(np.ones((3, 4, 5), dtype=np.float32))), "must hold 3 tables"),
+        (put("ratios.npy", array_file(np.array([{}] * 60, dtype=object).reshape(3, 4, 5))), "must hold 3 tables"),
+        (put("ratios.npy", array_file(np.zeros((3, 4, 5)))), r"Ratio at void \(0, 0\) is 0"),
+        (put("ratios.npy", array_file(np.ones((3, 1, 5)))), "1 x 5"),
+        (with_nan, r"void \(2, 3\) is nan"),
+        (edit("target", "points", to=[[0, 0], [1, 0]]), "Try an earlier copy"),
+        (edit("target", "points", to=[[0, 0], [1]]), "pairs"),
+        (edit("target", "points", to="round"), "must be a list"),
+        (edit("target", "name", to=3), "must be a text, got 3"),
+        (edit("target", to=None), "target"),
+        (edit("settings", "grid", to=[4, "5"]), "whole number, got '5'"),
+        (edit("settings", "grid", to=[4]), "two whole numbers"),
+        (edit("settings", "grid", to=[1, 5]), "1 x 5"),
+        (edit("settings", "phi", to=9.0), "9"),
+        (edit("settings", "phi", to=10**310), "must be a number"),
+        (edit("settings", "k", to=True), "whole number, got True"),
+        (edit("fabrication", "width_mm", to=-1), "got -1"),
+        (edit("chosen", to=3), "holds 3"),
+        (edit("candidates", 0, to=7), r"candidates\[0\] is not a JSON object"),
+        (edit("candidates", 1, "polished", to=1), r"candidates\[1\].polished must be true or false"),
+        (edit("candidates", 1, "score", "siou", to=None), r"score.siou must be a number"),
+        (edit("candidates", 1, "score", "contact", "where", to=[1]), "where must be two numbers"),
+        (edit("candidates", 1, "score", "transform", "scale", to=-1.0), "positive scale"),
+        (edit("candidates", 1, "score", to={}), "lacks 'transform'"),
+        (edit("provenance", to={"model": 3}), "table of texts"),
+        (edit("settings", to={}), "lacks"),
+    ],
+)
+def test_that_a_damaged_member_is_a_sentence(change: Change, said: str, document: Document, tmp_path: Path) -> None:
+    members = members_of(document)
+    change(members)
+    with pytest.raises(ProjectError, match=said) as caught:
+        store.load(write_members(tmp_path / "bad.kiri", members))
+    assert str(caught.value).startswith(f"The project {tmp_path / 'bad.kiri'} cannot be opened: ")
+    assert len(str(caught.value)) < 400 + len(str(tmp_path))
+
+
+def test_that_nan_in_the_json_is_refused(document: Document, tmp_path: Path) -> None:
+    members = members_of(document)
+    members["design.json"] = members["design.json"].replace(b'"phi": 0.125', b'"phi": NaN')
+    with pytest.raises(ProjectError, match="NaN is not a number"):
+        store.load(write_members(tmp_path / "nan.kiri", members))
+
+
+def test_that_a_zip_bomb_is_refused_before_it_unpacks(document: Document, tmp_path: Path) -> None:
+    members = members_of(document) | {"bomb": bytes(store.LARGEST_CONTENT + 1)}
+    with pytest.raises(ProjectError, match="unpacks to more than 128 MB"):
+        store.load(write_members(tmp_path / "bomb.kiri", members))
+
+
+def test_that_a_file_beyond_any_project_is_refused_unread(tmp_path: Path) -> None:
+    path = tmp_path / "huge.kiri"
+    with path.open("wb") as stream:
+        stream.truncate(store.LARGEST_FILE + 1)
+    with pytest.raises(ProjectError, match="larger than any project"):
+        store.load(path)
+
+
+def test_that_too_many_members_and_foreign_packing_are_refused(document: Document, tmp_path: Path) -> None:
+    crowd = members_of(document) | {f"extra{k}": b"" for k in range(20)}
+    with pytest.raises(ProjectError, match="23 members"):
+        store.load(write_members(tmp_path / "crowd.kiri", crowd))
+    with zipfile.ZipFile(tmp_path / "lzma.kiri", "w", zipfile.ZIP_LZMA) as archive:
+        archive.writestr("manifest.json", members_of(document)["manifest.json"])
+    with pytest.raises(ProjectError, match="packed in a way"):
+        store.load(tmp_path / "lzma.kiri")
+
+
+def test_that_every_design_setting_and_score_field_survives(document: Document, tmp_path: Path) -> None:
+    changed = replace(document, chosen=None, candidates=document.candidates[::-1])
+    store.save(changed, tmp_path / "c.kiri")
+    again = store.load(tmp_path / "c.kiri")
+    for before, after in zip(changed.candidates, again.candidates, strict=True):
+        assert after.score == before.score
+        assert np.array_equal(after.field.ratio, before.field.ratio)
+
+
+def test_that_migrations_run_one_after_the_other() -> None:
+    def second(members: Members) -> Members:
+        return {**members, "order": members["order"] + b"2"}
+
+    def third(members: Members) -> Members:
+        return {**members, "order": members["order"] + b"3"}
+
+    table = {1: second, 2: third}
+    assert migrate({"order": b"1"}, 1, current=3, table=table) == {"order": b"123"}
+    assert migrate({"order": b"1"}, 2, current=3, table=table) == {"order": b"13"}
+    assert migrate({"order": b"1"}, 3, current=3, table=table) == {"order": b"1"}
+    with pytest.raises(ProjectError, match="format 1 is older"):
+        migrate({}, 1, current=3, table={2: third})
+
+
+def test_that_every_version_before_the_current_one_has_its_migration() -> None:
+    from kirigami_studio.project.migrations import CURRENT_VERSION
+
+    assert sorted(MIGRATIONS) == list(range(1, CURRENT_VERSION))
