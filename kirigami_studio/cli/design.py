@@ -27,6 +27,9 @@ from kirigami_studio.project.settings import DesignSettings, FabricationSettings
 from kirigami_studio.project.store import save
 from kirigami_studio.target.outline import Outline
 
+#: Steps of the fit that ``--polish`` gives every candidate.
+POLISH_STEPS = 15
+
 
 def design(arguments: argparse.Namespace) -> int:
     """Design every target; one JSON object a line for many, files only where --out is given."""
@@ -37,7 +40,14 @@ def design(arguments: argparse.Namespace) -> int:
     used: set[str] = set()
     for named in read_targets(arguments.targets, arguments.threshold):
         request = Request(
-            named.value, grid, arguments.phi, arguments.k, arguments.seed, arguments.variant, arguments.steps
+            target=named.value,
+            grid=grid,
+            phi=arguments.phi,
+            k=arguments.k,
+            seed=arguments.seed,
+            variant=arguments.variant,
+            steps=arguments.steps,
+            polish=POLISH_STEPS if arguments.polish else 0,
         )
         result = _run(request, line)
         folder = None if arguments.out is None else Path(arguments.out)

@@ -59,8 +59,9 @@ class Feedback:
 
 
 def _squared_distances(points: Tensor, loop: Tensor) -> Tensor:
-    """(B, Q, S) squared distances up to a constant for each point."""
-    return loop.square().sum(dim=-1)[:, None] - 2 * points @ loop.transpose(1, 2) + points.square().sum(-1, keepdim=True)
+    """Squared distance of every point to every loop point: (B, Q, S)."""
+    lengths = points.square().sum(dim=-1)[:, :, None] + loop.square().sum(dim=-1)[:, None]
+    return lengths - 2 * points @ loop.transpose(1, 2)
 
 
 def _to_loop(points: Tensor, loop: Tensor, nearest: Tensor) -> Tensor:

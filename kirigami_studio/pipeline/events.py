@@ -1,4 +1,4 @@
-"""What a run tells its host, in order: Started, then Progress and CandidateFound, then Finished."""
+"""What a run tells its host: Started, Progress and CandidateFound in turn, perhaps CandidateImproved, then Finished."""
 
 from __future__ import annotations
 
@@ -33,6 +33,14 @@ class CandidateFound:
 
 
 @dataclass(frozen=True, slots=True)
+class CandidateImproved:
+    """Polishing has made candidate number ``index`` better; ``candidate`` replaces the one found before."""
+
+    index: int
+    candidate: Candidate
+
+
+@dataclass(frozen=True, slots=True)
 class Result:
     """All candidates, best first.
 
@@ -41,7 +49,7 @@ class Result:
     request : Request
     candidates : tuple of Candidate
     forward_evaluations : int
-        Number of decoded and scored designs, the paper's #F.
+        Number of decoded designs, the paper's #F: one for each sample, and those that polishing tried.
     seconds : float
         Wall time of the run; the only part that differs between two equal requests.
     """
@@ -63,4 +71,4 @@ class Finished:
     result: Result
 
 
-Event = Started | Progress | CandidateFound | Finished
+Event = Started | Progress | CandidateFound | CandidateImproved | Finished

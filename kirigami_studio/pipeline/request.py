@@ -11,6 +11,7 @@ from kirigami_studio.target.outline import Outline
 
 LARGEST_K = 1024
 LARGEST_STEPS = 64
+LARGEST_POLISH = 200
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,6 +31,8 @@ class Request:
         Name of a bundled generator variant, see :func:`kirigami_studio.generator.weights.variants`.
     steps : int, 1..64
         Euler steps of the flow.
+    polish : int, 0..200
+        Steps of the fit on the exact geometry that every candidate gets after sampling; 0 leaves them as drawn.
     """
 
     target: Outline
@@ -39,6 +42,7 @@ class Request:
     seed: int = 0
     variant: str = "prior"
     steps: int = 4
+    polish: int = 0
 
     def __post_init__(self) -> None:
         check_grid(*self.grid)
@@ -48,6 +52,7 @@ class Request:
             ("candidates (k)", self.k, 1, LARGEST_K),
             ("Euler steps", self.steps, 1, LARGEST_STEPS),
             ("the seed", self.seed, 0, 2**63 - 1),
+            ("polishing steps", self.polish, 0, LARGEST_POLISH),
         ):
             if isinstance(value, bool) or not isinstance(value, int) or not low <= value <= high:
                 raise UsageError(f"The number for {name} must be a whole number from {low} to {high}, got {value!r}.")

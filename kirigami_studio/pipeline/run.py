@@ -10,9 +10,18 @@ from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.foundation.errors import Cancelled
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
-from kirigami_studio.pipeline.events import CandidateFound, Event, Finished, Progress, Result, Started
-from kirigami_studio.pipeline.rank import ranked
+from kirigami_studio.pipeline.events import (
+    CandidateFound,
+    CandidateImproved,
+    Event,
+    Finished,
+    Progress,
+    Result,
+    Started,
+)
+from kirigami_studio.pipeline.rank import rank_key, ranked
 from kirigami_studio.pipeline.request import Request
+from kirigami_studio.polish.levenberg import polish
 
 
 def never() -> bool:
@@ -21,7 +30,7 @@ def never() -> bool:
 
 
 def run(request: Request, cancel: Callable[[], bool] = never) -> Iterator[Event]:
-    """Sample, decode, score and rank.
+    """Sample, decode, score, polish if asked for, and rank.
 
     Parameters
     ----------
@@ -32,7 +41,8 @@ def run(request: Request, cancel: Callable[[], bool] = never) -> Iterator[Event]
     Yields
     ------
     Event
-        ``Started``, then ``Progress`` and ``CandidateFound`` in turn, then ``Finished``.
+        ``Started``, then ``Progress`` and ``CandidateFound`` in turn, ``CandidateImproved`` with polishing, and
+        ``Finished``.
 
     Raises
     ------
@@ -47,12 +57,20 @@ def run(request: Request, cancel: Callable[[], bool] = never) -> Iterator[Event]
     fields = sample(request)
     found: list[Candidate] = []
     for index, field in enumerate(fields):
-        if cancel():
-            raise Cancelled(f"Stopped after {index} of {request.k} candidates; nothing was changed.")
+        _stop_if(cancel, f"Stopped after {index} of {request.k} candidates; nothing was changed.")
         found.append(scored(request, field, index))
         yield CandidateFound(index, found[-1])
         yield Progress(index + 1, request.k, f"Candidate {index + 1} of {request.k}")
-    yield Finished(Result(request, ranked(found), len(found), time.perf_counter() - began))
+    evaluations = len(found)
+    for done, candidate in enumerate(ranked(found) if request.polish else ()):
+        _stop_if(cancel, f"Stopped while polishing candidate {done + 1} of {request.k}; nothing was changed.")
+        yield Progress(done, request.k, f"Polishing candidate {done + 1} of {request.k}")
+        better, tried = polished(request, candidate)
+        evaluations += tried
+        if better is not candidate:
+            found[candidate.index] = better
+            yield CandidateImproved(candidate.index, better)
+    yield Finished(Result(request, ranked(found), evaluations, time.perf_counter() - began))
 
 
 def sample(request: Request) -> tuple[RatioField, ...]:
@@ -64,10 +82,30 @@ def sample(request: Request) -> tuple[RatioField, ...]:
     return draw_fields(model, request.target, request.grid, request.k, request.seed, request.steps)
 
 
-def scored(request: Request, field: RatioField, index: int, *, polished: bool = False) -> Candidate:
+def scored(request: Request, field: RatioField, index: int, *, fitted: bool = False) -> Candidate:
     """Decode one field exactly and score it against the request's target."""
     score = evaluate(deploy(field), request.target, request.phi)
-    return Candidate(field, score, request.seed, index, polished)
+    return Candidate(field, score, request.seed, index, polished=fitted)
+
+
+def polished(request: Request, candidate: Candidate) -> tuple[Candidate, int]:
+    """Fit a candidate on the exact geometry.
+
+    Returns
+    -------
+    candidate : Candidate
+        The fitted one if it ranks before the given one, else the given one itself.
+    evaluations : int
+        Layouts decoded on the way.
+    """
+    fit = polish(candidate.field, request.target, request.phi, request.polish, pose=candidate.score.transform)
+    better = scored(request, fit.field, candidate.index, fitted=True)
+    return (better if rank_key(better) < rank_key(candidate) else candidate), fit.evaluations + 1
+
+
+def _stop_if(cancel: Callable[[], bool], sentence: str) -> None:
+    if cancel():
+        raise Cancelled(sentence)
 
 
 def best_of(request: Request, cancel: Callable[[], bool] = never) -> Result:

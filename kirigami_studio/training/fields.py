@@ -9,6 +9,8 @@ Two families of the paper, which differ strongly (mean |x difference| per cell 4
 
 from __future__ import annotations
 
+from typing import Literal
+
 import numpy as np
 from numpy.random import Generator
 from scipy.ndimage import map_coordinates
@@ -18,6 +20,8 @@ from kirigami_studio.lattice.ratio_field import FloatArray
 
 #: Bounds of z: x in [0.1, 10] (paper, Appendix "Dataset generation").
 Z_LIMIT = 1.0
+#: Interpolation of coarse grids: linear, quadratic or cubic.
+SPLINE_ORDERS: tuple[Literal[1, 2, 3], ...] = (1, 2, 3)
 
 
 def sobol_fields(count: int, rows: int, columns: int, seed: int, skip: int = 0) -> FloatArray:
@@ -77,9 +81,10 @@ def _plane_radial_angular(count: int, u: FloatArray, v: FloatArray, rng: Generat
 
 def _coarse_grid(count: int, u: FloatArray, v: FloatArray, rng: Generator) -> FloatArray:
     nodes = rng.uniform(-1, 1, (count, 4, 4))
-    order = int(rng.integers(1, 4))
-    place = [1.5 * (v + 1), 1.5 * (u + 1)]
-    return np.stack([map_coordinates(grid, place, order=order, mode="nearest") for grid in nodes])
+    order = SPLINE_ORDERS[int(rng.integers(len(SPLINE_ORDERS)))]
+    place = np.stack([1.5 * (v + 1), 1.5 * (u + 1)])
+    fields = [map_coordinates(grid, place, None, order, "nearest") for grid in nodes]
+    return np.stack(fields)
 
 
 def _symmetric_waves(count: int, u: FloatArray, v: FloatArray, rng: Generator) -> FloatArray:

@@ -37,8 +37,7 @@ def own_pose_iou(network: VelocityNetwork, z: Tensor, lattice: BatchedLattice, s
     ours = shapely.make_valid(shapely.polygons(results.cpu().double().numpy()))
     theirs = shapely.make_valid(shapely.polygons(targets.cpu().double().numpy()))
     common = shapely.area(shapely.intersection(ours, theirs))
-    iou: FloatArray = common / (shapely.area(ours) + shapely.area(theirs) - common)
-    return iou
+    return np.asarray(common / (shapely.area(ours) + shapely.area(theirs) - common))
 
 
 def validator(count: int, device: torch.device, steps: int = 4) -> Callable[[VelocityNetwork], dict[str, float]]:

@@ -92,7 +92,8 @@ def test_that_a_design_becomes_checked_files_with_the_same_bytes(
     answers = [answer(capsys, "design", "star", "--k", 3, "--out", folder, "--json") for folder in folders]
     assert len(answers[0]["candidates"]) == 3
     assert answers[0]["best"] == answers[0]["candidates"][0]
-    assert answers[0]["forward_evaluations"] == 3
+    assert all(candidate["polished"] for candidate in answers[0]["candidates"])
+    assert answers[0]["forward_evaluations"] > 3
     for name in ("design.kiri", "cut.dxf", "layout.svg", "preview.png", "candidates.json"):
         first, second = ((folder / name).read_bytes() for folder in folders)
         assert first == second, name
@@ -125,6 +126,15 @@ def test_that_a_saved_project_is_exported_to_every_kind_of_file(
     document = ezdxf.readfile(tmp_path / "x.dxf")
     assert document.header["$EXTMAX"][0] == pytest.approx(80, abs=1.0)
     assert answer(capsys, "animate", project, "--out", tmp_path / "y.gif", "--json")["frames"] > 10
+
+
+@pytest.mark.torch
+def test_that_unpolished_candidates_cost_one_evaluation_each(capsys: pytest.CaptureFixture[str]) -> None:
+    answered = answer(capsys, "design", "heart", "--k", 2, "--no-polish", "--json")
+    assert answered["forward_evaluations"] == 2
+    assert not any(candidate["polished"] for candidate in answered["candidates"])
+    promised = {"ratio", "siou", "siou_gain", "tv", "feasible", "n_invalid", "overlap_ratio", "seed", "polished"}
+    assert promised <= answered["best"].keys()
 
 
 @pytest.mark.torch

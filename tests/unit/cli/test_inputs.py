@@ -16,8 +16,8 @@ from kirigami_studio.foundation.errors import GridError, KirigamiError, RatioErr
 
 @pytest.mark.parametrize(
     ("text", "value"),
-    [("0", 0.0), ("0.5", 0.5), ("30deg", math.pi / 6), ("pi", math.pi), ("pi/3", math.pi / 3), ("2pi/3", 2 * math.pi / 3),
-     ("0.25*pi", math.pi / 4), (".5", 0.5), ("1e-3", 1e-3)],
+    [("0", 0.0), ("0.5", 0.5), ("30deg", math.pi / 6), ("pi", math.pi), ("pi/3", math.pi / 3),
+     ("2pi/3", 2 * math.pi / 3), ("0.25*pi", math.pi / 4), (".5", 0.5), ("1e-3", 1e-3)],
 )  # fmt: skip
 def test_that_angles_are_read_in_radians_and_degrees(text: str, value: float) -> None:
     assert parse_angle(text) == pytest.approx(value)

@@ -11,7 +11,7 @@ import pytest
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.errors import AngleError, Cancelled, GridError, UsageError
-from kirigami_studio.pipeline.events import CandidateFound, Finished, Progress, Started
+from kirigami_studio.pipeline.events import CandidateFound, CandidateImproved, Finished, Progress, Started
 from kirigami_studio.pipeline.rank import ranked
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.pipeline.run import best_of, run
@@ -94,3 +94,28 @@ def test_that_impossible_requests_are_refused(request_for_heart: Request, change
 def test_that_an_unknown_variant_is_refused_before_any_candidate(request_for_heart: Request) -> None:
     with pytest.raises(UsageError, match="prior"):
         list(run(replace(request_for_heart, variant="psychic")))
+
+
+def test_that_polishing_improves_every_candidate_and_counts_its_decodings(request_for_heart: Request) -> None:
+    drawn = best_of(request_for_heart)
+    fitted = best_of(replace(request_for_heart, polish=10))
+    before = {candidate.index: candidate.score.siou for candidate in drawn.candidates}
+    after = {candidate.index: candidate.score.siou for candidate in fitted.candidates}
+    assert all(after[index] >= before[index] for index in before)
+    assert fitted.best.polished
+    assert fitted.best.score.siou > drawn.best.score.siou + 0.02
+    assert fitted.forward_evaluations > 4 * 10
+
+
+def test_that_improvements_are_reported_under_the_index_of_their_candidate(request_for_heart: Request) -> None:
+    events = list(run(replace(request_for_heart, k=2, polish=3)))
+    improved = {event.index: event.candidate for event in events if isinstance(event, CandidateImproved)}
+    final = {candidate.index: candidate for candidate in events[-1].result.candidates}
+    assert improved
+    assert all(final[index] == candidate for index, candidate in improved.items())
+
+
+def test_that_polishing_can_be_cancelled(request_for_heart: Request) -> None:
+    seen = []
+    with pytest.raises(Cancelled, match="polishing candidate 1 of 4"):
+        seen.extend(run(replace(request_for_heart, polish=5), cancel=lambda: len(seen) >= 10))

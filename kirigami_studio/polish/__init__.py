@@ -1,0 +1,9 @@
+"""A good guess -> the best match the sheet can make: second-order fits on the exact geometry.
+
+The one stage that sees the lattice and the evaluator together.
+
+Vocabulary: the *objective* is a sum of squared distances between outline and target, both ways; a *pose* is the
+similarity transform that carries the layout to the target and is fitted along with the ratios.
+
+May import ``evaluate``, ``lattice``, ``target`` and ``foundation``.
+"""
