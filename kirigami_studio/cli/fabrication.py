@@ -127,7 +127,7 @@ def _job(document: Document) -> ExportJob:
     if candidate is None or document.target is None:
         raise ProjectError("This project has no chosen design yet; generate candidates and choose one first.")
     return ExportJob(
-        deployment, document.settings.phi, target=document.target.points, transform=candidate.score.transform
+        deployment, candidate.score.phi, target=document.target.points, transform=candidate.score.transform
     )
 
 

@@ -50,6 +50,8 @@ class Score:
         First self-contact on the way from the compact sheet, if any.
     transform : Similarity
         Layout frame at the angle (unit cells) -> target frame (area 1).
+    phi : float, radians
+        The angle that all of this is about.
     """
 
     siou: float
@@ -64,6 +66,7 @@ class Score:
     overlap_ratio: float
     contact: Contact | None
     transform: Similarity
+    phi: float = 0.0
 
     def to_json(self) -> dict[str, object]:
         """The keys of the command line's ``score``, plain numbers only."""
@@ -80,6 +83,7 @@ class Score:
             "overlap_ratio": self.overlap_ratio,
             "contact": None if self.contact is None else self.contact.to_json(),
             "transform": self.transform.to_json(),
+            "phi": self.phi,
         }
 
 
@@ -138,6 +142,7 @@ def _complete(deployment: Deployment, outline: Outline, phi: float, match: _Matc
         overlap_ratio=overlap,
         contact=contact,
         transform=match.transform,
+        phi=phi,
     )
 
 

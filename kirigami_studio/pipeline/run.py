@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 
 from kirigami_studio.evaluate.candidate import Candidate
-from kirigami_studio.evaluate.score import evaluate
+from kirigami_studio.evaluate.score import evaluate_many
 from kirigami_studio.foundation.errors import Cancelled
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
@@ -21,7 +21,11 @@ from kirigami_studio.pipeline.events import (
 )
 from kirigami_studio.pipeline.rank import rank_key, ranked
 from kirigami_studio.pipeline.request import Request
+from kirigami_studio.pipeline.threads import one_blas_thread
 from kirigami_studio.polish.levenberg import polish
+
+#: Candidates scored in one batch: enough to save time, few enough to see them arrive.
+SCORED_TOGETHER = 8
 
 
 def never() -> bool:
@@ -56,11 +60,12 @@ def run(request: Request, cancel: Callable[[], bool] = never) -> Iterator[Event]
     yield Progress(0, request.k, "Loading the generator")
     fields = sample(request)
     found: list[Candidate] = []
-    for index, field in enumerate(fields):
-        _stop_if(cancel, f"Stopped after {index} of {request.k} candidates; nothing was changed.")
-        found.append(scored(request, field, index))
-        yield CandidateFound(index, found[-1])
-        yield Progress(index + 1, request.k, f"Candidate {index + 1} of {request.k}")
+    for start in range(0, len(fields), SCORED_TOGETHER):
+        _stop_if(cancel, f"Stopped after {start} of {request.k} candidates; nothing was changed.")
+        for candidate in scored(request, fields[start : start + SCORED_TOGETHER], start):
+            found.append(candidate)
+            yield CandidateFound(candidate.index, candidate)
+        yield Progress(len(found), request.k, f"Candidate {len(found)} of {request.k}")
     evaluations = len(found)
     for done, candidate in enumerate(ranked(found) if request.polish else ()):
         _stop_if(cancel, f"Stopped while polishing candidate {done + 1} of {request.k}; nothing was changed.")
@@ -82,10 +87,14 @@ def sample(request: Request) -> tuple[RatioField, ...]:
     return draw_fields(model, request.target, request.grid, request.k, request.seed, request.steps)
 
 
-def scored(request: Request, field: RatioField, index: int, *, fitted: bool = False) -> Candidate:
-    """Decode one field exactly and score it against the request's target."""
-    score = evaluate(deploy(field), request.target, request.phi)
-    return Candidate(field, score, request.seed, index, polished=fitted)
+def scored(request: Request, fields: Sequence[RatioField], first: int, *, fitted: bool = False) -> list[Candidate]:
+    """Decode fields exactly and score them against the request's target; their numbers count up from ``first``."""
+    with one_blas_thread():
+        scores = evaluate_many([deploy(field) for field in fields], request.target, request.phi)
+    return [
+        Candidate(field, score, request.seed, first + place, polished=fitted)
+        for place, (field, score) in enumerate(zip(fields, scores, strict=True))
+    ]
 
 
 def polished(request: Request, candidate: Candidate) -> tuple[Candidate, int]:
@@ -98,8 +107,9 @@ def polished(request: Request, candidate: Candidate) -> tuple[Candidate, int]:
     evaluations : int
         Layouts decoded on the way.
     """
-    fit = polish(candidate.field, request.target, request.phi, request.polish, pose=candidate.score.transform)
-    better = scored(request, fit.field, candidate.index, fitted=True)
+    with one_blas_thread():
+        fit = polish(candidate.field, request.target, request.phi, request.polish, pose=candidate.score.transform)
+    (better,) = scored(request, [fit.field], candidate.index, fitted=True)
     return (better if rank_key(better) < rank_key(candidate) else candidate), fit.evaluations + 1
 
 

@@ -12,6 +12,7 @@ from kirigami_studio.evaluate.feasibility import Contact
 from kirigami_studio.evaluate.score import Score
 from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.foundation.errors import ProjectError
+from kirigami_studio.lattice.deployment import check_phi
 from kirigami_studio.lattice.ratio_field import FloatArray, RatioField
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.json_record import Record, read_json
@@ -153,6 +154,7 @@ def _score(record: Record) -> Score:
         overlap_ratio=record.number("overlap_ratio"),
         contact=None if contact is None else Contact(contact.number("phi"), contact.pair("where")),
         transform=Similarity(transform.number("scale"), transform.number("angle"), transform.pair("shift")),
+        phi=check_phi(record.number("phi")),
     )
 
 

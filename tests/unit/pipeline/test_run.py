@@ -55,8 +55,8 @@ def test_that_an_infeasible_design_ranks_behind_a_worse_feasible_one(request_for
 
 def test_that_a_cancelled_run_stops_between_candidates(request_for_heart: Request) -> None:
     seen = []
-    with pytest.raises(Cancelled, match="2 of 4"):
-        seen.extend(run(request_for_heart, cancel=lambda: len(seen) >= 6))
+    with pytest.raises(Cancelled, match="8 of 12"):
+        seen.extend(run(replace(request_for_heart, k=12), cancel=lambda: len(seen) >= 4))
     assert not any(isinstance(event, Finished) for event in seen)
 
 
@@ -118,4 +118,4 @@ def test_that_improvements_are_reported_under_the_index_of_their_candidate(reque
 def test_that_polishing_can_be_cancelled(request_for_heart: Request) -> None:
     seen = []
     with pytest.raises(Cancelled, match="polishing candidate 1 of 4"):
-        seen.extend(run(replace(request_for_heart, polish=5), cancel=lambda: len(seen) >= 10))
+        seen.extend(run(replace(request_for_heart, polish=5), cancel=lambda: len(seen) >= 5))
