@@ -45,6 +45,7 @@ def dataset(arguments: argparse.Namespace) -> int:
 
 def train(arguments: argparse.Namespace) -> int:
     """Train the prior, or go on training it, and write its weights into the run folder."""
+    from kirigami_studio.generator.network import NetworkShape
     from kirigami_studio.generator.weights import store_model
     from kirigami_studio.training.device import training_device
     from kirigami_studio.training.train_flow import FlowSettings, finished_network, train_flow
@@ -59,6 +60,7 @@ def train(arguments: argparse.Namespace) -> int:
         coupling=arguments.coupling,
         outline_weight=arguments.outline_weight,
         seed=arguments.seed,
+        shape=NetworkShape() if arguments.feedback else NetworkShape(loop_points=0),
     )
     folder = Path(arguments.out)
     seconds = float("inf") if arguments.minutes is None else 60.0 * arguments.minutes

@@ -159,6 +159,8 @@ COMMANDS: tuple[Command, ...] = (
         option("--batch", type=int, default=96, help="targets a step (default 96)"),
         option("--coupling", default="independent", choices=("independent", "ot", "conditional-ot"),
                help="pairing of noise and designs (default independent)"),
+        option("--feedback", action=argparse.BooleanOptionalAction, default=True,
+               help="show the network how the current field's outline differs from the target (default: yes)"),
         option("--outline-weight", type=float, default=50.0, help="weight of the outline error (default 50)"),
         option("--validate-every", type=int, default=500, help="steps between validations (default 500)"),
         option("--threads", type=int, default=1, help="processor threads (default 1)"),
