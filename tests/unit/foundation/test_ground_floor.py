@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import inspect
 import logging
-import math
 import shutil
 from collections.abc import Iterator
 from pathlib import Path
@@ -15,7 +14,7 @@ from kirigami_studio.foundation import errors, resources
 from kirigami_studio.foundation.errors import KirigamiError, UsageError
 from kirigami_studio.foundation.log import topic
 from kirigami_studio.foundation.resources import resource, resource_root
-from kirigami_studio.foundation.units import MM_PER_INCH, degrees, radians
+from kirigami_studio.foundation.units import MM_PER_INCH
 
 
 def test_that_every_error_is_one_that_a_host_can_show() -> None:
@@ -29,9 +28,7 @@ def test_that_impossible_numbers_count_as_wrong_usage_and_bad_files_do_not() -> 
     assert not issubclass(errors.RatioError, UsageError) and not issubclass(errors.ProjectError, UsageError)
 
 
-def test_that_degrees_and_radians_are_inverse() -> None:
-    assert degrees(math.pi) == 180.0
-    assert math.isclose(radians(degrees(1.234)), 1.234)
+def test_that_an_inch_is_the_international_one() -> None:
     assert MM_PER_INCH == 25.4
 
 
