@@ -1,0 +1,112 @@
+"""Every command of the window in one table: name, text, icon, shortcut, menu and tooltip."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from PySide6.QtGui import QAction, QKeySequence
+from PySide6.QtWidgets import QMainWindow, QMenu
+
+from kirigami_studio.gui import icons
+from kirigami_studio.gui.theme import Palette
+
+
+@dataclass(frozen=True, slots=True)
+class Command:
+    """One row of the table.
+
+    Attributes
+    ----------
+    name : str
+        Key by which the window connects it.
+    text : str
+        As in the menu, ``&`` before the mnemonic.
+    menu : str
+        Menu it stands in.
+    shortcuts : tuple of str
+        Key sequences, the first is shown.
+    icon : str
+        Bundled icon, or "" for none.
+    tip : str
+    toolbar : bool
+    checkable : bool
+    gap : bool
+        A separator comes before it.
+    """
+
+    name: str
+    text: str
+    menu: str
+    shortcuts: tuple[str, ...] = ()
+    icon: str = ""
+    tip: str = ""
+    toolbar: bool = False
+    checkable: bool = False
+    gap: bool = False
+
+
+COMMANDS = (
+    Command("new", "&New project", "&File", ("Ctrl+N",), tip="Start empty"),
+    Command("open_project", "Open &project …", "&File", ("Ctrl+Shift+O",), "project", "Open a .kiri project", True),
+    Command("save", "&Save project", "&File", ("Ctrl+S",), "save", "Save the project", True),
+    Command("save_as", "Save project &as …", "&File", ("Ctrl+Shift+S",), tip="Save under another name"),
+    Command("open_target", "&Open target …", "&File", ("Ctrl+O",), "open", "Open a target silhouette", gap=True),
+    Command("library", "Target &library …", "&File", ("Ctrl+L",), "library", "Choose a silhouette of the library"),
+    Command("export", "&Export DXF …", "&File", ("Ctrl+E",), "export", "Write the cut file in mm", gap=True),
+    Command("quit", "&Quit", "&File", ("Ctrl+Q",), tip="Close Kirigami Studio", gap=True),
+    Command("undo", "&Undo", "&Edit", ("Ctrl+Z",), "undo", "Undo", True),
+    Command("redo", "&Redo", "&Edit", ("Ctrl+Y", "Ctrl+Shift+Z"), "redo", "Redo", True),
+    Command("freehand", "Draw &freehand", "&Edit", ("D",), "draw", "Draw the target in one stroke", gap=True),
+    Command("polygon", "Draw &polygon", "&Edit", ("P",), "polygon", "Draw the target corner by corner"),
+    Command("clear", "&Clear target", "&Edit", (), "clear", "Remove the target"),
+    Command("generate", "&Generate", "&Design", ("Ctrl+G", "Ctrl+Return"), "generate", "Design sheets for the target"),
+    Command("cancel", "&Cancel", "&Design", ("Esc",), "stop", "Stop generating"),
+    Command("next", "&Next design", "&Design", ("Ctrl+Down", "PgDown"), "", "Choose the next design", gap=True),
+    Command("previous", "&Previous design", "&Design", ("Ctrl+Up", "PgUp"), "", "Choose the previous design"),
+    Command("play", "&Play / pause", "&View", ("Space",), "play", "Play the deployment"),
+    Command("to_flat", "&Flat sheet (180°)", "&View", ("Ctrl+Left",), "", "Show the compact sheet"),
+    Command("to_target", "&Target angle", "&View", ("Ctrl+Right",), "", "Show the target angle"),
+    Command(
+        "show_target", "Target &outline", "&View", ("T",), "target", "Show the target's outline", False, True, True
+    ),
+    Command("show_mismatch", "&Mismatch", "&View", ("M",), "mismatch", "Show missing and extra area", False, True),
+    Command("show_faults", "F&aults", "&View", ("F",), "fault", "Mark places that are not physical", False, True),
+    Command("fit", "Show &everything", "&View", ("0",), "fit", "Fit the layout into the view", gap=True),
+    Command("theme", "&Dark theme", "&View", ("Ctrl+D",), "moon", "Switch between light and dark", True, gap=True),
+    Command("guide", "&Guide", "&Help", ("F1",), "guide", "Open the user guide", True),
+)
+
+
+def build(window: QMainWindow) -> tuple[dict[str, QAction], list[QMenu]]:
+    """Create all actions and the window's menus."""
+    actions: dict[str, QAction] = {}
+    menus: dict[str, QMenu] = {}
+    for command in COMMANDS:
+        if command.menu not in menus:
+            menus[command.menu] = window.menuBar().addMenu(command.menu)
+        action = QAction(command.text, window)
+        action.setObjectName(command.name)
+        action.setCheckable(command.checkable)
+        action.setShortcuts([QKeySequence(keys) for keys in command.shortcuts])
+        action.setStatusTip(command.tip)
+        action.setToolTip(with_shortcut(command.tip, command.shortcuts))
+        if command.gap:
+            menus[command.menu].addSeparator()
+        menus[command.menu].addAction(action)
+        window.addAction(action)
+        actions[command.name] = action
+    return actions, list(menus.values())
+
+
+def with_shortcut(tip: str, shortcuts: tuple[str, ...]) -> str:
+    """Tooltip with its first key sequence."""
+    return f"{tip} ({shortcuts[0]})" if shortcuts else tip
+
+
+def dress(actions: dict[str, QAction], palette: Palette) -> None:
+    """Tint all icons."""
+    for command in COMMANDS:
+        if command.icon:
+            actions[command.name].setIcon(icons.icon(command.icon, palette))
+    actions["theme"].setText("&Light theme" if palette.dark else "&Dark theme")
+    actions["theme"].setIcon(icons.icon("sun" if palette.dark else "moon", palette))

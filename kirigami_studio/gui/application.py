@@ -1,0 +1,113 @@
+"""Start the studio: Qt, theme, window, first target."""
+
+from __future__ import annotations
+
+import os
+import sys
+from pathlib import Path
+
+from PySide6.QtCore import QCoreApplication, QSettings, Qt, QTimer
+from PySide6.QtGui import QFont, QFontDatabase, QGuiApplication
+from PySide6.QtWidgets import QApplication
+
+from kirigami_studio.gui import faults, theme
+from kirigami_studio.gui.controller import Controller
+from kirigami_studio.gui.main_window import MainWindow
+
+FIRST_TARGET = "heart"
+#: The generator's imports stall the window for most of a second: not while it is being looked at for the first time.
+WARM_UP_AFTER_MS = 2500
+SMALLEST_FONT = 9.5
+NO_DISPLAY = (
+    "There is no display to open the window on; use the commands (kirigami-studio --help), or play a session without "
+    "one: python -m kirigami_studio.gui.offscreen_session --out out."
+)
+#: Where distributions keep fonts; the off-screen platform does not ask fontconfig.
+FONT_FOLDERS = ("/usr/share/fonts/truetype/dejavu", "/usr/share/fonts/TTF", "/usr/share/fonts/dejavu")
+
+
+def create_application(argv: list[str]) -> QApplication:
+    """Return the application object, made on first use."""
+    existing = QApplication.instance()
+    if isinstance(existing, QApplication):
+        return existing
+    faults.log_qt_messages()
+    if os.environ.get("QT_QPA_PLATFORM") == "offscreen" and "QT_QPA_FONTDIR" not in os.environ:
+        folder = next((folder for folder in FONT_FOLDERS if Path(folder).is_dir()), None)
+        if folder is not None:
+            os.environ["QT_QPA_FONTDIR"] = folder
+    QCoreApplication.setOrganizationName("Kirigami Studio")
+    QCoreApplication.setApplicationName("Kirigami Studio")
+    QGuiApplication.setHighDpiScaleFactorRoundingPolicy(Qt.HighDpiScaleFactorRoundingPolicy.PassThrough)
+    application = QApplication(argv)
+    application.setFont(readable_font(application.font()))
+    return application
+
+
+def readable_font(font: QFont) -> QFont:
+    """Return the system's font, or a bundled system's best when it has none, not too small."""
+    result = QFont(font)
+    if not QFontDatabase.hasFamily(result.family()) or result.family() == "Sans Serif":
+        known = ("Inter", "Noto Sans", "Cantarell", "Ubuntu", "DejaVu Sans")
+        family = next((name for name in known if QFontDatabase.hasFamily(name)), None)
+        if family is not None:
+            result.setFamily(family)
+    if 0 < result.pointSizeF() < SMALLEST_FONT:
+        result.setPointSizeF(SMALLEST_FONT)
+    return result
+
+
+def create_window(palette: theme.Palette | None = None) -> MainWindow:
+    """Return a new window with its own controller, not shown yet; closing it ends its worker."""
+    controller = Controller()
+    window = MainWindow(controller, palette or theme.system_palette())
+    controller.setParent(window)
+    return window
+
+
+def display_present() -> bool:
+    """Whether a window can be shown: Qt ends the process when it finds no display, so ask before."""
+    if not sys.platform.startswith("linux") or "QT_QPA_PLATFORM" in os.environ:
+        return True
+    return bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
+
+
+def open_first(window: MainWindow, source: str) -> None:
+    """Start with a project, a target file or a library silhouette."""
+    if Path(source).suffix.lower() == ".kiri":
+        window.controller.open_project(Path(source))
+    else:
+        window.controller.start_with(source)
+
+
+def run(argv: list[str]) -> int:
+    """Open the window and stay until it is closed.
+
+    Parameters
+    ----------
+    argv : list of str
+        Program name, then at most one file: a project, a target or the name of a library silhouette.
+
+    Returns
+    -------
+    code : int
+        Exit code, 0 when the user closed the window, 1 when there is no display to open it on.
+    """
+    if not display_present():
+        sys.stderr.write(f"{NO_DISPLAY}\n")
+        return 1
+    application = create_application(argv[:1] or ["kirigami-studio"])
+    window = create_window()
+    faults.show_uncaught(window.messages.add)
+    state = QSettings()
+    window.restore(state)
+    application.aboutToQuit.connect(lambda: window.remember(state))
+    QGuiApplication.styleHints().colorSchemeChanged.connect(lambda _: window.set_theme(theme.system_palette()))
+    window.show()
+    QTimer.singleShot(0, window, lambda: open_first(window, argv[1] if len(argv) > 1 else FIRST_TARGET))
+    QTimer.singleShot(WARM_UP_AFTER_MS, window, window.controller.warm_up)
+    return application.exec()
+
+
+if __name__ == "__main__":
+    sys.exit(run(sys.argv))

@@ -1,0 +1,201 @@
+"""What menus, shortcuts and file questions do: commands of the window to the controller."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QObject, Qt
+from PySide6.QtWidgets import QAbstractButton, QComboBox
+
+from kirigami_studio.gui.controller import Controller
+from kirigami_studio.gui.dialogs.files import FileChoosers, FileQuestions
+from kirigami_studio.gui.messages import Message, Tone
+from kirigami_studio.gui.theme import DARK, LIGHT
+from kirigami_studio.gui.views.layout_view import Overlay
+from kirigami_studio.gui.views.target_view import Tool
+
+if TYPE_CHECKING:
+    from kirigami_studio.gui.dialogs.guide import GuideWindow
+    from kirigami_studio.gui.dialogs.library_picker import LibraryPicker
+    from kirigami_studio.gui.main_window import MainWindow
+
+OVERLAY_ACTIONS = {
+    "show_target": Overlay.TARGET,
+    "show_mismatch": Overlay.MISMATCH,
+    "show_faults": Overlay.FAULTS,
+}
+
+
+class Commands(QObject):
+    """Carries out the window's actions; asks for files and guards unsaved work."""
+
+    def __init__(self, window: MainWindow, controller: Controller) -> None:
+        super().__init__(window)
+        self.window = window
+        self.controller = controller
+        self.files: FileQuestions = FileChoosers(window)
+        self.guide: GuideWindow | None = None
+        self.picker: LibraryPicker | None = None
+        self._closing = False
+        self._connect_actions()
+
+    def _connect_actions(self) -> None:
+        window, controller, actions = self.window, self.controller, self.window.actions_
+        bar = window.stage.deployment
+        commands: dict[str, Callable[[], object]] = {
+            "new": lambda: self.guard("start a new project", controller.new_project),
+            "open_project": lambda: self.guard("open another project", self.ask_project),
+            "save": self.save,
+            "save_as": self.save_as,
+            "open_target": self.ask_target,
+            "library": self.show_library,
+            "export": self.export,
+            "quit": window.close,
+            "undo": controller.undo,
+            "redo": controller.redo,
+            "freehand": partial(window.target.set_tool, Tool.FREEHAND),
+            "polygon": partial(window.target.set_tool, Tool.POLYGON),
+            "clear": controller.clear_target,
+            "generate": controller.generate,
+            "cancel": controller.cancel,
+            "next": partial(self._walk, 1),
+            "previous": partial(self._walk, -1),
+            "play": self._play,
+            "to_flat": partial(bar.set_phi, math.pi),
+            "to_target": self._to_target,
+            "fit": window.stage.view.fit,
+            "theme": lambda: window.set_theme(LIGHT if window.palette_.dark else DARK),
+            "guide": self.show_guide,
+        }
+        for name, command in commands.items():
+            actions[name].triggered.connect(lambda _=False, command=command: command())
+        for name, overlay in OVERLAY_ACTIONS.items():
+            actions[name].setChecked(True)
+            actions[name].toggled.connect(window.stage.toggles[overlay].setChecked)
+
+    def ask_target(self) -> None:
+        """Open a target file of the user's choice."""
+        path = self.files.target()
+        if path is not None:
+            self.controller.open_target(str(path))
+
+    def take_file(self, name: str) -> None:
+        """Open a dropped file: a project or a target."""
+        if Path(name).suffix.lower() == ".kiri":
+            self.guard("open another project", lambda: self.controller.open_project(Path(name)))
+        else:
+            self.controller.open_target(name)
+
+    def ask_project(self) -> None:
+        """Open a project of the user's choice."""
+        path = self.files.project()
+        if path is not None:
+            self.controller.open_project(path)
+
+    def save(self) -> None:
+        """Save where the project lives; ask when it has no place yet."""
+        if self.controller.path is None:
+            self.save_as()
+        else:
+            self.controller.save(self.controller.path)
+
+    def save_as(self) -> None:
+        """Save in a place of the user's choice."""
+        path = self.files.save(f"{self._name()}.kiri")
+        if path is not None:
+            self.controller.save(path)
+
+    def export(self) -> None:
+        """Write the cut file in a place of the user's choice."""
+        if self.controller.stage is None:
+            self.controller.message.emit(Message("There is no design to export yet; generate one first.", Tone.HINT))
+            return
+        path = self.files.dxf(f"{self._name()}.dxf")
+        if path is not None:
+            self.controller.export_dxf(path)
+
+    def show_library(self) -> None:
+        """Open the popup with the library's silhouettes."""
+        from kirigami_studio.gui.dialogs.library_picker import LibraryPicker
+
+        self.picker = LibraryPicker(self.window, self.window.palette_)
+        self.picker.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+        self.picker.chosen.connect(self.controller.open_target)
+        self.picker.show_below(self.window.target.buttons["library"])
+
+    def show_guide(self) -> None:
+        """Open the guide, or bring it to the front."""
+        from kirigami_studio.gui.dialogs.guide import GuideWindow
+
+        if self.guide is None:
+            self.guide = GuideWindow(self.window)
+        self.guide.show()
+        self.guide.raise_()
+        self.guide.activateWindow()
+
+    def _play(self) -> None:
+        """Space plays, unless a focused button or list of choices has a better claim to the key."""
+        focused = self.window.focusWidget()
+        if isinstance(focused, QAbstractButton):
+            focused.click()
+        elif isinstance(focused, QComboBox):
+            focused.showPopup()
+        else:
+            self.window.stage.deployment.play.toggle()
+
+    def _to_target(self) -> None:
+        stage = self.controller.stage
+        if stage is not None:
+            self.window.stage.deployment.set_phi(stage.design.phi_target)
+
+    def _walk(self, step: int) -> None:
+        view = self.window.gallery.view
+        row = view.currentIndex().row() + step
+        if 0 <= row < view.model_.rowCount():
+            view.setCurrentIndex(view.model_.index(row, 0))
+
+    # unsaved work --------------------------------------------------------------------------------------------------
+
+    def guard(self, purpose: str, then: Callable[[], None]) -> None:
+        """Do something that forgets the document; with unsaved changes ask in the message bar first."""
+        if not self.controller.history.unsaved:
+            then()
+            return
+        self.controller.message.emit(
+            Message(
+                f"This project has unsaved changes. Save them before you {purpose}?",
+                Tone.WARNING,
+                actions=(("Save first", self.save), (f"{purpose.capitalize()} without saving", then)),
+            )
+        )
+
+    def may_close(self) -> bool:
+        """Whether the window may close now; asks in the message bar when work would be lost."""
+        if self._closing or not self.controller.history.unsaved:
+            return True
+        self.controller.message.emit(
+            Message(
+                "This project has unsaved changes. Save them before you quit?",
+                Tone.WARNING,
+                actions=(("Save and quit", self._save_and_quit), ("Quit without saving", self._quit)),
+            )
+        )
+        return False
+
+    def _save_and_quit(self) -> None:
+        self.controller.saved.connect(lambda _: self._quit())
+        self.save()
+
+    def _quit(self) -> None:
+        self._closing = True
+        self.window.close()
+
+    def _name(self) -> str:
+        if self.controller.path is not None:
+            return self.controller.path.stem
+        target = self.controller.document.target
+        return target.name if target is not None else "untitled"

@@ -1,0 +1,80 @@
+"""From the design on the stage to its cut plan and cut file, planned anew whenever a number changes."""
+
+from __future__ import annotations
+
+from functools import partial
+from pathlib import Path
+
+from PySide6.QtCore import QObject, QTimer, Signal
+
+from kirigami_studio.gui.jobs import steps
+from kirigami_studio.gui.jobs.board import Board, Ears
+from kirigami_studio.gui.messages import Message, Tone
+from kirigami_studio.lattice.deployment import Deployment
+from kirigami_studio.project.settings import FabricationSettings
+
+#: Changes that follow each other faster than this (ms) lead to one plan.
+PLAN_DELAY_MS = 120
+
+
+class Cutting(QObject):
+    """Keeps one plan up to date and writes files."""
+
+    planned = Signal(object)  #: Planned or None
+    refused = Signal(str)
+    exported = Signal(object)  #: Path
+    message = Signal(object)  #: Message
+    status = Signal(str)
+
+    def __init__(self, board: Board, parent: QObject) -> None:
+        super().__init__(parent)
+        self._board = board
+        self._job: int | None = None
+        self._wanted: tuple[Deployment, FabricationSettings] | None = None
+        self._timer = QTimer(self)
+        self._timer.setSingleShot(True)
+        self._timer.setInterval(PLAN_DELAY_MS)
+        self._timer.timeout.connect(self._plan)
+
+    def plan_soon(self, deployment: Deployment | None, settings: FabricationSettings) -> None:
+        """Plan this design, unless another wish comes first; None means that there is nothing to cut."""
+        self._wanted = None if deployment is None else (deployment, settings)
+        self._timer.start()
+
+    def close(self) -> None:
+        """Plan no more."""
+        self._timer.stop()
+
+    def _plan(self) -> None:
+        if self._job is not None:
+            self._board.abandon(self._job)
+            self._job = None
+        if self._wanted is None:
+            self.planned.emit(None)
+            return
+        ears = Ears(self.planned.emit, on_failed=lambda sentence, _: self.refused.emit(sentence))
+        self._job = self._board.start("planning the cuts", partial(steps.planning, *self._wanted), ears)
+
+    def export(self, deployment: Deployment, settings: FabricationSettings, path: Path) -> None:
+        """Write the cut file."""
+        self.status.emit(f"Writing {path.name} …")
+        work = partial(steps.exporting, deployment, settings, path)
+        self._board.start(f"writing {path.name}", work, Ears(self._written, on_failed=self._not_written))
+
+    def _written(self, report: object) -> None:
+        if not isinstance(report, steps.Exported):
+            return
+        path, plan, check = report.path, report.planned.plan, report.planned.report
+        details = "\n".join([str(path), *(problem.text for problem in check.problems), *plan.notes])
+        if check.ok:
+            sentence, tone = f"{path.name} was written and read back: {len(plan.paths)} cuts, no fault.", Tone.DONE
+        else:
+            sentence = f"{path.name} was written, but cutting it would fail: {check.problems[0].text}"
+            tone = Tone.WARNING
+        self.status.emit(f"Exported {path}: {len(plan.paths)} cuts, {plan.cut_length_mm:.0f} mm.")
+        self.exported.emit(path)
+        self.message.emit(Message(sentence, tone, details))
+
+    def _not_written(self, sentence: str, trace: str) -> None:
+        self.status.emit("The cut file was not written.")
+        self.message.emit(Message(sentence, Tone.ERROR, trace))

@@ -1,0 +1,97 @@
+"""One run of the generator as the window knows it: at most one at a time, started, watched, stopped."""
+
+from __future__ import annotations
+
+from functools import partial
+
+from PySide6.QtCore import QObject, Signal
+
+from kirigami_studio import __version__
+from kirigami_studio.gui.jobs import steps
+from kirigami_studio.gui.jobs.board import Board, Ears
+from kirigami_studio.gui.shelf import Shelf
+from kirigami_studio.pipeline.events import Finished, Progress, Started
+from kirigami_studio.pipeline.request import Request
+
+#: Steps of the fit on the exact geometry that every sample gets, as on the command line: about 0.1 s at 10 x 10.
+POLISH_STEPS = 15
+
+
+class DesignRun(QObject):
+    """Turns the pipeline's events into signals and decoded entries."""
+
+    started = Signal(int)
+    progressed = Signal(int, int, str)
+    found = Signal(object)  #: Entry
+    completed = Signal(object, dict)  #: Result and its provenance
+    cancelled = Signal()
+    failed = Signal(str, str)  #: sentence, trace
+    ended = Signal(bool)  #: whether it was completed; comes before the three above
+
+    def __init__(self, board: Board, shelf: Shelf, parent: QObject) -> None:
+        super().__init__(parent)
+        self._board = board
+        self._shelf = shelf
+        self._number: int | None = None
+        self._digest = ""
+
+    @property
+    def running(self) -> bool:
+        return self._number is not None
+
+    def start(self, request: Request) -> None:
+        """Begin; the caller has made sure that nothing runs."""
+        ears = Ears(self._report, self._finish, self._cancel, self._fail)
+        self._number = self._board.start("generating designs", partial(steps.generating, request), ears)
+        self.started.emit(request.k)
+
+    def cancel(self) -> None:
+        """Ask it to stop at its next candidate."""
+        if self._number is not None:
+            self._board.cancel(self._number)
+
+    def abandon(self) -> None:
+        """Stop it and forget what it would still say."""
+        if self._number is not None:
+            self._board.abandon(self._number)
+            self._over(completed=False)
+
+    def _report(self, report: object) -> None:
+        if isinstance(report, Progress):
+            self.progressed.emit(report.done, report.total, report.message)
+        elif isinstance(report, Started):
+            self.progressed.emit(0, report.total, f"Starting {report.total} designs")
+        elif isinstance(report, steps.Decoded):
+            self._shelf.put(report.candidate, report.deployment)
+            self.found.emit(self._shelf.entry(report.candidate))
+        elif isinstance(report, Finished):
+            self._over(completed=True)
+            self.completed.emit(report.result, provenance(report.result.request, self._digest))
+        elif isinstance(report, steps.ModelFound):
+            self._digest = report.digest
+
+    def _finish(self) -> None:
+        if self.running:  # the generator ended without a result
+            self._over(completed=False)
+
+    def _cancel(self) -> None:
+        self._over(completed=False)
+        self.cancelled.emit()
+
+    def _fail(self, sentence: str, trace: str) -> None:
+        self._over(completed=False)
+        self.failed.emit(sentence, trace)
+
+    def _over(self, completed: bool) -> None:
+        self._number = None
+        self.ended.emit(completed)
+
+
+def provenance(request: Request, digest: str) -> dict[str, str]:
+    """Where a run's designs come from, for the project file."""
+    return {
+        "application": f"kirigami-studio {__version__}",
+        "model": request.variant,
+        "model_sha256": digest,
+        "polish": str(request.polish),
+    }

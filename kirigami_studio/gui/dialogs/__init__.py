@@ -1,0 +1,1 @@
+"""What asks: file choosers, the library, the guide.  Dialogs ask, the controller does."""

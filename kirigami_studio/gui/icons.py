@@ -1,0 +1,50 @@
+"""The program's own line icons, tinted for the palette and sharp at every screen scale."""
+
+from __future__ import annotations
+
+from functools import cache
+
+from PySide6.QtCore import QByteArray, QRectF, QSize, Qt
+from PySide6.QtGui import QIcon, QPainter, QPixmap
+from PySide6.QtSvg import QSvgRenderer
+
+from kirigami_studio.foundation.resources import resource
+from kirigami_studio.gui.theme import Palette
+
+#: Edge lengths (pixels) that are rendered: 16, 20 and 24 at 100 %, 200 % and 300 % scale.
+SIZES = (16, 20, 24, 32, 40, 48, 60, 72)
+
+
+@cache
+def source(name: str) -> str:
+    """Return the SVG text of one bundled icon, drawn in ``currentColor``."""
+    return resource("icons", f"{name}.svg").read_text(encoding="utf-8")
+
+
+def pixmap(name: str, colour: str, size: int, ratio: float = 1.0) -> QPixmap:
+    """Render one icon in one colour.
+
+    Parameters
+    ----------
+    size : int, logical pixels
+    ratio : float
+        Device pixels per logical pixel.
+    """
+    renderer = QSvgRenderer(QByteArray(source(name).replace("currentColor", colour).encode()))
+    edge = max(1, round(size * ratio))
+    result = QPixmap(QSize(edge, edge))
+    result.fill(Qt.GlobalColor.transparent)
+    painter = QPainter(result)
+    renderer.render(painter, QRectF(0, 0, edge, edge))
+    painter.end()
+    result.setDevicePixelRatio(ratio)
+    return result
+
+
+def icon(name: str, palette: Palette, colour: str | None = None) -> QIcon:
+    """Return the icon for buttons and menus: text colour when enabled, faint when disabled."""
+    result = QIcon()
+    for size in SIZES:
+        result.addPixmap(pixmap(name, colour or palette.text, size), QIcon.Mode.Normal)
+        result.addPixmap(pixmap(name, palette.disabled, size), QIcon.Mode.Disabled)
+    return result

@@ -1,0 +1,102 @@
+"""Starts jobs and brings their reports back into the window's thread."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from PySide6.QtCore import QObject, QThread, Signal, Slot
+
+from kirigami_studio.gui.jobs.worker import Job, Steps, Worker
+
+
+def _ignore(*_: object) -> None:
+    """Nobody asked."""
+
+
+@dataclass(frozen=True, slots=True)
+class Ears:
+    """Who is told about a job, in the window's thread."""
+
+    on_report: Callable[[object], None] = _ignore
+    on_finished: Callable[[], None] = _ignore
+    on_cancelled: Callable[[], None] = _ignore
+    on_failed: Callable[[str, str], None] = _ignore
+
+
+class Board(QObject):
+    """Owns the worker thread; :meth:`close` ends it."""
+
+    idle = Signal()
+
+    def __init__(self, parent: QObject | None = None) -> None:
+        super().__init__(parent)
+        self._numbers = itertools.count(1)
+        self._open: dict[int, tuple[Job, Ears]] = {}
+        self._thread = QThread(self)
+        self._thread.setObjectName("kirigami-worker")
+        self._worker = Worker()
+        self._worker.moveToThread(self._thread)
+        self._worker.reported.connect(self._report)
+        self._worker.finished.connect(self._finish)
+        self._worker.cancelled.connect(self._cancel)
+        self._worker.failed.connect(self._fail)
+        self._thread.start()
+
+    @property
+    def busy(self) -> bool:
+        """Whether any job is open."""
+        return bool(self._open)
+
+    def start(self, name: str, steps: Steps, ears: Ears) -> int:
+        """Queue a job and return its number; ``name`` follows the word "while" in messages."""
+        job = Job(next(self._numbers), name, steps)
+        self._open[job.number] = (job, ears)
+        self._worker.take(job)
+        return job.number
+
+    def cancel(self, number: int) -> None:
+        """Ask a job to stop at its next report; unknown and ended jobs are left alone."""
+        if number in self._open:
+            self._open[number][0].flag.set()
+
+    def abandon(self, number: int) -> None:
+        """Cancel a job and stop listening to it: its place was taken by a newer one."""
+        if number in self._open:
+            job, _ = self._open[number]
+            job.flag.set()
+            self._open[number] = (job, Ears())
+
+    def close(self) -> None:
+        """Stop everything and wait for the thread to end."""
+        for job, _ in self._open.values():
+            job.flag.set()
+        self._open.clear()
+        self._thread.quit()
+        self._thread.wait()
+
+    @Slot(int, object)
+    def _report(self, number: int, report: object) -> None:
+        if number in self._open:
+            self._open[number][1].on_report(report)
+
+    @Slot(int)
+    def _finish(self, number: int) -> None:
+        self._close_job(number, lambda ears: ears.on_finished())
+
+    @Slot(int)
+    def _cancel(self, number: int) -> None:
+        self._close_job(number, lambda ears: ears.on_cancelled())
+
+    @Slot(int, str, str)
+    def _fail(self, number: int, sentence: str, trace: str) -> None:
+        self._close_job(number, lambda ears: ears.on_failed(sentence, trace))
+
+    def _close_job(self, number: int, tell: Callable[[Ears], None]) -> None:
+        if number not in self._open:
+            return
+        _, ears = self._open.pop(number)
+        tell(ears)
+        if not self._open:
+            self.idle.emit()

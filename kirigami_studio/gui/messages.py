@@ -1,0 +1,37 @@
+"""A sentence for the user, with its weight and what lies behind it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from enum import Enum
+
+
+class Tone(Enum):
+    """How a message looks; the value is the icon's name."""
+
+    HINT = "info"
+    DONE = "check"
+    WARNING = "warning"
+    ERROR = "fault"
+
+
+@dataclass(frozen=True, slots=True)
+class Message:
+    """One message.
+
+    Attributes
+    ----------
+    sentence : str
+        What happened and what to try.
+    tone : Tone
+    details : str
+        Trace or list, shown when asked for.
+    actions : tuple of (label, callable)
+        What may be done about it, one button each.
+    """
+
+    sentence: str
+    tone: Tone = Tone.HINT
+    details: str = ""
+    actions: tuple[tuple[str, Callable[[], None]], ...] = ()

@@ -1,0 +1,1 @@
+"""Groups of controls around the canvases: they show a document and report gestures; the controller decides."""

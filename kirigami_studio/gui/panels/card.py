@@ -1,0 +1,103 @@
+"""The framed box that every panel of the window sits in."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import QSize, Qt
+from PySide6.QtGui import QPainter, QPaintEvent
+from PySide6.QtWidgets import (
+    QAbstractSpinBox,
+    QFrame,
+    QHBoxLayout,
+    QLabel,
+    QLayout,
+    QSizePolicy,
+    QToolButton,
+    QVBoxLayout,
+    QWidget,
+)
+
+TOOL_ICON = QSize(18, 18)
+INSET = 12
+
+
+class Card(QFrame):
+    """A titled box: a header row, then whatever is added to :attr:`body`."""
+
+    def __init__(self, title: str, parent: QWidget | None = None, right_inset: int = INSET) -> None:
+        super().__init__(parent)
+        self.setObjectName("card")
+        outer = QVBoxLayout(self)
+        outer.setContentsMargins(INSET, 8, right_inset, INSET)
+        outer.setSpacing(8)
+        self.header = QHBoxLayout()
+        self.header.setSpacing(4)
+        self.title = QLabel(title)
+        self.title.setObjectName("cardTitle")
+        self.title.setMinimumHeight(30)
+        self.header.addWidget(self.title, 1)
+        self.body = QVBoxLayout()
+        self.body.setSpacing(8)
+        outer.addLayout(self.header)
+        outer.addLayout(self.body, 1)
+
+
+def tool_button(name: str, tip: str, checkable: bool = False) -> QToolButton:
+    """A flat icon button; its icon is set when the theme is known."""
+    button = QToolButton()
+    button.setObjectName(name)
+    button.setToolTip(tip)
+    button.setAccessibleName(tip.split(".")[0])
+    button.setCheckable(checkable)
+    button.setIconSize(TOOL_ICON)
+    button.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+    return button
+
+
+class ElidedLabel(QLabel):
+    """Small print on one line that ends in an ellipsis where the room ends; the tooltip has it whole."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.setObjectName("muted")
+        self.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
+
+    def setText(self, text: str) -> None:  # noqa: N802 - Qt's name
+        super().setText(text)
+        self.setToolTip(text)
+
+    def paintEvent(self, event: QPaintEvent) -> None:  # noqa: N802 - Qt's name
+        painter = QPainter(self)
+        painter.setPen(self.palette().color(self.foregroundRole()))
+        text = self.fontMetrics().elidedText(self.text(), Qt.TextElideMode.ElideMiddle, self.width())
+        painter.drawText(self.rect(), int(Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignLeft), text)
+        painter.end()
+
+
+def compact(box: QAbstractSpinBox, width: int = 62) -> None:
+    """Let a number field be as narrow as its column instead of as wide as its largest number."""
+    box.setMinimumWidth(width)
+    box.lineEdit().setTextMargins(6, 0, 0, 0)
+    box.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
+
+
+def captioned(text: str, buddy: QWidget, content: QWidget | QLayout) -> QVBoxLayout:
+    """A small caption above a control; ``buddy`` gets the focus when its mnemonic is pressed."""
+    caption = QLabel(text)
+    caption.setObjectName("muted")
+    caption.setBuddy(buddy)
+    column = QVBoxLayout()
+    column.setSpacing(3)
+    column.addWidget(caption)
+    if isinstance(content, QWidget):
+        column.addWidget(content)
+    else:
+        column.addLayout(content)
+    return column
+
+
+def muted_label(text: str = "") -> QLabel:
+    """Small print that wraps."""
+    label = QLabel(text)
+    label.setObjectName("muted")
+    label.setWordWrap(True)
+    return label

@@ -1,0 +1,166 @@
+"""Messages that do not stop the work: one line, details on demand, none lost."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from PySide6.QtCore import Qt
+from PySide6.QtGui import QGuiApplication
+from PySide6.QtWidgets import (
+    QFrame,
+    QHBoxLayout,
+    QLabel,
+    QPlainTextEdit,
+    QPushButton,
+    QSizePolicy,
+    QVBoxLayout,
+    QWidget,
+)
+
+from kirigami_studio.gui import icons
+from kirigami_studio.gui.messages import Message, Tone
+from kirigami_studio.gui.panels.card import tool_button
+from kirigami_studio.gui.theme import LIGHT, Palette
+
+#: Lines of details that are shown without scrolling.
+MOST_LINES = 9
+
+
+class MessageBar(QFrame):
+    """Shows the newest message; earlier ones stay a click away until they are closed."""
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.setObjectName("messageBar")
+        self._palette: Palette = LIGHT
+        self._messages: list[Message] = []
+        self._at = 0
+        self.icon = QLabel()
+        self.sentence = QLabel()
+        self.sentence.setWordWrap(True)
+        self.sentence.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
+        self.sentence.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
+        self.details = QPushButton("Details")
+        self.details.setObjectName("link")
+        self.details.setCheckable(True)
+        self.copy = tool_button("copyMessage", "Copy the message with its details.")
+        self.previous = tool_button("previousMessage", "Earlier message.")
+        self.position = QLabel()
+        self.position.setObjectName("muted")
+        self.next = tool_button("nextMessage", "Later message.")
+        self.shut = tool_button("closeMessage", "Close this message.")
+        self.trace = QPlainTextEdit()
+        self.trace.setReadOnly(True)
+        self.trace.setAccessibleName("Details of the message")
+        self._actions = QHBoxLayout()
+        self._actions.setSpacing(6)
+        self._lay_out()
+        self.details.toggled.connect(self._show_details)
+        self.copy.clicked.connect(self._copy)
+        self.previous.clicked.connect(lambda: self._go(self._at - 1))
+        self.next.clicked.connect(lambda: self._go(self._at + 1))
+        self.shut.clicked.connect(self.close_message)
+        self.hide()
+
+    def _lay_out(self) -> None:
+        line = QHBoxLayout()
+        line.setSpacing(8)
+        line.addWidget(self.icon, 0, Qt.AlignmentFlag.AlignVCenter)
+        line.addWidget(self.sentence, 1)
+        line.addLayout(self._actions)
+        for part in (self.details, self.previous, self.position, self.next, self.copy, self.shut):
+            line.addWidget(part, 0, Qt.AlignmentFlag.AlignVCenter)
+        column = QVBoxLayout(self)
+        column.setContentsMargins(12, 5, 6, 5)
+        column.setSpacing(4)
+        column.addLayout(line)
+        column.addWidget(self.trace)
+        self.trace.hide()
+
+    @property
+    def messages(self) -> tuple[Message, ...]:
+        """All open messages, oldest first."""
+        return tuple(self._messages)
+
+    def add(self, message: Message) -> None:
+        """Show a message; an equal one that is still open is not repeated."""
+        if message in self._messages:
+            self._go(self._messages.index(message))
+            return
+        # A hint or a success has had its say once something newer comes; errors and warnings stay.
+        self._messages = [one for one in self._messages if one.tone in (Tone.ERROR, Tone.WARNING)]
+        self._messages.append(message)
+        self._go(len(self._messages) - 1)
+
+    def close_message(self) -> None:
+        """Close the message that is shown."""
+        if self._messages:
+            del self._messages[self._at]
+        self._go(min(self._at, len(self._messages) - 1))
+
+    def dismiss(self, *tones: Tone) -> None:
+        """Close all messages of these tones."""
+        self._messages = [one for one in self._messages if one.tone not in tones]
+        self._go(len(self._messages) - 1)
+
+    def set_palette(self, palette: Palette) -> None:
+        """Draw in other colours."""
+        self._palette = palette
+        for button, name in (
+            (self.copy, "copy"),
+            (self.previous, "previous"),
+            (self.next, "next"),
+            (self.shut, "close"),
+        ):
+            button.setIcon(icons.icon(name, palette))
+        self._go(self._at)
+
+    def _go(self, index: int) -> None:
+        self.setVisible(bool(self._messages))
+        if not self._messages:
+            self._at = 0
+            return
+        self._at = min(max(index, 0), len(self._messages) - 1)
+        message = self._messages[self._at]
+        self.sentence.setText(message.sentence)
+        self.trace.setPlainText(message.details)
+        self.details.setVisible(bool(message.details))
+        self.details.setChecked(False)
+        several = len(self._messages) > 1
+        for part in (self.previous, self.position, self.next):
+            part.setVisible(several)
+        self.position.setText(f"{self._at + 1} of {len(self._messages)}")
+        self.previous.setEnabled(self._at > 0)
+        self.next.setEnabled(self._at < len(self._messages) - 1)
+        colour = self._palette.accent if message.tone in (Tone.HINT, Tone.DONE) else self._palette.warning
+        self.icon.setPixmap(icons.pixmap(message.tone.value, colour, 20, self.devicePixelRatioF()))
+        self._show_actions(message)
+        self.setProperty("tone", message.tone.value)
+        self.style().unpolish(self)
+        self.style().polish(self)
+
+    def _show_actions(self, message: Message) -> None:
+        while (item := self._actions.takeAt(0)) is not None:
+            button = item.widget()
+            if button is not None:
+                button.hide()
+                button.deleteLater()
+        for label, act in message.actions:
+            choice = QPushButton(label)
+            choice.clicked.connect(lambda _=False, act=act: self._act(act, message))
+            self._actions.addWidget(choice)
+
+    def _act(self, act: Callable[[], None], message: Message) -> None:
+        if message in self._messages:
+            self._messages.remove(message)
+        self._go(len(self._messages) - 1)
+        act()
+
+    def _show_details(self, shown: bool) -> None:
+        lines = min(max(self.trace.blockCount(), 2), MOST_LINES)
+        self.trace.setFixedHeight(lines * self.trace.fontMetrics().lineSpacing() + 18)
+        self.trace.setVisible(shown)
+
+    def _copy(self) -> None:
+        message = self._messages[self._at]
+        QGuiApplication.clipboard().setText(f"{message.sentence}\n\n{message.details}".strip())

@@ -1,0 +1,150 @@
+"""How the next run searches: grid, angle, number of candidates, seed, generator."""
+
+from __future__ import annotations
+
+import math
+import secrets
+
+from PySide6.QtCore import QSignalBlocker, Signal
+from PySide6.QtWidgets import QComboBox, QDoubleSpinBox, QHBoxLayout, QLabel, QSizePolicy, QSpinBox, QWidget
+
+from kirigami_studio.gui import icons
+from kirigami_studio.gui.panels.card import Card, captioned, compact, tool_button
+from kirigami_studio.gui.theme import Palette
+from kirigami_studio.lattice.ratio_field import LARGEST_GRID, SMALLEST_GRID
+from kirigami_studio.pipeline.request import LARGEST_K
+from kirigami_studio.project.settings import DesignSettings
+
+LARGEST_SEED = 2**31 - 1
+
+#: What is known about a generator by its name; others are listed by name alone.
+VARIANTS = {
+    "prior": ("Prior", "Learned from random sheets: the widest choice."),
+    "accuracy": ("Accuracy", "Fine-tuned for the closest match."),
+    "regularity": ("Regularity", "Fine-tuned for even panels that are easy to cut."),
+    "balanced": ("Balanced", "Fine-tuned for match and evenness together."),
+}
+
+
+class SettingsPanel(Card):
+    """Reports each changed field by name; shows whatever the document holds."""
+
+    changed = Signal(dict)  #: field of DesignSettings -> value
+    edited = Signal()  #: a field was left
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__("Design", parent)
+        tip = "Voids from {}. More voids follow the target more closely but are smaller ({} to {})."
+        self.rows = _whole(
+            "rows", SMALLEST_GRID, LARGEST_GRID, tip.format("top to bottom", SMALLEST_GRID, LARGEST_GRID)
+        )
+        self.columns = _whole(
+            "columns", SMALLEST_GRID, LARGEST_GRID, tip.format("left to right", SMALLEST_GRID, LARGEST_GRID)
+        )
+        self.candidates = _whole(
+            "candidates", 1, LARGEST_K, f"Number of designs to generate and compare (1 to {LARGEST_K})."
+        )
+        self.seed = _whole(
+            "seed", 0, LARGEST_SEED, "Start of the random numbers: the same seed gives the same designs."
+        )
+        self.angle = QDoubleSpinBox()
+        self.angle.setObjectName("targetAngle")
+        self.angle.setRange(0.0, 179.0)
+        self.angle.setDecimals(1)
+        self.angle.setSuffix("°")
+        self.angle.setAccessibleName("Target angle in degrees")
+        self.angle.setToolTip("Deployment angle (degrees) at which the sheet shows the target; 0° is fully turned.")
+        self.dice = tool_button("newSeed", "New random seed.")
+        self.dice.setFixedSize(29, 29)
+        self.variant = QComboBox()
+        self.variant.setObjectName("variant")
+        self.variant.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
+        self.variant.setAccessibleName("Generator variant")
+        self._lay_out()
+        self.set_variants(("prior",))
+        self._connect()
+
+    def _lay_out(self) -> None:
+        grid = _side_by_side(self.rows, QLabel("\N{MULTIPLICATION SIGN}"), self.columns)
+        seed = _side_by_side(self.seed, self.dice)
+        first, second = QHBoxLayout(), QHBoxLayout()
+        for row in (first, second):
+            row.setSpacing(10)
+            self.body.addLayout(row)
+        first.addLayout(captioned("&Grid (voids)", self.rows, grid), 5)
+        first.addLayout(captioned("&Angle", self.angle, self.angle), 3)
+        first.addLayout(captioned("Desi&gns", self.candidates, self.candidates), 3)
+        second.addLayout(captioned("&Seed", self.seed, seed), 1)
+        second.addLayout(captioned("&Model", self.variant, self.variant), 1)
+
+    def _connect(self) -> None:
+        self.rows.valueChanged.connect(lambda: self.changed.emit({"grid": (self.rows.value(), self.columns.value())}))
+        self.columns.valueChanged.connect(
+            lambda: self.changed.emit({"grid": (self.rows.value(), self.columns.value())})
+        )
+        self.angle.valueChanged.connect(lambda value: self.changed.emit({"phi": math.radians(value)}))
+        self.candidates.valueChanged.connect(lambda value: self.changed.emit({"k": value}))
+        self.seed.valueChanged.connect(lambda value: self.changed.emit({"seed": value}))
+        self.variant.activated.connect(lambda _: self.changed.emit({"variant": self.variant.currentData()}))
+        self.dice.clicked.connect(lambda: self.seed.setValue(secrets.randbelow(1_000_000)))
+        for box in (self.rows, self.columns, self.angle, self.candidates, self.seed):
+            box.setKeyboardTracking(False)
+            compact(box, 54)
+            box.editingFinished.connect(self.edited)
+
+    def set_variants(self, names: tuple[str, ...]) -> None:
+        """Offer these generators; the chosen one stays."""
+        chosen = self.variant.currentData()
+        with QSignalBlocker(self.variant):
+            self.variant.clear()
+            for name in names:
+                title, about = VARIANTS.get(name, (name, ""))
+                self.variant.addItem(title, name)
+                self.variant.setItemData(self.variant.count() - 1, about, 3)
+            if chosen is not None:
+                self._choose_variant(chosen)
+
+    def show_settings(self, settings: DesignSettings) -> None:
+        """Show the document's settings without reporting them as gestures."""
+        values = (
+            (self.rows, settings.grid[0]),
+            (self.columns, settings.grid[1]),
+            (self.candidates, settings.k),
+            (self.seed, settings.seed),
+        )
+        for box, value in values:
+            with QSignalBlocker(box):
+                box.setValue(value)
+        with QSignalBlocker(self.angle):
+            self.angle.setValue(math.degrees(settings.phi))
+        with QSignalBlocker(self.variant):
+            self._choose_variant(settings.variant)
+
+    def _choose_variant(self, name: str) -> None:
+        index = self.variant.findData(name)
+        if index < 0:
+            self.variant.addItem(VARIANTS.get(name, (name, ""))[0], name)
+            index = self.variant.count() - 1
+        self.variant.setCurrentIndex(index)
+        self.variant.setToolTip(f"Which generator draws the designs. {VARIANTS.get(name, ('', ''))[1]}".strip())
+
+    def set_palette(self, palette: Palette) -> None:
+        """Draw in other colours."""
+        self.dice.setIcon(icons.icon("dice", palette))
+
+
+def _whole(name: str, low: int, high: int, tip: str) -> QSpinBox:
+    box = QSpinBox()
+    box.setObjectName(name)
+    box.setRange(low, high)
+    box.setToolTip(tip)
+    box.setAccessibleName(name.capitalize())
+    return box
+
+
+def _side_by_side(*widgets: QWidget) -> QHBoxLayout:
+    row = QHBoxLayout()
+    row.setSpacing(4)
+    for widget in widgets:
+        row.addWidget(widget, 1 if isinstance(widget, QSpinBox) else 0)
+    return row

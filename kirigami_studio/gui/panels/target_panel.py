@@ -1,0 +1,95 @@
+"""Where the target comes from: a file, the library, a stroke or a polygon."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import QSize, Signal
+from PySide6.QtWidgets import QHBoxLayout, QLabel, QSizePolicy, QWidget
+
+from kirigami_studio.gui import icons
+from kirigami_studio.gui.panels.card import Card, ElidedLabel, muted_label, tool_button
+from kirigami_studio.gui.theme import Palette
+from kirigami_studio.gui.views.target_view import TargetView, Tool
+from kirigami_studio.target.outline import Outline
+
+#: Tool button name, icon, tooltip, whether it stays down.
+BUTTONS = (
+    ("openTarget", "open", "Open a target file (Ctrl+O). PNG, JPG, BMP, SVG, DXF or JSON.", False),
+    ("library", "library", "Choose a silhouette from the library (Ctrl+L).", False),
+    ("freehand", "draw", "Draw freehand (D). One stroke; it is smoothed and closed.", True),
+    ("polygon", "polygon", "Draw a polygon (P). Click corners, Enter closes.", True),
+    ("clearTarget", "clear", "Clear the target. Undo brings it back.", False),
+)
+TOOLS = {"freehand": Tool.FREEHAND, "polygon": Tool.POLYGON}
+
+
+class TargetPanel(Card):
+    """The target view with its tools and the reader's notes."""
+
+    open_wanted = Signal()
+    library_wanted = Signal()
+    clear_wanted = Signal()
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__("Target", parent)
+        self.view = TargetView()
+        self.buttons = {}
+        for name, _, tip, checkable in BUTTONS:
+            self.buttons[name] = tool_button(name, tip, checkable)
+            self.header.addWidget(self.buttons[name])
+        self.facts = ElidedLabel()
+        self.size_ = QLabel()
+        self.size_.setObjectName("muted")
+        line = QHBoxLayout()
+        line.addWidget(self.facts, 1)
+        line.addWidget(self.size_)
+        self.notes = muted_label()
+        self.notes.setObjectName("warning")
+        self.notes.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
+        self.body.addWidget(self.view, 1)
+        self.body.addLayout(line)
+        self.body.addWidget(self.notes)
+        self.buttons["openTarget"].clicked.connect(self.open_wanted)
+        self.buttons["library"].clicked.connect(self.library_wanted)
+        self.buttons["clearTarget"].clicked.connect(self.clear_wanted)
+        for name, tool in TOOLS.items():
+            self.buttons[name].clicked.connect(lambda down, tool=tool: self.set_tool(tool if down else Tool.LOOK))
+        self.view.tool_left.connect(lambda: self.set_tool(Tool.LOOK))
+        self.show_target(None)
+
+    def set_tool(self, tool: Tool) -> None:
+        """Change what clicks on the target do."""
+        for name, own in TOOLS.items():
+            self.buttons[name].setChecked(own is tool)
+        self.view.set_tool(tool)
+
+    def show_target(self, outline: Outline | None) -> None:
+        """Show the document's target."""
+        self.set_tool(Tool.LOOK)
+        self.view.show_outline(outline)
+        self.buttons["clearTarget"].setEnabled(outline is not None)
+        self.facts.setVisible(outline is not None)
+        self.size_.setVisible(outline is not None)
+        notes = outline.notes if outline is not None else ()
+        self.notes.setText(notes[0] if len(notes) == 1 else "\n".join(f"• {note}" for note in notes[:3]))
+        self.notes.setToolTip("\n".join(notes))
+        self.notes.setVisible(bool(notes))
+        if outline is not None:
+            self.facts.setText(outline.name)
+            self.size_.setText(measured(outline))
+
+    def set_palette(self, palette: Palette) -> None:
+        """Draw in other colours."""
+        self.view.set_palette(palette)
+        for name, icon, _, _ in BUTTONS:
+            self.buttons[name].setIcon(icons.icon(icon, palette))
+
+    def minimumSizeHint(self) -> QSize:  # noqa: N802 - Qt's name
+        return QSize(250, 230)
+
+
+def measured(outline: Outline) -> str:
+    """Source size when it has a unit, else the number of corners."""
+    if outline.size is None or not outline.unit:
+        return f"{len(outline.points)} points"
+    width, height = outline.size
+    return f"{width:.4g} \N{MULTIPLICATION SIGN} {height:.4g} {outline.unit}"

@@ -1,0 +1,44 @@
+"""Paint the sheet: panels in two blues, so that the eye sees which way each one turns."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+from PySide6.QtCore import Qt
+from PySide6.QtGui import QColor, QPainter, QPen
+
+from kirigami_studio.gui.scene.paths import quad_paths
+from kirigami_studio.gui.theme import Palette
+
+FloatArray = npt.NDArray[np.float64]
+
+#: Panels smaller than this (pixels) get no line: it would swallow them.
+SMALLEST_LINED_PANEL = 5.0
+
+
+def paint_panels(painter: QPainter, panels: FloatArray, turns_left: npt.NDArray[np.bool_], palette: Palette) -> None:
+    """Fill all panels.
+
+    Parameters
+    ----------
+    panels : (K, 4, 2) float, pixels
+    turns_left : (K,) bool
+        Panels that turn counter-clockwise while the sheet opens get the lighter blue.
+    """
+    size = np.median(np.linalg.norm(panels[:, 2] - panels[:, 0], axis=-1)) if len(panels) else 0.0
+    line = QPen(Qt.PenStyle.NoPen)
+    if size >= SMALLEST_LINED_PANEL:
+        line = QPen(QColor(palette.panel_line), 1.0 if size > 14 else 0.6)
+        line.setJoinStyle(Qt.PenJoinStyle.MiterJoin)
+    for chosen, colour in ((~turns_left, palette.panel_even), (turns_left, palette.panel_odd)):
+        # A pen in the fill's colour keeps hairline gaps of antialiasing from showing between closed panels.
+        painter.setPen(line if line.style() != Qt.PenStyle.NoPen else QPen(QColor(colour), 0.5))
+        painter.setBrush(QColor(colour))
+        for path in quad_paths(panels[chosen]):
+            painter.drawPath(path)
+
+
+def turning_left(rows: int, columns: int) -> npt.NDArray[np.bool_]:
+    """Which of the (rows + 1)(columns + 1) panels turn counter-clockwise: those with I + J odd."""
+    odd: npt.NDArray[np.bool_] = np.add.outer(np.arange(rows + 1), np.arange(columns + 1)) % 2 == 1
+    return odd.reshape(-1)

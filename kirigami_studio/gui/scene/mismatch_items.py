@@ -1,0 +1,86 @@
+"""Where sheet and target differ, measured and hatched."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+from PySide6.QtCore import QPointF, Qt
+from PySide6.QtGui import QBrush, QColor, QPainter, QPen, QPixmap
+
+from kirigami_studio.gui.scene.frame import Frame
+from kirigami_studio.gui.scene.paths import area_path
+from kirigami_studio.gui.theme import Palette
+
+if TYPE_CHECKING:
+    from shapely.geometry.base import BaseGeometry
+
+FloatArray = npt.NDArray[np.float64]
+
+TINT_ALPHA = 64
+#: Horizontal distance of hatch lines, pixels.
+STRIPE_STEP = 8
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Mismatch:
+    """Both differences between a target and a sheet.
+
+    Attributes
+    ----------
+    missing, extra : shapely geometry, world
+        Target without sheet, and sheet without target.
+    missing_share, extra_share : float
+        Their areas as parts of the target's area.
+    """
+
+    missing: BaseGeometry
+    extra: BaseGeometry
+    missing_share: float
+    extra_share: float
+
+
+def mismatch(target: FloatArray, sheet: FloatArray) -> Mismatch:
+    """Compare two closed polygons (L, 2) in world units.
+
+    A sheet whose outline crosses itself is read as the area it covers.
+    """
+    import shapely  # 70 ms that the empty window need not pay
+
+    wanted = shapely.Polygon(target)
+    covered: BaseGeometry = shapely.Polygon(sheet)
+    if not covered.is_valid:
+        covered = shapely.make_valid(covered)
+    missing, extra = wanted.difference(covered), covered.difference(wanted)
+    return Mismatch(missing, extra, missing.area / wanted.area, extra.area / wanted.area)
+
+
+def paint_mismatch(painter: QPainter, areas: Mismatch, frame: Frame, palette: Palette) -> None:
+    """Hatch missing area one way in orange and extra area the other way in the sheet's contrast colour."""
+    ratio = painter.device().devicePixelRatio()
+    painter.setPen(Qt.PenStyle.NoPen)
+    for area, colour, rising in ((areas.missing, palette.missing, True), (areas.extra, palette.extra, False)):
+        painter.setBrush(QBrush(_stripes(colour, rising, ratio)))
+        painter.drawPath(area_path(area, frame))
+
+
+@lru_cache(maxsize=16)
+def _stripes(colour: str, rising: bool, ratio: float) -> QPixmap:
+    """One tile of tinted diagonal stripes; Qt's own hatch brushes get finer with the screen's scale."""
+    edge = round(STRIPE_STEP * ratio)
+    tile = QPixmap(edge, edge)
+    tint = QColor(colour)
+    tint.setAlpha(TINT_ALPHA)
+    tile.fill(tint)
+    painter = QPainter(tile)
+    painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+    painter.setPen(QPen(QColor(colour), 1.2 * ratio))
+    for shift in (-edge, 0, edge):  # the corners of the tile belong to its neighbours' stripes
+        ends = (edge, 0) if rising else (0, edge)
+        painter.drawLine(QPointF(shift - edge, 2 * ends[0] - ends[1]), QPointF(shift + 2 * edge, 2 * ends[1] - ends[0]))
+    painter.end()
+    tile.setDevicePixelRatio(ratio)
+    return tile

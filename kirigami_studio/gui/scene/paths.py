@@ -1,0 +1,63 @@
+"""Points in pixels -> painter paths."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+from PySide6.QtGui import QPainterPath
+
+from kirigami_studio.gui.scene.frame import Frame
+
+if TYPE_CHECKING:
+    from shapely.geometry.base import BaseGeometry
+
+FloatArray = npt.NDArray[np.float64]
+
+
+def line_path(points: FloatArray, closed: bool) -> QPainterPath:
+    """One polyline or polygon (L, 2), pixels; empty when there are no points."""
+    path = QPainterPath()
+    if len(points):
+        add_ring(path, points.tolist(), closed)
+    return path
+
+
+def add_ring(path: QPainterPath, points: list[list[float]], closed: bool = True) -> None:
+    """Append one ring or polyline to a path."""
+    path.moveTo(*points[0])
+    for x, y in points[1:]:
+        path.lineTo(x, y)
+    if closed:
+        path.closeSubpath()
+
+
+def quad_paths(quads: FloatArray) -> list[QPainterPath]:
+    """One path per quadrilateral: (K, 4, 2) pixels.
+
+    Qt's raster engine fills 625 small paths in a tenth of the time of one path with 625 parts (5 ms against 44 ms).
+    """
+    paths = []
+    for (ax, ay), (bx, by), (cx, cy), (dx, dy) in quads.reshape(-1, 4, 2).tolist():
+        path = QPainterPath()
+        path.moveTo(ax, ay)
+        path.lineTo(bx, by)
+        path.lineTo(cx, cy)
+        path.lineTo(dx, dy)
+        path.closeSubpath()
+        paths.append(path)
+    return paths
+
+
+def area_path(area: BaseGeometry, frame: Frame) -> QPainterPath:
+    """A polygon or many, with holes, in world units; lines and points that an intersection left over are skipped."""
+    path = QPainterPath()
+    from shapely.geometry import Polygon  # already loaded by whoever made the area
+
+    for part in getattr(area, "geoms", (area,)):
+        if not isinstance(part, Polygon) or part.is_empty:
+            continue
+        for ring in (part.exterior, *part.interiors):
+            add_ring(path, frame.to_pixels(np.asarray(ring.coords)[:-1]).tolist())
+    return path

@@ -1,0 +1,73 @@
+"""A deployment placed in the target's frame, at every angle."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+import numpy.typing as npt
+
+from kirigami_studio.evaluate.similarity import Similarity
+from kirigami_studio.gui.scene.frame import Bounds
+from kirigami_studio.lattice.deployment import Deployment
+
+FloatArray = npt.NDArray[np.float64]
+
+#: Angles at which the motion's extent is sampled; the extent is smooth in the angle.
+EXTENT_SAMPLES = 9
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PosedDesign:
+    """One design where the eye expects it: over its target at ``phi_target``, turning about its own middle elsewhere.
+
+    Attributes
+    ----------
+    deployment : Deployment
+    pose : Similarity
+        Layout frame at ``phi_target`` -> world.
+    phi_target : float, radians
+    """
+
+    deployment: Deployment
+    pose: Similarity
+    phi_target: float
+
+    def nodes(self, phi: float) -> FloatArray:
+        """All nodes at angle ``phi``: (N, 2) float, world."""
+        placed = self.pose.apply(self.deployment.nodes(phi))
+        centred: FloatArray = placed + (self._middle() - placed.mean(axis=0))
+        return centred
+
+    def _middle(self) -> FloatArray:
+        return _placed_middle(self)
+
+    def panels(self, nodes: FloatArray) -> FloatArray:
+        """Panel corners (K, 4, 2) out of :meth:`nodes`."""
+        return nodes[self.deployment.topology.panel_nodes].reshape(-1, 4, 2)
+
+    def outline(self, nodes: FloatArray, phi: float) -> FloatArray:
+        """Boundary polygon (L, 2) out of :meth:`nodes`."""
+        tables = self.deployment.topology
+        zipped = phi < 1e-9
+        boundary: FloatArray = nodes[tables.outline_at_zero if zipped else tables.outline_nodes]
+        return boundary
+
+    def to_world(self, place: tuple[float, float], phi: float) -> FloatArray:
+        """Map one place of the layout frame at ``phi`` to the world: (2,)."""
+        placed = self.pose.apply(self.deployment.nodes(phi)).mean(axis=0)
+        moved: FloatArray = self.pose.apply(np.asarray(place)) + (self._middle() - placed)
+        return moved
+
+    def bounds(self) -> Bounds:
+        """Box around the whole motion from pi to 0."""
+        angles = np.linspace(math.pi, 0.0, EXTENT_SAMPLES)
+        return Bounds.of(np.concatenate([self.nodes(float(phi)) for phi in angles]))
+
+
+@lru_cache(maxsize=512)
+def _placed_middle(design: PosedDesign) -> FloatArray:
+    middle: FloatArray = design.pose.apply(design.deployment.nodes(design.phi_target)).mean(axis=0)
+    return middle

@@ -1,0 +1,43 @@
+"""Decoded designs by candidate, so that undo, redo and a new choice draw at once."""
+
+from __future__ import annotations
+
+from collections import OrderedDict
+
+from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.gui.scene.posed import PosedDesign
+from kirigami_studio.gui.views.gallery_model import Entry
+from kirigami_studio.lattice.deployment import Deployment, deploy
+
+#: Designs kept; one of 10 x 10 voids takes about 15 kB.
+CAPACITY = 2048
+
+
+class Shelf:
+    """Keeps the most recently used motions."""
+
+    def __init__(self) -> None:
+        self._motions: OrderedDict[Candidate, Deployment] = OrderedDict()
+        self._entries: dict[Candidate, Entry] = {}
+
+    def put(self, candidate: Candidate, deployment: Deployment) -> None:
+        """Keep a motion that someone has decoded."""
+        self._motions[candidate] = deployment
+        self._motions.move_to_end(candidate)
+        while len(self._motions) > CAPACITY:
+            dropped, _ = self._motions.popitem(last=False)
+            self._entries.pop(dropped, None)
+
+    def missing(self, candidates: tuple[Candidate, ...]) -> tuple[Candidate, ...]:
+        """Those that have not been decoded yet."""
+        return tuple(candidate for candidate in candidates if candidate not in self._motions)
+
+    def entry(self, candidate: Candidate) -> Entry:
+        """The card of a candidate, posed for the angle it was scored at; decodes it when it must."""
+        if candidate not in self._entries:
+            if candidate not in self._motions:
+                self.put(candidate, deploy(candidate.field))
+            score = candidate.score
+            design = PosedDesign(self._motions[candidate], score.transform, score.phi)
+            self._entries[candidate] = Entry(candidate, design)
+        return self._entries[candidate]

@@ -1,0 +1,163 @@
+"""Two palettes, one look: every colour of the window and of the drawings comes from here.
+
+Blue is the sheet, orange the target: the pair that people with any colour vision tell apart.  Faults are black on
+yellow and carry a shape of their own, so that no meaning rests on colour alone.
+"""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+from string import Template
+
+from PySide6.QtCore import Qt
+from PySide6.QtGui import QColor, QGuiApplication, QPalette
+from PySide6.QtWidgets import QApplication
+
+from kirigami_studio.foundation.resources import resource
+
+
+@dataclass(frozen=True, slots=True)
+class Palette:
+    """Colours by role, as ``#rrggbb``.
+
+    ``window`` to ``muted`` and the accents dress widgets; ``canvas`` onwards is what the drawing code uses.
+    """
+
+    name: str
+    window: str
+    surface: str
+    raised: str
+    border: str
+    strong_border: str
+    text: str
+    muted: str
+    accent: str
+    accent_hover: str
+    accent_soft: str
+    on_accent: str
+    disabled: str
+    warning: str
+    warning_soft: str
+    error_soft: str
+    canvas: str
+    grid: str
+    panel_even: str
+    panel_odd: str
+    panel_line: str
+    target: str
+    target_fill: str
+    missing: str
+    extra: str
+    fault: str
+    fault_line: str
+
+    @property
+    def dark(self) -> bool:
+        return self.name == "dark"
+
+
+LIGHT = Palette(
+    name="light",
+    window="#eceff3",
+    surface="#ffffff",
+    raised="#f4f6f9",
+    border="#d9dfe6",
+    strong_border="#b9c3ce",
+    text="#18202a",
+    muted="#566271",
+    accent="#0a61b5",
+    accent_hover="#084f96",
+    accent_soft="#e1eefb",
+    on_accent="#ffffff",
+    disabled="#98a3af",
+    warning="#a34a00",
+    warning_soft="#fff1df",
+    error_soft="#fdebdc",
+    canvas="#fbfcfe",
+    grid="#e6ebf0",
+    panel_even="#8bb9e6",
+    panel_odd="#b3d2f1",
+    panel_line="#2b669f",
+    target="#d4610a",
+    target_fill="#f9dcc2",
+    missing="#e8822a",
+    extra="#0c2f5e",
+    fault="#ffd60a",
+    fault_line="#14110a",
+)
+
+DARK = Palette(
+    name="dark",
+    window="#13161a",
+    surface="#1b1f24",
+    raised="#242a31",
+    border="#313942",
+    strong_border="#475260",
+    text="#e8edf2",
+    muted="#9dabb8",
+    accent="#5aa9f5",
+    accent_hover="#7dbcf8",
+    accent_soft="#1a324b",
+    on_accent="#06131f",
+    disabled="#66727e",
+    warning="#ffb066",
+    warning_soft="#35260f",
+    error_soft="#3a2511",
+    canvas="#0f1215",
+    grid="#1c2127",
+    panel_even="#2c669f",
+    panel_odd="#4485c2",
+    panel_line="#0d1b2a",
+    target="#ff9d4d",
+    target_fill="#4a2f18",
+    missing="#ff9d4d",
+    extra="#cfe6ff",
+    fault="#ffd60a",
+    fault_line="#14110a",
+)
+
+PALETTES = {palette.name: palette for palette in (LIGHT, DARK)}
+
+
+def system_palette() -> Palette:
+    """Return the palette that fits the desktop's colour scheme; light when it does not say."""
+    return DARK if QGuiApplication.styleHints().colorScheme() == Qt.ColorScheme.Dark else LIGHT
+
+
+def style_sheet(palette: Palette) -> str:
+    """Return the bundled style sheet with this palette's colours filled in."""
+    template = Template(resource("styles", "studio.qss").read_text(encoding="utf-8"))
+    icons = resource("icons").as_posix()
+    return template.substitute(asdict(palette), icons=icons)
+
+
+def apply(application: QApplication, palette: Palette) -> None:
+    """Dress the whole application in one palette."""
+    application.setStyle("Fusion")
+    application.setPalette(_qt_palette(palette))
+    application.setStyleSheet(style_sheet(palette))
+
+
+def _qt_palette(palette: Palette) -> QPalette:
+    roles = QPalette.ColorRole
+    colours = {
+        roles.Window: palette.window,
+        roles.WindowText: palette.text,
+        roles.Base: palette.surface,
+        roles.AlternateBase: palette.raised,
+        roles.Text: palette.text,
+        roles.PlaceholderText: palette.muted,
+        roles.Button: palette.raised,
+        roles.ButtonText: palette.text,
+        roles.ToolTipBase: palette.raised,
+        roles.ToolTipText: palette.text,
+        roles.Highlight: palette.accent,
+        roles.HighlightedText: palette.on_accent,
+        roles.Link: palette.accent,
+    }
+    result = QPalette()
+    for role, colour in colours.items():
+        result.setColor(role, QColor(colour))
+    for role in (roles.WindowText, roles.Text, roles.ButtonText):
+        result.setColor(QPalette.ColorGroup.Disabled, role, QColor(palette.disabled))
+    return result

@@ -1,0 +1,1 @@
+"""Canvases and lists: they draw what they are shown and report gestures as signals; they never change the document."""

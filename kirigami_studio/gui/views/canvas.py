@@ -1,0 +1,182 @@
+"""What every drawing area shares: background grid, fit, zoom, pan and the text of its empty state."""
+
+from __future__ import annotations
+
+import math
+
+from PySide6.QtCore import QPointF, QRectF, QSize, Qt, Signal
+from PySide6.QtGui import QColor, QFont, QMouseEvent, QPainter, QPaintEvent, QPen, QPixmap, QResizeEvent, QWheelEvent
+from PySide6.QtWidgets import QSizePolicy, QWidget
+
+from kirigami_studio.gui import icons
+from kirigami_studio.gui.scene.frame import Bounds, Frame
+from kirigami_studio.gui.theme import LIGHT, Palette
+
+MARGIN = 28.0
+ZOOM_STEP = 1.2
+SMALLEST_ZOOM, LARGEST_ZOOM = 0.2, 60.0
+#: Distance of the background dots, pixels.
+GRID_STEP = 22
+ICON_EDGE = 40
+
+
+class Canvas(QWidget):
+    """Shows a scene in world units; subclasses say what is in it.
+
+    Subclasses override :meth:`scene_bounds`, :meth:`paint_scene` and :meth:`empty_state`.
+    """
+
+    zoom_changed = Signal(float)
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.palette_ = LIGHT
+        self._zoom = 1.0
+        self._shift = QPointF(0.0, 0.0)
+        self._grip: QPointF | None = None
+        self._background: tuple[tuple[int, int, float, str], QPixmap] | None = None
+        self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
+        self.setFocusPolicy(Qt.FocusPolicy.ClickFocus)
+
+    # what subclasses say -------------------------------------------------------------------------------------------
+
+    def scene_bounds(self) -> Bounds | None:
+        """World box to be shown; None when there is nothing yet."""
+        return None
+
+    def paint_scene(self, painter: QPainter, frame: Frame) -> None:
+        """Draw the scene."""
+
+    def paint_notes(self, painter: QPainter) -> None:
+        """Draw text on top, in pixels."""
+
+    def empty_state(self) -> tuple[str, str, str]:
+        """Icon, headline and hint shown while there is nothing."""
+        return "info", "", ""
+
+    # for everyone --------------------------------------------------------------------------------------------------
+
+    def set_palette(self, palette: Palette) -> None:
+        """Draw in other colours."""
+        self.palette_ = palette
+        self.update()
+
+    def frame(self) -> Frame | None:
+        """How the world appears now; None while there is nothing."""
+        bounds = self.scene_bounds()
+        if bounds is None:
+            return None
+        fitted = Frame.fitting(bounds, QRectF(self.rect()), min(MARGIN, 0.06 * min(self.width(), self.height())))
+        return fitted.zoomed(self._zoom, QRectF(self.rect()).center()).moved(self._shift.x(), self._shift.y())
+
+    def fit(self) -> None:
+        """Show everything again."""
+        self._zoom, self._shift = 1.0, QPointF(0.0, 0.0)
+        self.zoom_changed.emit(self._zoom)
+        self.update()
+
+    def zoom(self, factor: float, about: QPointF | None = None) -> None:
+        """Zoom, keeping the pixel ``about`` (the middle unless given) in place."""
+        wanted = min(max(self._zoom * factor, SMALLEST_ZOOM), LARGEST_ZOOM)
+        factor = wanted / self._zoom
+        middle = QRectF(self.rect()).center()
+        offset = (about or middle) - middle
+        self._shift = offset + (self._shift - offset) * factor
+        self._zoom = wanted
+        self.zoom_changed.emit(self._zoom)
+        self.update()
+
+    # events --------------------------------------------------------------------------------------------------------
+
+    def minimumSizeHint(self) -> QSize:  # noqa: N802 - Qt's name
+        return QSize(180, 140)
+
+    def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802 - Qt's name
+        super().resizeEvent(event)
+        self.update()
+
+    def wheelEvent(self, event: QWheelEvent) -> None:  # noqa: N802 - Qt's name
+        if self.scene_bounds() is None:
+            event.ignore()
+            return
+        self.zoom(math.pow(ZOOM_STEP, event.angleDelta().y() / 120.0), event.position())
+        event.accept()
+
+    def mousePressEvent(self, event: QMouseEvent) -> None:  # noqa: N802 - Qt's name
+        if event.button() in (Qt.MouseButton.LeftButton, Qt.MouseButton.MiddleButton):
+            self._grip = event.position()
+            event.accept()
+
+    def mouseMoveEvent(self, event: QMouseEvent) -> None:  # noqa: N802 - Qt's name
+        if self._grip is not None and self.scene_bounds() is not None:
+            self._shift += event.position() - self._grip
+            self._grip = event.position()
+            self.setCursor(Qt.CursorShape.ClosedHandCursor)
+            self.update()
+
+    def mouseReleaseEvent(self, event: QMouseEvent) -> None:  # noqa: N802 - Qt's name
+        self._grip = None
+        self.unsetCursor()
+
+    def mouseDoubleClickEvent(self, event: QMouseEvent) -> None:  # noqa: N802 - Qt's name
+        self.fit()
+
+    def paintEvent(self, event: QPaintEvent) -> None:  # noqa: N802 - Qt's name
+        painter = QPainter(self)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        self._paint_background(painter)
+        frame = self.frame()
+        if frame is None:
+            self._paint_empty(painter)
+        else:
+            self.paint_scene(painter, frame)
+        self.paint_notes(painter)
+        painter.end()
+
+    # drawing -------------------------------------------------------------------------------------------------------
+
+    def _paint_background(self, painter: QPainter) -> None:
+        key = (self.width(), self.height(), self.devicePixelRatioF(), self.palette_.name)
+        if self._background is None or self._background[0] != key:
+            self._background = (key, self._background_picture())
+        painter.drawPixmap(0, 0, self._background[1])
+
+    def _background_picture(self) -> QPixmap:
+        """Border and dots; kept, because a thousand round dots take longer to draw than the sheet."""
+        ratio = self.devicePixelRatioF()
+        picture = QPixmap(round(self.width() * ratio), round(self.height() * ratio))
+        picture.setDevicePixelRatio(ratio)
+        picture.fill(Qt.GlobalColor.transparent)
+        painter = QPainter(picture)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        painter.setPen(QPen(QColor(self.palette_.border), 1.0))
+        painter.setBrush(QColor(self.palette_.canvas))
+        painter.drawRoundedRect(QRectF(self.rect()).adjusted(0.5, 0.5, -0.5, -0.5), 7, 7)
+        pen = QPen(QColor(self.palette_.grid), 2.0)
+        pen.setCapStyle(Qt.PenCapStyle.RoundCap)
+        painter.setPen(pen)
+        columns = range(GRID_STEP // 2 + (self.width() % GRID_STEP) // 2, self.width() - 4, GRID_STEP)
+        rows = range(GRID_STEP // 2 + (self.height() % GRID_STEP) // 2, self.height() - 4, GRID_STEP)
+        painter.drawPoints([QPointF(x, y) for x in columns for y in rows])
+        painter.end()
+        return picture
+
+    def _paint_empty(self, painter: QPainter) -> None:
+        name, headline, hint = self.empty_state()
+        if not headline:
+            return
+        box = QRectF(self.rect()).adjusted(16, 0, -16, 0)
+        top = box.center().y() - 64
+        picture = icons.pixmap(name, self.palette_.strong_border, ICON_EDGE, self.devicePixelRatioF())
+        painter.drawPixmap(QPointF(box.center().x() - ICON_EDGE / 2, top), picture)
+        bold = QFont(self.font())
+        bold.setPointSizeF(bold.pointSizeF() * 1.15)
+        bold.setWeight(QFont.Weight.DemiBold)
+        flags = int(Qt.AlignmentFlag.AlignHCenter | Qt.AlignmentFlag.AlignTop | Qt.TextFlag.TextWordWrap)
+        painter.setFont(bold)
+        painter.setPen(QColor(self.palette_.text))
+        used = painter.boundingRect(QRectF(box.left(), top + 52, box.width(), 80), flags, headline)
+        painter.drawText(used, flags, headline)
+        painter.setFont(self.font())
+        painter.setPen(QColor(self.palette_.muted))
+        painter.drawText(QRectF(box.left(), used.bottom() + 6, box.width(), 120), flags, hint)

@@ -1,0 +1,161 @@
+"""Who tells whom: gestures of the panels to the controller, its news to the panels."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QObject
+from PySide6.QtGui import QAction
+
+from kirigami_studio.gui.commands import OVERLAY_ACTIONS, Commands
+from kirigami_studio.gui.controller import Controller
+from kirigami_studio.gui.messages import Tone
+from kirigami_studio.gui.views.gallery_model import Entry
+from kirigami_studio.gui.views.layout_view import Overlay
+from kirigami_studio.project.document import Document
+
+if TYPE_CHECKING:
+    from kirigami_studio.gui.main_window import MainWindow
+
+
+class Wiring(QObject):
+    """Connects one window with its controller and keeps what was shown last."""
+
+    def __init__(self, window: MainWindow, controller: Controller, commands: Commands) -> None:
+        super().__init__(window)
+        self.window = window
+        self.controller = controller
+        self.commands = commands
+        self._shown = Document()
+        self._connect_panels()
+        self._connect_controller()
+        self._show_document(controller.document, everything=True)
+        self._show_stage(None)
+        self._end_run(completed=False)
+        window.says.setText("Choose or draw a target to begin.")
+
+    # gestures ------------------------------------------------------------------------------------------------------
+
+    def _connect_panels(self) -> None:
+        window, controller = self.window, self.controller
+        window.target.open_wanted.connect(self.commands.ask_target)
+        window.target.library_wanted.connect(self.commands.show_library)
+        window.target.clear_wanted.connect(controller.clear_target)
+        window.target.view.file_dropped.connect(self.commands.take_file)
+        window.target.view.freehand_drawn.connect(controller.take_freehand)
+        window.target.view.polygon_drawn.connect(controller.take_polygon)
+        window.target.view.hint.connect(lambda text: window.says.setText(text) if text else None)
+        window.settings.changed.connect(lambda changes: controller.change_settings(**changes))
+        window.settings.edited.connect(controller.end_drag)
+        window.run.generate_wanted.connect(controller.generate)
+        window.run.cancel_wanted.connect(controller.cancel)
+        window.gallery.view.chosen.connect(controller.choose)
+        window.fabrication.changed.connect(lambda changes: controller.change_fabrication(**changes))
+        window.fabrication.edited.connect(controller.end_drag)
+        window.fabrication.export_wanted.connect(self.commands.export)
+        window.stage.overlays_changed.connect(self._show_overlay_actions)
+
+    def _connect_controller(self) -> None:
+        window, controller = self.window, self.controller
+        controller.document_changed.connect(self._show_document)
+        controller.stage_changed.connect(self._show_stage)
+        controller.gallery_reset.connect(self._show_gallery)
+        controller.candidate_found.connect(self._add_candidate)
+        controller.run.started.connect(self._show_run)
+        controller.run.progressed.connect(window.run.show_progress)
+        controller.run.ended.connect(self._end_run)
+        controller.cutting.planned.connect(window.fabrication.show_plan)
+        controller.cutting.refused.connect(window.fabrication.show_refusal)
+        controller.variants_known.connect(window.settings.set_variants)
+        controller.message.connect(window.messages.add)
+        controller.status.connect(window.says.setText)
+
+    # news ----------------------------------------------------------------------------------------------------------
+
+    def _show_document(self, document: Document, everything: bool = False) -> None:
+        window, before = self.window, self._shown
+        self._shown = document
+        if everything or document.target is not before.target:
+            window.target.show_target(document.target)
+            has_target = document.target is not None
+            window.run.show_ready(has_target)
+            window.actions_["generate"].setEnabled(has_target and not self.controller.running)
+            window.actions_["clear"].setEnabled(has_target)
+            self._show_hints(has_target)
+        window.settings.show_settings(document.settings)
+        window.fabrication.show_settings(document.fabrication)
+        if not self.controller.running:
+            window.gallery.view.mark(document.candidate)
+        self._show_history()
+        self._show_title()
+
+    def _show_hints(self, has_target: bool) -> None:
+        if has_target:
+            self.window.stage.view.set_hint("generate", "Ready to design", "Press Generate (Ctrl+G).")
+        else:
+            hint = "Open a file (Ctrl+O), choose from the library (Ctrl+L) or draw a silhouette on the left."
+            self.window.stage.view.set_hint("target", "Start with a target", hint)
+
+    def _show_history(self) -> None:
+        history, actions = self.controller.history, self.window.actions_
+        for name, label in (("undo", history.undo_label), ("redo", history.redo_label)):
+            actions[name].setEnabled(label is not None)
+            word = name.capitalize()
+            actions[name].setText(f"&{word}" if label is None else f"&{word} {label[0].lower()}{label[1:]}")
+            keys = actions[name].shortcut().toString()
+            actions[name].setToolTip(f"{word} ({keys})" if label is None else f"{word}: {label} ({keys})")
+
+    def _show_title(self) -> None:
+        unsaved = self.controller.history.unsaved
+        name = self.controller.path.name if self.controller.path is not None else "Untitled"
+        self.window.setWindowTitle(f"{name}[*] \N{EN DASH} Kirigami Studio")
+        self.window.setWindowModified(unsaved)
+        self.window.heading.setText(f"{name}  ·  unsaved changes" if unsaved else name)
+
+    def _show_stage(self, entry: Entry | None) -> None:
+        view = self.window.gallery.view
+        rank = -1 if entry is None else view.model_.row_of(entry.candidate) + 1
+        target = self.controller.document.target
+        self.window.stage.show_entry(entry, target, rank)
+        view.mark(None if entry is None else entry.candidate)
+        self.window.actions_["export"].setEnabled(entry is not None)
+        if entry is None:
+            self.window.facts.clear()
+            return
+        field, score = entry.candidate.field, entry.candidate.score
+        kind = "feasible" if score.feasible else "not feasible"
+        grid = f"{field.rows} \N{MULTIPLICATION SIGN} {field.columns} voids"
+        self.window.facts.setText(f"{grid}   ·   exact IoU {100 * score.iou_exact:.1f} %   ·   {kind}")
+
+    def _show_gallery(self, entries: tuple[Entry, ...]) -> None:
+        view = self.window.gallery.view
+        view.show_entries(list(entries), self.controller.document.target)
+        view.mark(self.controller.document.candidate)
+
+    def _add_candidate(self, entry: Entry) -> None:
+        view = self.window.gallery.view
+        view.add(entry)
+        stage = self.controller.stage
+        if stage is not None:
+            self.window.stage.title.setText(f"Design {view.model_.row_of(stage.candidate) + 1}")
+
+    def _show_run(self, total: int) -> None:
+        self.window.run.show_running(total)
+        self.window.gallery.view.set_hint("Generating …", "The first designs appear in a moment.")
+        self.window.actions_["cancel"].setEnabled(True)
+        self.window.actions_["generate"].setEnabled(False)
+        self.window.messages.dismiss(Tone.HINT, Tone.DONE)
+
+    def _end_run(self, completed: bool) -> None:
+        has_target = self.controller.document.target is not None
+        self.window.run.show_idle()
+        self.window.run.show_ready(has_target)
+        hint = "Candidates appear here, best first, while they are generated."
+        self.window.gallery.view.set_hint("No designs yet", hint)
+        self.window.actions_["cancel"].setEnabled(False)
+        self.window.actions_["generate"].setEnabled(has_target)
+
+    def _show_overlay_actions(self, overlays: frozenset[Overlay]) -> None:
+        for name, overlay in OVERLAY_ACTIONS.items():
+            action: QAction = self.window.actions_[name]
+            action.setChecked(overlay in overlays)

@@ -1,0 +1,128 @@
+"""Real windows, off-screen; every test fails on a Qt warning, a living worker thread or a running timer it leaves."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PySide6.QtCore import QThread, QTimer
+from PySide6.QtWidgets import QApplication
+from pytestqt.qtbot import QtBot
+
+from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.evaluate.score import evaluate
+from kirigami_studio.gui.application import create_window
+from kirigami_studio.gui.main_window import MainWindow
+from kirigami_studio.gui.theme import LIGHT
+from kirigami_studio.lattice.deployment import deploy
+from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.pipeline.rank import ranked
+from kirigami_studio.project import edits, store
+from kirigami_studio.project.document import Document
+from kirigami_studio.target import library
+
+#: Said by the off-screen platform itself about what it lacks.
+PLATFORM_SAYS = "This plugin does not support"
+PATIENCE = 30_000
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Mark everything here, and let Qt's warnings fail it."""
+    here = Path(__file__).parent
+    for item in items:
+        if here in Path(item.path).parents:
+            item.add_marker(pytest.mark.qt)
+            item.add_marker(pytest.mark.qt_log_level_fail("WARNING"))
+            item.add_marker(pytest.mark.qt_log_ignore(PLATFORM_SAYS))
+
+
+class PathAnswers:
+    """Answers the questions for files as a user would, without a dialog."""
+
+    def __init__(self) -> None:
+        self.answer: Path | None = None
+        self.proposals: list[str] = []
+
+    def target(self) -> Path | None:
+        return self.answer
+
+    def project(self) -> Path | None:
+        return self.answer
+
+    def save(self, proposal: str) -> Path | None:
+        self.proposals.append(proposal)
+        return self.answer
+
+    def dxf(self, proposal: str) -> Path | None:
+        self.proposals.append(proposal)
+        return self.answer
+
+
+@pytest.fixture
+def files() -> PathAnswers:
+    return PathAnswers()
+
+
+@pytest.fixture
+def window(qtbot: QtBot, files: PathAnswers) -> Iterator[MainWindow]:
+    """An empty studio; closing it must leave nothing running."""
+    made = create_window(LIGHT)
+    made.commands.files = files
+    with qtbot.waitExposed(made):
+        made.show()
+    threads = made.findChildren(QThread)
+    assert len(threads) == 1
+    yield made
+    made.controller.history.mark_saved()
+    assert made.close()
+    assert not threads[0].isRunning()
+    assert [timer for timer in made.findChildren(QTimer) if timer.isActive()] == []
+    made.deleteLater()
+    QApplication.processEvents()
+
+
+@pytest.fixture
+def until(qtbot: QtBot) -> Callable[[Callable[[], bool]], None]:
+    """Let the window live until something has happened."""
+
+    def wait(happened: Callable[[], bool]) -> None:
+        qtbot.waitUntil(happened, timeout=PATIENCE)
+
+    return wait
+
+
+@pytest.fixture
+def heart(window: MainWindow, until: Callable[[Callable[[], bool]], None]) -> MainWindow:
+    """A studio with the heart as target."""
+    window.controller.open_target("heart")
+    until(lambda: window.target.view.outline is not None)
+    return window
+
+
+@pytest.fixture(scope="session")
+def designs() -> Document:
+    """Three scored designs of 4 x 5 voids for the heart, without a generator."""
+    target, draw = library.load("heart"), np.random.default_rng(5)
+    found = []
+    for index in range(3):
+        field = RatioField.from_log10(0.08 * (index + 1) * draw.normal(size=(4, 5)))
+        found.append(Candidate(field, evaluate(deploy(field), target, 0.0), seed=7, index=index))
+    start = edits.set_target(Document(), target).document
+    return edits.set_candidates(start, ranked(found), {}).document
+
+
+@pytest.fixture
+def project_file(designs: Document, tmp_path: Path) -> Path:
+    path = tmp_path / "heart.kiri"
+    store.save(designs, path)
+    return path
+
+
+@pytest.fixture
+def designed(window: MainWindow, project_file: Path, until: Callable[[Callable[[], bool]], None]) -> MainWindow:
+    """A studio with that project open and its cuts planned."""
+    window.controller.open_project(project_file)
+    until(lambda: window.controller.stage is not None and window.fabrication.export.isEnabled())
+    return window

@@ -1,0 +1,129 @@
+"""The drawing code on its own: mapping, faults, differences, pictures, colours."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from PySide6.QtCore import QPointF, QRectF, QSize
+from PySide6.QtGui import QColor, QImage
+from PySide6.QtWidgets import QApplication
+
+from kirigami_studio.gui import icons
+from kirigami_studio.gui.actions import COMMANDS
+from kirigami_studio.gui.scene.fault_items import FaultKind, contact_place, faults, inverted_panels
+from kirigami_studio.gui.scene.frame import Bounds, Frame
+from kirigami_studio.gui.scene.mismatch_items import mismatch
+from kirigami_studio.gui.scene.posed import PosedDesign
+from kirigami_studio.gui.scene.thumbnail import candidate_pixmap
+from kirigami_studio.gui.theme import DARK, LIGHT, PALETTES, Palette, style_sheet
+from kirigami_studio.lattice.deployment import deploy
+from kirigami_studio.project.document import Document
+
+SQUARE = np.array([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)])
+
+
+def contrast(one: str, other: str) -> float:
+    """WCAG contrast ratio of two colours."""
+
+    def luminance(name: str) -> float:
+        parts = [value / 12.92 if value <= 0.04045 else ((value + 0.055) / 1.055) ** 2.4 for value in channels(name)]
+        return 0.2126 * parts[0] + 0.7152 * parts[1] + 0.0722 * parts[2]
+
+    def channels(name: str) -> tuple[float, float, float]:
+        colour = QColor(name)
+        return colour.redF(), colour.greenF(), colour.blueF()
+
+    lighter, darker = sorted((luminance(one), luminance(other)), reverse=True)
+    return (lighter + 0.05) / (darker + 0.05)
+
+
+@pytest.fixture
+def posed(designs: Document) -> PosedDesign:
+    candidate = designs.candidates[0]
+    return PosedDesign(deploy(candidate.field), candidate.score.transform, 0.0)
+
+
+def test_that_a_frame_maps_there_and_back_with_y_up() -> None:
+    frame = Frame.fitting(Bounds(-1, -2, 3, 2), QRectF(0, 0, 400, 300), margin=10)
+    x, y = frame.to_pixels(np.array([3.0, 2.0]))
+    assert frame.to_world(QPointF(x, y)) == pytest.approx((3.0, 2.0))
+    assert frame.to_pixels(np.array([0.0, 2.0]))[1] == pytest.approx(10)
+    assert frame.to_pixels(np.array([0.0, -2.0]))[1] == pytest.approx(290)
+
+
+def test_that_a_posed_design_lies_on_its_target_and_turns_about_its_middle(posed: PosedDesign) -> None:
+    at_target = posed.nodes(0.0)
+    assert at_target == pytest.approx(posed.pose.apply(posed.deployment.nodes(0.0)))
+    for phi in (0.7, math.pi):
+        assert posed.nodes(phi).mean(axis=0) == pytest.approx(at_target.mean(axis=0))
+    box = posed.bounds()
+    everywhere = np.concatenate([posed.nodes(phi) for phi in np.linspace(0, math.pi, 9)])
+    assert everywhere[:, 0].min() >= box.left and everywhere[:, 1].max() <= box.top
+
+
+def test_that_an_inverted_panel_is_found_and_marked_where_it_is(posed: PosedDesign) -> None:
+    panels = posed.panels(posed.nodes(1.0)).copy()
+    assert not inverted_panels(panels).any()
+    panels[3] = panels[3, ::-1]
+    wrong = inverted_panels(panels)
+    assert np.flatnonzero(wrong).tolist() == [3]
+    found = faults(panels, wrong, None)
+    assert len(found) == 1 and found[0].kind is FaultKind.INVERTED
+    assert found[0].where == pytest.approx(tuple(panels[3].mean(axis=0)))
+
+
+def test_that_a_contact_is_marked_where_it_happens(posed: PosedDesign, designs: Document) -> None:
+    from dataclasses import replace
+
+    from kirigami_studio.evaluate.feasibility import Contact
+
+    node = 17
+    x, y = posed.deployment.nodes(0.9)[node]
+    score = replace(designs.candidates[0].score, contact=Contact(0.9, (float(x), float(y))))
+    assert contact_place(posed, score) == pytest.approx(posed.nodes(0.9)[node])
+    assert contact_place(posed, designs.candidates[0].score) is None
+
+
+def test_that_differences_are_shares_of_the_target() -> None:
+    areas = mismatch(SQUARE, SQUARE * (1.0, 0.5) + (0.25, 0.0))
+    assert areas.missing_share == pytest.approx(0.625)
+    assert areas.extra_share == pytest.approx(0.125)
+    bow = np.array([(0.0, 0.0), (1.0, 1.0), (1.0, 0.0), (0.0, 1.0)])
+    assert mismatch(SQUARE, bow).missing_share == pytest.approx(0.5)
+
+
+@pytest.mark.parametrize("ratio", [1.0, 2.0])
+def test_that_a_thumbnail_is_sharp_and_shows_sheet_and_target(
+    qapp: QApplication, posed: PosedDesign, designs: Document, ratio: float
+) -> None:
+    picture = candidate_pixmap(posed, designs.target, QSize(100, 80), ratio, LIGHT)
+    assert (picture.width(), picture.height()) == (100 * ratio, 80 * ratio)
+    image = picture.toImage().convertToFormat(QImage.Format.Format_ARGB32)
+    seen = {image.pixelColor(x, y).name() for x in range(image.width()) for y in range(image.height())}
+    assert {LIGHT.panel_even, LIGHT.panel_odd, LIGHT.target} <= seen
+
+
+@pytest.mark.parametrize("palette", [LIGHT, DARK], ids=lambda palette: palette.name)
+def test_that_text_is_readable_on_every_ground(palette: Palette) -> None:
+    for ground in (palette.window, palette.surface, palette.raised, palette.canvas):
+        assert contrast(palette.text, ground) > 7
+        assert contrast(palette.muted, ground) > 4.5
+    assert contrast(palette.on_accent, palette.accent) > 4.5
+    assert contrast(palette.warning, palette.surface) > 4.5
+    assert contrast(palette.accent, palette.surface) > 4.5
+    for panel in (palette.panel_even, palette.panel_odd):
+        assert contrast(palette.fault_line, palette.fault) > 7
+        assert contrast(palette.extra, panel) > 1.5
+    assert contrast(palette.target, palette.canvas) > 3
+
+
+def test_that_every_command_has_its_icon_and_a_key_of_its_own(qapp: QApplication) -> None:
+    keys = [key for command in COMMANDS for key in command.shortcuts]
+    assert len(keys) == len(set(keys))
+    for command in COMMANDS:
+        assert command.tip
+        if command.icon:
+            assert not icons.pixmap(command.icon, "#123456", 24).isNull()
+    assert all("$" not in style_sheet(palette) for palette in PALETTES.values())

@@ -1,0 +1,84 @@
+"""From the chosen design to a cut file, without leaving the window."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import ezdxf
+import pytest
+from PySide6.QtCore import Qt
+from pytestqt.qtbot import QtBot
+
+from kirigami_studio.gui.main_window import MainWindow
+from kirigami_studio.gui.messages import Tone
+
+Until = Callable[[Callable[[], bool]], None]
+LEFT = Qt.MouseButton.LeftButton
+
+
+def test_that_the_exported_file_holds_the_sheet_in_mm(
+    designed: MainWindow, files: object, qtbot: QtBot, until: Until, tmp_path: Path
+) -> None:
+    files.answer = tmp_path / "cut.dxf"  # type: ignore[attr-defined]
+    designed.fabrication.lengths["width_mm"].setValue(80.0)
+    until(lambda: designed.fabrication.numbers["size"].text().startswith("80"))
+    qtbot.mouseClick(designed.fabrication.export, LEFT)
+    until(lambda: bool(designed.messages.messages))
+    assert designed.messages.messages[-1].tone is Tone.DONE
+    drawing = ezdxf.readfile(tmp_path / "cut.dxf")
+    assert drawing.header["$INSUNITS"] == 4
+    outline = [entity for entity in drawing.modelspace() if entity.dxf.layer == "OUTLINE"]
+    assert len(outline) == 1 and outline[0].closed
+    width = max(x for x, *_ in outline[0].get_points()) - min(x for x, *_ in outline[0].get_points())
+    assert width == pytest.approx(80.0, abs=0.1)
+    assert len(drawing.modelspace()) == int(designed.fabrication.numbers["slits"].text())
+
+
+def test_that_numbers_follow_the_settings_and_one_field_is_one_undo_step(designed: MainWindow, until: Until) -> None:
+    length = designed.fabrication.numbers["length"].text()
+    box = designed.fabrication.lengths["width_mm"]
+    for width in (110.0, 130.0, 200.0):
+        box.setValue(width)
+    until(lambda: designed.fabrication.numbers["length"].text() != length)
+    assert designed.controller.document.fabrication.width_mm == 200.0
+    designed.actions_["undo"].trigger()
+    assert box.value() == 100.0
+    until(lambda: designed.fabrication.numbers["length"].text() == length)
+
+
+def test_that_a_material_brings_its_own_connector_and_kerf(designed: MainWindow, qtbot: QtBot) -> None:
+    panel = designed.fabrication
+    panel.lengths["connector_mm"].setValue(0.33)
+    index = panel.material.findData("drag-knife")
+    panel.material.setCurrentIndex(index)
+    panel.material.activated.emit(index)
+    settings = designed.controller.document.fabrication
+    assert (settings.material, settings.connector_mm, settings.kerf_mm) == ("drag-knife", None, None)
+    assert panel.lengths["kerf_mm"].value() == 0.0
+    assert panel.lengths["connector_mm"].value() != 0.33
+
+
+def test_that_impossible_connectors_are_explained_in_the_panel(designed: MainWindow, until: Until) -> None:
+    designed.fabrication.lengths["connector_mm"].setValue(19.0)
+    until(lambda: not designed.fabrication.export.isEnabled())
+    assert "mm" in designed.fabrication.warnings.text()
+    designed.actions_["undo"].trigger()
+    until(lambda: designed.fabrication.export.isEnabled())
+
+
+def test_that_an_unwritable_place_leads_to_a_message(
+    designed: MainWindow, files: object, until: Until, tmp_path: Path
+) -> None:
+    (tmp_path / "wall").write_text("a file, not a folder", encoding="utf-8")
+    files.answer = tmp_path / "wall" / "cut.dxf"  # type: ignore[attr-defined]
+    designed.actions_["export"].trigger()
+    until(lambda: bool(designed.messages.messages))
+    assert designed.messages.messages[-1].tone is Tone.ERROR
+    assert "wall" in designed.messages.messages[-1].sentence
+
+
+def test_that_export_without_a_design_says_what_to_do_first(heart: MainWindow) -> None:
+    assert not heart.fabrication.export.isEnabled() and not heart.actions_["export"].isEnabled()
+    heart.commands.export()
+    assert "generate one first" in heart.messages.messages[-1].sentence

@@ -1,0 +1,128 @@
+"""Generate with the bundled model; cancel; choose; undo."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import pytest
+from PySide6.QtCore import Qt
+from pytestqt.qtbot import QtBot
+
+from kirigami_studio.gui.main_window import MainWindow
+from kirigami_studio.gui.messages import Tone
+from kirigami_studio.gui.views.gallery_model import described
+from kirigami_studio.pipeline.rank import ranked
+from kirigami_studio.project.document import Document
+
+Until = Callable[[Callable[[], bool]], None]
+LEFT = Qt.MouseButton.LeftButton
+
+
+@pytest.mark.torch
+def test_that_generating_fills_the_gallery_best_first_and_is_one_undo_step(
+    heart: MainWindow, qtbot: QtBot, until: Until
+) -> None:
+    heart.settings.rows.setValue(6)
+    heart.settings.columns.setValue(6)
+    heart.settings.candidates.setValue(3)
+    before = heart.controller.document
+    qtbot.mouseClick(heart.run.generate, LEFT)
+    assert heart.controller.running and heart.run.stop.isVisible() and not heart.run.generate.isEnabled()
+    until(lambda: not heart.controller.running)
+    found = heart.controller.document.candidates
+    assert found == ranked(found) and len(found) == 3 and found[0].field.ratio.shape == (6, 6)
+    assert [entry.candidate for entry in heart.gallery.view.model_.entries] == list(found)
+    assert heart.controller.stage is not None and heart.controller.stage.candidate == found[0]
+    assert heart.stage.view.phi == pytest.approx(0.0)
+    provenance = heart.controller.document.provenance
+    assert provenance["model"] == "prior" and len(provenance["model_sha256"]) == 64
+    assert any(candidate.polished for candidate in found)
+    assert not heart.run.stop.isVisible()
+    heart.actions_["undo"].trigger()
+    assert heart.controller.document == before and heart.gallery.view.model_.rowCount() == 0
+    heart.actions_["redo"].trigger()
+    assert heart.controller.document.candidates == found
+
+
+@pytest.mark.torch
+def test_that_a_cancelled_run_leaves_the_document_unchanged(heart: MainWindow, qtbot: QtBot, until: Until) -> None:
+    heart.settings.candidates.setValue(400)
+    before = heart.controller.document
+    qtbot.keyClick(heart, Qt.Key.Key_G, Qt.KeyboardModifier.ControlModifier)
+    until(lambda: heart.gallery.view.model_.rowCount() > 2)
+    qtbot.keyClick(heart, Qt.Key.Key_Escape)
+    until(lambda: not heart.controller.running)
+    assert heart.controller.document is before
+    assert heart.gallery.view.model_.rowCount() == 0
+    assert heart.controller.stage is None
+    assert "nothing was changed" in heart.says.text()
+
+
+@pytest.mark.torch
+def test_that_another_target_ends_the_run_for_the_old_one(heart: MainWindow, until: Until) -> None:
+    heart.settings.candidates.setValue(400)
+    heart.actions_["generate"].trigger()
+    until(lambda: heart.gallery.view.model_.rowCount() > 0)
+    heart.controller.open_target("star")
+    until(lambda: heart.controller.document.target is not None and heart.controller.document.target.name == "star")
+    assert not heart.controller.running
+    until(lambda: not heart.controller.board.busy)
+    assert heart.controller.document.candidates == () and heart.gallery.view.model_.rowCount() == 0
+
+
+def test_that_an_unknown_model_is_refused_with_a_sentence(heart: MainWindow, until: Until) -> None:
+    heart.controller.change_settings(variant="of-tomorrow")
+    before = heart.controller.document
+    heart.actions_["generate"].trigger()
+    until(lambda: not heart.controller.running)
+    message = heart.messages.messages[-1]
+    assert message.tone is Tone.ERROR and "of-tomorrow" in message.sentence
+    assert heart.controller.document is before and heart.run.generate.isEnabled()
+
+
+def test_that_generate_without_a_target_says_what_to_do_first(window: MainWindow) -> None:
+    assert not window.run.generate.isEnabled() and not window.actions_["generate"].isEnabled()
+    window.controller.generate()
+    assert "target first" in window.messages.messages[-1].sentence
+    assert not window.controller.running
+
+
+def test_that_a_click_on_a_card_chooses_its_design(designed: MainWindow, qtbot: QtBot) -> None:
+    view = designed.gallery.view
+    place = view.visualRect(view.model_.index(1, 0)).center()
+    qtbot.mouseClick(view.viewport(), LEFT, pos=place)
+    assert designed.controller.document.chosen == 1
+    assert designed.stage.title.text() == "Design 2"
+
+
+def test_that_arrow_keys_walk_through_the_gallery(designed: MainWindow, qtbot: QtBot) -> None:
+    view = designed.gallery.view
+    view.setFocus()
+    qtbot.keyClick(view, Qt.Key.Key_Right)
+    assert designed.controller.document.chosen == 1
+    qtbot.keyClick(view, Qt.Key.Key_Left)
+    assert designed.controller.document.chosen == 0
+    qtbot.keyClick(designed, Qt.Key.Key_PageDown)
+    assert designed.controller.document.chosen == 1
+    designed.actions_["undo"].trigger()
+    assert designed.controller.document.chosen == 0 and view.currentIndex().row() == 0
+
+
+def test_that_a_card_tells_its_numbers_to_screen_readers(designed: MainWindow, designs: Document) -> None:
+    model = designed.gallery.view.model_
+    text = model.data(model.index(0, 0), Qt.ItemDataRole.AccessibleTextRole)
+    assert text == described(designs.candidates[0], 1)
+    assert f"{100 * designs.candidates[0].score.siou:.2f} %" in str(text)
+
+
+def test_that_a_changed_setting_shows_in_the_document_and_back(heart: MainWindow, qtbot: QtBot) -> None:
+    heart.settings.angle.setValue(30.0)
+    heart.settings.columns.setValue(12)
+    assert heart.controller.document.settings.grid == (10, 12)
+    assert heart.controller.document.settings.phi == pytest.approx(0.5235987)
+    heart.actions_["undo"].trigger()
+    heart.actions_["undo"].trigger()
+    assert (heart.settings.angle.value(), heart.settings.columns.value()) == (0.0, 10)
+    seed = heart.settings.seed.value()
+    qtbot.mouseClick(heart.settings.dice, LEFT)
+    assert heart.controller.document.settings.seed == heart.settings.seed.value() != seed

@@ -1,0 +1,105 @@
+"""Save, open, unsaved work, and the way back."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+from PySide6.QtCore import Qt
+from PySide6.QtWidgets import QPushButton
+from pytestqt.qtbot import QtBot
+
+from kirigami_studio.gui.main_window import MainWindow
+from kirigami_studio.gui.messages import Tone
+from kirigami_studio.project import store
+from kirigami_studio.project.document import Document
+
+Until = Callable[[Callable[[], bool]], None]
+CONTROL = Qt.KeyboardModifier.ControlModifier
+
+
+def test_that_a_saved_project_opens_as_it_was(
+    designed: MainWindow, designs: Document, files: object, qtbot: QtBot, until: Until, tmp_path: Path
+) -> None:
+    files.answer = tmp_path / "mine.kiri"  # type: ignore[attr-defined]
+    designed.actions_["next"].trigger()
+    assert designed.isWindowModified()
+    designed.actions_["save_as"].trigger()
+    until(lambda: not designed.controller.history.unsaved)
+    assert store.load(tmp_path / "mine.kiri") == designed.controller.document
+    assert "mine.kiri" in designed.windowTitle() and not designed.isWindowModified()
+    designed.actions_["new"].trigger()
+    assert designed.controller.document == Document() and designed.gallery.view.model_.rowCount() == 0
+    designed.actions_["open_project"].trigger()
+    until(lambda: designed.controller.stage is not None)
+    assert designed.controller.document.chosen == 1
+    assert designed.controller.document.candidates == designs.candidates
+    assert designed.target.view.outline == designs.target
+
+
+def test_that_save_writes_to_the_known_place_without_asking(
+    designed: MainWindow, project_file: Path, files: object, qtbot: QtBot, until: Until
+) -> None:
+    designed.actions_["next"].trigger()
+    qtbot.keyClick(designed, Qt.Key.Key_S, CONTROL)
+    until(lambda: not designed.controller.history.unsaved)
+    assert store.load(project_file).chosen == 1
+    assert files.proposals == []  # type: ignore[attr-defined]
+
+
+def test_that_a_damaged_project_leaves_the_open_one_alone(designed: MainWindow, until: Until, tmp_path: Path) -> None:
+    broken = tmp_path / "broken.kiri"
+    broken.write_bytes(b"PK no zip at all")
+    before = designed.controller.document
+    designed.controller.open_project(broken)
+    until(lambda: bool(designed.messages.messages))
+    assert designed.messages.messages[-1].tone is Tone.ERROR
+    assert designed.controller.document is before
+
+
+def test_that_closing_with_unsaved_work_asks_without_blocking(designed: MainWindow, qtbot: QtBot, until: Until) -> None:
+    designed.actions_["next"].trigger()
+    assert not designed.close() and designed.isVisible()
+    message = designed.messages.messages[-1]
+    assert "unsaved" in message.sentence and [label for label, _ in message.actions] == [
+        "Save and quit",
+        "Quit without saving",
+    ]
+    choices = dict(message.actions)
+    buttons = [button for button in designed.messages.findChildren(QPushButton) if button.text() in choices]
+    assert len(buttons) == 2
+    until(lambda: all(button.isVisible() for button in buttons))
+    qtbot.mouseClick(buttons[1], Qt.MouseButton.LeftButton)
+    assert not designed.isVisible()
+
+
+def test_that_a_new_project_asks_before_it_forgets(designed: MainWindow) -> None:
+    designed.actions_["next"].trigger()
+    before = designed.controller.document
+    designed.actions_["new"].trigger()
+    assert designed.controller.document is before
+    dict(designed.messages.messages[-1].actions)["Start a new project without saving"]()
+    assert designed.controller.document == Document()
+
+
+def test_that_undo_names_its_step_and_every_shortcut_reaches_it(heart: MainWindow, qtbot: QtBot) -> None:
+    assert heart.actions_["undo"].text().replace("&", "") == "Undo set target heart"
+    qtbot.keyClick(heart, Qt.Key.Key_Z, CONTROL)
+    assert heart.controller.document.target is None and not heart.actions_["undo"].isEnabled()
+    qtbot.keyClick(heart, Qt.Key.Key_Y, CONTROL)
+    assert heart.controller.document.target is not None
+    qtbot.keyClick(heart, Qt.Key.Key_Z, CONTROL)
+    qtbot.keyClick(heart, Qt.Key.Key_Z, CONTROL | Qt.KeyboardModifier.ShiftModifier)
+    assert heart.controller.document.target is not None
+
+
+def test_that_the_guide_opens_beside_the_work(window: MainWindow, qtbot: QtBot) -> None:
+    qtbot.keyClick(window, Qt.Key.Key_F1)
+    guide = window.commands.guide
+    assert guide is not None and guide.isVisible() and not guide.isModal()
+    assert "Choose a target" in guide.text.toPlainText()
+    for action in window.actions_.values():
+        shown = action.shortcut().toString().replace("Left", "←").replace("Right", "→").replace("PgDown", "PgDn")
+        if action.objectName() in ("generate", "export", "save", "undo", "play", "fit", "theme", "to_flat"):
+            assert shown in guide.text.toPlainText()
+    guide.close()

@@ -1,0 +1,42 @@
+"""How fast the layout is drawn while the slider moves: decoded once, 24 x 24 voids, everything shown."""
+
+from __future__ import annotations
+
+import itertools
+import math
+
+import numpy as np
+import pytest
+from pytest_benchmark.fixture import BenchmarkFixture
+from pytestqt.qtbot import QtBot
+
+from kirigami_studio.evaluate.score import evaluate
+from kirigami_studio.gui.scene.posed import PosedDesign
+from kirigami_studio.gui.views.layout_view import LayoutView
+from kirigami_studio.lattice.deployment import deploy
+from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.target import library
+
+
+@pytest.mark.parametrize(("first", "last"), [(math.pi, 0.3), (0.2, 0.0)], ids=["on the way", "near the target"])
+def test_that_every_slider_step_is_drawn(qtbot: QtBot, benchmark: BenchmarkFixture, first: float, last: float) -> None:
+    field = RatioField.from_log10(np.random.default_rng(1).normal(size=(24, 24)) * 0.05)
+    deployment, target = deploy(field), library.load("heart")
+    score = evaluate(deployment, target, 0.0)
+    view = LayoutView()
+    qtbot.addWidget(view)
+    view.resize(800, 700)
+    view.show_design(PosedDesign(deployment, score.transform, 0.0), score, target)
+    with qtbot.waitExposed(view):
+        view.show()
+    angles = itertools.cycle(np.linspace(first, last, 60).tolist())
+    painted: list[int] = []
+
+    def step() -> None:
+        before = view.frames_painted
+        view.set_phi(next(angles))
+        view.repaint()
+        painted.append(view.frames_painted - before)
+
+    benchmark.pedantic(step, rounds=60)
+    assert set(painted) == {1}

@@ -1,0 +1,108 @@
+"""The job board: order, failure, cancel, many at once."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Iterator
+
+import pytest
+from PySide6.QtCore import QThread
+from pytestqt.qtbot import QtBot
+
+from kirigami_studio.foundation.errors import TargetError
+from kirigami_studio.gui.jobs.board import Board, Ears
+
+Until = Callable[[Callable[[], bool]], None]
+
+
+@pytest.fixture
+def board(qtbot: QtBot) -> Iterator[Board]:
+    made = Board()
+    yield made
+    made.close()
+    assert all(not thread.isRunning() for thread in made.findChildren(QThread))
+
+
+def test_that_reports_arrive_in_order_in_the_window_thread(board: Board, until: Until) -> None:
+    heard: list[object] = []
+    threads: set[int] = set()
+
+    def steps(cancel: Callable[[], bool]) -> Iterator[object]:
+        threads.add(threading.get_ident())
+        yield from range(50)
+
+    def hear(report: object) -> None:
+        heard.append(report)
+        assert threading.get_ident() == threading.main_thread().ident
+
+    done: list[bool] = []
+    board.start("counting", steps, Ears(hear, lambda: done.append(True)))
+    until(lambda: bool(done))
+    assert heard == list(range(50)) and threads != {threading.main_thread().ident}
+    assert not board.busy
+
+
+def test_that_a_short_job_does_not_wait_for_a_long_one(board: Board, until: Until) -> None:
+    order: list[str] = []
+    release = threading.Event()
+
+    def long(cancel: Callable[[], bool]) -> Iterator[object]:
+        while not release.is_set():
+            yield None
+
+    def short(cancel: Callable[[], bool]) -> Iterator[object]:
+        yield None
+
+    board.start("long", long, Ears(on_finished=lambda: order.append("long")))
+    board.start("short", short, Ears(on_finished=lambda: (order.append("short"), release.set())[0]))
+    until(lambda: len(order) == 2)
+    assert order == ["short", "long"]
+
+
+def test_that_a_cancelled_job_says_so_and_stops(board: Board, until: Until) -> None:
+    heard: list[str] = []
+
+    def endless(cancel: Callable[[], bool]) -> Iterator[object]:
+        while True:
+            yield None
+
+    number = board.start("going on", endless, Ears(on_cancelled=lambda: heard.append("cancelled")))
+    board.cancel(number)
+    until(lambda: heard == ["cancelled"])
+    assert not board.busy
+
+
+@pytest.mark.parametrize(
+    ("error", "expected"),
+    [
+        (TargetError("The file is empty; choose another."), "The file is empty; choose another."),
+        (ZeroDivisionError("division by zero"), "Something unexpected went wrong while dividing: division by zero."),
+    ],
+)
+def test_that_a_failure_is_a_sentence_with_a_trace(board: Board, until: Until, error: Exception, expected: str) -> None:
+    heard: list[tuple[str, str]] = []
+
+    def failing(cancel: Callable[[], bool]) -> Iterator[object]:
+        yield None
+        raise error
+
+    board.start("dividing", failing, Ears(on_failed=lambda sentence, trace: heard.append((sentence, trace))))
+    until(lambda: bool(heard))
+    assert heard[0][0] == expected and "failing" in heard[0][1]
+
+
+def test_that_an_abandoned_job_is_no_longer_heard(board: Board, until: Until) -> None:
+    heard: list[object] = []
+    started, go = threading.Event(), threading.Event()
+
+    def steps(cancel: Callable[[], bool]) -> Iterator[object]:
+        started.set()
+        go.wait(10)
+        yield "too late"
+
+    number = board.start("slow", steps, Ears(heard.append, lambda: heard.append("done"), lambda: heard.append("stop")))
+    assert started.wait(10)
+    board.abandon(number)
+    go.set()
+    until(lambda: not board.busy)
+    assert heard == []
