@@ -7,7 +7,6 @@ import json
 import math
 from pathlib import Path
 
-from kirigami_studio import __version__
 from kirigami_studio.cli.console import ProgressLine, plain, print_json, say
 from kirigami_studio.cli.fabrication import material_settings, plan_for
 from kirigami_studio.cli.inputs import is_batch, parse_grid, read_targets
@@ -20,15 +19,13 @@ from kirigami_studio.foundation.errors import Cancelled
 from kirigami_studio.foundation.files import write_atomically
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.pipeline.events import Finished, Progress, Result
-from kirigami_studio.pipeline.request import Request
+from kirigami_studio.pipeline.provenance import provenance
+from kirigami_studio.pipeline.request import POLISH_STEPS, Request
 from kirigami_studio.pipeline.run import run
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.settings import DesignSettings, FabricationSettings
 from kirigami_studio.project.store import save
 from kirigami_studio.target.outline import Outline
-
-#: Steps of the fit that ``--polish`` gives every candidate.
-POLISH_STEPS = 15
 
 
 def design(arguments: argparse.Namespace) -> int:
@@ -116,13 +113,11 @@ def document_of(result: Result, fabrication: FabricationSettings) -> Document:
     from kirigami_studio.generator.weights import digest_of
 
     request = result.request
-    settings = DesignSettings(request.grid, request.phi, request.k, request.seed, request.variant, request.steps)
-    provenance = {
-        "application": f"kirigami-studio {__version__}",
-        "model": request.variant,
-        "model_sha256": digest_of(request.variant),
-    }
-    return Document(request.target, settings, result.candidates, 0, fabrication, provenance)
+    settings = DesignSettings(
+        request.grid, request.phi, request.k, request.seed, request.variant, request.steps, request.polish
+    )
+    source = provenance(request, digest_of(request.variant))
+    return Document(request.target, settings, result.candidates, 0, fabrication, source)
 
 
 def _run(request: Request, line: ProgressLine) -> Result:

@@ -18,7 +18,7 @@ from PySide6.QtCore import QObject, Signal
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.gui.cutting import Cutting
-from kirigami_studio.gui.design_run import POLISH_STEPS, DesignRun
+from kirigami_studio.gui.design_run import DesignRun
 from kirigami_studio.gui.jobs import steps
 from kirigami_studio.gui.jobs.board import Board, Ears
 from kirigami_studio.gui.messages import Message, Tone
@@ -195,7 +195,7 @@ class Controller(QObject):
                 settings.seed,
                 settings.variant,
                 settings.steps,
-                POLISH_STEPS,
+                settings.polish,
             )
         except KirigamiError as error:
             self._refuse(error)

@@ -6,15 +6,12 @@ from functools import partial
 
 from PySide6.QtCore import QObject, Signal
 
-from kirigami_studio import __version__
 from kirigami_studio.gui.jobs import steps
 from kirigami_studio.gui.jobs.board import Board, Ears
 from kirigami_studio.gui.shelf import Shelf
 from kirigami_studio.pipeline.events import Finished, Progress, Started
+from kirigami_studio.pipeline.provenance import provenance
 from kirigami_studio.pipeline.request import Request
-
-#: Steps of the fit on the exact geometry that every sample gets, as on the command line: about 0.1 s at 10 x 10.
-POLISH_STEPS = 15
 
 
 class DesignRun(QObject):
@@ -85,13 +82,3 @@ class DesignRun(QObject):
     def _over(self, completed: bool) -> None:
         self._number = None
         self.ended.emit(completed)
-
-
-def provenance(request: Request, digest: str) -> dict[str, str]:
-    """Where a run's designs come from, for the project file."""
-    return {
-        "application": f"kirigami-studio {__version__}",
-        "model": request.variant,
-        "model_sha256": digest,
-        "polish": str(request.polish),
-    }

@@ -35,6 +35,7 @@ def encode(document: Document) -> dict[str, bytes]:
             "seed": document.settings.seed,
             "variant": document.settings.variant,
             "steps": document.settings.steps,
+            "polish": document.settings.polish,
         },
         "fabrication": {
             "width_mm": document.fabrication.width_mm,
@@ -82,6 +83,7 @@ def decode(members: Members) -> Document:
             seed=settings.whole("seed"),
             variant=settings.text("variant"),
             steps=settings.whole("steps"),
+            polish=settings.whole("polish"),
         ),
         candidates=tuple(
             _candidate(Record(entry, f"{DESIGN}.candidates[{k}]"), field)

@@ -38,6 +38,7 @@ class SettingsChange(TypedDict, total=False):
     seed: int
     variant: str
     steps: int
+    polish: int
 
 
 class FabricationChange(TypedDict, total=False):
@@ -56,6 +57,7 @@ _NAMES = {
     "seed": "the seed",
     "variant": "the generator",
     "steps": "the number of steps",
+    "polish": "the polish",
     "width_mm": "the sheet's width",
     "material": "the material",
     "connector_mm": "the connector width",

@@ -28,6 +28,8 @@ class DesignSettings:
         Name of the generator variant.
     steps : int, >= 1
         Euler steps of the flow.
+    polish : int, >= 0
+        Steps of the fit on the exact geometry; 0 leaves candidates as drawn.
 
     Raises
     ------
@@ -41,6 +43,7 @@ class DesignSettings:
     seed: int = 0
     variant: str = "prior"
     steps: int = 4
+    polish: int = 15
 
     def __post_init__(self) -> None:
         grid = tuple(self.grid)
@@ -54,6 +57,7 @@ class DesignSettings:
             ("number of candidates", self.k, 1),
             ("seed", self.seed, 0),
             ("number of steps", self.steps, 1),
+            ("number of polishing steps", self.polish, 0),
         ):
             if not _is_whole(value) or value < lowest:
                 raise UsageError(f"The {name} must be a whole number from {lowest} on, got {value!r}.")

@@ -126,3 +126,17 @@ def test_that_a_changed_setting_shows_in_the_document_and_back(heart: MainWindow
     seed = heart.settings.seed.value()
     qtbot.mouseClick(heart.settings.dice, LEFT)
     assert heart.controller.document.settings.seed == heart.settings.seed.value() != seed
+
+
+@pytest.mark.torch
+def test_that_polish_off_leaves_designs_as_drawn(heart: MainWindow, qtbot: QtBot, until: Until) -> None:
+    heart.settings.candidates.setValue(1)
+    heart.settings.polish.setFocus()
+    qtbot.keyClick(heart.settings.polish, Qt.Key.Key_Home)
+    heart.settings.polish.activated.emit(heart.settings.polish.currentIndex())
+    assert heart.controller.document.settings.polish == 0
+    qtbot.mouseClick(heart.run.generate, LEFT)
+    until(lambda: not heart.controller.running)
+    (drawn,) = heart.controller.document.candidates
+    assert not drawn.polished
+    assert heart.controller.document.provenance["polish"] == "0"

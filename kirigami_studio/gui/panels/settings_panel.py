@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import secrets
 
-from PySide6.QtCore import QSignalBlocker, Signal
+from PySide6.QtCore import QSignalBlocker, Qt, Signal
 from PySide6.QtWidgets import QComboBox, QDoubleSpinBox, QHBoxLayout, QLabel, QSizePolicy, QSpinBox, QWidget
 
 from kirigami_studio.gui import icons
@@ -16,6 +16,7 @@ from kirigami_studio.pipeline.request import LARGEST_K
 from kirigami_studio.project.settings import DesignSettings
 
 LARGEST_SEED = 2**31 - 1
+TOOLTIP = Qt.ItemDataRole.ToolTipRole
 
 #: What is known about a generator by its name; others are listed by name alone.
 VARIANTS = {
@@ -24,6 +25,15 @@ VARIANTS = {
     "regularity": ("Regularity", "Fine-tuned for even panels that are easy to cut."),
     "balanced": ("Balanced", "Fine-tuned for match and evenness together."),
 }
+
+
+#: How thoroughly designs are fitted on the exact geometry: name, steps, what it means.
+POLISH = (
+    ("Off", 0, "Designs stay as the generator drew them."),
+    ("Light", 5, "A quick fit: most of the gain, fields stay close to what was drawn."),
+    ("Full", 15, "Nearly converged; the usual choice."),
+    ("Deep", 60, "Until nothing is gained any more; for sharp corners and thin arms."),
+)
 
 
 class SettingsPanel(Card):
@@ -60,6 +70,13 @@ class SettingsPanel(Card):
         self.variant.setObjectName("variant")
         self.variant.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
         self.variant.setAccessibleName("Generator variant")
+        self.polish = QComboBox()
+        self.polish.setObjectName("polish")
+        self.polish.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
+        self.polish.setAccessibleName("Polish")
+        for title, steps, about in POLISH:
+            self.polish.addItem(title, steps)
+            self.polish.setItemData(self.polish.count() - 1, about, TOOLTIP)
         self._lay_out()
         self.set_variants(("prior",))
         self._connect()
@@ -74,8 +91,9 @@ class SettingsPanel(Card):
         first.addLayout(captioned("&Grid (voids)", self.rows, grid), 5)
         first.addLayout(captioned("&Angle", self.angle, self.angle), 3)
         first.addLayout(captioned("Desi&gns", self.candidates, self.candidates), 3)
-        second.addLayout(captioned("&Seed", self.seed, seed), 1)
-        second.addLayout(captioned("&Model", self.variant, self.variant), 1)
+        second.addLayout(captioned("&Seed", self.seed, seed), 4)
+        second.addLayout(captioned("&Model", self.variant, self.variant), 3)
+        second.addLayout(captioned("&Polish", self.polish, self.polish), 3)
 
     def _connect(self) -> None:
         self.rows.valueChanged.connect(lambda: self.changed.emit({"grid": (self.rows.value(), self.columns.value())}))
@@ -86,6 +104,7 @@ class SettingsPanel(Card):
         self.candidates.valueChanged.connect(lambda value: self.changed.emit({"k": value}))
         self.seed.valueChanged.connect(lambda value: self.changed.emit({"seed": value}))
         self.variant.activated.connect(lambda _: self.changed.emit({"variant": self.variant.currentData()}))
+        self.polish.activated.connect(lambda _: self.changed.emit({"polish": self.polish.currentData()}))
         self.dice.clicked.connect(lambda: self.seed.setValue(secrets.randbelow(1_000_000)))
         for box in (self.rows, self.columns, self.angle, self.candidates, self.seed):
             box.setKeyboardTracking(False)
@@ -100,7 +119,7 @@ class SettingsPanel(Card):
             for name in names:
                 title, about = VARIANTS.get(name, (name, ""))
                 self.variant.addItem(title, name)
-                self.variant.setItemData(self.variant.count() - 1, about, 3)
+                self.variant.setItemData(self.variant.count() - 1, about, TOOLTIP)
             if chosen is not None:
                 self._choose_variant(chosen)
 
@@ -119,6 +138,16 @@ class SettingsPanel(Card):
             self.angle.setValue(math.degrees(settings.phi))
         with QSignalBlocker(self.variant):
             self._choose_variant(settings.variant)
+        with QSignalBlocker(self.polish):
+            self._choose_polish(settings.polish)
+
+    def _choose_polish(self, steps: int) -> None:
+        index = self.polish.findData(steps)
+        if index < 0:
+            self.polish.addItem(f"{steps} steps", steps)
+            index = self.polish.count() - 1
+        self.polish.setCurrentIndex(index)
+        self.polish.setToolTip(f"How thoroughly designs are fitted to the target: {steps} steps at most.")
 
     def _choose_variant(self, name: str) -> None:
         index = self.variant.findData(name)

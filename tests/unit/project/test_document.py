@@ -65,6 +65,7 @@ def test_that_candidates_need_their_target(document: Document) -> None:
         {"k": True},
         {"seed": -1},
         {"steps": 0},
+        {"polish": -1},
         {"variant": ""},
     ],
 )
