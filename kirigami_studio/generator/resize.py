@@ -1,36 +1,5 @@
-"""Carry fields from the network's grid to any other grid.
+"""Carry fields from the network's grid to any other grid: the lattice's own rule."""
 
-Voids of the two parities act oppositely on the sheet, so z is interpolated separately for each (thin-plate spline at
-cell centres, over the sheet).
-"""
+from kirigami_studio.lattice.resize import resize_fields
 
-from __future__ import annotations
-
-import numpy as np
-from scipy.interpolate import RBFInterpolator
-
-from kirigami_studio.lattice.ratio_field import FloatArray
-
-
-def resize_fields(z: FloatArray, rows: int, columns: int) -> FloatArray:
-    """Interpolate fields z (K, m, n) to (K, rows, columns), parity by parity; unchanged when the grid is the same."""
-    count, m, n = z.shape
-    if (m, n) == (rows, columns):
-        return z
-    old_place, old_even = _places(m, n)
-    new_place, new_even = _places(rows, columns)
-    flat = z.reshape(count, m * n)
-    result = np.empty((count, rows * columns))
-    for parity in (True, False):
-        here, there = old_even == parity, new_even == parity
-        spline = RBFInterpolator(old_place[here], flat[:, here].T, kernel="thin_plate_spline")
-        result[:, there] = spline(new_place[there]).T
-    return result.reshape(count, rows, columns)
-
-
-def _places(rows: int, columns: int) -> tuple[FloatArray, np.ndarray[tuple[int], np.dtype[np.bool_]]]:
-    """Void centres on the unit sheet, (m * n, 2), and which voids are even."""
-    i, j = np.meshgrid(np.arange(rows), np.arange(columns), indexing="ij")
-    place = np.stack([(j + 1) / (columns + 1), (i + 1) / (rows + 1)], axis=-1).reshape(-1, 2)
-    even: np.ndarray[tuple[int], np.dtype[np.bool_]] = ((i + j) % 2 == 0).ravel()
-    return place, even
+__all__ = ["resize_fields"]

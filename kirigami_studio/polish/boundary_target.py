@@ -34,11 +34,12 @@ class BoundaryTarget:
     @classmethod
     def of(cls, outline: Outline, samples: int) -> BoundaryTarget:
         """Prepare ``outline``, sampled at ``samples`` places."""
-        even, length = along(outline.points, samples)
-        search = np.concatenate([along(outline.points, SEARCH_POINTS)[0], outline.points])
-        # Vertices join the even points in boundary order, so no corner is cut off.
-        search = search[np.argsort(_arc_lengths(outline.points, search), kind="stable")]
-        return cls(even, length / samples, search, KDTree(search))
+        arc = _arc_lengths(outline.points)
+        # Vertices join the even places, so no corner is cut off; places that coincide would hide their neighbours.
+        places = np.unique(np.concatenate([np.arange(SEARCH_POINTS) * arc[-1] / SEARCH_POINTS, arc[:-1]]))
+        places = places[np.append(True, np.diff(places) > 1e-9 * arc[-1])]
+        search = _at(outline.points, arc, places)
+        return cls(along(outline.points, samples)[0], float(arc[-1]) / samples, search, KDTree(search))
 
     def nearest(self, points: FloatArray) -> FloatArray:
         """Closest boundary points to ``points`` (Q, 2): (Q, 2)."""
@@ -52,23 +53,25 @@ class BoundaryTarget:
 
 def along(polygon: FloatArray, count: int) -> tuple[FloatArray, float]:
     """``count`` points at equal arc length on a closed polygon (L, 2), from its first vertex, and the whole length."""
-    closed = np.concatenate([polygon, polygon[:1]])
-    arc = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(closed, axis=0).T))])
-    wanted = np.arange(count) * arc[-1] / count
-    points = np.stack([np.interp(wanted, arc, closed[:, axis]) for axis in (0, 1)], axis=1)
-    return points, float(arc[-1])
+    arc = _arc_lengths(polygon)
+    return _at(polygon, arc, np.arange(count) * arc[-1] / count), float(arc[-1])
 
 
-def _arc_lengths(polygon: FloatArray, points: FloatArray) -> FloatArray:
-    """Arc length of the evenly spaced points followed by the vertices, as ``of`` stacks them."""
+def _arc_lengths(polygon: FloatArray) -> FloatArray:
+    """Arc length at every vertex of a closed polygon (L, 2), and at its end: (L + 1,)."""
+    edges = np.roll(polygon, -1, axis=0) - polygon
+    return np.concatenate([[0.0], np.cumsum(np.hypot(edges[:, 0], edges[:, 1]))])
+
+
+def _at(polygon: FloatArray, arc: FloatArray, places: FloatArray) -> FloatArray:
+    """Points at given arc lengths."""
     closed = np.concatenate([polygon, polygon[:1]])
-    arc = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(closed, axis=0).T))])
-    even = np.arange(len(points) - len(polygon)) * arc[-1] / (len(points) - len(polygon))
-    return np.concatenate([even, arc[:-1]])
+    return np.stack([np.interp(places, arc, closed[:, axis]) for axis in (0, 1)], axis=1)
 
 
 def _on_segment(points: FloatArray, start: FloatArray, end: FloatArray) -> FloatArray:
     """Closest point to each of ``points`` on its own segment."""
     edge = end - start
     share = ((points - start) * edge).sum(axis=1) / np.maximum(np.square(edge).sum(axis=1), 1e-24)
-    return start + np.clip(share, 0.0, 1.0)[:, None] * edge
+    place: FloatArray = start + np.clip(share, 0.0, 1.0)[:, None] * edge
+    return place

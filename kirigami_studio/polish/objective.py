@@ -5,8 +5,9 @@ Residuals, all in unit-area lengths and weighted by the boundary length that the
 * from points on every layout edge to the target boundary (nothing may stick out),
 * from even samples of the target boundary to the layout (nothing may be missed),
 
-down-weighted beyond ``TRUST`` so that their sum grows like an area and not like its square, and quadratic terms on z: a
-pull to the start (keeps candidates apart) and second-neighbour differences (voids of one parity are two apart).
+down-weighted beyond a trusted distance so that their sum grows like an area and not like its square, and quadratic
+terms on z: a pull to the start (keeps candidates apart) and second-neighbour differences (voids of one parity are two
+apart).
 """
 
 from __future__ import annotations
@@ -16,14 +17,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.lattice.ratio_field import FloatArray
 from kirigami_studio.polish.boundary_target import BoundaryTarget
 from kirigami_studio.polish.sensitivity import OutlineModel
 
 #: Where on each layout edge distances are taken.
 EDGE_SHARES = np.array([1 / 6, 1 / 2, 5 / 6])
-#: Distance (unit-area lengths, about 1 % of the size) beyond which a residual counts linearly.
-TRUST = 0.01
+#: Distance (unit-area lengths) beyond which a residual counts linearly when nothing else is asked for.
+#: Found on 50 outlines, drawn ones and those of random fields: 0.003 to 0.03 differ by 0.002 in mean exact IoU.
+TRUST = 0.005
 #: Number of pose parameters: log scale, angle, shift.
 POSE = 4
 
@@ -43,6 +46,12 @@ class Regularity:
     start: float = 1e-6
     smooth: float = 1e-5
 
+    def __post_init__(self) -> None:
+        if not all(math.isfinite(weight) and weight >= 0.0 for weight in (self.start, self.smooth)):
+            raise UsageError(
+                f"A weight of regularity must be a finite number of at least 0, got {self.start:g} and {self.smooth:g}."
+            )
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Linearisation:
@@ -60,6 +69,10 @@ class Linearisation:
     gradient: FloatArray
     hessian: FloatArray
 
+    def promised(self, step: FloatArray) -> float:
+        """Gain that the quadratic model foresees for a step (m n + 4,)."""
+        return -float(step @ (self.gradient + 0.5 * (self.hessian @ step)))
+
 
 class Objective:
     """Cost of states (z, pose) for one target.
@@ -74,10 +87,19 @@ class Objective:
     start : (m * n,) float
         The field that the regularity term pulls to.
     regularity : Regularity
+    trust : float
+        Distance (unit-area lengths) beyond which a residual counts linearly.
     """
 
-    def __init__(self, model: OutlineModel, target: BoundaryTarget, start: FloatArray, regularity: Regularity) -> None:
-        self.model, self.target, self.start, self.regularity = model, target, start, regularity
+    def __init__(
+        self,
+        model: OutlineModel,
+        target: BoundaryTarget,
+        start: FloatArray,
+        regularity: Regularity,
+        trust: float = TRUST,
+    ) -> None:
+        self.model, self.target, self.start, self.regularity, self.trust = model, target, start, regularity, trust
         self._smooth = second_differences(model.rows, model.columns)
 
     def placed(self, state: FloatArray) -> FloatArray:
@@ -89,7 +111,7 @@ class Objective:
         outline = self.placed(state)
         _, gaps, weights = self._gaps(outline)
         distance = np.hypot(*gaps.T)
-        return float((weights * _robust(distance)).sum()) + self._regular_cost(state[:-POSE]), outline
+        return float((weights * _robust(distance, self.trust)).sum()) + self._regular_cost(state[:-POSE]), outline
 
     def linearised(self, state: FloatArray) -> Linearisation:
         """Cost, gradient and Gauss-Newton matrix."""
@@ -100,9 +122,11 @@ class Objective:
         normal = gaps / np.maximum(distance, 1e-12)[:, None]
         vertices = _state_derivative(outline, derivative, state[-POSE:])
         jacobian = _through_anchor(anchor, normal, vertices)
-        share = weights / np.sqrt(1.0 + np.square(distance / TRUST))
+        share = weights / np.sqrt(1.0 + np.square(distance / self.trust))
         scaled = jacobian * share[:, None]
-        gradient = 2.0 * scaled.T @ distance + _stretching(outline, distance) @ vertices.reshape(2 * len(outline), -1)
+        gradient = 2.0 * scaled.T @ distance + _stretching(outline, distance, self.trust) @ vertices.reshape(
+            2 * len(outline), -1
+        )
         hessian = 2.0 * scaled.T @ jacobian
         z = state[:-POSE]
         pull = z - self.start
@@ -111,7 +135,7 @@ class Objective:
         hessian[:-POSE, :-POSE] += 2.0 * (
             self.regularity.start * np.eye(z.size) + self.regularity.smooth * (self._smooth.T @ self._smooth)
         )
-        cost = float((weights * _robust(distance)).sum()) + self._regular_cost(z)
+        cost = float((weights * _robust(distance, self.trust)).sum()) + self._regular_cost(z)
         return Linearisation(cost, gradient, hessian)
 
     def _regular_cost(self, z: FloatArray) -> float:
@@ -159,9 +183,9 @@ def second_differences(rows: int, columns: int) -> FloatArray:
     return matrix
 
 
-def _robust(distance: FloatArray) -> FloatArray:
+def _robust(distance: FloatArray, trust: float) -> FloatArray:
     """Squared distance near the target, linear far from it (pseudo-Huber), with derivative 2 d / sqrt(1 + (d/c)^2)."""
-    cost: FloatArray = 2.0 * TRUST**2 * (np.sqrt(1.0 + np.square(distance / TRUST)) - 1.0)
+    cost: FloatArray = 2.0 * trust**2 * (np.sqrt(1.0 + np.square(distance / trust)) - 1.0)
     return cost
 
 
@@ -197,13 +221,14 @@ def _through_anchor(anchor: _Anchor, normal: FloatArray, vertices: FloatArray) -
     return result
 
 
-def _stretching(outline: FloatArray, distance: FloatArray) -> FloatArray:
+def _stretching(outline: FloatArray, distance: FloatArray, trust: float) -> FloatArray:
     """Derivative (2 L,) of the cost by vertices through the edge lengths that weight the outward distances."""
     edge = np.roll(outline, -1, axis=0) - outline
     direction = edge / np.maximum(np.hypot(*edge.T), 1e-12)[:, None]
     outward = distance[: len(outline) * EDGE_SHARES.size].reshape(len(outline), -1)
-    pull = _robust(outward).mean(axis=1)[:, None] * direction
-    return (np.roll(pull, 1, axis=0) - pull).ravel()
+    pull = _robust(outward, trust).mean(axis=1)[:, None] * direction
+    slope: FloatArray = (np.roll(pull, 1, axis=0) - pull).ravel()
+    return slope
 
 
 def _nearest_on(

@@ -1,8 +1,8 @@
 """How the outline moves when a ratio changes: the exact derivative of the barycentric solve.
 
 With A P = b, changing the ratio of one void touches the two rows of the nodes that rest on its slit, so
-dP = A^-1 g with g_f = x ln 10 / (1 + x)^2 (P[first end] - P[second end]) per unit of z = log10 x.  The outline is a constant
-matrix times P, hence one adjoint solve with the outline's rows gives all derivatives at once.
+dP = A^-1 g with g_f = x ln 10 / (1 + x)^2 (P[first end] - P[second end]) per unit of z = log10 x.  The outline is a
+constant matrix times P, hence one adjoint solve with the outline's rows gives all derivatives at once.
 """
 
 from __future__ import annotations

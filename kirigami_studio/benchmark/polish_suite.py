@@ -1,0 +1,107 @@
+"""How well fits match a set of outlines on the exact polygons, beside the uniform layout's floor."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from kirigami_studio.benchmark.generator_suite import SUCCESS_SIOU, bootstrap_interval
+from kirigami_studio.evaluate.score import Score, evaluate
+from kirigami_studio.foundation.errors import UsageError
+from kirigami_studio.lattice.deployment import deploy
+from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.polish.continuation import fit_shape
+from kirigami_studio.polish.levenberg import Fit, polish
+from kirigami_studio.target.outline import Outline
+
+
+def measure_polish(
+    outlines: Sequence[Outline],
+    *,
+    grid: tuple[int, int] = (10, 10),
+    phi: float = 0.0,
+    steps: int = 40,
+    effort: int | None = None,
+    starts: Sequence[RatioField] | None = None,
+    report: Callable[[int, int], None] = lambda done, total: None,
+) -> dict[str, object]:
+    """Fit every outline and score the best field.
+
+    Parameters
+    ----------
+    outlines : sequence of Outline
+    grid : (rows, columns)
+    phi : float, radians, in [0, pi)
+    steps : int
+        Steps of the plain fit; without meaning for a search.
+    effort : int, optional
+        Search by continuation with this effort; a plain fit when missing.
+    starts : sequence of RatioField, optional
+        Where each fit begins, one for an outline; the uniform sheet when missing.
+    report : callable
+        Told (done, total).
+
+    Returns
+    -------
+    figures : dict
+        ``iou_exact`` with its bootstrap 95 % interval over outlines, ``worst`` and its name, ``success`` (sIoU >= 0.85
+        and feasible), ``siou``, ``infeasible``, ``uniform_iou``, ``tv``, ``seconds`` (processor time), ``evaluations``
+        (decoded layouts), ``each`` (exact IoU by name), and the settings.
+
+    Raises
+    ------
+    UsageError
+        No outlines, or not one start for each.
+    """
+    if not outlines:
+        raise UsageError("A measurement of fits needs at least one outline, got none.")
+    if starts is not None and len(starts) != len(outlines):
+        raise UsageError(
+            f"Fits need one start for each outline, got {len(starts)} starts for {len(outlines)} outlines."
+        )
+    scores: list[Score] = []
+    seconds: list[float] = []
+    evaluations: list[int] = []
+    for number, outline in enumerate(outlines):
+        began = time.process_time()
+        fit = _fitted(outline, grid, phi, steps, effort, None if starts is None else starts[number])
+        seconds.append(time.process_time() - began)
+        evaluations.append(fit.evaluations)
+        scores.append(evaluate(deploy(fit.field), outline, phi))
+        report(number + 1, len(outlines))
+    settings = {"grid": list(grid), "phi": phi, "steps": steps if effort is None else None, "effort": effort}
+    return {**settings, **_figures(outlines, scores), "seconds": _spread(seconds), "evaluations": _spread(evaluations)}
+
+
+def _fitted(
+    outline: Outline, grid: tuple[int, int], phi: float, steps: int, effort: int | None, start: RatioField | None
+) -> Fit:
+    if effort is not None:
+        return fit_shape(outline, grid, phi, () if start is None else (start,), effort)[0]
+    return polish(RatioField.uniform(*grid) if start is None else start, outline, phi, steps)
+
+
+def _figures(outlines: Sequence[Outline], scores: list[Score]) -> dict[str, object]:
+    exact = np.array([score.iou_exact for score in scores])
+    feasible = np.array([score.feasible for score in scores])
+    siou = np.array([score.siou for score in scores])
+    worst = int(exact.argmin())
+    return {
+        "targets": len(outlines),
+        "iou_exact": float(exact.mean()),
+        "iou_exact_interval": bootstrap_interval(exact),
+        "worst": float(exact[worst]),
+        "worst_name": outlines[worst].name,
+        "siou": float(siou.mean()),
+        "success": float(((siou >= SUCCESS_SIOU) & feasible).mean()),
+        "infeasible": int((~feasible).sum()),
+        "uniform_iou": float(np.mean([score.uniform_iou for score in scores])),
+        "tv": float(np.mean([score.tv for score in scores])),
+        "each": {outline.name: float(value) for outline, value in zip(outlines, exact, strict=True)},
+    }
+
+
+def _spread(values: Sequence[float]) -> dict[str, float]:
+    return {"mean": float(np.mean(values)), "median": float(np.median(values)), "most": float(np.max(values))}

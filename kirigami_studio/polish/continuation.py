@@ -1,0 +1,200 @@
+"""The best match from no guess at all: several poses and easier shapes first, coarse grids before fine ones.
+
+A plain fit follows nearest boundary points and gets stuck where the target turns away from the sheet: thin arms, deep
+hollows, unlucky rotations.  The search fits from several rotations of the target, directly and by way of thickened
+shapes, for a few steps each; the best go on, and on larger grids they are first found on a coarse one and lifted.
+
+Every choice is fixed: the same request gives the same fits.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import shapely
+
+from kirigami_studio.evaluate.alignment import align
+from kirigami_studio.evaluate.feasibility import path_contact
+from kirigami_studio.evaluate.score import exact_iou
+from kirigami_studio.evaluate.similarity import Similarity
+from kirigami_studio.foundation.errors import UsageError
+from kirigami_studio.lattice.deployment import deploy
+from kirigami_studio.lattice.ratio_field import RatioField, check_grid
+from kirigami_studio.lattice.resize import resize_fields
+from kirigami_studio.polish.levenberg import Fit, check_fit, polish
+from kirigami_studio.polish.morph import EasyShape, thickened
+from kirigami_studio.target.outline import Outline
+
+#: Largest grid that is searched directly; finer ones start from a search on about this many voids each way.
+COARSE = 10
+#: Margins (unit-area lengths) by which the target is thickened on the two ways to it: at once, and in steps.
+ROUTES: tuple[tuple[float, ...], ...] = ((), (0.2, 0.14, 0.09, 0.05, 0.02))
+#: The same after a coarse fit was lifted: a slightly thickened target gives arms the room that the finer grid allows.
+LIFTED_ROUTES: tuple[tuple[float, ...], ...] = ((), (0.09, 0.05, 0.02))
+#: Steps on each easier shape, of a first look at the target, and of the last fit.
+EASY_STEPS, LOOK_STEPS, LAST_STEPS = 8, 20, 40
+#: Trusted distances (unit-area lengths): far parts must pull in the search, area counts in the end.
+FAR, NEAR, FINE = 0.03, 0.01, 0.005
+#: Rotations tried per effort when quarter turns, half turns, or no turns carry reachable shapes to reachable shapes.
+QUARTER, HALF, WHOLE = 4, 6, 8
+#: Fits that are carried to the end, per effort.
+KEPT = 3
+LARGEST_EFFORT = 8
+
+
+@dataclass(frozen=True, slots=True)
+class _Found:
+    """A fit, its exact IoU in its own pose, and whether the sheet gets there without touching itself."""
+
+    fit: Fit
+    iou: float
+    clear: bool
+
+
+def fit_shape(
+    target: Outline,
+    grid: tuple[int, int],
+    phi: float = 0.0,
+    starts: Sequence[RatioField] = (),
+    effort: int = 1,
+    cancel: Callable[[], bool] = lambda: False,
+) -> list[Fit]:
+    """Search for the fields whose outline at ``phi`` matches ``target`` best.
+
+    Parameters
+    ----------
+    target : Outline
+    grid : (rows, columns)
+    phi : float, radians, in [0, pi)
+    starts : sequence of RatioField
+        Guesses of any grid, fitted beside the search's own starts.
+    effort : int, 1..8
+        Multiplies the number of rotations and of fits that are carried to the end.
+    cancel : callable
+        Asked before every step; the best so far are returned.
+
+    Returns
+    -------
+    fits : list of Fit
+        Best exact IoU first; at least one.  ``evaluations`` counts the decodings of the whole search.
+
+    Raises
+    ------
+    AngleError, GridError, UsageError
+        An angle, a grid or an effort that makes no sense.
+    """
+    check_grid(*grid)
+    phi = check_fit(phi, LAST_STEPS, NEAR)
+    if not isinstance(effort, int) or isinstance(effort, bool) or not 1 <= effort <= LARGEST_EFFORT:
+        raise UsageError(f"The effort must be a whole number from 1 to {LARGEST_EFFORT}, got {effort!r}.")
+    search = _Search(target, phi, cancel)
+    coarse = _coarser(grid)
+    found = search.first_looks(coarse, effort)
+    found += [search.from_guess(lifted(start, coarse)) for start in starts]
+    best = search.finished(_best(found, KEPT * effort))
+    if coarse != grid:
+        raised = [look for one in best for look in search.lifted(one, grid)]
+        raised += [search.from_guess(lifted(start, grid)) for start in starts]
+        best = search.finished(_best(raised, KEPT * effort))
+    best = search.finished(best, FINE)
+    return [replace(one.fit, evaluations=search.evaluations) for one in best]
+
+
+def lifted(field: RatioField, grid: tuple[int, int]) -> RatioField:
+    """The field carried to another grid, within the bounds of a fit."""
+    z = resize_fields(field.log10[np.newaxis], *grid)[0]
+    return RatioField.from_log10(np.clip(z, -1.0, 1.0))
+
+
+class _Search:
+    """What all fits of one request share."""
+
+    def __init__(self, target: Outline, phi: float, cancel: Callable[[], bool]) -> None:
+        self.target, self.phi, self.cancel = target, phi, cancel
+        self.evaluations = 0
+
+    def first_looks(self, grid: tuple[int, int], effort: int) -> list[_Found]:
+        """Fits from the uniform sheet: every rotation on every route."""
+        routes = [thickened(self.target, margins) for margins in ROUTES]
+        field = RatioField.uniform(*grid)
+        found: list[_Found] = []
+        for angle in _rotations(grid, self.phi, effort):
+            pose = _centred(field, self.phi, angle)
+            for route in routes:
+                if found and self.cancel():
+                    return found
+                first = route[0].frame if route else Similarity()
+                found.append(self._along(route, field, first.compose(pose)))
+        return found
+
+    def _along(self, route: list[EasyShape], field: RatioField, pose: Similarity) -> _Found:
+        for easy in route:
+            own = easy.frame.inverse().compose(pose)
+            fit = polish(field, easy.outline, self.phi, EASY_STEPS, pose=own, cancel=self.cancel, trust=FAR)
+            self.evaluations += fit.evaluations
+            field, pose = fit.field, easy.frame.compose(fit.pose)
+        return self._fit(field, pose, LOOK_STEPS, FAR)
+
+    def from_guess(self, field: RatioField) -> _Found:
+        """A look from a given field, aligned by IoU."""
+        pose = align(deploy(field).outline(self.phi), self.target.points)
+        return self._fit(field, pose, LOOK_STEPS, FAR)
+
+    def lifted(self, coarse: _Found, grid: tuple[int, int]) -> list[_Found]:
+        """Looks on a finer grid from a fit on a coarse one."""
+        field = lifted(coarse.fit.field, grid)
+        pose = align(deploy(field).outline(self.phi), self.target.points)
+        return [self._along(thickened(self.target, margins), field, pose) for margins in LIFTED_ROUTES]
+
+    def finished(self, found: list[_Found], trust: float = NEAR) -> list[_Found]:
+        """The fits carried to the end, best first."""
+        ends = [self._fit(one.fit.field, one.fit.pose, LAST_STEPS, trust) for one in found]
+        return _best([_best([end, one], 1)[0] for end, one in zip(ends, found, strict=True)], len(ends))
+
+    def _fit(self, field: RatioField, pose: Similarity, steps: int, trust: float) -> _Found:
+        fit = polish(field, self.target, self.phi, steps, pose=pose, cancel=self.cancel, trust=trust)
+        deployment = deploy(fit.field)
+        laid = fit.pose.apply(deployment.outline(self.phi))
+        self.evaluations += fit.evaluations
+        return _Found(fit, exact_iou(laid, self.target), path_contact(deployment, self.phi) is None)
+
+
+def _best(found: list[_Found], count: int) -> list[_Found]:
+    """The ``count`` best by IoU, those that touch themselves last; equal ones keep their order."""
+    return sorted(found, key=lambda one: (not one.clear, -one.iou))[:count]
+
+
+def _rotations(grid: tuple[int, int], phi: float, effort: int) -> list[float]:
+    """Angles to start from, evenly over the part of a turn that symmetry leaves: see the grid's exact symmetries."""
+    rows, columns = grid
+    if rows % 2 != columns % 2:
+        turn, count = 2.0 * math.pi, WHOLE
+    elif rows % 2 == 0 and rows == columns and phi == 0.0:
+        turn, count = 0.5 * math.pi, QUARTER
+    else:
+        turn, count = math.pi, HALF
+    return [turn * index / (count * effort) for index in range(count * effort)]
+
+
+def _coarser(grid: tuple[int, int]) -> tuple[int, int]:
+    """The grid to search on: at most about COARSE voids each way, of the same parity and nearly the same aspect."""
+    share = COARSE / max(grid)
+    if share >= 1.0:
+        return grid
+
+    def fewer(count: int) -> int:
+        odd = count % 2
+        return max(2 + odd, 2 * round((count * share - odd) / 2) + odd)
+
+    return fewer(grid[0]), fewer(grid[1])
+
+
+def _centred(field: RatioField, phi: float, angle: float) -> Similarity:
+    """Pose that turns the layout by ``angle`` and gives it area 1 around the origin."""
+    sheet = shapely.Polygon(deploy(field).outline(phi))
+    turned = Similarity(1.0 / math.sqrt(sheet.area), angle)
+    x, y = turned.apply(np.array([sheet.centroid.x, sheet.centroid.y]))
+    return Similarity(turned.scale, angle, (-x, -y))

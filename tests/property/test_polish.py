@@ -1,0 +1,51 @@
+"""Properties of the fit's objective on random designs of every parity."""
+
+from __future__ import annotations
+
+import numpy as np
+import shapely
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+from lattice_strategies import grids, ratio_fields
+
+from kirigami_studio.lattice.deployment import deploy
+from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.polish.boundary_target import BoundaryTarget
+from kirigami_studio.polish.levenberg import SAMPLES, polish
+from kirigami_studio.polish.objective import Objective, Regularity
+from kirigami_studio.polish.sensitivity import OutlineModel
+from kirigami_studio.target.library import load
+
+STEP = 1e-6
+
+
+@settings(max_examples=15)
+@given(ratio_fields(grids(6)), st.sampled_from([0.0, 0.7, 2.2]), st.integers(0, 999))
+def test_that_the_gradient_is_the_slope_of_the_cost(field: RatioField, phi: float, seed: int) -> None:
+    model = OutlineModel(field.rows, field.columns, phi)
+    z = field.log10.ravel()
+    objective = Objective(model, BoundaryTarget.of(load("heart"), SAMPLES), np.zeros_like(z), Regularity(1e-3, 1e-3))
+    rng = np.random.default_rng(seed)
+    state = np.concatenate([z, [-np.log(field.rows + field.columns), *rng.uniform(-0.5, 0.5, 3)]])
+    gradient = objective.linearised(state).gradient
+    direction = rng.normal(size=state.size)
+    direction /= np.linalg.norm(direction)
+    slopes = [
+        (objective.cost(state + h * direction)[0] - objective.cost(state - h * direction)[0]) / (2 * h)
+        for h in (STEP, 0.5 * STEP)
+    ]
+    # Where a nearest point jumps inside the interval the slope has no single value: such draws contradict themselves.
+    assume(abs(slopes[0] - slopes[1]) < 1e-4 * np.linalg.norm(gradient))
+    assert abs(slopes[1] - gradient @ direction) < 5e-3 * np.linalg.norm(gradient)
+
+
+@settings(max_examples=15)
+@given(ratio_fields(grids(6)), st.sampled_from([0.0, 0.7]))
+def test_that_a_fit_never_gets_worse_and_never_crosses_itself(field: RatioField, phi: float) -> None:
+    target = load("drop")
+    before = polish(field, target, phi, steps=0)
+    after = polish(field, target, phi, steps=4, pose=before.pose)
+    assert after.cost <= before.cost
+    assert np.abs(after.field.log10).max() <= 1.0 + 1e-9
+    if shapely.is_simple(shapely.linearrings(deploy(before.field).outline(phi))):
+        assert shapely.is_simple(shapely.linearrings(deploy(after.field).outline(phi)))
