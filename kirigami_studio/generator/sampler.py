@@ -20,6 +20,9 @@ from kirigami_studio.target.outline import Outline
 
 #: Fields stay where the training data are: x in [0.1, 10].
 Z_LIMIT = 1.0
+#: Candidates drawn together, always this many: rounding in matrix products depends on the batch size, and nearest-point
+#: feedback can turn a rounding difference into a visible one.
+BATCH = 8
 #: Fractional part of the golden ratio: consecutive multiples spread evenly over an interval.
 GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
 
@@ -42,21 +45,26 @@ def draw_fields(
     k, seed, steps : int
     """
     shape = model.network.shape
-    noise = np.random.default_rng(seed).standard_normal((k, shape.rows * shape.columns)) * shape.z_scale
+    whole = -(-k // BATCH) * BATCH
+    noise = np.random.default_rng(seed).standard_normal((whole, shape.rows * shape.columns)) * shape.z_scale
+    drawn: list[Tensor] = []
     with torch.inference_mode(), _one_thread():
-        code = model.network.code(posed(target, k))
-        z = integrate(model.network, torch.tensor(noise, dtype=torch.float32), code, steps)
-    fields = np.clip(z.double().numpy().reshape(k, shape.rows, shape.columns), -Z_LIMIT, Z_LIMIT)
+        for start in range(0, whole, BATCH):
+            code = model.network.code(posed(target, range(start, start + BATCH)))
+            rows = torch.tensor(noise[start : start + BATCH], dtype=torch.float32)
+            drawn.append(integrate(model.network, rows, code, steps))
+    z = torch.cat(drawn)[:k].double().numpy()
+    fields = np.clip(z.reshape(k, shape.rows, shape.columns), -Z_LIMIT, Z_LIMIT)
     resized: FloatArray = np.clip(resize_fields(fields, *grid), -Z_LIMIT, Z_LIMIT)
     return tuple(RatioField.from_log10(np.round(field, 6)) for field in resized)
 
 
-def posed(target: Outline, k: int) -> Tensor:
-    """The target's polygon in the pose of each candidate: (k, L, 2), unit area about the centroid."""
+def posed(target: Outline, candidates: range) -> Tensor:
+    """The target's polygon in the pose of each candidate: (count, L, 2), unit area about the centroid."""
     polygon = normalised(torch.tensor(target.points, dtype=torch.float32)[None])
     upright = -square_pose(polygon)
-    angles = upright + torch.tensor([pose_angle(i) for i in range(k)], dtype=torch.float32)
-    return turned(polygon.expand(k, -1, -1), angles)
+    angles = upright + torch.tensor([pose_angle(i) for i in candidates], dtype=torch.float32)
+    return turned(polygon.expand(len(candidates), -1, -1), angles)
 
 
 def pose_angle(index: int) -> float:

@@ -33,7 +33,7 @@ def test_that_another_seed_draws_other_fields(model: Model) -> None:
 def test_that_asking_for_more_keeps_the_first_candidates(model: Model) -> None:
     few = draw_fields(model, load("star"), (10, 10), 2, 0, 4)
     many = draw_fields(model, load("star"), (10, 10), 9, 0, 4)
-    assert all(np.allclose(a.log10, b.log10, atol=1e-5) for a, b in zip(few, many, strict=False))
+    assert few == many[:2]
 
 
 @pytest.mark.parametrize("grid", [(2, 2), (6, 6), (8, 12), (13, 9)])
@@ -58,6 +58,6 @@ def test_that_poses_start_upright_and_then_cover_the_circle() -> None:
 
 
 def test_that_posing_turns_the_target_rigidly() -> None:
-    polygons = posed(load("hexagon"), 5)
+    polygons = posed(load("hexagon"), range(5))
     radius = polygons.norm(dim=-1)
     assert torch.allclose(radius, radius[:1].expand_as(radius), atol=1e-5)
