@@ -52,7 +52,9 @@ COMMANDS = (
     Command("save_as", "Save project &as …", "&File", ("Ctrl+Shift+S",), tip="Save under another name"),
     Command("open_target", "&Open target …", "&File", ("Ctrl+O",), "open", "Open a target silhouette", gap=True),
     Command("library", "Target &library …", "&File", ("Ctrl+L",), "library", "Choose a silhouette of the library"),
-    Command("export", "&Export DXF …", "&File", ("Ctrl+E",), "export", "Write the cut file in mm", gap=True),
+    Command(
+        "export", "&Export DXF …", "&File", ("Ctrl+E",), "export", "Write the cut file in mm, or a picture", gap=True
+    ),
     Command("quit", "&Quit", "&File", ("Ctrl+Q",), tip="Close Kirigami Studio", gap=True),
     Command("undo", "&Undo", "&Edit", ("Ctrl+Z",), "undo", "Undo", True),
     Command("redo", "&Redo", "&Edit", ("Ctrl+Y", "Ctrl+Shift+Z"), "redo", "Redo", True),

@@ -13,10 +13,9 @@ from PySide6.QtWidgets import QApplication
 from kirigami_studio.gui import faults, theme
 from kirigami_studio.gui.controller import Controller
 from kirigami_studio.gui.main_window import MainWindow
+from kirigami_studio.gui.warm_up import WarmUp
 
 FIRST_TARGET = "heart"
-#: The generator's imports stall the window for most of a second: not while it is being looked at for the first time.
-WARM_UP_AFTER_MS = 2500
 SMALLEST_FONT = 9.5
 NO_DISPLAY = (
     "There is no display to open the window on; use the commands (kirigami-studio --help), or play a session without "
@@ -105,7 +104,7 @@ def run(argv: list[str]) -> int:
     QGuiApplication.styleHints().colorSchemeChanged.connect(lambda _: window.set_theme(theme.system_palette()))
     window.show()
     QTimer.singleShot(0, window, lambda: open_first(window, argv[1] if len(argv) > 1 else FIRST_TARGET))
-    QTimer.singleShot(WARM_UP_AFTER_MS, window, window.controller.warm_up)
+    WarmUp(window.controller.warm_up, lambda: window.controller.board.busy, window)
     return application.exec()
 
 

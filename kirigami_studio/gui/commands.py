@@ -14,6 +14,7 @@ from PySide6.QtWidgets import QAbstractButton, QComboBox
 from kirigami_studio.gui.controller import Controller
 from kirigami_studio.gui.dialogs.files import FileChoosers, FileQuestions
 from kirigami_studio.gui.messages import Message, Tone
+from kirigami_studio.gui.shell import Shell
 from kirigami_studio.gui.theme import DARK, LIGHT
 from kirigami_studio.gui.views.layout_view import Overlay
 from kirigami_studio.gui.views.target_view import Tool
@@ -21,7 +22,6 @@ from kirigami_studio.gui.views.target_view import Tool
 if TYPE_CHECKING:
     from kirigami_studio.gui.dialogs.guide import GuideWindow
     from kirigami_studio.gui.dialogs.library_picker import LibraryPicker
-    from kirigami_studio.gui.main_window import MainWindow
 
 OVERLAY_ACTIONS = {
     "show_target": Overlay.TARGET,
@@ -33,7 +33,7 @@ OVERLAY_ACTIONS = {
 class Commands(QObject):
     """Carries out the window's actions; asks for files and guards unsaved work."""
 
-    def __init__(self, window: MainWindow, controller: Controller) -> None:
+    def __init__(self, window: Shell, controller: Controller) -> None:
         super().__init__(window)
         self.window = window
         self.controller = controller
@@ -109,14 +109,14 @@ class Commands(QObject):
         if path is not None:
             self.controller.save(path)
 
-    def export(self) -> None:
-        """Write the cut file in a place of the user's choice."""
+    def export(self, extension: str = ".dxf") -> None:
+        """Write the cut file, or another kind of file, in a place of the user's choice."""
         if self.controller.stage is None:
             self.controller.message.emit(Message("There is no design to export yet; generate one first.", Tone.HINT))
             return
-        path = self.files.dxf(f"{self._name()}.dxf")
+        path = self.files.export(f"{self._name()}{extension}")
         if path is not None:
-            self.controller.export_dxf(path)
+            self.controller.export(path)
 
     def show_library(self) -> None:
         """Open the popup with the library's silhouettes."""
@@ -138,13 +138,16 @@ class Commands(QObject):
         self.guide.activateWindow()
 
     def _play(self) -> None:
-        """Space plays, unless a focused button or list of choices has a better claim to the key."""
+        """Space plays, unless the keyboard's focus is on a button or a list of choices, which own the key by custom.
+
+        The mouse gives none of them the focus, so after a click Space plays.
+        """
         focused = self.window.focusWidget()
         if isinstance(focused, QAbstractButton):
             focused.click()
         elif isinstance(focused, QComboBox):
             focused.showPopup()
-        else:
+        elif self.window.stage.deployment.play.isEnabled():
             self.window.stage.deployment.play.toggle()
 
     def _to_target(self) -> None:

@@ -22,7 +22,9 @@ from kirigami_studio.gui.design_run import DesignRun
 from kirigami_studio.gui.jobs import steps
 from kirigami_studio.gui.jobs.board import Board, Ears
 from kirigami_studio.gui.messages import Message, Tone
+from kirigami_studio.gui.reading import Reading
 from kirigami_studio.gui.shelf import Shelf
+from kirigami_studio.gui.tracing import Tracing
 from kirigami_studio.gui.views.gallery_model import Entry, same_sample
 from kirigami_studio.pipeline.events import Result
 from kirigami_studio.pipeline.rank import rank_key
@@ -57,14 +59,20 @@ class Controller(QObject):
         self._shelf = Shelf()
         self.run = DesignRun(self.board, self._shelf, self)
         self.cutting = Cutting(self.board, self)
+        self.tracing = Tracing(self.board, self)
+        self.reading = Reading(self.board, self.tracing, self)
         self._stage: Entry | None = None
         self._preview: Candidate | None = None
         self._best_of_run: Entry | None = None
-        self._read_job: int | None = None
         self.run.found.connect(self._take_found)
         self.run.completed.connect(self._take_result)
         self.run.cancelled.connect(self._run_cancelled)
         self.run.failed.connect(self._run_failed)
+        self.reading.read.connect(self._take_read)
+        self.reading.failed.connect(self._tell_failure)
+        self.tracing.traced.connect(self._take_traced)
+        self.tracing.refused.connect(self.status)
+        self.tracing.settled.connect(self.end_drag)
         self.cutting.message.connect(self.message)
         self.cutting.status.connect(self.status)
 
@@ -89,24 +97,29 @@ class Controller(QObject):
 
     def warm_up(self) -> None:
         """Import in the worker what the first run needs, and learn which generators there are."""
-        ears = Ears(self.variants_known.emit, on_failed=self._tell_failure)
+        ears = Ears(self._take_warmth, on_failed=self._tell_failure)
         self.board.start("loading the generator", steps.warming, ears)
+
+    def _take_warmth(self, report: object) -> None:
+        if isinstance(report, tuple):
+            self.variants_known.emit(report)
 
     # target --------------------------------------------------------------------------------------------------------
 
     def open_target(self, source: str, first: bool = False) -> None:
         """Read a file, or a silhouette of the library by name."""
-        if self._read_job is not None:
-            self.board.abandon(self._read_job)
-        name = Path(source).name
-        self.status.emit(f"Reading {name} …")
-        take = self._take_first if first else self._take_target
-        ears = Ears(on_report=take, on_finished=self._reading_ended, on_failed=self._reading_failed)
-        self._read_job = self.board.start(f"reading {name}", partial(steps.reading_target, source), ears)
+        self.status.emit(f"Reading {Path(source).name} …")
+        self.reading.start(source, first)
 
     def start_with(self, source: str) -> None:
         """Read the first target; it is where the history starts, not a change to be undone or saved."""
         self.open_target(source, first=True)
+
+    def change_threshold(self, threshold: float | None) -> None:
+        """Trace the target's picture again at another grey level, 0..1; None for the automatic one."""
+        picture = self.tracing.picture_of(self.document.target)
+        if picture is not None:
+            self.tracing.retrace(picture, threshold)
 
     def take_freehand(self, points: FloatArray) -> None:
         """Smooth a stroke (L, 2), y up, into a target."""
@@ -123,7 +136,7 @@ class Controller(QObject):
         document = self.document
         if document.target is not None:
             empty = Document(settings=document.settings, fabrication=document.fabrication)
-            self.run.abandon()
+            self._stop_design()
             self._apply(Edit("Clear target", empty))
             self.status.emit("Target cleared. Undo brings it back.")
 
@@ -135,26 +148,23 @@ class Controller(QObject):
             return
         self._take_target(outline)
 
-    def _take_target(self, outline: object) -> None:
-        if isinstance(outline, Outline):
-            self.run.abandon()
-            self._apply(edits.set_target(self.document, outline))
-            self.status.emit(f"Target: {outline.name}. Press Generate (Ctrl+G) to design a sheet for it.")
+    def _take_traced(self, outline: Outline) -> None:
+        self.run.abandon()
+        self._apply(edits.edit_target(self.document, outline, "Change threshold"))
+        self.status.emit(f"{len(outline.points)} points at this threshold.")
 
-    def _take_first(self, outline: object) -> None:
-        if isinstance(outline, Outline) and self.document == Document():
+    def _take_target(self, outline: Outline) -> None:
+        self._stop_design()
+        self._apply(edits.set_target(self.document, outline))
+        self.status.emit(f"Target: {outline.name}. Press Generate (Ctrl+G) to design a sheet for it.")
+
+    def _take_read(self, outline: Outline, first: bool) -> None:
+        if first and self.document == Document():
             self.history.restart(Document(target=outline))
             self._show()
             self.status.emit(f"Target: {outline.name}. Press Generate (Ctrl+G), or choose another target.")
         else:
             self._take_target(outline)
-
-    def _reading_ended(self) -> None:
-        self._read_job = None
-
-    def _reading_failed(self, sentence: str, trace: str) -> None:
-        self._read_job = None
-        self._tell_failure(sentence, trace)
 
     # settings ------------------------------------------------------------------------------------------------------
 
@@ -259,12 +269,14 @@ class Controller(QObject):
 
     # cut -----------------------------------------------------------------------------------------------------------
 
-    def export_dxf(self, path: Path) -> None:
-        """Write the chosen design's cut file."""
-        if self._stage is None:
+    def export(self, path: Path) -> None:
+        """Write the chosen design's cut file or picture; the extension says which."""
+        stage, document = self._stage, self.document
+        if stage is None:
             self.message.emit(Message("There is no design to export yet; generate one first.", Tone.HINT))
             return
-        self.cutting.export(self._stage.design.deployment, self.document.fabrication, path)
+        order = steps.Order(stage.candidate, stage.design.deployment, document.target, document.fabrication)
+        self.cutting.export(order, path)
 
     def _plan_soon(self) -> None:
         deployment = None if self._stage is None else self._stage.design.deployment
@@ -294,7 +306,7 @@ class Controller(QObject):
 
     def _opened(self, path: Path, document: object) -> None:
         if isinstance(document, Document):
-            self.run.abandon()
+            self._stop_design()
             self.path = path
             self.history.restart(document)
             self.opened.emit(path)
@@ -303,7 +315,7 @@ class Controller(QObject):
 
     def new_project(self) -> None:
         """Forget everything and start empty."""
-        self.run.abandon()
+        self._stop_design()
         self.path = None
         self.history.restart(Document())
         self._show()
@@ -313,7 +325,7 @@ class Controller(QObject):
         """Go one step back."""
         label = self.history.undo_label
         if self.history.undo():
-            self.run.abandon()
+            self._stop_design()
             self._show()
             self.status.emit(f"Undone: {label}.")
 
@@ -321,9 +333,15 @@ class Controller(QObject):
         """Go one undone step forth."""
         label = self.history.redo_label
         if self.history.redo():
-            self.run.abandon()
+            self._stop_design()
             self._show()
             self.status.emit(f"Redone: {label}.")
+
+    def _stop_design(self) -> None:
+        """Another document comes: what is still on its way belongs to the old one."""
+        self.reading.stop()
+        self.tracing.stop()
+        self.run.abandon()
 
     # telling the views ---------------------------------------------------------------------------------------------
 

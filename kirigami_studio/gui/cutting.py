@@ -55,26 +55,36 @@ class Cutting(QObject):
         ears = Ears(self.planned.emit, on_failed=lambda sentence, _: self.refused.emit(sentence))
         self._job = self._board.start("planning the cuts", partial(steps.planning, *self._wanted), ears)
 
-    def export(self, deployment: Deployment, settings: FabricationSettings, path: Path) -> None:
-        """Write the cut file."""
+    def export(self, order: steps.Order, path: Path) -> None:
+        """Write a cut file or a picture, by the extension."""
         self.status.emit(f"Writing {path.name} …")
-        work = partial(steps.exporting, deployment, settings, path)
-        self._board.start(f"writing {path.name}", work, Ears(self._written, on_failed=self._not_written))
+        ears = Ears(self._written, on_failed=self._not_written)
+        self._board.start(f"writing {path.name}", partial(steps.exporting, order, path), ears)
 
     def _written(self, report: object) -> None:
         if not isinstance(report, steps.Exported):
             return
-        path, plan, check = report.path, report.planned.plan, report.planned.report
-        details = "\n".join([str(path), *(problem.text for problem in check.problems), *plan.notes])
-        if check.ok:
-            sentence, tone = f"{path.name} was written and read back: {len(plan.paths)} cuts, no fault.", Tone.DONE
+        path, made = report.path, report.planned
+        if made is None:
+            self.status.emit(f"Exported {path}.")
+            message = Message(f"{path.name} was written.", Tone.DONE, str(path))
         else:
-            sentence = f"{path.name} was written, but cutting it would fail: {check.problems[0].text}"
-            tone = Tone.WARNING
-        self.status.emit(f"Exported {path}: {len(plan.paths)} cuts, {plan.cut_length_mm:.0f} mm.")
+            self.status.emit(f"Exported {path}: {len(made.plan.paths)} cuts, {made.plan.cut_length_mm:.0f} mm.")
+            message = told(path, made)
         self.exported.emit(path)
-        self.message.emit(Message(sentence, tone, details))
+        self.message.emit(message)
 
     def _not_written(self, sentence: str, trace: str) -> None:
-        self.status.emit("The cut file was not written.")
+        self.status.emit("The file was not written.")
         self.message.emit(Message(sentence, Tone.ERROR, trace))
+
+
+def told(path: Path, made: steps.Planned) -> Message:
+    """Say what a written cut file holds, and whether cutting it would succeed."""
+    plan, check = made.plan, made.report
+    details = "\n".join([str(path), *(problem.text for problem in check.problems), *plan.notes])
+    if check.ok:
+        sentence = f"{path.name} was written and read back: {len(plan.paths)} cuts, no fault."
+        return Message(sentence, Tone.DONE, details)
+    sentence = f"{path.name} was written, but cutting it would fail: {check.problems[0].text}"
+    return Message(sentence, Tone.WARNING, details)

@@ -21,6 +21,7 @@ from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.gui.application import create_application, create_window
 from kirigami_studio.gui.main_window import MainWindow
 from kirigami_studio.gui.messages import Tone
+from kirigami_studio.gui.shell import FIRST
 from kirigami_studio.gui.theme import DARK, LIGHT
 
 DESIGNS = 8
@@ -47,8 +48,8 @@ class PresetFiles:
     def save(self, proposal: str) -> Path | None:
         return self._out / "session.kiri"
 
-    def dxf(self, proposal: str) -> Path | None:
-        return self._out / "cut.dxf"
+    def export(self, proposal: str) -> Path | None:
+        return self._out / Path(proposal).with_stem("cut").name
 
 
 class Session:
@@ -59,6 +60,7 @@ class Session:
         self.files: list[Path] = []
         self.application = create_application(["kirigami-studio"])
         self.window: MainWindow = create_window(LIGHT)
+        self.window.resize(FIRST)  # the off-screen platform's own screen is smaller than any real one
         self.window.commands.files = PresetFiles(out)
 
     def play(self) -> list[Path]:
@@ -150,11 +152,11 @@ class Session:
                 raise SessionError(f"Gave up after {PATIENCE:.0f} s: {otherwise}.")
             QApplication.processEvents(QEventLoop.ProcessEventsFlag.AllEvents, 50)
 
-    def picture(self, name: str) -> None:
-        """Save a screenshot."""
+    def picture(self, name: str, widget: QWidget | None = None) -> None:
+        """Save a screenshot of the window or of another widget."""
         QApplication.processEvents()
         path = self.out / f"{name}.png"
-        if not self.window.grab().save(str(path)):
+        if not (widget or self.window).grab().save(str(path)):
             raise SessionError(f"Cannot write the screenshot {path}.")
         self.files.append(path)
 
@@ -185,16 +187,19 @@ def send(widget: QObject, event: QEvent) -> None:
     QApplication.sendEvent(widget, event)
 
 
-def main(argv: list[str] | None = None) -> int:
-    """Play the session; 0 when every step succeeded."""
-    parser = argparse.ArgumentParser(prog="offscreen_session", description="Play one studio session without a display.")
+def main(argv: list[str] | None = None, kind: type[Session] = Session) -> int:
+    """Play the session, or another one made like it; 0 when every step succeeded."""
+    parser = argparse.ArgumentParser(description="Play one studio session without a display.")
     parser.add_argument("--out", type=Path, default=Path("out"), help="folder for screenshots, DXF and project")
-    out: Path = parser.parse_args(argv).out
+    parser.add_argument("--scale", type=float, default=1.0, help="device pixels per pixel, such as 2 (default 1)")
+    chosen = parser.parse_args(argv)
     os.environ.setdefault("QT_QPA_PLATFORM", "offscreen")
+    if chosen.scale != 1.0:
+        os.environ["QT_SCALE_FACTOR"] = str(chosen.scale)
     session: Session | None = None
     try:
-        out.mkdir(parents=True, exist_ok=True)
-        session = Session(out)
+        chosen.out.mkdir(parents=True, exist_ok=True)
+        session = kind(chosen.out)
         files = session.play()
     except (KirigamiError, OSError) as error:
         sys.stderr.write(f"The session failed: {error}\n")

@@ -2,26 +2,22 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from PySide6.QtCore import QObject
 from PySide6.QtGui import QAction
 
 from kirigami_studio.gui.commands import OVERLAY_ACTIONS, Commands
 from kirigami_studio.gui.controller import Controller
 from kirigami_studio.gui.messages import Tone
+from kirigami_studio.gui.shell import Shell
 from kirigami_studio.gui.views.gallery_model import Entry
 from kirigami_studio.gui.views.layout_view import Overlay
 from kirigami_studio.project.document import Document
-
-if TYPE_CHECKING:
-    from kirigami_studio.gui.main_window import MainWindow
 
 
 class Wiring(QObject):
     """Connects one window with its controller and keeps what was shown last."""
 
-    def __init__(self, window: MainWindow, controller: Controller, commands: Commands) -> None:
+    def __init__(self, window: Shell, controller: Controller, commands: Commands) -> None:
         super().__init__(window)
         self.window = window
         self.controller = controller
@@ -45,6 +41,9 @@ class Wiring(QObject):
         window.target.view.freehand_drawn.connect(controller.take_freehand)
         window.target.view.polygon_drawn.connect(controller.take_polygon)
         window.target.view.hint.connect(lambda text: window.says.setText(text) if text else None)
+        window.target.threshold.changed.connect(controller.change_threshold)
+        window.target.threshold.automatic_wanted.connect(lambda: controller.change_threshold(None))
+        window.target.threshold.edited.connect(controller.tracing.end_drag)
         window.settings.changed.connect(lambda changes: controller.change_settings(**changes))
         window.settings.edited.connect(controller.end_drag)
         window.run.generate_wanted.connect(controller.generate)
@@ -76,7 +75,7 @@ class Wiring(QObject):
         window, before = self.window, self._shown
         self._shown = document
         if everything or document.target is not before.target:
-            window.target.show_target(document.target)
+            window.target.show_target(document.target, self.controller.tracing.picture_of(document.target))
             has_target = document.target is not None
             window.run.show_ready(has_target)
             window.actions_["generate"].setEnabled(has_target and not self.controller.running)
@@ -142,6 +141,8 @@ class Wiring(QObject):
     def _show_run(self, total: int) -> None:
         self.window.run.show_running(total)
         self.window.gallery.view.set_hint("Generating …", "The first designs appear in a moment.")
+        self.window.stage.view.set_hint("generate", "Generating …", "The best design so far will be shown here.")
+        self.window.fabrication.show_waiting()
         self.window.actions_["cancel"].setEnabled(True)
         self.window.actions_["generate"].setEnabled(False)
         self.window.messages.dismiss(Tone.HINT, Tone.DONE)
@@ -150,6 +151,7 @@ class Wiring(QObject):
         has_target = self.controller.document.target is not None
         self.window.run.show_idle()
         self.window.run.show_ready(has_target)
+        self._show_hints(has_target)
         hint = "Candidates appear here, best first, while they are generated."
         self.window.gallery.view.set_hint("No designs yet", hint)
         self.window.actions_["cancel"].setEnabled(False)

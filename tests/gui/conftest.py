@@ -55,7 +55,7 @@ class PathAnswers:
         self.proposals.append(proposal)
         return self.answer
 
-    def dxf(self, proposal: str) -> Path | None:
+    def export(self, proposal: str) -> Path | None:
         self.proposals.append(proposal)
         return self.answer
 

@@ -1,4 +1,4 @@
-"""Which file? The system's own choosers, with the right filters."""
+"""Which file? The system's own choosers, with the right filters, where the user was last."""
 
 from __future__ import annotations
 
@@ -7,9 +7,10 @@ from typing import Protocol
 
 from PySide6.QtWidgets import QFileDialog, QWidget
 
+from kirigami_studio.gui.file_kinds import FILE_KINDS, kind_of
+
 TARGET_FILTER = "Targets (*.png *.jpg *.jpeg *.bmp *.svg *.dxf *.json);;All files (*)"
 PROJECT_FILTER = "Kirigami Studio projects (*.kiri)"
-DXF_FILTER = "DXF cut file, mm (*.dxf)"
 
 
 class FileQuestions(Protocol):
@@ -24,8 +25,8 @@ class FileQuestions(Protocol):
     def save(self, proposal: str) -> Path | None:
         """A place for the project."""
 
-    def dxf(self, proposal: str) -> Path | None:
-        """A place for the cut file."""
+    def export(self, proposal: str) -> Path | None:
+        """A place for an exported file; the proposal's extension is the kind that is offered first."""
 
 
 class FileChoosers:
@@ -33,27 +34,55 @@ class FileChoosers:
 
     def __init__(self, window: QWidget) -> None:
         self._window = window
+        self._folder = ""
 
     def target(self) -> Path | None:
-        name, _ = QFileDialog.getOpenFileName(self._window, "Open target", "", TARGET_FILTER)
-        return Path(name) if name else None
+        name, _ = QFileDialog.getOpenFileName(self._window, "Open target", self._folder, TARGET_FILTER)
+        return self._remembered(name)
 
     def project(self) -> Path | None:
-        name, _ = QFileDialog.getOpenFileName(self._window, "Open project", "", PROJECT_FILTER)
-        return Path(name) if name else None
+        name, _ = QFileDialog.getOpenFileName(self._window, "Open project", self._folder, PROJECT_FILTER)
+        return self._remembered(name)
 
     def save(self, proposal: str) -> Path | None:
-        name, _ = QFileDialog.getSaveFileName(self._window, "Save project", proposal, PROJECT_FILTER)
-        return with_suffix(name, ".kiri")
+        dialog = self._saver("Save project", proposal, [PROJECT_FILTER])
+        return self._answer(dialog)
 
-    def dxf(self, proposal: str) -> Path | None:
-        name, _ = QFileDialog.getSaveFileName(self._window, "Export DXF", proposal, DXF_FILTER)
-        return with_suffix(name, ".dxf")
+    def export(self, proposal: str) -> Path | None:
+        kind = kind_of(Path(proposal).suffix)
+        dialog = self._saver(f"Export {kind.extension[1:].upper()}", proposal, [each.filter for each in FILE_KINDS])
+        dialog.selectNameFilter(kind.filter)
+        dialog.filterSelected.connect(lambda text: follow_filter(dialog, text))
+        return self._answer(dialog)
+
+    def _saver(self, title: str, proposal: str, filters: list[str]) -> QFileDialog:
+        """A chooser that appends the extension itself, so that it asks before it overwrites the right file."""
+        dialog = QFileDialog(self._window, title, self._folder)
+        dialog.setAcceptMode(QFileDialog.AcceptMode.AcceptSave)
+        dialog.setFileMode(QFileDialog.FileMode.AnyFile)
+        dialog.setNameFilters(filters)
+        dialog.setDefaultSuffix(Path(proposal).suffix)
+        dialog.selectFile(proposal)
+        return dialog
+
+    def _answer(self, dialog: QFileDialog) -> Path | None:
+        accepted = dialog.exec() == QFileDialog.DialogCode.Accepted
+        names = dialog.selectedFiles() if accepted else []
+        dialog.deleteLater()
+        return self._remembered(names[0] if names else "")
+
+    def _remembered(self, name: str) -> Path | None:
+        if not name:
+            return None
+        self._folder = str(Path(name).parent)
+        return Path(name)
 
 
-def with_suffix(name: str, suffix: str) -> Path | None:
-    """The chosen place with the file type's extension; None for no choice."""
-    if not name:
-        return None
-    path = Path(name)
-    return path if path.suffix.lower() == suffix else path.with_name(path.name + suffix)
+def follow_filter(dialog: QFileDialog, text: str) -> None:
+    """Give the proposed name the extension of the file type that was picked."""
+    extension = next((kind.extension for kind in FILE_KINDS if kind.filter == text), "")
+    if extension:
+        dialog.setDefaultSuffix(extension)
+        names = dialog.selectedFiles()
+        if names:
+            dialog.selectFile(Path(names[0]).with_suffix(extension).name)

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.gui.file_kinds import kind_of
 from kirigami_studio.gui.jobs.worker import Cancel
 from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.pipeline.events import CandidateFound, CandidateImproved, Event
@@ -23,6 +24,9 @@ from kirigami_studio.target.outline import Outline
 if TYPE_CHECKING:
     from kirigami_studio.fabricate.checks import Report
     from kirigami_studio.fabricate.cut_plan import CutPlan
+
+#: Extensions of targets that are traced at a threshold.
+PICTURES = (".png", ".jpg", ".jpeg", ".bmp")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -43,10 +47,36 @@ class Planned:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Exported:
-    """A cut file that is on disk and was read back, with the plan that it holds."""
+    """A file that is on disk, with the plan that it holds; pictures hold none."""
 
     path: Path
-    planned: Planned
+    planned: Planned | None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Order:
+    """The design that is to be exported, and how it is cut."""
+
+    candidate: Candidate
+    deployment: Deployment
+    target: Outline | None
+    settings: FabricationSettings
+
+
+@dataclass(frozen=True, slots=True)
+class Loaded:
+    """A room of the program that is in memory now."""
+
+    room: str
+
+
+@dataclass(frozen=True, slots=True)
+class Picture:
+    """A picture that a target is traced from; grey levels run from 0 (black) to 1 (white)."""
+
+    path: Path
+    automatic: float
+    threshold: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,11 +104,24 @@ def decoding(candidates: tuple[Candidate, ...], cancel: Cancel) -> Iterator[Deco
         yield Decoded(candidate, deploy(candidate.field))
 
 
-def reading_target(source: str, cancel: Cancel) -> Iterator[Outline]:
-    """Read a file or a library silhouette."""
+def reading_target(source: str, cancel: Cancel) -> Iterator[Picture | Outline]:
+    """Read a file or a library silhouette; a picture tells first which threshold it is read at."""
     from kirigami_studio.target.read import read_target
 
+    path = Path(source)
+    if path.suffix.lower() in PICTURES:
+        from kirigami_studio.target.read_image import automatic_threshold
+
+        level = automatic_threshold(path)
+        yield Picture(path, level, level)
     yield read_target(source)
+
+
+def tracing(picture: Picture, cancel: Cancel) -> Iterator[Outline]:
+    """Trace a picture at its threshold."""
+    from kirigami_studio.target.read_image import read_image
+
+    yield read_image(picture.path, picture.threshold)
 
 
 def planning(deployment: Deployment, settings: FabricationSettings, cancel: Cancel) -> Iterator[Planned]:
@@ -102,12 +145,24 @@ def planned(deployment: Deployment, settings: FabricationSettings) -> Planned:
     return Planned(plan, check_plan(plan))
 
 
-def exporting(deployment: Deployment, settings: FabricationSettings, path: Path, cancel: Cancel) -> Iterator[Exported]:
-    """Plan, check and write the DXF file; the writer reads it back."""
-    from kirigami_studio.export.dxf import write_dxf
+def exporting(order: Order, path: Path, cancel: Cancel) -> Iterator[Exported]:
+    """Write one file of the kind that its extension names; cut files are planned, checked and read back."""
+    from kirigami_studio.export.exporter import ExportJob
+    from kirigami_studio.export.registry import export, find_exporter
 
-    job = planned(deployment, settings)
-    write_dxf(job.plan, path)
+    find_exporter(path)  # an unknown kind is refused before anything is planned
+    job = planned(order.deployment, order.settings) if kind_of(path.suffix).cuts else None
+    score = order.candidate.score
+    export(
+        ExportJob(
+            order.deployment,
+            score.phi,
+            None if job is None else job.plan,
+            None if order.target is None else order.target.points,
+            score.transform,
+        ),
+        path,
+    )
     yield Exported(path, job)
 
 
@@ -126,11 +181,20 @@ def loading(path: Path, cancel: Cancel) -> Iterator[Document]:
     yield store.load(path)
 
 
-def warming(cancel: Cancel) -> Iterator[tuple[str, ...]]:
-    """Import what the first run needs, before anyone waits for it; yield the generators on offer."""
-    from kirigami_studio.export import dxf as _dxf  # noqa: F401
+def warming(cancel: Cancel) -> Iterator[Loaded | tuple[str, ...]]:
+    """Import what the first run needs, before anyone waits for it; at last yield the generators on offer.
+
+    It reports after every import, so that a file which is opened meanwhile need not wait for all of them.
+    """
+    from kirigami_studio.target import read_image as _read_image  # noqa: F401
+
+    yield Loaded("pictures")
+    from kirigami_studio.export import registry as _registry  # noqa: F401
+
+    yield Loaded("exporters")
     from kirigami_studio.generator.weights import variants
+
+    yield Loaded("generator")
     from kirigami_studio.pipeline import run as _run  # noqa: F401
-    from kirigami_studio.target import read as _read  # noqa: F401
 
     yield variants()

@@ -5,21 +5,26 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QSignalBlocker, QSize, Qt, Signal
+from PySide6.QtGui import QAction
 from PySide6.QtWidgets import (
     QComboBox,
     QDoubleSpinBox,
     QGridLayout,
     QHBoxLayout,
     QLabel,
+    QMenu,
     QPushButton,
     QSizePolicy,
+    QToolButton,
+    QVBoxLayout,
     QWidget,
 )
 
 from kirigami_studio.fabricate.material import presets
 from kirigami_studio.gui import icons
-from kirigami_studio.gui.panels.card import Card, captioned, compact, muted_label
-from kirigami_studio.gui.theme import Palette
+from kirigami_studio.gui.file_kinds import FILE_KINDS
+from kirigami_studio.gui.panels.card import Card, captioned, compact, muted_label, tool_button
+from kirigami_studio.gui.theme import LIGHT, Palette
 from kirigami_studio.project.settings import FabricationSettings
 
 if TYPE_CHECKING:
@@ -66,13 +71,17 @@ class FabricationPanel(Card):
 
     changed = Signal(dict)  #: field of FabricationSettings -> value
     edited = Signal()
-    export_wanted = Signal()
+    export_wanted = Signal(str)  #: extension
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__("Fabrication", parent)
+        self._palette: Palette = LIGHT
+        self._calm = True
+        self._folded, self._by_hand = False, False
         self._presets = presets()
         self.material = QComboBox()
         self.material.setObjectName("material")
+        self.material.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         self.material.setAccessibleName("Material preset")
         self.material.setMinimumContentsLength(8)
         self.material.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
@@ -86,15 +95,81 @@ class FabricationPanel(Card):
         self.warnings.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
         self.warnings.setMinimumHeight(2 * self.warnings.fontMetrics().lineSpacing() + 2)
         self.warnings.setAlignment(Qt.AlignmentFlag.AlignTop)
-        self.export = QPushButton("Export DXF")
-        self.export.setObjectName("primary")
-        self.export.setIconSize(QSize(18, 18))
-        self.export.setToolTip("Write the cut file in mm, DXF R2010, and check it (Ctrl+E)")
-        self.export.clicked.connect(self.export_wanted)
+        self._build_export()
+        self._build_fold()
         self._lay_out()
         self.body.addWidget(self.warnings)
-        self.body.addWidget(self.export)
+        self.body.addLayout(self._export_row())
         self.show_plan(None)
+
+    def _build_export(self) -> None:
+        self.export = QPushButton("Export DXF")
+        self.export.setObjectName("primary")
+        self.export.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+        self.export.setIconSize(QSize(18, 18))
+        self.export.setToolTip("Write the cut file in mm, DXF R2010, and check it (Ctrl+E)")
+        self.export.clicked.connect(lambda: self.export_wanted.emit(".dxf"))
+        self.more = QToolButton()
+        self.more.setObjectName("moreExports")
+        self.more.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+        self.more.setToolTip("Export another kind of file: SVG, PDF, PNG, GIF")
+        self.more.setAccessibleName("Export another kind of file")
+        self.more.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)
+        menu = QMenu(self.more)
+        menu.setToolTipsVisible(True)
+        self.kinds: dict[str, QAction] = {}
+        for kind in FILE_KINDS:
+            action = menu.addAction(f"{kind.title} …")
+            action.setToolTip(kind.tip)
+            action.triggered.connect(lambda _=False, kind=kind: self.export_wanted.emit(kind.extension))
+            self.kinds[kind.extension] = action
+        self.more.setMenu(menu)
+
+    def _export_row(self) -> QHBoxLayout:
+        row = QHBoxLayout()
+        row.setSpacing(6)
+        row.addWidget(self.export, 1)
+        row.addWidget(self.more)
+        self.more.setFixedWidth(38)
+        self.more.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Ignored)
+        return row
+
+    def _build_fold(self) -> None:
+        """The button that folds the numbers away, and the summary that stands for them."""
+        self.details = QWidget()
+        self.details.setObjectName("plain")
+        self.summary = QLabel()
+        self.summary.setObjectName("muted")
+        self.fold = tool_button("foldFabrication", "Fold the cutting numbers away.")
+        self.header.addWidget(self.summary)
+        self.header.addWidget(self.fold)
+        self.fold.clicked.connect(self._fold_by_hand)
+        self.summary.hide()
+
+    def _fold_by_hand(self) -> None:
+        self._by_hand = True
+        self._set_folded(not self._folded)
+
+    def fit(self, roomy: bool) -> None:
+        """Fold or unfold by the room there is, unless the user has decided."""
+        if not self._by_hand:
+            self._set_folded(not roomy)
+
+    @property
+    def folded(self) -> bool:
+        """Whether only the summary is shown."""
+        return self._folded
+
+    def _set_folded(self, folded: bool) -> None:
+        self._folded = folded
+        self.fold.setToolTip("Show material, widths and cutting numbers." if folded else "Fold the numbers away.")
+        self.details.setVisible(not folded)
+        self.summary.setVisible(folded)
+        self._show_warning()
+        self._dress_fold()
+
+    def _dress_fold(self) -> None:
+        self.fold.setIcon(icons.icon("up" if self.folded else "down", self._palette))
 
     def _length(
         self, field: str, label: str, low: float, high: float, step: float, digits: int, tip: str
@@ -113,12 +188,15 @@ class FabricationPanel(Card):
         return box
 
     def _lay_out(self) -> None:
-        self.body.addLayout(captioned("&Material", self.material, self.material))
+        rows = QVBoxLayout(self.details)
+        rows.setContentsMargins(0, 0, 0, 0)
+        rows.setSpacing(8)
+        rows.addLayout(captioned("&Material", self.material, self.material))
         row = QHBoxLayout()
         row.setSpacing(8)
         for field, label, *_ in LENGTHS:
             row.addLayout(captioned(label, self.lengths[field], self.lengths[field]), 1)
-        self.body.addLayout(row)
+        rows.addLayout(row)
         table = QGridLayout()
         table.setHorizontalSpacing(8)
         table.setVerticalSpacing(1)
@@ -135,8 +213,9 @@ class FabricationPanel(Card):
         table.setRowMinimumHeight(2, 5)
         for column, stretch in enumerate((12, 9, 11)):
             table.setColumnStretch(column, stretch)
-        self.body.addSpacing(2)
-        self.body.addLayout(table)
+        rows.addSpacing(2)
+        rows.addLayout(table)
+        self.body.addWidget(self.details)
 
     def _take_material(self, index: int) -> None:
         """A new material brings its own connector and kerf."""
@@ -163,10 +242,9 @@ class FabricationPanel(Card):
 
     def show_plan(self, planned: Planned | None) -> None:
         """Show what the plan amounts to; None when there is no design."""
-        self.export.setEnabled(planned is not None)
+        self._allow(cuts=planned is not None, pictures=planned is not None)
         if planned is None:
-            for label in self.numbers.values():
-                label.setText(UNKNOWN)
+            self._forget_numbers()
             self._warn("Choose a design to see its cut plan.", calm=True)
             return
         plan, report = planned.plan, planned.report
@@ -180,15 +258,32 @@ class FabricationPanel(Card):
         }
         for key, text in texts.items():
             self.numbers[key].setText(text)
+        self.summary.setText(f"{texts['size']}  ·  {texts['slits']} cuts")
         found = [*(problem.text for problem in report.problems), *plan.notes]
         self._warn("\n".join(found) if found else "The cut check found no problem.", calm=not found)
 
+    def show_waiting(self) -> None:
+        """Designs are being made; there is no plan to show before one is chosen."""
+        self.show_plan(None)
+        self._warn("The cut plan follows when the designs are done.", calm=True)
+
     def show_refusal(self, sentence: str) -> None:
         """Say why no plan can be made with these numbers."""
-        self.export.setEnabled(False)
+        self._allow(cuts=False, pictures=True)
+        self._forget_numbers()
+        self._warn(sentence, calm=False)
+
+    def _allow(self, cuts: bool, pictures: bool) -> None:
+        """Offer only what can be written: a picture needs a design, a cut file a plan."""
+        self.export.setEnabled(cuts)
+        self.more.setEnabled(cuts or pictures)
+        for kind in FILE_KINDS:
+            self.kinds[kind.extension].setEnabled(cuts if kind.cuts else pictures)
+
+    def _forget_numbers(self) -> None:
+        self.summary.clear()
         for label in self.numbers.values():
             label.setText(UNKNOWN)
-        self._warn(sentence, calm=False)
 
     def _warn(self, text: str, calm: bool) -> None:
         first, *more = text.split("\n")
@@ -197,9 +292,18 @@ class FabricationPanel(Card):
         self.warnings.setObjectName("muted" if calm else "warning")
         self.warnings.style().unpolish(self.warnings)
         self.warnings.style().polish(self.warnings)
+        self._calm = calm
+        self._show_warning()
+
+    def _show_warning(self) -> None:
+        """What is wrong stays in sight even when the numbers are folded away."""
+        self.warnings.setVisible(not (self.folded and self._calm))
 
     def set_palette(self, palette: Palette) -> None:
         """Draw in other colours."""
+        self._palette = palette
+        self.more.setIcon(icons.icon("down", palette))
+        self._dress_fold()
         self.export.setIcon(icons.icon("export", palette, palette.on_accent))
 
 

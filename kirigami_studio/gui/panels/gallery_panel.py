@@ -34,4 +34,4 @@ class GalleryPanel(Card):
         self.view.set_palette(palette)
 
     def minimumSizeHint(self) -> QSize:  # noqa: N802 - Qt's name
-        return QSize(250, 150)
+        return QSize(250, 236)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import QSize, Signal
+from PySide6.QtCore import QSize, Qt, Signal
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QProgressBar, QPushButton, QVBoxLayout, QWidget
 
 from kirigami_studio.gui import icons
@@ -19,10 +19,12 @@ class GenerateBar(QWidget):
         super().__init__(parent)
         self.generate = QPushButton("Generate")
         self.generate.setObjectName("primary")
+        self.generate.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         self.generate.setToolTip("Design sheets for this target (Ctrl+G)")
         self.generate.setIconSize(QSize(18, 18))
         self.stop = QPushButton("Cancel")
         self.stop.setObjectName("cancel")
+        self.stop.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         self.stop.setToolTip("Stop generating; the project stays as it is (Esc)")
         self.progress = QProgressBar()
         self.progress.setTextVisible(False)

@@ -42,6 +42,7 @@ class MessageBar(QFrame):
         self.sentence.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
         self.details = QPushButton("Details")
         self.details.setObjectName("link")
+        self.details.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         self.details.setCheckable(True)
         self.copy = tool_button("copyMessage", "Copy the message with its details.")
         self.previous = tool_button("previousMessage", "Earlier message.")
@@ -147,6 +148,7 @@ class MessageBar(QFrame):
                 button.deleteLater()
         for label, act in message.actions:
             choice = QPushButton(label)
+            choice.setFocusPolicy(Qt.FocusPolicy.TabFocus)
             choice.clicked.connect(lambda _=False, act=act: self._act(act, message))
             self._actions.addWidget(choice)
 

@@ -68,10 +68,12 @@ class SettingsPanel(Card):
         self.dice.setFixedSize(29, 29)
         self.variant = QComboBox()
         self.variant.setObjectName("variant")
+        self.variant.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         self.variant.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
         self.variant.setAccessibleName("Generator variant")
         self.polish = QComboBox()
         self.polish.setObjectName("polish")
+        self.polish.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         self.polish.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
         self.polish.setAccessibleName("Polish")
         for title, steps, about in POLISH:

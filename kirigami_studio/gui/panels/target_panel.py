@@ -6,7 +6,9 @@ from PySide6.QtCore import QSize, Signal
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QSizePolicy, QWidget
 
 from kirigami_studio.gui import icons
+from kirigami_studio.gui.jobs.steps import Picture
 from kirigami_studio.gui.panels.card import Card, ElidedLabel, muted_label, tool_button
+from kirigami_studio.gui.panels.threshold_bar import ThresholdBar
 from kirigami_studio.gui.theme import Palette
 from kirigami_studio.gui.views.target_view import TargetView, Tool
 from kirigami_studio.target.outline import Outline
@@ -45,8 +47,10 @@ class TargetPanel(Card):
         self.notes = muted_label()
         self.notes.setObjectName("warning")
         self.notes.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
+        self.threshold = ThresholdBar()
         self.body.addWidget(self.view, 1)
         self.body.addLayout(line)
+        self.body.addWidget(self.threshold)
         self.body.addWidget(self.notes)
         self.buttons["openTarget"].clicked.connect(self.open_wanted)
         self.buttons["library"].clicked.connect(self.library_wanted)
@@ -62,8 +66,11 @@ class TargetPanel(Card):
             self.buttons[name].setChecked(own is tool)
         self.view.set_tool(tool)
 
-    def show_target(self, outline: Outline | None) -> None:
-        """Show the document's target."""
+    def show_target(self, outline: Outline | None, picture: Picture | None = None) -> None:
+        """Show the document's target, and the threshold when it was traced from a picture."""
+        self.threshold.setVisible(picture is not None)
+        if picture is not None:
+            self.threshold.show_levels(picture.threshold, picture.automatic)
         self.set_tool(Tool.LOOK)
         self.view.show_outline(outline)
         self.buttons["clearTarget"].setEnabled(outline is not None)

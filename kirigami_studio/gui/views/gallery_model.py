@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import bisect
+import math
 from dataclasses import dataclass
 
 from PySide6.QtCore import QAbstractListModel, QModelIndex, QObject, QPersistentModelIndex, Qt
@@ -90,10 +91,19 @@ def described(candidate: Candidate, rank: int) -> str:
     lines = [
         f"Design {rank}: sIoU {100 * score.siou:.2f} % (exact IoU {100 * score.iou_exact:.2f} %)",
         f"Gain over the uniform sheet: {100 * score.siou_gain:+.2f} points (uniform {100 * score.uniform_siou:.2f} %)",
-        f"Total variation of the ratios: {score.tv:.3f}",
+        f"Total variation (TV) of the ratios: {score.tv:.3f}",
+        motion(candidate),
         f"Seed {candidate.seed}, sample {candidate.index}{', polished' if candidate.polished else ''}",
     ]
     return "\n".join([*lines, *problems(candidate)])
+
+
+def motion(candidate: Candidate) -> str:
+    """Tell how far the sheet opens before it touches itself."""
+    score = candidate.score
+    if score.contact is None:
+        return f"Opens from 180° to {math.degrees(score.phi):.1f}° without contact"
+    return f"Touches itself while opening, at {math.degrees(score.contact.phi):.1f}°"
 
 
 def problems(candidate: Candidate) -> list[str]:
@@ -104,7 +114,7 @@ def problems(candidate: Candidate) -> list[str]:
         found.append(f"{score.n_invalid} invalid panel(s) or void(s).")
     if score.contact is not None:
         x, y = score.contact.where
-        found.append(f"Touches itself while deploying, near ({x:.2f}, {y:.2f}) unit cells.")
+        found.append(f"The first contact is near ({x:.2f}, {y:.2f}) unit cells.")
     if not score.feasible and not found:
         found.append(f"Panels overlap by {100 * score.overlap_ratio:.2f} % of their area.")
     return found

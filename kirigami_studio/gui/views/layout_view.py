@@ -158,10 +158,12 @@ class LayoutView(Canvas):
     def _paint_legend(self, painter: QPainter, lines: list[tuple[str, str]]) -> None:
         """Small chips in the lower left corner: a swatch and a number."""
         metrics = painter.fontMetrics()
-        x, height = 14.0, metrics.height() + 10.0
-        y = self.height() - height - 14.0
+        height = metrics.height() + 10.0
+        x, y = 14.0, self.height() - height - 14.0
         for colour, text in lines:
             width = metrics.horizontalAdvance(text) + 36.0
+            if x > 14.0 and x + width > self.width() - 14.0:
+                x, y = 14.0, y - height - 6.0
             box = QRectF(x, y, width, height)
             back = QColor(self.palette_.surface)
             back.setAlpha(225)

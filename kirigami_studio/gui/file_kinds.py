@@ -1,0 +1,47 @@
+"""The kinds of file that a design can be exported to, as menus and file dialogs name them.
+
+A table of its own, because asking the exporters means importing them, which takes longer than a menu may take to open.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class FileKind:
+    """One row of the table.
+
+    Attributes
+    ----------
+    extension : str
+        Lower case, with the dot.
+    title : str
+    tip : str
+    cuts : bool
+        It holds the cut plan in mm; the others are pictures.
+    """
+
+    extension: str
+    title: str
+    tip: str
+    cuts: bool
+
+    @property
+    def filter(self) -> str:
+        """As a line of a file dialog."""
+        return f"{self.title} (*{self.extension})"
+
+
+FILE_KINDS = (
+    FileKind(".dxf", "DXF cut file, mm", "Cut file in mm, DXF R2010, read back and checked", True),
+    FileKind(".svg", "SVG cut file, mm", "Cut file in mm for laser programs and Inkscape", True),
+    FileKind(".pdf", "PDF cut sheet, mm", "Cut sheet at 1:1, to print or to plot", True),
+    FileKind(".png", "PNG picture", "Picture of the opened sheet over its target", False),
+    FileKind(".gif", "GIF animation", "The sheet opening from flat to the target angle", False),
+)
+
+
+def kind_of(extension: str) -> FileKind:
+    """Return the row of an extension; the first one for an unknown extension."""
+    return next((kind for kind in FILE_KINDS if kind.extension == extension.lower()), FILE_KINDS[0])

@@ -1,0 +1,55 @@
+"""Targets from files and from the library, read in the worker; the newest wish replaces an older one."""
+
+from __future__ import annotations
+
+from functools import partial
+from pathlib import Path
+
+from PySide6.QtCore import QObject, Signal
+
+from kirigami_studio.gui.jobs import steps
+from kirigami_studio.gui.jobs.board import Board, Ears
+from kirigami_studio.gui.tracing import Tracing
+from kirigami_studio.target.outline import Outline
+
+
+class Reading(QObject):
+    """Reads one target at a time and tells the tracing which picture it came from."""
+
+    read = Signal(object, bool)  #: Outline; whether it is the first target of the session
+    failed = Signal(str, str)  #: sentence, trace
+
+    def __init__(self, board: Board, tracing: Tracing, parent: QObject) -> None:
+        super().__init__(parent)
+        self._board = board
+        self._tracing = tracing
+        self._job: int | None = None
+        self._picture: steps.Picture | None = None
+
+    def start(self, source: str, first: bool) -> None:
+        """Read a file, or a silhouette of the library by name."""
+        self.stop()
+        ears = Ears(partial(self._take, first), self._end, on_failed=self._fail)
+        self._job = self._board.start(f"reading {Path(source).name}", partial(steps.reading_target, source), ears)
+
+    def stop(self) -> None:
+        """Forget what is still being read: something else took its place."""
+        self._picture = None
+        if self._job is not None:
+            self._board.abandon(self._job)
+            self._job = None
+
+    def _take(self, first: bool, report: object) -> None:
+        if isinstance(report, steps.Picture):
+            self._picture = report
+        elif isinstance(report, Outline):
+            if self._picture is not None:
+                self._tracing.remember(report, self._picture)
+            self.read.emit(report, first)
+
+    def _end(self) -> None:
+        self._job = None
+
+    def _fail(self, sentence: str, trace: str) -> None:
+        self._job = None
+        self.failed.emit(sentence, trace)

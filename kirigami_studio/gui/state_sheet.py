@@ -1,0 +1,98 @@
+"""One picture of every state of the window, in every size and both themes, to be looked at.
+
+``python -m kirigami_studio.gui.state_sheet --out out/states`` writes them; ``--scale 2`` draws them for a
+high-resolution screen.
+"""
+
+from __future__ import annotations
+
+import math
+import sys
+from pathlib import Path
+
+from PIL import Image, ImageDraw
+from PySide6.QtCore import QSize
+from PySide6.QtWidgets import QApplication
+
+from kirigami_studio.gui.messages import Message, Tone
+from kirigami_studio.gui.offscreen_session import Session, click, main
+from kirigami_studio.gui.theme import DARK, LIGHT
+from kirigami_studio.gui.views.target_view import Tool
+
+SIZES = (QSize(1000, 640), QSize(1280, 720), QSize(1440, 900))
+LONG_NAME = "a scanned drawing with the long name that scanners like to give, page 3 of 12"
+
+
+class StateSheet(Session):
+    """Leads one window from state to state and takes each picture in all sizes and themes."""
+
+    def play(self) -> list[Path]:
+        """Make all pictures and return their files."""
+        window = self.window
+        window.show()
+        self.all_sizes("empty")
+        window.target.set_tool(Tool.POLYGON)
+        self.all_sizes("drawing")
+        window.target.set_tool(Tool.LOOK)
+        self.picture_target()
+        self.all_sizes("photo")
+        self.choose_heart()
+        self.generate()
+        self.all_sizes("designs")
+        window.stage.deployment.set_phi(math.radians(100.0))
+        self.all_sizes("half-open")
+        window.stage.deployment.set_phi(math.pi)
+        self.all_sizes("flat")
+        window.fabrication.lengths["connector_mm"].setValue(15.0)
+        self.until(lambda: not window.fabrication.export.isEnabled(), "the wide connector was not refused")
+        self.all_sizes("refused")
+        window.actions_["undo"].trigger()
+        self.until(window.fabrication.export.isEnabled, "undo did not bring the plan back")
+        self.messages()
+        click(window.target.buttons["library"])
+        if window.commands.picker is not None:
+            self.picture("library", window.commands.picker)
+            window.commands.picker.close()
+        window.commands.show_guide()
+        if window.commands.guide is not None:
+            self.picture("guide", window.commands.guide)
+        window.controller.history.mark_saved()
+        window.close()
+        return self.files
+
+    def picture_target(self) -> None:
+        """Open a blurred grey picture."""
+        path = self.out / f"{LONG_NAME}.png"
+        page = Image.new("L", (400, 300), 240)
+        draw = ImageDraw.Draw(page)
+        draw.ellipse((90, 60, 310, 240), fill=60)
+        draw.ellipse((40, 110, 150, 190), fill=150)
+        page.save(path)
+        self.window.controller.open_target(str(path))
+        self.until(lambda: self.window.target.threshold.isVisible(), "the picture was not read")
+
+    def messages(self) -> None:
+        """An error with details, then a question."""
+        bar = self.window.messages
+        sentence = f"{LONG_NAME}.svg crosses itself at (12.4, 88.1) mm; separate the two loops there and open it again."
+        bar.add(Message(sentence, Tone.ERROR, "first line of the trace\nsecond line of the trace"))
+        bar.details.setChecked(True)
+        self.all_sizes("error")
+        self.window.actions_["new"].trigger()
+        self.all_sizes("question")
+        while bar.messages:
+            bar.close_message()
+
+    def all_sizes(self, name: str) -> None:
+        """Take one picture for every size and theme."""
+        for size in SIZES:
+            self.window.resize(size)
+            for palette in (LIGHT, DARK):
+                self.window.set_theme(palette)
+                QApplication.processEvents()
+                self.picture(f"{name}-{size.width()}x{size.height()}-{palette.name}")
+        self.window.set_theme(LIGHT)
+
+
+if __name__ == "__main__":
+    sys.exit(main(kind=StateSheet))

@@ -1,0 +1,88 @@
+"""Targets that were traced from a picture: where each came from, and tracing it again at another threshold."""
+
+from __future__ import annotations
+
+from collections import OrderedDict
+from dataclasses import replace
+from functools import partial
+
+from PySide6.QtCore import QObject, Signal
+
+from kirigami_studio.gui.jobs import steps
+from kirigami_studio.gui.jobs.board import Board, Ears
+from kirigami_studio.gui.jobs.steps import Picture
+from kirigami_studio.target.outline import Outline
+
+#: Outlines whose picture is remembered, so that undo brings its threshold back too.
+CAPACITY = 256
+
+
+class Tracing(QObject):
+    """Traces one picture at a time; while it does, only the latest wish is kept."""
+
+    traced = Signal(object)  #: Outline
+    refused = Signal(str)
+    settled = Signal()  #: the drag is over and its last threshold is traced
+
+    def __init__(self, board: Board, parent: QObject) -> None:
+        super().__init__(parent)
+        self._board = board
+        self._pictures: OrderedDict[Outline, Picture] = OrderedDict()
+        self._job: int | None = None
+        self._wanted: Picture | None = None
+        self._drag_over = False
+
+    def remember(self, outline: Outline, picture: Picture) -> None:
+        """Keep where an outline came from."""
+        self._pictures[outline] = picture
+        self._pictures.move_to_end(outline)
+        while len(self._pictures) > CAPACITY:
+            self._pictures.popitem(last=False)
+
+    def picture_of(self, outline: Outline | None) -> Picture | None:
+        """The picture behind an outline, None when it was drawn, chosen from the library or read as lines."""
+        return None if outline is None else self._pictures.get(outline)
+
+    def retrace(self, picture: Picture, threshold: float | None) -> None:
+        """Trace a picture at another threshold (0 black .. 1 white), None for the automatic one."""
+        self._wanted = replace(picture, threshold=picture.automatic if threshold is None else threshold)
+        if self._job is None:
+            self._start(self._wanted)
+
+    def end_drag(self) -> None:
+        """The slider was let go; its last threshold may still be on its way."""
+        self._drag_over = True
+        self._settle()
+
+    def stop(self) -> None:
+        """Forget what is still being traced: the target is another one now."""
+        self._wanted, self._drag_over = None, False
+        if self._job is not None:
+            self._board.abandon(self._job)
+            self._job = None
+
+    def _start(self, picture: Picture) -> None:
+        ears = Ears(partial(self._take, picture), partial(self._go_on, picture), on_failed=partial(self._fail, picture))
+        self._job = self._board.start(f"tracing {picture.path.name}", partial(steps.tracing, picture), ears)
+
+    def _take(self, picture: Picture, outline: object) -> None:
+        if isinstance(outline, Outline):
+            self.remember(outline, picture)
+            self.traced.emit(outline)
+
+    def _fail(self, picture: Picture, sentence: str, trace: str) -> None:
+        self.refused.emit(sentence)
+        self._go_on(picture)
+
+    def _go_on(self, done: Picture) -> None:
+        """Trace again when the slider has moved on in the meantime."""
+        self._job = None
+        if self._wanted is not None and self._wanted != done:
+            self._start(self._wanted)
+        else:
+            self._settle()
+
+    def _settle(self) -> None:
+        if self._drag_over and self._job is None:
+            self._drag_over = False
+            self.settled.emit()

@@ -1,0 +1,60 @@
+"""A small window stays usable: the gallery and the layout keep their share."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from PySide6.QtCore import Qt
+from PySide6.QtWidgets import QApplication
+from pytestqt.qtbot import QtBot
+
+from kirigami_studio.gui.main_window import MainWindow
+
+Until = Callable[[Callable[[], bool]], None]
+
+
+def resized(window: MainWindow, width: int, height: int) -> None:
+    window.resize(width, height)
+    QApplication.processEvents()
+    QApplication.processEvents()
+
+
+def test_that_the_smallest_window_shows_more_than_one_row_of_whole_cards(designed: MainWindow) -> None:
+    resized(designed, 1000, 640)
+    view = designed.gallery.view
+    assert designed.fabrication.folded
+    assert view.viewport().height() >= 1.5 * view.cards.card.height()
+    assert designed.stage.width() >= 330
+
+
+def test_that_a_roomy_window_shows_all_numbers(designed: MainWindow) -> None:
+    resized(designed, 1000, 640)
+    resized(designed, 1440, 900)
+    assert not designed.fabrication.folded and designed.fabrication.numbers["slits"].isVisible()
+    assert not designed.fabrication.summary.isVisible()
+
+
+def test_that_the_user_decides_about_folding(designed: MainWindow, qtbot: QtBot) -> None:
+    resized(designed, 1000, 640)
+    qtbot.mouseClick(designed.fabrication.fold, Qt.MouseButton.LeftButton)
+    assert not designed.fabrication.folded
+    resized(designed, 1020, 650)
+    assert not designed.fabrication.folded and designed.fabrication.material.isVisible()
+
+
+def test_that_a_folded_panel_still_says_what_is_wrong(designed: MainWindow, until: Until) -> None:
+    resized(designed, 1000, 640)
+    assert "cuts" in designed.fabrication.summary.text()
+    designed.controller.change_fabrication(connector_mm=20.0)
+    until(lambda: not designed.fabrication.export.isEnabled())
+    assert designed.fabrication.warnings.isVisible() and "connector" in designed.fabrication.warnings.text()
+    assert designed.fabrication.summary.text() == ""
+
+
+def test_that_moved_columns_stay_when_the_window_is_resized(designed: MainWindow) -> None:
+    resized(designed, 1300, 800)
+    designed.columns.splitterMoved.emit(400, 1)
+    designed.columns.setSizes([420, 500, 360])
+    left = designed.columns.sizes()[0]
+    resized(designed, 1400, 800)
+    assert abs(designed.columns.sizes()[0] - left) <= 2

@@ -1,0 +1,49 @@
+"""The pictures that are looked at show what they are named after."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from PIL import Image
+from PySide6.QtWidgets import QApplication
+from pytestqt.qtbot import QtBot
+
+from kirigami_studio.gui.state_sheet import SIZES, StateSheet
+
+
+@pytest.fixture
+def sheet(qtbot: QtBot, tmp_path: Path) -> Iterator[StateSheet]:
+    made = StateSheet(tmp_path)
+    with qtbot.waitExposed(made.window):
+        made.window.show()
+    yield made
+    made.window.controller.history.mark_saved()
+    assert made.window.close()
+    made.window.deleteLater()
+    QApplication.processEvents()
+
+
+def test_that_each_size_and_theme_gets_its_picture(sheet: StateSheet, tmp_path: Path) -> None:
+    sheet.all_sizes("empty")
+    assert len(sheet.files) == 2 * len(SIZES)
+    for size in SIZES:
+        shown = {}
+        for theme in ("light", "dark"):
+            with Image.open(tmp_path / f"empty-{size.width()}x{size.height()}-{theme}.png") as picture:
+                assert picture.size == (size.width(), size.height())
+                shown[theme] = picture.convert("L").resize((1, 1)).getpixel((0, 0))
+        assert shown["light"] > 2 * shown["dark"]
+
+
+def test_that_the_photo_state_shows_a_threshold(sheet: StateSheet) -> None:
+    sheet.picture_target()
+    assert sheet.window.target.threshold.isVisible()
+
+
+def test_that_the_message_states_leave_no_message(sheet: StateSheet, tmp_path: Path) -> None:
+    sheet.picture_target()
+    sheet.messages()
+    assert sheet.window.messages.messages == ()
+    assert (tmp_path / "question-1000x640-dark.png").exists()

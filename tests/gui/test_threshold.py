@@ -1,0 +1,113 @@
+"""A target from a picture follows its threshold; other targets have none."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image, ImageDraw
+from PySide6.QtCore import Qt
+from pytestqt.qtbot import QtBot
+
+from kirigami_studio.gui.main_window import MainWindow
+from kirigami_studio.target.read_image import automatic_threshold, read_image
+
+Until = Callable[[Callable[[], bool]], None]
+
+
+@pytest.fixture
+def picture(tmp_path: Path) -> Path:
+    """A dark disc (grey 0.2) with a lighter ear (grey 0.6) on light paper."""
+    page = Image.new("L", (120, 100), 240)
+    draw = ImageDraw.Draw(page)
+    draw.ellipse((10, 40, 60, 70), fill=150)
+    draw.ellipse((40, 20, 100, 80), fill=50)
+    path = tmp_path / "two greys.png"
+    page.save(path)
+    return path
+
+
+@pytest.fixture
+def traced(window: MainWindow, picture: Path, until: Until) -> MainWindow:
+    window.controller.open_target(str(picture))
+    until(lambda: window.target.threshold.isVisible())
+    return window
+
+
+def test_that_a_picture_starts_at_its_automatic_threshold(traced: MainWindow, picture: Path) -> None:
+    shown = traced.target.threshold
+    assert shown.slider.value() == round(200 * automatic_threshold(picture))
+    assert not shown.automatic.isEnabled()
+    assert traced.controller.document.target == read_image(picture)
+
+
+def test_that_a_library_silhouette_has_no_threshold(heart: MainWindow) -> None:
+    assert not heart.target.threshold.isVisible()
+
+
+def test_that_the_contour_follows_and_one_drag_undoes_at_once(
+    traced: MainWindow, picture: Path, until: Until, qtbot: QtBot
+) -> None:
+    bar, controller = traced.target.threshold, traced.controller
+    before = controller.document.target
+    bar.slider.setSliderDown(True)
+    for value in range(100, 161):
+        bar.slider.setValue(value)
+    bar.slider.setSliderDown(False)
+    until(lambda: controller.document.target == read_image(picture, 0.8))
+    until(lambda: not controller.board.busy)
+    assert bar.slider.value() == 160 and bar.number.text() == "80.0 %"
+    assert controller.history.undo_label == "Change threshold"
+    qtbot.keyClick(traced, Qt.Key.Key_Z, Qt.KeyboardModifier.ControlModifier)
+    assert controller.document.target == before
+    assert bar.slider.value() == round(200 * automatic_threshold(picture))
+
+
+def test_that_each_key_press_is_a_step_of_its_own(traced: MainWindow, picture: Path, until: Until) -> None:
+    bar, controller = traced.target.threshold, traced.controller
+    for value in (150, 160):
+        bar.slider.setValue(value)
+        until(lambda value=value: controller.document.target == read_image(picture, value / 200))  # type: ignore[misc]
+        until(lambda: not controller.board.busy)
+    controller.undo()
+    assert controller.document.target == read_image(picture, 0.75)
+
+
+def test_that_auto_brings_the_found_threshold_back(
+    traced: MainWindow, picture: Path, until: Until, qtbot: QtBot
+) -> None:
+    bar, controller = traced.target.threshold, traced.controller
+    bar.slider.setValue(160)
+    until(lambda: bar.automatic.isEnabled() and not controller.board.busy)
+    qtbot.mouseClick(bar.automatic, Qt.MouseButton.LeftButton)
+    until(lambda: controller.document.target == read_image(picture))
+    assert not bar.automatic.isEnabled()
+
+
+def test_that_a_threshold_without_shape_keeps_the_target_and_says_so(traced: MainWindow, until: Until) -> None:
+    before = traced.controller.document.target
+    traced.target.threshold.slider.setValue(1)
+    until(lambda: "one colour" in traced.says.text())
+    assert traced.controller.document.target is before
+    assert not traced.messages.messages
+
+
+def test_that_a_new_target_ends_the_tracing_of_the_old_one(traced: MainWindow, until: Until) -> None:
+    for value in (120, 140, 160):
+        traced.target.threshold.slider.setValue(value)
+    traced.controller.open_target("heart")
+    until(lambda: traced.controller.document.target is not None and traced.controller.document.target.name == "heart")
+    until(lambda: not traced.controller.board.busy)
+    assert traced.controller.document.target is not None and traced.controller.document.target.name == "heart"
+    assert not traced.target.threshold.isVisible()
+
+
+def test_that_a_drawing_wins_over_a_file_that_is_still_being_read(
+    window: MainWindow, picture: Path, until: Until
+) -> None:
+    window.controller.open_target(str(picture))
+    window.controller.take_polygon(np.array([[0.0, 0.0], [3.0, 0.0], [1.0, 2.0]]))
+    until(lambda: not window.controller.board.busy)
+    assert window.controller.document.target is not None and window.controller.document.target.name == "polygon"

@@ -1,0 +1,50 @@
+"""The generator is loaded when hands rest."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import QObject, Qt
+from PySide6.QtWidgets import QWidget
+from pytestqt.qtbot import QtBot
+
+from kirigami_studio.gui.warm_up import WarmUp
+
+
+def test_that_it_happens_once_after_a_rest(qtbot: QtBot) -> None:
+    calls: list[int] = []
+    owner = QObject()
+    warm = WarmUp(lambda: calls.append(1), lambda: False, owner, rest_ms=20)
+    qtbot.waitUntil(lambda: bool(calls), timeout=5000)
+    assert not warm.waiting and calls == [1]
+    widget = QWidget()
+    qtbot.addWidget(widget)
+    qtbot.keyClick(widget, Qt.Key.Key_A)
+    assert not warm.waiting
+
+
+def test_that_input_puts_it_off(qtbot: QtBot) -> None:
+    owner, widget = QObject(), QWidget()
+    qtbot.addWidget(widget)
+    warm = WarmUp(lambda: None, lambda: False, owner, rest_ms=60_000)
+    timer = warm.timer
+    timer.setTimerType(Qt.TimerType.PreciseTimer)  # coarse ones are moved about by seconds
+    timer.start()
+    qtbot.wait(30)
+    left = timer.remainingTime()
+    qtbot.mouseMove(widget)
+    qtbot.keyClick(widget, Qt.Key.Key_A)
+    assert timer.remainingTime() > left
+    timer.stop()
+
+
+def test_that_it_waits_while_a_job_runs(qtbot: QtBot) -> None:
+    calls: list[int] = []
+    asked: list[int] = []
+    owner = QObject()
+
+    def busy() -> bool:
+        asked.append(1)
+        return len(asked) < 3
+
+    WarmUp(lambda: calls.append(len(asked)), busy, owner, rest_ms=10)
+    qtbot.waitUntil(lambda: bool(calls), timeout=5000)
+    assert calls == [3]
