@@ -9,7 +9,7 @@ from pathlib import Path
 
 from kirigami_studio.cli.console import ProgressLine, plain, print_json, say
 from kirigami_studio.cli.fabrication import material_settings, plan_for
-from kirigami_studio.cli.inputs import is_batch, parse_grid, read_targets
+from kirigami_studio.cli.inputs import are_many_targets, parse_grid, read_targets
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.export.exporter import ExportJob
 from kirigami_studio.export.png import write_png
@@ -32,7 +32,7 @@ def design(arguments: argparse.Namespace) -> int:
     """Design every target; one JSON object a line for many, files only where --out is given."""
     grid = parse_grid(arguments.grid)
     fabrication = material_settings(arguments)
-    batch = is_batch(arguments.targets)
+    batch = are_many_targets(arguments.targets)
     line = ProgressLine()
     used: set[str] = set()
     for named in read_targets(arguments.targets, arguments.threshold):

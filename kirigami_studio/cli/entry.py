@@ -14,7 +14,9 @@ def main(argv: Sequence[str] | None = None) -> int:
     """Run one command; returns the exit code (argparse itself exits with 2 on unknown words)."""
     arguments = build_parser().parse_args(argv)
     try:
-        return int(arguments.run(arguments))
+        code = int(arguments.run(arguments))
+        sys.stdout.flush()
+        return code
     except UsageError as error:
         return _fail(error, 2)
     except KirigamiError as error:
@@ -25,8 +27,17 @@ def main(argv: Sequence[str] | None = None) -> int:
         return _fail("There is not enough memory for this request; ask for fewer or smaller inputs.", 1)
     except BrokenPipeError:
         # The reader of our output went away (``| head``): not an error, but nothing more may be printed.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        _drop_output()
         return 0
+    except OSError as error:
+        # Files that the rooms write answer with sentences of their own; what is left is mostly standard output.
+        _drop_output()
+        return _fail(f"Cannot read or write {error.filename or 'the output'}: {error.strerror or error}.", 1)
+
+
+def _drop_output() -> None:
+    """Send what is still buffered nowhere, so that the interpreter does not stumble over it when it ends."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def _fail(message: object, code: int) -> int:

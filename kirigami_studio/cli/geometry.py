@@ -8,7 +8,7 @@ import math
 from pathlib import Path
 
 from kirigami_studio.cli.console import plain, print_json, say
-from kirigami_studio.cli.inputs import is_batch, parse_grid, read_fields, read_mask, read_targets
+from kirigami_studio.cli.inputs import are_many_targets, is_batch, parse_grid, read_fields, read_mask, read_targets
 from kirigami_studio.evaluate.feasibility import invalid_quads, overlap_ratio, path_contact
 from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.evaluate.siou import mask_siou
@@ -61,11 +61,14 @@ def score(arguments: argparse.Namespace) -> int:
     phi = target_angle(arguments.phi)
     fields = list(read_fields(ratio_sources))
     targets = list(read_targets([target_source]))
-    if len(targets) not in (1, len(fields)):
-        raise UsageError(f"{len(fields)} ratio fields need 1 target or {len(fields)} of them, got {len(targets)}.")
-    if len(targets) == 1:
-        targets = targets * len(fields)
-    batch = is_batch(ratio_sources) or is_batch([target_source])
+    if 1 not in (len(fields), len(targets)) and len(fields) != len(targets):
+        raise UsageError(
+            f"score pairs as many ratio fields as targets, or one with many; got {len(fields)} and {len(targets)}."
+        )
+    pairs = max(len(fields), len(targets))
+    fields = fields * (pairs if len(fields) == 1 else 1)
+    targets = targets * (pairs if len(targets) == 1 else 1)
+    batch = is_batch(ratio_sources) or are_many_targets([target_source])
     for field, target in zip(fields, targets, strict=True):
         result = evaluate(deploy(field.value), target.value, phi)
         if batch:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import os
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -15,6 +16,7 @@ import numpy.typing as npt
 
 from kirigami_studio.foundation.errors import GridError, KirigamiError, RatioError, TargetError, UsageError
 from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.target.library import names
 from kirigami_studio.target.outline import Outline
 from kirigami_studio.target.read import read_many, read_target
 from kirigami_studio.target.read_image import outline_of_mask, read_image
@@ -71,9 +73,17 @@ def parse_angle(text: str) -> float:
 
 def is_batch(sources: Sequence[str]) -> bool:
     """Whether these sources stand for many inputs (several paths, a folder or an archive)."""
-    return len(sources) > 1 or (
-        len(sources) == 1 and (Path(sources[0]).is_dir() or sources[0].lower().endswith(".npz"))
-    )
+    return len(sources) > 1 or (len(sources) == 1 and (_is_folder(sources[0]) or sources[0].lower().endswith(".npz")))
+
+
+def are_many_targets(sources: Sequence[str]) -> bool:
+    """``is_batch`` for targets: the name of a library silhouette wins over a folder of that name."""
+    return is_batch(sources) and not (len(sources) == 1 and sources[0] in names())
+
+
+def _is_folder(source: str) -> bool:
+    # os.path answers False for names that no file can have, and Path("") would be the current folder.
+    return bool(source) and os.path.isdir(source)  # noqa: PTH112
 
 
 def read_targets(sources: Sequence[str], threshold: float | None = None) -> Iterator[Named[Outline]]:
@@ -89,7 +99,7 @@ def read_targets(sources: Sequence[str], threshold: float | None = None) -> Iter
             for index, mask in enumerate(_archive(path, "masks", 3)):
                 name = f"{path.name}[{index}]"
                 yield Named(name, _outline_of(mask, name))
-        elif path.is_dir():
+        elif source not in names() and _is_folder(source):
             for outline in read_many(path):
                 yield Named(outline.name, outline)
         elif threshold is not None and path.suffix.lower() in IMAGE_SUFFIXES:
@@ -105,7 +115,7 @@ def read_fields(sources: Sequence[str]) -> Iterator[Named[RatioField]]:
         if path.suffix.lower() == ".npz":
             for index, ratio in enumerate(_archive(path, "ratios", 3)):
                 yield Named(f"{path.name}[{index}]", _field_of(ratio, f"{path.name}[{index}]"))
-        elif path.is_dir():
+        elif _is_folder(source):
             files = sorted(file for file in path.iterdir() if file.suffix.lower() in RATIO_SUFFIXES)
             if not files:
                 raise RatioError(f"The folder {path} holds no ratio fields (.json, .npy or .npz).")
@@ -131,7 +141,7 @@ def read_field(path: Path) -> RatioField:
         if suffix == ".npy":
             content: object = np.load(path, allow_pickle=False)
         else:
-            content = json.loads(path.read_text(encoding="utf-8"))
+            content = json.loads(path.read_text(encoding="utf-8-sig"))
     except (OSError, ValueError, EOFError, RecursionError) as error:
         reason = error.strerror if isinstance(error, OSError) and error.strerror else "it is damaged or of another kind"
         raise RatioError(f"Cannot read ratios from {path}: {reason}.") from error
@@ -151,7 +161,9 @@ def _field_of(values: object, name: str) -> RatioField:
 
 
 def read_mask(path: Path) -> npt.NDArray[np.bool_]:
-    """Read a mask image as a bool array; bright is inside.
+    """Read a mask image as a bool array; what is brighter than half of its brightest pixel is inside.
+
+    Files with the values 0 and 1, 0 and 255, or 16 bits all say the same.
 
     Raises
     ------
@@ -162,16 +174,27 @@ def read_mask(path: Path) -> npt.NDArray[np.bool_]:
 
     try:
         with Image.open(path) as image:
-            grey = np.asarray(image.convert("L"))
+            deep = image.mode.startswith(("I", "F"))
+            grey = np.asarray(image if deep else image.convert("L"), dtype=np.float64)
     except (OSError, UnidentifiedImageError, ValueError, Image.DecompressionBombError) as error:
         raise TargetError(f"Cannot read the mask image {path}: it is missing, damaged or not an image.") from error
-    mask: npt.NDArray[np.bool_] = grey >= 128
-    return mask
+    return _inside(grey)
+
+
+def _inside(levels: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
+    """What lies above half of the highest level; of a bool mask or 0 and 1, what is set."""
+    highest = max(float(levels.max(initial=0.0)), 0.0)
+    inside: npt.NDArray[np.bool_] = levels > 0.5 * highest
+    return inside
 
 
 def _outline_of(mask: npt.NDArray[np.generic], name: str) -> Outline:
     try:
-        return outline_of_mask(np.asarray(mask) > 0, name)
+        levels = np.asarray(mask, dtype=np.float64)
+        if not np.all(np.isfinite(levels)):
+            row, column = np.argwhere(~np.isfinite(levels))[0]
+            raise TargetError(f"The mask is not finite in row {row}, column {column}; every pixel must be a number.")
+        return outline_of_mask(_inside(levels), name)
     except KirigamiError as error:
         raise TargetError(f"{name}: {error}") from error
 
@@ -193,4 +216,6 @@ def _archive(path: Path, key: str, dimensions: int) -> npt.NDArray[np.generic]:
         raise KirigamiError(f"Cannot read {path}: it is damaged or not an .npz archive.") from error
     if values.ndim != dimensions or values.dtype.kind not in "biuf":
         raise UsageError(f"'{key}' in {path.name} must be an (N, rows, columns) array of numbers, got {values.shape}.")
+    if not len(values):
+        raise UsageError(f"'{key}' in {path.name} has no entries.")
     return values

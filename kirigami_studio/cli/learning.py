@@ -23,7 +23,7 @@ def dataset(arguments: argparse.Namespace) -> int:
     for name, (size, offset) in SPLITS.items():
         if arguments.split not in ("all", name):
             continue
-        count = arguments.count or size
+        count = size if arguments.count is None else arguments.count
         split = generate_split(
             arguments.family,
             count,
@@ -100,7 +100,9 @@ def _generator_suite(arguments: argparse.Namespace, line: ProgressLine) -> dict[
     size, offset = SPLITS["test"]
     results: dict[str, object] = {}
     for family in ("structured", "sobol"):
-        split = generate_split(family, arguments.count or size, arguments.data_seed * len(SPLITS) + offset)
+        split = generate_split(
+            family, size if arguments.count is None else arguments.count, arguments.data_seed * len(SPLITS) + offset
+        )
         results[family] = measure_generator(
             split.masks,
             arguments.variant,

@@ -69,6 +69,33 @@ def number(text: str) -> float:
     return value
 
 
+def amount(text: str) -> float:
+    """A finite number, 0 or more."""
+    value = number(text)
+    if value < 0:
+        raise argparse.ArgumentTypeError(f"must be 0 or more, got {text}")
+    return value
+
+
+def whole(text: str) -> int:
+    """A whole number, 0 or more: what a seed is."""
+    try:
+        value = int(text)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"must be a whole number, got '{text}'") from None
+    if value < 0:
+        raise argparse.ArgumentTypeError(f"must be 0 or more, got {text}")
+    return value
+
+
+def count(text: str) -> int:
+    """A whole number, 1 or more."""
+    value = whole(text)
+    if value < 1:
+        raise argparse.ArgumentTypeError(f"must be 1 or more, got {text}")
+    return value
+
+
 JSON = option("--json", action="store_true", help="print JSON on standard output and nothing else")
 PHI = option(
     "--phi", type=angle, default=0.0, metavar="ANGLE",
@@ -146,37 +173,37 @@ COMMANDS: tuple[Command, ...] = (
         option("--out", required=True, help="folder for FAMILY-SPLIT.npz"),
         option("--split", default="all", choices=("all", "train", "validation", "test"),
                help="default all: 5000/500/500"),
-        option("--count", type=int, default=None, help="other number of designs than the protocol's"),
+        option("--count", type=count, default=None, help="other number of designs than the protocol's"),
         option("--grid", default="10x10", help="voids, ROWSxCOLUMNS (default 10x10)"),
-        option("--seed", type=int, default=0, help="default 0"),
+        option("--seed", type=whole, default=0, help="default 0"),
         JSON,
     ), ("kirigami-studio dataset sobol --out data --split test",)),
     Command("train", "train a generator; resumes from the checkpoint in its folder", "learning:train", (
         option("stage", choices=("prior",), help="what to train"),
         option("--out", required=True, help="run folder: checkpoint, log, weights"),
-        option("--steps", type=int, default=12_000, help="optimiser steps in all (default 12000)"),
-        option("--minutes", type=float, default=None, help="stop with a checkpoint after this time"),
-        option("--batch", type=int, default=96, help="targets a step (default 96)"),
+        option("--steps", type=count, default=12_000, help="optimiser steps in all (default 12000)"),
+        option("--minutes", type=number, default=None, help="stop with a checkpoint after this time"),
+        option("--batch", type=count, default=96, help="targets a step (default 96)"),
         option("--coupling", default="independent", choices=("independent", "ot", "conditional-ot"),
                help="pairing of noise and designs (default independent)"),
         option("--feedback", action=argparse.BooleanOptionalAction, default=True,
                help="show the network how the current field's outline differs from the target (default: yes)"),
-        option("--outline-weight", type=float, default=50.0, help="weight of the outline error (default 50)"),
-        option("--validate-every", type=int, default=500, help="steps between validations (default 500)"),
-        option("--threads", type=int, default=1, help="processor threads (default 1)"),
+        option("--outline-weight", type=amount, default=50.0, help="weight of the outline error (default 50)"),
+        option("--validate-every", type=count, default=500, help="steps between validations (default 500)"),
+        option("--threads", type=count, default=1, help="processor threads (default 1)"),
         option("--device", default="auto", help="auto, cpu or cuda (default auto)"),
-        option("--seed", type=int, default=0, help="default 0"),
+        option("--seed", type=whole, default=0, help="default 0"),
         JSON,
     ), ("kirigami-studio train prior --out runs/prior --device auto",)),
     Command("benchmark", "measure the generator or the lattice", "learning:benchmark", (
         option("suite", choices=("generator", "lattice"), help="what to measure"),
         option("--out", default=None, help="also write the results here (.json)"),
         option("--variant", default="prior", help="generator variant (default prior)"),
-        option("--count", type=int, default=None, help="targets of each family (default 500)"),
-        option("--k", type=int, default=1, help="samples a target (default 1)"),
-        option("--steps", type=int, default=4, help="Euler steps (default 4)"),
-        option("--seeds", type=int, nargs="+", default=[0, 1, 2], help="sampling seeds (default 0 1 2)"),
-        option("--data-seed", type=int, default=0, help="seed of the test splits (default 0)"),
+        option("--count", type=count, default=None, help="targets of each family (default 500)"),
+        option("--k", type=count, default=1, help="samples a target (default 1)"),
+        option("--steps", type=count, default=4, help="Euler steps (default 4)"),
+        option("--seeds", type=whole, nargs="+", default=[0, 1, 2], help="sampling seeds (default 0 1 2)"),
+        option("--data-seed", type=whole, default=0, help="seed of the test splits (default 0)"),
         JSON,
     ), ("kirigami-studio benchmark generator --count 100 --json", "kirigami-studio benchmark lattice")),
 )  # fmt: skip

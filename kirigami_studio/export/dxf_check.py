@@ -227,5 +227,9 @@ def _physics(
     if ligament is None:
         return pieces, None
     if ligament.width_mm <= 0 and pieces == 1:
-        problems.append(Problem("Cuts run into each other.", Severity.WARNING, ligament.where))
+        # In a foreign drawing cuts may cross on purpose; in ours a connector is lost.
+        ours = any(drawn.layer in (Layer.SLITS.value, Layer.EDGE_SLITS.value) for drawn in paths)
+        x, y = ligament.where
+        text = f"Cuts run into each other at x = {x:.2f}, y = {y:.2f}; no connector is left there."
+        problems.append(Problem(text, Severity.ERROR if ours else Severity.WARNING, ligament.where))
     return pieces, ligament.width_mm

@@ -11,6 +11,9 @@ from kirigami_studio.foundation.errors import GridError, RatioError
 
 SMALLEST_GRID = 2
 LARGEST_GRID = 64
+#: Within these bounds Eq. 2 holds to 1e-8 at 24 x 24; at 10^(+-13) to 0.1, beyond them not at all (float64).
+SMALLEST_RATIO = 1e-6
+LARGEST_RATIO = 1e6
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -42,7 +45,7 @@ class RatioField:
 
     Attributes
     ----------
-    ratio : (m, n) float, dimensionless, > 0
+    ratio : (m, n) float, dimensionless, 1e-6 to 1e6
         Row 0 is the top row of the sheet.
     """
 
@@ -59,6 +62,13 @@ class RatioField:
         if not np.all(ratio > 0):
             row, column = np.argwhere(ratio <= 0)[0]
             raise RatioError(f"Ratio at void ({row}, {column}) is {ratio[row, column]:g}; it must be above 0.")
+        outside = (ratio < SMALLEST_RATIO) | (ratio > LARGEST_RATIO)
+        if np.any(outside):
+            row, column = np.argwhere(outside)[0]
+            raise RatioError(
+                f"Ratio at void ({row}, {column}) is {ratio[row, column]:g}; it must lie in "
+                f"{SMALLEST_RATIO:g} to {LARGEST_RATIO:g}, where the layout is exact."
+            )
         object.__setattr__(self, "ratio", ratio)
 
     @classmethod
@@ -100,8 +110,9 @@ class RatioField:
 def _table(values: npt.ArrayLike) -> FloatArray:
     """Read-only float64 copy, or a sentence instead of numpy's own error."""
     try:
-        if np.iscomplexobj(values):
-            raise TypeError("complex numbers")
-        return frozen(values)
+        table = np.asarray(values)
+        if table.dtype.kind not in "iuf" and table.size:
+            raise TypeError("text, truth values, complex numbers or whole numbers without bound")
+        return frozen(table)
     except (TypeError, ValueError, OverflowError):
         raise RatioError("Ratios must be an (m, n) table of numbers.") from None

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
-from PIL import Image, ImageOps
+from PIL import Image, ImageOps, UnidentifiedImageError
 from skimage import filters
 
 from kirigami_studio.foundation.errors import TargetError
@@ -130,6 +130,9 @@ def _levels(content: bytes) -> Levels:
             image = Image.open(io.BytesIO(content), formats=FORMATS)
         except Image.DecompressionBombError:
             raise TargetError("The picture has far too many pixels; save it with at most 10000 x 10000.") from None
+        except UnidentifiedImageError:
+            # Pillow's own words name the object in memory and not the file.
+            raise ValueError("no such picture begins like this") from None
         width, height = image.size
         if width * height > MOST_PIXELS:
             raise TargetError(

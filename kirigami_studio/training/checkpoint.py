@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -9,6 +10,7 @@ from typing import Any
 import torch
 
 from kirigami_studio.foundation.errors import ModelError
+from kirigami_studio.foundation.files import write_atomically
 
 
 @dataclass(slots=True)
@@ -36,10 +38,16 @@ class Checkpoint:
     generator: torch.Tensor
 
     def save(self, path: Path) -> None:
-        """Write beside the old checkpoint, then rename: an interrupted save loses nothing."""
-        temporary = path.with_suffix(".partial")
-        torch.save({name: getattr(self, name) for name in self.__slots__}, temporary)
-        temporary.replace(path)
+        """Write beside the old checkpoint, then rename: an interrupted save loses nothing.
+
+        Raises
+        ------
+        ExportError
+            The folder cannot be written or the disk is full; the old checkpoint is untouched.
+        """
+        buffer = io.BytesIO()
+        torch.save({name: getattr(self, name) for name in self.__slots__}, buffer)
+        write_atomically(path, buffer.getvalue())
 
     @classmethod
     def load(cls, path: Path) -> Checkpoint:

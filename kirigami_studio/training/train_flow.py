@@ -16,7 +16,7 @@ from pathlib import Path
 import torch
 from torch import Tensor
 
-from kirigami_studio.foundation.errors import ModelError
+from kirigami_studio.foundation.errors import ExportError, ModelError
 from kirigami_studio.generator.conditioning import condition, turned
 from kirigami_studio.generator.network import NetworkShape, VelocityNetwork
 from kirigami_studio.generator.pose import square_pose
@@ -106,16 +106,21 @@ def train_flow(
 
     Raises
     ------
+    ExportError
+        The folder cannot be made or written.
     ModelError
         The checkpoint in ``folder`` belongs to other settings.
     """
-    folder.mkdir(parents=True, exist_ok=True)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise ExportError(f"Cannot make the run folder {folder}: {error.strerror}. Choose another folder.") from error
     run = _Run(settings, folder / "checkpoint.pt", device)
     began = time.perf_counter()
-    running = 0.0
+    running = math.nan
     while run.step < settings.steps:
         loss = run.advance()
-        running = loss if run.step == 1 else running + 0.02 * (loss - running)
+        running = loss if math.isnan(running) else running + 0.02 * (loss - running)
         out_of_time = time.perf_counter() - began > seconds
         if run.step % validate_every == 0 or run.step == settings.steps or out_of_time:
             run.save()
@@ -189,7 +194,11 @@ class _Run:
     def _resume(self) -> None:
         state = Checkpoint.load(self.path)
         if state.settings != self.settings.to_json():
-            raise ModelError(f"The checkpoint {self.path} was made with other settings; choose another folder.")
+            wanted = self.settings.to_json()
+            names = ", ".join(name for name in wanted if state.settings.get(name) != wanted[name])
+            raise ModelError(
+                f"The checkpoint {self.path} was made with other settings ({names}); choose another folder."
+            )
         self.network.load_state_dict(state.network)
         self.average = {name: value.to(self.device) for name, value in state.average.items()}
         self.optimiser.load_state_dict(state.optimiser)

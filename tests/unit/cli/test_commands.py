@@ -210,3 +210,62 @@ def test_that_datasets_are_written_and_verified(capsys: pytest.CaptureFixture[st
     answered = answer(capsys, "dataset", "structured", "--out", tmp_path, "--split", "test", "--count", 4, "--json")
     with np.load(answered["files"]["test"]) as archive:
         assert archive["masks"].shape == (4, 128, 128)
+
+
+def test_that_one_field_is_scored_on_each_of_many_targets(
+    capsys: pytest.CaptureFixture[str], ratios: Path, tmp_path: Path
+) -> None:
+    masks = np.zeros((2, 64, 64), dtype=bool)
+    masks[:, 10:50, 10:50] = True
+    np.savez(tmp_path / "masks.npz", masks=masks)
+    assert main(["score", str(ratios), str(tmp_path / "masks.npz")]) == 0
+    lines = [json.loads(line) for line in capsys.readouterr().out.splitlines()]
+    assert [line["target"] for line in lines] == ["masks.npz[0]", "masks.npz[1]"]
+    assert lines[0]["siou"] == lines[1]["siou"]
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ("dataset", "sobol", "--count", "0"), ("dataset", "sobol", "--count", "-1"),
+        ("dataset", "sobol", "--seed", "-1"), ("train", "prior", "--batch", "0"), ("train", "prior", "--steps", "0"),
+        ("train", "prior", "--validate-every", "0"), ("train", "prior", "--threads", "0"),
+        ("train", "prior", "--seed", "-1"), ("train", "prior", "--minutes", "nan"),
+        ("train", "prior", "--outline-weight", "nan"), ("benchmark", "generator", "--count", "0"),
+        ("benchmark", "generator", "--k", "0"), ("benchmark", "generator", "--seeds", "-1"),
+        ("benchmark", "generator", "--data-seed", "-1"),
+    ],
+)  # fmt: skip
+def test_that_impossible_numbers_of_the_learning_commands_are_wrong_usage(
+    words: tuple[str, ...], capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    with pytest.raises(SystemExit) as exit_:
+        main([*words, "--out", str(tmp_path / "new")])
+    assert exit_.value.code == 2
+    assert words[-2] in capsys.readouterr().err
+    assert not (tmp_path / "new").exists()
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs a device that is always full")
+@pytest.mark.parametrize("words", [("targets",), ("targets", "--json")])
+def test_that_a_full_disk_behind_standard_output_is_one_sentence(words: tuple[str, ...]) -> None:
+    with Path("/dev/full").open("w") as full:
+        done = subprocess.run(
+            [sys.executable, "-m", "kirigami_studio", *words],
+            stdout=full,
+            stderr=subprocess.PIPE,
+            text=True,
+            check=False,
+        )
+    assert done.returncode == 1
+    assert len(done.stderr.splitlines()) == 1 and "No space left" in done.stderr
+
+
+def test_that_a_run_folder_that_cannot_be_made_is_one_sentence(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    (tmp_path / "file").write_text("in the way")
+    code, sentence = refusal(
+        capsys, "train", "prior", "--steps", 1, "--device", "cpu", "--out", tmp_path / "file" / "x"
+    )
+    assert code == 1 and "file" in sentence

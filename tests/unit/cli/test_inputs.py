@@ -10,7 +10,15 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from kirigami_studio.cli.inputs import is_batch, parse_angle, parse_grid, read_fields, read_mask, read_targets
+from kirigami_studio.cli.inputs import (
+    are_many_targets,
+    is_batch,
+    parse_angle,
+    parse_grid,
+    read_fields,
+    read_mask,
+    read_targets,
+)
 from kirigami_studio.foundation.errors import GridError, KirigamiError, RatioError, TargetError, UsageError
 
 
@@ -143,3 +151,64 @@ def test_that_a_threshold_decides_what_a_grey_image_shows(tmp_path: Path) -> Non
     assert spans[1][0] / spans[1][1] == pytest.approx(1.0, rel=0.05)
     with pytest.raises(UsageError, match="between 0 and 1"):
         list(read_targets([str(tmp_path / "grey.png")], 2.0))
+
+
+def test_that_a_json_file_may_begin_with_a_byte_order_mark(tmp_path: Path) -> None:
+    (tmp_path / "a.json").write_text(json.dumps({"ratio": [[1, 2], [3, 4]]}), encoding="utf-8-sig")
+    (named,) = read_fields([str(tmp_path / "a.json")])
+    assert named.value.ratio.tolist() == [[1, 2], [3, 4]]
+
+
+def test_that_a_soft_mask_is_bounded_halfway_and_not_where_it_begins(tmp_path: Path) -> None:
+    ramp = np.clip((np.arange(100) - 20) / 20, 0, 1)  # 0.5 at column 30
+    profile = np.minimum(ramp, ramp[::-1])
+    soft = np.minimum(profile[:, None], profile[None, :])
+    for number, masks in enumerate((soft[None], (255 * soft[None]).astype(np.uint8))):
+        np.savez(tmp_path / f"{number}.npz", masks=masks)
+        (named,) = read_targets([str(tmp_path / f"{number}.npz")])
+        assert named.value.size == pytest.approx((38, 38), abs=1)
+
+
+def test_that_a_mask_with_a_hole_in_its_numbers_is_refused(tmp_path: Path) -> None:
+    masks = np.ones((2, 40, 40))
+    masks[1, 3, 4] = np.nan
+    np.savez(tmp_path / "a.npz", masks=masks)
+    with pytest.raises(TargetError, match=r"a\.npz\[1\].*not finite"):
+        list(read_targets([str(tmp_path / "a.npz")]))
+
+
+def test_that_an_archive_without_entries_is_refused_like_an_empty_folder(tmp_path: Path) -> None:
+    np.savez(tmp_path / "a.npz", ratios=np.ones((0, 4, 4)))
+    with pytest.raises(UsageError, match="no entries"):
+        list(read_fields([str(tmp_path / "a.npz")]))
+
+
+def test_that_a_library_name_means_the_silhouette_even_beside_a_folder_of_that_name(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "heart").mkdir()
+    monkeypatch.chdir(tmp_path)
+    (named,) = read_targets(["heart"])
+    assert named.value.name == "heart"
+    assert not are_many_targets(["heart"])
+    assert are_many_targets(["./heart"])
+
+
+def test_that_an_empty_name_is_no_folder() -> None:
+    assert not are_many_targets([""])
+    with pytest.raises(TargetError):
+        list(read_targets([""]))
+
+
+def test_that_an_endless_name_is_refused_in_a_sentence() -> None:
+    for read in (read_fields, read_targets):
+        with pytest.raises(KirigamiError):
+            list(read(["x" * 5000]))
+
+
+@pytest.mark.parametrize(("high", "kind"), [(1, np.uint8), (255, np.uint8), (3000, np.uint16)])
+def test_that_a_mask_image_may_use_any_range(high: int, kind: type, tmp_path: Path) -> None:
+    expected = np.zeros((20, 30), dtype=bool)
+    expected[5:15, 8:20] = True
+    Image.fromarray(np.where(expected, high, high // 3).astype(kind)).save(tmp_path / "mask.png")
+    assert np.array_equal(read_mask(tmp_path / "mask.png"), expected)

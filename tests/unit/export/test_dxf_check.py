@@ -219,3 +219,41 @@ def test_that_a_damaged_dxf_never_ends_in_a_traceback(seed: int, make_design: Ma
         assert "cut.dxf" in str(error)
     else:
         assert report.path.name == "cut.dxf"
+
+
+def test_that_a_slanted_line_drawn_over_half_of_another_is_reported(tmp_path: Path) -> None:
+    document = foreign()
+    a, b = (22.1234, 7.5678), (33.3333, 9.8765)
+    document.modelspace().add_line(a, b)
+    document.modelspace().add_line(b, ((a[0] + b[0]) / 2, (a[1] + b[1]) / 2))
+    report = checked(document, tmp_path)
+    assert not report.ok and report.overlap_mm == pytest.approx(math.dist(a, b) / 2, abs=1e-6)
+
+
+def test_that_a_line_drawn_three_times_counts_twice(tmp_path: Path) -> None:
+    document = foreign()
+    for _ in range(3):
+        document.modelspace().add_line((22.1234, 7.5678), (33.3333, 9.8765))
+    assert checked(document, tmp_path).overlap_mm == pytest.approx(2 * math.dist((22.1234, 7.5678), (33.3333, 9.8765)))
+
+
+def test_that_lines_that_only_cross_or_meet_do_not_overlap(tmp_path: Path) -> None:
+    document = foreign()
+    document.modelspace().add_line((22, 8), (36, 9))
+    document.modelspace().add_line((22, 9), (36, 8))
+    document.modelspace().add_line((36, 9), (36, 12))
+    assert checked(document, tmp_path).overlap_mm == 0.0
+
+
+def test_that_slits_of_our_own_that_run_into_each_other_are_not_ready_to_cut(
+    make_design: MakeDesign, tmp_path: Path
+) -> None:
+    plan = plan_cuts(make_design(4, 5, seed=4))
+    write_dxf(plan, tmp_path / "cut.dxf")
+    document = ezdxf.readfile(tmp_path / "cut.dxf")
+    slit = next(entity for entity in document.modelspace() if entity.dxf.layer == "SLITS")
+    (ax, ay), (bx, by) = slit.get_points("xy")[0], slit.get_points("xy")[-1]
+    dx, dy = 0.1 * (bx - ax), 0.1 * (by - ay)
+    slit.set_points([(ax - dx, ay - dy), (bx + dx, by + dy)], format="xy")
+    report = checked(document, tmp_path)
+    assert not report.ok and "run into each other" in sentences(report)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from PIL import Image
@@ -206,3 +208,10 @@ def test_that_a_mask_without_shape_is_refused(mask) -> None:
 def test_that_a_full_mask_is_its_rectangle(iou) -> None:
     rectangle = Outline.from_points([[0, 0], [60, 0], [60, 30], [0, 30]])
     assert iou(outline_of_mask(np.ones((30, 60), bool), "all"), rectangle) > 0.99
+
+
+def test_that_a_text_file_named_png_is_refused_without_the_inner_workings(tmp_path: Path) -> None:
+    (tmp_path / "a.png").write_text("hello")
+    with pytest.raises(TargetError, match="not a picture") as refused:
+        read_image(tmp_path / "a.png")
+    assert "BytesIO" not in str(refused.value)
