@@ -1,8 +1,8 @@
-"""How well a bundled generator variant matches a set of target masks, beside the uniform layout's score."""
+"""How well a bundled generator variant matches a set of targets, beside the uniform layout's score."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 import numpy.typing as npt
@@ -10,7 +10,7 @@ import numpy.typing as npt
 from kirigami_studio.evaluate.score import Score
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.pipeline.run import best_of
-from kirigami_studio.target.read_image import outline_of_mask
+from kirigami_studio.target.outline import Outline
 
 #: The paper's success threshold on sIoU (Sec. 3.1).
 SUCCESS_SIOU = 0.85
@@ -18,21 +18,22 @@ BOOTSTRAP_DRAWS = 10_000
 
 
 def measure_generator(
-    masks: npt.NDArray[np.bool_],
+    targets: Sequence[Outline],
     variant: str,
     *,
     k: int = 1,
     steps: int = 4,
+    polish: int = 0,
+    grid: tuple[int, int] = (10, 10),
     seeds: tuple[int, ...] = (0, 1, 2),
     report: Callable[[int, int], None] = lambda done, total: None,
 ) -> dict[str, object]:
-    """Best of ``k`` samples for every mask and seed.
+    """Best of ``k`` samples for every target and seed.
 
     Parameters
     ----------
-    masks : (N, H, W) bool
-        Row 0 on top.
-    variant, k, steps
+    targets : sequence of Outline
+    variant, k, steps, polish, grid
         As in :class:`Request`.
     seeds : tuple of int
         Sampling seeds; the mean over them is quoted per target.
@@ -46,25 +47,27 @@ def measure_generator(
         ``iou_exact``, ``uniform_siou``, ``siou_gain``, ``tv``, quantiles, and the settings.
     """
     scores: list[list[Score]] = []
-    total = len(masks) * len(seeds)
-    for number, mask in enumerate(masks):
-        target = outline_of_mask(mask, f"mask {number}")
-        per_seed = []
+    total = len(targets) * len(seeds)
+    for number, target in enumerate(targets):
+        per_seed: list[Score] = []
         for seed in seeds:
-            request = Request(target, k=k, seed=seed, variant=variant, steps=steps)
+            request = Request(target, grid, k=k, seed=seed, variant=variant, steps=steps, polish=polish)
             per_seed.append(best_of(request).best.score)
             report(number * len(seeds) + len(per_seed), total)
         scores.append(per_seed)
     siou = np.array([[score.siou for score in row] for row in scores])
     feasible = np.array([[score.feasible for score in row] for row in scores])
     return {
-        "targets": len(masks),
+        "targets": len(targets),
         "seeds": list(seeds),
         "k": k,
         "steps": steps,
+        "polish": polish,
+        "grid": list(grid),
         "variant": variant,
         "siou": float(siou.mean()),
         "siou_interval": bootstrap_interval(siou.mean(axis=1)),
+        "worst": float(siou.min()),
         "siou_quantiles_5_50_95": [float(q) for q in np.quantile(siou, (0.05, 0.5, 0.95))],
         "success": float(((siou >= SUCCESS_SIOU) & feasible).mean()),
         "infeasible": int((~feasible).sum()),

@@ -1,16 +1,13 @@
-"""``train``, ``dataset`` and ``benchmark``: the rooms beside the app, loaded only when asked for."""
+"""``train`` and ``dataset``: the room beside the app, loaded only when asked for."""
 
 from __future__ import annotations
 
 import argparse
-import json
-from collections.abc import Callable
 from pathlib import Path
 
-from kirigami_studio.cli.console import ProgressLine, plain, print_json, say
+from kirigami_studio.cli.console import ProgressLine, print_json, say
 from kirigami_studio.cli.inputs import parse_grid
 from kirigami_studio.foundation.errors import UsageError
-from kirigami_studio.foundation.files import write_atomically
 
 
 def dataset(arguments: argparse.Namespace) -> int:
@@ -76,53 +73,3 @@ def train(arguments: argparse.Namespace) -> int:
     else:
         say(f"Weights: {path}")
     return 0
-
-
-def benchmark(arguments: argparse.Namespace) -> int:
-    """Run one suite, print its figures and write them where asked."""
-    line = ProgressLine()
-    results = SUITES[arguments.suite](arguments, line)
-    line.clear()
-    if arguments.out is not None:
-        write_atomically(Path(arguments.out), (json.dumps(plain(results), indent=2) + "\n").encode())
-    if arguments.json:
-        print_json(results)
-    else:
-        say(json.dumps(plain(results), indent=2))
-    return 0
-
-
-def _generator_suite(arguments: argparse.Namespace, line: ProgressLine) -> dict[str, object]:
-    """The bundled generator on the test splits of both families."""
-    from kirigami_studio.benchmark.generator_suite import measure_generator
-    from kirigami_studio.training.dataset import SPLITS, generate_split
-
-    size, offset = SPLITS["test"]
-    results: dict[str, object] = {}
-    for family in ("structured", "sobol"):
-        split = generate_split(
-            family, size if arguments.count is None else arguments.count, arguments.data_seed * len(SPLITS) + offset
-        )
-        results[family] = measure_generator(
-            split.masks,
-            arguments.variant,
-            k=arguments.k,
-            steps=arguments.steps,
-            seeds=tuple(arguments.seeds),
-            report=lambda done, total, family=family: line.show(f"{family}: {done} of {total}"),  # type: ignore[misc]
-        )
-    return results
-
-
-def _lattice_suite(arguments: argparse.Namespace, line: ProgressLine) -> dict[str, object]:
-    """Timings of the exact geometry, with the ratio to the marching reference."""
-    from kirigami_studio.benchmark.lattice_timing import lattice_timings
-
-    line.show("Timing the lattice")
-    return dict(lattice_timings())
-
-
-SUITES: dict[str, Callable[[argparse.Namespace, ProgressLine], dict[str, object]]] = {
-    "generator": _generator_suite,
-    "lattice": _lattice_suite,
-}

@@ -195,8 +195,12 @@ COMMANDS: tuple[Command, ...] = (
         option("--seed", type=whole, default=0, help="default 0"),
         JSON,
     ), ("kirigami-studio train prior --out runs/prior --device auto",)),
-    Command("benchmark", "measure the generator or the lattice", "learning:benchmark", (
-        option("suite", choices=("generator", "lattice"), help="what to measure"),
+    Command("benchmark", "measure the generator, the polish or the lattice", "benchmarks:benchmark", (
+        option("suite", choices=("generator", "polish", "lattice"), help="what to measure"),
+        option("--targets", nargs="+", default=None, help="'library', files or folders (default: the test splits)"),
+        option("--grid", default="10x10", help="voids, ROWSxCOLUMNS (default 10x10)"),
+        option("--polish", type=whole, default=0, help="steps of the fit (default: 0 for samples, 40 for fits)"),
+        option("--effort", type=whole, default=None, help="polish: search by continuation with this effort"),
         option("--out", default=None, help="also write the results here (.json)"),
         option("--variant", default="prior", help="generator variant (default prior)"),
         option("--count", type=count, default=None, help="targets of each family (default 500)"),
@@ -205,7 +209,10 @@ COMMANDS: tuple[Command, ...] = (
         option("--seeds", type=whole, nargs="+", default=[0, 1, 2], help="sampling seeds (default 0 1 2)"),
         option("--data-seed", type=whole, default=0, help="seed of the test splits (default 0)"),
         JSON,
-    ), ("kirigami-studio benchmark generator --count 100 --json", "kirigami-studio benchmark lattice")),
+    ), ("kirigami-studio benchmark generator --count 100 --json",
+        "kirigami-studio benchmark generator --targets library --k 8 --polish 15 --seeds 0",
+        "kirigami-studio benchmark polish --targets library --effort 1",
+        "kirigami-studio benchmark lattice")),
 )  # fmt: skip
 
 

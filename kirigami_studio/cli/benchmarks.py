@@ -1,0 +1,99 @@
+"""``benchmark``: every figure that README and model card quote, from one command each."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from collections.abc import Callable
+from pathlib import Path
+
+from kirigami_studio.cli.console import ProgressLine, plain, print_json, say
+from kirigami_studio.cli.inputs import parse_grid, read_targets
+from kirigami_studio.foundation.errors import UsageError
+from kirigami_studio.foundation.files import write_atomically
+from kirigami_studio.target.library import load, names
+from kirigami_studio.target.outline import Outline
+from kirigami_studio.target.read_image import outline_of_mask
+
+
+def benchmark(arguments: argparse.Namespace) -> int:
+    """Run one suite, print its figures and write them where asked."""
+    line = ProgressLine()
+    results = SUITES[arguments.suite](arguments, line)
+    line.clear()
+    if arguments.out is not None:
+        write_atomically(Path(arguments.out), (json.dumps(plain(results), indent=2) + "\n").encode())
+    if arguments.json:
+        print_json(results)
+    else:
+        say(json.dumps(plain(results), indent=2))
+    return 0
+
+
+def _generator_suite(arguments: argparse.Namespace, line: ProgressLine) -> dict[str, object]:
+    """A bundled variant on the named targets, or on the test splits of both families."""
+    from kirigami_studio.benchmark.generator_suite import measure_generator
+
+    results: dict[str, object] = {}
+    for family, outlines in _target_sets(arguments).items():
+        results[family] = measure_generator(
+            outlines,
+            arguments.variant,
+            k=arguments.k,
+            steps=arguments.steps,
+            polish=arguments.polish,
+            grid=parse_grid(arguments.grid),
+            seeds=tuple(arguments.seeds),
+            report=lambda done, total, family=family: line.show(f"{family}: {done} of {total}"),  # type: ignore[misc]
+        )
+    return results
+
+
+def _polish_suite(arguments: argparse.Namespace, line: ProgressLine) -> dict[str, object]:
+    """The fit alone, from the uniform sheet or by continuation."""
+    from kirigami_studio.benchmark.polish_suite import measure_polish
+
+    return {
+        family: measure_polish(
+            outlines,
+            grid=parse_grid(arguments.grid),
+            steps=arguments.polish or 40,
+            effort=arguments.effort,
+            report=lambda done, total, family=family: line.show(f"{family}: {done} of {total}"),  # type: ignore[misc]
+        )
+        for family, outlines in _target_sets(arguments).items()
+    }
+
+
+def _lattice_suite(arguments: argparse.Namespace, line: ProgressLine) -> dict[str, object]:
+    """Timings of the exact geometry, with the ratio to the marching reference."""
+    from kirigami_studio.benchmark.lattice_timing import lattice_timings
+
+    line.show("Timing the lattice")
+    return dict(lattice_timings())
+
+
+def _target_sets(arguments: argparse.Namespace) -> dict[str, list[Outline]]:
+    """Named lists of targets: ``--targets``, or the test splits of both families."""
+    if arguments.targets == ["library"]:
+        return {"library": [load(name) for name in names()]}
+    if arguments.targets:
+        found = [named.value for named in read_targets(arguments.targets)]
+        if not found:
+            raise UsageError("No targets were found to measure on.")
+        return {"targets": found}
+    from kirigami_studio.training.dataset import SPLITS, generate_split
+
+    size, offset = SPLITS["test"]
+    sets = {}
+    for family in ("structured", "sobol"):
+        split = generate_split(family, arguments.count or size, arguments.data_seed * len(SPLITS) + offset)
+        sets[family] = [outline_of_mask(mask, f"{family} {number}") for number, mask in enumerate(split.masks)]
+    return sets
+
+
+SUITES: dict[str, Callable[[argparse.Namespace, ProgressLine], dict[str, object]]] = {
+    "generator": _generator_suite,
+    "polish": _polish_suite,
+    "lattice": _lattice_suite,
+}
