@@ -8,7 +8,7 @@ import math
 from pathlib import Path
 
 from kirigami_studio.cli.console import ProgressLine, plain, print_json, say
-from kirigami_studio.cli.fabrication import material_settings, plan_for
+from kirigami_studio.cli.fabrication import checked_plan, material_settings
 from kirigami_studio.cli.inputs import are_many_targets, parse_grid, read_targets
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.export.exporter import ExportJob
@@ -89,9 +89,8 @@ def write_files(result: Result, fabrication: FabricationSettings, folder: Path) 
     """
     request, best = result.request, result.best
     deployment = deploy(best.field)
-    job = ExportJob(
-        deployment, request.phi, plan_for(deployment, fabrication), request.target.points, best.score.transform
-    )
+    plan, _ = checked_plan(deployment, fabrication)
+    job = ExportJob(deployment, request.phi, plan, request.target.points, best.score.transform)
     paths = {
         "project": folder / "design.kiri",
         "cut": folder / "cut.dxf",

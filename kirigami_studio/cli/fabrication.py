@@ -13,10 +13,10 @@ from kirigami_studio.export.exporter import ExportJob
 from kirigami_studio.export.profile import DEFAULT_PROFILE, find_profile
 from kirigami_studio.export.registry import export as export_file
 from kirigami_studio.export.registry import find_exporter
-from kirigami_studio.fabricate.checks import check_plan
+from kirigami_studio.fabricate.checks import Report, Severity, check_plan
 from kirigami_studio.fabricate.cut_plan import CutPlan, plan_cuts
 from kirigami_studio.fabricate.material import default_material, find_material
-from kirigami_studio.foundation.errors import ProjectError, UsageError
+from kirigami_studio.foundation.errors import FabricationError, ProjectError, UsageError
 from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.settings import FabricationSettings
@@ -29,15 +29,26 @@ def material_settings(arguments: argparse.Namespace) -> FabricationSettings:
     return _overridden(FabricationSettings(material=material.key), arguments)
 
 
-def plan_for(deployment: Deployment, fabrication: FabricationSettings) -> CutPlan:
-    """The cut plan of a design with these settings."""
-    return plan_cuts(
+def checked_plan(deployment: Deployment, fabrication: FabricationSettings) -> tuple[CutPlan, Report]:
+    """The cut plan of a design with these settings, and what the physics check says about it.
+
+    Raises
+    ------
+    FabricationError
+        The plan cannot be made, or the sheet would not survive it.
+    """
+    plan = plan_cuts(
         deployment,
         fabrication.width_mm,
         fabrication.connector_mm,
         fabrication.kerf_mm,
         find_material(fabrication.material),
     )
+    report = check_plan(plan)
+    for problem in report.problems:
+        if problem.severity is Severity.ERROR:
+            raise FabricationError(problem.text)
+    return plan, report
 
 
 def export(arguments: argparse.Namespace) -> int:
@@ -45,10 +56,9 @@ def export(arguments: argparse.Namespace) -> int:
     profile = find_profile(arguments.profile or DEFAULT_PROFILE)
     find_exporter(arguments.out)
     document = load(arguments.project)
-    plan = plan_for(_deployment(document), _overridden(document.fabrication, arguments))
+    plan, report = checked_plan(_deployment(document), _overridden(document.fabrication, arguments))
     job = replace(_job(document), plan=plan, dxf_version=arguments.dxf_version, profile=profile.key)
     path = export_file(job, arguments.out)
-    report = check_plan(plan)
     warnings = [*plan.notes, *(problem.text for problem in report.problems)]
     if arguments.json:
         print_json(

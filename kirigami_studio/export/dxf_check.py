@@ -13,6 +13,7 @@ from shapely.geometry import LineString, Polygon
 from shapely.geometry.base import BaseGeometry
 
 from kirigami_studio.export.dxf_content import DrawnPath, DxfContent, read_content
+from kirigami_studio.export.placement import placement_problems
 from kirigami_studio.fabricate.checks import OVERLAP_TOLERANCE_MM, Problem, Severity
 from kirigami_studio.fabricate.cut_plan import LARGEST_SHEET_MM, SMALLEST_SHEET_MM, Layer
 from kirigami_studio.fabricate.finished_sheet import overlap_length, remaining_pieces, smallest_ligament
@@ -97,6 +98,7 @@ def check_file(path: str | Path, kerf_mm: float | None = None) -> FileReport:
     overlap = max(overlap_length(lines), 0.0)
     problems += [*_size_problems(bounds), *_double_problems(content.paths, overlap)]
     outline = _find_outline(content.paths, problems)
+    problems += placement_problems(content.paths, outline)
     pieces, ligament = _physics(content.paths, outline, kerf, problems)
     length = float(sum(line.length for line in lines))
     return FileReport(Path(path), tuple(problems), content.unit, content.layers, len(lines), length, overlap, bounds,

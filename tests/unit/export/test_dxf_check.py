@@ -25,10 +25,10 @@ def foreign(units: int = 4, outline: bool = True) -> Drawing:
     """A sheet of 40 x 40 with two slits 1 mm apart, on layer 0."""
     document = ezdxf.new("R2010", units=units)
     modelspace = document.modelspace()
-    if outline:
-        modelspace.add_lwpolyline(SQUARE, close=True)
     modelspace.add_line((5, 20), (15, 20))
     modelspace.add_line((16, 10), (16, 30))
+    if outline:
+        modelspace.add_lwpolyline(SQUARE, close=True)
     return document
 
 
