@@ -12,7 +12,7 @@ export PIP_DISABLE_PIP_VERSION_CHECK := 1
 QUICK_TESTS := tests/architecture tests/property $(wildcard $(addprefix tests/unit/,foundation lattice evaluate fabricate project)) \
   --ignore=tests/unit/evaluate/test_siou.py
 
-.PHONY: help setup run test quick lint bench demo clean
+.PHONY: help setup run test quick lint bench demo states clean
 .DEFAULT_GOAL := help
 
 help:
@@ -23,6 +23,7 @@ help:
 	@echo "make lint    ruff, mypy and the import contracts"
 	@echo "make bench   print the timings of the exact geometry"
 	@echo "make demo    design a heart on the command line into out/heart"
+	@echo "make states  pictures of every state of the window into out/states"
 	@echo "make clean   remove what the other targets made, .venv excepted"
 
 setup: $(STAMP)
@@ -63,6 +64,9 @@ bench: setup
 
 demo: setup
 	$(BIN)/kirigami-studio design heart --k 8 --out out/heart
+
+states: setup
+	QT_QPA_PLATFORM=offscreen $(BIN)/python -m kirigami_studio.gui.state_sheet --out out/states
 
 clean:
 	rm -rf out build dist *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis .import_linter_cache .benchmarks
