@@ -129,9 +129,7 @@ def test_that_a_saved_project_is_exported_to_every_kind_of_file(
 
 
 @pytest.mark.torch
-def test_that_a_sheet_that_would_fall_apart_is_not_exported(
-    capsys: pytest.CaptureFixture[str], tmp_path: Path
-) -> None:
+def test_that_a_sheet_that_would_fall_apart_is_not_exported(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
     answer(capsys, "design", "heart", "--k", 1, "--grid", "4x4", "--out", tmp_path, "--json")
     code, sentence = refusal(
         capsys, "export", tmp_path / "design.kiri", "--out", tmp_path / "x.dxf", "--connector-mm", 1e-9, "--json"
