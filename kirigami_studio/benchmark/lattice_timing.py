@@ -11,13 +11,13 @@ import math
 import statistics
 import sys
 import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from dataclasses import asdict, dataclass
 
 import numpy as np
 import torch
 
+from kirigami_studio.generator.threads import one_torch_thread
 from kirigami_studio.lattice.batched import BatchedLattice
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.marching import march
@@ -117,7 +117,7 @@ def time_growth(sizes: tuple[int, ...] = GROWTH_SIZES, repeats: int = 9) -> Grow
 def time_batch(size: int = 10, batch: int = 256, repeats: int = 5) -> BatchTiming:
     """Time a batch of size x size designs in torch on one thread, and single ones by marching (Eq. 2)."""
     z = np.random.default_rng(0).uniform(-1, 1, (batch, size, size))
-    with _one_thread(), torch.inference_mode():
+    with one_torch_thread(), torch.inference_mode():
         lattice = BatchedLattice(size, size)
         ratios = torch.tensor(10.0**z, dtype=torch.float32)
         seconds = _fastest(lambda: lattice.outline(ratios, 0.0), repeats)
@@ -198,16 +198,6 @@ def _processor_time(field: RatioField) -> float:
     start = time.process_time()
     deploy(field).outline(0.0)
     return time.process_time() - start
-
-
-@contextmanager
-def _one_thread() -> Iterator[None]:
-    before = torch.get_num_threads()
-    torch.set_num_threads(1)
-    try:
-        yield
-    finally:
-        torch.set_num_threads(before)
 
 
 if __name__ == "__main__":

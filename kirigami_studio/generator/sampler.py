@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
-from contextlib import contextmanager
 
 import numpy as np
 import torch
@@ -14,6 +12,7 @@ from kirigami_studio.generator.conditioning import normalised, turned
 from kirigami_studio.generator.flow import integrate
 from kirigami_studio.generator.pose import square_pose
 from kirigami_studio.generator.resize import resize_fields
+from kirigami_studio.generator.threads import one_torch_thread
 from kirigami_studio.generator.weights import Model
 from kirigami_studio.lattice.ratio_field import FloatArray, RatioField
 from kirigami_studio.target.outline import Outline
@@ -48,7 +47,7 @@ def draw_fields(
     whole = -(-k // BATCH) * BATCH
     noise = np.random.default_rng(seed).standard_normal((whole, shape.rows * shape.columns)) * shape.z_scale
     drawn: list[Tensor] = []
-    with torch.inference_mode(), _one_thread():
+    with torch.inference_mode(), one_torch_thread():
         for start in range(0, whole, BATCH):
             code = model.network.code(posed(target, range(start, start + BATCH)))
             rows = torch.tensor(noise[start : start + BATCH], dtype=torch.float32)
@@ -72,14 +71,3 @@ def pose_angle(index: int) -> float:
     quarter = 0.5 * math.pi * ((index // 2) % 4)
     between = 0.5 * math.pi * ((index * GOLDEN) % 1.0) if index % 2 else 0.0
     return quarter + between
-
-
-@contextmanager
-def _one_thread() -> Iterator[None]:
-    """Run torch on one thread: results do not depend on the machine's core count, and the window keeps a core."""
-    before = torch.get_num_threads()
-    torch.set_num_threads(1)
-    try:
-        yield
-    finally:
-        torch.set_num_threads(before)
