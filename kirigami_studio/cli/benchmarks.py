@@ -78,7 +78,7 @@ def _target_sets(arguments: argparse.Namespace) -> dict[str, list[Outline]]:
     if arguments.targets == ["library"]:
         return {"library": [load(name) for name in names()]}
     if arguments.targets:
-        found = [named.value for named in read_targets(arguments.targets)]
+        found = [named.read() for named in read_targets(arguments.targets)]
         if not found:
             raise UsageError("No targets were found to measure on.")
         return {"targets": found}

@@ -7,6 +7,7 @@ import json
 import math
 from pathlib import Path
 
+from kirigami_studio.cli.batches import for_each
 from kirigami_studio.cli.console import ProgressLine, plain, print_json, say
 from kirigami_studio.cli.fabrication import checked_plan, material_settings
 from kirigami_studio.cli.inputs import are_many_targets, parse_grid, read_targets
@@ -35,9 +36,10 @@ def design(arguments: argparse.Namespace) -> int:
     batch = are_many_targets(arguments.targets)
     line = ProgressLine()
     used: set[str] = set()
-    for named in read_targets(arguments.targets, arguments.threshold):
+
+    def one(name: str, target: Outline) -> None:
         request = Request(
-            target=named.value,
+            target=target,
             grid=grid,
             phi=arguments.phi,
             k=arguments.k,
@@ -49,16 +51,17 @@ def design(arguments: argparse.Namespace) -> int:
         result = _run(request, line)
         folder = None if arguments.out is None else Path(arguments.out)
         if folder is not None and batch:
-            folder = folder / _folder_name(named.name, used)
+            folder = folder / _folder_name(name, used)
         files = {} if folder is None else write_files(result, fabrication, folder)
         answer = summary(result) | {"files": files}
         if batch:
-            print_json({"source": named.name} | answer)
+            print_json({"source": name} | answer)
         elif arguments.json:
             print_json(answer)
         else:
-            _tell(named.value, result, files)
-    return 0
+            _tell(target, result, files)
+
+    return for_each(read_targets(arguments.targets, arguments.threshold), batch, one)
 
 
 def summary(result: Result) -> dict[str, object]:

@@ -7,8 +7,17 @@ import json
 import math
 from pathlib import Path
 
+from kirigami_studio.cli.batches import for_each
 from kirigami_studio.cli.console import plain, print_json, say
-from kirigami_studio.cli.inputs import are_many_targets, is_batch, parse_grid, read_fields, read_mask, read_targets
+from kirigami_studio.cli.inputs import (
+    Named,
+    are_many_targets,
+    is_batch,
+    parse_grid,
+    read_fields,
+    read_mask,
+    read_targets,
+)
 from kirigami_studio.evaluate.feasibility import invalid_quads, overlap_ratio, path_contact
 from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.evaluate.siou import mask_siou
@@ -16,24 +25,25 @@ from kirigami_studio.foundation.errors import AngleError, RatioError, UsageError
 from kirigami_studio.foundation.files import write_atomically
 from kirigami_studio.lattice.deployment import check_phi, deploy
 from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.target.outline import Outline
 
 
 def decode(arguments: argparse.Namespace) -> int:
     """Print the exact layout of each ratio field."""
     phi = check_phi(arguments.phi)
     batch = is_batch(arguments.ratios)
-    for named in read_fields(arguments.ratios):
-        _check_grid(arguments.grid, named.value, named.name)
-        answer = decoded(named.value, phi)
-        if batch:
-            answer = {"source": named.name} | answer
-        _deliver(arguments, answer, named.name, batch, "layout")
+
+    def one(name: str, field: RatioField) -> None:
+        _check_grid(arguments.grid, field, name)
+        answer = decoded(field, phi)
+        _deliver(arguments, {"source": name} | answer if batch else answer, name, batch, "layout")
         if not arguments.json and not batch:
             say(
-                f"{named.value.rows} x {named.value.columns} voids at {math.degrees(phi):.1f} degrees: area "
-                f"{answer['area']:.4f} unit cells, {answer['n_invalid']} invalid, overlap {answer['overlap_ratio']:.4f}"
+                f"{field.rows} x {field.columns} voids at {math.degrees(phi):.1f} degrees: area {answer['area']:.4f} "
+                f"unit cells, {answer['n_invalid']} invalid, overlap {answer['overlap_ratio']:.4f}"
             )
-    return 0
+
+    return for_each(read_fields(arguments.ratios), batch, one)
 
 
 def decoded(field: RatioField, phi: float) -> dict[str, object]:
@@ -69,10 +79,12 @@ def score(arguments: argparse.Namespace) -> int:
     fields = fields * (pairs if len(fields) == 1 else 1)
     targets = targets * (pairs if len(targets) == 1 else 1)
     batch = is_batch(ratio_sources) or are_many_targets([target_source])
-    for field, target in zip(fields, targets, strict=True):
-        result = evaluate(deploy(field.value), target.value, phi)
+
+    def one(name: str, pair: tuple[RatioField, Named[Outline]]) -> None:
+        field, target = pair
+        result = evaluate(deploy(field), target.read(), phi)
         if batch:
-            print_json({"source": field.name, "target": target.name} | result.to_json())
+            print_json({"source": name, "target": target.name} | result.to_json())
         elif arguments.json:
             print_json(result.to_json())
         else:
@@ -81,7 +93,13 @@ def score(arguments: argparse.Namespace) -> int:
                 f"sIoU {result.siou:.4f} ({result.siou_gain:+.4f} over the uniform layout), exact IoU "
                 f"{result.iou_exact:.4f}, TV {result.tv:.3f}, {verdict}"
             )
-    return 0
+
+    return for_each((_paired(*pair) for pair in zip(fields, targets, strict=True)), batch, one)
+
+
+def _paired(field: Named[RatioField], target: Named[Outline]) -> Named[tuple[RatioField, Named[Outline]]]:
+    """A field with the target that it is scored against, under the field's name."""
+    return Named(field.name, lambda: (field.read(), target))
 
 
 def siou(arguments: argparse.Namespace) -> int:

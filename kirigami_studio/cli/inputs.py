@@ -6,8 +6,9 @@ import json
 import math
 import os
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Generic, TypeVar
 
@@ -18,7 +19,7 @@ from kirigami_studio.foundation.errors import GridError, KirigamiError, RatioErr
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.target.library import names
 from kirigami_studio.target.outline import Outline
-from kirigami_studio.target.read import read_many, read_target
+from kirigami_studio.target.read import read_target, target_files
 from kirigami_studio.target.read_image import outline_of_mask, read_image
 
 LARGEST_FILE = 512 * 1024 * 1024
@@ -30,10 +31,17 @@ Value = TypeVar("Value")
 
 @dataclass(frozen=True, slots=True)
 class Named(Generic[Value]):
-    """One input with the name that batch output repeats."""
+    """One input, read when it is asked for, with the name that batch output repeats.
+
+    Attributes
+    ----------
+    name : str
+    read : callable
+        Reads and validates it; raises a KirigamiError that names it.
+    """
 
     name: str
-    value: Value
+    read: Callable[[], Value]
 
 
 def parse_grid(text: str) -> tuple[int, int]:
@@ -98,14 +106,14 @@ def read_targets(sources: Sequence[str], threshold: float | None = None) -> Iter
         if path.suffix.lower() == ".npz":
             for index, mask in enumerate(_archive(path, "masks", 3)):
                 name = f"{path.name}[{index}]"
-                yield Named(name, _outline_of(mask, name))
+                yield Named(name, partial(_outline_of, mask, name))
         elif source not in names() and _is_folder(source):
-            for outline in read_many(path):
-                yield Named(outline.name, outline)
+            for file in target_files(path):
+                yield Named(file.stem, partial(read_target, file))
         elif threshold is not None and path.suffix.lower() in IMAGE_SUFFIXES:
-            yield Named(source, read_image(path, threshold))
+            yield Named(source, partial(read_image, path, threshold))
         else:
-            yield Named(source, read_target(source))
+            yield Named(source, partial(read_target, source))
 
 
 def read_fields(sources: Sequence[str]) -> Iterator[Named[RatioField]]:
@@ -114,14 +122,15 @@ def read_fields(sources: Sequence[str]) -> Iterator[Named[RatioField]]:
         path = Path(source)
         if path.suffix.lower() == ".npz":
             for index, ratio in enumerate(_archive(path, "ratios", 3)):
-                yield Named(f"{path.name}[{index}]", _field_of(ratio, f"{path.name}[{index}]"))
+                name = f"{path.name}[{index}]"
+                yield Named(name, partial(_field_of, ratio, name))
         elif _is_folder(source):
             files = sorted(file for file in path.iterdir() if file.suffix.lower() in RATIO_SUFFIXES)
             if not files:
                 raise RatioError(f"The folder {path} holds no ratio fields (.json, .npy or .npz).")
             yield from read_fields([str(file) for file in files])
         else:
-            yield Named(source, read_field(path))
+            yield Named(source, partial(read_field, path))
 
 
 def read_field(path: Path) -> RatioField:

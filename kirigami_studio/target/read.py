@@ -94,12 +94,26 @@ def read_many(source: str | Path) -> list[Outline]:
     try:
         if path is None or (isinstance(source, str) and source in library.names()) or not path.is_dir():
             return [read_target(source)]
+    except (OSError, ValueError) as error:
+        raise TargetError(f"The folder {str(source)[:80]} cannot be read; check its name and your rights.") from error
+    return [read_target(entry) for entry in target_files(path)]
+
+
+def target_files(folder: Path) -> list[Path]:
+    """Return the files of a folder that may hold a target, sorted by name.
+
+    Raises
+    ------
+    TargetError
+        The folder cannot be read or holds none.
+    """
+    try:
         files = sorted(
-            (entry for entry in path.iterdir() if entry.suffix.lower() in READERS and entry.is_file()),
+            (entry for entry in folder.iterdir() if entry.suffix.lower() in READERS and entry.is_file()),
             key=lambda entry: (entry.name.lower(), entry.name),
         )
     except (OSError, ValueError) as error:
-        raise TargetError(f"The folder {str(source)[:80]} cannot be read; check its name and your rights.") from error
+        raise TargetError(f"The folder {str(folder)[:80]} cannot be read; check its name and your rights.") from error
     if not files:
-        raise TargetError(f"The folder {path} holds no target file ({', '.join(READERS)}).")
-    return [read_target(entry) for entry in files]
+        raise TargetError(f"The folder {folder} holds no target file ({', '.join(READERS)}).")
+    return files

@@ -280,3 +280,33 @@ def test_that_a_run_folder_that_cannot_be_made_is_one_sentence(
         capsys, "train", "prior", "--steps", 1, "--device", "cpu", "--out", tmp_path / "file" / "x"
     )
     assert code == 1 and "file" in sentence
+
+
+@pytest.mark.torch
+def test_that_one_bad_entry_of_a_batch_is_reported_in_its_place(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    masks = np.zeros((3, 32, 32), dtype=bool)
+    masks[0, 4:28, 4:28] = masks[2, 4:28, 10:20] = True
+    np.savez(tmp_path / "masks.npz", masks=masks)
+    assert main(["design", str(tmp_path / "masks.npz"), "--k", "1", "--no-polish"]) == 1
+    printed = capsys.readouterr()
+    lines = [json.loads(line) for line in printed.out.splitlines()]
+    assert [line["source"] for line in lines] == ["masks.npz[0]", "masks.npz[1]", "masks.npz[2]"]
+    assert ["error" in line for line in lines] == [False, True, False]
+    assert "1 of 3 inputs failed" in printed.err
+
+
+def test_that_bad_fields_of_a_batch_leave_the_others_their_answer(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    np.savez(tmp_path / "fields.npz", ratios=np.stack([FIELD, -FIELD, 1 / FIELD]))
+    for command in (["decode", str(tmp_path / "fields.npz")], ["score", str(tmp_path / "fields.npz"), "circle"]):
+        assert main(command) == 1
+        lines = [json.loads(line) for line in capsys.readouterr().out.splitlines()]
+        assert ["error" in line for line in lines] == [False, True, False]
+
+
+def test_that_a_wrong_request_stops_a_batch_at_once(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["design", "heart", "star", "--k", "0"]) == 2
+    assert capsys.readouterr().out == ""

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import json
 import math
+from collections.abc import Iterable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 from PIL import Image
 
 from kirigami_studio.cli.inputs import (
+    Named,
     are_many_targets,
     is_batch,
     parse_angle,
@@ -20,6 +23,11 @@ from kirigami_studio.cli.inputs import (
     read_targets,
 )
 from kirigami_studio.foundation.errors import GridError, KirigamiError, RatioError, TargetError, UsageError
+
+
+def every(inputs: Iterable[Named[Any]]) -> list[Any]:
+    """Read all inputs, as a command does."""
+    return [named.read() for named in inputs]
 
 
 @pytest.mark.parametrize(
@@ -49,7 +57,7 @@ def test_that_fields_come_from_json_npy_archives_and_folders(tmp_path: Path) -> 
     (tmp_path / "a.json").write_text(json.dumps({"ratio": ratio.tolist()}))
     np.save(tmp_path / "b.npy", ratio)
     np.savez(tmp_path / "c.npz", ratios=np.stack([ratio, 2 * ratio]))
-    values = [named.value.ratio for named in read_fields([str(tmp_path)])]
+    values = [named.read().ratio for named in read_fields([str(tmp_path)])]
     assert len(values) == 4
     assert all(np.array_equal(value, ratio) for value in values[:3])
     assert np.array_equal(values[3], 2 * ratio)
@@ -78,18 +86,18 @@ def test_that_bad_ratio_files_are_refused_with_their_name(tmp_path: Path, name: 
     path = tmp_path / name
     path.write_bytes(content)
     with pytest.raises(KirigamiError, match=path.stem):
-        list(read_fields([str(path)]))
+        every(read_fields([str(path)]))
 
 
 def test_that_pickled_arrays_are_not_loaded(tmp_path: Path) -> None:
     np.save(tmp_path / "object.npy", np.array([{"a": 1}], dtype=object), allow_pickle=True)
     with pytest.raises(RatioError):
-        list(read_fields([str(tmp_path / "object.npy")]))
+        every(read_fields([str(tmp_path / "object.npy")]))
 
 
 def test_that_a_missing_file_is_named(tmp_path: Path) -> None:
     with pytest.raises(RatioError, match=r"nowhere\.json"):
-        list(read_fields([str(tmp_path / "nowhere.json")]))
+        every(read_fields([str(tmp_path / "nowhere.json")]))
 
 
 def test_that_masks_in_an_archive_become_targets(tmp_path: Path) -> None:
@@ -97,7 +105,7 @@ def test_that_masks_in_an_archive_become_targets(tmp_path: Path) -> None:
     masks[0, 10:50, 20:40] = True
     masks[1, 5:60, 5:60] = True
     np.savez(tmp_path / "masks.npz", masks=masks)
-    targets = [named.value for named in read_targets([str(tmp_path / "masks.npz")])]
+    targets = [named.read() for named in read_targets([str(tmp_path / "masks.npz")])]
     spans = [np.ptp(target.points, axis=0) for target in targets]
     assert spans[0][1] / spans[0][0] == pytest.approx(2.0, rel=0.05)
     assert spans[1][1] / spans[1][0] == pytest.approx(1.0, rel=0.02)
@@ -106,19 +114,19 @@ def test_that_masks_in_an_archive_become_targets(tmp_path: Path) -> None:
 def test_that_an_archive_without_masks_says_what_it_holds(tmp_path: Path) -> None:
     np.savez(tmp_path / "other.npz", pictures=np.zeros((1, 4, 4)))
     with pytest.raises(UsageError, match="pictures"):
-        list(read_targets([str(tmp_path / "other.npz")]))
+        every(read_targets([str(tmp_path / "other.npz")]))
 
 
 def test_that_a_blank_mask_in_an_archive_is_located(tmp_path: Path) -> None:
     np.savez(tmp_path / "blank.npz", masks=np.zeros((1, 32, 32), dtype=bool))
     with pytest.raises(TargetError, match=r"blank\.npz\[0\]"):
-        list(read_targets([str(tmp_path / "blank.npz")]))
+        every(read_targets([str(tmp_path / "blank.npz")]))
 
 
 def test_that_a_damaged_archive_is_refused(tmp_path: Path) -> None:
     (tmp_path / "bad.npz").write_bytes(b"PK\x03\x04 and then nothing")
     with pytest.raises(KirigamiError, match=r"bad\.npz"):
-        list(read_targets([str(tmp_path / "bad.npz")]))
+        every(read_targets([str(tmp_path / "bad.npz")]))
 
 
 def test_that_mask_images_are_bright_inside(tmp_path: Path) -> None:
@@ -144,19 +152,19 @@ def test_that_a_threshold_decides_what_a_grey_image_shows(tmp_path: Path) -> Non
     grey[30:50, 20:60] = 20
     Image.fromarray(grey).save(tmp_path / "grey.png")
     spans = [
-        np.ptp(next(iter(read_targets([str(tmp_path / "grey.png")], threshold))).value.points, axis=0)
+        np.ptp(next(iter(read_targets([str(tmp_path / "grey.png")], threshold))).read().points, axis=0)
         for threshold in (0.3, 0.8)
     ]
     assert spans[0][0] / spans[0][1] == pytest.approx(2.0, rel=0.05)
     assert spans[1][0] / spans[1][1] == pytest.approx(1.0, rel=0.05)
     with pytest.raises(UsageError, match="between 0 and 1"):
-        list(read_targets([str(tmp_path / "grey.png")], 2.0))
+        every(read_targets([str(tmp_path / "grey.png")], 2.0))
 
 
 def test_that_a_json_file_may_begin_with_a_byte_order_mark(tmp_path: Path) -> None:
     (tmp_path / "a.json").write_text(json.dumps({"ratio": [[1, 2], [3, 4]]}), encoding="utf-8-sig")
     (named,) = read_fields([str(tmp_path / "a.json")])
-    assert named.value.ratio.tolist() == [[1, 2], [3, 4]]
+    assert named.read().ratio.tolist() == [[1, 2], [3, 4]]
 
 
 def test_that_a_soft_mask_is_bounded_halfway_and_not_where_it_begins(tmp_path: Path) -> None:
@@ -166,7 +174,7 @@ def test_that_a_soft_mask_is_bounded_halfway_and_not_where_it_begins(tmp_path: P
     for number, masks in enumerate((soft[None], (255 * soft[None]).astype(np.uint8))):
         np.savez(tmp_path / f"{number}.npz", masks=masks)
         (named,) = read_targets([str(tmp_path / f"{number}.npz")])
-        assert named.value.size == pytest.approx((38, 38), abs=1)
+        assert named.read().size == pytest.approx((38, 38), abs=1)
 
 
 def test_that_a_mask_with_a_hole_in_its_numbers_is_refused(tmp_path: Path) -> None:
@@ -174,13 +182,13 @@ def test_that_a_mask_with_a_hole_in_its_numbers_is_refused(tmp_path: Path) -> No
     masks[1, 3, 4] = np.nan
     np.savez(tmp_path / "a.npz", masks=masks)
     with pytest.raises(TargetError, match=r"a\.npz\[1\].*not finite"):
-        list(read_targets([str(tmp_path / "a.npz")]))
+        every(read_targets([str(tmp_path / "a.npz")]))
 
 
 def test_that_an_archive_without_entries_is_refused_like_an_empty_folder(tmp_path: Path) -> None:
     np.savez(tmp_path / "a.npz", ratios=np.ones((0, 4, 4)))
     with pytest.raises(UsageError, match="no entries"):
-        list(read_fields([str(tmp_path / "a.npz")]))
+        every(read_fields([str(tmp_path / "a.npz")]))
 
 
 def test_that_a_library_name_means_the_silhouette_even_beside_a_folder_of_that_name(
@@ -189,7 +197,7 @@ def test_that_a_library_name_means_the_silhouette_even_beside_a_folder_of_that_n
     (tmp_path / "heart").mkdir()
     monkeypatch.chdir(tmp_path)
     (named,) = read_targets(["heart"])
-    assert named.value.name == "heart"
+    assert named.read().name == "heart"
     assert not are_many_targets(["heart"])
     assert are_many_targets(["./heart"])
 
@@ -197,13 +205,13 @@ def test_that_a_library_name_means_the_silhouette_even_beside_a_folder_of_that_n
 def test_that_an_empty_name_is_no_folder() -> None:
     assert not are_many_targets([""])
     with pytest.raises(TargetError):
-        list(read_targets([""]))
+        every(read_targets([""]))
 
 
 def test_that_an_endless_name_is_refused_in_a_sentence() -> None:
     for read in (read_fields, read_targets):
         with pytest.raises(KirigamiError):
-            list(read(["x" * 5000]))
+            every(read(["x" * 5000]))
 
 
 @pytest.mark.parametrize(("high", "kind"), [(1, np.uint8), (255, np.uint8), (3000, np.uint16)])
