@@ -17,7 +17,7 @@ from kirigami_studio.export.png import write_png
 from kirigami_studio.export.registry import export
 from kirigami_studio.export.svg import write_layout_svg
 from kirigami_studio.foundation.errors import Cancelled
-from kirigami_studio.foundation.files import write_atomically
+from kirigami_studio.foundation.files import check_folder, write_atomically
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.pipeline.events import Finished, Progress, Result
 from kirigami_studio.pipeline.provenance import provenance
@@ -34,6 +34,8 @@ def design(arguments: argparse.Namespace) -> int:
     grid = parse_grid(arguments.grid)
     fabrication = material_settings(arguments)
     batch = are_many_targets(arguments.targets)
+    if arguments.out is not None:
+        check_folder(Path(arguments.out))
     line = ProgressLine()
     used: set[str] = set()
 

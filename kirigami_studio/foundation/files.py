@@ -34,3 +34,20 @@ def write_atomically(path: Path, content: bytes) -> None:
                 Path(temporary).unlink()
         reason = error.strerror or str(error)
         raise ExportError(f"Cannot write {path}: {reason}. Choose another folder or free some space.") from error
+
+
+def check_folder(folder: Path) -> None:
+    """Refuse a folder that cannot be made or written, before any work is done for it; creates nothing.
+
+    Raises
+    ------
+    ExportError
+        A file stands where the folder should be, or there is no right to write.
+    """
+    try:
+        nearest = next(place for place in (folder, *folder.absolute().parents) if place.exists())
+        usable = nearest.is_dir() and os.access(nearest, os.W_OK | os.X_OK)
+    except (OSError, ValueError, StopIteration):
+        usable = False
+    if not usable:
+        raise ExportError(f"Files cannot be written to {folder}: choose a folder that you may write to.")

@@ -310,3 +310,14 @@ def test_that_bad_fields_of_a_batch_leave_the_others_their_answer(
 def test_that_a_wrong_request_stops_a_batch_at_once(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["design", "heart", "star", "--k", "0"]) == 2
     assert capsys.readouterr().out == ""
+
+
+def test_that_a_folder_that_cannot_be_written_is_refused_before_any_work(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "taken").write_text("a file")
+    monkeypatch.setattr("kirigami_studio.cli.design.run", lambda *_: pytest.fail("the run was started"))
+    for out in (tmp_path / "taken", tmp_path / "taken" / "deeper"):
+        code, sentence = refusal(capsys, "design", "heart", "--k", "1", "--out", out)
+        assert code == 1
+        assert "taken" in sentence
