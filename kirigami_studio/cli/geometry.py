@@ -104,7 +104,9 @@ def _paired(field: Named[RatioField], target: Named[Outline]) -> Named[tuple[Rat
 
 def siou(arguments: argparse.Namespace) -> int:
     """Print the similarity-aligned IoU of two mask images."""
-    value, transform = mask_siou(read_mask(Path(arguments.mask_a)), read_mask(Path(arguments.mask_b)))
+    value, transform = mask_siou(
+        read_mask(Path(arguments.mask_a)), read_mask(Path(arguments.mask_b)), crop=arguments.crop
+    )
     if arguments.json:
         print_json({"siou": value, "transform": transform.to_json()})
     else:

@@ -145,6 +145,7 @@ COMMANDS: tuple[Command, ...] = (
     Command("siou", "similarity-aligned IoU of two mask images", "geometry:siou", (
         option("mask_a", help="mask image, bright inside"),
         option("mask_b", help="mask image, bright inside"),
+        option("--crop", action="store_true", help="ignore what leaves the image, as the paper's released evaluator"),
         JSON,
     ), ("kirigami-studio siou result.png target.png",)),
     Command("export", "write a saved project as a cut or picture file", "fabrication:export", (

@@ -82,6 +82,12 @@ def test_that_siou_of_a_turned_mask_is_nearly_one(capsys: pytest.CaptureFixture[
     Image.fromarray(mask).save(tmp_path / "a.png")
     Image.fromarray(np.rot90(mask)).save(tmp_path / "b.png")
     assert answer(capsys, "siou", tmp_path / "a.png", tmp_path / "b.png", "--json")["siou"] > 0.98
+    Image.fromarray(np.tile(np.uint8(255), (16, 64))).save(tmp_path / "c.png")
+    whole, cropped = (
+        answer(capsys, "siou", tmp_path / "a.png", tmp_path / "c.png", "--json", *extra)["siou"]
+        for extra in ((), ("--crop",))
+    )
+    assert cropped > whole
 
 
 @pytest.mark.torch

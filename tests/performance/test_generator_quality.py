@@ -1,0 +1,35 @@
+"""What the bundled generator is worth: one sample, four Euler steps, no polish.  ``pytest -s`` prints the figures."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from kirigami_studio.benchmark.generator_suite import measure_generator
+from kirigami_studio.target.read_image import outline_of_mask
+from kirigami_studio.training.dataset import SPLITS, generate_split
+
+pytestmark = pytest.mark.torch
+
+
+@pytest.mark.parametrize(("family", "bar"), [("structured", 0.93), ("sobol", 0.90)])
+def test_that_one_sample_matches_unseen_targets(family: str, bar: float) -> None:
+    split = generate_split(family, 60, SPLITS["test"][1])
+    figures = measure_generator([outline_of_mask(mask, family) for mask in split.masks], "prior", seeds=(0,))
+    print(f"\n{family}: mean sIoU {figures['siou']:.4f} (uniform layout {figures['uniform_siou']:.4f})")
+    assert figures["siou"] >= bar
+    assert figures["infeasible"] == 0
+
+
+@pytest.mark.parametrize(("family", "part", "bar"), [("sobol", slice(16), 0.90), ("structured", slice(16, 32), 0.93)])
+def test_that_one_sample_matches_the_reference_silhouettes(
+    oracle_file: Path, family: str, part: slice, bar: float
+) -> None:
+    with np.load(oracle_file) as archive:
+        masks = np.unpackbits(archive["10x10_mask"], axis=-1).astype(bool)[part]
+    figures = measure_generator([outline_of_mask(mask, family) for mask in masks], "prior")
+    print(f"\nreference {family}: mean sIoU {figures['siou']:.4f} (uniform layout {figures['uniform_siou']:.4f})")
+    assert figures["siou"] >= bar
+    assert figures["infeasible"] == 0
