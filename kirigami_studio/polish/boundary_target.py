@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from scipy.spatial import KDTree
@@ -10,8 +11,12 @@ from scipy.spatial import KDTree
 from kirigami_studio.lattice.ratio_field import FloatArray
 from kirigami_studio.target.outline import Outline
 
-#: Boundary points that nearest-point queries start from; between them the two adjacent pieces are searched.
-SEARCH_POINTS = 1024
+#: Boundary pieces that nearest-point queries choose from; the pieces beside the one found are searched as well.
+SEARCH_PIECES = 1024
+#: What a turn of the boundary's normal counts as, in unit-area lengths per unit of difference of unit normals: a place
+#: that looks the other way is farther off than it is.  Found on 120 outlines of random fields: 0.02 to 0.1 serve
+#: equally, and better than 0 after a few steps.
+NORMAL_LENGTH = 0.03
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -22,39 +27,63 @@ class BoundaryTarget:
     ----------
     samples : (S, 2) float, unit-area lengths
         Points at equal arc length.
+    normals : (S, 2) float
+        Unit normals there, outwards for a counter-clockwise outline.
     weight : float
         Boundary length that one sample stands for.
     """
 
     samples: FloatArray
+    normals: FloatArray
     weight: float
-    _search: FloatArray
+    _start: FloatArray
+    _end: FloatArray
+    _normal: FloatArray
     _tree: KDTree
 
     @classmethod
     def of(cls, outline: Outline, samples: int) -> BoundaryTarget:
-        """Prepare ``outline``, sampled at ``samples`` places."""
-        arc = _arc_lengths(outline.points)
-        # Vertices join the even places, so no corner is cut off; places that coincide would hide their neighbours.
-        places = np.unique(np.concatenate([np.arange(SEARCH_POINTS) * arc[-1] / SEARCH_POINTS, arc[:-1]]))
-        places = places[np.append(True, np.diff(places) > 1e-9 * arc[-1])]
-        search = _at(outline.points, arc, places)
-        return cls(along(outline.points, samples)[0], float(arc[-1]) / samples, search, KDTree(search))
+        """Prepare ``outline``, sampled at ``samples`` places; kept for the last few outlines."""
+        return _prepared(outline, samples)
 
-    def nearest(self, points: FloatArray) -> FloatArray:
-        """Closest boundary points to ``points`` (Q, 2): (Q, 2)."""
-        _, index = self._tree.query(points)
-        count = len(self._search)
-        here = self._search[index]
-        candidates = [_on_segment(points, here, self._search[(index + step) % count]) for step in (-1, 1)]
-        gaps = [np.square(points - candidate).sum(axis=1) for candidate in candidates]
-        return np.where((gaps[0] <= gaps[1])[:, None], candidates[0], candidates[1])
+    def nearest(self, points: FloatArray, normals: FloatArray) -> FloatArray:
+        """Closest boundary points (Q, 2) to ``points`` (Q, 2) that look the way of ``normals`` (Q, 2)."""
+        _, index = self._tree.query(np.concatenate([points, NORMAL_LENGTH * normals], axis=1))
+        count = len(self._start)
+        places, gaps = [], []
+        for step in (-1, 0, 1):
+            piece = (index + step) % count
+            place = _on_segment(points, self._start[piece], self._end[piece])
+            turned = np.square(self._normal[piece] - normals).sum(axis=1)
+            places.append(place)
+            gaps.append(np.square(points - place).sum(axis=1) + NORMAL_LENGTH**2 * turned)
+        best: FloatArray = np.stack(places)[np.argmin(gaps, axis=0), np.arange(len(points))]
+        return best
 
 
-def along(polygon: FloatArray, count: int) -> tuple[FloatArray, float]:
-    """``count`` points at equal arc length on a closed polygon (L, 2), from its first vertex, and the whole length."""
-    arc = _arc_lengths(polygon)
-    return _at(polygon, arc, np.arange(count) * arc[-1] / count), float(arc[-1])
+@lru_cache(maxsize=32)
+def _prepared(outline: Outline, samples: int) -> BoundaryTarget:
+    arc = _arc_lengths(outline.points)
+    # Vertices join the even places, so no corner is cut off; places that coincide would have no direction.
+    places = np.unique(np.concatenate([np.arange(SEARCH_PIECES) * arc[-1] / SEARCH_PIECES, arc[:-1]]))
+    places = places[np.append(True, np.diff(places) > 1e-9 * arc[-1])]
+    start = _at(outline.points, arc, places)
+    end = np.roll(start, -1, axis=0)
+    normal = unit_normals(start)
+    tree = KDTree(np.concatenate([0.5 * (start + end), NORMAL_LENGTH * normal], axis=1))
+    even = np.arange(samples) * arc[-1] / samples
+    at_samples = normal[np.searchsorted(places, even + 1e-9 * arc[-1], side="right") - 1]
+    return BoundaryTarget(
+        _at(outline.points, arc, even), at_samples, float(arc[-1]) / samples, start, end, normal, tree
+    )
+
+
+def unit_normals(polygon: FloatArray) -> FloatArray:
+    """Unit normals (L, 2) of the edges of a closed polygon (L, 2), outwards when it runs counter-clockwise."""
+    edge = np.roll(polygon, -1, axis=0) - polygon
+    length = np.maximum(np.hypot(edge[:, 0], edge[:, 1]), 1e-12)
+    normals: FloatArray = np.stack([edge[:, 1], -edge[:, 0]], axis=1) / length[:, None]
+    return normals
 
 
 def _arc_lengths(polygon: FloatArray) -> FloatArray:

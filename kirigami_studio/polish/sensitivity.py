@@ -38,6 +38,9 @@ class _Plan:
         Free nodes of the h family; they alone are solved for.
     h_to_v, v_to_h : (entry, row, column) int arrays
         Which stencil weights couple free h rows to free v columns, and free v rows to free h columns.
+    around : (first, second, place) int arrays
+        Paths from a free h node over a v node to an h node: the stencil weights of both legs, and where their product
+        stands in the flat (h, h) matrix.
     given : (K, 2) bool
         Stencil ends that are given nodes.
     even, whole : (L, N) float
@@ -53,6 +56,7 @@ class _Plan:
     h_count: int
     h_to_v: tuple[IntArray, IntArray, IntArray]
     v_to_h: tuple[IntArray, IntArray, IntArray]
+    around: tuple[IntArray, IntArray, IntArray]
     given: BoolArray
     even: FloatArray
     whole: FloatArray
@@ -78,14 +82,18 @@ def _plan(rows: int, columns: int, zipped: bool) -> _Plan:
     entry = np.arange(2 * node.size)
     row, column = entry // 2, position[ends].ravel()
     from_h, from_v = (row < h) & (column >= h), (row >= h) & (column >= 0)
+    h_to_v = entry[from_h], row[from_h], column[from_h] - h
+    v_to_h = entry[from_v], row[from_v] - h, column[from_v]
+    first, second = np.nonzero(h_to_v[2][:, None] == v_to_h[1])
     return _Plan(
         free=node,
         ends=ends,
         void=void,
         pair=np.argsort(void, kind="stable").reshape(-1, 2).T,
         h_count=h,
-        h_to_v=(entry[from_h], row[from_h], column[from_h] - h),
-        v_to_h=(entry[from_v], row[from_v] - h, column[from_v]),
+        h_to_v=h_to_v,
+        v_to_h=v_to_h,
+        around=(h_to_v[0][first], v_to_h[0][second], h_to_v[1][first] * h + v_to_h[2][second]),
         given=(column < 0).reshape(-1, 2),
         even=even,
         whole=whole,
@@ -138,35 +146,47 @@ class OutlineModel:
         x = np.power(10.0, z)[plan.void]
         weights = np.stack([x / (1.0 + x), 1.0 / (1.0 + x)], axis=1)
         known = ((weights * plan.given)[..., None] * plan.start[plan.ends]).sum(axis=1)
-        shape = h, plan.free.size - h
-        h_to_v = _matrix(weights, plan.h_to_v, shape)
-        v_to_h = _matrix(weights, plan.v_to_h, shape[::-1])
-        reduced = np.eye(h) - (h_to_v @ v_to_h).toarray()
+        flat = weights.ravel()
+        first, second, place = plan.around
+        reduced = -np.bincount(place, flat[first] * flat[second], h * h).reshape(h, h)
+        reduced[np.diag_indices(h)] += 1.0
         factor = scipy.linalg.lu_factor(reduced, check_finite=False, overwrite_a=True)
-        at_h = scipy.linalg.lu_solve(factor, known[:h] + h_to_v @ known[h:], check_finite=False)
+        at_h = scipy.linalg.lu_solve(factor, known[:h] + _carried(flat, plan.h_to_v, known[h:], h), check_finite=False)
         nodes = plan.start.copy()
         nodes[plan.free[:h]] = at_h
-        nodes[plan.free[h:]] = v_to_h @ at_h + known[h:]
-        return nodes, _System(h_to_v, v_to_h, factor)
+        nodes[plan.free[h:]] = _carried(flat, plan.v_to_h, at_h, plan.free.size - h) + known[h:]
+        return nodes, _System(flat, factor)
 
     def _adjoint(self, reach: FloatArray, system: _System) -> FloatArray:
         """``reach`` A^-1 over the free nodes: (2 L, K)."""
         plan, h = self._plan, self._plan.h_count
+        shape = h, plan.free.size - h
+        h_to_v, v_to_h = _matrix(system.weights, plan.h_to_v, shape), _matrix(system.weights, plan.v_to_h, shape[::-1])
         on_h, on_v = reach[:, plan.free[:h]], reach[:, plan.free[h:]]
-        seen = on_h + (system.v_to_h.T @ on_v.T).T
+        seen = on_h + (v_to_h.T @ on_v.T).T
         through_h = scipy.linalg.lu_solve(system.factor, seen.T, trans=1, check_finite=False).T
-        return np.concatenate([through_h, on_v + (system.h_to_v.T @ through_h.T).T], axis=1)
+        return np.concatenate([through_h, on_v + (h_to_v.T @ through_h.T).T], axis=1)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _System:
-    """One field's couplings between the two node families, and the factors of I - S_hv S_vh."""
+    """One field's stencil weights (2 K,), and the factors of I - S_hv S_vh."""
 
-    h_to_v: csr_matrix
-    v_to_h: csr_matrix
+    weights: FloatArray
     factor: tuple[FloatArray, IntArray]
+
+
+def _carried(
+    weights: FloatArray, entries: tuple[IntArray, IntArray, IntArray], values: FloatArray, count: int
+) -> FloatArray:
+    """The sparse matrix of ``entries`` with ``count`` rows, times ``values`` (C, 2)."""
+    entry, row, column = entries
+    carried: FloatArray = np.stack(
+        [np.bincount(row, weights[entry] * values[column, axis], count) for axis in (0, 1)], axis=1
+    )
+    return carried
 
 
 def _matrix(weights: FloatArray, entries: tuple[IntArray, IntArray, IntArray], shape: tuple[int, int]) -> csr_matrix:
     entry, row, column = entries
-    return csr_matrix((weights.ravel()[entry], (row, column)), shape=shape)
+    return csr_matrix((weights[entry], (row, column)), shape=shape)

@@ -12,7 +12,8 @@ from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.polish.boundary_target import BoundaryTarget
 from kirigami_studio.polish.levenberg import SAMPLES, polish
-from kirigami_studio.polish.objective import Objective, Regularity
+from kirigami_studio.polish.objective import Objective
+from kirigami_studio.polish.regularity import Regularity, RegularTerms
 from kirigami_studio.polish.sensitivity import OutlineModel
 from kirigami_studio.target.library import load
 
@@ -24,14 +25,15 @@ STEP = 1e-6
 def test_that_the_gradient_is_the_slope_of_the_cost(field: RatioField, phi: float, seed: int) -> None:
     model = OutlineModel(field.rows, field.columns, phi)
     z = field.log10.ravel()
-    objective = Objective(model, BoundaryTarget.of(load("heart"), SAMPLES), np.zeros_like(z), Regularity(1e-3, 1e-3))
+    terms = RegularTerms(Regularity(1e-3, 1e-3, 1e-3), np.zeros_like(z), field.rows, field.columns)
+    objective = Objective(model, BoundaryTarget.of(load("heart"), SAMPLES), terms)
     rng = np.random.default_rng(seed)
     state = np.concatenate([z, [-np.log(field.rows + field.columns), *rng.uniform(-0.5, 0.5, 3)]])
-    gradient = objective.linearised(state).gradient
+    gradient = objective.quadratic(objective.look(state), objective.slopes(state)).gradient
     direction = rng.normal(size=state.size)
     direction /= np.linalg.norm(direction)
     slopes = [
-        (objective.cost(state + h * direction)[0] - objective.cost(state - h * direction)[0]) / (2 * h)
+        (objective.look(state + h * direction).cost - objective.look(state - h * direction).cost) / (2 * h)
         for h in (STEP, 0.5 * STEP)
     ]
     # Where a nearest point jumps inside the interval the slope has no single value: such draws contradict themselves.

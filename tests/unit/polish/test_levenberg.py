@@ -11,12 +11,13 @@ import pytest
 import shapely
 
 from kirigami_studio.evaluate.feasibility import path_contact
+from kirigami_studio.evaluate.regularity import total_variation
 from kirigami_studio.evaluate.score import exact_iou
 from kirigami_studio.foundation.errors import AngleError, UsageError
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.polish.levenberg import Fit, polish
-from kirigami_studio.polish.objective import Regularity
+from kirigami_studio.polish.regularity import Regularity
 from kirigami_studio.target.library import load
 from kirigami_studio.target.outline import Outline
 
@@ -114,6 +115,14 @@ def test_that_a_pull_to_the_start_keeps_the_field_near_it() -> None:
     start = smooth_field(6, 6)
     fit = polish(start, load("circle"), steps=10, regularity=Regularity(start=1.0, smooth=0.0))
     assert np.abs(fit.field.log10 - start.log10).max() < 0.05
+
+
+def test_that_a_weight_on_total_variation_lowers_it_at_little_cost_of_shape() -> None:
+    target = load("heart")
+    plain = polish(RatioField.uniform(8, 8), target, steps=15)
+    calm = polish(plain.field, target, steps=15, regularity=Regularity(0.0, 1e-6, 1e-3), pose=plain.pose)
+    assert total_variation(calm.field) < 0.8 * total_variation(plain.field)
+    assert iou(calm, target) > iou(plain, target) - 0.03
 
 
 @pytest.mark.parametrize("phi", [math.nan, -0.1, math.pi, 4.0])

@@ -1,0 +1,90 @@
+"""Which place of the layout's outline belongs to which place of the target's boundary, both ways."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from kirigami_studio.lattice.ratio_field import FloatArray
+from kirigami_studio.lattice.topology import IntArray
+from kirigami_studio.polish.boundary_target import NORMAL_LENGTH, BoundaryTarget, unit_normals
+
+#: Where on each layout edge distances are taken.
+EDGE_SHARES = np.array([1 / 6, 1 / 2, 5 / 6])
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Matching:
+    """Residuals of one outline (L, 2), the 3 L outward ones first, then one for each target sample.
+
+    Each sits on a layout edge, between vertex ``edge`` and the next one, ``share`` of the way.
+
+    Attributes
+    ----------
+    edge : (R,) int
+    share : (R,) float
+    gap : (R, 2) float, unit-area lengths
+        From the place on the target to the place on the layout.
+    distance : (R,) float
+        Lengths of ``gap``.
+    weight : (R,) float
+        Boundary length that each residual stands for.
+    """
+
+    edge: IntArray
+    share: FloatArray
+    gap: FloatArray
+    distance: FloatArray
+    weight: FloatArray
+
+    def reader(self, count: int) -> FloatArray:
+        """Matrix (R, 2 count) that reads changes of the distances off motions of the outline's vertices.
+
+        The place on the target slides along the boundary, so only the part of a motion along the gap counts.
+        """
+        rows = np.arange(len(self.edge))
+        direction = self.gap / np.maximum(self.distance, 1e-12)[:, None]
+        matrix = np.zeros((len(rows), 2 * count))
+        following = (self.edge + 1) % count
+        for axis in (0, 1):
+            matrix[rows, 2 * self.edge + axis] = direction[:, axis] * (1.0 - self.share)
+            matrix[rows, 2 * following + axis] = direction[:, axis] * self.share
+        return matrix
+
+
+def matched(outline: FloatArray, target: BoundaryTarget) -> Matching:
+    """Match an outline (L, 2), counter-clockwise, with the target in whose frame it lies."""
+    count = len(outline)
+    edges = np.roll(outline, -1, axis=0) - outline
+    normals = unit_normals(outline)
+    edge = np.repeat(np.arange(count), EDGE_SHARES.size)
+    share = np.tile(EDGE_SHARES, count)
+    points = outline[edge] + share[:, None] * edges[edge]
+    out = points - target.nearest(points, normals[edge])
+    back_edge, back_share, back = _nearest_on(outline, edges, normals, target)
+    gap = np.concatenate([out, back])
+    length = np.hypot(edges[:, 0], edges[:, 1])
+    return Matching(
+        edge=np.concatenate([edge, back_edge]),
+        share=np.concatenate([share, back_share]),
+        gap=gap,
+        distance=np.hypot(gap[:, 0], gap[:, 1]),
+        weight=np.concatenate([length[edge] / EDGE_SHARES.size, np.full(len(back), target.weight)]),
+    )
+
+
+def _nearest_on(
+    start: FloatArray, edges: FloatArray, normals: FloatArray, target: BoundaryTarget
+) -> tuple[IntArray, FloatArray, FloatArray]:
+    """Closest place that looks the same way on the polyline, for each target sample: edge, share, vector to it."""
+    samples = target.samples
+    squared = np.maximum(np.square(edges).sum(axis=1), 1e-24)
+    offset_x = samples[:, :1] - start[:, 0]
+    offset_y = samples[:, 1:] - start[:, 1]
+    share = np.clip((offset_x * edges[:, 0] + offset_y * edges[:, 1]) / squared, 0.0, 1.0)
+    gap_x, gap_y = share * edges[:, 0] - offset_x, share * edges[:, 1] - offset_y
+    turned = 2.0 - 2.0 * (target.normals @ normals.T)
+    edge = (np.square(gap_x) + np.square(gap_y) + NORMAL_LENGTH**2 * turned).argmin(axis=1)
+    rows = np.arange(len(samples))
+    return edge, share[rows, edge], np.stack([gap_x[rows, edge], gap_y[rows, edge]], axis=1)
