@@ -3,6 +3,7 @@
 A plain fit follows nearest boundary points and gets stuck where the target turns away from the sheet: thin arms, deep
 hollows, unlucky rotations.  The search fits from several rotations of the target, directly and by way of thickened
 shapes, for a few steps each; the best go on, and on larger grids they are first found on a coarse one and lifted.
+Where target and lattice share a symmetry, fits that keep it join in, and win when they match as well.
 
 Every choice is fixed: the same request gives the same fits.
 """
@@ -26,6 +27,7 @@ from kirigami_studio.lattice.ratio_field import RatioField, check_grid
 from kirigami_studio.lattice.resize import resize_fields
 from kirigami_studio.polish.levenberg import Fit, check_fit, polish
 from kirigami_studio.polish.morph import EasyShape, thickened
+from kirigami_studio.polish.symmetry import Symmetry, shared_symmetries
 from kirigami_studio.target.outline import Outline
 
 #: Largest grid that is searched directly; finer ones start from a search on about this many voids each way.
@@ -35,7 +37,7 @@ ROUTES: tuple[tuple[float, ...], ...] = ((), (0.2, 0.14, 0.09, 0.05, 0.02))
 #: The same after a coarse fit was lifted: a slightly thickened target gives arms the room that the finer grid allows.
 LIFTED_ROUTES: tuple[tuple[float, ...], ...] = ((), (0.09, 0.05, 0.02))
 #: Steps on each easier shape, of a first look at the target, and of the last fit.
-EASY_STEPS, LOOK_STEPS, LAST_STEPS = 8, 20, 40
+EASY_STEPS, LOOK_STEPS, LAST_STEPS = 4, 8, 20
 #: Trusted distances (unit-area lengths): far parts must pull in the search, area counts in the end.
 FAR, NEAR, FINE = 0.03, 0.01, 0.005
 #: Rotations tried per effort when quarter turns, half turns, or no turns carry reachable shapes to reachable shapes.
@@ -43,15 +45,18 @@ QUARTER, HALF, WHOLE = 4, 6, 8
 #: Fits that are carried to the end, per effort.
 KEPT = 3
 LARGEST_EFFORT = 8
+#: A symmetric fit is preferred to another that matches no more than this much better.
+FAIR_LOSS = 0.002
 
 
 @dataclass(frozen=True, slots=True)
 class _Found:
-    """A fit, its exact IoU in its own pose, and whether the sheet gets there without touching itself."""
+    """A fit, its exact IoU in its own pose, whether the sheet gets there untouched, and what symmetry it has."""
 
     fit: Fit
     iou: float
     clear: bool
+    symmetry: Symmetry | None = None
 
 
 def fit_shape(
@@ -117,54 +122,75 @@ class _Search:
         self.evaluations = 0
 
     def first_looks(self, grid: tuple[int, int], effort: int) -> list[_Found]:
-        """Fits from the uniform sheet: every rotation on every route."""
+        """Fits from the uniform sheet: every rotation on every route, then those that keep a symmetry."""
         routes = [thickened(self.target, margins) for margins in ROUTES]
+        angles = _rotations(grid, self.phi, effort)
+        looks: list[tuple[float, Symmetry | None]] = [(angle, None) for angle in angles]
+        for shared in shared_symmetries(self.target, grid, self.phi):
+            own = angles if shared.angle is None else [shared.angle - 0.5 * math.pi, shared.angle + 0.5 * math.pi]
+            looks += [(angle, shared.symmetry) for angle in own]
         field = RatioField.uniform(*grid)
         found: list[_Found] = []
-        for angle in _rotations(grid, self.phi, effort):
+        for angle, symmetry in looks:
             pose = _centred(field, self.phi, angle)
             for route in routes:
                 if found and self.cancel():
                     return found
                 first = route[0].frame if route else Similarity()
-                found.append(self._along(route, field, first.compose(pose)))
+                found.append(self._along(route, field, first.compose(pose), symmetry))
         return found
 
-    def _along(self, route: list[EasyShape], field: RatioField, pose: Similarity) -> _Found:
+    def _along(self, route: list[EasyShape], field: RatioField, pose: Similarity, symmetry: Symmetry | None) -> _Found:
         for easy in route:
             own = easy.frame.inverse().compose(pose)
-            fit = polish(field, easy.outline, self.phi, EASY_STEPS, pose=own, cancel=self.cancel, trust=FAR)
-            self.evaluations += fit.evaluations
+            fit = self._polish(field, easy.outline, EASY_STEPS, own, FAR, symmetry)
             field, pose = fit.field, easy.frame.compose(fit.pose)
-        return self._fit(field, pose, LOOK_STEPS, FAR)
+        return self._fit(field, pose, LOOK_STEPS, FAR, symmetry)
 
     def from_guess(self, field: RatioField) -> _Found:
         """A look from a given field, aligned by IoU."""
         pose = align(deploy(field).outline(self.phi), self.target.points)
-        return self._fit(field, pose, LOOK_STEPS, FAR)
+        return self._fit(field, pose, LOOK_STEPS, FAR, None)
 
     def lifted(self, coarse: _Found, grid: tuple[int, int]) -> list[_Found]:
-        """Looks on a finer grid from a fit on a coarse one."""
+        """Looks on a finer grid from a fit on a coarse one; grids of equal parities have the same symmetries."""
         field = lifted(coarse.fit.field, grid)
         pose = align(deploy(field).outline(self.phi), self.target.points)
-        return [self._along(thickened(self.target, margins), field, pose) for margins in LIFTED_ROUTES]
+        routes = [thickened(self.target, margins) for margins in LIFTED_ROUTES]
+        return [self._along(route, field, pose, coarse.symmetry) for route in routes]
 
     def finished(self, found: list[_Found], trust: float = NEAR) -> list[_Found]:
         """The fits carried to the end, best first."""
-        ends = [self._fit(one.fit.field, one.fit.pose, LAST_STEPS, trust) for one in found]
+        ends = [self._fit(one.fit.field, one.fit.pose, LAST_STEPS, trust, one.symmetry) for one in found]
         return _best([_best([end, one], 1)[0] for end, one in zip(ends, found, strict=True)], len(ends))
 
-    def _fit(self, field: RatioField, pose: Similarity, steps: int, trust: float) -> _Found:
-        fit = polish(field, self.target, self.phi, steps, pose=pose, cancel=self.cancel, trust=trust)
+    def _fit(self, field: RatioField, pose: Similarity, steps: int, trust: float, symmetry: Symmetry | None) -> _Found:
+        fit = self._polish(field, self.target, steps, pose, trust, symmetry)
         deployment = deploy(fit.field)
         laid = fit.pose.apply(deployment.outline(self.phi))
+        return _Found(fit, exact_iou(laid, self.target), path_contact(deployment, self.phi) is None, symmetry)
+
+    def _polish(
+        self,
+        field: RatioField,
+        target: Outline,
+        steps: int,
+        pose: Similarity,
+        trust: float,
+        symmetry: Symmetry | None,
+    ) -> Fit:
+        fit = polish(field, target, self.phi, steps, pose=pose, cancel=self.cancel, trust=trust, symmetry=symmetry)
         self.evaluations += fit.evaluations
-        return _Found(fit, exact_iou(laid, self.target), path_contact(deployment, self.phi) is None)
+        return fit
 
 
 def _best(found: list[_Found], count: int) -> list[_Found]:
     """The ``count`` best by IoU, those that touch themselves last; equal ones keep their order."""
-    return sorted(found, key=lambda one: (not one.clear, -one.iou))[:count]
+
+    def merit(one: _Found) -> tuple[bool, float]:
+        return not one.clear, -one.iou - (FAIR_LOSS if one.symmetry else 0.0)
+
+    return sorted(found, key=merit)[:count]
 
 
 def _rotations(grid: tuple[int, int], phi: float, effort: int) -> list[float]:

@@ -23,8 +23,10 @@ from kirigami_studio.lattice.deployment import check_phi, deploy
 from kirigami_studio.lattice.ratio_field import FloatArray, RatioField
 from kirigami_studio.polish.boundary_target import BoundaryTarget
 from kirigami_studio.polish.objective import POSE, TRUST, Look, Objective, Quadratic
+from kirigami_studio.polish.panel_size import check_least
 from kirigami_studio.polish.regularity import Regularity, RegularTerms
 from kirigami_studio.polish.sensitivity import OutlineModel
+from kirigami_studio.polish.symmetry import Symmetry
 from kirigami_studio.target.outline import Outline
 
 #: Even samples of the target boundary.
@@ -75,6 +77,8 @@ def polish(
     cancel: Callable[[], bool] = lambda: False,
     *,
     trust: float = TRUST,
+    least_panel: float = 0.0,
+    symmetry: Symmetry | None = None,
 ) -> Fit:
     """Fit ``field`` to ``target`` by at most ``steps`` accepted steps.
 
@@ -92,22 +96,27 @@ def polish(
         Asked before every step; the best so far is returned.
     trust : float, unit-area lengths
         Distance beyond which a residual counts linearly: large ones let far parts pull, small ones serve the area.
+    least_panel : float, unit cells
+        Panel edges and necks are kept from falling below this where the shape allows it; 0 for any size.
+    symmetry : Symmetry, optional
+        The field keeps this symmetry of the lattice; the pose should lay the target's own upon it.
 
     Raises
     ------
     AngleError
         ``phi`` is not in [0, pi): the closed sheet is a rectangle whatever the ratios.
     UsageError
-        ``steps`` or ``trust`` is not a number that a fit can have.
+        ``steps``, ``trust`` or ``least_panel`` is not a number that a fit can have.
     """
     phi = check_fit(phi, steps, trust)
     model = OutlineModel(field.rows, field.columns, phi)
-    start = np.clip(field.log10.ravel(), -Z_LIMIT, Z_LIMIT)
+    allowed = _allowed(symmetry, field.rows, field.columns)
+    start = allowed(field.log10.ravel())
     pose = pose or align(model.outline(start), target.points)
     terms = RegularTerms(regularity or Regularity(), start, field.rows, field.columns)
-    objective = Objective(model, BoundaryTarget.of(target, SAMPLES), terms, trust)
+    objective = Objective(model, BoundaryTarget.of(target, SAMPLES), terms, trust, check_least(least_panel))
     state = np.concatenate([start, [math.log(pose.scale), pose.angle, *pose.shift]])
-    descent = _Descent(objective, state)
+    descent = _Descent(objective, state, allowed)
     while descent.steps < steps and not cancel() and descent.advance():
         pass
     last = descent.here.state[-POSE:]
@@ -125,6 +134,16 @@ def _field_of(state: FloatArray, model: OutlineModel) -> RatioField:
     return RatioField.from_log10(np.round(state[:-POSE], 9).reshape(model.rows, model.columns))
 
 
+def _allowed(symmetry: Symmetry | None, rows: int, columns: int) -> Callable[[FloatArray], FloatArray]:
+    """The map from any z (m * n,) to one within the bounds and of the symmetry."""
+
+    def allowed(z: FloatArray) -> FloatArray:
+        balanced = z if symmetry is None else symmetry.symmetric(z.reshape(rows, columns)).ravel()
+        return np.clip(balanced, -Z_LIMIT, Z_LIMIT)
+
+    return allowed
+
+
 def check_fit(phi: float, steps: int, trust: float) -> float:
     """The angle, once everything is known to make sense."""
     angle = check_phi(phi)
@@ -140,8 +159,8 @@ def check_fit(phi: float, steps: int, trust: float) -> float:
 class _Descent:
     """The moving state of one fit."""
 
-    def __init__(self, objective: Objective, state: FloatArray) -> None:
-        self.objective = objective
+    def __init__(self, objective: Objective, state: FloatArray, allowed: Callable[[FloatArray], FloatArray]) -> None:
+        self.objective, self._allowed = objective, allowed
         self.here = objective.look(state)
         # A start that touches itself is free to move until it no longer does.
         self._guarded = self._is_clear(self.here)
@@ -203,5 +222,6 @@ class _Descent:
         step = scipy.linalg.solve(matrix, -model.gradient[free], assume_a="pos", check_finite=False)
         state = look.state.copy()
         state[free] += step
+        state[:-POSE] = self._allowed(state[:-POSE])
         self.evaluations += 1
-        return self.objective.look(np.clip(state, -bounds, bounds))
+        return self.objective.look(state)

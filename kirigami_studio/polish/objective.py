@@ -5,8 +5,8 @@ Residuals, all in unit-area lengths and weighted by the boundary length that the
 * from points on every layout edge to the target boundary (nothing may stick out),
 * from even samples of the target boundary to the layout (nothing may be missed),
 
-down-weighted beyond a trusted distance so that their sum grows like an area and not like its square, and terms on z,
-see ``regularity``.
+down-weighted beyond a trusted distance so that their sum grows like an area and not like its square, terms on z, see
+``regularity``, and a penalty on panels too small to cut, see ``panel_size``.
 """
 
 from __future__ import annotations
@@ -17,8 +17,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from kirigami_studio.lattice.ratio_field import FloatArray
+from kirigami_studio.lattice.topology import topology
 from kirigami_studio.polish.boundary_target import BoundaryTarget
 from kirigami_studio.polish.matching import EDGE_SHARES, Matching, matched
+from kirigami_studio.polish.panel_size import PENALTY, PanelSizes, panel_sizes, shortage
 from kirigami_studio.polish.regularity import RegularTerms
 from kirigami_studio.polish.sensitivity import OutlineModel
 
@@ -27,6 +29,7 @@ from kirigami_studio.polish.sensitivity import OutlineModel
 TRUST = 0.005
 #: Number of pose parameters: log scale, angle, shift.
 POSE = 4
+NO_SIZES = panel_sizes(topology(2, 2).uniform_nodes, 2, 2).below(0.0)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -39,12 +42,15 @@ class Look:
     outline : (L, 2) float
         The layout's outline in the target's frame.
     matching : Matching
+    small : PanelSizes
+        Edges and necks below the least size.
     cost : float
     """
 
     state: FloatArray
     outline: FloatArray
     matching: Matching
+    small: PanelSizes
     cost: float
 
 
@@ -80,17 +86,32 @@ class Objective:
     terms : RegularTerms
     trust : float
         Distance (unit-area lengths) beyond which a residual counts linearly.
+    least : float, unit cells
+        Panel edges and necks should not be smaller; 0 for any size.
     """
 
-    def __init__(self, model: OutlineModel, target: BoundaryTarget, terms: RegularTerms, trust: float = TRUST) -> None:
-        self.model, self.target, self.terms, self.trust = model, target, terms, trust
+    def __init__(
+        self,
+        model: OutlineModel,
+        target: BoundaryTarget,
+        terms: RegularTerms,
+        trust: float = TRUST,
+        least: float = 0.0,
+    ) -> None:
+        self.model, self.target, self.terms, self.trust, self.least = model, target, terms, trust, least
 
     def look(self, state: FloatArray) -> Look:
         """Decode a state, match it with the target and count the cost."""
-        outline = _posed(self.model.outline(state[:-POSE]), state[-POSE:])
+        z = state[:-POSE]
+        nodes = self.model.nodes(z)
+        outline = _posed(self.model.outline_of(nodes), state[-POSE:])
         matching = matched(outline, self.target)
-        cost = float((matching.weight * _robust(matching.distance, self.trust)).sum())
-        return Look(state, outline, matching, cost + self.terms.value(state[:-POSE]))
+        cost = float((matching.weight * _robust(matching.distance, self.trust)).sum()) + self.terms.value(z)
+        small = NO_SIZES
+        if self.least:
+            small = panel_sizes(nodes, self.model.rows, self.model.columns).below(self.least)
+            cost += shortage(small, self.least)
+        return Look(state, outline, matching, small, cost)
 
     def slopes(self, state: FloatArray) -> FloatArray:
         """Derivative (L, 2, m n + 4) of the outline in the target's frame."""
@@ -110,6 +131,10 @@ class Objective:
         z = look.state[:-POSE]
         gradient[:-POSE] += self.terms.gradient(z)
         hessian[:-POSE, :-POSE] += self.terms.curvature(z)
+        if len(look.small.size):
+            grown = self.model.node_slopes(z, *look.small.reach(self.model.node_count))
+            gradient[:-POSE] += 2.0 * PENALTY * ((look.small.size - self.least) @ grown)
+            hessian[:-POSE, :-POSE] += 2.0 * PENALTY * (grown.T @ grown)
         return Quadratic(gradient, hessian)
 
 

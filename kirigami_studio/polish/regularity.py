@@ -27,12 +27,13 @@ class Regularity:
     smooth : float
         Squared differences of z between second neighbours, per pair (voids of one parity are two apart).
     variation : float
-        The paper's total variation of x, per void.
+        The paper's total variation of x, per void.  The default costs no agreement: on 40 + 40 outlines of random
+        fields 0.9993 / 0.9954 exact IoU with it and 0.9994 / 0.9954 without, at 38 % / 30 % less variation.
     """
 
     start: float = 1e-7
     smooth: float = 1e-6
-    variation: float = 0.0
+    variation: float = 1e-5
 
     def __post_init__(self) -> None:
         weights = astuple(self)

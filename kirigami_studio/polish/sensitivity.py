@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
+import numpy.typing as npt
 import scipy.linalg
 from scipy.sparse import csr_matrix
 
@@ -115,27 +116,54 @@ class OutlineModel:
         self._plan = _plan(rows, columns, phi < ZIPPED_BELOW)
         self._half = 0.5 * (math.pi - phi)
 
+    @property
+    def node_count(self) -> int:
+        return len(self._plan.start)
+
+    def nodes(self, z: FloatArray) -> FloatArray:
+        """Compact nodes (N, 2) of the field ``z`` (m * n,), unit cells; equal to ``Deployment.compact``."""
+        return self._solve(z)[0]
+
     def outline(self, z: FloatArray) -> FloatArray:
         """Boundary polygon (L, 2) of the field ``z`` (m * n,), unit cells; equal to ``Deployment.outline(phi)``."""
-        nodes, _ = self._solve(z)
+        return self.outline_of(self.nodes(z))
+
+    def outline_of(self, nodes: FloatArray) -> FloatArray:
+        """Boundary polygon (L, 2) of the sheet with compact ``nodes`` (N, 2), unit cells."""
         return self._deployed(self._plan.even @ nodes, self._plan.whole @ nodes)
 
     def linearised(self, z: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Outline (L, 2) and its derivative (L, 2, m * n) with respect to z = log10 x."""
         plan = self._plan
         nodes, system = self._solve(z)
-        reach = np.concatenate([plan.even, plan.whole])
-        through = self._adjoint(reach, system)
-        x = np.power(10.0, z)[plan.void]
-        pull = (x * LN10 / (1.0 + x) ** 2)[:, None] * (nodes[plan.ends[:, 0]] - nodes[plan.ends[:, 1]])
+        through = self._adjoint(np.concatenate([plan.even, plan.whole]), system)
+        pull = self._pull(z, nodes)
         even, whole = np.split(through, 2)
         turned = rotate(pull, -self._half), rotate(pull, self._half)
         odd = whole - even
         derivative = np.empty((even.shape[0], 2, self.rows * self.columns))
         for axis in (0, 1):
-            moved = even * turned[0][:, axis] + odd * turned[1][:, axis]
-            derivative[:, axis] = moved[:, plan.pair[0]] + moved[:, plan.pair[1]]
-        return self._deployed(plan.even @ nodes, plan.whole @ nodes), derivative
+            derivative[:, axis] = self._per_void(even * turned[0][:, axis] + odd * turned[1][:, axis])
+        return self.outline_of(nodes), derivative
+
+    def node_slopes(self, z: FloatArray, along_x: FloatArray, along_y: FloatArray) -> FloatArray:
+        """Derivative (F, m * n) of ``along_x @ x + along_y @ y`` of the compact nodes, both matrices (F, N)."""
+        nodes, system = self._solve(z)
+        pull = self._pull(z, nodes)
+        moved = self._adjoint(along_x, system) * pull[:, 0] + self._adjoint(along_y, system) * pull[:, 1]
+        return self._per_void(moved)
+
+    def _pull(self, z: FloatArray, nodes: FloatArray) -> FloatArray:
+        """How each free node's own equation moves it per unit of its void's z: (K, 2)."""
+        ends = self._plan.ends
+        x = np.power(10.0, z)[self._plan.void]
+        pull: FloatArray = (x * LN10 / (1.0 + x) ** 2)[:, None] * (nodes[ends[:, 0]] - nodes[ends[:, 1]])
+        return pull
+
+    def _per_void(self, moved: FloatArray) -> FloatArray:
+        """Add up the two free nodes (F, K) of each void: (F, m * n)."""
+        both: FloatArray = moved[:, self._plan.pair[0]] + moved[:, self._plan.pair[1]]
+        return both
 
     def _deployed(self, even: FloatArray, whole: FloatArray) -> FloatArray:
         return rotate(even, -self._half) + rotate(whole - even, self._half)
@@ -148,8 +176,7 @@ class OutlineModel:
         known = ((weights * plan.given)[..., None] * plan.start[plan.ends]).sum(axis=1)
         flat = weights.ravel()
         first, second, place = plan.around
-        reduced = -np.bincount(place, flat[first] * flat[second], h * h).reshape(h, h)
-        reduced[np.diag_indices(h)] += 1.0
+        reduced = np.eye(h) - np.bincount(place, flat[first] * flat[second], h * h).reshape(h, h)
         factor = scipy.linalg.lu_factor(reduced, check_finite=False, overwrite_a=True)
         at_h = scipy.linalg.lu_solve(factor, known[:h] + _carried(flat, plan.h_to_v, known[h:], h), check_finite=False)
         nodes = plan.start.copy()
@@ -173,7 +200,7 @@ class _System:
     """One field's stencil weights (2 K,), and the factors of I - S_hv S_vh."""
 
     weights: FloatArray
-    factor: tuple[FloatArray, IntArray]
+    factor: tuple[FloatArray, npt.NDArray[np.signedinteger]]
 
 
 def _carried(

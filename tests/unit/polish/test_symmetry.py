@@ -1,0 +1,90 @@
+"""The lattice's exact symmetries, found in targets and kept by fits."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+import shapely
+
+from kirigami_studio.evaluate.score import exact_iou
+from kirigami_studio.evaluate.similarity import Similarity
+from kirigami_studio.lattice.deployment import deploy
+from kirigami_studio.lattice.ratio_field import FloatArray, RatioField
+from kirigami_studio.polish.continuation import fit_shape
+from kirigami_studio.polish.levenberg import polish
+from kirigami_studio.polish.symmetry import Symmetry, mirror_axis, shared_symmetries
+from kirigami_studio.target.library import load
+from kirigami_studio.target.outline import Outline
+
+
+def outline_of(z: FloatArray, phi: float) -> Outline:
+    return Outline.from_points(deploy(RatioField.from_log10(z)).outline(phi))
+
+
+def moved(outline: Outline, angle: float, flipped: bool) -> FloatArray:
+    """The outline mirrored at the x axis if asked, then turned."""
+    points = outline.points * (1.0, -1.0) if flipped else outline.points
+    c, s = math.cos(angle), math.sin(angle)
+    turned: FloatArray = points @ np.array([[c, s], [-s, c]])
+    return turned
+
+
+@pytest.mark.parametrize(
+    ("symmetry", "grid", "angle", "flipped"),
+    [
+        (Symmetry.LEFT_RIGHT, (4, 5), math.pi, True),
+        (Symmetry.LEFT_RIGHT, (5, 7), math.pi, True),
+        (Symmetry.TOP_BOTTOM, (5, 4), 0.0, True),
+        (Symmetry.HALF_TURN, (4, 6), math.pi, False),
+        (Symmetry.HALF_TURN, (5, 3), math.pi, False),
+        (Symmetry.QUARTER_TURN, (6, 6), 0.5 * math.pi, False),
+    ],
+)
+def test_that_a_symmetric_field_makes_a_symmetric_outline(
+    symmetry: Symmetry, grid: tuple[int, int], angle: float, flipped: bool
+) -> None:
+    rough = np.random.default_rng(2).uniform(-0.8, 0.8, grid)
+    z = symmetry.symmetric(rough)
+    assert symmetry.image(z) == pytest.approx(z)
+    for phi in (0.0,) if symmetry is Symmetry.QUARTER_TURN else (0.0, 0.9):
+        outline = outline_of(z, phi)
+        assert exact_iou(moved(outline, angle, flipped), outline) > 1.0 - 1e-9
+        other = outline_of(rough, phi)
+        assert exact_iou(moved(other, angle, flipped), other) < 0.99, "a rough field is not symmetric"
+
+
+def test_that_shapes_show_the_symmetries_that_they_have() -> None:
+    assert mirror_axis(load("heart")) == pytest.approx(0.5 * math.pi, abs=0.01)
+    assert mirror_axis(load("letter-l")) is None
+    tilted = Outline.from_points(moved(load("heart"), 0.4, False))
+    assert mirror_axis(tilted) == pytest.approx(0.5 * math.pi + 0.4, abs=0.01)
+
+
+def test_that_a_grid_offers_only_the_symmetries_of_its_lattice() -> None:
+    def offered(name: str, grid: tuple[int, int], phi: float = 0.0) -> list[Symmetry]:
+        return [shared.symmetry for shared in shared_symmetries(load(name), grid, phi)]
+
+    assert offered("heart", (10, 10)) == []
+    assert offered("heart", (10, 11)) == [Symmetry.LEFT_RIGHT]
+    assert offered("heart", (11, 10)) == [Symmetry.TOP_BOTTOM]
+    assert offered("plus", (10, 10)) == [Symmetry.QUARTER_TURN]
+    assert offered("plus", (10, 10), 0.5) == [Symmetry.HALF_TURN]
+    assert offered("wave", (8, 12)) == [Symmetry.HALF_TURN]
+    assert offered("wave", (8, 11)) == []
+
+
+def test_that_a_fit_keeps_the_symmetry_it_was_given() -> None:
+    target = load("heart")
+    sheet = deploy(RatioField.uniform(5, 5)).outline(0.0)
+    middle = shapely.Polygon(sheet).centroid
+    upright = Similarity(1 / 6, 0.0, (-middle.x / 6, -middle.y / 6))
+    fit = polish(RatioField.uniform(5, 5), target, steps=12, pose=upright, symmetry=Symmetry.LEFT_RIGHT)
+    assert Symmetry.LEFT_RIGHT.image(fit.field.log10) == pytest.approx(fit.field.log10, abs=1e-8)
+    assert np.ptp(fit.field.log10) > 0.5
+
+
+def test_that_the_search_makes_a_symmetric_sheet_for_a_round_target() -> None:
+    best = fit_shape(load("circle"), (6, 6))[0]
+    assert Symmetry.QUARTER_TURN.image(best.field.log10) == pytest.approx(best.field.log10, abs=1e-8)
