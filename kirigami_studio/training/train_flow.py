@@ -18,12 +18,15 @@ from torch import Tensor
 
 from kirigami_studio.foundation.errors import ExportError, ModelError
 from kirigami_studio.generator.conditioning import condition, turned
-from kirigami_studio.generator.network import NetworkShape, VelocityNetwork
+from kirigami_studio.generator.network import NetworkShape, TargetCode, VelocityNetwork
 from kirigami_studio.generator.pose import square_pose
+from kirigami_studio.generator.weights import Model
 from kirigami_studio.training.checkpoint import Checkpoint
 from kirigami_studio.training.corpus import Chunk, Corpus, zero_outline
 from kirigami_studio.training.coupling import pair_noise
 from kirigami_studio.training.fields import mixed_fields
+from kirigami_studio.training.fitted_batches import FittedBatches, Targets
+from kirigami_studio.training.fitted_fields import FittedFields
 
 WARM_UP_STEPS = 200
 
@@ -56,6 +59,12 @@ class FlowSettings:
         Standard deviation of the target's rotation against the sheet.
     shift_noise : float
         Standard deviation of the contour's start, in point spacings.
+    warm_start : str
+        SHA-256 of the weights that the run begins with; empty for random ones.
+    fits : str
+        Digest of the fits of drawn shapes that take part; empty for none.
+    fit_share : float
+        Their share of every batch.
     seed : int
     shape : NetworkShape
     """
@@ -73,11 +82,47 @@ class FlowSettings:
     vertex_noise: float = 0.003
     turn_noise: float = 0.02
     shift_noise: float = 0.3
+    warm_start: str = ""
+    fits: str = ""
+    fit_share: float = 0.3
     seed: int = 0
     shape: NetworkShape = field(default_factory=NetworkShape)
 
     def to_json(self) -> dict[str, object]:
         return asdict(self)
+
+    @property
+    def fitted_rows(self) -> int:
+        """Targets of a step that are fits of drawn shapes."""
+        return round(self.fit_share * self.batch) if self.fits else 0
+
+
+@dataclass(frozen=True, slots=True)
+class Sources:
+    """What a run begins with and draws on beside random fields; the settings hold their digests.
+
+    Attributes
+    ----------
+    start : Model, optional
+        Weights to begin with, raw and averaged alike; the optimiser starts afresh.
+    fits : FittedFields, optional
+    """
+
+    start: Model | None = None
+    fits: FittedFields | None = None
+
+    def check(self, settings: FlowSettings) -> None:
+        """Refuse sources that the settings do not name, or that do not fit the network.
+
+        Raises
+        ------
+        ModelError
+        """
+        found = (self.start.digest if self.start else "", self.fits.digest if self.fits else "")
+        if found != (settings.warm_start, settings.fits):
+            raise ModelError("The weights or fits to train with are not those that the settings name.")
+        if self.start and self.start.network.shape != settings.shape:
+            raise ModelError(f"The weights of '{self.start.variant}' belong to a network of another shape.")
 
 
 def train_flow(
@@ -86,6 +131,7 @@ def train_flow(
     device: torch.device,
     validate: Callable[[VelocityNetwork], dict[str, float]],
     *,
+    sources: Sources | None = None,
     seconds: float = math.inf,
     validate_every: int = 2000,
 ) -> Iterator[dict[str, float]]:
@@ -99,6 +145,7 @@ def train_flow(
     device : torch.device
     validate : callable
         Maps the averaged network to figures for the log.
+    sources : Sources, optional
     seconds : float
         Stop with a checkpoint after this wall time even if steps remain.
     validate_every : int
@@ -109,13 +156,15 @@ def train_flow(
     ExportError
         The folder cannot be made or written.
     ModelError
-        The checkpoint in ``folder`` belongs to other settings.
+        The checkpoint in ``folder`` belongs to other settings, or the sources do.
     """
+    sources = sources or Sources()
+    sources.check(settings)
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise ExportError(f"Cannot make the run folder {folder}: {error.strerror}. Choose another folder.") from error
-    run = _Run(settings, folder / "checkpoint.pt", device)
+    run = _Run(settings, folder / "checkpoint.pt", device, sources)
     began = time.perf_counter()
     running = math.nan
     while run.step < settings.steps:
@@ -135,16 +184,18 @@ def train_flow(
 
 def finished_network(settings: FlowSettings, folder: Path, device: torch.device) -> VelocityNetwork:
     """The averaged network of the checkpoint in ``folder``: what is shipped."""
-    return _Run(settings, folder / "checkpoint.pt", device).averaged()
+    return _Run(settings, folder / "checkpoint.pt", device, Sources()).averaged()
 
 
 class _Run:
     """The mutable part of a training run."""
 
-    def __init__(self, settings: FlowSettings, path: Path, device: torch.device) -> None:
+    def __init__(self, settings: FlowSettings, path: Path, device: torch.device, sources: Sources) -> None:
         self.settings, self.path, self.device = settings, path, device
         torch.manual_seed(settings.seed)
         self.network = VelocityNetwork(settings.shape).to(device)
+        if sources.start:
+            self.network.load_state_dict(sources.start.network.state_dict())
         self.average = {name: value.detach().clone() for name, value in self.network.state_dict().items()}
         self.optimiser = torch.optim.AdamW(
             self.network.parameters(), lr=settings.learning_rate, betas=(0.9, 0.99), weight_decay=settings.weight_decay
@@ -153,6 +204,7 @@ class _Run:
         self.corpus = Corpus(
             mixed_fields, settings.shape.rows, settings.shape.columns, settings.seed, settings.chunk, device
         )
+        self.fitted = FittedBatches(sources.fits, self.corpus.lattice, settings.seed) if sources.fits else None
         self.step = 0
         self._chunk: tuple[int, Chunk] | None = None
         if path.exists():
@@ -162,14 +214,16 @@ class _Run:
         """One optimiser step; returns the flow-matching loss."""
         for group in self.optimiser.param_groups:
             group["lr"] = self.settings.learning_rate * schedule(self.step, self.settings.steps)
-        z, polygons = self._batch()
-        loss = self._loss(z, polygons)
+        loss = self._loss([self._random_targets(), *self._fitted_targets()])
         self.optimiser.zero_grad(set_to_none=True)
         loss.backward()
         torch.nn.utils.clip_grad_norm_(self.network.parameters(), 1.0)
         self.optimiser.step()
         self.step += 1
-        decay = min(self.settings.average_decay, (1 + self.step) / (10 + self.step))
+        decay = self.settings.average_decay
+        if not self.settings.warm_start:
+            # Random weights must not linger in the average.
+            decay = min(decay, (1 + self.step) / (10 + self.step))
         with torch.no_grad():
             names, values = zip(*self.network.state_dict().items(), strict=True)
             torch._foreach_lerp_([self.average[name] for name in names], list(values), 1 - decay)
@@ -205,29 +259,40 @@ class _Run:
         self.generator.set_state(state.generator)
         self.step = state.step
 
-    def _batch(self) -> tuple[Tensor, Tensor]:
-        """Targets of this step: a fixed permutation of the chunk for every pass."""
+    def _fitted_targets(self) -> tuple[Targets, ...]:
+        if self.fitted is None:
+            return ()
+        return self.fitted.targets(self.step, self.settings.fitted_rows)
+
+    def _random_targets(self) -> Targets:
+        """Random fields of this step: a fixed permutation of the chunk for every pass."""
         settings = self.settings
-        per_pass = settings.chunk // settings.batch
+        batch = settings.batch - settings.fitted_rows
+        per_pass = settings.chunk // batch
         sweep, place = divmod(self.step, per_pass)
         number = sweep // settings.passes
         if self._chunk is None or self._chunk[0] != number:
             self._chunk = number, self.corpus.chunk(number)
         order = torch.Generator().manual_seed(1_000_003 * settings.seed + sweep)
-        picked = torch.randperm(settings.chunk, generator=order)[place * settings.batch : (place + 1) * settings.batch]
+        picked = torch.randperm(settings.chunk, generator=order)[place * batch : (place + 1) * batch]
         chunk = self._chunk[1]
         picked = picked.to(self.device)
-        return chunk.z[picked], chunk.polygons[picked]
+        return Targets(chunk.z[picked], chunk.polygons[picked], on_sheet=False)
 
-    def _loss(self, z: Tensor, polygons: Tensor) -> Tensor:
+    def _loss(self, parts: list[Targets]) -> Tensor:
         settings, draws = self.settings, self.settings.noises
-        seen, shift = self._as_seen(polygons)
-        code = self.network.code(seen, shift).repeated(draws)
+        seen = [self._as_seen(part) for part in parts]
+        codes = [self.network.code(polygons, shift) for polygons, shift in seen]
+        code = TargetCode(torch.cat([one.encoded for one in codes]), torch.cat([one.loop for one in codes])).repeated(
+            draws
+        )
+        z = torch.cat([part.z for part in parts])
         target = z.repeat_interleave(draws, dim=0)
         noise = self._normal(target.shape) * settings.shape.z_scale
         if settings.coupling != "independent":
-            described = condition(seen, settings.shape.condition_layout, shift).repeat_interleave(draws, dim=0)
-            noise = pair_noise(settings.coupling, noise, target, described)
+            layout = settings.shape.condition_layout
+            described = torch.cat([condition(polygons, layout, shift) for polygons, shift in seen])
+            noise = pair_noise(settings.coupling, noise, target, described.repeat_interleave(draws, dim=0))
         t = torch.rand(target.shape[0], generator=self.generator, device=self.device)
         between = noise + t[:, None] * (target - noise)
         velocity = self.network(between, t, code)
@@ -248,12 +313,13 @@ class _Run:
         sheet_area = (lattice.rows + 1) * (lattice.columns + 1)
         return (ours - theirs).square().sum(dim=-1).mean(dim=1) / sheet_area
 
-    def _as_seen(self, polygons: Tensor) -> tuple[Tensor, Tensor]:
+    def _as_seen(self, targets: Targets) -> tuple[Tensor, Tensor]:
         """Targets as they will arrive, a little turned and rasterised, and a shift of where their contour starts."""
-        settings = self.settings
+        settings, polygons = self.settings, targets.polygons
         moved = polygons + settings.vertex_noise * self._normal(polygons.shape)
         moved = turned(moved, settings.turn_noise * self._normal(polygons.shape[:1]))
-        moved = turned(moved, -square_pose(moved))
+        if not targets.on_sheet:
+            moved = turned(moved, -square_pose(moved))
         return moved, settings.shift_noise * self._normal(polygons.shape[:1])
 
     def _normal(self, shape: torch.Size) -> Tensor:

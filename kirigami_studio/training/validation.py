@@ -15,11 +15,15 @@ from kirigami_studio.generator.network import VelocityNetwork
 from kirigami_studio.generator.pose import square_pose
 from kirigami_studio.lattice.batched import BatchedLattice
 from kirigami_studio.lattice.ratio_field import FloatArray
+from kirigami_studio.target.editing import resampled
 from kirigami_studio.training.corpus import zero_outline
+from kirigami_studio.training.drawn_shapes import drawn_shape
 from kirigami_studio.training.fields import Z_LIMIT, sobol_fields, structured_fields
 
 #: Seed of the fields that training watches; the test splits of ``dataset`` use others.
 VALIDATION_SEED = 20_001
+#: Points of drawn shapes, at equal arc length.
+DRAWN_POINTS = 256
 
 
 def own_pose_iou(network: VelocityNetwork, z: Tensor, lattice: BatchedLattice, steps: int, seed: int) -> FloatArray:
@@ -27,13 +31,36 @@ def own_pose_iou(network: VelocityNetwork, z: Tensor, lattice: BatchedLattice, s
 
     A lower bound of sIoU, cheap enough to watch during training.
     """
-    generator = torch.Generator().manual_seed(seed)
     with torch.no_grad():
         targets = normalised(zero_outline(lattice, z))
-        seen = turned(targets, -square_pose(targets))
-        noise = torch.randn((len(z), z[0].numel()), generator=generator) * network.shape.z_scale
-        drawn = integrate(network, noise.to(z.device), network.code(seen), steps).clamp(-Z_LIMIT, Z_LIMIT)
-        results = normalised(zero_outline(lattice, drawn.view_as(z)))
+        return _ious(_sampled(network, turned(targets, -square_pose(targets)), lattice, steps, seed), targets)
+
+
+def upright_iou(
+    network: VelocityNetwork, targets: Tensor, lattice: BatchedLattice, steps: int, seed: int
+) -> FloatArray:
+    """IoU of one sample for each of the outlines (B, L, 2), compared as the network sees them, stood upright: (B,)."""
+    with torch.no_grad():
+        seen = normalised(targets)
+        seen = turned(seen, -square_pose(seen))
+        return _ious(_sampled(network, seen, lattice, steps, seed), seen)
+
+
+def drawn_polygons(count: int, seed: int) -> Tensor:
+    """Shapes that people would draw, as polygons of equally many points: (count, L, 2)."""
+    shapes = [resampled(drawn_shape(seed, number), DRAWN_POINTS) for number in range(count)]
+    return torch.tensor(np.stack(shapes), dtype=torch.float32)
+
+
+def _sampled(network: VelocityNetwork, seen: Tensor, lattice: BatchedLattice, steps: int, seed: int) -> Tensor:
+    """Outlines of one sample for each target as seen."""
+    generator = torch.Generator().manual_seed(seed)
+    noise = torch.randn((len(seen), lattice.rows * lattice.columns), generator=generator) * network.shape.z_scale
+    drawn = integrate(network, noise.to(seen.device), network.code(seen), steps).clamp(-Z_LIMIT, Z_LIMIT)
+    return normalised(zero_outline(lattice, drawn.view(-1, lattice.rows, lattice.columns)))
+
+
+def _ious(results: Tensor, targets: Tensor) -> FloatArray:
     ours = shapely.make_valid(shapely.polygons(results.cpu().double().numpy()))
     theirs = shapely.make_valid(shapely.polygons(targets.cpu().double().numpy()))
     common = shapely.area(shapely.intersection(ours, theirs))
@@ -41,7 +68,7 @@ def own_pose_iou(network: VelocityNetwork, z: Tensor, lattice: BatchedLattice, s
 
 
 def validator(count: int, device: torch.device, steps: int = 4) -> Callable[[VelocityNetwork], dict[str, float]]:
-    """Make the function that training calls: mean IoU and spread on ``count`` fields of each family."""
+    """Make the function that training calls: mean IoU on ``count`` targets of each family."""
 
     def measure(network: VelocityNetwork) -> dict[str, float]:
         rows, columns = network.shape.rows, network.shape.columns
@@ -54,6 +81,8 @@ def validator(count: int, device: torch.device, steps: int = 4) -> Callable[[Vel
         for name, fields in families.items():
             z = torch.tensor(fields, dtype=torch.float32, device=device)
             figures[f"{name}_iou"] = float(own_pose_iou(network, z, lattice, steps, seed=0).mean())
+        drawn = drawn_polygons(count, VALIDATION_SEED).to(device)
+        figures["drawn_iou"] = float(upright_iou(network, drawn, lattice, steps, seed=0).mean())
         return figures
 
     return measure

@@ -10,9 +10,11 @@ import torch
 
 from kirigami_studio.foundation.errors import ModelError, UsageError
 from kirigami_studio.generator.network import NetworkShape
+from kirigami_studio.generator.weights import Model, load_model, store_model
 from kirigami_studio.training.coupling import pair_noise
 from kirigami_studio.training.device import training_device
-from kirigami_studio.training.train_flow import FlowSettings, finished_network, train_flow
+from kirigami_studio.training.fitted_fields import FittedFields, fitted_block
+from kirigami_studio.training.train_flow import FlowSettings, Sources, finished_network, train_flow
 from kirigami_studio.training.validation import validator
 
 pytestmark = pytest.mark.torch
@@ -22,8 +24,23 @@ TINY = FlowSettings(
 )
 
 
-def train(settings: FlowSettings, folder: Path, **options: float) -> list[dict[str, float]]:
-    return list(train_flow(settings, folder, CPU, lambda network: {}, validate_every=4, **options))
+def train(
+    settings: FlowSettings, folder: Path, sources: Sources | None = None, **options: float
+) -> list[dict[str, float]]:
+    return list(train_flow(settings, folder, CPU, lambda network: {}, validate_every=4, sources=sources, **options))
+
+
+@pytest.fixture(scope="module")
+def fits() -> FittedFields:
+    return fitted_block(0, seed=1, grid=(4, 4), variant="prior", size=4)
+
+
+@pytest.fixture(scope="module")
+def start(tmp_path_factory: pytest.TempPathFactory) -> Model:
+    folder = tmp_path_factory.mktemp("start")
+    train(replace(TINY, steps=8, seed=9), folder)
+    store_model("prior", finished_network(replace(TINY, steps=8, seed=9), folder, CPU), folder, {})
+    return load_model("prior", folder)
 
 
 def test_that_a_resumed_run_equals_an_uninterrupted_one(tmp_path: Path) -> None:
@@ -94,3 +111,47 @@ def test_that_unknown_couplings_and_devices_are_refused() -> None:
         training_device("abacus")
     with pytest.raises(UsageError):
         training_device("cpu", threads=0)
+
+
+def test_that_a_warm_start_begins_with_the_given_weights(tmp_path: Path, start: Model) -> None:
+    settings = replace(TINY, steps=4, learning_rate=1e-12, warm_start=start.digest)
+    train(settings, tmp_path, Sources(start))
+    ended = finished_network(settings, tmp_path, CPU).state_dict()
+    for name, value in start.network.state_dict().items():
+        torch.testing.assert_close(ended[name], value, atol=1e-6, rtol=1e-6)
+
+
+def test_that_the_weights_of_a_warm_start_are_not_written_to(tmp_path: Path, start: Model) -> None:
+    before = {name: value.clone() for name, value in start.network.state_dict().items()}
+    train(replace(TINY, steps=4, warm_start=start.digest), tmp_path, Sources(start))
+    assert all(torch.equal(value, before[name]) for name, value in start.network.state_dict().items())
+
+
+@pytest.mark.parametrize("coupling", ["independent", "conditional-ot"])
+def test_that_a_resumed_run_with_fits_equals_an_uninterrupted_one(
+    tmp_path: Path, start: Model, fits: FittedFields, coupling: str
+) -> None:
+    settings = replace(TINY, warm_start=start.digest, fits=fits.digest, coupling=coupling)
+    sources = Sources(start, fits)
+    train(settings, tmp_path / "whole", sources)
+    assert train(settings, tmp_path / "parts", sources, seconds=0.0)[-1]["step"] < TINY.steps
+    train(settings, tmp_path / "parts", sources)
+    whole, parts = (finished_network(settings, tmp_path / name, CPU).state_dict() for name in ("whole", "parts"))
+    assert all(torch.equal(whole[name], parts[name]) for name in whole)
+    train(replace(TINY, warm_start=start.digest, coupling=coupling), tmp_path / "without", Sources(start))
+    without = torch.load(tmp_path / "without" / "checkpoint.pt", weights_only=True)["network"]
+    withs = torch.load(tmp_path / "whole" / "checkpoint.pt", weights_only=True)["network"]
+    assert not all(torch.equal(withs[name], without[name]) for name in withs)
+
+
+def test_that_sources_are_those_that_the_settings_name(tmp_path: Path, start: Model, fits: FittedFields) -> None:
+    for settings, sources in (
+        (TINY, Sources(start)),
+        (replace(TINY, fits=fits.digest), None),
+        (replace(TINY, fits="other"), Sources(None, fits)),
+    ):
+        with pytest.raises(ModelError, match="settings name"):
+            train(settings, tmp_path, sources)
+    wide = replace(TINY, warm_start=start.digest, shape=replace(TINY.shape, width=40))
+    with pytest.raises(ModelError, match="another shape"):
+        train(wide, tmp_path, Sources(start))

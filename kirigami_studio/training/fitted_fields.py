@@ -1,0 +1,256 @@
+"""Drawn shapes -> fields that show them: training pairs by expert iteration.
+
+The bundled generator guesses, the polish fits its guesses on the exact geometry, and what comes near enough is kept as
+(field, requested outline, achieved outline): training on it teaches the next generator where fits end.  The requested
+outline is kept in the frame of the fitted sheet, so that field and outline agree about the pose.
+
+Block b of seed s always holds the same fits, so an archive grows by blocks and a stopped run is taken up where it was.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import io
+import json
+import math
+import multiprocessing
+from collections.abc import Callable, Generator, Iterator
+from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from dataclasses import dataclass, replace
+from functools import partial
+from itertools import count as count_from
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import shapely
+import torch
+
+from kirigami_studio.evaluate.feasibility import TAU_OVERLAP, invalid_quads, overlap_ratio, path_contact
+from kirigami_studio.evaluate.score import exact_iou
+from kirigami_studio.evaluate.similarity import Similarity
+from kirigami_studio.foundation.errors import KirigamiError
+from kirigami_studio.foundation.files import write_atomically
+from kirigami_studio.generator.conditioning import normalised
+from kirigami_studio.generator.pose import square_pose
+from kirigami_studio.generator.sampler import BATCH, draw_fields, pose_angle
+from kirigami_studio.generator.weights import load_model
+from kirigami_studio.lattice.deployment import deploy
+from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.polish.levenberg import polish
+from kirigami_studio.target.editing import resampled
+from kirigami_studio.target.outline import Outline
+from kirigami_studio.training.drawn_shapes import drawn_shape
+
+Float32Array = npt.NDArray[np.float32]
+
+#: Shapes of a block, and candidates of the generator that are fitted for each: the upright one and one in between.
+BLOCK = 32
+#: Euler steps of the generator, and of the fit: first with far parts pulling, then for the area.
+SAMPLING_STEPS, EASY_STEPS, LAST_STEPS = 4, 6, 12
+#: Trusted distance (unit-area lengths) of the easy steps, as in the search by continuation.
+FAR = 0.03
+#: Fits below this IoU show another shape than was asked for.
+SMALLEST_IOU = 0.85
+#: Points at equal arc length that the requested outline is kept with: 1.7 times what the network sees.
+REQUESTED_POINTS = 160
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class FittedFields:
+    """Fields fitted to drawn shapes.
+
+    Attributes
+    ----------
+    z : (N, m, n) float32
+        log10 of the ratios.
+    requested : (N, 160, 2) float32
+        Outlines that were asked for, unit area about the centroid, in the pose of the sheet.
+    iou : (N,) float32
+        Exact IoU of requested and achieved outline.
+    shape : (N,) int64
+        Number of the drawn shape.
+    candidate : (N,) int64
+        Which of the generator's candidates was fitted.
+    block : (N,) int64
+    about : dict
+        Grid, seed, digest of the generator, block size, blocks done.
+    """
+
+    z: Float32Array
+    requested: Float32Array
+    iou: Float32Array
+    shape: npt.NDArray[np.int64]
+    candidate: npt.NDArray[np.int64]
+    block: npt.NDArray[np.int64]
+    about: dict[str, object]
+
+    def save(self, path: Path) -> None:
+        """Write the archive atomically."""
+        buffer = io.BytesIO()
+        arrays = {name: getattr(self, name) for name in ARRAYS}
+        np.savez(buffer, about=np.array(json.dumps(self.about)), **arrays)
+        write_atomically(path, buffer.getvalue())
+
+    @classmethod
+    def load(cls, path: Path) -> FittedFields:
+        """Read an archive.
+
+        Raises
+        ------
+        KirigamiError
+            It is missing, damaged or holds something else.
+        """
+        try:
+            with np.load(path, allow_pickle=False) as archive:
+                arrays = {name: archive[name] for name in ARRAYS}
+                about = json.loads(str(archive["about"]))
+        except (OSError, ValueError, KeyError, EOFError) as error:
+            raise KirigamiError(f"Cannot read fitted fields from {path}; make them by 'dataset drawn'.") from error
+        return cls(**arrays, about=about)
+
+    @property
+    def digest(self) -> str:
+        """SHA-256 of what a training run sees of the archive."""
+        return hashlib.sha256(self.z.tobytes() + self.requested.tobytes()).hexdigest()
+
+
+ARRAYS = ("z", "requested", "iou", "shape", "candidate", "block")
+
+
+def fit_shapes(
+    path: Path,
+    count: int,
+    seed: int,
+    grid: tuple[int, int] = (10, 10),
+    variant: str = "prior",
+    processes: int = 1,
+    block_size: int = BLOCK,
+) -> Iterator[int]:
+    """Add blocks to the archive at ``path`` until it holds ``count`` fits; yields how many it holds after each.
+
+    Parameters
+    ----------
+    path : Path
+    count : int
+    seed : int
+        Of the drawn shapes.
+    grid : (rows, columns)
+    variant : str
+        The generator that guesses.
+    processes : int
+        Blocks at a time.
+    block_size : int
+        Shapes of a block.
+
+    Raises
+    ------
+    KirigamiError
+        The archive there was made with another grid, seed or generator.
+    """
+    generator = load_model(variant).digest
+    made_by = {"grid": list(grid), "seed": seed, "generator": generator, "block size": block_size}
+    fits = FittedFields.load(path) if path.exists() else _nothing(grid, made_by)
+    other = [name for name, value in made_by.items() if fits.about.get(name) != value]
+    if other:
+        raise KirigamiError(f"The fits in {path} were made with another {' and '.join(other)}; choose another folder.")
+    done = {int(number) for number in fits.about["blocks"]}  # type: ignore[attr-defined]
+    work = partial(fitted_block, seed=seed, grid=grid, variant=variant, size=block_size)
+    blocks = _each(work, (number for number in count_from(0) if number not in done), processes)
+    while len(fits.z) < count:
+        number, new = next(blocks)
+        fits = _joined(fits, new, number)
+        fits.save(path)
+        yield len(fits.z)
+    blocks.close()
+
+
+def _each(
+    work: Callable[[int], FittedFields], numbers: Iterator[int], processes: int
+) -> Generator[tuple[int, FittedFields], None, None]:
+    """Numbers and their results, as they become ready; endless as the numbers are."""
+    if processes == 1:
+        for number in numbers:
+            yield number, work(number)
+    # Fresh interpreters: torch and BLAS do not survive a fork with their threads.
+    with ProcessPoolExecutor(processes, multiprocessing.get_context("spawn")) as pool:
+        running: dict[Future[FittedFields], int] = {}
+        while True:
+            while len(running) < processes:
+                number = next(numbers)
+                running[pool.submit(work, number)] = number
+            for future in wait(running, return_when=FIRST_COMPLETED).done:
+                yield running.pop(future), future.result()
+
+
+def fitted_block(block: int, seed: int, grid: tuple[int, int], variant: str, size: int = BLOCK) -> FittedFields:
+    """Fit the ``size`` shapes from number ``block * size`` on."""
+    rows: list[tuple[Float32Array, Float32Array, float, int, int]] = []
+    for number in range(block * size, (block + 1) * size):
+        target = drawn_shape(seed, number)
+        fields = draw_fields(load_model(variant), target, grid, BATCH, number, SAMPLING_STEPS)
+        # Odd candidates see the target in poses between the quarter turns.
+        between = 1 + 2 * int(np.random.default_rng((seed, number, 1)).integers(BATCH // 2))
+        for candidate in (0, between):
+            fitted = fitted_field(fields[candidate], target, candidate)
+            if fitted is not None:
+                field, requested, iou = fitted
+                rows.append((field.log10.astype(np.float32), requested, iou, number, candidate))
+    return _table(rows, grid, block)
+
+
+def fitted_field(field: RatioField, target: Outline, candidate: int) -> tuple[RatioField, Float32Array, float] | None:
+    """The fit that begins with a generator's candidate, the target in its sheet's frame, and their IoU.
+
+    None where the fit shows another shape, or one that no sheet gets to without touching itself.
+    """
+    pose = _seen_pose(field, target, candidate)
+    easy = polish(field, target, steps=EASY_STEPS, pose=pose, trust=FAR)
+    fit = polish(easy.field, target, steps=LAST_STEPS, pose=easy.pose)
+    deployment = deploy(fit.field)
+    iou = exact_iou(fit.pose.apply(deployment.outline(0.0)), target)
+    if iou < SMALLEST_IOU or path_contact(deployment, 0.0) is not None:
+        return None
+    if invalid_quads(deployment, 0.0) or overlap_ratio(deployment, 0.0) > TAU_OVERLAP:
+        return None
+    points = torch.tensor(fit.pose.inverse().apply(resampled(target, REQUESTED_POINTS)))[None]
+    requested: Float32Array = normalised(points)[0].numpy().astype(np.float32)
+    return fit.field, requested, iou
+
+
+def _seen_pose(field: RatioField, target: Outline, candidate: int) -> Similarity:
+    """Layout frame to target frame as the generator saw the target when it drew this candidate."""
+    polygon = normalised(torch.tensor(target.points, dtype=torch.float32)[None])
+    angle = pose_angle(candidate) - float(square_pose(polygon))
+    sheet = shapely.Polygon(deploy(field).outline(0.0))
+    turned = Similarity(1.0 / math.sqrt(sheet.area), -angle)
+    x, y = turned.apply(np.array([sheet.centroid.x, sheet.centroid.y]))
+    return Similarity(turned.scale, -angle, (-x, -y))
+
+
+def _table(
+    rows: list[tuple[Float32Array, Float32Array, float, int, int]], grid: tuple[int, int], block: int
+) -> FittedFields:
+    z, requested, iou, shape, candidate = zip(*rows, strict=True) if rows else ((), (), (), (), ())
+    return FittedFields(
+        np.array(z, dtype=np.float32).reshape(-1, *grid),
+        np.array(requested, dtype=np.float32).reshape(-1, REQUESTED_POINTS, 2),
+        np.array(iou, dtype=np.float32),
+        np.array(shape, dtype=np.int64),
+        np.array(candidate, dtype=np.int64),
+        np.full(len(rows), block, dtype=np.int64),
+        {},
+    )
+
+
+def _nothing(grid: tuple[int, int], made_by: dict[str, object]) -> FittedFields:
+    return replace(_table([], grid, 0), about={**made_by, "blocks": []})
+
+
+def _joined(fits: FittedFields, new: FittedFields, block: int) -> FittedFields:
+    """Both, in the order of their blocks whatever finished first."""
+    blocks = sorted([*fits.about["blocks"], block])  # type: ignore[misc]
+    order = np.argsort(np.concatenate([fits.block, new.block]), kind="stable")
+    arrays: dict[str, Any] = {name: np.concatenate([getattr(fits, name), getattr(new, name)])[order] for name in ARRAYS}
+    return FittedFields(**arrays, about={**fits.about, "blocks": blocks})
