@@ -44,7 +44,8 @@ def measure_generator(
     -------
     figures : dict
         ``siou`` with its bootstrap 95 % interval over targets, ``success`` (sIoU >= 0.85 and feasible), ``infeasible``,
-        ``iou_exact``, ``uniform_siou``, ``siou_gain``, ``tv``, quantiles, and the settings.
+        ``iou_exact`` (polygons) with its interval and the worst, ``uniform_siou``, ``uniform_iou``, ``siou_gain``,
+        ``tv``, quantiles, and the settings.
     """
     scores: list[list[Score]] = []
     total = len(targets) * len(seeds)
@@ -56,6 +57,7 @@ def measure_generator(
             report(number * len(seeds) + len(per_seed), total)
         scores.append(per_seed)
     siou = np.array([[score.siou for score in row] for row in scores])
+    exact = np.array([[score.iou_exact for score in row] for row in scores])
     feasible = np.array([[score.feasible for score in row] for row in scores])
     return {
         "targets": len(targets),
@@ -71,7 +73,10 @@ def measure_generator(
         "siou_quantiles_5_50_95": [float(q) for q in np.quantile(siou, (0.05, 0.5, 0.95))],
         "success": float(((siou >= SUCCESS_SIOU) & feasible).mean()),
         "infeasible": int((~feasible).sum()),
-        "iou_exact": _mean(scores, "iou_exact"),
+        "iou_exact": float(exact.mean()),
+        "iou_exact_interval": bootstrap_interval(exact.mean(axis=1)),
+        "iou_exact_worst": float(exact.min()),
+        "uniform_iou": _mean(scores, "uniform_iou"),
         "uniform_siou": _mean(scores, "uniform_siou"),
         "siou_gain": _mean(scores, "siou_gain"),
         "tv": _mean(scores, "tv"),

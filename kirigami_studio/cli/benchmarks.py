@@ -11,6 +11,9 @@ from kirigami_studio.cli.console import ProgressLine, plain, print_json, say
 from kirigami_studio.cli.inputs import parse_grid, read_targets
 from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.foundation.files import write_atomically
+from kirigami_studio.lattice.deployment import deploy
+from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.pipeline.request import POLISH_STEPS
 from kirigami_studio.target.library import load, names
 from kirigami_studio.target.outline import Outline
 from kirigami_studio.target.read_image import outline_of_mask
@@ -65,6 +68,64 @@ def _polish_suite(arguments: argparse.Namespace, line: ProgressLine) -> dict[str
     }
 
 
+def _designs_suite(arguments: argparse.Namespace, line: ProgressLine) -> dict[str, object]:
+    """The whole program on targets, shape by shape, with pictures where asked for."""
+    from kirigami_studio.benchmark.contact_sheet import write_contact_sheet
+    from kirigami_studio.benchmark.design_suite import design_figures, make_designs
+    from kirigami_studio.pipeline.request import Request
+
+    results: dict[str, object] = {}
+    for family, outlines in _target_sets(arguments).items():
+        requests = [
+            [
+                Request(
+                    outline,
+                    parse_grid(grid),
+                    k=arguments.k,
+                    seed=arguments.seeds[0],
+                    variant=arguments.variant,
+                    steps=arguments.steps,
+                    polish=arguments.polish,
+                    prefer=arguments.prefer,
+                    search=arguments.effort or 0,
+                    trim=arguments.trim,
+                )
+                for grid in arguments.grid.split(",")
+            ]
+            for outline in outlines
+        ]
+        made = make_designs(requests, lambda done, total, family=family: line.show(f"{family}: {done} of {total}"))  # type: ignore[misc]
+        results[family] = design_figures(made)
+        if arguments.picture is not None:
+            write_contact_sheet(made, Path(arguments.picture))
+    return results
+
+
+def _regularity_suite(arguments: argparse.Namespace, line: ProgressLine) -> dict[str, object]:
+    """Agreement and total variation, unpolished and at every preference."""
+    from kirigami_studio.benchmark.regularity_suite import measure_regularity
+
+    return {
+        family: measure_regularity(
+            outlines,
+            arguments.variant,
+            polish=arguments.polish or POLISH_STEPS,
+            grid=parse_grid(arguments.grid),
+            seed=arguments.seeds[0],
+            report=lambda done, total, family=family: line.show(f"{family}: {done} of {total}"),  # type: ignore[misc]
+        )
+        for family, outlines in _target_sets(arguments).items()
+    }
+
+
+def _speed_suite(arguments: argparse.Namespace, line: ProgressLine) -> dict[str, object]:
+    """Timings of scoring and polishing."""
+    from kirigami_studio.benchmark.polish_timing import polish_timings
+
+    line.show("Timing scores and fits")
+    return polish_timings()
+
+
 def _lattice_suite(arguments: argparse.Namespace, line: ProgressLine) -> dict[str, object]:
     """Timings of the exact geometry, with the ratio to the marching reference."""
     from kirigami_studio.benchmark.lattice_timing import lattice_timings
@@ -88,12 +149,19 @@ def _target_sets(arguments: argparse.Namespace) -> dict[str, list[Outline]]:
     sets = {}
     for family in ("structured", "sobol"):
         split = generate_split(family, arguments.count or size, arguments.data_seed * len(SPLITS) + offset)
-        sets[family] = [outline_of_mask(mask, f"{family} {number}") for number, mask in enumerate(split.masks)]
+        if arguments.exact:
+            layouts = [deploy(RatioField(ratio)).outline(0.0) for ratio in split.ratios]
+            sets[family] = [Outline.from_points(layout, f"{family} {k}") for k, layout in enumerate(layouts)]
+        else:
+            sets[family] = [outline_of_mask(mask, f"{family} {number}") for number, mask in enumerate(split.masks)]
     return sets
 
 
 SUITES: dict[str, Callable[[argparse.Namespace, ProgressLine], dict[str, object]]] = {
     "generator": _generator_suite,
     "polish": _polish_suite,
+    "designs": _designs_suite,
+    "regularity": _regularity_suite,
+    "speed": _speed_suite,
     "lattice": _lattice_suite,
 }

@@ -12,13 +12,17 @@ from kirigami_studio.cli.console import ProgressLine, plain, print_json, say
 from kirigami_studio.cli.fabrication import checked_plan, material_settings
 from kirigami_studio.cli.inputs import are_many_targets, parse_grid, read_targets
 from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.evaluate.trimming import KEEP
 from kirigami_studio.export.exporter import ExportJob
 from kirigami_studio.export.png import write_png
 from kirigami_studio.export.registry import export
 from kirigami_studio.export.svg import write_layout_svg
+from kirigami_studio.fabricate.material import find_material
+from kirigami_studio.fabricate.trimmed_sheet import needed_keep
 from kirigami_studio.foundation.errors import Cancelled
 from kirigami_studio.foundation.files import check_folder, write_atomically
 from kirigami_studio.lattice.deployment import deploy
+from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.pipeline.events import Finished, Progress, Result
 from kirigami_studio.pipeline.provenance import provenance
 from kirigami_studio.pipeline.request import POLISH_STEPS, Request
@@ -49,6 +53,12 @@ def design(arguments: argparse.Namespace) -> int:
             variant=arguments.variant,
             steps=arguments.steps,
             polish=POLISH_STEPS if arguments.polish else 0,
+            prefer=arguments.prefer,
+            least_panel=_in_cells(arguments.least_panel_mm, fabrication, grid),
+            trim=arguments.trim,
+            keep=_keep(fabrication, grid) if arguments.trim else KEEP,
+            search=arguments.search,
+            budget_seconds=arguments.budget,
         )
         result = _run(request, line)
         folder = None if arguments.out is None else Path(arguments.out)
@@ -67,24 +77,32 @@ def design(arguments: argparse.Namespace) -> int:
 
 
 def summary(result: Result) -> dict[str, object]:
-    """The JSON answer of ``design`` without the files."""
-    return {
+    """The JSON answer of ``design`` without the files; only runs with a budget tell whether it ended them."""
+    answer: dict[str, object] = {
         "candidates": [candidate_json(candidate) for candidate in result.candidates],
         "best": candidate_json(result.best),
         "seconds": result.seconds,
         "forward_evaluations": result.forward_evaluations,
     }
+    if result.best.trim is not None:
+        answer["trimmed_iou"] = result.best.trim.iou
+    if result.request.budget_seconds is not None:
+        answer["budget_ended"] = result.budget_ended
+    return answer
 
 
 def candidate_json(candidate: Candidate) -> dict[str, object]:
-    """One entry of ``candidates``: the ratios, the score and the provenance."""
-    return {
+    """One entry of ``candidates``: the ratios, the score and the provenance; a trimmed one's other ratios and IoU."""
+    entry: dict[str, object] = {
         "ratio": candidate.field.ratio,
         **candidate.score.to_json(),
         "seed": candidate.seed,
         "index": candidate.index,
         "polished": candidate.polished,
     }
+    if candidate.trim is not None:
+        entry |= {"trimmed_iou": candidate.trim.iou, "trimmed_ratio": candidate.trim.field.ratio}
+    return entry
 
 
 def write_files(result: Result, fabrication: FabricationSettings, folder: Path) -> dict[str, str]:
@@ -93,9 +111,8 @@ def write_files(result: Result, fabrication: FabricationSettings, folder: Path) 
     The bytes depend on the request alone: wall time is not written.
     """
     request, best = result.request, result.best
-    deployment = deploy(best.field)
-    plan, _ = checked_plan(deployment, fabrication)
-    job = ExportJob(deployment, request.phi, plan, request.target.points, best.score.transform)
+    plan, _ = checked_plan(best, fabrication)
+    job = ExportJob.of(best, request.target.points, plan)
     paths = {
         "project": folder / "design.kiri",
         "cut": folder / "cut.dxf",
@@ -118,7 +135,15 @@ def document_of(result: Result, fabrication: FabricationSettings) -> Document:
 
     request = result.request
     settings = DesignSettings(
-        request.grid, request.phi, request.k, request.seed, request.variant, request.steps, request.polish
+        request.grid,
+        request.phi,
+        request.k,
+        request.seed,
+        request.variant,
+        request.steps,
+        request.polish,
+        request.prefer,
+        request.search,
     )
     source = provenance(request, digest_of(request.variant))
     return Document(request.target, settings, result.candidates, 0, fabrication, source)
@@ -134,6 +159,19 @@ def _run(request: Request, line: ProgressLine) -> Result:
     raise Cancelled("The run ended without a result.")
 
 
+def _in_cells(length_mm: float, fabrication: FabricationSettings, grid: tuple[int, int]) -> float:
+    """A length on the finished sheet in unit cells."""
+    return length_mm * (grid[1] + 1) / fabrication.width_mm
+
+
+def _keep(fabrication: FabricationSettings, grid: tuple[int, int]) -> float:
+    """How deep (unit cells) material has to stay at the hinges of a trimmed sheet so that its connectors hold."""
+    material = find_material(fabrication.material)
+    connector = material.connector_mm if fabrication.connector_mm is None else fabrication.connector_mm
+    kerf = material.kerf_mm if fabrication.kerf_mm is None else fabrication.kerf_mm
+    return max(KEEP, needed_keep(deploy(RatioField.uniform(*grid)), fabrication.width_mm, connector, kerf))
+
+
 def _folder_name(name: str, used: set[str]) -> str:
     """A file-system name for a batch input, made unique."""
     stem = Path(name.split("[")[0]).stem + name[len(name.split("[")[0]) :]
@@ -146,14 +184,16 @@ def _folder_name(name: str, used: set[str]) -> str:
 
 
 def _tell(target: Outline, result: Result, files: dict[str, str]) -> None:
-    score = result.best.score
+    score, trim = result.best.score, result.best.trim
     for note in target.notes:
         say(f"{target.name}: {note}")
     say(
         f"{target.name}: best of {len(result.candidates)} has sIoU {score.siou:.4f} "
         f"({score.siou_gain:+.4f} over the uniform layout), TV {score.tv:.3f}, "
         f"{'feasible' if score.feasible else 'not feasible'} at {math.degrees(result.request.phi):.0f} degrees; "
-        f"{result.seconds:.1f} s"
+        f"{result.seconds:.1f} s{', ended by the budget' if result.budget_ended else ''}"
     )
+    if trim is not None:
+        say(f"{target.name}: trimmed, with {100 * trim.removed_share:.1f} % of the sheet cut off, IoU {trim.iou:.4f}")
     for path in files.values():
         say(f"  {path}")

@@ -9,9 +9,16 @@ from collections.abc import Sequence
 from kirigami_studio.cli.parser import build_parser
 from kirigami_studio.foundation.errors import KirigamiError, UsageError
 
+#: What a frozen program is started with to be a polishing worker, see ``pipeline.pool``.
+WORKER_FLAG = "--worker"
+
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run one command; returns the exit code (argparse itself exits with 2 on unknown words)."""
+    if list(sys.argv[1:] if argv is None else argv) == [WORKER_FLAG]:
+        from kirigami_studio.pipeline.worker import serve
+
+        return serve()
     arguments = build_parser().parse_args(argv)
     try:
         code = int(arguments.run(arguments))

@@ -7,6 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from kirigami_studio.cli.console import print_json, say
+from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.export.animation import FRAMES, write_animation
 from kirigami_studio.export.dxf_check import check_file
 from kirigami_studio.export.exporter import ExportJob
@@ -17,7 +18,7 @@ from kirigami_studio.fabricate.checks import Report, Severity, check_plan
 from kirigami_studio.fabricate.cut_plan import CutPlan, plan_cuts
 from kirigami_studio.fabricate.material import default_material, find_material
 from kirigami_studio.foundation.errors import FabricationError, ProjectError, UsageError
-from kirigami_studio.lattice.deployment import Deployment, deploy
+from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.settings import FabricationSettings
 from kirigami_studio.project.store import load
@@ -29,20 +30,22 @@ def material_settings(arguments: argparse.Namespace) -> FabricationSettings:
     return _overridden(FabricationSettings(material=material.key), arguments)
 
 
-def checked_plan(deployment: Deployment, fabrication: FabricationSettings) -> tuple[CutPlan, Report]:
-    """The cut plan of a design with these settings, and what the physics check says about it.
+def checked_plan(candidate: Candidate, fabrication: FabricationSettings) -> tuple[CutPlan, Report]:
+    """The cut plan of a design, trimmed if it is, with these settings, and what the physics check says about it.
 
     Raises
     ------
     FabricationError
         The plan cannot be made, or the sheet would not survive it.
     """
+    trim = candidate.trim
     plan = plan_cuts(
-        deployment,
+        deploy(candidate.field if trim is None else trim.field),
         fabrication.width_mm,
         fabrication.connector_mm,
         fabrication.kerf_mm,
         find_material(fabrication.material),
+        kept=None if trim is None else trim.kept,
     )
     report = check_plan(plan)
     for problem in report.problems:
@@ -56,7 +59,7 @@ def export(arguments: argparse.Namespace) -> int:
     profile = find_profile(arguments.profile or DEFAULT_PROFILE)
     find_exporter(arguments.out)
     document = load(arguments.project)
-    plan, report = checked_plan(_deployment(document), _overridden(document.fabrication, arguments))
+    plan, report = checked_plan(_chosen(document), _overridden(document.fabrication, arguments))
     job = replace(_job(document), plan=plan, dxf_version=arguments.dxf_version, profile=profile.key)
     path = export_file(job, arguments.out)
     warnings = [*plan.notes, *(problem.text for problem in report.problems)]
@@ -124,21 +127,15 @@ def animate(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _deployment(document: Document) -> Deployment:
+def _chosen(document: Document) -> Candidate:
     candidate = document.candidate
-    if candidate is None:
+    if candidate is None or document.target is None:
         raise ProjectError("This project has no chosen design yet; generate candidates and choose one first.")
-    return deploy(candidate.field)
+    return candidate
 
 
 def _job(document: Document) -> ExportJob:
-    candidate = document.candidate
-    deployment = _deployment(document)
-    if candidate is None or document.target is None:
-        raise ProjectError("This project has no chosen design yet; generate candidates and choose one first.")
-    return ExportJob(
-        deployment, candidate.score.phi, target=document.target.points, transform=candidate.score.transform
-    )
+    return ExportJob.of(_chosen(document), None if document.target is None else document.target.points)
 
 
 def _overridden(saved: FabricationSettings, arguments: argparse.Namespace) -> FabricationSettings:

@@ -12,6 +12,7 @@ from typing import Any
 from kirigami_studio import __version__
 from kirigami_studio.cli.inputs import parse_angle
 from kirigami_studio.foundation.errors import UsageError
+from kirigami_studio.polish.regularity import PREFERENCES
 
 Option = tuple[tuple[str, ...], dict[str, Any]]
 
@@ -123,6 +124,16 @@ COMMANDS: tuple[Command, ...] = (
         option("--steps", type=int, default=4, help="Euler steps of the flow (default 4)"),
         option("--polish", action=argparse.BooleanOptionalAction, default=True,
                help="fit every candidate on the exact geometry (default: yes)"),
+        option("--prefer", choices=tuple(PREFERENCES), default="balanced",
+               help="what fits prefer among nearly equal matches (default balanced)"),
+        option("--least-panel-mm", type=amount, default=0.0, metavar="MM",
+               help="panel edges and necks that fits try not to fall below, in the finished sheet (default: any)"),
+        option("--trim", action="store_true",
+               help="also cut the best design's edge panels along the target: adds trimmed_iou, trims cut.dxf"),
+        option("--search", type=whole, nargs="?", const=1, default=0, metavar="EFFORT",
+               help="also search for a better design, with an effort of 1 to 8 (default 0; --search alone: 1)"),
+        option("--budget", type=positive, default=None, metavar="SECONDS",
+               help="return the best so far after this time; results then depend on the machine (default: none)"),
         *WIDTHS,
         JSON,
     ), (
@@ -170,21 +181,30 @@ COMMANDS: tuple[Command, ...] = (
     Command("variants", "list the bundled generator variants", "listing:variants", (JSON,),
             ("kirigami-studio variants",)),
     Command("dataset", "generate and verify training data by the paper's protocol", "learning:dataset", (
-        option("family", choices=("sobol", "structured"), help="distribution of the ratio fields"),
-        option("--out", required=True, help="folder for FAMILY-SPLIT.npz"),
+        option("family", choices=("sobol", "structured", "drawn"),
+               help="distribution of the ratio fields; drawn: fits of shapes that people draw, for training only"),
+        option("--out", required=True, help="folder for FAMILY-SPLIT.npz; drawn: for drawn.npz, which is added to"),
         option("--split", default="all", choices=("all", "train", "validation", "test"),
                help="default all: 5000/500/500"),
-        option("--count", type=count, default=None, help="other number of designs than the protocol's"),
+        option("--count", type=count, default=None,
+               help="other number of designs than the protocol's; drawn: fits in all (default 7000)"),
         option("--grid", default="10x10", help="voids, ROWSxCOLUMNS (default 10x10)"),
         option("--seed", type=whole, default=0, help="default 0"),
+        option("--processes", type=count, default=1, help="drawn: fits at a time (default 1)"),
         JSON,
-    ), ("kirigami-studio dataset sobol --out data --split test",)),
+    ), ("kirigami-studio dataset sobol --out data --split test",
+        "kirigami-studio dataset drawn --out runs/drawn --processes 2")),
     Command("train", "train a generator; resumes from the checkpoint in its folder", "learning:train", (
         option("stage", choices=("prior",), help="what to train"),
         option("--out", required=True, help="run folder: checkpoint, log, weights"),
         option("--steps", type=count, default=12_000, help="optimiser steps in all (default 12000)"),
         option("--minutes", type=number, default=None, help="stop with a checkpoint after this time"),
         option("--batch", type=count, default=96, help="targets a step (default 96)"),
+        option("--learning-rate", type=positive, default=1e-3, help="at its peak, after 200 steps (default 0.001)"),
+        option("--warm-start", default=None, metavar="WEIGHTS",
+               help="begin with these weights: 'bundled', or the prior.safetensors of a run"),
+        option("--fits", default=None, help="fits of drawn shapes, see 'dataset drawn'"),
+        option("--fit-share", type=positive, default=0.3, help="their share of a batch (default 0.3)"),
         option("--coupling", default="independent", choices=("independent", "ot", "conditional-ot"),
                help="pairing of noise and designs (default independent)"),
         option("--feedback", action=argparse.BooleanOptionalAction, default=True,
@@ -195,13 +215,20 @@ COMMANDS: tuple[Command, ...] = (
         option("--device", default="auto", help="auto, cpu or cuda (default auto)"),
         option("--seed", type=whole, default=0, help="default 0"),
         JSON,
-    ), ("kirigami-studio train prior --out runs/prior --device auto",)),
+    ), ("kirigami-studio train prior --out runs/prior --device auto",
+        "kirigami-studio train prior --warm-start bundled --fits runs/drawn/drawn.npz --out runs/again")),
     Command("benchmark", "measure the generator, the polish or the lattice", "benchmarks:benchmark", (
-        option("suite", choices=("generator", "polish", "lattice"), help="what to measure"),
+        option("suite", choices=("generator", "polish", "designs", "regularity", "speed", "lattice"),
+               help="what to measure"),
         option("--targets", nargs="+", default=None, help="'library', files or folders (default: the test splits)"),
-        option("--grid", default="10x10", help="voids, ROWSxCOLUMNS (default 10x10)"),
+        option("--grid", default="10x10", help="voids, ROWSxCOLUMNS (default 10x10); designs: several, by commas"),
         option("--polish", type=whole, default=0, help="steps of the fit (default: 0 for samples, 40 for fits)"),
-        option("--effort", type=whole, default=None, help="polish: search by continuation with this effort"),
+        option("--effort", type=whole, default=None, help="polish, designs: search with this effort"),
+        option("--prefer", choices=tuple(PREFERENCES), default="balanced", help="designs: what fits prefer"),
+        option("--trim", action="store_true", help="designs: also trim the best design of each target"),
+        option("--picture", default=None, help="designs: draw all of them into this .png"),
+        option("--exact", action="store_true",
+               help="test splits: exact outlines instead of contours of their 128-pixel masks"),
         option("--out", default=None, help="also write the results here (.json)"),
         option("--variant", default="prior", help="generator variant (default prior)"),
         option("--count", type=count, default=None, help="targets of each family (default 500)"),
@@ -213,6 +240,8 @@ COMMANDS: tuple[Command, ...] = (
     ), ("kirigami-studio benchmark generator --count 100 --json",
         "kirigami-studio benchmark generator --targets library --k 8 --polish 15 --seeds 0",
         "kirigami-studio benchmark polish --targets library --effort 1",
+        "kirigami-studio benchmark designs --targets library --k 8 --polish 15 --effort 1 --trim --picture all.png",
+        "kirigami-studio benchmark generator --k 4 --polish 15 --seeds 0 --exact",
         "kirigami-studio benchmark lattice")),
 )  # fmt: skip
 

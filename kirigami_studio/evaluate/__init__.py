@@ -15,6 +15,9 @@ invalid quad
     Panel or void whose four corners collapse or cross.  *Overlap ratio*: share of panel area lost to overlap.
 contact
     First angle on the way from the compact sheet at which the outline crosses itself.
+trim
+    Cutting the edge panels along the target in the deployed state; what stays around hinges is *keep* cells deep.  The
+    trimmed IoU is another number than the untrimmed one and never shown as such.
 
 May import ``lattice``, ``target`` and ``foundation``; ``generator`` and ``fabricate`` are strangers.
 """

@@ -1,11 +1,12 @@
 """The similarity that lays one outline over another with the largest intersection over union (IoU).
 
-Three stages, the first two vectorised over many outlines:
+Four stages, the first three vectorised over many outlines:
 
 1. *starts*: boundary Procrustes for every cyclic shift (Gower 1975), principal axes, and a ring of plain rotations, all
    with equal area and centroid; the few best distinct ones by IoU go on;
-2. *ascent* on the tabulated IoU with its boundary-integral gradient (module ``ascent``);
-3. *finish* on exact polygons (module ``finish``).
+2. *ascent* on the tabulated IoU with its boundary-integral gradient (module ``ascent``), of ever fewer starts;
+3. *polish* of the last ones by the same ascent with boundary integrals that are accurate to 1e-4 of the area;
+4. *finish* on exact polygons (module ``finish``).
 
 Reflections are never used: a sheet shows its target only the right way round.
 """
@@ -18,11 +19,11 @@ import numpy as np
 import numpy.typing as npt
 
 from kirigami_studio.evaluate.alignment_target import CYCLE, AlignmentTarget, alignment_target
-from kirigami_studio.evaluate.ascent import ascend, overlap
+from kirigami_studio.evaluate.ascent import ascend, intersections
 from kirigami_studio.evaluate.boundary import PlaneArray, resampled
-from kirigami_studio.evaluate.finish import Finisher
+from kirigami_studio.evaluate.finish import Placement, finished
 from kirigami_studio.evaluate.outline_batch import OutlineBatch
-from kirigami_studio.evaluate.similarity import Similarity
+from kirigami_studio.evaluate.similarity import FloatArray, Similarity
 
 __all__ = ["Similarity", "align", "align_many"]
 
@@ -35,6 +36,22 @@ CYCLIC_STARTS = 3
 #: Starts that are refined, at least 15 degrees apart.
 KEPT_STARTS = 4
 APART = np.deg2rad(15.0)
+
+#: Spare boundary parts of the integrals that choose among starts.
+START_PARTS = 64
+
+#: The ascent's stages: starts kept, spare boundary parts, and band of every step (see ``ascend``); wide steps first.
+STAGES: tuple[tuple[int, int, tuple[float, ...]], ...] = (
+    (4, 128, (0.15, 0.12, 0.096, 0.077, 0.061, 0.049, 0.039, 0.031)),
+    (2, 256, (0.025, 0.02)),
+    (1, 512, (0.02, 0.02, 0.02, 0.02, 0.02)),
+)
+
+#: Tabulated IoU that a start may lack and still turn out to be the better near-copy.
+RIVAL = 0.01
+
+#: What half a turn counts as when two places are about equally good: a person would turn a design less.
+TURN_PENALTY = 2e-4
 
 
 def align(moving: npt.ArrayLike, fixed: npt.ArrayLike) -> Similarity:
@@ -65,14 +82,35 @@ def align_many(moving: Sequence[npt.ArrayLike], fixed: npt.ArrayLike) -> list[Si
         return []
     target = alignment_target(fixed)
     outlines = OutlineBatch.from_outlines(moving)
-    rotation = _starts(outlines, target)
-    factor, shift, _ = ascend(outlines, target, rotation, np.zeros_like(rotation))
+    factor = _starts(outlines, target)
+    shift = np.zeros_like(factor)
+    iou = np.zeros(factor.shape)
+    climbed = []
+    for kept, parts, bands in STAGES:
+        factor, shift = _best(kept, iou, factor, shift)
+        factor, shift, iou = ascend(outlines.boundaries(parts), target, factor, shift, bands)
+        climbed.append((factor, shift, iou))
+    first, last = climbed[0], climbed[-1]
     found = []
     for index, to_normal in enumerate(outlines.to_normal):
-        place = Finisher(outlines, index, target).best_of(factor[index], shift[index])
+        places = [*_places(index, last, 1.0), *_places(index, first, RIVAL)]
+        place = finished(outlines.vertices[index], target, places)
         laid = Similarity.from_complex(place.factor, place.shift)
         found.append(target.to_source.compose(laid).compose(to_normal))
     return found
+
+
+def _places(index: int, climbed: tuple[PlaneArray, PlaneArray, FloatArray], margin: float) -> list[Placement]:
+    """Places of one outline within ``margin`` of its best IoU."""
+    factor, shift, iou = (values[index] for values in climbed)
+    near = np.flatnonzero(iou >= iou.max() - margin)
+    return [Placement(complex(factor[slot]), complex(shift[slot]), float(iou[slot])) for slot in near]
+
+
+def _best(count: int, iou: FloatArray, factor: PlaneArray, shift: PlaneArray) -> tuple[PlaneArray, PlaneArray]:
+    """The ``count`` best places of every outline, (B, count) each; of equal ones those that are turned less."""
+    order = np.argsort(TURN_PENALTY * np.abs(np.angle(factor)) / np.pi - iou, axis=1, kind="stable")[:, :count]
+    return np.take_along_axis(factor, order, axis=1), np.take_along_axis(shift, order, axis=1)
 
 
 def _starts(outlines: OutlineBatch, target: AlignmentTarget) -> PlaneArray:
@@ -80,10 +118,11 @@ def _starts(outlines: OutlineBatch, target: AlignmentTarget) -> PlaneArray:
     count = len(outlines.axis)
     ring = np.tile(np.exp(2j * np.pi * np.arange(RING) / RING), (count, 1))
     half_turns = np.exp(1j * (target.axis - outlines.axis))[:, np.newaxis] * np.array([1.0, -1.0])
-    cyclic = np.stack([_procrustes(vertices, target) for vertices in outlines.vertices])
+    cyclic = _procrustes(outlines.vertices, target)
     rotation = np.concatenate([ring, half_turns, cyclic], axis=1)
-    intersection, union, _ = overlap(outlines, target, rotation, np.zeros_like(rotation))
-    score = intersection / union
+    coarse = outlines.boundaries(START_PARTS)
+    intersection = intersections(coarse, target, rotation)
+    score = intersection / (2.0 - intersection)
     kept = np.empty((count, KEPT_STARTS), dtype=np.complex128)
     rows = np.arange(count)
     for slot in range(KEPT_STARTS):
@@ -94,14 +133,15 @@ def _starts(outlines: OutlineBatch, target: AlignmentTarget) -> PlaneArray:
 
 
 def _procrustes(vertices: PlaneArray, target: AlignmentTarget) -> PlaneArray:
-    """Closed-form rotations at the best cyclic shifts of the boundary correspondence: (CYCLIC_STARTS,) complex.
+    """Closed-form rotations at the best cyclic shifts of the boundary correspondence: (B, CYCLIC_STARTS) complex.
 
     With both boundaries resampled by arc length, sum(conj(z_j) w_(j+k)) has the best rotation of shift k as its phase
     and the fit as its modulus; one Fourier transform gives all shifts.
     """
-    product = np.fft.ifft(np.conj(np.fft.fft(resampled(vertices, CYCLE))) * target.spectrum)
+    samples = np.stack([resampled(one, CYCLE) for one in vertices])
+    product = np.fft.ifft(np.conj(np.fft.fft(samples)) * target.spectrum)
     fit = np.abs(product)
-    peak = (fit >= np.roll(fit, 1)) & (fit > np.roll(fit, -1))
-    best = np.argsort(np.where(peak, -fit, 0.0), kind="stable")[:CYCLIC_STARTS]
-    rotation: PlaneArray = product[best] / np.maximum(fit[best], 1e-300)
-    return np.where(fit[best] > 0.0, rotation, 1.0 + 0.0j)
+    peak = (fit >= np.roll(fit, 1, axis=1)) & (fit > np.roll(fit, -1, axis=1))
+    best = np.argsort(np.where(peak, -fit, 0.0), axis=1, kind="stable")[:, :CYCLIC_STARTS]
+    product, fit = np.take_along_axis(product, best, axis=1), np.take_along_axis(fit, best, axis=1)
+    return np.where(fit > 0.0, product / np.maximum(fit, 1e-300), 1.0 + 0.0j)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import cmath
+from collections.abc import Sequence
 
 import numpy as np
 import numpy.typing as npt
@@ -12,6 +12,9 @@ from kirigami_studio.foundation.errors import KirigamiError
 
 PlaneArray = npt.NDArray[np.complex128]
 IndexArray = npt.NDArray[np.intp]
+
+#: Area below this part of the squared extent cannot be told from a line: a thousand rounding errors of the sum.
+FLAT = 1e-13
 
 
 def checked_polygon(points: npt.ArrayLike) -> FloatArray:
@@ -32,10 +35,28 @@ def checked_polygon(points: npt.ArrayLike) -> FloatArray:
         row = int(np.argwhere(~np.isfinite(array))[0, 0])
         raise KirigamiError(f"Point {row} of the silhouette is ({array[row, 0]}, {array[row, 1]}); it must be finite.")
     extent = float(np.ptp(array, axis=0).max())
-    # A thousand rounding errors of the shoelace sum: thinner than that cannot be told from a line.
-    if abs(moments(as_plane(array))[0]) <= 1e-13 * extent * extent:
+    if abs(moments(as_plane(array))[0]) <= FLAT * extent * extent:
         raise KirigamiError("The silhouette has no area: its points lie on a line or its halves cancel.")
     return array
+
+
+def checked_polygons(outlines: Sequence[npt.ArrayLike]) -> FloatArray:
+    """Return polygons with equal numbers of vertices as one (B, L, 2) float array.
+
+    Raises
+    ------
+    KirigamiError
+        As ``checked_polygon`` of the first one that makes no sense.
+    """
+    try:
+        array = np.stack([np.asarray(outline, dtype=np.float64) for outline in outlines])
+    except (TypeError, ValueError):
+        return np.stack([checked_polygon(outline) for outline in outlines])
+    if array.ndim == 3 and array.shape[1] >= 3 and array.shape[2] == 2 and np.isfinite(array).all():
+        extent = np.ptp(array, axis=1).max(axis=1)
+        if (np.abs(moments_of_many(as_plane(array))[0]) > FLAT * extent * extent).all():
+            return array
+    return np.stack([checked_polygon(outline) for outline in outlines])
 
 
 def as_plane(points: FloatArray) -> PlaneArray:
@@ -51,17 +72,24 @@ def as_points(plane: PlaneArray) -> FloatArray:
 
 def moments(plane: PlaneArray) -> tuple[float, complex, float]:
     """Signed area, centroid and direction (radians) of the longer principal axis of a closed polygon (L,)."""
-    origin = complex(plane.mean())
-    p = plane - origin
-    q = np.roll(p, -1)
+    area, centroid, axis = moments_of_many(plane[np.newaxis])
+    return float(area[0]), complex(centroid[0]), float(axis[0])
+
+
+def moments_of_many(planes: PlaneArray) -> tuple[FloatArray, PlaneArray, FloatArray]:
+    """The same for several polygons (B, L) at once: (B,) each; without area the mean of the vertices and axis 0."""
+    origin = planes.mean(axis=-1)
+    p = planes - origin[:, np.newaxis]
+    q = np.roll(p, -1, axis=-1)
     cross = (np.conj(p) * q).imag
-    area = 0.5 * float(cross.sum())
-    if area == 0.0:
-        return 0.0, origin, 0.0
-    centre = complex((cross * (p + q)).sum()) / (6.0 * area)
+    area = 0.5 * cross.sum(axis=-1)
+    flat = area == 0.0
+    divisor = np.where(flat, 1.0, area)
+    centre = np.where(flat, 0.0, (cross * (p + q)).sum(axis=-1) / (6.0 * divisor))
     # The integral of (x + iy)^2 about the centroid has twice the direction of the longer axis as its phase.
-    second = complex((cross * (p * p + p * q + q * q)).sum()) / 12.0 - area * centre * centre
-    return area, origin + centre, 0.5 * cmath.phase(second if area > 0 else -second)
+    second = (cross * (p * p + p * q + q * q)).sum(axis=-1) / 12.0 - area * centre * centre
+    axis = np.where(flat, 0.0, 0.5 * np.angle(np.where(area > 0.0, second, -second)))
+    return area, origin + centre, axis
 
 
 def resampled(plane: PlaneArray, count: int) -> PlaneArray:
@@ -73,21 +101,23 @@ def resampled(plane: PlaneArray, count: int) -> PlaneArray:
     return points
 
 
-def edge_parts(plane: PlaneArray, spare: int) -> tuple[PlaneArray, PlaneArray]:
-    """Cut the edges of a closed polygon (L,) into L + ``spare`` parts of similar length.
+def edge_parts(planes: PlaneArray, spare: int) -> tuple[PlaneArray, PlaneArray]:
+    """Cut the edges of closed polygons (..., L) into L + ``spare`` parts of similar length.
 
     Returns
     -------
-    points, steps : (L + spare,) complex
+    points, steps : (..., L + spare) complex
         Midpoint of every part, and the part as a vector.
     """
-    edge = np.roll(plane, -1) - plane
+    edge = np.roll(planes, -1, axis=-1) - planes
     length = np.abs(edge)
-    share = np.rint(spare * np.cumsum(length) / length.sum()).astype(np.intp)
-    count = 1 + np.diff(share, prepend=0)
-    owner, part = spread(count)
-    steps = (edge / count)[owner]
-    return plane[owner] + (part + 0.5) * steps, steps
+    share = np.rint(spare * np.cumsum(length, axis=-1) / length.sum(axis=-1, keepdims=True)).astype(np.intp)
+    count = 1 + np.diff(share, prepend=0, axis=-1)
+    owner, part = spread(count.ravel())
+    steps = (edge / count).ravel()[owner]
+    points = planes.ravel()[owner] + (part + 0.5) * steps
+    shape = (*planes.shape[:-1], planes.shape[-1] + spare)
+    return points.reshape(shape), steps.reshape(shape)
 
 
 def spread(count: IndexArray) -> tuple[IndexArray, IndexArray]:
@@ -116,13 +146,22 @@ def scan_crossings(
     downward : (C,) int
         +1 where the edge goes down (the inside of a counter-clockwise polygon begins), -1 where it goes up.
     """
-    following = np.roll(plane, -1)
-    low = np.minimum(plane.imag, following.imag)
-    high = np.maximum(plane.imag, following.imag)
-    begin = np.clip(np.ceil((low - first) / spacing), 0, lines).astype(np.intp)
-    end = np.clip(np.ceil((high - first) / spacing), 0, lines).astype(np.intp)
+    line, x, downward, _ = scan_crossings_of_many(plane[np.newaxis], first, spacing, (0, lines))
+    return line, x, downward
+
+
+def scan_crossings_of_many(
+    planes: PlaneArray, first: float, spacing: float, lines: tuple[int, int]
+) -> tuple[IndexArray, FloatArray, IndexArray, IndexArray]:
+    """The same for closed polygons (B, L) and the lines k of a half-open range; last comes the edge, B L in all."""
+    ahead = np.roll(planes, -1, axis=-1).ravel()
+    plane = planes.ravel()
+    low = np.minimum(plane.imag, ahead.imag)
+    high = np.maximum(plane.imag, ahead.imag)
+    begin = np.clip(np.ceil((low - first) / spacing), *lines).astype(np.intp)
+    end = np.clip(np.ceil((high - first) / spacing), *lines).astype(np.intp)
     edge, line = spread(end - begin)
     line += begin[edge]
-    vector = (following - plane)[edge]
+    vector = (ahead - plane)[edge]
     share = (first + spacing * line - plane.imag[edge]) / vector.imag
-    return line, plane.real[edge] + share * vector.real, np.where(vector.imag < 0, 1, -1)
+    return line, plane.real[edge] + share * vector.real, np.where(vector.imag < 0, 1, -1), edge

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from kirigami_studio.evaluate.score import Score
+from kirigami_studio.evaluate.trimming import Trim
 from kirigami_studio.lattice.ratio_field import RatioField
 
 
@@ -23,6 +24,10 @@ class Candidate:
         Its place in that run's sampling order.
     polished : bool
         Whether a fit on the exact geometry has improved it after sampling.
+    drawn : RatioField or None
+        The field as it was sampled, where a fit has improved it.
+    trim : Trim or None
+        The same design fitted to cover the target and trimmed, where that was asked for; its score is its own.
     """
 
     field: RatioField
@@ -30,3 +35,5 @@ class Candidate:
     seed: int
     index: int
     polished: bool = False
+    drawn: RatioField | None = None
+    trim: Trim | None = None

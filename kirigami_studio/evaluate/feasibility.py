@@ -59,14 +59,14 @@ def invalid_quads(deployment: Deployment, phi: float) -> int:
 
     Panels count at every angle; voids count for 0 < phi < pi only, since they are closed at both ends of the motion.
     """
-    quads = _quads(deployment, phi)
-    following = np.roll(quads, -1, axis=1)
-    cross = quads[..., 0] * following[..., 1] - quads[..., 1] * following[..., 0]
-    area = 0.5 * cross.sum(axis=1)
-    collapsed = area < COLLAPSED
-    a, b, c, d = np.moveaxis(quads, 1, 0)
-    crossing = _edges_cross(a, b, c, d) | _edges_cross(b, c, d, a)
-    return int(np.count_nonzero(collapsed | crossing))
+    return int(np.count_nonzero(bad_quads(as_plane(quads_that_count(deployment, phi)))))
+
+
+def bad_quads(corners: PlaneArray) -> npt.NDArray[np.bool_]:
+    """Which of the quads (..., 4), x + iy in unit cells, are collapsed, inverted or cross themselves: (...) bool."""
+    a, b, c, d = np.moveaxis(corners, -1, 0)
+    area = 0.5 * (np.conj(c - a) * (d - b)).imag
+    return np.asarray((area < COLLAPSED) | _edges_cross(a, b, c, d) | _edges_cross(b, c, d, a))
 
 
 def overlap_ratio(deployment: Deployment, phi: float) -> float:
@@ -77,7 +77,7 @@ def overlap_ratio(deployment: Deployment, phi: float) -> float:
     outline = deployment.outline(phi)
     if shapely.is_valid(shapely.Polygon(outline)) or deepest_crossing(as_plane(outline)) is None:
         return 0.0
-    quads = np.asarray(shapely.polygons(_quads(deployment, phi)), dtype=object)
+    quads = np.asarray(shapely.polygons(quads_that_count(deployment, phi)), dtype=object)
     quads = quads[shapely.is_valid(quads)]
     total = float(shapely.area(quads).sum())
     if total <= 0.0:
@@ -134,7 +134,7 @@ def _first_contact(deployment: Deployment, free: float, crossed: float, place: c
     return Contact(crossed, (place.real, place.imag))
 
 
-def _quads(deployment: Deployment, phi: float) -> FloatArray:
+def quads_that_count(deployment: Deployment, phi: float) -> FloatArray:
     """The quads that the paper's checks look at: panels, and voids while they are open: (Q, 4, 2)."""
     panels = deployment.panels(phi).reshape(-1, 4, 2)
     if not ZIPPED_BELOW < check_phi(phi) < math.pi - ZIPPED_BELOW:
@@ -142,11 +142,11 @@ def _quads(deployment: Deployment, phi: float) -> FloatArray:
     return np.concatenate([panels, deployment.voids(phi).reshape(-1, 4, 2)])
 
 
-def _edges_cross(a: FloatArray, b: FloatArray, c: FloatArray, d: FloatArray) -> npt.NDArray[np.bool_]:
-    """Whether segments ab and cd cross properly, row by row of (Q, 2) arrays."""
-    return (_side(a, b, c) * _side(a, b, d) < 0.0) & (_side(c, d, a) * _side(c, d, b) < 0.0)
+def _edges_cross(a: PlaneArray, b: PlaneArray, c: PlaneArray, d: PlaneArray) -> npt.NDArray[np.bool_]:
+    """Whether segments ab and cd cross properly, one by one."""
+    return np.asarray((_side(a, b, c) * _side(a, b, d) < 0.0) & (_side(c, d, a) * _side(c, d, b) < 0.0))
 
 
-def _side(a: FloatArray, b: FloatArray, p: FloatArray) -> FloatArray:
-    side: FloatArray = (b - a)[:, 0] * (p - a)[:, 1] - (b - a)[:, 1] * (p - a)[:, 0]
+def _side(a: PlaneArray, b: PlaneArray, p: PlaneArray) -> FloatArray:
+    side: FloatArray = (np.conj(b - a) * (p - a)).imag
     return side

@@ -7,13 +7,31 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
-import shapely
 
-from kirigami_studio.evaluate.boundary import PlaneArray, as_plane, as_points, checked_polygon, edge_parts, moments
+from kirigami_studio.evaluate.boundary import (
+    PlaneArray,
+    as_plane,
+    checked_polygons,
+    edge_parts,
+    moments_of_many,
+)
 from kirigami_studio.evaluate.similarity import FloatArray, Similarity
 
-#: Boundary integrals use this many points more than there are vertices.
-SPARE_PARTS = 256
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Boundaries:
+    """Outlines as sums over short parts, ready for boundary integrals.
+
+    Attributes
+    ----------
+    points : (B, Q) complex
+        Midpoints of parts of the edges.
+    steps : (B, Q) complex
+        Those parts as vectors.
+    """
+
+    points: PlaneArray
+    steps: PlaneArray
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -24,23 +42,14 @@ class OutlineBatch:
     ----------
     vertices : (B, L) complex
         Counter-clockwise.
-    points : (B, Q) complex
-        Midpoints of parts of the edges.
-    steps : (B, Q) complex
-        Those parts as vectors.
     axis : (B,) float, radians
         Direction of the longer principal axis.
-    simple : (B,) bool
-        Whether the outline neither crosses nor touches itself.
     to_normal : tuple of Similarity
         Source frame -> normal frame.
     """
 
     vertices: PlaneArray
-    points: PlaneArray
-    steps: PlaneArray
     axis: FloatArray
-    simple: npt.NDArray[np.bool_]
     to_normal: tuple[Similarity, ...]
 
     @classmethod
@@ -52,21 +61,18 @@ class OutlineBatch:
         KirigamiError
             One of them is not finite, has fewer than three points, or no area.
         """
-        planes, axes, normals = [], [], []
-        for outline in outlines:
-            plane = as_plane(checked_polygon(outline))
-            area, centroid, axis = moments(plane)
-            scale = abs(area) ** -0.5
-            planes.append((plane if area > 0 else plane[::-1]) * scale - centroid * scale)
-            axes.append(axis)
-            normals.append(Similarity.from_complex(complex(scale), -centroid * scale))
-        vertices = np.stack(planes)
-        parts = [edge_parts(plane, SPARE_PARTS) for plane in planes]
+        planes = as_plane(checked_polygons(outlines))
+        area, centroid, axis = moments_of_many(planes)
+        scale = np.abs(area) ** -0.5
+        planes = np.where(area[:, np.newaxis] > 0, planes, planes[:, ::-1])
         return cls(
-            vertices=vertices,
-            points=np.stack([points for points, _ in parts]),
-            steps=np.stack([steps for _, steps in parts]),
-            axis=np.array(axes),
-            simple=np.atleast_1d(shapely.is_valid(shapely.polygons(as_points(vertices)))),
-            to_normal=tuple(normals),
+            vertices=planes * scale[:, np.newaxis] - (centroid * scale)[:, np.newaxis],
+            axis=axis,
+            to_normal=tuple(
+                Similarity.from_complex(complex(s), complex(-c * s)) for s, c in zip(scale, centroid, strict=True)
+            ),
         )
+
+    def boundaries(self, spare: int) -> Boundaries:
+        """The outlines in L + ``spare`` parts each: more parts, more accurate integrals."""
+        return Boundaries(*edge_parts(self.vertices, spare))

@@ -7,14 +7,13 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-import shapely
 
-from kirigami_studio.evaluate.alignment import align_many
+from kirigami_studio.evaluate.agreement import Agreement, agreement_of_many, exact_ious
 from kirigami_studio.evaluate.boundary import checked_polygon
-from kirigami_studio.evaluate.feasibility import TAU_OVERLAP, Contact, invalid_quads, overlap_ratio, path_contact
+from kirigami_studio.evaluate.feasibility import Contact
 from kirigami_studio.evaluate.regularity import log_variation, total_variation
-from kirigami_studio.evaluate.silhouette import Frame, rasterise_in_frame
 from kirigami_studio.evaluate.similarity import FloatArray, Similarity
+from kirigami_studio.evaluate.soundness import Soundness, soundness_of_many
 from kirigami_studio.lattice.deployment import Deployment, check_phi, deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.target.outline import Outline
@@ -111,68 +110,46 @@ def evaluate_many(deployments: Sequence[Deployment], outline: Outline, phi: floa
     outline does not cross itself anywhere between the compact sheet and ``phi``.
     """
     phi = check_phi(phi)
-    matches = _matches([deployment.outline(phi) for deployment in deployments], outline)
-    return [_complete(deployment, outline, phi, match) for deployment, match in zip(deployments, matches, strict=True)]
+    found: dict[int, Score] = {}
+    # Designs of one grid are scored together.
+    for grid in dict.fromkeys(_grid(deployment) for deployment in deployments):
+        members = [index for index, deployment in enumerate(deployments) if _grid(deployment) == grid]
+        sheets = [deployments[index] for index in members]
+        agreements = agreement_of_many([sheet.outline(phi) for sheet in sheets], outline)
+        checks = soundness_of_many(sheets, phi)
+        for index, sheet, agreement, soundness in zip(members, sheets, agreements, checks, strict=True):
+            found[index] = _complete(sheet, agreement, soundness, outline, phi)
+    return [found[index] for index in range(len(deployments))]
 
 
-@dataclass(frozen=True, slots=True)
-class _Match:
-    """Shape agreement alone."""
-
-    siou: float
-    iou_exact: float
-    transform: Similarity
+def _grid(deployment: Deployment) -> tuple[int, int]:
+    return deployment.field.rows, deployment.field.columns
 
 
-def _complete(deployment: Deployment, outline: Outline, phi: float, match: _Match) -> Score:
-    floor = _uniform_match(deployment.field.rows, deployment.field.columns, _cell(deployment), phi, outline)
-    n_invalid = invalid_quads(deployment, phi)
-    overlap = overlap_ratio(deployment, phi)
-    contact = path_contact(deployment, phi)
+def _complete(
+    deployment: Deployment, agreement: Agreement, soundness: Soundness, outline: Outline, phi: float
+) -> Score:
+    floor = _uniform_agreement(*_grid(deployment), _cell(deployment), phi, outline)
     return Score(
-        siou=match.siou,
-        siou_gain=match.siou - floor.siou,
+        siou=agreement.siou,
+        siou_gain=agreement.siou - floor.siou,
         uniform_siou=floor.siou,
-        iou_exact=match.iou_exact,
+        iou_exact=agreement.iou_exact,
         uniform_iou=floor.iou_exact,
         tv=total_variation(deployment.field),
         tv_log10=log_variation(deployment.field),
-        feasible=n_invalid == 0 and overlap <= TAU_OVERLAP and contact is None,
-        n_invalid=n_invalid,
-        overlap_ratio=overlap,
-        contact=contact,
-        transform=match.transform,
+        feasible=soundness.feasible,
+        n_invalid=soundness.n_invalid,
+        overlap_ratio=soundness.overlap_ratio,
+        contact=soundness.contact,
+        transform=agreement.transform,
         phi=phi,
     )
 
 
-def _matches(shapes: list[FloatArray], outline: Outline) -> list[_Match]:
-    """Align shapes (L, 2) and measure them, exactly and on the raster."""
-    frame = Frame.around(outline.points)
-    found: dict[int, _Match] = {}
-    # Shapes with equal numbers of vertices are aligned together.
-    for length in dict.fromkeys(len(shape) for shape in shapes):
-        members = [index for index, shape in enumerate(shapes) if len(shape) == length]
-        transforms = align_many([shapes[index] for index in members], outline.points)
-        for index, transform in zip(members, transforms, strict=True):
-            laid = transform.apply(shapes[index])
-            found[index] = _Match(drawn_iou(laid, outline.points, frame), exact_iou(laid, outline), transform)
-    return [found[index] for index in range(len(shapes))]
-
-
 def exact_iou(laid: FloatArray, outline: Outline) -> float:
     """Intersection over union of an aligned silhouette (L, 2) and the target, on the polygons themselves."""
-    polygon = shapely.Polygon(checked_polygon(laid))
-    shape = polygon if polygon.is_valid else shapely.make_valid(polygon)
-    common = shape.intersection(outline.polygon).area
-    return float(common / (shape.area + outline.polygon.area - common))
-
-
-def drawn_iou(laid: FloatArray, target: FloatArray, frame: Frame) -> float:
-    """The same on the pixels of ``frame``, continued so far that nothing is cut off."""
-    wide = frame.covering(laid)
-    first, second = rasterise_in_frame(laid, wide), rasterise_in_frame(target, wide)
-    return float(np.count_nonzero(first & second) / np.count_nonzero(first | second))
+    return float(exact_ious(checked_polygon(laid)[np.newaxis], outline)[0])
 
 
 def _cell(deployment: Deployment) -> tuple[float, float]:
@@ -183,7 +160,7 @@ def _cell(deployment: Deployment) -> tuple[float, float]:
 
 
 @lru_cache(maxsize=256)
-def _uniform_match(rows: int, columns: int, cell: tuple[float, float], phi: float, outline: Outline) -> _Match:
-    """The floor that a target sets: the match of the uniform layout, kept per grid, angle and target."""
+def _uniform_agreement(rows: int, columns: int, cell: tuple[float, float], phi: float, outline: Outline) -> Agreement:
+    """The floor that a target sets: the agreement of the uniform layout, kept per grid, angle and target."""
     uniform = deploy(RatioField.uniform(rows, columns), cell)
-    return _matches([uniform.outline(phi)], outline)[0]
+    return agreement_of_many([uniform.outline(phi)], outline)[0]

@@ -7,7 +7,13 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from kirigami_studio.evaluate.boundary import as_plane, checked_polygon, scan_crossings
+from kirigami_studio.evaluate.boundary import (
+    PlaneArray,
+    as_plane,
+    checked_polygon,
+    scan_crossings,
+    scan_crossings_of_many,
+)
 from kirigami_studio.evaluate.similarity import FloatArray
 from kirigami_studio.foundation.errors import KirigamiError
 
@@ -115,3 +121,37 @@ def rasterise_in_frame(polygon: npt.ArrayLike, frame: Frame) -> MaskArray:
     np.add.at(change, (frame.rows - 1 - line, np.clip(column, 0, frame.columns)), downward)
     filled: MaskArray = np.cumsum(change[:, :-1], axis=1) != 0
     return filled
+
+
+def filled_in_frame(planes: PlaneArray, frame: Frame) -> tuple[MaskArray, tuple[int, int]]:
+    """Fill several polygons into the pixels of one frame, continued so far that nothing is cut off.
+
+    The pixels of a polygon do not depend on the others: it is the same as ``rasterise_in_frame`` one by one.
+
+    Parameters
+    ----------
+    planes : (B, L) complex
+        Vertices x + iy of closed polygons that cover more than a line.
+    frame : Frame
+
+    Returns
+    -------
+    masks : (B, rows, columns) bool
+    place : (row, column) int
+        Where the frame begins in them.
+    """
+    count, length = planes.shape
+    low, high = planes.real.min(), planes.real.max()
+    left = max(0, _pixels(frame.left - low, frame.pixel))
+    right = max(0, _pixels(high - frame.left - frame.columns * frame.pixel, frame.pixel))
+    bottom = frame.top - frame.rows * frame.pixel
+    below = max(0, _pixels(bottom - planes.imag.min(), frame.pixel))
+    above = max(0, _pixels(planes.imag.max() - frame.top, frame.pixel))
+    first = frame.top - (frame.rows - 0.5) * frame.pixel
+    line, crossing, downward, edge = scan_crossings_of_many(planes, first, frame.pixel, (-below, frame.rows + above))
+    column = np.ceil((crossing - frame.left) / frame.pixel - 0.5).astype(np.intp)
+    rows, columns = below + frame.rows + above, left + frame.columns + right
+    change = np.zeros((count, rows, columns + 1), dtype=np.int8)
+    np.add.at(change, (edge // length, above + frame.rows - 1 - line, np.clip(left + column, 0, columns)), downward)
+    filled: MaskArray = np.cumsum(change[..., :-1], axis=2, dtype=np.int8) != 0
+    return filled, (above, left)

@@ -11,7 +11,7 @@ import numpy as np
 from PIL import Image
 
 from kirigami_studio.export.exporter import ExportJob
-from kirigami_studio.export.picture import Frame, draw_layout
+from kirigami_studio.export.picture import Frame, draw_polygons
 from kirigami_studio.export.verified import write_verified
 from kirigami_studio.foundation.errors import ExportError
 from kirigami_studio.lattice.ratio_field import FloatArray
@@ -75,10 +75,10 @@ def write_animation(job: ExportJob, path: str | Path, frames: int = FRAMES, long
 
 def _pictures(job: ExportJob, frames: int, longest: int) -> list[Image.Image]:
     """All frames in one constant frame box and one palette."""
-    panels = job.deployment.topology.panel_nodes
-    poses = [job.placed_nodes(float(angle)) for angle in frame_angles(job.phi, frames)]
-    box = Frame.around(poses if job.target is None else [*poses, job.target], longest)
-    drawn = [draw_layout(nodes[panels], box, job.target) for nodes in poses]
+    poses = [job.placed_panels(float(angle)) for angle in frame_angles(job.phi, frames)]
+    clouds = [np.concatenate(panels) for panels in poses]
+    box = Frame.around(clouds if job.target is None else [*clouds, job.target], longest)
+    drawn = [draw_polygons(panels, box, job.target) for panels in poses]
     # Open and closed states together show every colour.
     sample = Image.new("RGB", (box.pixels[0], 2 * box.pixels[1]))
     sample.paste(drawn[frames // 2], (0, 0))

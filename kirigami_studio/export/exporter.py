@@ -8,11 +8,13 @@ from typing import Protocol
 
 import numpy as np
 
+from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.similarity import Similarity
+from kirigami_studio.evaluate.trimming import Trim
 from kirigami_studio.export.profile import DEFAULT_PROFILE
 from kirigami_studio.fabricate.cut_plan import CutPlan
 from kirigami_studio.foundation.errors import ExportError
-from kirigami_studio.lattice.deployment import Deployment, signed_area
+from kirigami_studio.lattice.deployment import Deployment, deploy, signed_area
 from kirigami_studio.lattice.ratio_field import FloatArray
 
 
@@ -34,6 +36,8 @@ class ExportJob:
     dxf_version : str
     profile : str
         Key of the colour profile.
+    trim : Trim or None
+        What was cut off the edge panels; pictures show what stays.
     """
 
     deployment: Deployment
@@ -43,6 +47,15 @@ class ExportJob:
     transform: Similarity = field(default_factory=Similarity)
     dxf_version: str = "R2010"
     profile: str = DEFAULT_PROFILE
+    trim: Trim | None = None
+
+    @classmethod
+    def of(cls, candidate: Candidate, target: FloatArray | None, plan: CutPlan | None = None) -> ExportJob:
+        """The job of a candidate as it is finished: trimmed if it is."""
+        trim, score = candidate.trim, candidate.score
+        if trim is None:
+            return cls(deploy(candidate.field), score.phi, plan, target, score.transform)
+        return cls(deploy(trim.field), trim.phi, plan, target, trim.pose, trim=trim)
 
     @property
     def required_plan(self) -> CutPlan:
@@ -65,11 +78,22 @@ class ExportJob:
 
     def placed_nodes(self, phi: float) -> FloatArray:
         """All nodes at any angle in the target's frame: turned as at the target angle, with the same centroid."""
-        loop = self.deployment.topology.outline_nodes
-        goal = self.placed(self.deployment.nodes(self.phi))
-        nodes = self.placed(self.deployment.nodes(phi))
-        placed: FloatArray = nodes + (area_centroid(goal[loop]) - area_centroid(nodes[loop]))
+        placed: FloatArray = self.placed(self.deployment.nodes(phi)) + self._drift(phi)
         return placed
+
+    def placed_panels(self, phi: float) -> list[FloatArray]:
+        """What there is of every panel at any angle in the same frame: list of (P, 2)."""
+        if self.trim is None:
+            return list(self.placed_nodes(phi)[self.deployment.topology.panel_nodes].reshape(-1, 4, 2))
+        drift = self._drift(phi)
+        return [self.placed(part) + drift for part in self.trim.deployed(self.deployment, phi)]
+
+    def _drift(self, phi: float) -> FloatArray:
+        """Shift (2,) that lays the centre of the sheet at ``phi`` upon that at the target angle."""
+        loop = self.deployment.topology.outline_nodes
+        goal, nodes = (self.placed(self.deployment.nodes(angle)[loop]) for angle in (self.phi, phi))
+        drift: FloatArray = area_centroid(goal) - area_centroid(nodes)
+        return drift
 
 
 def area_centroid(polygon: FloatArray) -> FloatArray:

@@ -52,16 +52,16 @@ class Frame:
         return list(zip(x.tolist(), y.tolist(), strict=True))
 
 
-def draw_layout(panels: FloatArray, frame: Frame, target: FloatArray | None = None) -> Image.Image:
-    """Draw panels (P, 4, 2) over a target outline (L, 2); the target's outline is repeated on top."""
+def draw_polygons(polygons: Sequence[FloatArray], frame: Frame, target: FloatArray | None = None) -> Image.Image:
+    """Draw panels, each (P, 2), over a target outline (L, 2); the target's outline is repeated on top."""
     factor = SUPERSAMPLING
     size = (frame.pixels[0] * factor, frame.pixels[1] * factor)
     image = Image.new("RGB", size, palette.PAPER)
     draw = ImageDraw.Draw(image)
     if target is not None:
         draw.polygon(frame.pixel(target, factor), fill=palette.TARGET_FILL)
-    for panel in panels.reshape(-1, 4, 2):
-        corners = frame.pixel(panel, factor)
+    for polygon in polygons:
+        corners = frame.pixel(polygon, factor)
         draw.polygon(corners, fill=palette.PANEL)
         draw.line([*corners, corners[0]], fill=palette.PANEL_EDGE, width=factor, joint="curve")
     if target is not None:

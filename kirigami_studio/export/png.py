@@ -9,7 +9,7 @@ from pathlib import Path
 from PIL import Image
 
 from kirigami_studio.export.exporter import ExportJob
-from kirigami_studio.export.picture import Frame, draw_layout
+from kirigami_studio.export.picture import Frame, draw_polygons
 from kirigami_studio.export.verified import write_verified
 from kirigami_studio.foundation.errors import ExportError
 
@@ -51,6 +51,6 @@ def write_png(job: ExportJob, path: str | Path, longest: int = LONGEST_SIDE) -> 
 
 def preview(job: ExportJob, longest: int = LONGEST_SIDE) -> Image.Image:
     """Draw the layout at the target angle over the target."""
-    nodes = job.placed_nodes(job.phi)
-    clouds = [nodes] if job.target is None else [nodes, job.target]
-    return draw_layout(nodes[job.deployment.topology.panel_nodes], Frame.around(clouds, longest), job.target)
+    panels = job.placed_panels(job.phi)
+    clouds = panels if job.target is None else [*panels, job.target]
+    return draw_polygons(panels, Frame.around(clouds, longest), job.target)

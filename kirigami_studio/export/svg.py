@@ -68,6 +68,7 @@ def write_layout_svg(job: ExportJob, path: str | Path, width_mm: float = 100.0) 
     compact_width = float(np.ptp(job.deployment.compact[:, 0]))
     scale = width_mm / compact_width / job.transform.scale
     nodes = job.placed_nodes(job.phi) * scale
+    panels = [panel * scale for panel in job.placed_panels(job.phi)]
     target = None if job.target is None else np.asarray(job.target, dtype=np.float64) * scale
     everything = nodes if target is None else np.concatenate([nodes, target])
     low = everything.min(axis=0) - LAYOUT_MARGIN_MM
@@ -78,7 +79,7 @@ def write_layout_svg(job: ExportJob, path: str | Path, width_mm: float = 100.0) 
         ("VOIDS", {"fill": hexadecimal(palette.VOID)}, list(nodes[tables.void_nodes].reshape(-1, 4, 2))),
         ("PANELS", {"fill": hexadecimal(palette.PANEL), "stroke": hexadecimal(palette.PANEL_EDGE),
                     "stroke-width": "0.15", "stroke-linejoin": "round"},
-         list(nodes[tables.panel_nodes].reshape(-1, 4, 2))),
+         panels),
         ("TARGET", {"fill": "none", "stroke": hexadecimal(palette.TARGET_EDGE), "stroke-width": "0.5"},
          [] if target is None else [target]),
     ]  # fmt: skip

@@ -3,18 +3,27 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from enum import Enum
 from functools import cached_property
 
 import numpy as np
+import shapely
+from shapely.geometry import Polygon
 
 from kirigami_studio.fabricate import ordering, timing
 from kirigami_studio.fabricate.connectors import Hinges, check_length, finished_widths, hinge_widths, shorten
 from kirigami_studio.fabricate.kerf import OVERCUT_MM, edge_cut_paths, outline_path
 from kirigami_studio.fabricate.material import Material, default_material
 from kirigami_studio.fabricate.slits import CutTable, cut_table, sheet_lines
+from kirigami_studio.fabricate.trimmed_sheet import (
+    CutPiece,
+    kept_area,
+    outline_around,
+    remaining_cuts,
+    widths_beside_outline,
+)
 from kirigami_studio.foundation.errors import FabricationError
 from kirigami_studio.lattice.deployment import Deployment
 from kirigami_studio.lattice.ratio_field import FloatArray
@@ -77,7 +86,7 @@ class CutPlan:
     paths : tuple of CutPath
         In the order of cutting: slits, edge cuts, outline.  Smallest coordinates are 0, y up.
     size_mm : (width, height)
-        The finished sheet.
+        The finished sheet; of a trimmed one, what it was before.
     connector_mm, kerf_mm, overcut_mm : float
         Finished connector width asked for, full cut width, reach of edge cuts beyond the outline.
     hinges : Hinges
@@ -135,6 +144,7 @@ def plan_cuts(
     material: Material | None = None,
     single_widths_mm: Mapping[int, float] | None = None,
     overcut_mm: float = OVERCUT_MM,
+    kept: Sequence[FloatArray | None] | None = None,
 ) -> CutPlan:
     """Turn a design into a job for the cutter.
 
@@ -151,11 +161,15 @@ def plan_cuts(
         Finished widths of single hinges, numbered as in :class:`CutTable`.
     overcut_mm : float
         Reach of edge cuts beyond the outline.
+    kept : sequence of (P, 2) float or None, unit cells, optional
+        What stays of every trimmed panel, row by row, in the compact sheet's frame; None for a whole one.  The width
+        stays that of the untrimmed sheet.
 
     Raises
     ------
     FabricationError
-        A size, width or kerf that makes no sense, or a cut without room for its connectors.
+        A size, width or kerf that makes no sense, a cut without room for its connectors, or too little material kept
+        at a hinge.
     """
     material = material or default_material()
     width = check_length("The sheet width", width_mm)
@@ -168,28 +182,39 @@ def plan_cuts(
     _check_size(size)
     widths = hinge_widths(table.hinge_count, connector, single_widths_mm)
     lines = shorten(lines, table, size, widths, kerf)
-    edges = edge_cut_paths(lines, table, size, kerf, overcut)
-    origin = np.concatenate([*edges, outline_path(size, kerf)]).min(axis=0)
-    outline = _on_grid(outline_path(size, kerf) - origin)
-    lines = _on_grid(lines - origin)
-    edges = [_on_grid(path - origin) for path in edges]
+    parts = () if kept is None else tuple(kept)
+    trimmed = any(part is not None for part in parts)
+    if trimmed:
+        outline = outline_around(kept_area(deployment, parts, width), kerf)
+        pieces = remaining_cuts(lines, table, outline, kerf, overcut)
+    else:
+        outline = Polygon(outline_path(size, kerf))
+        slits, edges = lines[: table.slit_count], edge_cut_paths(lines, table, size, kerf, overcut)
+        pieces = [CutPiece(cut, points, cut >= table.slit_count) for cut, points in enumerate([*slits, *edges])]
+    ring = shapely.get_coordinates(shapely.orient_polygons(outline).exterior)[:-1]
+    origin = np.concatenate([ring, *(piece.points for piece in pieces)]).min(axis=0)
+    pieces = [CutPiece(piece.cut, _on_grid(piece.points - origin), piece.opens) for piece in pieces]
+    lines, ring = _on_grid(lines - origin), _on_grid(ring - origin)
+    finished = finished_widths(lines, table, _on_grid(outline_path(size, kerf) - origin), kerf)
+    if trimmed:
+        finished = widths_beside_outline(lines, table, pieces, Polygon(ring), finished, kerf)
     hinges = Hinges(
         position=_on_grid(junctions - origin),
         cut=table.hinge_cut,
         end=table.hinge_end,
         through=table.hinge_through,
         requested_mm=widths,
-        finished_mm=finished_widths(lines, table, outline, kerf),
+        finished_mm=finished,
     )
     return CutPlan(
-        paths=_in_cutting_order(table, lines, edges, outline, size),
+        paths=_in_cutting_order(table, pieces, ring, size),
         size_mm=size,
         connector_mm=connector,
         kerf_mm=kerf,
         overcut_mm=overcut,
         hinges=hinges,
         material=material,
-        design_hash=_design_hash(deployment),
+        design_hash=_design_hash(deployment, parts if trimmed else ()),
         notes=_notes(hinges, material, connector, kerf),
     )
 
@@ -200,9 +225,12 @@ def _on_grid(points: FloatArray) -> FloatArray:
     return rounded
 
 
-def _design_hash(deployment: Deployment) -> str:
+def _design_hash(deployment: Deployment, kept: Sequence[FloatArray | None]) -> str:
     ratio = deployment.field.ratio
     content = f"{ratio.shape}".encode() + np.ascontiguousarray(ratio, dtype="<f8").tobytes()
+    for index, part in enumerate(kept):
+        if part is not None:
+            content += f"{index}".encode() + np.ascontiguousarray(part, dtype="<f8").tobytes()
     return hashlib.sha256(content).hexdigest()[:16]
 
 
@@ -215,18 +243,25 @@ def _check_size(size: tuple[float, float]) -> None:
 
 
 def _in_cutting_order(
-    table: CutTable, lines: FloatArray, edges: list[FloatArray], outline: FloatArray, size: tuple[float, float]
+    table: CutTable, pieces: Sequence[CutPiece], outline: FloatArray, size: tuple[float, float]
 ) -> tuple[CutPath, ...]:
-    order = ordering.serpentine(table)
-    backwards = ordering.shortest_flips(lines[order], np.zeros(2))
-    paths = [
-        CutPath(lines[cut, ::-1].copy() if flip else lines[cut].copy(), Layer.SLITS, False, int(cut))
-        for cut, flip in zip(order, backwards, strict=True)
-    ]
-    mouths = np.array([path[0] for path in edges])
-    for index in ordering.around(mouths, paths[-1].points[-1], size):
-        paths.append(CutPath(edges[index], Layer.EDGE_SLITS, False, table.slit_count + int(index)))
-    nearest = int(np.argmin(np.linalg.norm(outline - paths[-1].points[-1], axis=1)))
+    place = {int(cut): index for index, cut in enumerate(ordering.serpentine(table))}
+    slits = sorted((piece for piece in pieces if not piece.opens), key=lambda piece: place[piece.cut])
+    paths = []
+    if slits:
+        backwards = ordering.shortest_flips(np.array([piece.points for piece in slits]), np.zeros(2))
+        paths = [
+            CutPath(piece.points[::-1].copy() if flip else piece.points, Layer.SLITS, False, piece.cut)
+            for piece, flip in zip(slits, backwards, strict=True)
+        ]
+    edges = [piece for piece in pieces if piece.opens]
+    before = paths[-1].points[-1] if paths else np.zeros(2)
+    if edges:
+        mouths = np.array([piece.points[0] for piece in edges])
+        for index in ordering.around(mouths, before, size):
+            paths.append(CutPath(edges[index].points, Layer.EDGE_SLITS, False, edges[index].cut))
+        before = paths[-1].points[-1]
+    nearest = int(np.argmin(np.linalg.norm(outline - before, axis=1)))
     paths.append(CutPath(np.roll(outline, -nearest, axis=0), Layer.OUTLINE, True))
     return tuple(paths)
 

@@ -1,4 +1,8 @@
-"""What a run tells its host: Started, Progress and CandidateFound in turn, perhaps CandidateImproved, then Finished."""
+"""What a run tells its host.
+
+Started, then Progress and CandidateFound for every sample, CandidateImproved in the order in which fits end, perhaps
+one more CandidateFound by the search, and Finished.
+"""
 
 from __future__ import annotations
 
@@ -26,7 +30,7 @@ class Progress:
 
 @dataclass(frozen=True, slots=True)
 class CandidateFound:
-    """Candidate number ``index`` (order of sampling) has been decoded and scored."""
+    """Candidate number ``index`` has been decoded and scored: the order of sampling, then the search's."""
 
     index: int
     candidate: Candidate
@@ -49,15 +53,18 @@ class Result:
     request : Request
     candidates : tuple of Candidate
     forward_evaluations : int
-        Number of decoded designs, the paper's #F: one for each sample, and those that polishing tried.
+        Number of decoded designs, the paper's #F: one for each sample, and those that polishing and search tried.
     seconds : float
-        Wall time of the run; the only part that differs between two equal requests.
+        Wall time of the run; the only part that differs between two equal requests without a budget.
+    budget_ended : bool
+        The time budget was used up before all was done: candidates may be unpolished or, of very many, missing.
     """
 
     request: Request
     candidates: tuple[Candidate, ...]
     forward_evaluations: int
     seconds: float
+    budget_ended: bool = False
 
     @property
     def best(self) -> Candidate:

@@ -7,10 +7,15 @@ from kirigami_studio.pipeline.request import Request
 
 
 def provenance(request: Request, digest: str) -> dict[str, str]:
-    """Describe the run of ``request`` with the weights of SHA-256 ``digest``."""
-    return {
+    """Describe the run of ``request`` with the weights of SHA-256 ``digest``; what was not asked for is left out."""
+    known = {
         "application": f"kirigami-studio {__version__}",
         "model": request.variant,
         "model_sha256": digest,
         "polish": str(request.polish),
     }
+    if request.search:
+        known["search"] = str(request.search)
+    if request.budget_seconds is not None:
+        known["budget_seconds"] = f"{request.budget_seconds:g}"
+    return known

@@ -1,4 +1,7 @@
-"""Best first: feasible before infeasible, then higher sIoU, then lower total variation; ties keep sampling order."""
+"""Best first: feasible before infeasible, then higher sIoU, then lower total variation; ties keep sampling order.
+
+Where a run trims its best designs these come first, by their trimmed IoU.
+"""
 
 from __future__ import annotations
 
@@ -7,10 +10,10 @@ from collections.abc import Iterable
 from kirigami_studio.evaluate.candidate import Candidate
 
 
-def rank_key(candidate: Candidate) -> tuple[bool, float, float, int]:
+def rank_key(candidate: Candidate) -> tuple[bool, float, float, float, int]:
     """Sorting key of one candidate; smaller is better."""
-    score = candidate.score
-    return (not score.feasible, -score.siou, score.tv, candidate.index)
+    score, trim = candidate.score, candidate.trim
+    return (not score.feasible, 0.0 if trim is None else -trim.iou, -score.siou, score.tv, candidate.index)
 
 
 def ranked(candidates: Iterable[Candidate]) -> tuple[Candidate, ...]:

@@ -5,20 +5,24 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from kirigami_studio.evaluate.trimming import KEEP, check_keep
 from kirigami_studio.foundation.errors import AngleError, UsageError
 from kirigami_studio.lattice.ratio_field import check_grid
+from kirigami_studio.polish.panel_size import check_least
+from kirigami_studio.polish.regularity import PREFERENCES
 from kirigami_studio.target.outline import Outline
 
 LARGEST_K = 1024
 LARGEST_STEPS = 64
 LARGEST_POLISH = 200
+LARGEST_SEARCH = 8
 #: What hosts ask for unless told otherwise: nearly converged from a generator sample.
 POLISH_STEPS = 15
 
 
 @dataclass(frozen=True, slots=True)
 class Request:
-    """One design task.  The same request gives the same candidates, bit by bit.
+    """One design task.  The same request gives the same candidates, bit by bit, unless a budget ends it.
 
     Attributes
     ----------
@@ -34,7 +38,20 @@ class Request:
     steps : int, 1..64
         Euler steps of the flow.
     polish : int, 0..200
-        Steps of the fit on the exact geometry that every candidate gets after sampling; 0 leaves them as drawn.
+        Steps of the fit on the exact geometry that every candidate gets after sampling, in one or two rounds;
+        0 leaves them as drawn.
+    prefer : str
+        What the fits prefer among nearly equal matches, see :data:`kirigami_studio.polish.regularity.PREFERENCES`.
+    least_panel : float, unit cells, 0..0.9
+        Panel edges and necks that fits try not to fall below; 0 for any size.
+    search : int, 0..8
+        Effort of a search for a design beyond the samples, started from the best of them; 0 does without.
+    trim : bool
+        Also fit the best designs to cover the target and trim their edge panels; the best trimmed one then comes first.
+    keep : float, unit cells, 0.02..0.4
+        Depth of the material that trimming leaves at every hinge.
+    budget_seconds : float, > 0, optional
+        Wall time after which the best so far are returned; the first batch is always scored.
     """
 
     target: Outline
@@ -45,6 +62,12 @@ class Request:
     variant: str = "prior"
     steps: int = 4
     polish: int = 0
+    prefer: str = "balanced"
+    least_panel: float = 0.0
+    search: int = 0
+    trim: bool = False
+    keep: float = KEEP
+    budget_seconds: float | None = None
 
     def __post_init__(self) -> None:
         check_grid(*self.grid)
@@ -55,6 +78,16 @@ class Request:
             ("Euler steps", self.steps, 1, LARGEST_STEPS),
             ("the seed", self.seed, 0, 2**63 - 1),
             ("polishing steps", self.polish, 0, LARGEST_POLISH),
+            ("the search effort", self.search, 0, LARGEST_SEARCH),
         ):
             if isinstance(value, bool) or not isinstance(value, int) or not low <= value <= high:
                 raise UsageError(f"The number for {name} must be a whole number from {low} to {high}, got {value!r}.")
+        if self.prefer not in PREFERENCES:
+            raise UsageError(f"A fit can prefer {', '.join(PREFERENCES)}, not {self.prefer!r}.")
+        check_least(self.least_panel)
+        check_keep(self.keep)
+        budget = self.budget_seconds
+        if budget is None:
+            return
+        if isinstance(budget, bool) or not isinstance(budget, int | float) or not 0.0 < budget < math.inf:
+            raise UsageError(f"The time budget must be a finite number of seconds above 0, got {budget!r}.")

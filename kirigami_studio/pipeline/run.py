@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import closing
 
 from kirigami_studio.evaluate.candidate import Candidate
-from kirigami_studio.evaluate.score import evaluate_many
 from kirigami_studio.foundation.errors import Cancelled
-from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.pipeline.dispatch import answers, gains
 from kirigami_studio.pipeline.events import (
     CandidateFound,
     CandidateImproved,
@@ -19,13 +19,28 @@ from kirigami_studio.pipeline.events import (
     Result,
     Started,
 )
-from kirigami_studio.pipeline.rank import rank_key, ranked
+from kirigami_studio.pipeline.pool import Pool, shared_pool
+from kirigami_studio.pipeline.rank import ranked
 from kirigami_studio.pipeline.request import Request
-from kirigami_studio.pipeline.threads import one_blas_thread
-from kirigami_studio.polish.levenberg import polish
+from kirigami_studio.pipeline.tasks import Answer, Finish, Polish, Search, Task, scored
+from kirigami_studio.pipeline.variety import worth_a_fit
+from kirigami_studio.pipeline.watch import Watch
 
-#: Candidates scored in one batch: enough to save time, few enough to see them arrive.
-SCORED_TOGETHER = 8
+#: Candidates scored in one batch.
+SCORED_TOGETHER = 32
+
+#: Steps that every candidate gets before any gets more: designs improve early, and a short budget is shared fairly.
+#: 5 + 10 steps end where 15 do (24 samples for heart and star: sIoU within 0.0005, TV 1 % higher).
+FIRST_ROUND = 5
+
+#: Candidates that a search starts from: the best that differ.
+SEARCH_STARTS = 3
+
+#: Designs that are trimmed: the best that differ.
+TRIMMED = 3
+
+#: Seconds between two signs of life while fits are under way.
+HEARTBEAT = 0.25
 
 
 def never() -> bool:
@@ -33,14 +48,20 @@ def never() -> bool:
     return False
 
 
-def run(request: Request, cancel: Callable[[], bool] = never) -> Iterator[Event]:
-    """Sample, decode, score, polish if asked for, and rank.
+def run(request: Request, cancel: Callable[[], bool] = never, pool: Pool | None = None) -> Iterator[Event]:
+    """Sample, score, polish and search if asked for, and rank.
+
+    The result does not depend on who polishes, on the number of workers, or on the order in which they end; only a
+    budget makes it depend on the clock.  All ``k`` samples are returned: a duplicate of a better sample is kept as it
+    was drawn, and what a search finds is added as number ``k``.
 
     Parameters
     ----------
     request : Request
     cancel : callable
-        Asked between candidates; once true the run stops.
+        Asked between candidates, and every 0.02 s or after every step of a fit; once true the run stops.
+    pool : Pool, optional
+        Worker processes; the program's own by default.
 
     Yields
     ------
@@ -55,27 +76,19 @@ def run(request: Request, cancel: Callable[[], bool] = never) -> Iterator[Event]
     ModelError, UsageError
         The variant cannot be loaded or does not exist.
     """
-    began = time.perf_counter()
+    watch = Watch(cancel, time.perf_counter(), request.budget_seconds)
+    work = _Work(request, watch, _gaining(pool or shared_pool(), request))
     yield Started(request.k)
     yield Progress(0, request.k, "Loading the generator")
-    fields = sample(request)
-    found: list[Candidate] = []
-    for start in range(0, len(fields), SCORED_TOGETHER):
-        _stop_if(cancel, f"Stopped after {start} of {request.k} candidates; nothing was changed.")
-        for candidate in scored(request, fields[start : start + SCORED_TOGETHER], start):
-            found.append(candidate)
-            yield CandidateFound(candidate.index, candidate)
-        yield Progress(len(found), request.k, f"Candidate {len(found)} of {request.k}")
-    evaluations = len(found)
-    for done, candidate in enumerate(ranked(found) if request.polish else ()):
-        _stop_if(cancel, f"Stopped while polishing candidate {done + 1} of {request.k}; nothing was changed.")
-        yield Progress(done, request.k, f"Polishing candidate {done + 1} of {request.k}")
-        better, tried = polished(request, candidate)
-        evaluations += tried
-        if better is not candidate:
-            found[candidate.index] = better
-            yield CandidateImproved(candidate.index, better)
-    yield Finished(Result(request, ranked(found), evaluations, time.perf_counter() - began))
+    yield from work.score(sample(request))
+    if request.polish:
+        yield from work.polish()
+    if request.search:
+        yield from work.search()
+    if request.trim:
+        yield from work.trim()
+    candidates = ranked(work.found)
+    yield Finished(Result(request, candidates, work.evaluations, watch.seconds, work.cut_short))
 
 
 def sample(request: Request) -> tuple[RatioField, ...]:
@@ -87,40 +100,109 @@ def sample(request: Request) -> tuple[RatioField, ...]:
     return draw_fields(model, request.target, request.grid, request.k, request.seed, request.steps)
 
 
-def scored(request: Request, fields: Sequence[RatioField], first: int, *, fitted: bool = False) -> list[Candidate]:
-    """Decode fields exactly and score them against the request's target; their numbers count up from ``first``."""
-    with one_blas_thread():
-        scores = evaluate_many([deploy(field) for field in fields], request.target, request.phi)
-    return [
-        Candidate(field, score, request.seed, first + place, polished=fitted)
-        for place, (field, score) in enumerate(zip(fields, scores, strict=True))
-    ]
+class _Work:
+    """The state of one run: candidates by number, and what they cost."""
+
+    def __init__(self, request: Request, watch: Watch, pool: Pool | None) -> None:
+        self.request, self.watch, self.pool = request, watch, pool
+        self.found: list[Candidate] = []
+        self.evaluations = 0
+        self.cut_short = False
+
+    def score(self, fields: Sequence[RatioField]) -> Iterator[Event]:
+        """Score all samples, the first batch even when the budget is used up."""
+        total = len(fields)
+        for start in range(0, total, SCORED_TOGETHER):
+            self.watch.check(f"Stopped after {start} of {total} candidates")
+            if start and self.watch.expired():
+                self.cut_short = True
+                return
+            for candidate in scored(self.request, fields[start : start + SCORED_TOGETHER], start):
+                self.found.append(candidate)
+                self.evaluations += 1
+                yield CandidateFound(candidate.index, candidate)
+            yield Progress(len(self.found), total, f"Candidate {len(self.found)} of {total}")
+
+    def polish(self) -> Iterator[Event]:
+        """Fit the candidates that differ, best first: a few steps for all of them, then the rest for all."""
+        chosen = worth_a_fit(self.found)
+        rounds = 2 if self.request.polish >= 2 * FIRST_ROUND else 1
+        for number in range(rounds):
+            steps = self.request.polish if rounds == 1 else FIRST_ROUND
+            tasks = [Polish(candidate, steps) for candidate in chosen] if number == 0 else self._rest(chosen)
+            yield from self._polished(tasks, number * len(chosen), rounds * len(chosen))
+
+    def _rest(self, chosen: Sequence[Candidate]) -> list[Polish]:
+        """The second round: what the first has improved gets the steps that are left, the others all of them."""
+        now = ranked(self.found[candidate.index] for candidate in chosen)
+        left = self.request.polish - FIRST_ROUND
+        return [Polish(candidate, left if candidate.polished else self.request.polish) for candidate in now]
+
+    def _polished(self, tasks: Sequence[Polish], done: int, total: int) -> Iterator[Event]:
+        for report in self._carried_out(tasks, "polishing", done, total):
+            if isinstance(report, Progress):
+                yield report
+                continue
+            number, answer = report
+            done += 1
+            if answer.candidate is not None:
+                self.found[tasks[number].candidate.index] = answer.candidate
+                yield CandidateImproved(answer.candidate.index, answer.candidate)
+            yield Progress(done, total, f"Polishing, {done} of {total} done")
+
+    def search(self) -> Iterator[Event]:
+        """Look for a better design from the best that differ and from scratch."""
+        starts = tuple(candidate.field for candidate in worth_a_fit(self.found)[:SEARCH_STARTS])
+        for report in self._carried_out([Search(self.request.k, starts)], "searching", 0, 1):
+            if isinstance(report, Progress):
+                yield report
+            elif report[1].candidate is not None:
+                self.found.append(report[1].candidate)
+                yield CandidateFound(self.request.k, report[1].candidate)
+
+    def trim(self) -> Iterator[Event]:
+        """Trim the best that differ."""
+        chosen = worth_a_fit(self.found)[:TRIMMED]
+        for report in self._carried_out([Finish(candidate) for candidate in chosen], "trimming", 0, len(chosen)):
+            if isinstance(report, Progress):
+                yield report
+            elif report[1].candidate is not None:
+                place = self.found.index(chosen[report[0]])
+                self.found[place] = report[1].candidate
+                yield CandidateImproved(report[1].candidate.index, report[1].candidate)
+
+    def _carried_out(
+        self, tasks: Sequence[Task], doing: str, done: int, total: int
+    ) -> Iterator[Progress | tuple[int, Answer]]:
+        """Answers as they come, with signs of life in between."""
+        told = time.perf_counter()
+        yield Progress(done, total, f"{doing.capitalize()}, {done} of {total} done")
+        with closing(answers(self.pool, self.request, tasks, self.watch)) as reports:
+            for report in reports:
+                self.watch.check(f"Stopped while {doing}, with {done} of {total} done")
+                now = time.perf_counter()
+                if report is not None:
+                    done += 1
+                    self.evaluations += report[1].evaluations
+                    yield report
+                elif now - told > HEARTBEAT:
+                    told = now
+                    yield Progress(done, total, f"{doing.capitalize()}, {done} of {total} done")
+        self.watch.check(f"Stopped while {doing}, with {done} of {total} done")
+        self.cut_short = self.cut_short or self.watch.expired()
 
 
-def polished(request: Request, candidate: Candidate) -> tuple[Candidate, int]:
-    """Fit a candidate on the exact geometry.
-
-    Returns
-    -------
-    candidate : Candidate
-        The fitted one if it ranks before the given one, else the given one itself.
-    evaluations : int
-        Layouts decoded on the way.
-    """
-    with one_blas_thread():
-        fit = polish(candidate.field, request.target, request.phi, request.polish, pose=candidate.score.transform)
-    (better,) = scored(request, [fit.field], candidate.index, fitted=True)
-    return (better if rank_key(better) < rank_key(candidate) else candidate), fit.evaluations + 1
+def _gaining(pool: Pool, request: Request) -> Pool | None:
+    """The pool, starting up while the generator is loaded, if the request gains from it."""
+    if not gains(pool, request):
+        return None
+    pool.start()
+    return pool
 
 
-def _stop_if(cancel: Callable[[], bool], sentence: str) -> None:
-    if cancel():
-        raise Cancelled(sentence)
-
-
-def best_of(request: Request, cancel: Callable[[], bool] = never) -> Result:
+def best_of(request: Request, cancel: Callable[[], bool] = never, pool: Pool | None = None) -> Result:
     """Run to the end and return the result alone."""
-    for event in run(request, cancel):
+    for event in run(request, cancel, pool):
         if isinstance(event, Finished):
             return event.result
     raise Cancelled("The run ended without a result.")

@@ -27,6 +27,8 @@ from kirigami_studio.lattice.ratio_field import RatioField, check_grid
 from kirigami_studio.lattice.resize import resize_fields
 from kirigami_studio.polish.levenberg import Fit, check_fit, polish
 from kirigami_studio.polish.morph import EasyShape, thickened
+from kirigami_studio.polish.panel_size import check_least
+from kirigami_studio.polish.regularity import Regularity
 from kirigami_studio.polish.symmetry import Symmetry, shared_symmetries
 from kirigami_studio.target.outline import Outline
 
@@ -66,6 +68,8 @@ def fit_shape(
     starts: Sequence[RatioField] = (),
     effort: int = 1,
     cancel: Callable[[], bool] = lambda: False,
+    regularity: Regularity | None = None,
+    least_panel: float = 0.0,
 ) -> list[Fit]:
     """Search for the fields whose outline at ``phi`` matches ``target`` best.
 
@@ -80,6 +84,8 @@ def fit_shape(
         Multiplies the number of rotations and of fits that are carried to the end.
     cancel : callable
         Asked before every step; the best so far are returned.
+    regularity, least_panel
+        As for :func:`polish`.
 
     Returns
     -------
@@ -95,7 +101,7 @@ def fit_shape(
     phi = check_fit(phi, LAST_STEPS, NEAR)
     if not isinstance(effort, int) or isinstance(effort, bool) or not 1 <= effort <= LARGEST_EFFORT:
         raise UsageError(f"The effort must be a whole number from 1 to {LARGEST_EFFORT}, got {effort!r}.")
-    search = _Search(target, phi, cancel)
+    search = _Search(target, phi, cancel, regularity or Regularity(), check_least(least_panel))
     coarse = _coarser(grid)
     found = search.first_looks(coarse, effort)
     found += [search.from_guess(lifted(start, coarse)) for start in starts]
@@ -117,8 +123,16 @@ def lifted(field: RatioField, grid: tuple[int, int]) -> RatioField:
 class _Search:
     """What all fits of one request share."""
 
-    def __init__(self, target: Outline, phi: float, cancel: Callable[[], bool]) -> None:
+    def __init__(
+        self,
+        target: Outline,
+        phi: float,
+        cancel: Callable[[], bool],
+        regularity: Regularity,
+        least_panel: float,
+    ) -> None:
         self.target, self.phi, self.cancel = target, phi, cancel
+        self.regularity, self.least_panel = regularity, least_panel
         self.evaluations = 0
 
     def first_looks(self, grid: tuple[int, int], effort: int) -> list[_Found]:
@@ -179,7 +193,18 @@ class _Search:
         trust: float,
         symmetry: Symmetry | None,
     ) -> Fit:
-        fit = polish(field, target, self.phi, steps, pose=pose, cancel=self.cancel, trust=trust, symmetry=symmetry)
+        fit = polish(
+            field,
+            target,
+            self.phi,
+            steps,
+            self.regularity,
+            pose,
+            self.cancel,
+            trust=trust,
+            least_panel=self.least_panel,
+            symmetry=symmetry,
+        )
         self.evaluations += fit.evaluations
         return fit
 

@@ -79,6 +79,7 @@ def polish(
     trust: float = TRUST,
     least_panel: float = 0.0,
     symmetry: Symmetry | None = None,
+    excess: float = 1.0,
 ) -> Fit:
     """Fit ``field`` to ``target`` by at most ``steps`` accepted steps.
 
@@ -100,13 +101,15 @@ def polish(
         Panel edges and necks are kept from falling below this where the shape allows it; 0 for any size.
     symmetry : Symmetry, optional
         The field keeps this symmetry of the lattice; the pose should lay the target's own upon it.
+    excess : float, 0..1
+        Weight of what sticks out of the target, relative to what is missed; below 1 for a layout that will be trimmed.
 
     Raises
     ------
     AngleError
         ``phi`` is not in [0, pi): the closed sheet is a rectangle whatever the ratios.
     UsageError
-        ``steps``, ``trust`` or ``least_panel`` is not a number that a fit can have.
+        ``steps``, ``trust``, ``least_panel`` or ``excess`` is not a number that a fit can have.
     """
     phi = check_fit(phi, steps, trust)
     model = OutlineModel(field.rows, field.columns, phi)
@@ -114,7 +117,7 @@ def polish(
     start = allowed(field.log10.ravel())
     pose = pose or align(model.outline(start), target.points)
     terms = RegularTerms(regularity or Regularity(), start, field.rows, field.columns)
-    objective = Objective(model, BoundaryTarget.of(target, SAMPLES), terms, trust, check_least(least_panel))
+    objective = Objective(model, BoundaryTarget.of(target, SAMPLES), terms, trust, check_least(least_panel), excess)
     state = np.concatenate([start, [math.log(pose.scale), pose.angle, *pose.shift]])
     descent = _Descent(objective, state, allowed)
     while descent.steps < steps and not cancel() and descent.advance():

@@ -20,6 +20,7 @@ from kirigami_studio.lattice.ratio_field import FloatArray
 from kirigami_studio.lattice.topology import topology
 from kirigami_studio.polish.boundary_target import BoundaryTarget
 from kirigami_studio.polish.matching import EDGE_SHARES, Matching, matched
+from kirigami_studio.polish.one_sided import OneSided, check_excess, outer_hinges
 from kirigami_studio.polish.panel_size import PENALTY, PanelSizes, panel_sizes, shortage
 from kirigami_studio.polish.regularity import RegularTerms
 from kirigami_studio.polish.sensitivity import OutlineModel
@@ -88,6 +89,8 @@ class Objective:
         Distance (unit-area lengths) beyond which a residual counts linearly.
     least : float, unit cells
         Panel edges and necks should not be smaller; 0 for any size.
+    excess : float, 0..1
+        Weight of what sticks out of the target: 1 unless it will be trimmed.
     """
 
     def __init__(
@@ -97,8 +100,12 @@ class Objective:
         terms: RegularTerms,
         trust: float = TRUST,
         least: float = 0.0,
+        excess: float = 1.0,
     ) -> None:
         self.model, self.target, self.terms, self.trust, self.least = model, target, terms, trust, least
+        self.one_sided = None
+        if check_excess(excess) < 1.0:
+            self.one_sided = OneSided(excess, outer_hinges(model.rows, model.columns, model.phi))
 
     def look(self, state: FloatArray) -> Look:
         """Decode a state, match it with the target and count the cost."""
@@ -106,6 +113,8 @@ class Objective:
         nodes = self.model.nodes(z)
         outline = _posed(self.model.outline_of(nodes), state[-POSE:])
         matching = matched(outline, self.target)
+        if self.one_sided is not None:
+            matching = self.one_sided.weighed(matching, outline, self.target)
         cost = float((matching.weight * _robust(matching.distance, self.trust)).sum()) + self.terms.value(z)
         small = NO_SIZES
         if self.least:
@@ -125,7 +134,7 @@ class Objective:
         reader = matching.reader(len(look.outline))
         share = matching.weight / np.sqrt(1.0 + np.square(matching.distance / self.trust))
         scaled = reader * share[:, None]
-        pull = 2.0 * (matching.distance @ scaled) + _stretching(look.outline, matching.distance, self.trust)
+        pull = 2.0 * (matching.distance @ scaled) + _stretching(look.outline, matching, self.trust)
         gradient = pull @ vertices
         hessian = vertices.T @ ((2.0 * (scaled.T @ reader)) @ vertices)
         z = look.state[:-POSE]
@@ -164,11 +173,12 @@ def _state_derivative(outline: FloatArray, derivative: FloatArray, pose: FloatAr
     return full
 
 
-def _stretching(outline: FloatArray, distance: FloatArray, trust: float) -> FloatArray:
+def _stretching(outline: FloatArray, matching: Matching, trust: float) -> FloatArray:
     """Derivative (2 L,) of the cost by vertices through the edge lengths that weight the outward distances."""
     edge = np.roll(outline, -1, axis=0) - outline
-    direction = edge / np.maximum(np.hypot(*edge.T), 1e-12)[:, None]
-    outward = distance[: len(outline) * EDGE_SHARES.size].reshape(len(outline), -1)
-    pull = _robust(outward, trust).mean(axis=1)[:, None] * direction
+    length = np.maximum(np.hypot(*edge.T), 1e-12)
+    outward = slice(0, len(outline) * EDGE_SHARES.size)
+    cost = (matching.weight[outward] * _robust(matching.distance[outward], trust)).reshape(len(outline), -1)
+    pull = (cost.sum(axis=1) / length)[:, None] * (edge / length[:, None])
     slope: FloatArray = (np.roll(pull, 1, axis=0) - pull).ravel()
     return slope

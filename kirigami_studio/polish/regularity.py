@@ -45,6 +45,15 @@ class Regularity:
             )
 
 
+#: What a person may prefer, from the best match to the calmest field; each is ten times as strict as the one before.
+PREFERENCES = {
+    "accuracy": Regularity(variation=1e-6),
+    "balanced": Regularity(),
+    "regularity": Regularity(variation=1e-4),
+    "calm": Regularity(variation=1e-3),
+}
+
+
 class RegularTerms:
     """The terms of one fit: value, gradient and curvature at any field.
 

@@ -11,8 +11,9 @@ from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.feasibility import Contact
 from kirigami_studio.evaluate.score import Score
 from kirigami_studio.evaluate.similarity import Similarity
+from kirigami_studio.evaluate.trimming import Trim, trim
 from kirigami_studio.foundation.errors import ProjectError
-from kirigami_studio.lattice.deployment import check_phi
+from kirigami_studio.lattice.deployment import check_phi, deploy
 from kirigami_studio.lattice.ratio_field import FloatArray, RatioField
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.json_record import Record, read_json
@@ -22,6 +23,8 @@ from kirigami_studio.target.outline import Outline
 
 DESIGN = "design.json"
 RATIOS = "ratios.npy"
+#: The fields as they were sampled, of those candidates that a fit has improved, in the candidates' order.
+DRAWN = "drawn.npy"
 
 
 def encode(document: Document) -> dict[str, bytes]:
@@ -36,6 +39,8 @@ def encode(document: Document) -> dict[str, bytes]:
             "variant": document.settings.variant,
             "steps": document.settings.steps,
             "polish": document.settings.polish,
+            "prefer": document.settings.prefer,
+            "search": document.settings.search,
         },
         "fabrication": {
             "width_mm": document.fabrication.width_mm,
@@ -43,19 +48,18 @@ def encode(document: Document) -> dict[str, bytes]:
             "connector_mm": document.fabrication.connector_mm,
             "kerf_mm": document.fabrication.kerf_mm,
         },
-        "candidates": [
-            {"seed": entry.seed, "index": entry.index, "polished": entry.polished, "score": entry.score.to_json()}
-            for entry in document.candidates
-        ],
+        "candidates": [_candidate_json(entry) for entry in document.candidates],
         "chosen": document.chosen,
         "provenance": dict(sorted(document.provenance.items())),
     }
     members = {DESIGN: json.dumps(design, indent=1, allow_nan=False).encode()}
-    if document.candidates:
-        stream = io.BytesIO()
-        stacked = np.stack([entry.field.ratio for entry in document.candidates]).astype("<f8")
-        np.lib.format.write_array(stream, stacked, version=(1, 0), allow_pickle=False)
-        members[RATIOS] = stream.getvalue()
+    drawn = [entry.drawn for entry in document.candidates if entry.drawn is not None]
+    for name, fields in ((RATIOS, [entry.field for entry in document.candidates]), (DRAWN, drawn)):
+        if fields:
+            stream = io.BytesIO()
+            stacked = np.stack([field.ratio for field in fields]).astype("<f8")
+            np.lib.format.write_array(stream, stacked, version=(1, 0), allow_pickle=False)
+            members[name] = stream.getvalue()
     return members
 
 
@@ -72,10 +76,13 @@ def decode(members: Members) -> Document:
     design = Record(read_json(members[DESIGN], DESIGN), DESIGN)
     settings, fabrication = design.record("settings"), design.record("fabrication")
     entries = design.list("candidates")
-    fields = _read_ratios(members, len(entries))
+    records = [Record(entry, f"{DESIGN}.candidates[{k}]") for k, entry in enumerate(entries)]
+    fields = _read_ratios(members, RATIOS, len(records))
+    drawn = iter(_read_ratios(members, DRAWN, sum(record.flag("drawn") for record in records)))
     rows, columns = _whole_pair(settings, "grid")
+    target = _outline(design.record("target")) if design.holds("target") else None
     return Document(
-        target=_outline(design.record("target")) if design.holds("target") else None,
+        target=target,
         settings=DesignSettings(
             grid=(rows, columns),
             phi=settings.number("phi"),
@@ -84,10 +91,12 @@ def decode(members: Members) -> Document:
             variant=settings.text("variant"),
             steps=settings.whole("steps"),
             polish=settings.whole("polish"),
+            prefer=settings.text("prefer"),
+            search=settings.whole("search"),
         ),
         candidates=tuple(
-            _candidate(Record(entry, f"{DESIGN}.candidates[{k}]"), field)
-            for k, (entry, field) in enumerate(zip(entries, fields, strict=True))
+            _candidate(record, field, next(drawn) if record.flag("drawn") else None, target)
+            for record, field in zip(records, fields, strict=True)
         ),
         chosen=design.whole("chosen") if design.holds("chosen") else None,
         fabrication=FabricationSettings(
@@ -113,7 +122,7 @@ def _outline_json(outline: Outline) -> dict[str, object]:
 def _outline(record: Record) -> Outline:
     notes = record.list("notes")
     return Outline(
-        points=_table(record.list("points")),
+        points=_table(record.list("points"), "target.points"),
         name=record.text("name"),
         notes=tuple(str(note) for note in notes),
         size=record.pair("size") if record.holds("size") else None,
@@ -121,28 +130,53 @@ def _outline(record: Record) -> Outline:
     )
 
 
-def _table(rows: list[object]) -> FloatArray:
-    """(L, 2) float from a list of pairs."""
+def _table(rows: list[object], place: str) -> FloatArray:
+    """A table of numbers from a list of lists."""
     try:
         return np.array(rows, dtype=np.float64)
     except (TypeError, ValueError, OverflowError):
-        raise ProjectError(f"{DESIGN}.target.points is not a list of [x, y] pairs") from None
+        raise ProjectError(f"{DESIGN}.{place} is not a table of numbers") from None
 
 
-def _candidate(record: Record, field: RatioField) -> Candidate:
+def _candidate_json(entry: Candidate) -> dict[str, object]:
+    cut = entry.trim
+    return {
+        "seed": entry.seed,
+        "index": entry.index,
+        "polished": entry.polished,
+        "drawn": entry.drawn is not None,
+        "score": entry.score.to_json(),
+        # What was cut off follows from these; it is cut again on reading.
+        "trim": None
+        if cut is None
+        else {"ratio": cut.field.ratio.tolist(), "pose": cut.pose.to_json(), "phi": cut.phi, "keep": cut.keep},
+    }
+
+
+def _candidate(record: Record, field: RatioField, drawn: RatioField | None, target: Outline | None) -> Candidate:
     return Candidate(
         field=field,
         score=_score(record.record("score")),
         seed=record.whole("seed"),
         index=record.whole("index"),
         polished=record.flag("polished"),
+        drawn=drawn,
+        trim=_trim(record.record("trim"), target) if record.holds("trim") and target is not None else None,
     )
+
+
+def _trim(record: Record, target: Outline) -> Trim:
+    field = RatioField(_table(record.list("ratio"), "trim.ratio"))
+    return trim(deploy(field), target, record.number("phi"), _pose(record.record("pose")), record.number("keep"))
+
+
+def _pose(record: Record) -> Similarity:
+    return Similarity(record.number("scale"), record.number("angle"), record.pair("shift"))
 
 
 def _score(record: Record) -> Score:
     """Read back what :meth:`Score.to_json` wrote."""
     contact = record.record("contact") if record.holds("contact") else None
-    transform = record.record("transform")
     return Score(
         siou=record.number("siou"),
         siou_gain=record.number("siou_gain"),
@@ -155,7 +189,7 @@ def _score(record: Record) -> Score:
         n_invalid=record.whole("n_invalid"),
         overlap_ratio=record.number("overlap_ratio"),
         contact=None if contact is None else Contact(contact.number("phi"), contact.pair("where")),
-        transform=Similarity(transform.number("scale"), transform.number("angle"), transform.pair("shift")),
+        transform=_pose(record.record("transform")),
         phi=check_phi(record.number("phi")),
     )
 
@@ -168,24 +202,24 @@ def _whole_pair(record: Record, name: str) -> tuple[int, int]:
     return both.whole("rows"), both.whole("columns")
 
 
-def _read_ratios(members: Members, count: int) -> list[RatioField]:
+def _read_ratios(members: Members, name: str, count: int) -> list[RatioField]:
     """Read the (N, m, n) array; its header is checked against the bytes before any memory is asked for."""
     if count == 0:
         return []
-    if RATIOS not in members:
-        raise ProjectError(f"it lacks {RATIOS}")
-    content = members[RATIOS]
+    if name not in members:
+        raise ProjectError(f"it lacks {name}")
+    content = members[name]
     stream = io.BytesIO(content)
     try:
         if np.lib.format.read_magic(stream) != (1, 0):
             raise ValueError("another npy version")
         shape, fortran, dtype = np.lib.format.read_array_header_1_0(stream)
     except (ValueError, SyntaxError, TypeError, KeyError, RecursionError, MemoryError) as error:
-        raise ProjectError(f"{RATIOS} is not an array file ({str(error)[:80]})") from error
+        raise ProjectError(f"{name} is not an array file ({str(error)[:80]})") from error
     if len(shape) != 3 or shape[0] != count or fortran or dtype != np.dtype("<f8"):
-        raise ProjectError(f"{RATIOS} must hold {count} tables of numbers, got an array {shape} of {dtype}")
+        raise ProjectError(f"{name} must hold {count} tables of numbers, got an array {shape} of {dtype}")
     size = 8 * int(shape[0]) * int(shape[1]) * int(shape[2])
     if len(content) - stream.tell() != size:
-        raise ProjectError(f"{RATIOS} should hold {size} bytes of ratios, got {len(content) - stream.tell()}")
+        raise ProjectError(f"{name} should hold {size} bytes of ratios, got {len(content) - stream.tell()}")
     table = np.frombuffer(content, dtype="<f8", offset=stream.tell()).reshape(shape)
     return [RatioField(ratio) for ratio in table]

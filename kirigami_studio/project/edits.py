@@ -39,6 +39,8 @@ class SettingsChange(TypedDict, total=False):
     variant: str
     steps: int
     polish: int
+    prefer: str
+    search: int
 
 
 class FabricationChange(TypedDict, total=False):
@@ -58,6 +60,8 @@ _NAMES = {
     "variant": "the generator",
     "steps": "the number of steps",
     "polish": "the polish",
+    "prefer": "what the polish prefers",
+    "search": "the search",
     "width_mm": "the sheet's width",
     "material": "the material",
     "connector_mm": "the connector width",

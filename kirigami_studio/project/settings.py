@@ -30,6 +30,10 @@ class DesignSettings:
         Euler steps of the flow.
     polish : int, >= 0
         Steps of the fit on the exact geometry; 0 leaves candidates as drawn.
+    prefer : str
+        What the fit prefers, from "accuracy" to "calm".
+    search : int, >= 0
+        Effort of a search beyond the samples; 0 does without.
 
     Raises
     ------
@@ -44,6 +48,8 @@ class DesignSettings:
     variant: str = "prior"
     steps: int = 4
     polish: int = 15
+    prefer: str = "balanced"
+    search: int = 0
 
     def __post_init__(self) -> None:
         grid = tuple(self.grid)
@@ -58,11 +64,14 @@ class DesignSettings:
             ("seed", self.seed, 0),
             ("number of steps", self.steps, 1),
             ("number of polishing steps", self.polish, 0),
+            ("effort of the search", self.search, 0),
         ):
             if not _is_whole(value) or value < lowest:
                 raise UsageError(f"The {name} must be a whole number from {lowest} on, got {value!r}.")
         if not isinstance(self.variant, str) or not self.variant:
             raise UsageError(f"The generator variant must be a name, got {self.variant!r}.")
+        if not isinstance(self.prefer, str) or not self.prefer:
+            raise UsageError(f"What the fit prefers must be a name, got {self.prefer!r}.")
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,7 +1,7 @@
 """Lift project files of older versions: one function per version, applied one after the other.
 
-``MIGRATIONS[v]`` takes the members of a version ``v`` file and returns those of version ``v + 1``.  Version 1 is the
-first, so the table is empty; a change of the format raises :data:`CURRENT_VERSION` and adds one entry, never edits one.
+``MIGRATIONS[v]`` takes the members of a version ``v`` file and returns those of version ``v + 1``.  A change of the
+format raises :data:`CURRENT_VERSION` and adds one entry, never edits one.
 """
 
 from __future__ import annotations
@@ -10,13 +10,14 @@ from collections.abc import Callable, Mapping
 from types import MappingProxyType
 
 from kirigami_studio.foundation.errors import ProjectError
+from kirigami_studio.project.migrations.from_1 import with_preference
 
 #: The members of a project file by name; the manifest is not among them.
 Members = Mapping[str, bytes]
 Migration = Callable[[Members], Members]
 
-CURRENT_VERSION = 1
-MIGRATIONS: Mapping[int, Migration] = MappingProxyType({})
+CURRENT_VERSION = 2
+MIGRATIONS: Mapping[int, Migration] = MappingProxyType({1: with_preference})
 
 
 def migrate(

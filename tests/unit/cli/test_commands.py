@@ -155,6 +155,20 @@ def test_that_unpolished_candidates_cost_one_evaluation_each(capsys: pytest.Capt
 
 
 @pytest.mark.torch
+def test_that_a_budget_is_kept_and_told(capsys: pytest.CaptureFixture[str]) -> None:
+    answered = answer(capsys, "design", "heart", "--k", 4, "--grid", "4x4", "--budget", 0.001, "--json")
+    assert answered["budget_ended"] is True
+    assert len(answered["candidates"]) == 4
+    assert "budget_ended" not in answer(capsys, "design", "heart", "--k", 1, "--grid", "4x4", "--json")
+
+
+@pytest.mark.torch
+def test_that_a_search_adds_a_candidate_to_the_samples(capsys: pytest.CaptureFixture[str]) -> None:
+    answered = answer(capsys, "design", "heart", "--k", 1, "--grid", "4x4", "--search", "--json")
+    assert sorted(candidate["index"] for candidate in answered["candidates"]) == [0, 1]
+
+
+@pytest.mark.torch
 def test_that_many_targets_are_designed_in_order(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["design", "circle", "drop", "--k", "1"]) == 0
     lines = [json.loads(line) for line in capsys.readouterr().out.splitlines()]
@@ -168,6 +182,7 @@ def test_that_many_targets_are_designed_in_order(capsys: pytest.CaptureFixture[s
         (1, ["design", "unicorn", "--k", "1"]),
         (1, ["design", "missing.png", "--k", "1"]),
         (2, ["design", "heart", "--k", "0"]),
+        (2, ["design", "heart", "--k", "1", "--search", "9"]),
         (2, ["design", "heart", "--grid", "1x1"]),
         (2, ["design", "heart", "--grid", "ten"]),
         (2, ["design", "heart", "--phi", "pi"]),

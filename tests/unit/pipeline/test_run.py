@@ -12,6 +12,7 @@ import pytest
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.errors import AngleError, Cancelled, GridError, UsageError
 from kirigami_studio.pipeline.events import CandidateFound, CandidateImproved, Finished, Progress, Started
+from kirigami_studio.pipeline.pool import Pool
 from kirigami_studio.pipeline.rank import ranked
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.pipeline.run import best_of, run
@@ -55,8 +56,8 @@ def test_that_an_infeasible_design_ranks_behind_a_worse_feasible_one(request_for
 
 def test_that_a_cancelled_run_stops_between_candidates(request_for_heart: Request) -> None:
     seen = []
-    with pytest.raises(Cancelled, match="8 of 12"):
-        seen.extend(run(replace(request_for_heart, k=12), cancel=lambda: len(seen) >= 4))
+    with pytest.raises(Cancelled, match="32 of 40"):
+        seen.extend(run(replace(request_for_heart, k=40), cancel=lambda: len(seen) >= 4))
     assert not any(isinstance(event, Finished) for event in seen)
 
 
@@ -84,6 +85,11 @@ def test_that_a_partly_deployed_target_is_scored_at_its_angle() -> None:
         ({"phi": -0.1}, AngleError),
         ({"phi": math.pi}, AngleError),
         ({"phi": math.nan}, AngleError),
+        ({"search": 9}, UsageError),
+        ({"search": True}, UsageError),
+        ({"budget_seconds": 0.0}, UsageError),
+        ({"budget_seconds": math.inf}, UsageError),
+        ({"budget_seconds": "soon"}, UsageError),
     ],
 )
 def test_that_impossible_requests_are_refused(request_for_heart: Request, changes: dict, error: type) -> None:
@@ -115,7 +121,67 @@ def test_that_improvements_are_reported_under_the_index_of_their_candidate(reque
     assert all(final[index] == candidate for index, candidate in improved.items())
 
 
+def test_that_all_candidates_get_their_first_steps_before_any_gets_more(request_for_heart: Request) -> None:
+    events = list(run(replace(request_for_heart, polish=12), pool=Pool(0)))
+    improved = [event.index for event in events if isinstance(event, CandidateImproved)]
+    assert sorted(improved[:4]) == [0, 1, 2, 3]
+    assert len(improved) > 4
+    progress = [event for event in events if isinstance(event, Progress) and event.message.startswith("Polishing")]
+    assert [event.done for event in progress] == sorted(event.done for event in progress)
+    assert (progress[-1].done, progress[-1].total) == (8, 8)
+
+
 def test_that_polishing_can_be_cancelled(request_for_heart: Request) -> None:
     seen = []
-    with pytest.raises(Cancelled, match="polishing candidate 1 of 4"):
-        seen.extend(run(replace(request_for_heart, polish=5), cancel=lambda: len(seen) >= 5))
+    with pytest.raises(Cancelled, match="while polishing, with 1 of 4 done"):
+        cancel = lambda: any(isinstance(event, CandidateImproved) for event in seen)  # noqa: E731
+        seen.extend(run(replace(request_for_heart, polish=5), cancel))
+
+
+def test_that_workers_and_one_process_give_the_same_result(request_for_heart: Request) -> None:
+    wish = replace(request_for_heart, k=6, polish=4)
+    pool = Pool(2)
+    pool.start()
+    while not pool.ready:
+        assert pool.usable
+    beside, alone = best_of(wish, pool=pool), best_of(wish, pool=Pool(0))
+    pool.close()
+    assert beside.candidates == alone.candidates
+    assert beside.forward_evaluations == alone.forward_evaluations
+
+
+def test_that_a_used_up_budget_returns_what_there_is(request_for_heart: Request) -> None:
+    best_of(request_for_heart)  # the generator is loaded and the target's tables are kept
+    hasty = best_of(replace(request_for_heart, polish=15, budget_seconds=1e-3))
+    assert hasty.budget_ended
+    assert len(hasty.candidates) == 4
+    assert not any(candidate.polished for candidate in hasty.candidates)
+    calm = best_of(replace(request_for_heart, polish=3, budget_seconds=600.0))
+    assert not calm.budget_ended
+    assert calm.candidates == best_of(replace(request_for_heart, polish=3)).candidates
+
+
+def test_that_a_budget_that_ends_during_scoring_returns_the_first_batch(request_for_heart: Request) -> None:
+    hasty = best_of(replace(request_for_heart, k=40, budget_seconds=1e-3))
+    assert hasty.budget_ended
+    assert sorted(candidate.index for candidate in hasty.candidates) == list(range(32))
+
+
+def test_that_a_search_adds_one_candidate_after_the_samples(request_for_heart: Request) -> None:
+    wish = Request(load("heart"), grid=(5, 5), k=2, polish=2, search=1)
+    events = list(run(wish, pool=Pool(0)))
+    found = [event for event in events if isinstance(event, CandidateFound)]
+    assert [event.index for event in found] == [0, 1, 2]
+    assert found[-1].candidate.polished
+    result = events[-1].result
+    assert len(result.candidates) == 3
+    assert result.best == found[-1].candidate
+    assert result.forward_evaluations > 100
+
+
+def test_that_a_search_can_be_cancelled(request_for_heart: Request) -> None:
+    wish = Request(load("heart"), k=1, search=8)
+    seen = []
+    cancel = lambda: any(isinstance(event, Progress) and "Searching" in event.message for event in seen)  # noqa: E731
+    with pytest.raises(Cancelled, match="while searching"):
+        seen.extend(run(wish, cancel, Pool(0)))

@@ -45,14 +45,15 @@ def _candidate(field: RatioField, index: int) -> Candidate:
         contact=contact,
         transform=Similarity(0.1234567890123, -0.7, (0.1, -0.2)),
     )
-    return Candidate(field, score, seed=11, index=index, polished=index == 2)
+    drawn = RatioField.uniform(4, 5) if index == 2 else None
+    return Candidate(field, score, seed=11, index=index, polished=index == 2, drawn=drawn)
 
 
 @pytest.fixture
 def document(pentagon: Outline, candidates: tuple[Candidate, ...]) -> Document:
     return Document(
         target=pentagon,
-        settings=DesignSettings(grid=(4, 5), phi=0.125, k=3, seed=11, variant="prior", steps=8, polish=5),
+        settings=DesignSettings((4, 5), 0.125, 3, 11, "prior", 8, 5, prefer="calm", search=2),
         candidates=candidates,
         chosen=1,
         fabrication=FabricationSettings(width_mm=120.0, connector_mm=0.35, kerf_mm=0.0),

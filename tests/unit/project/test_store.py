@@ -61,7 +61,7 @@ def test_that_equal_documents_give_equal_bytes(document: Document, tmp_path: Pat
 
 def test_that_the_manifest_names_format_and_versions(document: Document) -> None:
     manifest = json.loads(members_of(document)["manifest.json"])
-    assert manifest["version"] == 1
+    assert manifest["version"] == 2
     assert manifest["app_version"]
 
 
@@ -91,9 +91,26 @@ def test_that_another_kind_of_file_is_a_sentence(content: bytes, tmp_path: Path)
 
 def test_that_a_newer_project_asks_for_an_update(document: Document, tmp_path: Path) -> None:
     members = members_of(document)
-    members["manifest.json"] = members["manifest.json"].replace(b'"version": 1', b'"version": 2')
-    with pytest.raises(ProjectError, match=r"newer .*format 2.* up to 1.*update the program\.$"):
+    members["manifest.json"] = members["manifest.json"].replace(b'"version": 2', b'"version": 3')
+    with pytest.raises(ProjectError, match=r"newer .*format 3.* up to 2.*update the program\.$"):
         store.load(write_members(tmp_path / "newer.kiri", members))
+
+
+def test_that_a_project_of_the_first_format_opens_with_the_usual_preferences(
+    document: Document, tmp_path: Path
+) -> None:
+    members = members_of(document)
+    design = json.loads(members["design.json"])
+    del design["settings"]["prefer"], design["settings"]["search"]
+    for candidate in design["candidates"]:
+        del candidate["drawn"], candidate["trim"]
+    members["design.json"] = json.dumps(design).encode()
+    del members["drawn.npy"]
+    members["manifest.json"] = members["manifest.json"].replace(b'"version": 2', b'"version": 1')
+    opened = store.load(write_members(tmp_path / "old.kiri", members))
+    usual = replace(document.settings, prefer="balanced", search=0)
+    bare = tuple(replace(candidate, drawn=None) for candidate in document.candidates)
+    assert opened == replace(document, settings=usual, candidates=bare)
 
 
 def test_that_every_truncation_is_refused_or_whole(document: Document, tmp_path: Path) -> None:
@@ -178,7 +195,7 @@ def claiming(shape: str) -> bytes:
         (put("ratios.npy", array_file(np.ones((3, 1, 5)))), "1 x 5"),
         (with_nan, r"void \(2, 3\) is nan"),
         (edit("target", "points", to=[[0, 0], [1, 0]]), "Try an earlier copy"),
-        (edit("target", "points", to=[[0, 0], [1]]), "pairs"),
+        (edit("target", "points", to=[[0, 0], [1]]), "not a table of numbers"),
         (edit("target", "points", to="round"), "must be a list"),
         (edit("target", "name", to=3), "must be a text, got 3"),
         (edit("target", to=None), "target"),
@@ -195,7 +212,12 @@ def claiming(shape: str) -> bytes:
         (edit("candidates", 1, "score", "siou", to=None), r"score.siou must be a number"),
         (edit("candidates", 1, "score", "contact", "where", to=[1]), "where must be two numbers"),
         (edit("candidates", 1, "score", "transform", "scale", to=-1.0), "positive scale"),
-        (edit("candidates", 1, "score", to={}), "lacks 'transform'"),
+        (edit("candidates", 1, "score", to={}), "lacks 'siou'"),
+        (edit("candidates", 1, "score", "transform", to={}), "lacks 'scale'"),
+        (edit("candidates", 1, "drawn", to=True), "must hold 2 tables"),
+        (edit("candidates", 0, "trim", to={"ratio": [[1, "x"]]}), "trim.ratio is not a table of numbers"),
+        (edit("settings", "prefer", to=3), "must be a text, got 3"),
+        (drop("drawn.npy"), "lacks drawn.npy"),
         (edit("provenance", to={"model": 3}), "table of texts"),
         (edit("settings", to={}), "lacks"),
     ],
@@ -232,7 +254,7 @@ def test_that_a_file_beyond_any_project_is_refused_unread(tmp_path: Path) -> Non
 
 def test_that_too_many_members_and_foreign_packing_are_refused(document: Document, tmp_path: Path) -> None:
     crowd = members_of(document) | {f"extra{k}": b"" for k in range(20)}
-    with pytest.raises(ProjectError, match="23 members"):
+    with pytest.raises(ProjectError, match="24 members"):
         store.load(write_members(tmp_path / "crowd.kiri", crowd))
     with zipfile.ZipFile(tmp_path / "lzma.kiri", "w", zipfile.ZIP_LZMA) as archive:
         archive.writestr("manifest.json", members_of(document)["manifest.json"])

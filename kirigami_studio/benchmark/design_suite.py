@@ -1,0 +1,117 @@
+"""What the whole program makes of a set of targets: best of K, polished, searched for and trimmed, shape by shape."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from kirigami_studio.benchmark.generator_suite import SUCCESS_SIOU, bootstrap_interval
+from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.pipeline.rank import rank_key
+from kirigami_studio.pipeline.request import Request
+from kirigami_studio.pipeline.run import best_of
+from kirigami_studio.target.outline import Outline
+
+
+@dataclass(frozen=True, slots=True)
+class Made:
+    """The best design for one target.
+
+    Attributes
+    ----------
+    target : Outline
+    request : Request
+        The one of several grids that made it.
+    best : Candidate
+    seconds : float
+        Wall time of all grids together.
+    evaluations : int
+    """
+
+    target: Outline
+    request: Request
+    best: Candidate
+    seconds: float
+    evaluations: int
+
+
+def make_designs(
+    requests: Sequence[Sequence[Request]], report: Callable[[int, int], None] = lambda done, total: None
+) -> list[Made]:
+    """Carry out the requests for each target, one for each grid it may have, and keep the best design.
+
+    The best is the first by the order of :mod:`kirigami_studio.pipeline.rank`; on grids that rank alike, the first.
+    """
+    made = []
+    for number, choices in enumerate(requests):
+        results = [best_of(request) for request in choices]
+        best = min(results, key=lambda result: rank_key(result.best)[:-1])
+        made.append(
+            Made(
+                best.request.target,
+                best.request,
+                best.best,
+                sum(result.seconds for result in results),
+                sum(result.forward_evaluations for result in results),
+            )
+        )
+        report(number + 1, len(requests))
+    return made
+
+
+def design_figures(made: Sequence[Made]) -> dict[str, object]:
+    """Figures over all targets, and one line for each.
+
+    Returns
+    -------
+    figures : dict
+        ``iou_exact`` and, where designs were trimmed, ``trimmed_iou``, each with its bootstrap 95 % interval over
+        targets, the worst and its name; ``siou``, ``uniform_iou``, ``success`` (sIoU >= 0.85 and feasible), ``tv``,
+        ``seconds`` a target, and ``shapes``: the same for each by name.
+    """
+    scores = [one.best.score for one in made]
+    figures: dict[str, object] = {
+        "targets": len(made),
+        **_summary("iou_exact", [score.iou_exact for score in scores], made),
+        "siou": float(np.mean([score.siou for score in scores])),
+        "uniform_iou": float(np.mean([score.uniform_iou for score in scores])),
+        "success": float(np.mean([score.siou >= SUCCESS_SIOU and score.feasible for score in scores])),
+        "tv": float(np.mean([score.tv for score in scores])),
+        "seconds": float(np.mean([one.seconds for one in made])),
+        "evaluations": float(np.mean([one.evaluations for one in made])),
+    }
+    trimmed = [one.best.trim.iou for one in made if one.best.trim is not None]
+    if len(trimmed) == len(made):
+        figures |= _summary("trimmed_iou", trimmed, made)
+    figures["shapes"] = {one.target.name: shape_figures(one) for one in made}
+    return figures
+
+
+def shape_figures(one: Made) -> dict[str, object]:
+    """The line of one target."""
+    score = one.best.score
+    line: dict[str, object] = {
+        "grid": f"{one.request.grid[0]}x{one.request.grid[1]}",
+        "iou_exact": score.iou_exact,
+        "siou": score.siou,
+        "uniform_iou": score.uniform_iou,
+        "tv": score.tv,
+        "feasible": score.feasible,
+        "seconds": one.seconds,
+    }
+    if one.best.trim is not None:
+        line |= {"trimmed_iou": one.best.trim.iou, "removed_share": one.best.trim.removed_share}
+    return line
+
+
+def _summary(name: str, values: Sequence[float], made: Sequence[Made]) -> dict[str, object]:
+    exact = np.array(values)
+    worst = int(exact.argmin())
+    return {
+        name: float(exact.mean()),
+        f"{name}_interval": bootstrap_interval(exact),
+        f"{name}_worst": float(exact[worst]),
+        f"{name}_worst_name": made[worst].target.name,
+    }

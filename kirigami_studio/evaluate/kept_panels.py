@@ -1,0 +1,245 @@
+"""What stays of each edge panel when the sheet is trimmed: the target's part, and material around every hinge.
+
+All panels are looked at together, each in the compact sheet's own frame (the target is carried there by the panel's
+rigid motion), so that the sides of untouched panels stay exactly where the cuts are.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+from itertools import combinations
+
+import numpy as np
+import numpy.typing as npt
+import shapely
+from shapely.geometry import LineString, MultiPolygon, Polygon
+from shapely.geometry.base import BaseGeometry
+
+from kirigami_studio.evaluate.similarity import FloatArray
+from kirigami_studio.lattice.topology import BoolArray, IntArray, topology
+
+GeometryArray = npt.NDArray[np.object_]
+
+#: Vertices are snapped to this grid (unit cells), so that neighbours share them.
+GRID = 1e-9
+#: Removed parts thinner than this (unit cells) are not worth a cut and stay.
+SLIVER = 0.01
+#: Material narrower than twice this share of ``keep`` does not count as a connection.  The widest disc in the material
+#: that is kept around a hinge alone has a radius of at least 0.41 ``keep``.
+NECK = 0.3
+#: Corners sharper than 2 asin(1 / MITRE) = 23 degrees are blunted where necks are looked for.
+MITRE = 5.0
+#: A hinge keeps material as far as ``keep / sin`` of its corner angle, at most so many times ``keep``.
+FARTHEST = 4.0
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class EdgePanels:
+    """The panels along the sheet's edge, row by row.
+
+    Attributes
+    ----------
+    index : (E,) int
+        Number of each in the row-major order of all panels.
+    corners : (E, 4) int
+        Nodes: top, left, bottom, right.
+    hinged : (E, 4) bool
+        Corners where a neighbour hangs.
+    even : (E,) bool
+        Panels with I + J even: they turn by -a when the sheet opens, the others by +a.
+    """
+
+    index: IntArray
+    corners: IntArray
+    hinged: BoolArray
+    even: BoolArray
+
+
+@cache
+def edge_panels(rows: int, columns: int) -> EdgePanels:
+    """The (cached) edge panels of an m x n grid."""
+    line, place = (axis.ravel() for axis in np.indices((rows + 1, columns + 1)))
+    hinged = np.stack([line > 0, place > 0, line < rows, place < columns], axis=1)
+    index = np.flatnonzero(~hinged.all(axis=1))
+    corners = topology(rows, columns).panel_nodes.reshape(-1, 4)[index]
+    return EdgePanels(index, corners, hinged[index], (line + place)[index] % 2 == 0)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class KeptPanels:
+    """What stays of the edge panels, in the compact sheet's frame.
+
+    Attributes
+    ----------
+    shapes : (E,) Polygon or None
+        None where a panel stays whole.
+    removed : (E,) float, unit cells squared
+    lost : (E,) float, unit cells squared
+        Removed area that lies on the target: pieces that hang on no hinge.
+    """
+
+    shapes: GeometryArray
+    removed: FloatArray
+    lost: FloatArray
+
+
+def kept_panels(corners: FloatArray, hinged: BoolArray, targets: GeometryArray, keep: float) -> KeptPanels:
+    """Trim panels to a target and keep their hinges together.
+
+    Parameters
+    ----------
+    corners : (E, 4, 2) float, unit cells
+    hinged : (E, 4) bool
+    targets : (E,) Polygon
+        The target in each panel's frame.
+    keep : float, unit cells
+        Depth of the material that stays at every hinge.
+    """
+    panels = polygons(corners)
+    common = _common(panels, targets)
+    area, inside = shapely.area(panels), shapely.area(common)
+    shapes = np.full(len(panels), None, dtype=object)
+    for k in np.flatnonzero(inside < area - SLIVER * SLIVER):
+        around = _around_hinges(panels[k], corners[k], hinged[k], keep)
+        wanted = _without_slivers(panels[k], _united(common[k], around.all))
+        if wanted is not None:
+            shapes[k] = _in_one_piece(panels[k], wanted, around, keep)
+    return _measured(panels, common, shapes)
+
+
+def _measured(panels: GeometryArray, common: GeometryArray, shapes: GeometryArray) -> KeptPanels:
+    area, inside = shapely.area(panels), shapely.area(common)
+    removed, lost = np.zeros(len(panels)), np.zeros(len(panels))
+    cut = np.flatnonzero([shape is not None for shape in shapes])
+    if len(cut):
+        removed[cut] = area[cut] - shapely.area(shapes[cut])
+        lost[cut] = inside[cut] - shapely.area(shapely.intersection(shapes[cut], common[cut], grid_size=GRID))
+    return KeptPanels(shapes, removed, np.maximum(lost, 0.0))
+
+
+def polygons(corners: FloatArray) -> GeometryArray:
+    """Polygons (E,) with the given vertices (E, P, 2), snapped to the grid."""
+    snapped: GeometryArray = shapely.set_precision(np.asarray(shapely.polygons(corners), dtype=object), GRID)
+    return snapped
+
+
+def with_pockets(kept: KeptPanels, corners: FloatArray, targets: GeometryArray, whole: BaseGeometry) -> KeptPanels:
+    """Give back what no cut along one outline can take: places that the kept parts enclose in the compact sheet.
+
+    Parameters
+    ----------
+    kept : KeptPanels
+    corners, targets
+        As for :func:`kept_panels`.
+    whole : geometry
+        The sheet without its edge panels.
+    """
+    panels = polygons(corners)
+    present = [shape if shape is not None else panel for shape, panel in zip(kept.shapes, panels, strict=True)]
+    sheet = _united(*present, whole)
+    outer = max(shapely.get_parts(sheet), key=lambda part: float(part.area))
+    pockets = [Polygon(ring) for ring in outer.interiors if Polygon(ring).area > GRID]
+    if not pockets:
+        return kept
+    filling = _united(*pockets)
+    shapes = kept.shapes.copy()
+    for k in np.flatnonzero([shape is not None and shape.distance(filling) < GRID for shape in shapes]):
+        shapes[k] = _solid(_united(shapes[k], _shared(panels[k], filling)))
+    return _measured(panels, _common(panels, targets), shapes)
+
+
+def _common(panels: GeometryArray, targets: GeometryArray) -> GeometryArray:
+    common = shapely.intersection(panels, targets, grid_size=GRID)
+    areas: GeometryArray = np.array([_areas(shape) for shape in common], dtype=object)
+    return areas
+
+
+def _united(*shapes: BaseGeometry) -> BaseGeometry:
+    return _areas(shapely.union_all(np.array(shapes, dtype=object), grid_size=GRID))
+
+
+def _shared(shape: BaseGeometry, other: BaseGeometry) -> BaseGeometry:
+    return _areas(shape.intersection(other, grid_size=GRID))
+
+
+def _less(shape: BaseGeometry, other: BaseGeometry) -> BaseGeometry:
+    return _areas(shape.difference(other, grid_size=GRID))
+
+
+def _areas(shape: BaseGeometry) -> BaseGeometry:
+    """The shape without the points and lines in which two areas touch."""
+    if shape.geom_type != "GeometryCollection":
+        return shape if shape.area > 0.0 else Polygon()
+    parts = shapely.get_parts(shape)
+    return MultiPolygon(list(parts[shapely.area(parts) > 0.0]))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Around:
+    """Material around the hinges of one panel: one part for each, and all of it; ``points`` (H, 2) are the hinges."""
+
+    points: FloatArray
+    parts: GeometryArray
+    all: BaseGeometry
+
+
+def _around_hinges(panel: Polygon, corners: FloatArray, hinged: BoolArray, keep: float) -> _Around:
+    before, after = np.roll(corners, 1, axis=0) - corners, np.roll(corners, -1, axis=0) - corners
+    cross = np.abs(before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0])
+    sine = cross / np.maximum(np.hypot(*before.T) * np.hypot(*after.T), GRID)
+    reach = keep * np.minimum(FARTHEST, 1.0 / np.maximum(sine, GRID))
+    points = corners[hinged]
+    discs = shapely.buffer(shapely.points(points), reach[hinged])
+    parts = _common(discs, np.full(len(discs), panel))
+    return _Around(points, parts, _united(*parts))
+
+
+def _without_slivers(panel: Polygon, wanted: BaseGeometry) -> BaseGeometry | None:
+    """``wanted`` with the thin rests of the panel given back, or None when nothing thicker is to be removed."""
+    rests = shapely.get_parts(_less(panel, wanted))
+    thin = shapely.is_empty(shapely.buffer(rests, -0.5 * SLIVER))
+    if np.all(thin):
+        return None
+    return _united(wanted, *rests[thin])
+
+
+def _in_one_piece(panel: Polygon, wanted: BaseGeometry, around: _Around, keep: float) -> Polygon | None:
+    """The piece with all hinges on it, strips added between them if need be; None where the panel is too thin."""
+    if np.any(shapely.is_empty(_core(around.parts, keep))):
+        return None
+    holding = _holding(wanted, around, keep)
+    for strip in _strips(panel, wanted, around, keep) if len(holding) > 1 else ():
+        wanted = _united(wanted, strip)
+        holding = _holding(wanted, around, keep)
+        if len(holding) == 1:
+            break
+    grown = shapely.union_all(shapely.buffer(holding, 1.001 * NECK * keep, join_style="mitre", mitre_limit=MITRE))
+    return _solid(_united(_shared(wanted, grown), around.all))
+
+
+def _strips(panel: Polygon, wanted: BaseGeometry, around: _Around, keep: float) -> list[BaseGeometry]:
+    """Straight connections between hinges, those first that add least."""
+    pairs = combinations(range(len(around.points)), 2)
+    strips = [_shared(LineString(around.points[list(pair)]).buffer(keep), panel) for pair in pairs]
+    return sorted(strips, key=lambda strip: float(_less(strip, wanted).area))
+
+
+def _core(shapes: GeometryArray | BaseGeometry, keep: float) -> GeometryArray | BaseGeometry:
+    """What is left when necks and slivers have shrunk to nothing."""
+    core: GeometryArray | BaseGeometry = shapely.buffer(shapes, -NECK * keep, join_style="mitre", mitre_limit=MITRE)
+    return core
+
+
+def _holding(wanted: BaseGeometry, around: _Around, keep: float) -> GeometryArray:
+    """Pieces of the core of ``wanted`` that hold hinges."""
+    pieces = shapely.get_parts(_core(wanted, keep))
+    hinges = shapely.union_all(_core(around.parts, keep))
+    held: GeometryArray = pieces[shapely.intersects(pieces, hinges)]
+    return held
+
+
+def _solid(shape: BaseGeometry) -> Polygon:
+    """The largest part without its holes."""
+    largest = max(shapely.get_parts(shape), key=lambda part: float(part.area))
+    return shapely.set_precision(Polygon(largest.exterior), GRID)

@@ -1,0 +1,205 @@
+"""Trimming: cut the edge panels along the target in the deployed state, and carry what stays back to the sheet.
+
+Panels are rigid, so a cut along the target at the target angle is a cut in the compact sheet.  Hinges cannot be cut:
+around each of them material stays, and a panel stays in one piece with all its hinges.  Panels inside the sheet are
+never touched.  A trimmed score is another number than an untrimmed one; both are kept apart.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+from shapely.geometry import Polygon
+from shapely.geometry.base import BaseGeometry
+
+from kirigami_studio.evaluate.boundary import PlaneArray, as_plane, as_points
+from kirigami_studio.evaluate.kept_panels import (
+    GRID,
+    EdgePanels,
+    KeptPanels,
+    edge_panels,
+    kept_panels,
+    polygons,
+    with_pockets,
+)
+from kirigami_studio.evaluate.similarity import FloatArray, Similarity
+from kirigami_studio.foundation.errors import Cancelled, KirigamiError, UsageError
+from kirigami_studio.lattice.deployment import Deployment, check_phi
+from kirigami_studio.lattice.ratio_field import RatioField, frozen
+from kirigami_studio.lattice.topology import BoolArray
+from kirigami_studio.target.outline import Outline
+
+#: Depth (unit cells) of the material that stays at every hinge unless something else is asked for.
+KEEP = 0.15
+#: Between these depths hinges are held and panels can still be trimmed.
+SMALLEST_KEEP, LARGEST_KEEP = 0.02, 0.4
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Trim:
+    """A trimmed design.
+
+    Attributes
+    ----------
+    field : RatioField
+    phi : float, radians
+        The angle at which the panels were cut.
+    pose : Similarity
+        Layout frame at ``phi`` to target frame.
+    keep : float, unit cells
+        Depth of the material that stays at every hinge.
+    kept : tuple of (P, 2) float or None, unit cells
+        What stays of every panel, row by row, in the compact sheet's frame, counter-clockwise; None for a whole one.
+    iou : float, 0..1
+        Exact IoU of the trimmed silhouette with the target.
+    untrimmed_iou : float, 0..1
+        The same of the whole silhouette in the same pose.
+    removed_share : float, 0..1
+        Removed part of the sheet's area.
+    """
+
+    field: RatioField
+    phi: float
+    pose: Similarity
+    keep: float
+    kept: tuple[FloatArray | None, ...]
+    iou: float
+    untrimmed_iou: float
+    removed_share: float
+
+    def compact(self, deployment: Deployment) -> list[FloatArray]:
+        """What stays of every panel in the compact sheet, whole ones included: list of (P, 2) float, unit cells."""
+        corners = deployment.compact[deployment.topology.panel_nodes.reshape(-1, 4)]
+        return [whole if part is None else part for part, whole in zip(self.kept, corners, strict=True)]
+
+    def deployed(self, deployment: Deployment, phi: float) -> list[FloatArray]:
+        """The same at any angle, in the layout's frame: list of (P, 2) float, unit cells, one for each panel."""
+        nodes = deployment.topology.panel_nodes
+        line, place = np.indices(nodes.shape[:2])
+        turn = _turn(((line + place) % 2 == 0).ravel(), phi)
+        anchors = nodes.reshape(-1, 4)[:, 0]
+        start, end = as_plane(deployment.compact)[anchors], as_plane(deployment.nodes(phi))[anchors]
+        parts = self.compact(deployment)
+        return [as_points((as_plane(p) - a) * t + b) for p, a, t, b in zip(parts, start, turn, end, strict=True)]
+
+
+def trim(
+    deployment: Deployment,
+    target: Outline,
+    phi: float,
+    pose: Similarity,
+    keep: float = KEEP,
+    cancel: Callable[[], bool] = lambda: False,
+) -> Trim:
+    """Trim a design to a target.
+
+    Parameters
+    ----------
+    deployment : Deployment
+    target : Outline
+    phi : float, radians, in [0, pi]
+    pose : Similarity
+        Layout frame at ``phi`` to target frame.
+    keep : float, unit cells, 0.02 to 0.4
+        Depth of the material that stays at every hinge, square to the cut that the hinge rests on.
+    cancel : callable
+        Asked on the way.
+
+    Raises
+    ------
+    AngleError, UsageError
+        An angle or a depth that makes no sense.
+    KirigamiError
+        The outline crosses itself at ``phi``: what is outside cannot be told.
+    Cancelled
+        ``cancel`` said so.
+    """
+    phi, keep = check_phi(phi), check_keep(keep)
+    sheet = Polygon(deployment.outline(phi))
+    if not sheet.is_valid:
+        raise KirigamiError("This layout crosses itself at the target angle, so it cannot be trimmed; choose another.")
+    place = Polygon(pose.inverse().apply(target.points))
+    panels = edge_panels(deployment.field.rows, deployment.field.columns)
+    corners = deployment.compact[panels.corners]
+    targets = polygons(as_points(_brought_back(deployment, panels, phi, shapely.get_coordinates(place)[:-1])))
+    _stop_if(cancel)
+    kept = kept_panels(corners, panels.hinged, targets, keep)
+    _stop_if(cancel)
+    kept = with_pockets(kept, corners, targets, _inside(deployment, panels))
+    shared = sheet.intersection(place).area
+    parts: list[FloatArray | None] = [None] * deployment.topology.panel_nodes[..., 0].size
+    for index, shape in zip(panels.index, kept.shapes, strict=True):
+        parts[index] = None if shape is None else frozen(_ring(shape))
+    return Trim(
+        field=deployment.field,
+        phi=phi,
+        pose=pose,
+        keep=keep,
+        kept=tuple(parts),
+        iou=_iou(shared, sheet.area, place.area, kept),
+        untrimmed_iou=float(shared / (sheet.area + place.area - shared)),
+        removed_share=float(kept.removed.sum() / np.prod(np.ptp(deployment.compact, axis=0))),
+    )
+
+
+def check_keep(keep: float) -> float:
+    """Return the depth as a float, or refuse it.
+
+    Raises
+    ------
+    UsageError
+        Not a number from 0.02 to 0.4 cells.
+    """
+    try:
+        depth = float(keep)
+    except (TypeError, ValueError):
+        depth = math.nan
+    if not SMALLEST_KEEP <= depth <= LARGEST_KEEP:
+        raise UsageError(
+            f"The material kept at hinges must be {SMALLEST_KEEP:g} to {LARGEST_KEEP:g} cells deep, got {keep!r}."
+        )
+    return depth
+
+
+def _iou(shared: float, sheet: float, target: float, kept: KeptPanels) -> float:
+    """Of the outline less what was removed: interior voids count as filled, as in every silhouette."""
+    both = shared - float(kept.lost.sum())
+    return float(both / (target + sheet - float(kept.removed.sum()) - both))
+
+
+def _turn(even: BoolArray, phi: float) -> PlaneArray:
+    """By what panels turn on the way from the compact sheet, as complex factors."""
+    half = 0.5 * (math.pi - phi)
+    turn: PlaneArray = np.exp(1j * np.where(even, -half, half))
+    return turn
+
+
+def _brought_back(deployment: Deployment, panels: EdgePanels, phi: float, points: FloatArray) -> PlaneArray:
+    """Points (T, 2) of the layout's frame at ``phi``, carried to the compact sheet with each edge panel: (E, T)."""
+    anchors = panels.corners[:, 0]
+    start, end = as_plane(deployment.nodes(phi))[anchors], as_plane(deployment.compact)[anchors]
+    back = np.conj(_turn(panels.even, phi))
+    carried: PlaneArray = (as_plane(points) - start[:, None]) * back[:, None] + end[:, None]
+    return carried
+
+
+def _inside(deployment: Deployment, panels: EdgePanels) -> BaseGeometry:
+    """All panels that are not at the edge, as one area of the compact sheet."""
+    corners = deployment.compact[deployment.topology.panel_nodes.reshape(-1, 4)]
+    rest = np.delete(corners, panels.index, axis=0)
+    united: BaseGeometry = shapely.union_all(polygons(rest), grid_size=GRID)
+    return united
+
+
+def _ring(shape: Polygon) -> FloatArray:
+    """Vertices (P, 2), counter-clockwise, first not repeated."""
+    return shapely.get_coordinates(shapely.orient_polygons(shape).exterior)[:-1]
+
+
+def _stop_if(cancel: Callable[[], bool]) -> None:
+    if cancel():
+        raise Cancelled("Trimming was stopped.")

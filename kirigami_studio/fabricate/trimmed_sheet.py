@@ -1,0 +1,289 @@
+"""The sheet whose edge panels were trimmed: its outline, and what remains of every cut inside it.
+
+Cuts remain where there is material on both sides of them.  Gaps narrower than the kerf, which the outline cannot
+follow, count as material: there the cut goes on until it meets the outline.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import product
+
+import numpy as np
+import numpy.typing as npt
+import shapely
+from shapely.geometry import LineString, Point, Polygon
+from shapely.geometry.base import BaseGeometry
+
+from kirigami_studio.fabricate.finished_sheet import overlap_length
+from kirigami_studio.fabricate.slits import CutTable
+from kirigami_studio.foundation.errors import FabricationError
+from kirigami_studio.lattice.deployment import Deployment
+from kirigami_studio.lattice.ratio_field import FloatArray
+
+#: Vertices are snapped to this grid (mm), a hundredth of what plans are rounded to.
+GRID_MM = 1e-6
+#: Vertices of the outline that are off a straight line by less (mm) are left out, and with them all shorter edges: an
+#: edge that a cut crosses must be long enough to tell crossing from running along, see ``finished_sheet.SAME_LINE_MM``.
+STRAIGHT_MM = 5e-3
+#: Cuts end this far (mm) inside the material where they leave it.
+INSIDE_MM = 8e-3
+#: Gaps and spikes narrower than twice this (mm) are filled and removed whatever the kerf.
+HAIR_MM = 1e-2
+#: Corners of the material sharper than 2 asin(1 / MITRE) = 23 degrees get a blunt outline around them.
+MITRE = 5.0
+#: Directions (degrees from straight on) in which a cut may leave the material.
+WAYS_OUT = (0, 15, -15, 30, -30, 45, -45, 60, -60, 75, -75, 90, -90, 105, -105, 120, -120, 135, -135, 150, -150)
+#: A way out ends at least this share of the overcut away from the outline; the second share is for narrow notches.
+CLEAR_SHARES = (0.5, 0.1)
+#: Overcuts are halved up to so many times where there is no room for them.
+HALVINGS = 4
+#: What is kept at hinges is bounded by polygons instead of circles and loses less than this share of its depth.
+ROUND_SHARE = 1.01
+#: Directions in which a notch is longer than so many kerfs (and the overcut) are no way out of it.
+LONGEST_NOTCH = 15.0
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class CutPiece:
+    """What remains of one cut.
+
+    Attributes
+    ----------
+    cut : int
+        Number in :class:`CutTable`.
+    points : (P, 2) float, mm
+    opens : bool
+        Whether it crosses the outline; it then begins outside.
+    """
+
+    cut: int
+    points: FloatArray
+    opens: bool
+
+
+def kept_area(deployment: Deployment, kept: Sequence[FloatArray | None], width_mm: float) -> Polygon:
+    """The material of a trimmed sheet, in mm, with the untrimmed sheet's bottom left corner at (0, 0).
+
+    Parameters
+    ----------
+    deployment : Deployment
+    kept : sequence of (P, 2) float or None, unit cells
+        What stays of every panel, row by row, in the compact sheet's frame; None for a whole one.
+    width_mm : float
+        Width of the untrimmed sheet.
+
+    Raises
+    ------
+    FabricationError
+        Not one part for each panel, or parts that do not hang together.
+    """
+    corners = deployment.compact[deployment.topology.panel_nodes.reshape(-1, 4)]
+    if len(kept) != len(corners):
+        raise FabricationError(f"This sheet has {len(corners)} panels, but {len(kept)} trimmed ones were given.")
+    low, high = deployment.compact.min(axis=0), deployment.compact.max(axis=0)
+    scale = width_mm / (high[0] - low[0])
+    parts = [whole if part is None else part for part, whole in zip(kept, corners, strict=True)]
+    panels = [Polygon((part - low) * scale) for part in parts]
+    united = shapely.get_parts(shapely.union_all(panels, grid_size=GRID_MM))
+    areas = [Polygon(part.exterior) for part in united if isinstance(part, Polygon) and part.area > INSIDE_MM**2]
+    if len(areas) != 1:
+        raise FabricationError(f"The trimmed sheet falls into {len(areas)} parts; keep more material at the hinges.")
+    return areas[0]
+
+
+def outline_around(area: Polygon, kerf_mm: float) -> Polygon:
+    """What the centre line of the outline cut encloses: the material grown by half a kerf, gaps within it closed."""
+    closed = _grown(_grown(area, max(0.5 * kerf_mm, HAIR_MM)), -max(0.5 * kerf_mm, HAIR_MM))
+    smooth = _grown(_grown(Polygon(closed.exterior), -HAIR_MM), HAIR_MM + 0.5 * kerf_mm)
+    outline = shapely.simplify(Polygon(smooth.exterior), STRAIGHT_MM)
+    return Polygon(_largest(shapely.set_precision(outline, GRID_MM)).exterior)
+
+
+def _grown(area: Polygon, width_mm: float) -> Polygon:
+    return _largest(shapely.buffer(area, width_mm, join_style="mitre", mitre_limit=MITRE))
+
+
+def remaining_cuts(
+    lines: FloatArray, table: CutTable, outline: Polygon, kerf_mm: float, overcut_mm: float
+) -> list[CutPiece]:
+    """What remains of the cuts of the whole sheet.
+
+    Parameters
+    ----------
+    lines : (C, 2, 2) float, mm
+        Shortened cuts; edge cuts begin at the untrimmed sheet's edge.
+    table : CutTable
+    outline : Polygon, mm
+        As returned by :func:`outline_around`.
+    kerf_mm, overcut_mm : float
+
+    Raises
+    ------
+    FabricationError
+        A hinge has lost the material that its connector needs.
+    """
+    inside = shapely.buffer(outline, -(0.5 * kerf_mm + INSIDE_MM))
+    shapely.prepare(inside)
+    tips = np.zeros((table.cut_count, 2), dtype=np.bool_)
+    tips[table.hinge_cut, table.hinge_end] = True
+    pieces: list[CutPiece] = []
+    for cut, line in enumerate(lines):
+        held = np.zeros(2, dtype=np.bool_)
+        for part in _parts_inside(line, inside):
+            at_end = np.array([np.linalg.norm(part[end] - line[end]) < GRID_MM for end in (0, 1)]) & tips[cut]
+            held |= at_end
+            pieces.append(_opened(cut, part, at_end, outline, kerf_mm, overcut_mm))
+        if np.any(lost := tips[cut] & ~held):
+            x, y = line[int(np.argmax(lost))]
+            raise FabricationError(
+                f"Trimming leaves too little material for the connector at x = {x:.2f}, y = {y:.2f} mm; keep more at "
+                f"the hinges when trimming, make the sheet wider or the connectors narrower."
+            )
+    return pieces
+
+
+def needed_keep(deployment: Deployment, width_mm: float, connector_mm: float, kerf_mm: float) -> float:
+    """Depth (unit cells) of material at the hinges that a sheet of this width (mm) needs for its connectors."""
+    low, high = deployment.compact.min(axis=0), deployment.compact.max(axis=0)
+    depth = ROUND_SHARE * (connector_mm + kerf_mm) + 2.0 * INSIDE_MM
+    return depth * float(high[0] - low[0]) / width_mm
+
+
+def _parts_inside(line: FloatArray, inside: BaseGeometry) -> list[FloatArray]:
+    """Stretches (2, 2) of a line in an area, from its start to its end."""
+    if shapely.covers(inside, LineString(line)):
+        return [line]
+    along = line[1] - line[0]
+    parts = shapely.get_parts(shapely.intersection(LineString(line), inside))
+    stretches = [shapely.get_coordinates(part)[[0, -1]] for part in parts if part.length > GRID_MM]
+    directed = [part if np.dot(part[1] - part[0], along) > 0.0 else part[::-1] for part in stretches]
+    return sorted(directed, key=lambda part: float(np.dot(part[0] - line[0], along)))
+
+
+def _opened(
+    cut: int, part: FloatArray, at_tip: FloatArray, outline: Polygon, kerf_mm: float, overcut_mm: float
+) -> CutPiece:
+    """The stretch, lengthened over the outline at the ends that are no tips."""
+    points = [part[0], part[1]]
+    if not at_tip[1]:
+        points = [*points[:-1], *_way_out(part[1], part[1] - part[0], outline, kerf_mm, overcut_mm)]
+    if not at_tip[0]:
+        points = [*_way_out(part[0], part[0] - part[1], outline, kerf_mm, overcut_mm)[::-1], *points[1:]]
+    if at_tip[0] and not at_tip[1]:
+        points = points[::-1]
+    return CutPiece(cut, np.array(points), not bool(at_tip.all()))
+
+
+def _way_out(
+    mouth: FloatArray, heading: FloatArray, outline: Polygon, kerf_mm: float, overcut_mm: float
+) -> list[FloatArray]:
+    """How a cut goes on from its last place inside: straight over the outline, or by a turn at ``mouth``."""
+    straight = math.atan2(heading[1], heading[0])
+    angles = straight + np.radians(WAYS_OUT)
+    ways = np.stack([np.cos(angles), np.sin(angles)], axis=1)
+    reach = LONGEST_NOTCH * kerf_mm + overcut_mm
+    left = _lengths_inside(mouth, ways * reach, outline)
+    known = np.isfinite(left)
+    known[known] = _along_gap(mouth, ways[known] * left[known, None], outline, kerf_mm)
+    turned, ways, left = np.array(WAYS_OUT)[known], ways[known], left[known]
+    for share, halving in product(CLEAR_SHARES, range(HALVINGS + 1) if len(ways) else ()):
+        overcut = overcut_mm / 2**halving
+        ends = mouth + ways * (left + overcut)[:, None]
+        again = _lengths_inside(ends, -ways * overcut * (1.0 - 1e-6), outline) > 0.0
+        clear = shapely.distance(shapely.points(ends), outline)
+        clear[again] = 0.0
+        good = np.flatnonzero(clear >= share * overcut)
+        # Straight on if that is possible; of the ways that come out equally clear, the shortest.
+        rank = np.where(turned[good] == 0, -np.inf, 0.1 * left[good] - clear[good])
+        for way in good[np.argsort(rank, kind="stable")]:
+            line = LineString([mouth, ends[way]])
+            if overlap_length([shapely.intersection(outline.exterior, line.buffer(overcut)), line]) < GRID_MM:
+                return [ends[way]] if turned[way] == 0 else [mouth, ends[way]]
+    return [mouth, *_into_notch(mouth, outline, overcut_mm)]
+
+
+def _into_notch(mouth: FloatArray, outline: Polygon, overcut_mm: float) -> list[FloatArray]:
+    """From the corner of the outline nearest to a mouth half way between the two sides of the notch that begins there.
+
+    In the sharpest notches any other way would run along a side.
+    """
+    ring = shapely.get_coordinates(outline.exterior)[:-1]
+    corner = int(np.argmin(np.linalg.norm(ring - mouth, axis=1)))
+    sides = np.stack([ring[corner - 1], ring[(corner + 1) % len(ring)]]) - ring[corner]
+    middle = (sides / np.linalg.norm(sides, axis=1)[:, None]).sum(axis=0)
+    end = ring[corner] + middle / np.linalg.norm(middle) * overcut_mm
+    crossed = shapely.intersection(LineString([ring[corner] + 0.1 * (end - ring[corner]), end]), outline.exterior)
+    if not shapely.is_empty(crossed):
+        end = ring[corner] + 0.5 * (shapely.get_coordinates(crossed)[0] - ring[corner])
+    return [ring[corner], end]
+
+
+def _along_gap(mouth: FloatArray, ways: FloatArray, outline: Polygon, kerf_mm: float) -> npt.NDArray[np.bool_]:
+    """Which ways (W, 2) from a mouth to the outline stay as near to it as the mouth is: the others cross material."""
+    near = 1.05 * (0.5 * kerf_mm + INSIDE_MM)
+    places = mouth + ways[:, None, :] * np.array([0.25, 0.5, 0.75])[:, None]
+    stay: npt.NDArray[np.bool_] = (shapely.distance(shapely.points(places), outline.exterior) <= near).all(axis=1)
+    return stay
+
+
+def _lengths_inside(starts: FloatArray, ways: FloatArray, outline: Polygon) -> FloatArray:
+    """How far rays (W, 2) run in the outline before they first leave it: (W,) float, inf for those that do not."""
+    starts = np.broadcast_to(starts, ways.shape)
+    rays = shapely.linestrings(np.stack([starts, starts + ways], axis=1))
+    met = shapely.intersection(rays, outline.exterior)
+    first = shapely.distance(met, shapely.points(starts))
+    outside = ~shapely.covers(outline, shapely.points(starts))
+    crossed = ~shapely.is_empty(met)
+    lengths: FloatArray = np.where(crossed, first, np.where(outside, 0.0, np.inf))
+    return lengths
+
+
+def widths_beside_outline(
+    lines: FloatArray, table: CutTable, pieces: Sequence[CutPiece], outline: Polygon, widths: FloatArray, kerf_mm: float
+) -> FloatArray:
+    """Correct the finished widths of connectors whose through cut was trimmed.
+
+    Such a connector ends at the outline wherever the through cut is gone.
+
+    Parameters
+    ----------
+    lines : (C, 2, 2) float, mm
+        Shortened cuts of the whole sheet.
+    widths : (H,) float, mm
+        Finished widths in the whole sheet.
+
+    Returns
+    -------
+    corrected : (H,) float, mm
+    """
+    remaining: dict[int, list[LineString]] = {}
+    for piece in pieces:
+        remaining.setdefault(piece.cut, []).append(LineString(piece.points))
+    whole = {piece.cut for piece in pieces if not piece.opens}
+    corrected = widths.copy()
+    for hinge in np.flatnonzero(table.hinge_through >= 0):
+        through = int(table.hinge_through[hinge])
+        if through in whole:
+            continue
+        tip = lines[table.hinge_cut[hinge], table.hinge_end[hinge]]
+        beyond = _beyond(tip, lines[through], widths[hinge] + kerf_mm)
+        ends = shapely.union_all([*remaining.get(through, []), shapely.intersection(outline.exterior, beyond)])
+        corrected[hinge] = shapely.distance(Point(tip), ends) - kerf_mm
+    return corrected
+
+
+def _beyond(tip: FloatArray, through: FloatArray, gap: float) -> Polygon:
+    """The area beside the through cut, seen from a tip ``gap`` away: from half way to it to as far again behind it."""
+    along = (through[1] - through[0]) / np.linalg.norm(through[1] - through[0])
+    across = np.array([-along[1], along[0]])
+    across *= np.sign(np.dot(through[0] - tip, across))
+    near, far, side = 0.5 * gap * across, 2.0 * gap * across, 3.0 * gap * along
+    return Polygon([tip + near - side, tip + near + side, tip + far + side, tip + far - side])
+
+
+def _largest(shape: BaseGeometry) -> Polygon:
+    largest: Polygon = max(shapely.get_parts(shape), key=lambda part: float(part.area))
+    return largest

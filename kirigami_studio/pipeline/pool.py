@@ -1,0 +1,273 @@
+"""Worker processes that polish beside each other: NumPy and SciPy on arrays of this size keep the interpreter's lock.
+
+The workers are started by the first run that gains from them, while the generator is being loaded, and kept for the
+next one.  A pool that cannot start, or whose workers die, is no reason to fail: what is left undone is handed back.
+"""
+
+from __future__ import annotations
+
+import atexit
+import contextlib
+import logging
+import os
+import pickle
+import subprocess
+import sys
+import threading
+from collections import deque
+from collections.abc import Generator, Iterator, Sequence
+from functools import cache
+from pathlib import Path
+from queue import Empty, SimpleQueue
+from typing import IO
+
+import kirigami_studio
+from kirigami_studio.foundation.log import topic
+from kirigami_studio.pipeline.messages import Done, Failed, Order, Ready, Report, Stop
+from kirigami_studio.pipeline.request import Request
+from kirigami_studio.pipeline.tasks import Answer, Task
+from kirigami_studio.pipeline.worker import WORKER_FLAG
+
+log: logging.Logger = topic("pipeline")
+
+#: More workers than this bring memory (about 100 MB each) rather than speed.
+LARGEST_POOL = 8
+
+#: Libraries that would start a thread for every core inside each worker.
+THREAD_LIMITS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
+
+#: Seconds that a worker gets to end by itself.
+PATIENCE = 1.0
+
+#: What an interpreter is told to run; the package's folder follows, for checkouts that are not installed.
+ENTRY = "import sys; sys.path.append(sys.argv[1]); from kirigami_studio.pipeline.worker import serve; sys.exit(serve())"
+
+
+def usable_cores() -> int:
+    """Processor cores that this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
+def worker_count() -> int:
+    """Workers that the program's own pool has: one for every usable core, 8 at most."""
+    return min(usable_cores(), LARGEST_POOL)
+
+
+class Worker:
+    """One process and the thread that listens to it."""
+
+    def __init__(self, command: Sequence[str], reports: SimpleQueue[tuple[Worker, Report | None]]) -> None:
+        self.order: Order | None = None
+        self.ready = False
+        self.process = _started(command)
+        self._reports = reports
+        self._listener = threading.Thread(target=self._listen, name="polishing worker", daemon=True)
+        self._listener.start()
+
+    @property
+    def alive(self) -> bool:
+        return self.process.poll() is None
+
+    def send(self, message: Order | Stop) -> bool:
+        """Write a message; False when the worker is gone."""
+        orders = _open(self.process.stdin)
+        try:
+            orders.write(pickle.dumps(message))
+            orders.flush()
+        except (OSError, ValueError):
+            return False
+        return True
+
+    def end(self) -> None:
+        """Close its input, which ends it, and wait."""
+        with contextlib.suppress(OSError, ValueError):
+            _open(self.process.stdin).close()
+        try:
+            self.process.wait(PATIENCE)
+        except subprocess.TimeoutExpired:
+            self.process.kill()
+            self.process.wait()
+        self._listener.join(PATIENCE)
+        if not self._listener.is_alive():  # closing a pipe that a thread still reads would block
+            _open(self.process.stdout).close()
+
+    def _listen(self) -> None:
+        source = _open(self.process.stdout)
+        while True:
+            try:
+                report = pickle.load(source)
+            except Exception:  # the end of the pipe, or half a message of a killed worker
+                self._reports.put((self, None))
+                return
+            self._reports.put((self, report))
+
+
+class Pool:
+    """Up to ``size`` workers, for one batch of tasks at a time.
+
+    Parameters
+    ----------
+    size : int, optional
+        Number of workers, by default :func:`worker_count`; 0 or 1 means that there is nothing to gain: the pool then
+        never starts.
+    command : sequence of str, optional
+        Program and arguments of a worker, see :func:`worker_command`.
+    """
+
+    def __init__(self, size: int | None = None, command: Sequence[str] | None = None) -> None:
+        self.size = worker_count() if size is None else size
+        self._command = worker_command() if command is None else command
+        self.workers: list[Worker] = []
+        self._reports: SimpleQueue[tuple[Worker, Report | None]] = SimpleQueue()
+        self._broken = self.size < 2
+        self._batch = 0
+        self._held = False
+        self._taken = threading.Lock()
+
+    @property
+    def usable(self) -> bool:
+        """Whether starting it makes sense."""
+        return not self._broken
+
+    @property
+    def ready(self) -> bool:
+        """Whether a worker can begin at once; not while the pool serves another run."""
+        if not self._taken.acquire(blocking=False):
+            return False
+        try:
+            self._take_reports()
+            return any(worker.ready and worker.alive for worker in self.workers)
+        finally:
+            self._taken.release()
+
+    def start(self) -> None:
+        """Start the workers that are missing; returns before they are ready."""
+        self.workers = [worker for worker in self.workers if worker.alive]
+        while not self._broken and len(self.workers) < self.size:
+            try:
+                self.workers.append(Worker(self._command, self._reports))
+            except OSError as error:
+                self._give_up(f"worker processes cannot be started: {error}")
+
+    def answers(
+        self, request: Request, tasks: Sequence[tuple[int, Task]], wait: float
+    ) -> Generator[tuple[int, Answer] | None]:
+        """Hand out tasks (number, task) in order and yield answers as they come, None every ``wait`` seconds between.
+
+        Ends early when no worker is left, or at once when the pool already serves another run: the caller does what it
+        got no answer for.  Leaving the iterator stops the workers within one step.
+        """
+        if self._broken or not self._taken.acquire(blocking=False):
+            return
+        self._batch += 1
+        self._held = False
+        try:
+            yield from self._served(request, deque(tasks), self._batch, wait)
+        finally:
+            self.hold()
+            self._taken.release()
+
+    def hold(self) -> None:
+        """Begin no more tasks of this batch, and answer those under way with the best so far, within one step."""
+        self._held = True
+        for worker in self.workers:
+            if worker.order is not None:
+                worker.send(Stop(self._batch))
+
+    def close(self) -> None:
+        """End all workers."""
+        for worker in self.workers:
+            worker.end()
+        self.workers = []
+
+    def _served(
+        self, request: Request, waiting: deque[tuple[int, Task]], batch: int, wait: float
+    ) -> Iterator[tuple[int, Answer] | None]:
+        self.start()
+        while self.workers and (self._under_way(batch) or (waiting and not self._held)):
+            for worker in self.workers:
+                if waiting and not self._held and worker.ready and worker.order is None:
+                    number, task = waiting.popleft()
+                    worker.order = Order(batch, number, request, task)
+                    worker.send(worker.order)  # a dead one is noticed by its listener
+            try:
+                worker, report = self._reports.get(timeout=wait)
+            except Empty:
+                yield None
+                continue
+            order = worker.order
+            self._note(worker, report)
+            if report is None and order is not None and order.batch == batch:
+                waiting.appendleft((order.number, order.task))
+            elif isinstance(report, Failed) and report.batch == batch:
+                raise report.error
+            elif isinstance(report, Done) and report.batch == batch:
+                yield report.number, report.answer
+
+    def _under_way(self, batch: int) -> bool:
+        return any(worker.order is not None and worker.order.batch == batch for worker in self.workers)
+
+    def _take_reports(self) -> None:
+        """Read what came in between two batches."""
+        while True:
+            try:
+                self._note(*self._reports.get_nowait())
+            except Empty:
+                return
+
+    def _note(self, worker: Worker, report: Report | None) -> None:
+        if isinstance(report, Ready):
+            worker.ready = True
+            return
+        worker.order = None
+        if report is None and worker in self.workers:
+            self.workers.remove(worker)
+            worker.end()
+            if worker.ready:
+                log.warning("a polishing worker died; its work is done again")
+            else:
+                self._give_up("worker processes die before they are ready")
+
+    def _give_up(self, why: str) -> None:
+        """Never try again in this process."""
+        if not self._broken:
+            log.warning("polishing goes on in one process: %s", why)
+        self._broken = True
+
+
+@cache
+def shared_pool() -> Pool:
+    """The program's one pool, closed when it ends."""
+    pool = Pool()
+    atexit.register(pool.close)
+    return pool
+
+
+def _started(command: Sequence[str]) -> subprocess.Popen[bytes]:
+    return subprocess.Popen(
+        command,
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        env=os.environ | dict.fromkeys(THREAD_LIMITS, "1"),
+        start_new_session=True,  # Ctrl-C in a terminal reaches the program alone
+        creationflags=getattr(subprocess, "CREATE_NO_WINDOW", 0),
+    )
+
+
+def worker_command() -> list[str]:
+    """How a worker is started: a frozen program starts itself, others their interpreter.
+
+    ``-P`` keeps the folder that the program was started in out of the search for modules.
+    """
+    if getattr(sys, "frozen", False):
+        return [sys.executable, WORKER_FLAG]
+    return [sys.executable, "-P", "-c", ENTRY, str(Path(kirigami_studio.__file__).resolve().parents[1])]
+
+
+def _open(pipe: IO[bytes] | None) -> IO[bytes]:
+    """The pipe that Popen was asked for."""
+    if pipe is None:
+        raise OSError("A worker process has no pipe.")
+    return pipe

@@ -1,0 +1,133 @@
+"""One piece of work on one design, the same whether a worker process or the run itself does it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.evaluate.score import evaluate_many
+from kirigami_studio.evaluate.trimming import KEEP
+from kirigami_studio.foundation.errors import KirigamiError
+from kirigami_studio.lattice.deployment import deploy
+from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.pipeline.rank import rank_key
+from kirigami_studio.pipeline.request import Request
+from kirigami_studio.pipeline.threads import one_blas_thread
+from kirigami_studio.polish.continuation import fit_shape
+from kirigami_studio.polish.covering import fit_cover
+from kirigami_studio.polish.levenberg import polish
+from kirigami_studio.polish.regularity import PREFERENCES
+from kirigami_studio.target.outline import Outline
+
+#: Steps of the fit before trimming.
+COVER_STEPS = 12
+
+
+@dataclass(frozen=True, slots=True)
+class Polish:
+    """Fit a candidate on the exact geometry, from where it is, by at most ``steps`` steps."""
+
+    candidate: Candidate
+    steps: int
+
+
+@dataclass(frozen=True, slots=True)
+class Search:
+    """Look for a better design than all samples; the one found gets the number ``index``."""
+
+    index: int
+    starts: tuple[RatioField, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Finish:
+    """Fit a candidate once more so that it covers the target, and trim its edge panels."""
+
+    candidate: Candidate
+
+
+Task = Polish | Search | Finish
+
+
+@dataclass(frozen=True, slots=True)
+class Answer:
+    """What came of a task.
+
+    Attributes
+    ----------
+    candidate : Candidate or None
+        The new state of the design; None where polishing brought nothing.
+    evaluations : int
+        Layouts decoded on the way.
+    """
+
+    candidate: Candidate | None
+    evaluations: int
+
+
+def carry_out(request: Request, task: Task, stopped: Callable[[], bool]) -> Answer:
+    """Do one task; once ``stopped`` is true the best so far is the answer, within one step of the fit."""
+    if isinstance(task, Polish):
+        return _polished(request, task, stopped)
+    if isinstance(task, Finish):
+        return trimmed(request.target, task.candidate, stopped, request.keep)
+    return _searched(request, task, stopped)
+
+
+def _polished(request: Request, task: Polish, stopped: Callable[[], bool]) -> Answer:
+    candidate = task.candidate
+    pose = candidate.score.transform
+    with one_blas_thread():
+        fit = polish(
+            candidate.field,
+            request.target,
+            request.phi,
+            task.steps,
+            PREFERENCES[request.prefer],
+            pose,
+            stopped,
+            least_panel=request.least_panel,
+        )
+    (better,) = scored(request, [fit.field], candidate.index, fitted=True)
+    better = replace(better, drawn=candidate.drawn or candidate.field)
+    return Answer(better if rank_key(better) < rank_key(candidate) else None, fit.evaluations + 1)
+
+
+def _searched(request: Request, task: Search, stopped: Callable[[], bool]) -> Answer:
+    with one_blas_thread():
+        fits = fit_shape(
+            request.target,
+            request.grid,
+            request.phi,
+            task.starts,
+            request.search,
+            stopped,
+            PREFERENCES[request.prefer],
+            request.least_panel,
+        )
+    (found,) = scored(request, [fits[0].field], task.index, fitted=True)
+    return Answer(found, fits[0].evaluations + 1)
+
+
+def trimmed(
+    target: Outline, candidate: Candidate, stopped: Callable[[], bool] = lambda: False, keep: float = KEEP
+) -> Answer:
+    """The candidate with its trim: another field in another pose, beside its own; None where it cannot be trimmed."""
+    score = candidate.score
+    try:
+        with one_blas_thread():
+            cover = fit_cover(candidate.field, target, score.phi, COVER_STEPS, score.transform, keep, stopped)
+    except KirigamiError:  # stopped, or it crosses itself
+        return Answer(None, 1)
+    return Answer(replace(candidate, trim=cover.trim), cover.fit.evaluations + 1)
+
+
+def scored(request: Request, fields: Sequence[RatioField], first: int, *, fitted: bool = False) -> list[Candidate]:
+    """Decode fields exactly and score them against the request's target; their numbers count up from ``first``."""
+    with one_blas_thread():
+        scores = evaluate_many([deploy(field) for field in fields], request.target, request.phi)
+    return [
+        Candidate(field, score, request.seed, first + place, polished=fitted)
+        for place, (field, score) in enumerate(zip(fields, scores, strict=True))
+    ]

@@ -1,0 +1,58 @@
+"""Which candidates are one design, and which are worth a fit first.
+
+Two fields make the same sheet when one is the other turned: by half a turn where rows + columns is even (z stays), and
+on even square grids by a quarter turn (z changes its sign), at every angle of deployment.  *Distance* is the root mean
+square difference of z = log10 x over the voids, the smallest over these turns.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.lattice.ratio_field import FloatArray, RatioField
+from kirigami_studio.pipeline.rank import ranked
+
+#: Nearer than this two candidates are one design: ratios that differ by under 5 % cannot be told apart on a cut sheet.
+#: 32 samples for one target are 0.2 to 0.7 apart.
+DUPLICATE = 0.02
+
+#: Nearer than this to a better candidate, a design waits until the others have had their fit: the nearest twentieth of
+#: all pairs among 32 samples for a star.
+ALIKE = 0.3
+
+
+def distances(field: RatioField, others: Sequence[RatioField]) -> FloatArray:
+    """Difference between a field and each of several on the same grid, (len(others),); 0 for the same sheet turned."""
+    ways = np.stack([turn.ravel() for turn in turns(field)])
+    table = np.array([other.log10.ravel() for other in others]).reshape(len(others), 1, ways.shape[1])
+    nearest: FloatArray = np.sqrt(np.square(table - ways).mean(axis=2)).min(axis=1)
+    return nearest
+
+
+def turns(field: RatioField) -> list[FloatArray]:
+    """z of the same sheet in every way that it can lie: one, two or four arrays (rows, columns)."""
+    z, rows, columns = field.log10, field.rows, field.columns
+    if (rows + columns) % 2:
+        return [z]
+    if rows != columns or rows % 2:
+        return [z, np.rot90(z, 2)]
+    return [np.rot90(z, quarter) * (-1.0) ** quarter for quarter in range(4)]
+
+
+def worth_a_fit(candidates: Sequence[Candidate]) -> tuple[Candidate, ...]:
+    """The order in which candidates are fitted, duplicates left out.
+
+    Best first, but a candidate that is alike a better one waits until all others have had their turn: when the time is
+    short, different designs are fitted.  Of candidates that are one design only the best is fitted.
+    """
+    first: list[Candidate] = []
+    later: list[Candidate] = []
+    for candidate in ranked(candidates):
+        chosen = [other.field for other in (*first, *later)]
+        nearest = distances(candidate.field, chosen).min() if chosen else np.inf
+        if nearest >= DUPLICATE:
+            (first if nearest >= ALIKE else later).append(candidate)
+    return (*first, *later)

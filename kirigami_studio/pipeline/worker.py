@@ -1,0 +1,77 @@
+"""The worker process: takes orders on standard input, answers on standard output, ends when its input ends.
+
+A process of its own and not ``multiprocessing``: nothing is imported again from the program that starts it, so scripts
+without a guard, the window, frozen programs and machines without shared semaphores are all the same to it; and when the
+program dies, however it dies, the closed pipe ends the worker.  It loads neither torch nor Qt.
+"""
+
+from __future__ import annotations
+
+import os
+import pickle
+import signal
+import threading
+from queue import SimpleQueue
+from typing import BinaryIO
+
+from kirigami_studio.pipeline.messages import Done, Failed, Order, Ready, Report, Stop
+from kirigami_studio.pipeline.tasks import carry_out
+
+#: The argument that makes a frozen program be a worker.
+WORKER_FLAG = "--worker"
+
+
+def serve() -> int:
+    """Work until the input ends."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the program, which then closes the pipe
+    # What a library prints must not get between the answers.
+    answers = os.fdopen(os.dup(1), "wb")
+    os.dup2(2, 1)
+    inbox = _Inbox(os.fdopen(os.dup(0), "rb"))
+    threading.Thread(target=inbox.listen, name="orders", daemon=True).start()
+    _say(answers, Ready())
+    while True:
+        order = inbox.orders.get()
+        _say(answers, _carried_out(order, inbox))
+
+
+class _Inbox:
+    """Orders in turn, and which of them are to stop."""
+
+    def __init__(self, source: BinaryIO) -> None:
+        self.orders: SimpleQueue[Order] = SimpleQueue()
+        self.stopped_batch = -1
+        self._source = source
+
+    def listen(self) -> None:
+        while True:
+            try:
+                message = pickle.load(self._source)
+            except (EOFError, OSError):
+                os._exit(0)  # nobody waits for the answer any more
+            if isinstance(message, Stop):
+                self.stopped_batch = max(self.stopped_batch, message.batch)
+            else:
+                self.orders.put(message)
+
+
+def _carried_out(order: Order, inbox: _Inbox) -> Report:
+    try:
+        answer = carry_out(order.request, order.task, lambda: inbox.stopped_batch >= order.batch)
+    except Exception as error:
+        return Failed(order.batch, order.number, error)
+    return Done(order.batch, order.number, answer)
+
+
+def _say(answers: BinaryIO, report: Report) -> None:
+    try:
+        content = pickle.dumps(report)
+    except Exception as fault:  # an error that cannot travel still has to be told
+        if not isinstance(report, Failed):
+            raise
+        content = pickle.dumps(Failed(report.batch, report.number, RuntimeError(f"{report.error!r} ({fault})")))
+    try:
+        answers.write(content)
+        answers.flush()
+    except OSError:
+        os._exit(0)

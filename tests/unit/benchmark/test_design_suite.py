@@ -1,0 +1,51 @@
+"""Figures of the whole program, the picture of all designs, and what regularity costs."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from kirigami_studio.benchmark.contact_sheet import write_contact_sheet
+from kirigami_studio.benchmark.design_suite import design_figures, make_designs
+from kirigami_studio.benchmark.regularity_suite import measure_regularity
+from kirigami_studio.pipeline.request import Request
+from kirigami_studio.polish.regularity import PREFERENCES
+from kirigami_studio.target.library import load
+
+pytestmark = pytest.mark.torch
+
+
+def test_that_every_target_gets_its_best_grid_its_line_and_its_pictures(tmp_path: Path) -> None:
+    requests = [[Request(load(name), grid, k=1, polish=3) for grid in ((4, 4), (6, 6))] for name in ("heart", "egg")]
+    told: list[tuple[int, int]] = []
+    made = make_designs(requests, lambda *counts: told.append(counts))
+    assert told == [(1, 2), (2, 2)]
+    figures = design_figures(made)
+    shapes = figures["shapes"]
+    assert isinstance(shapes, dict) and list(shapes) == ["heart", "egg"]
+    assert figures["iou_exact"] == pytest.approx(np.mean([line["iou_exact"] for line in shapes.values()]))
+    assert figures["iou_exact_worst"] == min(line["iou_exact"] for line in shapes.values())
+    assert all(line["iou_exact"] > line["uniform_iou"] for line in shapes.values())
+    assert "trimmed_iou" not in figures
+    path = tmp_path / "all.png"
+    write_contact_sheet(made, path)
+    with Image.open(path) as picture:
+        assert picture.width > 1000
+        assert len(picture.convert("RGB").getcolors(1 << 24) or []) > 50
+
+
+def test_that_trimmed_figures_stand_beside_the_untrimmed_ones(tmp_path: Path) -> None:
+    made = make_designs([[Request(load("heart"), (6, 6), k=1, polish=5, trim=True)]])
+    figures = design_figures(made)
+    assert figures["trimmed_iou"] > figures["iou_exact"]  # type: ignore[operator]
+    write_contact_sheet(made, tmp_path / "both.png")
+
+
+def test_that_each_preference_is_calmer_than_the_one_before() -> None:
+    figures = measure_regularity([load("heart"), load("circle")], "prior", polish=8, grid=(6, 6))
+    variation = [figures[name]["tv"] for name in PREFERENCES]  # type: ignore[index]
+    assert variation == sorted(variation, reverse=True)
+    assert figures["unpolished"]["siou"] < figures["balanced"]["siou"]  # type: ignore[index]

@@ -1,0 +1,55 @@
+"""Rasters and polygons of many silhouettes at once, against one at a time."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import shapely
+
+from kirigami_studio.evaluate.agreement import drawn_ious, exact_ious
+from kirigami_studio.evaluate.boundary import as_plane
+from kirigami_studio.evaluate.silhouette import Frame, filled_in_frame, rasterise_in_frame
+from kirigami_studio.evaluate.similarity import FloatArray, Similarity
+from kirigami_studio.lattice.deployment import deploy
+from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.target.library import load
+
+
+@pytest.fixture(scope="module")
+def laid() -> FloatArray:
+    """Silhouettes of about the target's size, some far outside its frame, some crossing themselves."""
+    draw = np.random.default_rng(2)
+    shapes = []
+    for _ in range(10):
+        outline = deploy(RatioField.from_log10(draw.uniform(-1, 1, (6, 6)))).outline(0.5)
+        pose = Similarity(0.12 * draw.uniform(0.7, 1.4), draw.uniform(0, 6), tuple(draw.uniform(-0.6, 0.6, 2)))
+        shapes.append(pose.apply(outline - outline.mean(axis=0)))
+    shapes[3] = draw.permutation(shapes[3])
+    return np.stack(shapes)
+
+
+def drawn_one_by_one(shape: FloatArray, target: FloatArray) -> float:
+    frame = Frame.around(target).covering(shape)
+    first, second = rasterise_in_frame(shape, frame), rasterise_in_frame(target, frame)
+    return float(np.count_nonzero(first & second) / np.count_nonzero(first | second))
+
+
+def test_that_pixels_are_counted_as_one_by_one(laid: FloatArray) -> None:
+    target = load("heart").points
+    assert drawn_ious(laid, target).tolist() == [drawn_one_by_one(shape, target) for shape in laid]
+    assert [drawn_ious(shape[None], target)[0] for shape in laid] == drawn_ious(laid, target).tolist()
+
+
+def test_that_many_polygons_are_filled_as_one_by_one(laid: FloatArray) -> None:
+    frame = Frame.around(load("star").points, 40)
+    masks, (row, column) = filled_in_frame(as_plane(laid), frame)
+    assert (row, column) > (0, 0)
+    for mask, shape in zip(masks, laid, strict=True):
+        np.testing.assert_array_equal(mask[row : row + 40, column : column + 40], rasterise_in_frame(shape, frame))
+
+
+def test_that_polygons_are_measured_as_one_by_one(laid: FloatArray) -> None:
+    target = load("heart")
+    valid = [shapely.make_valid(shapely.Polygon(shape)) for shape in laid]
+    expected = [shape.intersection(target.polygon).area / shape.union(target.polygon).area for shape in valid]
+    assert exact_ious(laid, target) == pytest.approx(expected, abs=1e-9)

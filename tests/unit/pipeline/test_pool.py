@@ -1,0 +1,217 @@
+"""Worker processes: the same answers as in one process, whatever happens to them.  No generator is needed."""
+
+from __future__ import annotations
+
+import pickle
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+
+import numpy as np
+import pytest
+
+from kirigami_studio.cli import entry
+from kirigami_studio.foundation.errors import Cancelled
+from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.pipeline import worker
+from kirigami_studio.pipeline.dispatch import answers, gains
+from kirigami_studio.pipeline.messages import Ready
+from kirigami_studio.pipeline.pool import Pool, worker_command
+from kirigami_studio.pipeline.request import Request
+from kirigami_studio.pipeline.tasks import Answer, Polish, Task, scored
+from kirigami_studio.pipeline.watch import Watch
+from kirigami_studio.target.library import load
+
+pytestmark = pytest.mark.slow
+COUNT = 6
+
+
+@pytest.fixture(scope="module")
+def pool() -> Iterator[Pool]:
+    made = Pool(2)
+    made.start()
+    yield made
+    made.close()
+
+
+@pytest.fixture(scope="module")
+def request_for_heart() -> Request:
+    return Request(load("heart"), grid=(6, 6), k=COUNT, polish=6)
+
+
+@pytest.fixture(scope="module")
+def tasks(request_for_heart: Request) -> list[Task]:
+    draw = np.random.default_rng(0)
+    fields = [RatioField.from_log10(draw.uniform(-0.4, 0.4, request_for_heart.grid)) for _ in range(COUNT)]
+    return [Polish(candidate, 6) for candidate in scored(request_for_heart, fields, 0)]
+
+
+def never() -> bool:
+    return False
+
+
+def watch(budget: float | None = None) -> Watch:
+    return Watch(never, time.perf_counter(), budget)
+
+
+def answered(pool: Pool | None, request: Request, tasks: list[Task]) -> dict[int, Answer]:
+    reports = list(answers(pool, request, tasks, watch()))
+    numbers = [report[0] for report in reports if report is not None]
+    assert sorted(numbers) == list(range(len(tasks)))
+    return dict(report for report in reports if report is not None)
+
+
+@pytest.fixture(scope="module")
+def expected(request_for_heart: Request, tasks: list[Task]) -> dict[int, Answer]:
+    """What one process answers."""
+    return answered(None, request_for_heart, tasks)
+
+
+def wait_until_ready(pool: Pool) -> None:
+    deadline = time.monotonic() + 60
+    while not all(one.ready for one in pool.workers) and time.monotonic() < deadline:
+        assert pool.ready or pool.usable
+        time.sleep(0.02)
+    assert pool.ready
+
+
+def test_that_workers_give_bit_by_bit_the_answers_of_one_process(
+    pool: Pool, request_for_heart: Request, tasks: list[Task], expected: dict[int, Answer]
+) -> None:
+    assert answered(pool, request_for_heart, tasks) == expected
+    assert len(pool.workers) == 2
+    assert any(answer.candidate is not None for answer in expected.values())
+
+
+def test_that_the_work_of_a_killed_worker_is_done_again(
+    pool: Pool, request_for_heart: Request, tasks: list[Task], expected: dict[int, Answer]
+) -> None:
+    pool.start()
+    wait_until_ready(pool)
+    found: dict[int, Answer] = {}
+    for report in answers(pool, request_for_heart, tasks, watch()):
+        if report is not None:
+            found[report[0]] = report[1]
+            if len(found) == 1:
+                pool.workers[0].process.kill()
+    assert found == expected
+
+
+def test_that_a_run_whose_workers_all_die_ends_in_one_process(
+    pool: Pool, request_for_heart: Request, tasks: list[Task], expected: dict[int, Answer]
+) -> None:
+    pool.start()
+    wait_until_ready(pool)
+    found: dict[int, Answer] = {}
+    for report in answers(pool, request_for_heart, tasks, watch()):
+        if report is not None:
+            found[report[0]] = report[1]
+            for one in list(pool.workers):
+                one.process.kill()
+    assert found == expected
+    assert pool.usable  # the next run starts new ones
+
+
+@pytest.mark.parametrize("command", [["no-such-program-anywhere"], [sys.executable, "-c", "raise SystemExit(3)"]])
+def test_that_workers_which_cannot_start_are_told_once_and_done_without(
+    command: list[str],
+    request_for_heart: Request,
+    tasks: list[Task],
+    expected: dict[int, Answer],
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    broken = Pool(2, command)
+    assert answered(broken, request_for_heart, tasks) == expected
+    assert answered(broken, request_for_heart, tasks) == expected
+    assert [record.getMessage().split(":")[0] for record in caplog.records] == ["polishing goes on in one process"]
+    assert not broken.usable
+    broken.close()
+
+
+def test_that_one_core_is_left_to_one_process(request_for_heart: Request) -> None:
+    assert not gains(Pool(1), request_for_heart)
+    assert not gains(Pool(2), Request(load("heart"), k=2, polish=5)), "too little work to start processes for"
+    assert gains(Pool(2), Request(load("heart"), k=32, polish=15))
+
+
+def test_that_leaving_a_batch_stops_its_workers_within_a_step_and_keeps_the_pool(
+    pool: Pool, request_for_heart: Request, tasks: list[Task], expected: dict[int, Answer]
+) -> None:
+    pool.start()
+    wait_until_ready(pool)
+    long = Request(request_for_heart.target, grid=(24, 24), k=2, polish=200)
+    field = RatioField.from_log10(np.random.default_rng(3).uniform(-0.9, 0.9, (24, 24)))
+    slow = [Polish(candidate, 200) for candidate in scored(long, [field, field], 0)]
+    began = time.perf_counter()
+    for report in answers(pool, long, slow, watch()):
+        assert report is None, "a fit of 200 steps at 24 x 24 cannot be over by now"
+        if time.perf_counter() - began > 0.1:
+            break
+    stopped = time.perf_counter()
+    while any(one.order is not None for one in pool.workers):
+        assert pool.ready
+        assert time.perf_counter() - stopped < 5.0
+        time.sleep(0.005)
+    assert answered(pool, request_for_heart, tasks) == expected
+
+
+def test_that_a_budget_brings_the_best_so_far_of_fits_under_way(pool: Pool, request_for_heart: Request) -> None:
+    pool.start()
+    wait_until_ready(pool)
+    long = Request(request_for_heart.target, grid=(24, 24), k=3, polish=200)
+    draw = np.random.default_rng(3)
+    fields = [RatioField.from_log10(draw.uniform(-0.5, 0.5, (24, 24))) for _ in range(3)]
+    slow = [Polish(candidate, 200) for candidate in scored(long, fields, 0)]
+    reports = [report for report in answers(pool, long, slow, watch(0.3)) if report is not None]
+    assert sorted(number for number, _ in reports) == [0, 1]
+    assert all(answer.candidate is not None for _, answer in reports)
+
+
+def test_that_an_error_in_a_worker_reaches_the_run(pool: Pool, request_for_heart: Request) -> None:
+    pool.start()
+    with pytest.raises(AttributeError, match="starts"):
+        list(answers(pool, request_for_heart, ["not a task"], watch()))  # type: ignore[list-item]
+    assert pool.usable
+
+
+def test_that_a_second_run_at_the_same_time_works_by_itself(
+    pool: Pool, request_for_heart: Request, tasks: list[Task], expected: dict[int, Answer]
+) -> None:
+    first = answers(pool, request_for_heart, tasks, watch())
+    found = [next(first)]
+    assert not pool.ready, "asking must not take the first run's answers"
+    assert answered(pool, request_for_heart, tasks) == expected
+    found += list(first)
+    assert dict(report for report in found if report is not None) == expected
+
+
+def test_that_a_cancelled_watch_says_how_far_it_came() -> None:
+    with pytest.raises(Cancelled, match="after 3; nothing was changed"):
+        Watch(lambda: True, time.perf_counter()).check("Stopped after 3")
+
+
+def test_that_closing_the_pool_leaves_no_process(request_for_heart: Request, tasks: list[Task]) -> None:
+    short_lived = Pool(2)
+    short_lived.start()
+    processes = [one.process for one in short_lived.workers]
+    answered(short_lived, request_for_heart, tasks)
+    short_lived.close()
+    assert [process.poll() for process in processes] == [0, 0]
+
+
+def test_that_a_frozen_program_is_a_worker_by_its_flag() -> None:
+    assert entry.WORKER_FLAG == worker.WORKER_FLAG
+    command = [sys.executable, "-m", "kirigami_studio", worker.WORKER_FLAG]
+    served = subprocess.run(command, input=b"", capture_output=True, timeout=60, check=False)
+    assert (served.returncode, served.stderr) == (0, b"")
+    assert served.stdout in (b"", pickle.dumps(Ready()))
+
+
+def test_that_a_worker_ends_with_its_input_and_loads_neither_torch_nor_qt() -> None:
+    ended = subprocess.run(worker_command(), input=b"", capture_output=True, timeout=60, check=False)
+    assert ended.returncode == 0
+    assert ended.stderr == b""
+    probe = "import kirigami_studio.pipeline.worker, sys; print(sorted({'torch', 'PySide6'} & set(sys.modules)))"
+    loaded = subprocess.run([sys.executable, "-c", probe], capture_output=True, text=True, timeout=60, check=True)
+    assert loaded.stdout.strip() == "[]"

@@ -1,0 +1,67 @@
+"""Which candidates are one design, and in which order they are fitted."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from kirigami_studio.evaluate.alignment import align
+from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.evaluate.score import evaluate, exact_iou
+from kirigami_studio.lattice.deployment import deploy
+from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.pipeline.variety import ALIKE, DUPLICATE, distances, turns, worth_a_fit
+from kirigami_studio.target.library import load
+from kirigami_studio.target.outline import Outline
+
+
+def random_field(seed: int, rows: int = 6, columns: int = 6) -> RatioField:
+    return RatioField.from_log10(np.random.default_rng(seed).uniform(-0.6, 0.6, (rows, columns)))
+
+
+@pytest.fixture(scope="module")
+def candidate() -> Callable[[RatioField, float, int], Candidate]:
+    target = load("heart")
+
+    def made(field: RatioField, siou: float, index: int) -> Candidate:
+        score = evaluate(deploy(field), target)
+        return Candidate(field, replace(score, siou=siou, feasible=True), 0, index)
+
+    return made
+
+
+@pytest.mark.parametrize("phi", [0.0, 0.7])
+@pytest.mark.parametrize(("grid", "count"), [((6, 6), 4), ((6, 8), 2), ((5, 7), 2), ((7, 7), 2), ((5, 6), 1)])
+def test_that_every_turn_is_the_same_sheet(grid: tuple[int, int], count: int, phi: float) -> None:
+    field = random_field(1, *grid)
+    still = deploy(field).outline(phi)
+    target = Outline.from_points(still)
+    ways = turns(field)
+    assert len(ways) == count
+    for z in ways:
+        outline = deploy(RatioField.from_log10(z)).outline(phi)
+        assert exact_iou(align(outline, target.points).apply(outline), target) == pytest.approx(1.0, abs=1e-6)
+
+
+def test_that_the_distance_is_the_smallest_over_the_turns() -> None:
+    field, other = random_field(1), random_field(2)
+    by_hand = min(np.sqrt(np.mean((z - other.log10) ** 2)) for z in turns(field))
+    assert distances(field, [other, field]) == pytest.approx([by_hand, 0.0], abs=1e-15)
+    assert by_hand < np.sqrt(np.mean((field.log10 - other.log10) ** 2))
+
+
+def test_that_of_duplicates_only_the_best_is_fitted(candidate: Callable[..., Candidate]) -> None:
+    field = random_field(1)
+    turned = RatioField.from_log10(-np.rot90(field.log10) + 0.5 * DUPLICATE)
+    worse, better, other = candidate(field, 0.8, 0), candidate(turned, 0.9, 1), candidate(random_field(2), 0.7, 2)
+    assert worth_a_fit([worse, better, other]) == (better, other)
+
+
+def test_that_a_design_like_a_better_one_waits_for_the_others(candidate: Callable[..., Candidate]) -> None:
+    field = random_field(1)
+    alike = RatioField.from_log10(field.log10 + 0.5 * ALIKE)
+    best, second, third = candidate(field, 0.9, 0), candidate(alike, 0.8, 1), candidate(random_field(2), 0.7, 2)
+    assert worth_a_fit([third, second, best]) == (best, third, second)
