@@ -1,21 +1,27 @@
 """A fit for trimming: cover the target, let the rest stick out where it can be cut off, and trim.
 
 The fit weighs what is missed fully and what sticks out a little, except at the outline's hinges, which trimming has to
-leave.  Then a few scales and shifts are trimmed in earnest, because only the trimmed score says which is best.
+leave.  Then the pose is moved to where a quick estimate of the trimmed IoU is best, and the layout is trimmed there.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+
+import numpy as np
+import shapely
+from scipy.optimize import fmin
 
 from kirigami_studio.evaluate.alignment import align
 from kirigami_studio.evaluate.feasibility import path_contact
+from kirigami_studio.evaluate.kept_panels import GRID, edge_panels
 from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.evaluate.trimming import KEEP, Trim, check_keep, trim
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.lattice.deployment import Deployment, deploy
-from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.lattice.ratio_field import FloatArray, RatioField
 from kirigami_studio.polish.levenberg import Fit, check_fit, polish
 from kirigami_studio.target.outline import Outline
 
@@ -26,10 +32,10 @@ EXCESS = 0.1
 GROWN = 1.005
 #: Trusted distance (unit-area lengths) of the fit.
 TRUST = 0.005
-#: Scales tried on a pose, relative to it.
-SCALES = (0.995, 1.005, 1.015)
-#: Step (unit-area lengths, or log scale) of the last search on the pose.
-SEARCH = 0.003
+#: First moves of the search on the pose: log scale, turn (radians), shift (unit-area lengths); and how many poses are
+#: looked at.
+FIRST_MOVES = (0.006, 0.006, 0.006, 0.006)
+LOOKS = 80
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -82,48 +88,64 @@ def fit_cover(
     phi, keep = check_fit(phi, steps, TRUST), check_keep(keep)
     deployment = deploy(field)
     pose = pose or align(deployment.outline(phi), target.points)
-    best = Cover(Fit(field, pose, 0.0, 0, 0), trim(deployment, target, phi, pose, keep))
-    best = _at_best_scale(best, deployment, target, cancel)
+    best = _trimmed(Fit(field, pose, 0.0, 0, 0), target, phi, keep, cancel)
     fit = polish(field, target, phi, steps, pose=_grown(pose, GROWN), cancel=cancel, trust=TRUST, excess=EXCESS)
-    covering = deploy(fit.field)
-    if fit.steps and path_contact(covering, phi) is None and not cancel():
-        other = _at_best_scale(Cover(fit, trim(covering, target, phi, fit.pose, keep)), covering, target, cancel)
+    if fit.steps and path_contact(deploy(fit.field), phi) is None and not cancel():
+        other = _trimmed(fit, target, phi, keep, cancel)
         if other.trim.iou > best.trim.iou:
-            best, deployment = other, covering
-    return _searched(best, deployment, target, cancel)
+            best = other
+    return best
 
 
-def _at_best_scale(cover: Cover, deployment: Deployment, target: Outline, cancel: Callable[[], bool]) -> Cover:
-    pose = cover.fit.pose
-    for scale in SCALES:
-        if not cancel():
-            cover = _better(cover, deployment, target, _grown(pose, scale))
-    return cover
-
-
-def _searched(cover: Cover, deployment: Deployment, target: Outline, cancel: Callable[[], bool]) -> Cover:
-    """Small moves of the pose, one after another, each kept when the trimmed score rises."""
-    moves = [Similarity(1.0 + SEARCH), Similarity(shift=(SEARCH, 0.0)), Similarity(shift=(0.0, SEARCH))]
-    for move in moves:
-        for one in (move, move.inverse()):
-            before = cover.trim.iou
-            if not cancel():
-                cover = _better(cover, deployment, target, one.compose(cover.fit.pose))
-            if cover.trim.iou > before:
-                break
-    return cover
-
-
-def _better(cover: Cover, deployment: Deployment, target: Outline, pose: Similarity) -> Cover:
-    """The cover in another pose, if it trims better there."""
+def _trimmed(fit: Fit, target: Outline, phi: float, keep: float, cancel: Callable[[], bool]) -> Cover:
+    """Trim a layout in the pose that promises most; in its own if that one holds less."""
+    deployment = deploy(fit.field)
+    plain = Cover(fit, trim(deployment, target, phi, fit.pose, keep))
+    if cancel():
+        return plain
+    pose = _Promise(deployment, target, phi, keep).best_pose(fit.pose, cancel)
     try:
-        trial = trim(deployment, target, cover.trim.phi, pose, cover.trim.keep)
-    except KirigamiError:  # touching itself by rounding in one pose is no reason to lose the others
-        return cover
-    if trial.iou <= cover.trim.iou:
-        return cover
-    fit = cover.fit
-    return Cover(Fit(fit.field, pose, fit.cost, fit.steps, fit.evaluations), trial)
+        moved = trim(deployment, target, phi, pose, keep)
+    except KirigamiError:  # touching itself by rounding in one pose is no reason to lose the other
+        return plain
+    return plain if moved.iou <= plain.trim.iou else Cover(replace(fit, pose=pose), moved)
+
+
+class _Promise:
+    """A quick estimate of the trimmed IoU in any pose: the target's part of the layout, and what has to stay outside.
+
+    What stays is the inside of the sheet, whole, and a disc of material at every hinge of an edge panel.
+    """
+
+    def __init__(self, deployment: Deployment, target: Outline, phi: float, keep: float) -> None:
+        self.target, self.layout = target, shapely.Polygon(deployment.outline(phi))
+        panels = edge_panels(deployment.field.rows, deployment.field.columns)
+        nodes = deployment.nodes(phi)
+        hinges = nodes[np.unique(panels.corners[panels.hinged])]
+        edge = shapely.union_all(shapely.polygons(nodes[panels.corners]), grid_size=GRID)
+        discs = shapely.union_all(shapely.buffer(shapely.points(hinges), keep, quad_segs=4))
+        self.fixed = shapely.union(shapely.difference(self.layout, edge), discs.intersection(self.layout))
+        shapely.prepare(self.layout)
+
+    def iou(self, pose: Similarity) -> float:
+        """Estimate for one pose."""
+        place = shapely.Polygon(pose.inverse().apply(self.target.points))
+        shared = float(self.layout.intersection(place).area)
+        outside = float(self.fixed.difference(place).area)
+        return shared / (place.area + outside)
+
+    def best_pose(self, pose: Similarity, cancel: Callable[[], bool]) -> Similarity:
+        """The pose near the given one that promises most, by a simplex over shift, turn and scale."""
+
+        def moved(move: FloatArray) -> Similarity:
+            return Similarity(math.exp(move[0]), move[1], (move[2], move[3])).compose(pose)
+
+        def loss(move: FloatArray) -> float:
+            return 0.0 if cancel() else -self.iou(moved(move))
+
+        simplex = np.vstack([np.zeros(4), np.diag(FIRST_MOVES)])
+        found = fmin(loss, np.zeros(4), initial_simplex=simplex, maxfun=LOOKS, xtol=1e-4, ftol=1e-5, disp=False)
+        return moved(np.asarray(found, dtype=np.float64))
 
 
 def _grown(pose: Similarity, scale: float) -> Similarity:
