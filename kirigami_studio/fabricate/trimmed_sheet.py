@@ -200,7 +200,7 @@ def _way_out(
         rank = np.where(turned[good] == 0, -np.inf, 0.1 * left[good] - clear[good])
         for way in good[np.argsort(rank, kind="stable")]:
             line = LineString([mouth, ends[way]])
-            if overlap_length([shapely.intersection(outline.exterior, line.buffer(overcut)), line]) < GRID_MM:
+            if not _runs_along(line, outline, overcut):
                 return [ends[way]] if turned[way] == 0 else [mouth, ends[way]]
     return [mouth, *_into_notch(mouth, outline, overcut_mm)]
 
@@ -208,7 +208,7 @@ def _way_out(
 def _into_notch(mouth: FloatArray, outline: Polygon, overcut_mm: float) -> list[FloatArray]:
     """From the corner of the outline nearest to a mouth half way between the two sides of the notch that begins there.
 
-    In the sharpest notches any other way would run along a side.
+    In the sharpest notches any other way would run along a side; where this one does too, the cut ends at the corner.
     """
     ring = shapely.get_coordinates(outline.exterior)[:-1]
     corner = int(np.argmin(np.linalg.norm(ring - mouth, axis=1)))
@@ -218,7 +218,18 @@ def _into_notch(mouth: FloatArray, outline: Polygon, overcut_mm: float) -> list[
     crossed = shapely.intersection(LineString([ring[corner] + 0.1 * (end - ring[corner]), end]), outline.exterior)
     if not shapely.is_empty(crossed):
         end = ring[corner] + 0.5 * (shapely.get_coordinates(crossed)[0] - ring[corner])
+    # Rounding may lay what is nearly on the outline upon it.
+    if outline.exterior.distance(Point(end)) < STRAIGHT_MM or _runs_along(
+        LineString([ring[corner], end]), outline, overcut_mm
+    ):
+        return [ring[corner]]
     return [ring[corner], end]
+
+
+def _runs_along(line: LineString, outline: Polygon, overcut_mm: float) -> bool:
+    """Whether a short way out would cut a stretch of the outline a second time."""
+    nearby = shapely.intersection(outline.exterior, line.buffer(overcut_mm))
+    return overlap_length([nearby, line]) >= GRID_MM
 
 
 def _along_gap(mouth: FloatArray, ways: FloatArray, outline: Polygon, kerf_mm: float) -> npt.NDArray[np.bool_]:
