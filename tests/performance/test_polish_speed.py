@@ -3,23 +3,14 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
 
 import numpy as np
+from stopwatch import fastest
 
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.polish.levenberg import polish
 from kirigami_studio.polish.sensitivity import OutlineModel
 from kirigami_studio.target.library import load
-
-
-def fastest(work: Callable[[], object], repeats: int = 5) -> float:
-    spent = []
-    for _ in range(repeats):
-        began = time.process_time()
-        work()
-        spent.append(time.process_time() - began)
-    return min(spent)
 
 
 def test_that_the_derivative_costs_a_small_part_of_central_differences() -> None:

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import time
-from collections.abc import Callable
-
 import numpy as np
+from stopwatch import fastest
 
 from kirigami_studio.evaluate.feasibility import invalid_quads, overlap_ratio, path_contact
 from kirigami_studio.evaluate.score import evaluate, evaluate_many
@@ -20,15 +18,6 @@ BATCH = 32
 def sheets() -> list[Deployment]:
     draw = np.random.default_rng(0)
     return [deploy(RatioField.from_log10(draw.uniform(-0.7, 0.7, (10, 10)))) for _ in range(BATCH)]
-
-
-def fastest(work: Callable[[], object], repeats: int = 5) -> float:
-    spent = []
-    for _ in range(repeats):
-        began = time.process_time()
-        work()
-        spent.append(time.process_time() - began)
-    return min(spent)
 
 
 def test_that_a_batch_costs_less_than_half_of_its_members() -> None:

@@ -1,0 +1,194 @@
+"""Before and after polish, and the finishing switch that trims a design."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import ezdxf
+import numpy as np
+import pytest
+from PySide6.QtCore import Qt
+from PySide6.QtWidgets import QApplication
+from pytestqt.qtbot import QtBot
+
+from kirigami_studio.evaluate.score import evaluate
+from kirigami_studio.gui.main_window import MainWindow
+from kirigami_studio.gui.messages import Tone
+from kirigami_studio.gui.scene.mismatch_items import mismatch
+from kirigami_studio.lattice.deployment import deploy
+from kirigami_studio.polish.levenberg import polish
+from kirigami_studio.project import store
+from kirigami_studio.project.document import Document
+
+Until = Callable[[Callable[[], bool]], None]
+LEFT = Qt.MouseButton.LeftButton
+CONTROL = Qt.KeyboardModifier.ControlModifier
+
+
+@pytest.fixture(scope="session")
+def polished(designs: Document) -> Document:
+    """The same designs, the first one fitted to the heart from what was drawn."""
+    target, first = designs.target, designs.candidates[0]
+    assert target is not None
+    fit = polish(first.field, target, 0.0, 8, pose=first.score.transform)
+    better = replace(
+        first, field=fit.field, score=evaluate(deploy(fit.field), target, 0.0), polished=True, drawn=first.field
+    )
+    assert better.score.siou > first.score.siou
+    return replace(designs, candidates=(better, *designs.candidates[1:]))
+
+
+@pytest.fixture
+def studio(window: MainWindow, polished: Document, until: Until, tmp_path: Path) -> MainWindow:
+    """A studio with that project open and its cuts planned."""
+    store.save(polished, tmp_path / "polished.kiri")
+    window.resize(1440, 900)
+    window.controller.open_project(tmp_path / "polished.kiri")
+    until(lambda: window.controller.stage is not None and window.fabrication.export.isEnabled())
+    return window
+
+
+@pytest.fixture
+def trimmed(studio: MainWindow, qtbot: QtBot, until: Until) -> MainWindow:
+    """That studio with the first design trimmed."""
+    qtbot.mouseClick(studio.stage.trim, LEFT)
+    until(lambda: not studio.controller.finishing.busy)
+    until(lambda: "trimmed" in studio.fabrication.summary.text())
+    return studio
+
+
+def test_that_before_shows_the_design_as_it_was_drawn_and_after_brings_it_back(
+    studio: MainWindow, designs: Document, qtbot: QtBot, until: Until
+) -> None:
+    after = studio.stage.view.grab().toImage()
+    qtbot.keyClick(studio, Qt.Key.Key_B)
+    until(lambda: studio.stage.showing_before)
+    assert studio.stage.view.grab().toImage() != after
+    drawn, fitted = designs.candidates[0].score, studio.controller.document.candidates[0].score
+    text = studio.stage.numbers.text()
+    assert text == f"before polish: sIoU {100 * drawn.siou:.1f} %  ·  after: {100 * fitted.siou:.1f} %"
+    studio.stage.view.grab()
+    areas = studio.stage.view.areas
+    assert areas is not None
+    assert (1 - areas.missing_share) / (1 + areas.extra_share) == pytest.approx(drawn.iou_exact, abs=1e-3)
+    assert studio.actions_["before"].isChecked()
+    qtbot.mouseClick(studio.stage.before, LEFT)
+    assert not studio.stage.showing_before and studio.stage.view.grab().toImage() == after
+    assert "before" not in studio.stage.numbers.text()
+    assert not studio.controller.history.unsaved
+
+
+def test_that_a_design_that_was_not_polished_has_nothing_to_compare(studio: MainWindow, qtbot: QtBot) -> None:
+    qtbot.mouseClick(studio.stage.before, LEFT)
+    studio.actions_["next"].trigger()
+    assert not studio.stage.before.isEnabled() and not studio.stage.before.isChecked()
+    assert "Nothing to compare" in studio.stage.before.toolTip()
+    assert not studio.actions_["before"].isEnabled()
+    studio.actions_["previous"].trigger()
+    assert studio.stage.before.isEnabled()
+
+
+def test_that_trimming_is_one_named_edit_that_can_be_undone_redone_and_taken_off(
+    trimmed: MainWindow, until: Until, qtbot: QtBot
+) -> None:
+    controller, stage = trimmed.controller, trimmed.stage
+    assert controller.history.undo_label == "Trim design 1"
+    candidate = controller.document.candidates[0]
+    assert candidate.trim is not None and stage.trim.isChecked() and trimmed.actions_["trim"].isChecked()
+    trimmed.actions_["undo"].trigger()
+    assert controller.document.candidates[0].trim is None and not stage.trim.isChecked()
+    until(lambda: trimmed.fabrication.export.isEnabled() and "trimmed" not in trimmed.fabrication.summary.text())
+    trimmed.actions_["redo"].trigger()
+    assert controller.document.candidates[0] == candidate and stage.trim.isChecked()
+    qtbot.keyClick(trimmed, Qt.Key.Key_T, CONTROL)
+    assert controller.history.undo_label == "Untrim design 1"
+    assert controller.document.candidates[0] == replace(candidate, trim=None) and not stage.trim.isChecked()
+
+
+def test_that_both_figures_of_a_trimmed_design_stay_apart(trimmed: MainWindow) -> None:
+    candidate = trimmed.controller.document.candidates[0]
+    trim, siou = candidate.trim, f"{100 * candidate.score.siou:.1f} %"
+    assert trim is not None and trim.iou > candidate.score.iou_exact
+    assert trimmed.stage.numbers.text() == f"sIoU {siou}  ·  trimmed IoU {100 * trim.iou:.1f} %"
+    assert f"trimmed IoU {100 * trim.iou:.1f} %" in trimmed.facts.text() and "exact IoU" in trimmed.facts.text()
+    model = trimmed.gallery.view.model_
+    assert [entry.candidate for entry in model.entries] == list(trimmed.controller.document.candidates)
+    card = str(model.data(model.index(0, 0), Qt.ItemDataRole.AccessibleTextRole))
+    assert f"sIoU {100 * candidate.score.siou:.2f} %" in card and f"Trimmed: IoU {100 * trim.iou:.2f} %" in card
+    trimmed.resize(1000, 640)
+    QApplication.processEvents()
+    assert trimmed.stage.numbers.text() == "" and "trimmed IoU" in trimmed.stage.view.caption
+
+
+def test_that_a_trimmed_design_is_drawn_and_compared_as_it_is_cut(trimmed: MainWindow) -> None:
+    stage = trimmed.controller.stage
+    target = trimmed.controller.document.target
+    assert stage is not None and stage.candidate.trim is not None and target is not None
+    trim, design = stage.candidate.trim, stage.design
+    for phi in (math.pi, 1.0, 0.0):
+        nodes = design.nodes(phi)
+        shift = nodes[0] - trim.pose.apply(design.deployment.nodes(phi)[0])
+        slow = trim.deployed(design.deployment, phi)
+        kept = design.kept(nodes, phi)
+        assert sorted(kept) == [row for row, part in enumerate(trim.kept) if part is not None]
+        for row, part in kept.items():
+            np.testing.assert_allclose(part, trim.pose.apply(slow[row]) + shift, atol=1e-12)
+    nodes = design.nodes(0.0)
+    areas = mismatch(target.points, design.outline(nodes, 0.0), design.removed(nodes, 0.0))
+    assert (1 - areas.missing_share) / (1 + areas.extra_share) == pytest.approx(trim.iou, abs=1e-6)
+
+
+def test_that_a_trimmed_design_exports_one_closed_outline_that_is_no_rectangle(
+    trimmed: MainWindow, files: object, qtbot: QtBot, until: Until, tmp_path: Path
+) -> None:
+    files.answer = tmp_path / "trimmed.dxf"  # type: ignore[attr-defined]
+    qtbot.mouseClick(trimmed.fabrication.export, LEFT)
+    until(lambda: bool(trimmed.messages.messages))
+    message = trimmed.messages.messages[-1]
+    assert message.tone is Tone.DONE and "trimmed outline" in message.sentence
+    drawing = ezdxf.readfile(tmp_path / "trimmed.dxf")
+    outlines = [entity for entity in drawing.modelspace() if entity.dxf.layer == "OUTLINE"]
+    assert len(outlines) == 1 and outlines[0].closed
+    x, y = np.array([point[:2] for point in outlines[0].get_points()]).T
+    area = 0.5 * abs(np.dot(x, np.roll(y, -1)) - np.dot(y, np.roll(x, -1)))
+    assert len(x) > 4 and area < 0.995 * np.ptp(x) * np.ptp(y)
+
+
+def test_that_a_trim_without_room_is_refused_in_one_sentence_and_the_switch_goes_back(
+    studio: MainWindow, qtbot: QtBot, until: Until
+) -> None:
+    studio.controller.change_fabrication(connector_mm=15.0)
+    before = studio.controller.document
+    qtbot.mouseClick(studio.stage.trim, LEFT)
+    assert studio.stage.trim.isChecked() and studio.controller.finishing.busy
+    until(lambda: not studio.controller.finishing.busy)
+    message = studio.messages.messages[-1]
+    assert message.tone is Tone.ERROR and "wide" in message.sentence
+    assert studio.controller.document is before and not studio.stage.trim.isChecked()
+
+
+def test_that_another_choice_forgets_the_trim_that_was_on_its_way(
+    studio: MainWindow, qtbot: QtBot, until: Until
+) -> None:
+    qtbot.mouseClick(studio.stage.trim, LEFT)
+    studio.actions_["next"].trigger()
+    assert not studio.controller.finishing.busy and not studio.stage.trim.isChecked()
+    until(lambda: not studio.controller.board.busy)
+    assert all(candidate.trim is None for candidate in studio.controller.document.candidates)
+    assert studio.controller.document.chosen == 1
+
+
+@pytest.mark.parametrize("way", ["button", "escape"])
+def test_that_trimming_can_be_stopped(studio: MainWindow, qtbot: QtBot, until: Until, way: str) -> None:
+    before = studio.controller.document
+    qtbot.mouseClick(studio.stage.trim, LEFT)
+    if way == "button":
+        qtbot.mouseClick(studio.stage.trim, LEFT)
+    else:
+        qtbot.keyClick(studio, Qt.Key.Key_Escape)
+    assert not studio.controller.finishing.busy and not studio.stage.trim.isChecked()
+    until(lambda: not studio.controller.board.busy)
+    assert studio.controller.document is before and "stopped" in studio.says.text()

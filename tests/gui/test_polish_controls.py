@@ -1,0 +1,73 @@
+"""What the polish prefers, the search, and what is told while both are at work."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+
+import pytest
+from PySide6.QtCore import Qt
+from pytestqt.qtbot import QtBot
+
+from kirigami_studio.gui.main_window import MainWindow
+from kirigami_studio.gui.panels.settings_panel import PREFER, TOOLTIP
+from kirigami_studio.polish.regularity import PREFERENCES
+
+Until = Callable[[Callable[[], bool]], None]
+LEFT = Qt.MouseButton.LeftButton
+
+
+def picked(window: MainWindow, name: str) -> None:
+    box = window.settings.prefer
+    box.setCurrentIndex(box.findData(name))
+    box.activated.emit(box.currentIndex())
+
+
+def test_that_the_window_offers_what_fits_can_prefer(window: MainWindow) -> None:
+    assert [name for name, *_ in PREFER] == list(PREFERENCES)
+    box = window.settings.prefer
+    assert all(box.itemData(row, TOOLTIP) for row in range(box.count()))
+    assert box.currentData() == "balanced"
+
+
+def test_that_preference_and_search_are_settings_that_can_be_undone(window: MainWindow, qtbot: QtBot) -> None:
+    picked(window, "calm")
+    window.settings.search.click()
+    assert (window.controller.document.settings.prefer, window.controller.document.settings.search) == ("calm", 1)
+    window.actions_["undo"].trigger()
+    assert not window.settings.search.isChecked()
+    window.actions_["undo"].trigger()
+    assert window.settings.prefer.currentData() == "balanced"
+
+
+def test_that_there_is_nothing_to_prefer_without_a_fit(window: MainWindow) -> None:
+    window.controller.change_settings(polish=0)
+    assert not window.settings.prefer.isEnabled() and "off" in window.settings.prefer.toolTip()
+    window.controller.change_settings(polish=15)
+    assert window.settings.prefer.isEnabled()
+
+
+@pytest.mark.torch
+def test_that_a_run_gets_the_preference_and_tells_how_far_polish_and_search_are(
+    heart: MainWindow, qtbot: QtBot, until: Until
+) -> None:
+    heart.controller.change_settings(grid=(4, 4), k=2, polish=5)
+    picked(heart, "regularity")
+    heart.settings.search.click()
+    said: list[str] = []
+    rises: list[float] = []
+    results: list[object] = []
+    heart.controller.status.connect(said.append)
+    heart.controller.showing.candidate_found.connect(lambda entry: rises.append(entry.rise))
+    heart.controller.run.completed.connect(lambda result, _: results.append(result))
+    qtbot.mouseClick(heart.run.generate, LEFT)
+    until(lambda: not heart.controller.running)
+    (result,) = results
+    assert result.request.prefer == "regularity" and result.request.search == 1  # type: ignore[attr-defined]
+    told = [text for text in said if text.startswith("Polished")]
+    assert told and all(re.fullmatch(r"Polished [12] of 2 \(best \d+\.\d %\)", text) for text in told)
+    assert max(rises) > 0.0 and rises[0] == 0.0
+    assert any(text.startswith("The search found a design") for text in said)
+    candidates = heart.controller.document.candidates
+    assert sorted(candidate.index for candidate in candidates) == [0, 1, 2]
+    assert all(entry.rise == 0.0 for entry in heart.gallery.view.model_.entries)

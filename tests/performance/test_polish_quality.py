@@ -1,0 +1,45 @@
+"""Bars that hold the fits to what was measured on the whole test splits, on a few of their exact outlines."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.lattice.deployment import deploy
+from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.pipeline.request import Request
+from kirigami_studio.pipeline.run import best_of
+from kirigami_studio.target.outline import Outline
+from kirigami_studio.training.dataset import SPLITS, generate_split
+
+pytestmark = pytest.mark.torch
+COUNT = 12
+
+
+@pytest.fixture(scope="module", params=["structured", "sobol"])
+def outlines(request: pytest.FixtureRequest) -> list[Outline]:
+    split = generate_split(request.param, COUNT, SPLITS["test"][1])
+    return [Outline.from_points(deploy(RatioField(ratio)).outline(0.0)) for ratio in split.ratios]
+
+
+def best(outline: Outline, k: int, polish: int, prefer: str = "balanced") -> Candidate:
+    return best_of(Request(outline, k=k, polish=polish, prefer=prefer)).best
+
+
+def test_that_four_polished_samples_match_an_outline_that_a_sheet_can_make(outlines: list[Outline]) -> None:
+    found = [best(outline, 4, 15) for outline in outlines]
+    exact = np.array([candidate.score.iou_exact for candidate in found])
+    print(f"\nexact IoU {exact.mean():.4f}, worst {exact.min():.4f}")
+    assert exact.mean() >= 0.995
+    assert exact.min() >= 0.97
+    assert all(candidate.score.feasible for candidate in found)
+
+
+def test_that_the_calmest_preference_matches_no_worse_than_the_sample_with_less_variation(
+    outlines: list[Outline],
+) -> None:
+    for outline in outlines[:6]:
+        drawn, calm = best(outline, 1, 0).score, best(outline, 1, 15, "calm").score
+        assert calm.siou >= drawn.siou - 0.003
+        assert calm.tv <= drawn.tv
