@@ -14,7 +14,7 @@ from kirigami_studio.training.dataset import SPLITS, generate_split
 pytestmark = pytest.mark.torch
 
 
-@pytest.mark.parametrize(("family", "bar"), [("structured", 0.93), ("sobol", 0.90)])
+@pytest.mark.parametrize(("family", "bar"), [("structured", 0.96), ("sobol", 0.93)])
 def test_that_one_sample_matches_unseen_targets(family: str, bar: float) -> None:
     split = generate_split(family, 60, SPLITS["test"][1])
     figures = measure_generator([outline_of_mask(mask, family) for mask in split.masks], "prior", seeds=(0,))
@@ -23,7 +23,7 @@ def test_that_one_sample_matches_unseen_targets(family: str, bar: float) -> None
     assert figures["infeasible"] == 0
 
 
-@pytest.mark.parametrize(("family", "part", "bar"), [("sobol", slice(16), 0.90), ("structured", slice(16, 32), 0.93)])
+@pytest.mark.parametrize(("family", "part", "bar"), [("sobol", slice(16), 0.93), ("structured", slice(16, 32), 0.96)])
 def test_that_one_sample_matches_the_reference_silhouettes(
     oracle_file: Path, family: str, part: slice, bar: float
 ) -> None:
