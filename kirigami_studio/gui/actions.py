@@ -63,6 +63,17 @@ COMMANDS = (
     Command("clear", "&Clear target", "&Edit", (), "clear", "Remove the target"),
     Command("generate", "&Generate", "&Design", ("Ctrl+G", "Ctrl+Return"), "generate", "Design sheets for the target"),
     Command("cancel", "&Cancel", "&Design", ("Esc",), "stop", "Stop generating"),
+    Command(
+        "trim",
+        "&Trim to target",
+        "&Design",
+        ("Ctrl+T",),
+        "trim",
+        "Cut the edge panels along the target",
+        False,
+        True,
+        True,
+    ),
     Command("next", "&Next design", "&Design", ("Ctrl+Down", "PgDown"), "", "Choose the next design", gap=True),
     Command("previous", "&Previous design", "&Design", ("Ctrl+Up", "PgUp"), "", "Choose the previous design"),
     Command("play", "&Play / pause", "&View", ("Space",), "play", "Play the deployment"),
@@ -73,6 +84,9 @@ COMMANDS = (
     ),
     Command("show_mismatch", "&Mismatch", "&View", ("M",), "mismatch", "Show missing and extra area", False, True),
     Command("show_faults", "F&aults", "&View", ("F",), "fault", "Mark places that are not physical", False, True),
+    Command(
+        "before", "&Before polish", "&View", ("B",), "before", "Show the design as it was drawn", False, True, True
+    ),
     Command("fit", "Show &everything", "&View", ("0",), "fit", "Fit the layout into the view", gap=True),
     Command("theme", "&Dark theme", "&View", ("Ctrl+D",), "moon", "Switch between light and dark", True, gap=True),
     Command("guide", "&Guide", "&Help", ("F1",), "guide", "Open the user guide", True),

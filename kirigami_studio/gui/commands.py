@@ -62,6 +62,8 @@ class Commands(QObject):
             "clear": controller.clear_target,
             "generate": controller.generate,
             "cancel": controller.cancel,
+            "trim": window.stage.trim.click,
+            "before": window.stage.before.click,
             "next": partial(self._walk, 1),
             "previous": partial(self._walk, -1),
             "play": self._play,

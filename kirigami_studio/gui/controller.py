@@ -7,7 +7,6 @@ an edit here, or a message.
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import partial
 from pathlib import Path
 from typing import Unpack
 
@@ -17,17 +16,20 @@ from PySide6.QtCore import QObject, Signal
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.errors import KirigamiError
+from kirigami_studio.gui.comparing import Comparing
 from kirigami_studio.gui.cutting import Cutting
 from kirigami_studio.gui.design_run import DesignRun
+from kirigami_studio.gui.finishing import Finishing
 from kirigami_studio.gui.jobs import steps
 from kirigami_studio.gui.jobs.board import Board, Ears
 from kirigami_studio.gui.messages import Message, Tone
 from kirigami_studio.gui.reading import Reading
 from kirigami_studio.gui.shelf import Shelf
+from kirigami_studio.gui.showing import Showing
+from kirigami_studio.gui.storing import Storing
 from kirigami_studio.gui.tracing import Tracing
-from kirigami_studio.gui.views.gallery_model import Entry, same_sample
+from kirigami_studio.gui.views.gallery_model import Entry
 from kirigami_studio.pipeline.events import Result
-from kirigami_studio.pipeline.rank import rank_key
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.project import edits
 from kirigami_studio.project.document import Document
@@ -42,9 +44,6 @@ class Controller(QObject):
     """Holds the history, runs the jobs, tells the views."""
 
     document_changed = Signal(object)  #: Document
-    stage_changed = Signal(object)  #: Entry or None
-    gallery_reset = Signal(object)  #: tuple of Entry
-    candidate_found = Signal(object)  #: Entry
     variants_known = Signal(object)  #: tuple of str
     saved = Signal(object)  #: Path
     opened = Signal(object)  #: Path
@@ -56,25 +55,39 @@ class Controller(QObject):
         self.board = Board(self)
         self.history = History()
         self.path: Path | None = None
-        self._shelf = Shelf()
-        self.run = DesignRun(self.board, self._shelf, self)
+        shelf = Shelf()
+        self.showing = Showing(self.board, shelf, self)
+        self.run = DesignRun(self.board, shelf, self)
+        self.finishing = Finishing(self.board, shelf, lambda: self.document, self)
+        self.comparing = Comparing(self.board, shelf, self)
         self.cutting = Cutting(self.board, self)
         self.tracing = Tracing(self.board, self)
         self.reading = Reading(self.board, self.tracing, self)
-        self._stage: Entry | None = None
-        self._preview: Candidate | None = None
-        self._best_of_run: Entry | None = None
-        self.run.found.connect(self._take_found)
+        self.storing = Storing(self.board, self)
+        self._connect()
+
+    def _connect(self) -> None:
+        self.run.found.connect(self.showing.take_found)
+        self.run.told.connect(self.status)
         self.run.completed.connect(self._take_result)
         self.run.cancelled.connect(self._run_cancelled)
         self.run.failed.connect(self._run_failed)
+        self.showing.settled.connect(self._plan_soon)
+        self.showing.stage_changed.connect(self._forget_stage)
+        self.finishing.edited.connect(self._apply)
         self.reading.read.connect(self._take_read)
-        self.reading.failed.connect(self._tell_failure)
         self.tracing.traced.connect(self._take_traced)
         self.tracing.refused.connect(self.status)
         self.tracing.settled.connect(self.end_drag)
-        self.cutting.message.connect(self.message)
-        self.cutting.status.connect(self.status)
+        self.storing.saved.connect(self._saved)
+        self.storing.opened.connect(self._opened)
+        for message in (self.finishing.message, self.cutting.message):
+            message.connect(self.message)
+        for status in (self.finishing.status, self.cutting.status, self.storing.status):
+            status.connect(self.status)
+        parts = (self.showing, self.finishing, self.comparing, self.reading, self.storing)
+        for failed in (part.failed for part in parts):
+            failed.connect(self._tell_failure)
 
     @property
     def document(self) -> Document:
@@ -83,7 +96,7 @@ class Controller(QObject):
     @property
     def stage(self) -> Entry | None:
         """The design that is shown large."""
-        return self._stage
+        return self.showing.stage
 
     @property
     def running(self) -> bool:
@@ -206,36 +219,30 @@ class Controller(QObject):
                 settings.variant,
                 settings.steps,
                 settings.polish,
+                prefer=settings.prefer,
+                search=settings.search,
             )
         except KirigamiError as error:
             self._refuse(error)
             return
-        self._preview, self._best_of_run = None, None
-        self.gallery_reset.emit(())
+        self.finishing.stop()
+        self.showing.begin_run()
         self.run.start(request)
         self.status.emit(f"Generating {request.k} designs for {request.target.name} …")
 
     def cancel(self) -> None:
-        """Ask the run to stop; the document stays as it is."""
+        """Ask the run, or the trimming of a design, to stop; the document stays as it is."""
         if self.running:
             self.run.cancel()
             self.status.emit("Stopping …")
-
-    def _take_found(self, entry: Entry) -> None:
-        self.candidate_found.emit(entry)
-        best = self._best_of_run
-        if self._preview is not None and same_sample(self._preview, entry.candidate):
-            self._preview = entry.candidate
-            self._set_stage(entry)
-        if best is None or rank_key(entry.candidate) < rank_key(best.candidate):
-            self._best_of_run = entry
-            if self._preview is None:
-                self._set_stage(entry)
+        elif self.finishing.busy:
+            self.finishing.cancel()
 
     def _take_result(self, result: Result, provenance: dict[str, str]) -> None:
         edit = edits.set_candidates(self.document, result.candidates, provenance, result.request.target)
-        if self._preview is not None and self._preview in result.candidates:
-            chosen = edits.choose(edit.document, result.candidates.index(self._preview))
+        preview = self.showing.preview
+        if preview is not None and preview in result.candidates:
+            chosen = edits.choose(edit.document, result.candidates.index(preview))
             edit = Edit(edit.label, chosen.document)
         self._apply(edit)
         score = result.best.score
@@ -245,11 +252,11 @@ class Controller(QObject):
         )
 
     def _run_cancelled(self) -> None:
-        self._show_candidates()
+        self.showing.show(self.document)
         self.status.emit("Generation stopped; nothing was changed.")
 
     def _run_failed(self, sentence: str, trace: str) -> None:
-        self._show_candidates()
+        self.showing.show(self.document)
         self._tell_failure(sentence, trace)
 
     # choose --------------------------------------------------------------------------------------------------------
@@ -257,61 +264,72 @@ class Controller(QObject):
     def choose(self, candidate: Candidate) -> None:
         """Put a candidate on the stage; during a run it is only looked at."""
         if self.running:
-            self._preview = candidate
-            self._set_stage(self._shelf.entry(candidate))
+            self.showing.look_at(candidate)
         elif candidate in self.document.candidates:
             self._apply(edits.choose(self.document, self.document.candidates.index(candidate)))
 
-    def _set_stage(self, entry: Entry | None) -> None:
-        if entry is not self._stage:
-            self._stage = entry
-            self.stage_changed.emit(entry)
+    def compare(self, on: bool) -> None:
+        """Find out how the design on the stage was drawn, or stop doing so."""
+        stage = self.stage
+        if on and stage is not None:
+            self.comparing.look_up(stage.candidate, self.document.target)
+        else:
+            self.comparing.stop()
+
+    def trim(self, on: bool) -> None:
+        """Trim the chosen design to the target, or take its trim off."""
+        if self.running:
+            self.message.emit(Message("Wait until the designs are done, then trim the one you choose.", Tone.HINT))
+        else:
+            self.finishing.switch(on)
+
+    def _forget_stage(self, entry: Entry | None) -> None:
+        """Another design is on the stage: what was asked for the one before is no longer wanted."""
+        self.finishing.stop_unless(None if entry is None else entry.candidate)
 
     # cut -----------------------------------------------------------------------------------------------------------
 
     def export(self, path: Path) -> None:
         """Write the chosen design's cut file or picture; the extension says which."""
-        stage, document = self._stage, self.document
-        if stage is None:
+        order = self._order()
+        if order is None:
             self.message.emit(Message("There is no design to export yet; generate one first.", Tone.HINT))
-            return
-        order = steps.Order(stage.candidate, stage.design.deployment, document.target, document.fabrication)
-        self.cutting.export(order, path)
+        else:
+            self.cutting.export(order, path)
 
     def _plan_soon(self) -> None:
-        deployment = None if self._stage is None else self._stage.design.deployment
-        self.cutting.plan_soon(deployment, self.document.fabrication)
+        self.cutting.plan_soon(self._order())
+
+    def _order(self) -> steps.Order | None:
+        stage, document = self.stage, self.document
+        if stage is None:
+            return None
+        return steps.Order(stage.candidate, stage.design.deployment, document.target, document.fabrication)
 
     # project -------------------------------------------------------------------------------------------------------
 
     def save(self, path: Path) -> None:
         """Write the project file."""
-        work = partial(steps.saving, self.document, path)
-        self.status.emit(f"Saving {path.name} …")
-        self.board.start(f"saving {path.name}", work, Ears(self._saved, on_failed=self._tell_failure))
+        self.storing.save(self.document, path)
 
-    def _saved(self, path: object) -> None:
-        if isinstance(path, Path):
-            self.path = path
-            self.history.mark_saved()
-            self.saved.emit(path)
-            self.document_changed.emit(self.document)
-            self.status.emit(f"Saved {path}.")
+    def _saved(self, path: Path) -> None:
+        self.path = path
+        self.history.mark_saved()
+        self.saved.emit(path)
+        self.document_changed.emit(self.document)
+        self.status.emit(f"Saved {path}.")
 
     def open_project(self, path: Path) -> None:
         """Read a project file."""
-        self.status.emit(f"Opening {path.name} …")
-        ears = Ears(lambda document: self._opened(path, document), on_failed=self._tell_failure)
-        self.board.start(f"opening {path.name}", partial(steps.loading, path), ears)
+        self.storing.open(path)
 
-    def _opened(self, path: Path, document: object) -> None:
-        if isinstance(document, Document):
-            self._stop_design()
-            self.path = path
-            self.history.restart(document)
-            self.opened.emit(path)
-            self._show()
-            self.status.emit(f"Opened {path}.")
+    def _opened(self, path: Path, document: Document) -> None:
+        self._stop_design()
+        self.path = path
+        self.history.restart(document)
+        self.opened.emit(path)
+        self._show()
+        self.status.emit(f"Opened {path}.")
 
     def new_project(self) -> None:
         """Forget everything and start empty."""
@@ -341,6 +359,7 @@ class Controller(QObject):
         """Another document comes: what is still on its way belongs to the old one."""
         self.reading.stop()
         self.tracing.stop()
+        self.finishing.stop()
         self.run.abandon()
 
     # telling the views ---------------------------------------------------------------------------------------------
@@ -355,32 +374,11 @@ class Controller(QObject):
         document = self.document
         self.document_changed.emit(document)
         if before is None or before.candidates is not document.candidates or before.target is not document.target:
-            self._show_candidates()
+            self.showing.show(document)
         elif before.chosen != document.chosen:
-            self._show_chosen()
+            self.showing.show_chosen(document)
         elif before.fabrication != document.fabrication:
             self._plan_soon()
-
-    def _show_candidates(self) -> None:
-        missing = self._shelf.missing(self.document.candidates)
-        if missing:
-            ears = Ears(self._decoded, self._candidates_ready, on_failed=self._tell_failure)
-            self.board.start("decoding the designs", partial(steps.decoding, missing), ears)
-        else:
-            self._candidates_ready()
-
-    def _decoded(self, report: object) -> None:
-        if isinstance(report, steps.Decoded):
-            self._shelf.put(report.candidate, report.deployment)
-
-    def _candidates_ready(self) -> None:
-        self.gallery_reset.emit(tuple(self._shelf.entry(candidate) for candidate in self.document.candidates))
-        self._show_chosen()
-
-    def _show_chosen(self) -> None:
-        candidate = self.document.candidate
-        self._set_stage(None if candidate is None else self._shelf.entry(candidate))
-        self._plan_soon()
 
     def _refuse(self, error: KirigamiError) -> None:
         self.document_changed.emit(self.document)  # so that the control shows the value that holds

@@ -10,11 +10,10 @@ from PySide6.QtCore import QObject, QTimer, Signal
 from kirigami_studio.gui.jobs import steps
 from kirigami_studio.gui.jobs.board import Board, Ears
 from kirigami_studio.gui.messages import Message, Tone
-from kirigami_studio.lattice.deployment import Deployment
-from kirigami_studio.project.settings import FabricationSettings
 
 #: Changes that follow each other faster than this (ms) lead to one plan.
 PLAN_DELAY_MS = 120
+TRIM_AGAIN = " Or take the trim off and trim again: it then keeps what these widths need."
 
 
 class Cutting(QObject):
@@ -30,15 +29,15 @@ class Cutting(QObject):
         super().__init__(parent)
         self._board = board
         self._job: int | None = None
-        self._wanted: tuple[Deployment, FabricationSettings] | None = None
+        self._wanted: steps.Order | None = None
         self._timer = QTimer(self)
         self._timer.setSingleShot(True)
         self._timer.setInterval(PLAN_DELAY_MS)
         self._timer.timeout.connect(self._plan)
 
-    def plan_soon(self, deployment: Deployment | None, settings: FabricationSettings) -> None:
+    def plan_soon(self, order: steps.Order | None) -> None:
         """Plan this design, unless another wish comes first; None means that there is nothing to cut."""
-        self._wanted = None if deployment is None else (deployment, settings)
+        self._wanted = order
         self._timer.start()
 
     def close(self) -> None:
@@ -52,8 +51,9 @@ class Cutting(QObject):
         if self._wanted is None:
             self.planned.emit(None)
             return
-        ears = Ears(self.planned.emit, on_failed=lambda sentence, _: self.refused.emit(sentence))
-        self._job = self._board.start("planning the cuts", partial(steps.planning, *self._wanted), ears)
+        again = "" if self._wanted.candidate.trim is None else TRIM_AGAIN
+        ears = Ears(self.planned.emit, on_failed=lambda sentence, _: self.refused.emit(sentence + again))
+        self._job = self._board.start("planning the cuts", partial(steps.planning, self._wanted), ears)
 
     def export(self, order: steps.Order, path: Path) -> None:
         """Write a cut file or a picture, by the extension."""
@@ -84,7 +84,8 @@ def told(path: Path, made: steps.Planned) -> Message:
     plan, check = made.plan, made.report
     details = "\n".join([str(path), *(problem.text for problem in check.problems), *plan.notes])
     if check.ok:
-        sentence = f"{path.name} was written and read back: {len(plan.paths)} cuts, no fault."
+        trimmed = ", trimmed outline" if made.removed_share else ""
+        sentence = f"{path.name} was written and read back: {len(plan.paths)} cuts{trimmed}, no fault."
         return Message(sentence, Tone.DONE, details)
     sentence = f"{path.name} was written, but cutting it would fail: {check.problems[0].text}"
     return Message(sentence, Tone.WARNING, details)

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import partial
 
 from PySide6.QtCore import QObject, Signal
 
+from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.gui.jobs import steps
 from kirigami_studio.gui.jobs.board import Board, Ears
 from kirigami_studio.gui.shelf import Shelf
-from kirigami_studio.pipeline.events import Finished, Progress, Started
+from kirigami_studio.pipeline.events import CandidateFound, CandidateImproved, Finished, Progress, Started
 from kirigami_studio.pipeline.provenance import provenance
+from kirigami_studio.pipeline.rank import rank_key
 from kirigami_studio.pipeline.request import Request
 
 
@@ -19,7 +22,8 @@ class DesignRun(QObject):
 
     started = Signal(int)
     progressed = Signal(int, int, str)
-    found = Signal(object)  #: Entry
+    found = Signal(object)  #: Entry, new or improved
+    told = Signal(str)  #: how far polishing and search have come
     completed = Signal(object, dict)  #: Result and its provenance
     cancelled = Signal()
     failed = Signal(str, str)  #: sentence, trace
@@ -31,6 +35,9 @@ class DesignRun(QObject):
         self._shelf = shelf
         self._number: int | None = None
         self._digest = ""
+        self._asked = 0
+        self._sampled: dict[int, float] = {}  # sIoU of each candidate when it was found
+        self._now: dict[int, Candidate] = {}
 
     @property
     def running(self) -> bool:
@@ -38,6 +45,9 @@ class DesignRun(QObject):
 
     def start(self, request: Request) -> None:
         """Begin; the caller has made sure that nothing runs."""
+        self._asked = request.k
+        self._sampled.clear()
+        self._now.clear()
         ears = Ears(self._report, self._finish, self._cancel, self._fail)
         self._number = self._board.start("generating designs", partial(steps.generating, request), ears)
         self.started.emit(request.k)
@@ -58,14 +68,29 @@ class DesignRun(QObject):
             self.progressed.emit(report.done, report.total, report.message)
         elif isinstance(report, Started):
             self.progressed.emit(0, report.total, f"Starting {report.total} designs")
+        elif isinstance(report, CandidateFound | CandidateImproved):
+            self._take(report.candidate)
         elif isinstance(report, steps.Decoded):
             self._shelf.put(report.candidate, report.deployment)
-            self.found.emit(self._shelf.entry(report.candidate))
+            entry, number = self._shelf.entry(report.candidate), report.candidate.index
+            self.found.emit(replace(entry, rise=entry.candidate.score.siou - self._sampled[number]))
         elif isinstance(report, Finished):
             self._over(completed=True)
             self.completed.emit(report.result, provenance(report.result.request, self._digest))
         elif isinstance(report, steps.ModelFound):
             self._digest = report.digest
+
+    def _take(self, candidate: Candidate) -> None:
+        siou = candidate.score.siou
+        improved = candidate.index in self._sampled
+        self._sampled.setdefault(candidate.index, siou)
+        self._now[candidate.index] = candidate
+        best = min(self._now.values(), key=rank_key).score.siou
+        if candidate.index >= self._asked:
+            self.told.emit(f"The search found a design with sIoU {100 * siou:.1f} % (best {100 * best:.1f} %).")
+        elif improved:
+            polished = sum(one.polished for one in self._now.values())
+            self.told.emit(f"Polished {polished} of {self._asked} (best {100 * best:.1f} %)")
 
     def _finish(self) -> None:
         if self.running:  # the generator ended without a result

@@ -90,8 +90,12 @@ class Session:
             raise SessionError("The library did not open.")
         press(picker.search, "heart")
         press_key(picker, Qt.Key.Key_Return)
-        self.until(lambda: self.window.target.view.outline is not None, "the heart did not load")
+        self.until(lambda: self._target_name() == "heart", "the heart did not load")
         self.picture("2-target")
+
+    def _target_name(self) -> str:
+        target = self.window.controller.document.target
+        return "" if target is None else target.name
 
     def generate(self) -> None:
         """Ask for a few designs and wait for them."""

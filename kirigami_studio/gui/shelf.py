@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import OrderedDict
 
 from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.gui.jobs.steps import finished_field
 from kirigami_studio.gui.scene.posed import PosedDesign
 from kirigami_studio.gui.views.gallery_model import Entry
 from kirigami_studio.lattice.deployment import Deployment, deploy
@@ -33,11 +34,14 @@ class Shelf:
         return tuple(candidate for candidate in candidates if candidate not in self._motions)
 
     def entry(self, candidate: Candidate) -> Entry:
-        """The card of a candidate, posed for the angle it was scored at; decodes it when it must."""
+        """The card of a candidate, posed for the angle it was scored or trimmed at; decodes it when it must."""
         if candidate not in self._entries:
             if candidate not in self._motions:
-                self.put(candidate, deploy(candidate.field))
-            score = candidate.score
-            design = PosedDesign(self._motions[candidate], score.transform, score.phi)
+                self.put(candidate, deploy(finished_field(candidate)))
+            score, trim, motion = candidate.score, candidate.trim, self._motions[candidate]
+            if trim is None:
+                design = PosedDesign(motion, score.transform, score.phi)
+            else:
+                design = PosedDesign(motion, trim.pose, trim.phi, trim)
             self._entries[candidate] = Entry(candidate, design)
         return self._entries[candidate]

@@ -15,7 +15,7 @@ from PySide6.QtCore import QSize
 from PySide6.QtWidgets import QApplication
 
 from kirigami_studio.gui.messages import Message, Tone
-from kirigami_studio.gui.offscreen_session import Session, click, main
+from kirigami_studio.gui.offscreen_session import DESIGNS, Session, SessionError, click, main
 from kirigami_studio.gui.theme import DARK, LIGHT
 from kirigami_studio.gui.views.target_view import Tool
 
@@ -37,8 +37,10 @@ class StateSheet(Session):
         self.picture_target()
         self.all_sizes("photo")
         self.choose_heart()
-        self.generate()
+        self.polishing()
         self.all_sizes("designs")
+        self.before_and_after()
+        self.trimmed()
         window.stage.deployment.set_phi(math.radians(100.0))
         self.all_sizes("half-open")
         window.stage.deployment.set_phi(math.pi)
@@ -59,6 +61,50 @@ class StateSheet(Session):
         window.controller.history.mark_saved()
         window.close()
         return self.files
+
+    def polishing(self) -> None:
+        """A run whose designs improve, with a search after it."""
+        window = self.window
+        window.settings.search.setChecked(True)
+        window.settings.candidates.setValue(DESIGNS)
+        click(window.run.generate)
+        self.until(lambda: window.says.text().startswith("Polished"), "no design was polished")
+        self.all_sizes("polishing")
+        self.until(lambda: not window.controller.running, "the run did not end")
+        self.until(window.fabrication.export.isEnabled, "no cut plan was made")
+
+    def before_and_after(self) -> None:
+        """The first design that polishing has changed, as it was drawn."""
+        controller, stage = self.window.controller, self.window.stage
+        drawn = [candidate for candidate in controller.document.candidates if candidate.drawn is not None]
+        if not drawn:
+            raise SessionError("Polishing changed no design.")
+        controller.choose(drawn[0])
+        click(stage.before)
+        self.until(lambda: stage.showing_before, "the drawn design was not shown")
+        self.all_sizes("before")
+        click(stage.before)
+
+    def trimmed(self) -> None:
+        """The same design trimmed, opened and flat, and whole again."""
+        controller, stage = self.window.controller, self.window.stage
+        click(stage.trim)
+        self.picture("trimming")
+        self.until(lambda: not controller.finishing.busy, "trimming did not end")
+        if controller.stage is None or controller.stage.candidate.trim is None:
+            raise SessionError("The design was not trimmed.")
+        self.until(self._planned, "no trimmed cut plan was made")
+        self.all_sizes("trimmed")
+        stage.deployment.set_phi(math.radians(60.0))
+        self.all_sizes("trimmed-half-open")
+        stage.deployment.set_phi(math.pi)
+        self.all_sizes("trimmed-flat")
+        stage.deployment.set_phi(0.0)
+        click(stage.trim)
+        self.until(lambda: not self._planned() and self.window.fabrication.export.isEnabled(), "no whole cut plan")
+
+    def _planned(self) -> bool:
+        return "trimmed" in self.window.fabrication.summary.text()
 
     def picture_target(self) -> None:
         """Open a blurred grey picture."""

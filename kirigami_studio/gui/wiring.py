@@ -52,14 +52,19 @@ class Wiring(QObject):
         window.fabrication.changed.connect(lambda changes: controller.change_fabrication(**changes))
         window.fabrication.edited.connect(controller.end_drag)
         window.fabrication.export_wanted.connect(self.commands.export)
+        window.stage.before_wanted.connect(controller.compare)
+        window.stage.trim_wanted.connect(controller.trim)
+        window.stage.switches_changed.connect(self._show_switches)
         window.stage.overlays_changed.connect(self._show_overlay_actions)
 
     def _connect_controller(self) -> None:
         window, controller = self.window, self.controller
         controller.document_changed.connect(self._show_document)
-        controller.stage_changed.connect(self._show_stage)
-        controller.gallery_reset.connect(self._show_gallery)
-        controller.candidate_found.connect(self._add_candidate)
+        controller.showing.stage_changed.connect(self._show_stage)
+        controller.showing.gallery_reset.connect(self._show_gallery)
+        controller.showing.candidate_found.connect(self._add_candidate)
+        controller.comparing.known.connect(window.stage.show_drawn)
+        controller.finishing.busy_changed.connect(self._show_trimming)
         controller.run.started.connect(self._show_run)
         controller.run.progressed.connect(window.run.show_progress)
         controller.run.ended.connect(self._end_run)
@@ -124,7 +129,22 @@ class Wiring(QObject):
         field, score = entry.candidate.field, entry.candidate.score
         kind = "feasible" if score.feasible else "not feasible"
         grid = f"{field.rows} \N{MULTIPLICATION SIGN} {field.columns} voids"
-        self.window.facts.setText(f"{grid}   ·   exact IoU {100 * score.iou_exact:.1f} %   ·   {kind}")
+        facts = [grid, f"exact IoU {100 * score.iou_exact:.1f} %", kind]
+        if entry.candidate.trim is not None:
+            facts.insert(2, f"trimmed IoU {100 * entry.candidate.trim.iou:.1f} %")
+        self.window.facts.setText("   ·   ".join(facts))
+
+    def _show_trimming(self, busy: bool) -> None:
+        self.window.stage.show_trimming(busy)
+        self.window.actions_["cancel"].setEnabled(busy or self.controller.running)
+
+    def _show_switches(self) -> None:
+        """The header's switches have their actions in the menu, which show the same."""
+        stage = self.window.stage
+        for name, button in (("before", stage.before), ("trim", stage.trim)):
+            action: QAction = self.window.actions_[name]
+            action.setEnabled(button.isEnabled())
+            action.setChecked(button.isChecked())
 
     def _show_gallery(self, entries: tuple[Entry, ...]) -> None:
         view = self.window.gallery.view
@@ -136,10 +156,11 @@ class Wiring(QObject):
         view.add(entry)
         stage = self.controller.stage
         if stage is not None:
-            self.window.stage.title.setText(f"Design {view.model_.row_of(stage.candidate) + 1}")
+            self.window.stage.set_rank(view.model_.row_of(stage.candidate) + 1)
 
     def _show_run(self, total: int) -> None:
         self.window.run.show_running(total)
+        self.window.stage.set_trimmable(False)
         self.window.gallery.view.set_hint("Generating …", "The first designs appear in a moment.")
         self.window.stage.view.set_hint("generate", "Generating …", "The best design so far will be shown here.")
         self.window.fabrication.show_waiting()
@@ -150,6 +171,7 @@ class Wiring(QObject):
     def _end_run(self, completed: bool) -> None:
         has_target = self.controller.document.target is not None
         self.window.run.show_idle()
+        self.window.stage.set_trimmable(True)
         self.window.run.show_ready(has_target)
         self._show_hints(has_target)
         hint = "Candidates appear here, best first, while they are generated."

@@ -170,6 +170,18 @@ def test_that_a_trim_without_room_is_refused_in_one_sentence_and_the_switch_goes
     assert studio.controller.document is before and not studio.stage.trim.isChecked()
 
 
+def test_that_widths_that_the_trim_has_no_room_for_are_refused_with_a_way_out(
+    trimmed: MainWindow, until: Until, qtbot: QtBot
+) -> None:
+    trimmed.controller.change_fabrication(connector_mm=4.5)
+    until(lambda: not trimmed.fabrication.export.isEnabled())
+    assert "trim again" in trimmed.fabrication.warnings.text() and trimmed.fabrication.summary.text() == ""
+    qtbot.mouseClick(trimmed.stage.trim, LEFT)
+    qtbot.mouseClick(trimmed.stage.trim, LEFT)
+    until(lambda: not trimmed.controller.finishing.busy)
+    until(lambda: trimmed.fabrication.export.isEnabled() and "trimmed" in trimmed.fabrication.summary.text())
+
+
 def test_that_another_choice_forgets_the_trim_that_was_on_its_way(
     studio: MainWindow, qtbot: QtBot, until: Until
 ) -> None:

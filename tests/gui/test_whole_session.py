@@ -39,7 +39,7 @@ def test_that_the_session_reports_failure(tmp_path: Path, repository: Path) -> N
 
 
 def test_that_every_control_has_a_name_and_a_tooltip(designed: MainWindow) -> None:
-    kinds = ("QToolButton", "QPushButton", "QSpinBox", "QDoubleSpinBox", "QComboBox", "PhiSlider")
+    kinds = ("QToolButton", "QPushButton", "QCheckBox", "QSpinBox", "QDoubleSpinBox", "QComboBox", "PhiSlider")
     panels = (designed.target, designed.settings, designed.stage, designed.fabrication)
     nameless = [
         widget.objectName() or widget.metaObject().className()

@@ -6,15 +6,19 @@ import then happens in the worker, after the window is shown.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.evaluate.trimming import KEEP, LARGEST_KEEP
+from kirigami_studio.foundation.errors import Cancelled, UsageError
 from kirigami_studio.gui.file_kinds import kind_of
 from kirigami_studio.gui.jobs.worker import Cancel
 from kirigami_studio.lattice.deployment import Deployment, deploy
+from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.pipeline.events import CandidateFound, CandidateImproved, Event
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.project.document import Document
@@ -39,10 +43,11 @@ class Decoded:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Planned:
-    """A cut plan and what its check found."""
+    """A cut plan and what its check found; ``removed_share`` (0..1) of the sheet was trimmed away."""
 
     plan: CutPlan
     report: Report
+    removed_share: float = 0.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -55,7 +60,16 @@ class Exported:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Order:
-    """The design that is to be exported, and how it is cut."""
+    """The design that is to be cut, and how.
+
+    Attributes
+    ----------
+    candidate : Candidate
+    deployment : Deployment
+        Of the finished field: that of the trim, if the candidate is trimmed.
+    target : Outline or None
+    settings : FabricationSettings
+    """
 
     candidate: Candidate
     deployment: Deployment
@@ -95,13 +109,58 @@ def generating(request: Request, cancel: Cancel) -> Iterator[Event | ModelFound 
     for event in run(request, cancel):
         yield event
         if isinstance(event, CandidateFound | CandidateImproved):
-            yield Decoded(event.candidate, deploy(event.candidate.field))
+            yield Decoded(event.candidate, deploy(finished_field(event.candidate)))
 
 
 def decoding(candidates: tuple[Candidate, ...], cancel: Cancel) -> Iterator[Decoded]:
     """Decode the candidates of an opened project."""
     for candidate in candidates:
-        yield Decoded(candidate, deploy(candidate.field))
+        yield Decoded(candidate, deploy(finished_field(candidate)))
+
+
+def finished_field(candidate: Candidate) -> RatioField:
+    """The ratios that are shown and cut: those that were fitted for trimming, if the candidate is trimmed."""
+    return candidate.field if candidate.trim is None else candidate.trim.field
+
+
+def comparing(candidate: Candidate, target: Outline, cancel: Cancel) -> Iterator[Decoded]:
+    """Score a candidate as the generator drew it, in the pose that suits it best."""
+    from kirigami_studio.evaluate.score import evaluate
+    from kirigami_studio.pipeline.threads import one_blas_thread
+
+    if candidate.drawn is None:
+        return
+    deployment = deploy(candidate.drawn)
+    with one_blas_thread():
+        score = evaluate(deployment, target, candidate.score.phi)
+    drawn = replace(candidate, field=candidate.drawn, score=score, polished=False, drawn=None, trim=None)
+    yield Decoded(drawn, deployment)
+
+
+def trimming(candidate: Candidate, target: Outline, settings: FabricationSettings, cancel: Cancel) -> Iterator[Decoded]:
+    """Fit a candidate so that it covers the target, and trim it, with room for the connectors at its hinges."""
+    from kirigami_studio.fabricate.material import find_material
+    from kirigami_studio.fabricate.trimmed_sheet import needed_keep
+    from kirigami_studio.pipeline.tasks import COVER_STEPS
+    from kirigami_studio.pipeline.threads import one_blas_thread
+    from kirigami_studio.polish.covering import fit_cover
+
+    material, score = find_material(settings.material), candidate.score
+    connector = material.connector_mm if settings.connector_mm is None else settings.connector_mm
+    kerf = material.kerf_mm if settings.kerf_mm is None else settings.kerf_mm
+    needed = needed_keep(deploy(candidate.field), settings.width_mm, connector, kerf)
+    if needed > LARGEST_KEEP:
+        least = settings.width_mm * needed / LARGEST_KEEP
+        raise UsageError(
+            f"Connectors of {connector:g} mm leave nothing to trim on a sheet {settings.width_mm:g} mm wide; make the "
+            f"sheet at least {math.ceil(least)} mm wide or the connectors narrower, then trim again."
+        )
+    with one_blas_thread():
+        keep = max(KEEP, needed)
+        cover = fit_cover(candidate.field, target, score.phi, COVER_STEPS, score.transform, keep, cancel)
+    if cancel():
+        raise Cancelled("Trimming was stopped; nothing was changed.")
+    yield Decoded(replace(candidate, trim=cover.trim), deploy(cover.trim.field))
 
 
 def reading_target(source: str, cancel: Cancel) -> Iterator[Picture | Outline]:
@@ -124,25 +183,27 @@ def tracing(picture: Picture, cancel: Cancel) -> Iterator[Outline]:
     yield read_image(picture.path, picture.threshold)
 
 
-def planning(deployment: Deployment, settings: FabricationSettings, cancel: Cancel) -> Iterator[Planned]:
+def planning(order: Order, cancel: Cancel) -> Iterator[Planned]:
     """Plan the cuts and check them."""
-    yield planned(deployment, settings)
+    yield planned(order)
 
 
-def planned(deployment: Deployment, settings: FabricationSettings) -> Planned:
-    """Plan the cuts and check them, in one go."""
+def planned(order: Order) -> Planned:
+    """Plan the cuts and check them, in one go; a trimmed design gets its trimmed outline."""
     from kirigami_studio.fabricate.checks import check_plan
     from kirigami_studio.fabricate.cut_plan import plan_cuts
     from kirigami_studio.fabricate.material import find_material
 
+    settings, trim = order.settings, order.candidate.trim
     plan = plan_cuts(
-        deployment,
+        order.deployment,
         width_mm=settings.width_mm,
         connector_mm=settings.connector_mm,
         kerf_mm=settings.kerf_mm,
         material=find_material(settings.material),
+        kept=None if trim is None else trim.kept,
     )
-    return Planned(plan, check_plan(plan))
+    return Planned(plan, check_plan(plan), 0.0 if trim is None else trim.removed_share)
 
 
 def exporting(order: Order, path: Path, cancel: Cancel) -> Iterator[Exported]:
@@ -151,19 +212,10 @@ def exporting(order: Order, path: Path, cancel: Cancel) -> Iterator[Exported]:
     from kirigami_studio.export.registry import export, find_exporter
 
     find_exporter(path)  # an unknown kind is refused before anything is planned
-    job = planned(order.deployment, order.settings) if kind_of(path.suffix).cuts else None
-    score = order.candidate.score
-    export(
-        ExportJob(
-            order.deployment,
-            score.phi,
-            None if job is None else job.plan,
-            None if order.target is None else order.target.points,
-            score.transform,
-        ),
-        path,
-    )
-    yield Exported(path, job)
+    made = planned(order) if kind_of(path.suffix).cuts else None
+    target = None if order.target is None else order.target.points
+    export(ExportJob.of(order.candidate, target, None if made is None else made.plan), path)
+    yield Exported(path, made)
 
 
 def saving(document: Document, path: Path, cancel: Cancel) -> Iterator[Path]:

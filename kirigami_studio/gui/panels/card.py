@@ -73,6 +73,30 @@ class ElidedLabel(QLabel):
         painter.end()
 
 
+class FittingLabel(QLabel):
+    """Small print in as many words as there is room for, or none."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.setObjectName("muted")
+        self._texts: tuple[str, ...] = ()
+
+    def set_texts(self, *texts: str) -> None:
+        """Versions of what it says, longest first."""
+        self._texts = texts
+
+    def minimumSizeHint(self) -> QSize:  # noqa: N802 - Qt's name
+        return QSize(0, super().minimumSizeHint().height())
+
+    def fit(self, width: int) -> bool:
+        """Show the longest text that fits into ``width`` pixels; whether any does."""
+        metrics = self.fontMetrics()
+        chosen = next((text for text in self._texts if metrics.horizontalAdvance(text) <= width), "")
+        self.setText(chosen)
+        self.setVisible(bool(chosen))
+        return bool(chosen)
+
+
 def compact(box: QAbstractSpinBox, width: int = 62) -> None:
     """Let a number field be as narrow as its column instead of as wide as its largest number."""
     box.setMinimumWidth(width)

@@ -78,6 +78,7 @@ class FabricationPanel(Card):
         self._palette: Palette = LIGHT
         self._calm = True
         self._folded, self._by_hand = False, False
+        self._summaries = ("", "")  # unfolded, folded
         self._presets = presets()
         self.material = QComboBox()
         self.material.setObjectName("material")
@@ -164,7 +165,7 @@ class FabricationPanel(Card):
         self._folded = folded
         self.fold.setToolTip("Show material, widths and cutting numbers." if folded else "Fold the numbers away.")
         self.details.setVisible(not folded)
-        self.summary.setVisible(folded)
+        self._show_summary()
         self._show_warning()
         self._dress_fold()
 
@@ -258,9 +259,22 @@ class FabricationPanel(Card):
         }
         for key, text in texts.items():
             self.numbers[key].setText(text)
-        self.summary.setText(f"{texts['size']}  ·  {texts['slits']} cuts")
+        self._sum_up(texts, planned.removed_share)
         found = [*(problem.text for problem in report.problems), *plan.notes]
         self._warn("\n".join(found) if found else "The cut check found no problem.", calm=not found)
+
+    def _sum_up(self, texts: dict[str, str], removed_share: float) -> None:
+        """The header's words, folded and unfolded; that a sheet is trimmed is said in both."""
+        unfolded = f"trimmed, {100 * removed_share:.1f} % cut off" if removed_share else ""
+        self._summaries = (unfolded, f"{texts['size']}  ·  {'trimmed' if removed_share else texts['slits'] + ' cuts'}")
+        share = f"{100 * removed_share:.1f} % of the sheet is cut off along the target; the cut file has that edge"
+        self.summary.setToolTip(f"Trimmed: {share}." if removed_share else "")
+        self._show_summary()
+
+    def _show_summary(self) -> None:
+        text = self._summaries[self._folded]
+        self.summary.setText(text)
+        self.summary.setVisible(bool(text))
 
     def show_waiting(self) -> None:
         """Designs are being made; there is no plan to show before one is chosen."""
@@ -281,7 +295,8 @@ class FabricationPanel(Card):
             self.kinds[kind.extension].setEnabled(cuts if kind.cuts else pictures)
 
     def _forget_numbers(self) -> None:
-        self.summary.clear()
+        self._summaries = ("", "")
+        self._show_summary()
         for label in self.numbers.values():
             label.setText(UNKNOWN)
 

@@ -1,4 +1,4 @@
-"""How the next run searches: grid, angle, number of candidates, seed, generator."""
+"""How the next run searches: grid, angle, number of candidates, seed, generator, polish, search."""
 
 from __future__ import annotations
 
@@ -6,7 +6,16 @@ import math
 import secrets
 
 from PySide6.QtCore import QSignalBlocker, Qt, Signal
-from PySide6.QtWidgets import QComboBox, QDoubleSpinBox, QHBoxLayout, QLabel, QSizePolicy, QSpinBox, QWidget
+from PySide6.QtWidgets import (
+    QCheckBox,
+    QComboBox,
+    QDoubleSpinBox,
+    QHBoxLayout,
+    QLabel,
+    QSizePolicy,
+    QSpinBox,
+    QWidget,
+)
 
 from kirigami_studio.gui import icons
 from kirigami_studio.gui.panels.card import Card, captioned, compact, tool_button
@@ -33,6 +42,18 @@ POLISH = (
     ("Light", 5, "A quick fit: most of the gain, fields stay close to what was drawn."),
     ("Full", 15, "Nearly converged; the usual choice."),
     ("Deep", 60, "Until nothing is gained any more; for sharp corners and thin arms."),
+)
+
+#: What a fit prefers among nearly equal matches: name of the preference, label, what it means.
+PREFER = (
+    ("accuracy", "Accuracy", "The closest match, whatever the panels look like."),
+    ("balanced", "Balanced", "The usual choice: as close, and about 30 % calmer."),
+    ("regularity", "Regularity", "Calmer panels, for a loss of match of about 0.1 to 0.2 %."),
+    ("calm", "Calm", "The calmest panels, for the largest loss of match."),
+)
+SEARCH = (
+    "Look beyond the samples, by way of easier shapes, for one more design. Costs a few seconds; helps with thin arms "
+    "and notches."
 )
 
 
@@ -66,19 +87,21 @@ class SettingsPanel(Card):
         self.angle.setToolTip("Deployment angle (degrees) at which the sheet shows the target; 0° is fully turned.")
         self.dice = tool_button("newSeed", "New random seed.")
         self.dice.setFixedSize(29, 29)
-        self.variant = QComboBox()
-        self.variant.setObjectName("variant")
-        self.variant.setFocusPolicy(Qt.FocusPolicy.TabFocus)
-        self.variant.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
-        self.variant.setAccessibleName("Generator variant")
-        self.polish = QComboBox()
-        self.polish.setObjectName("polish")
-        self.polish.setFocusPolicy(Qt.FocusPolicy.TabFocus)
-        self.polish.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
-        self.polish.setAccessibleName("Polish")
+        self.variant = _choice("variant", "Generator variant")
+        self.polish = _choice("polish", "Polish")
         for title, steps, about in POLISH:
             self.polish.addItem(title, steps)
             self.polish.setItemData(self.polish.count() - 1, about, TOOLTIP)
+        self.prefer = _choice("prefer", "What polishing prefers")
+        for name, title, about in PREFER:
+            self.prefer.addItem(title, name)
+            self.prefer.setItemData(self.prefer.count() - 1, about, TOOLTIP)
+        self.search = QCheckBox("Searc&h")
+        self.search.setObjectName("search")
+        self.search.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+        self.search.setAccessibleName("Search beyond the samples")
+        self.search.setToolTip(SEARCH)
+        self.search.setMinimumHeight(29)
         self._lay_out()
         self.set_variants(("prior",))
         self._connect()
@@ -86,8 +109,8 @@ class SettingsPanel(Card):
     def _lay_out(self) -> None:
         grid = _side_by_side(self.rows, QLabel("\N{MULTIPLICATION SIGN}"), self.columns)
         seed = _side_by_side(self.seed, self.dice)
-        first, second = QHBoxLayout(), QHBoxLayout()
-        for row in (first, second):
+        first, second, third = QHBoxLayout(), QHBoxLayout(), QHBoxLayout()
+        for row in (first, second, third):
             row.setSpacing(10)
             self.body.addLayout(row)
         first.addLayout(captioned("&Grid (voids)", self.rows, grid), 5)
@@ -95,7 +118,10 @@ class SettingsPanel(Card):
         first.addLayout(captioned("Desi&gns", self.candidates, self.candidates), 3)
         second.addLayout(captioned("&Seed", self.seed, seed), 4)
         second.addLayout(captioned("&Model", self.variant, self.variant), 3)
-        second.addLayout(captioned("&Polish", self.polish, self.polish), 3)
+        third.addLayout(captioned("&Polish", self.polish, self.polish), 7)
+        third.addLayout(captioned("Pre&fer", self.prefer, self.prefer), 10)
+        third.addLayout(captioned("", self.search, self.search))
+        third.setSpacing(8)
 
     def _connect(self) -> None:
         self.rows.valueChanged.connect(lambda: self.changed.emit({"grid": (self.rows.value(), self.columns.value())}))
@@ -107,6 +133,8 @@ class SettingsPanel(Card):
         self.seed.valueChanged.connect(lambda value: self.changed.emit({"seed": value}))
         self.variant.activated.connect(lambda _: self.changed.emit({"variant": self.variant.currentData()}))
         self.polish.activated.connect(lambda _: self.changed.emit({"polish": self.polish.currentData()}))
+        self.prefer.activated.connect(lambda _: self.changed.emit({"prefer": self.prefer.currentData()}))
+        self.search.toggled.connect(lambda on: self.changed.emit({"search": int(on)}))
         self.dice.clicked.connect(lambda: self.seed.setValue(secrets.randbelow(1_000_000)))
         for box in (self.rows, self.columns, self.angle, self.candidates, self.seed):
             box.setKeyboardTracking(False)
@@ -142,6 +170,10 @@ class SettingsPanel(Card):
             self._choose_variant(settings.variant)
         with QSignalBlocker(self.polish):
             self._choose_polish(settings.polish)
+        with QSignalBlocker(self.prefer):
+            self._choose_preference(settings.prefer, settings.polish > 0 or settings.search > 0)
+        with QSignalBlocker(self.search):
+            self.search.setChecked(settings.search > 0)
 
     def _choose_polish(self, steps: int) -> None:
         index = self.polish.findData(steps)
@@ -150,6 +182,17 @@ class SettingsPanel(Card):
             index = self.polish.count() - 1
         self.polish.setCurrentIndex(index)
         self.polish.setToolTip(f"How thoroughly designs are fitted to the target: {steps} steps at most.")
+
+    def _choose_preference(self, name: str, fitted: bool) -> None:
+        index = self.prefer.findData(name)
+        if index < 0:
+            self.prefer.addItem(name, name)
+            index = self.prefer.count() - 1
+        self.prefer.setCurrentIndex(index)
+        self.prefer.setEnabled(fitted)
+        about = self.prefer.itemData(index, TOOLTIP) or ""
+        tip = f"What polishing prefers among nearly equal matches. {about}".strip()
+        self.prefer.setToolTip(tip if fitted else "What polishing prefers; Polish is off.")
 
     def _choose_variant(self, name: str) -> None:
         index = self.variant.findData(name)
@@ -162,6 +205,15 @@ class SettingsPanel(Card):
     def set_palette(self, palette: Palette) -> None:
         """Draw in other colours."""
         self.dice.setIcon(icons.icon("dice", palette))
+
+
+def _choice(name: str, told: str) -> QComboBox:
+    box = QComboBox()
+    box.setObjectName(name)
+    box.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+    box.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
+    box.setAccessibleName(told)
+    return box
 
 
 def _whole(name: str, low: int, high: int, tip: str) -> QSpinBox:

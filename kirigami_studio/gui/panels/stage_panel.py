@@ -1,13 +1,14 @@
-"""The chosen design, large: layout view, overlays, deployment."""
+"""The chosen design, large: layout view, overlays, before and after, trim, deployment."""
 
 from __future__ import annotations
 
-from PySide6.QtCore import Signal
+from PySide6.QtCore import QSignalBlocker, Signal
 from PySide6.QtGui import QResizeEvent
-from PySide6.QtWidgets import QLabel, QToolButton, QWidget
+from PySide6.QtWidgets import QToolButton, QWidget
 
+from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.gui import icons
-from kirigami_studio.gui.panels.card import Card, tool_button
+from kirigami_studio.gui.panels.card import INSET, Card, FittingLabel, tool_button
 from kirigami_studio.gui.panels.deployment_bar import DeploymentBar
 from kirigami_studio.gui.theme import Palette
 from kirigami_studio.gui.views.gallery_model import Entry, described
@@ -23,24 +24,43 @@ OVERLAYS = (
     ),
     (Overlay.FAULTS, "fault", "Mark inverted panels and the first contact (F)."),
 )
-
-#: Narrower than this (pixels) the header has no room for numbers; the status line and the gallery show them too.
-ROOM_FOR_NUMBERS = 500
+BEFORE = "Before polish: show the design as the generator drew it (B)."
+NEVER_POLISHED = "Before polish (B). Nothing to compare: polishing has not changed this design."
+NEVER_DRAWN = "Before polish (B). Nothing to compare: this design was not drawn by the generator."
+TRIM = "Trim to target (Ctrl+T). Cuts the edge panels along the target; every hinge keeps its material."
+UNTRIM = "Trim to target (Ctrl+T). Press again to bring back what was cut off."
+TRIMMING = "Trim to target: at work. Press again, or Esc, to stop."
+#: Pixels between the title and the numbers at least.
+GAP = 12
 
 
 class StagePanel(Card):
-    """Shows one entry of the gallery at any angle."""
+    """Shows one entry of the gallery at any angle, as it is or as it was drawn."""
 
     overlays_changed = Signal(object)
+    before_wanted = Signal(bool)  #: whether the drawn state is to be shown
+    trim_wanted = Signal(bool)
+    switches_changed = Signal()  #: the state of :attr:`before` or :attr:`trim`
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__("Layout", parent)
+        self._entry: Entry | None = None
+        self._drawn: Entry | None = None
+        self._target: Outline | None = None
+        self._rank = 0
+        self._trimmable, self._trimming = True, False
         self.view = LayoutView()
         self.deployment = DeploymentBar()
-        self.numbers = QLabel()
-        self.numbers.setObjectName("muted")
+        self.numbers = FittingLabel()
         self.header.addWidget(self.numbers)
         self.header.addSpacing(8)
+        self.before = tool_button("before", BEFORE, checkable=True)
+        self.before.toggled.connect(self._toggle_before)
+        self.trim = tool_button("trim", TRIM, checkable=True)
+        self.trim.clicked.connect(self.trim_wanted)
+        for switch in (self.before, self.trim):
+            self.header.addWidget(switch)
+        self.header.addSpacing(6)
         self.toggles: dict[Overlay, QToolButton] = {}
         for overlay, _, tip in OVERLAYS:
             button = tool_button(f"show{overlay.value.capitalize()}", tip, checkable=True)
@@ -55,26 +75,113 @@ class StagePanel(Card):
         self.body.addWidget(self.deployment)
         self.deployment.phi_changed.connect(self.view.set_phi)
 
+    @property
+    def showing_before(self) -> bool:
+        """Whether the design is shown as it was drawn."""
+        return self._drawn is not None and self.before.isChecked()
+
     def show_entry(self, entry: Entry | None, target: Outline | None, rank: int) -> None:
         """Show another design; the angle stays, or starts at the target angle for the first one."""
         first = entry is not None and self.view.scene_bounds() is None
-        self.title.setText("Layout" if entry is None or rank <= 0 else f"Design {rank}")
+        self._entry, self._target, self._rank, self._drawn = entry, target, rank, None
         self.deployment.set_ready(entry is not None)
+        self._set_switches()
+        self._show()
+        if entry is not None and first:
+            self.view.fit()
+            self.deployment.set_phi(entry.design.phi_target)
+        if self.before.isChecked():
+            self.before_wanted.emit(True)
+
+    def show_drawn(self, candidate: Candidate, drawn: Entry) -> None:
+        """Show how the design on the stage was drawn, if that is still wanted."""
+        if self.before.isChecked() and self._entry is not None and self._entry.candidate == candidate:
+            self._drawn = drawn
+            self._show()
+
+    def show_trimming(self, busy: bool) -> None:
+        """The design is being trimmed, or no longer."""
+        self._trimming = busy
+        self._set_switches()
+
+    def set_trimmable(self, trimmable: bool) -> None:
+        """Whether a design may be trimmed now."""
+        self._trimmable = trimmable
+        self._set_switches()
+
+    def set_rank(self, rank: int) -> None:
+        """The same design has another place now."""
+        self._rank = rank
+        self._show_title()
+
+    def _toggle_before(self, on: bool) -> None:
+        self._drawn = None
+        self._show()
+        self.before_wanted.emit(on)
+        self.switches_changed.emit()
+
+    def _set_switches(self) -> None:
+        candidate = None if self._entry is None else self._entry.candidate
+        comparable = candidate is not None and candidate.drawn is not None
+        trimmed = candidate is not None and candidate.trim is not None
+        self.before.setEnabled(comparable)
+        never = NEVER_DRAWN if candidate is not None and candidate.polished else NEVER_POLISHED
+        self.before.setToolTip(BEFORE if comparable or candidate is None else never)
+        with QSignalBlocker(self.before):
+            self.before.setChecked(comparable and self.before.isChecked())
+        self.trim.setEnabled(candidate is not None and self._target is not None and self._trimmable)
+        self.trim.setToolTip(TRIMMING if self._trimming else UNTRIM if trimmed else TRIM)
+        self.trim.setChecked(trimmed or self._trimming)
+        self.switches_changed.emit()
+
+    def _show(self) -> None:
+        """Draw what is wanted of the present design."""
+        entry = self._entry
+        self._show_title()
         if entry is None:
-            self.numbers.clear()
             self.view.show_design(None, None, None)
             return
-        score, design = entry.candidate.score, entry.design
-        self.view.show_design(design, score, target)
-        self.deployment.set_marks(design.phi_target, None if score.contact is None else score.contact.phi)
-        self.numbers.setText(f"sIoU {100 * score.siou:.1f} %   gain {100 * score.siou_gain:+.1f}   TV {score.tv:.2f}")
-        self.numbers.setToolTip(described(entry.candidate, max(rank, 1)))
-        if first:
-            self.view.fit()
-            self.deployment.set_phi(design.phi_target)
+        shown = self._drawn or entry
+        trim = shown.candidate.trim
+        # Contacts are known of the field that was scored; the one fitted for trimming is free of them.
+        score = shown.candidate.score if trim is None or trim.field == shown.candidate.field else None
+        contact = None if score is None else score.contact
+        self.view.show_design(shown.design, score, self._target)
+        self.deployment.set_marks(shown.design.phi_target, None if contact is None else contact.phi)
+
+    def _show_title(self) -> None:
+        entry, rank = self._entry, self._rank
+        self.title.setText("Layout" if entry is None or rank <= 0 else f"Design {rank}")
+        self.numbers.set_texts(*self._texts())
+        self.numbers.setToolTip("" if entry is None else described(entry.candidate, max(rank, 1)))
+        self._fit_numbers()
+
+    def _texts(self) -> tuple[str, ...]:
+        """What the header says, longest first."""
+        if self._entry is None:
+            return ()
+        score, trim = self._entry.candidate.score, self._entry.candidate.trim
+        siou = f"{100 * score.siou:.1f} %"
+        if self._drawn is not None:
+            before = f"{100 * self._drawn.candidate.score.siou:.1f} %"
+            return f"before polish: sIoU {before}  ·  after: {siou}", f"before {before}  ·  after {siou}"
+        if trim is not None:
+            trimmed = f"{100 * trim.iou:.1f} %"
+            return f"sIoU {siou}  ·  trimmed IoU {trimmed}", f"{siou}  ·  trimmed {trimmed}"
+        return f"sIoU {siou}   gain {100 * score.siou_gain:+.1f}   TV {score.tv:.2f}", f"sIoU {siou}"
+
+    def _fit_numbers(self) -> None:
+        """Put the longest text that fits into the header; none fits beside many buttons in a narrow stage."""
+        buttons = [self.before, self.trim, *self.toggles.values(), self.whole]
+        used = sum(button.sizeHint().width() + self.header.spacing() for button in buttons) + 14
+        room = self.width() - 2 * INSET - used - self.title.sizeHint().width() - GAP
+        fits = self.numbers.fit(room)
+        texts = self._texts()
+        special = self._drawn is not None or (self._entry is not None and self._entry.candidate.trim is not None)
+        self.view.set_caption(texts[0] if special and texts and not fits else "")
 
     def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802 - Qt's name
-        self.numbers.setVisible(self.width() >= ROOM_FOR_NUMBERS)
+        self._fit_numbers()
         super().resizeEvent(event)
 
     def set_palette(self, palette: Palette) -> None:
@@ -83,7 +190,8 @@ class StagePanel(Card):
         self.deployment.set_palette(palette)
         for overlay, icon, _ in OVERLAYS:
             self.toggles[overlay].setIcon(icons.icon(icon, palette))
-        self.whole.setIcon(icons.icon("fit", palette))
+        for button, icon in ((self.before, "before"), (self.trim, "trim"), (self.whole, "fit")):
+            button.setIcon(icons.icon(icon, palette))
 
     def _tell_overlays(self) -> None:
         chosen = frozenset(overlay for overlay, button in self.toggles.items() if button.isChecked())

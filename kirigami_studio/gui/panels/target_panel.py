@@ -91,7 +91,7 @@ class TargetPanel(Card):
             self.buttons[name].setIcon(icons.icon(icon, palette))
 
     def minimumSizeHint(self) -> QSize:  # noqa: N802 - Qt's name
-        return QSize(250, 230)
+        return QSize(250, 195)
 
 
 def measured(outline: Outline) -> str:

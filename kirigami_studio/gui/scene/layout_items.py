@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 import numpy.typing as npt
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QColor, QPainter, QPen
 
-from kirigami_studio.gui.scene.paths import quad_paths
+from kirigami_studio.gui.scene.paths import line_path, quad_paths
 from kirigami_studio.gui.theme import Palette
 
 FloatArray = npt.NDArray[np.float64]
@@ -16,7 +18,13 @@ FloatArray = npt.NDArray[np.float64]
 SMALLEST_LINED_PANEL = 5.0
 
 
-def paint_panels(painter: QPainter, panels: FloatArray, turns_left: npt.NDArray[np.bool_], palette: Palette) -> None:
+def paint_panels(
+    painter: QPainter,
+    panels: FloatArray,
+    turns_left: npt.NDArray[np.bool_],
+    palette: Palette,
+    kept: Mapping[int, FloatArray] | None = None,
+) -> None:
     """Fill all panels.
 
     Parameters
@@ -24,7 +32,12 @@ def paint_panels(painter: QPainter, panels: FloatArray, turns_left: npt.NDArray[
     panels : (K, 4, 2) float, pixels
     turns_left : (K,) bool
         Panels that turn counter-clockwise while the sheet opens get the lighter blue.
+    kept : mapping of row to (P, 2) float, pixels, optional
+        What is drawn instead of trimmed panels.
     """
+    kept = kept or {}
+    whole = np.ones(len(panels), dtype=np.bool_)
+    whole[list(kept)] = False
     size = np.median(np.linalg.norm(panels[:, 2] - panels[:, 0], axis=-1)) if len(panels) else 0.0
     line = QPen(Qt.PenStyle.NoPen)
     if size >= SMALLEST_LINED_PANEL:
@@ -34,8 +47,11 @@ def paint_panels(painter: QPainter, panels: FloatArray, turns_left: npt.NDArray[
         # A pen in the fill's colour keeps hairline gaps of antialiasing from showing between closed panels.
         painter.setPen(line if line.style() != Qt.PenStyle.NoPen else QPen(QColor(colour), 0.5))
         painter.setBrush(QColor(colour))
-        for path in quad_paths(panels[chosen]):
+        for path in quad_paths(panels[chosen & whole]):
             painter.drawPath(path)
+        for row, part in kept.items():
+            if chosen[row]:
+                painter.drawPath(line_path(part, closed=True))
 
 
 def turning_left(rows: int, columns: int) -> npt.NDArray[np.bool_]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import TYPE_CHECKING
@@ -23,6 +24,8 @@ FloatArray = npt.NDArray[np.float64]
 TINT_ALPHA = 64
 #: Horizontal distance of hatch lines, pixels.
 STRIPE_STEP = 8
+#: What was cut off is snapped to this grid (world units) when it is taken from the sheet.
+GRID = 1e-9
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -43,8 +46,8 @@ class Mismatch:
     extra_share: float
 
 
-def mismatch(target: FloatArray, sheet: FloatArray) -> Mismatch:
-    """Compare two closed polygons (L, 2) in world units.
+def mismatch(target: FloatArray, sheet: FloatArray, removed: Sequence[FloatArray] = ()) -> Mismatch:
+    """Compare two closed polygons (L, 2) in world units; ``removed`` ones were cut off the sheet.
 
     A sheet whose outline crosses itself is read as the area it covers.
     """
@@ -54,6 +57,11 @@ def mismatch(target: FloatArray, sheet: FloatArray) -> Mismatch:
     covered: BaseGeometry = shapely.Polygon(sheet)
     if not covered.is_valid:
         covered = shapely.make_valid(covered)
+    if removed:
+        off = shapely.union_all([shapely.Polygon(ring) for ring in removed], grid_size=GRID)
+        parts = shapely.get_parts(covered)  # of a sheet that touches itself lines may be left over
+        areas = shapely.union_all(parts[shapely.area(parts) > 0.0], grid_size=GRID)
+        covered = shapely.difference(areas, off, grid_size=GRID)
     missing, extra = wanted.difference(covered), covered.difference(wanted)
     return Mismatch(missing, extra, missing.area / wanted.area, extra.area / wanted.area)
 

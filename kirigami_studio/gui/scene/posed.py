@@ -10,7 +10,9 @@ import numpy as np
 import numpy.typing as npt
 
 from kirigami_studio.evaluate.similarity import Similarity
+from kirigami_studio.evaluate.trimming import Trim
 from kirigami_studio.gui.scene.frame import Bounds
+from kirigami_studio.gui.scene.trimmed_parts import TrimmedParts
 from kirigami_studio.lattice.deployment import Deployment
 
 FloatArray = npt.NDArray[np.float64]
@@ -29,11 +31,14 @@ class PosedDesign:
     pose : Similarity
         Layout frame at ``phi_target`` -> world.
     phi_target : float, radians
+    trim : Trim or None
+        What was cut off the edge panels.
     """
 
     deployment: Deployment
     pose: Similarity
     phi_target: float
+    trim: Trim | None = None
 
     def nodes(self, phi: float) -> FloatArray:
         """All nodes at angle ``phi``: (N, 2) float, world."""
@@ -48,8 +53,19 @@ class PosedDesign:
         """Panel corners (K, 4, 2) out of :meth:`nodes`."""
         return nodes[self.deployment.topology.panel_nodes].reshape(-1, 4, 2)
 
+    def kept(self, nodes: FloatArray, phi: float) -> dict[int, FloatArray]:
+        """What stays of the trimmed panels, (P, 2) each by its row in :meth:`panels`, out of :meth:`nodes`."""
+        if self.trim is None:
+            return {}
+        rings = _trimmed_parts(self).kept
+        return dict(zip(rings.panel.tolist(), rings.at(nodes, self.pose, phi), strict=True))
+
+    def removed(self, nodes: FloatArray, phi: float) -> list[FloatArray]:
+        """What trimming cut off: list of (P, 2), out of :meth:`nodes`."""
+        return [] if self.trim is None else _trimmed_parts(self).removed.at(nodes, self.pose, phi)
+
     def outline(self, nodes: FloatArray, phi: float) -> FloatArray:
-        """Boundary polygon (L, 2) out of :meth:`nodes`."""
+        """Boundary polygon (L, 2) out of :meth:`nodes`, before anything was cut off."""
         tables = self.deployment.topology
         zipped = phi < 1e-9
         boundary: FloatArray = nodes[tables.outline_at_zero if zipped else tables.outline_nodes]
@@ -71,3 +87,10 @@ class PosedDesign:
 def _placed_middle(design: PosedDesign) -> FloatArray:
     middle: FloatArray = design.pose.apply(design.deployment.nodes(design.phi_target)).mean(axis=0)
     return middle
+
+
+@lru_cache(maxsize=256)
+def _trimmed_parts(design: PosedDesign) -> TrimmedParts:
+    if design.trim is None:
+        raise ValueError("A design that is not trimmed has no trimmed parts.")
+    return TrimmedParts.of(design.deployment, design.trim)

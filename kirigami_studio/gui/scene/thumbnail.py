@@ -25,7 +25,9 @@ def paint_candidate(
         bounds = bounds.united(Bounds.of(target.points))
     frame = Frame.fitting(bounds, rect, MARGIN)
     field = design.deployment.field
-    paint_panels(painter, frame.to_pixels(design.panels(nodes)), turning_left(field.rows, field.columns), palette)
+    kept = {row: frame.to_pixels(part) for row, part in design.kept(nodes, design.phi_target).items()}
+    panels = frame.to_pixels(design.panels(nodes))
+    paint_panels(painter, panels, turning_left(field.rows, field.columns), palette, kept)
     if target is not None:
         paint_target_line(painter, frame.to_pixels(target.points), palette, width=1.4)
 

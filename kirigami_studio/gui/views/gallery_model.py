@@ -14,20 +14,31 @@ from kirigami_studio.pipeline.rank import rank_key
 
 CANDIDATE_ROLE = Qt.ItemDataRole.UserRole + 1
 DESIGN_ROLE = Qt.ItemDataRole.UserRole + 2
+RISE_ROLE = Qt.ItemDataRole.UserRole + 3
 
 Index = QModelIndex | QPersistentModelIndex
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Entry:
-    """One card: a candidate with its decoded, posed design."""
+    """One card: a candidate with its decoded, posed design.
+
+    Attributes
+    ----------
+    candidate : Candidate
+    design : PosedDesign
+        As it is finished: trimmed if the candidate is.
+    rise : float
+        What polishing has added to its sIoU in the run that goes on.
+    """
 
     candidate: Candidate
     design: PosedDesign
+    rise: float = 0.0
 
 
 class GalleryModel(QAbstractListModel):
-    """Entries in the order of :func:`kirigami_studio.pipeline.rank.rank_key`."""
+    """Entries in the order of the document; while a run goes on in that of its ranking."""
 
     def __init__(self, parent: QObject | None = None) -> None:
         super().__init__(parent)
@@ -48,14 +59,25 @@ class GalleryModel(QAbstractListModel):
             return entry.candidate
         if role == DESIGN_ROLE:
             return entry.design
+        if role == RISE_ROLE:
+            return entry.rise
         if role in (Qt.ItemDataRole.AccessibleTextRole, Qt.ItemDataRole.ToolTipRole):
-            return described(entry.candidate, index.row() + 1)
+            risen = f"\nPolishing has raised sIoU by {100 * entry.rise:.2f} points so far" if entry.rise > 0 else ""
+            return described(entry.candidate, index.row() + 1) + risen
         return None
 
     def replace(self, entries: list[Entry]) -> None:
-        """Show other candidates."""
+        """Show other candidates, best first; those that are the same samples as before keep their cards."""
+        before, self._entries = self._entries, list(entries)
+        kept = len(before) == len(entries) and all(
+            same_sample(old.candidate, new.candidate) for old, new in zip(before, entries, strict=True)
+        )
+        if kept and entries:
+            self.dataChanged.emit(self.index(0, 0), self.index(len(entries) - 1, 0))
+            return
+        self._entries = before
         self.beginResetModel()
-        self._entries = sorted(entries, key=lambda entry: rank_key(entry.candidate))
+        self._entries = list(entries)
         self.endResetModel()
 
     def insert(self, entry: Entry) -> int:
@@ -92,10 +114,20 @@ def described(candidate: Candidate, rank: int) -> str:
         f"Design {rank}: sIoU {100 * score.siou:.2f} % (exact IoU {100 * score.iou_exact:.2f} %)",
         f"Gain over the uniform sheet: {100 * score.siou_gain:+.2f} points (uniform {100 * score.uniform_siou:.2f} %)",
         f"Total variation (TV) of the ratios: {score.tv:.3f}",
+        *trimming(candidate),
         motion(candidate),
         f"Seed {candidate.seed}, sample {candidate.index}{', polished' if candidate.polished else ''}",
     ]
     return "\n".join([*lines, *problems(candidate)])
+
+
+def trimming(candidate: Candidate) -> list[str]:
+    """Tell how a trimmed design scores, apart from the untrimmed one."""
+    trim = candidate.trim
+    if trim is None:
+        return []
+    share = f"{100 * trim.removed_share:.1f} % of the sheet is cut off"
+    return [f"Trimmed: IoU {100 * trim.iou:.2f} % ({100 * trim.untrimmed_iou:.2f} % before the cut); {share}"]
 
 
 def motion(candidate: Candidate) -> str:

@@ -11,7 +11,7 @@ from kirigami_studio.gui import icons
 from kirigami_studio.gui.scene.posed import PosedDesign
 from kirigami_studio.gui.scene.thumbnail import candidate_pixmap
 from kirigami_studio.gui.theme import LIGHT, Palette
-from kirigami_studio.gui.views.gallery_model import CANDIDATE_ROLE, DESIGN_ROLE, Entry, GalleryModel
+from kirigami_studio.gui.views.gallery_model import CANDIDATE_ROLE, DESIGN_ROLE, RISE_ROLE, Entry, GalleryModel
 from kirigami_studio.target.outline import Outline
 
 SMALLEST_CARD = 132
@@ -19,18 +19,20 @@ TEXT_HEIGHT = 58
 GAP = 8
 #: Room that is always kept for the scroll bar, so that cards do not jump when it appears.
 SCROLL_BAR = 14
+#: What polishing must have added to sIoU at least for a card to say so.
+SMALLEST_RISE = 5e-4
 Index = QModelIndex | QPersistentModelIndex
 
 
 class CardDelegate(QStyledItemDelegate):
-    """Paints one candidate: picture, rank, sIoU, gain, TV and a mark when it is not feasible."""
+    """Paints one candidate: picture, rank, sIoU, gain, TV, whether it is feasible, what polishing or trimming did."""
 
     def __init__(self, parent: QWidget) -> None:
         super().__init__(parent)
         self.palette_: Palette = LIGHT
         self.target: Outline | None = None
         self.card = QSize(SMALLEST_CARD, SMALLEST_CARD + TEXT_HEIGHT - 26)
-        self._pictures: dict[tuple[int, int, float, str], QPixmap] = {}
+        self._pictures: dict[tuple[PosedDesign, int, float, str], QPixmap] = {}
 
     def forget_pictures(self) -> None:
         """Drop all thumbnails; they are painted again when needed."""
@@ -53,6 +55,11 @@ class CardDelegate(QStyledItemDelegate):
             picture.topLeft(), self._picture(design, picture.size(), painter.device().devicePixelRatio())
         )
         self._paint_rank(painter, card, index.row() + 1)
+        rise: float = index.data(RISE_ROLE)
+        if candidate.trim is not None:
+            self._paint_chip(painter, card, f"{100 * candidate.trim.iou:.1f} %", "trim")
+        elif rise >= SMALLEST_RISE:
+            self._paint_chip(painter, card, f"{100 * rise:+.1f}")
         self._paint_numbers(painter, card, candidate)
         painter.restore()
 
@@ -66,7 +73,7 @@ class CardDelegate(QStyledItemDelegate):
         painter.drawRoundedRect(QRectF(card).adjusted(1, 1, -1, -1), 8, 8)
 
     def _picture(self, design: PosedDesign, size: QSize, ratio: float) -> QPixmap:
-        key = (id(design), size.width(), ratio, self.palette_.name)
+        key = (design, size.width(), ratio, self.palette_.name)
         if key not in self._pictures:
             self._pictures[key] = candidate_pixmap(design, self.target, size, ratio, self.palette_)
         return self._pictures[key]
@@ -75,6 +82,23 @@ class CardDelegate(QStyledItemDelegate):
         painter.setPen(QColor(self.palette_.muted))
         painter.drawText(
             card.adjusted(10, 8, -10, 0), int(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignTop), f"{rank}"
+        )
+
+    def _paint_chip(self, painter: QPainter, card: QRect, text: str, icon: str = "") -> None:
+        """A small mark in the upper right corner of the picture."""
+        metrics = painter.fontMetrics()
+        edge = metrics.ascent() + 2 if icon else 0
+        width = metrics.horizontalAdvance(text) + 10 + (edge + 3 if icon else 0)
+        chip = QRectF(card.right() - 7 - width, card.top() + 7, width, metrics.height() + 3)
+        painter.setPen(QPen(QColor(self.palette_.accent), 1.0))
+        painter.setBrush(QColor(self.palette_.accent_soft))
+        painter.drawRoundedRect(chip, 5, 5)
+        if icon:
+            drawn = icons.pixmap(icon, self.palette_.accent, edge, painter.device().devicePixelRatio())
+            painter.drawPixmap(round(chip.left()) + 5, round(chip.center().y() - 0.5 * edge), drawn)
+        painter.setPen(QColor(self.palette_.text))
+        painter.drawText(
+            chip.adjusted(0, 0, -5, 0), int(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter), text
         )
 
     def _paint_numbers(self, painter: QPainter, card: QRect, candidate: Candidate) -> None:

@@ -50,6 +50,7 @@ class LayoutView(Canvas):
         self._areas: Mismatch | None = None
         self._faults: tuple[Fault, ...] = ()
         self._hint = ("generate", "No design yet", "Choose a target on the left, then press Generate (Ctrl+G).")
+        self._caption = ""
         self.frames_painted = 0
         self.setObjectName("layoutView")
         self.setAccessibleName("Layout of the chosen design")
@@ -102,6 +103,16 @@ class LayoutView(Canvas):
         self._hint = (icon, headline, hint)
         self.update()
 
+    @property
+    def caption(self) -> str:
+        """What the upper left corner says."""
+        return self._caption
+
+    def set_caption(self, text: str) -> None:
+        """Say in the upper left corner what the header has no room for."""
+        self._caption = text
+        self.update()
+
     def empty_state(self) -> tuple[str, str, str]:
         return self._hint
 
@@ -115,7 +126,8 @@ class LayoutView(Canvas):
         nodes = self._design.nodes(self._phi)
         field = self._design.deployment.field
         panels = frame.to_pixels(self._design.panels(nodes))
-        paint_panels(painter, panels, turning_left(field.rows, field.columns), self.palette_)
+        kept = {row: frame.to_pixels(part) for row, part in self._design.kept(nodes, self._phi).items()}
+        paint_panels(painter, panels, turning_left(field.rows, field.columns), self.palette_, kept)
         if self._target is not None:
             self._paint_comparison(painter, frame, nodes)
         self._paint_faults(painter, frame, self._design.panels(nodes))
@@ -126,7 +138,8 @@ class LayoutView(Canvas):
             return
         nearness = 1.0 - abs(self._phi - self._design.phi_target) / COMPARED_WITHIN
         if Overlay.MISMATCH in self._overlays and nearness > 0.0:
-            self._areas = mismatch(self._target.points, self._design.outline(nodes, self._phi))
+            outline, removed = self._design.outline(nodes, self._phi), self._design.removed(nodes, self._phi)
+            self._areas = mismatch(self._target.points, outline, removed)
             painter.setOpacity(min(1.0, 2.0 * nearness))
             paint_mismatch(painter, self._areas, frame, self.palette_)
             painter.setOpacity(1.0)
@@ -154,6 +167,24 @@ class LayoutView(Canvas):
             count = len(self._faults)
             lines.append((self.palette_.fault, "1 fault" if count == 1 else f"{count} faults"))
         self._paint_legend(painter, lines)
+        if self._caption:
+            self._paint_caption(painter)
+
+    def _paint_caption(self, painter: QPainter) -> None:
+        metrics = painter.fontMetrics()
+        width = min(metrics.horizontalAdvance(self._caption) + 20.0, self.width() - 20.0)
+        box = QRectF(10.0, 10.0, width, metrics.height() + 10.0)
+        self._paint_chip(painter, box)
+        text = metrics.elidedText(self._caption, Qt.TextElideMode.ElideRight, round(width - 18.0))
+        painter.setPen(QColor(self.palette_.text))
+        painter.drawText(box, int(Qt.AlignmentFlag.AlignCenter), text)
+
+    def _paint_chip(self, painter: QPainter, box: QRectF) -> None:
+        back = QColor(self.palette_.surface)
+        back.setAlpha(225)
+        painter.setPen(QColor(self.palette_.border))
+        painter.setBrush(back)
+        painter.drawRoundedRect(box, 6, 6)
 
     def _paint_legend(self, painter: QPainter, lines: list[tuple[str, str]]) -> None:
         """Small chips in the lower left corner: a swatch and a number."""
@@ -165,11 +196,7 @@ class LayoutView(Canvas):
             if x > 14.0 and x + width > self.width() - 14.0:
                 x, y = 14.0, y - height - 6.0
             box = QRectF(x, y, width, height)
-            back = QColor(self.palette_.surface)
-            back.setAlpha(225)
-            painter.setPen(QColor(self.palette_.border))
-            painter.setBrush(back)
-            painter.drawRoundedRect(box, 6, 6)
+            self._paint_chip(painter, box)
             painter.setPen(Qt.PenStyle.NoPen)
             painter.setBrush(QColor(colour))
             painter.drawRoundedRect(QRectF(x + 10, box.center().y() - 5, 10, 10), 2, 2)

@@ -6,7 +6,7 @@ import math
 from enum import Enum
 
 import numpy as np
-from PySide6.QtCore import QPointF, Qt, Signal
+from PySide6.QtCore import QPointF, QSize, Qt, Signal
 from PySide6.QtGui import (
     QColor,
     QDragEnterEvent,
@@ -92,6 +92,10 @@ class TargetView(Canvas):
 
     def empty_state(self) -> tuple[str, str, str]:
         return "target", "No target yet", "Drop an image, SVG or DXF here,\nchoose one from the library, or draw."
+
+    def minimumSizeHint(self) -> QSize:  # noqa: N802 - Qt's name
+        """Lower than other canvases: in a low window with a message the settings below need the room."""
+        return QSize(180, 56)
 
     def scene_bounds(self) -> Bounds | None:
         return None if self._outline is None else Bounds.of(self._outline.points)

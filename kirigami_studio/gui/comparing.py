@@ -1,0 +1,64 @@
+"""The chosen design as the generator drew it, before any fit improved it."""
+
+from __future__ import annotations
+
+from collections import OrderedDict
+from functools import partial
+
+from PySide6.QtCore import QObject, Signal
+
+from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.gui.jobs import steps
+from kirigami_studio.gui.jobs.board import Board, Ears
+from kirigami_studio.gui.shelf import Shelf
+from kirigami_studio.target.outline import Outline
+
+#: Drawn states that are kept.
+CAPACITY = 256
+
+
+class Comparing(QObject):
+    """Scores drawn states on demand; the newest wish replaces an older one."""
+
+    known = Signal(object, object)  #: Candidate as it is, Entry as it was drawn
+    failed = Signal(str, str)  #: sentence, trace
+
+    def __init__(self, board: Board, shelf: Shelf, parent: QObject) -> None:
+        super().__init__(parent)
+        self._board = board
+        self._shelf = shelf
+        self._drawn: OrderedDict[tuple[Candidate, Outline], Candidate] = OrderedDict()
+        self._job: int | None = None
+
+    def look_up(self, candidate: Candidate, target: Outline | None) -> None:
+        """Tell how a candidate was drawn, at once when that is known."""
+        self.stop()
+        if candidate.drawn is None or target is None:
+            return
+        before = self._drawn.get((candidate, target))
+        if before is not None:
+            self.known.emit(candidate, self._shelf.entry(before))
+            return
+        ears = Ears(partial(self._take, candidate, target), self._end, self._end, self._fail)
+        self._job = self._board.start("scoring the drawn design", partial(steps.comparing, candidate, target), ears)
+
+    def stop(self) -> None:
+        """Forget what is still being scored."""
+        if self._job is not None:
+            self._board.abandon(self._job)
+            self._job = None
+
+    def _take(self, candidate: Candidate, target: Outline, report: object) -> None:
+        if isinstance(report, steps.Decoded):
+            self._shelf.put(report.candidate, report.deployment)
+            self._drawn[candidate, target] = report.candidate
+            while len(self._drawn) > CAPACITY:
+                self._drawn.popitem(last=False)
+            self.known.emit(candidate, self._shelf.entry(report.candidate))
+
+    def _end(self) -> None:
+        self._job = None
+
+    def _fail(self, sentence: str, trace: str) -> None:
+        self._job = None
+        self.failed.emit(sentence, trace)
