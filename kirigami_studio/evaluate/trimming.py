@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from dataclasses import field as attribute
 
 import numpy as np
 import shapely
@@ -39,9 +40,9 @@ KEEP = 0.15
 SMALLEST_KEEP, LARGEST_KEEP = 0.02, 0.4
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, slots=True)
 class Trim:
-    """A trimmed design.
+    """A trimmed design; two are equal when field, angle, pose and depth are, because the rest follows from them.
 
     Attributes
     ----------
@@ -66,10 +67,10 @@ class Trim:
     phi: float
     pose: Similarity
     keep: float
-    kept: tuple[FloatArray | None, ...]
-    iou: float
-    untrimmed_iou: float
-    removed_share: float
+    kept: tuple[FloatArray | None, ...] = attribute(compare=False, repr=False)
+    iou: float = attribute(compare=False)
+    untrimmed_iou: float = attribute(compare=False)
+    removed_share: float = attribute(compare=False)
 
     def compact(self, deployment: Deployment) -> list[FloatArray]:
         """What stays of every panel in the compact sheet, whole ones included: list of (P, 2) float, unit cells."""

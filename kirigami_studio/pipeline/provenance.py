@@ -14,6 +14,12 @@ def provenance(request: Request, digest: str) -> dict[str, str]:
         "model_sha256": digest,
         "polish": str(request.polish),
     }
+    if request.polish or request.search:
+        known["prefer"] = request.prefer
+    if request.least_panel:
+        known["least_panel"] = f"{request.least_panel:g}"
+    if request.trim:
+        known["trim_keep"] = f"{request.keep:g}"
     if request.search:
         known["search"] = str(request.search)
     if request.budget_seconds is not None:

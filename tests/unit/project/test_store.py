@@ -13,10 +13,17 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.foundation.errors import ExportError, ProjectError
+from kirigami_studio.lattice.deployment import deploy
+from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.polish.covering import fit_cover
+from kirigami_studio.polish.levenberg import polish
 from kirigami_studio.project import store
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.migrations import MIGRATIONS, Members, migrate
+from kirigami_studio.target.outline import Outline
 
 Change = Callable[[dict[str, bytes]], None]
 
@@ -46,6 +53,22 @@ def test_that_a_project_comes_back_as_it_was(document: Document, tmp_path: Path)
     assert again.target is not None and document.target is not None
     assert (again.target.name, again.target.size, again.target.unit) == ("pentagon", document.target.size, "mm")
     assert not again.candidates[0].field.ratio.flags.writeable
+
+
+def test_that_a_trimmed_design_comes_back_with_what_was_cut_off(pentagon: Outline, tmp_path: Path) -> None:
+    fit = polish(RatioField.uniform(4, 4), pentagon, steps=8)
+    deployment = deploy(fit.field)
+    score = evaluate(deployment, pentagon)
+    cut = fit_cover(fit.field, pentagon, steps=4, pose=score.transform).trim
+    document = Document(pentagon, candidates=(Candidate(fit.field, score, 0, 0, trim=cut),), chosen=0)
+    store.save(document, tmp_path / "trimmed.kiri")
+    again = store.load(tmp_path / "trimmed.kiri")
+    assert again == document
+    read = again.candidates[0].trim
+    assert read is not None and read.iou == cut.iou
+    pairs = zip(read.kept, cut.kept, strict=True)
+    assert all((a is None) == (b is None) and (a is None or np.array_equal(a, b)) for a, b in pairs)
+    assert any(part is not None for part in cut.kept)
 
 
 def test_that_an_empty_project_comes_back_as_it_was(tmp_path: Path) -> None:
