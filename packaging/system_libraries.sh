@@ -4,11 +4,15 @@
 set -u
 [ "$(uname)" = Linux ] || exit 0
 
-packages="libegl1 libgl1 libxkbcommon0 libdbus-1-3 libfontconfig1"
+# The second half is what the window needs on an X display; Qt asks for all of it and starts with none missing.
 missing=""
 cache=$(PATH="$PATH:/sbin:/usr/sbin" ldconfig -p 2>/dev/null)
 for pair in libEGL.so.1:libegl1 libGL.so.1:libgl1 libxkbcommon.so.0:libxkbcommon0 \
-            libdbus-1.so.3:libdbus-1-3 libfontconfig.so.1:libfontconfig1; do
+            libdbus-1.so.3:libdbus-1-3 libfontconfig.so.1:libfontconfig1 \
+            libxcb-cursor.so.0:libxcb-cursor0 libxcb-icccm.so.4:libxcb-icccm4 libxcb-image.so.0:libxcb-image0 \
+            libxcb-keysyms.so.1:libxcb-keysyms1 libxcb-randr.so.0:libxcb-randr0 \
+            libxcb-render-util.so.0:libxcb-render-util0 libxcb-shape.so.0:libxcb-shape0 libxcb-sync.so.1:libxcb-sync1 \
+            libxcb-xfixes.so.0:libxcb-xfixes0 libxcb-xkb.so.1:libxcb-xkb1 libxkbcommon-x11.so.0:libxkbcommon-x11-0; do
     case "$cache" in
         *"${pair%%:*}"*) ;;
         *) missing="$missing ${pair##*:}" ;;
@@ -20,7 +24,7 @@ if [ "$(id -u)" = 0 ] && command -v apt-get >/dev/null 2>&1; then
     echo "Installing Qt's system libraries:$missing"
     apt-get update -q >/dev/null 2>&1
     # shellcheck disable=SC2086  # a list of package names
-    DEBIAN_FRONTEND=noninteractive apt-get install -yq --no-install-recommends $packages xvfb >/dev/null 2>&1 && exit 0
+    DEBIAN_FRONTEND=noninteractive apt-get install -yq --no-install-recommends $missing xvfb >/dev/null 2>&1 && exit 0
 fi
 echo "The window needs system libraries that are missing here ($(echo "$missing" | sed 's/^ //; s/ /, /g'));" \
      "on Debian or Ubuntu run: sudo apt-get install$missing xvfb"
