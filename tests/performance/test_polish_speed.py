@@ -8,6 +8,7 @@ import numpy as np
 from stopwatch import fastest
 
 from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.pipeline.threads import one_blas_thread
 from kirigami_studio.polish.levenberg import polish
 from kirigami_studio.polish.sensitivity import OutlineModel
 from kirigami_studio.target.library import load
@@ -31,9 +32,10 @@ def test_that_the_derivative_costs_a_small_part_of_central_differences() -> None
 def test_that_ten_steps_at_24_x_24_end_within_seconds() -> None:
     target = load("heart")
     pose = polish(RatioField.uniform(24, 24), target, steps=0).pose
-    began = time.process_time()
-    fit = polish(RatioField.uniform(24, 24), target, steps=10, pose=pose)
-    spent = time.process_time() - began
+    with one_blas_thread():  # as the pipeline does
+        began = time.process_time()
+        fit = polish(RatioField.uniform(24, 24), target, steps=10, pose=pose)
+        spent = time.process_time() - began
     print(f"\n24 x 24: {fit.steps} steps, {fit.evaluations} decodings, {spent:.2f} s")
     assert fit.steps == 10
     assert spent < 6.0

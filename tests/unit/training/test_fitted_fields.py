@@ -44,7 +44,7 @@ def rows(targets: Targets) -> tuple[FloatArray, FloatArray]:
 def test_that_requested_outlines_lie_on_their_sheets(fits: FittedFields) -> None:
     # Each is brought to unit area by itself, so poor fits lose a little.
     assert len(fits.z) >= 8
-    np.testing.assert_allclose(ious(fits.z, fits.requested), fits.iou, atol=0.03)
+    np.testing.assert_allclose(ious(fits.z, fits.requested), fits.iou, atol=0.05)
 
 
 def test_that_requested_outlines_are_the_drawn_shapes(fits: FittedFields) -> None:
@@ -89,7 +89,7 @@ def test_that_field_and_requested_outline_turn_together(fits: FittedFields) -> N
     batches = FittedBatches(fits, BatchedLattice(*GRID), seed=0)
     _, requested = batches.targets(0, 64)
     z, polygons = rows(requested)
-    assert ious(z, polygons).min() > fits.iou.min() - 0.03
+    assert ious(z, polygons).min() > fits.iou.min() - 0.05
     assert np.median(ious(-z, polygons)) < 0.9  # the other way round would be seen
     known = {field.tobytes() for field in fits.z}
     assert 0.1 < np.mean([field.astype(np.float32).tobytes() in known for field in z]) < 0.5
