@@ -19,7 +19,7 @@ from kirigami_studio.export.registry import export
 from kirigami_studio.export.svg import write_layout_svg
 from kirigami_studio.fabricate.material import find_material
 from kirigami_studio.fabricate.trimmed_sheet import needed_keep
-from kirigami_studio.foundation.errors import Cancelled
+from kirigami_studio.foundation.errors import Cancelled, FabricationError
 from kirigami_studio.foundation.files import check_folder, write_atomically
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
@@ -61,6 +61,9 @@ def design(arguments: argparse.Namespace) -> int:
             budget_seconds=arguments.budget,
         )
         result = _run(request, line)
+        if request.trim and result.best.trim is None:
+            why = "the budget ended before" if result.budget_ended else "all of them cross themselves; try another seed"
+            raise FabricationError(f"No design could be trimmed: {why}. Leave --trim out to get them untrimmed.")
         folder = None if arguments.out is None else Path(arguments.out)
         if folder is not None and batch:
             folder = folder / _folder_name(name, used)

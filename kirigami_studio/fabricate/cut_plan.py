@@ -20,8 +20,7 @@ from kirigami_studio.fabricate.slits import CutTable, cut_table, sheet_lines
 from kirigami_studio.fabricate.trimmed_sheet import (
     CutPiece,
     kept_area,
-    outline_around,
-    remaining_cuts,
+    trimmed_cuts,
     widths_beside_outline,
 )
 from kirigami_studio.foundation.errors import FabricationError
@@ -185,8 +184,7 @@ def plan_cuts(
     parts = () if kept is None else tuple(kept)
     trimmed = any(part is not None for part in parts)
     if trimmed:
-        outline = outline_around(kept_area(deployment, parts, width), kerf)
-        pieces = remaining_cuts(lines, table, outline, kerf, overcut)
+        outline, pieces = trimmed_cuts(kept_area(deployment, parts, width), lines, table, kerf, overcut)
     else:
         outline = Polygon(outline_path(size, kerf))
         slits, edges = lines[: table.slit_count], edge_cut_paths(lines, table, size, kerf, overcut)

@@ -16,9 +16,8 @@ from shapely.geometry.base import BaseGeometry
 BLADE_MM = 2e-3
 #: Segments per quarter circle of a round beam tip; keeps the tip within 0.2 % of the half kerf.
 TIP_SEGMENTS = 16
-#: Remnants smaller than this (mm^2, 70 micrometres square) are crumbs at the mouth of a cut, not pieces; the smallest
-#: panel of a sheet that can be cut is a thousand times larger.
-DUST_MM2 = 5e-3
+#: Remnants smaller than this (mm^2) are rounding dust, not pieces.
+DUST_MM2 = 1e-6
 #: Two cuts nearer than this (mm) side by side are one cut made twice.
 SAME_LINE_MM = 1e-3
 

@@ -17,7 +17,7 @@ import shapely
 from shapely.geometry import LineString, Point, Polygon
 from shapely.geometry.base import BaseGeometry
 
-from kirigami_studio.fabricate.finished_sheet import overlap_length
+from kirigami_studio.fabricate.finished_sheet import overlap_length, remaining_pieces
 from kirigami_studio.fabricate.slits import CutTable
 from kirigami_studio.foundation.errors import FabricationError
 from kirigami_studio.lattice.deployment import Deployment
@@ -42,6 +42,11 @@ CLEAR_SHARES = (0.5, 0.1)
 HALVINGS = 4
 #: What is kept at hinges is bounded by polygons instead of circles and loses less than this share of its depth.
 ROUND_SHARE = 1.01
+#: Loose pieces smaller than this (mm^2, 70 micrometres square) are crumbs: the smallest panel of a sheet that can be
+#: cut is a thousand times larger.
+CRUMB_MM2 = 5e-3
+#: How often crumbs are trimmed away; more than one round is rare.
+CRUMB_ROUNDS = 4
 #: Directions in which a notch is longer than so many kerfs (and the overcut) are no way out of it.
 LONGEST_NOTCH = 15.0
 
@@ -92,6 +97,36 @@ def kept_area(deployment: Deployment, kept: Sequence[FloatArray | None], width_m
     if len(areas) != 1:
         raise FabricationError(f"The trimmed sheet falls into {len(areas)} parts; keep more material at the hinges.")
     return areas[0]
+
+
+def trimmed_cuts(
+    area: Polygon, lines: FloatArray, table: CutTable, kerf_mm: float, overcut_mm: float
+) -> tuple[Polygon, list[CutPiece]]:
+    """Outline and remaining cuts of a trimmed sheet that fall into no crumbs.
+
+    Where a cut leaves the material beside a spike of it, the spike would come off: it is trimmed away as well.
+
+    Parameters
+    ----------
+    area : Polygon, mm
+        As returned by :func:`kept_area`.
+    lines, table, kerf_mm, overcut_mm
+        As for :func:`remaining_cuts`.
+
+    Raises
+    ------
+    FabricationError
+        A hinge has lost the material that its connector needs.
+    """
+    for _ in range(CRUMB_ROUNDS):
+        outline = outline_around(area, kerf_mm)
+        pieces = remaining_cuts(lines, table, outline, kerf_mm, overcut_mm)
+        loose = remaining_pieces(outline, [LineString(piece.points) for piece in pieces], kerf_mm)[1:]
+        crumbs = [piece for piece in loose if piece.area < CRUMB_MM2]
+        if not crumbs:
+            break
+        area = _largest(area.difference(shapely.union_all(shapely.buffer(crumbs, 0.5 * kerf_mm + INSIDE_MM))))
+    return outline, pieces
 
 
 def outline_around(area: Polygon, kerf_mm: float) -> Polygon:

@@ -40,6 +40,8 @@ ROUTES: tuple[tuple[float, ...], ...] = ((), (0.2, 0.14, 0.09, 0.05, 0.02))
 LIFTED_ROUTES: tuple[tuple[float, ...], ...] = ((), (0.09, 0.05, 0.02))
 #: Steps on each easier shape, of a first look at the target, and of the last fit.
 EASY_STEPS, LOOK_STEPS, LAST_STEPS = 4, 8, 20
+#: Steps of the fit without a search that every search is compared with.
+PLAIN_STEPS = 40
 #: Trusted distances (unit-area lengths): far parts must pull in the search, area counts in the end.
 FAR, NEAR, FINE = 0.03, 0.01, 0.005
 #: Rotations tried per effort when quarter turns, half turns, or no turns carry reachable shapes to reachable shapes.
@@ -111,6 +113,7 @@ def fit_shape(
         raised += [search.from_guess(lifted(start, grid)) for start in starts]
         best = search.finished(_best(raised, KEPT * effort))
     best = search.finished(best, FINE)
+    best = _best([search.aligned(one) for one in (*best, search.plain(grid))], len(best))
     return [replace(one.fit, evaluations=search.evaluations) for one in best]
 
 
@@ -165,6 +168,19 @@ class _Search:
         """A look from a given field, aligned by IoU."""
         pose = align(deploy(field).outline(self.phi), self.target.points)
         return self._fit(field, pose, LOOK_STEPS, FAR, None)
+
+    def plain(self, grid: tuple[int, int]) -> _Found:
+        """The fit without a search, so that a search never ends with less."""
+        field = RatioField.uniform(*grid)
+        pose = align(deploy(field).outline(self.phi), self.target.points)
+        return self._fit(field, pose, PLAIN_STEPS, FINE, None)
+
+    def aligned(self, found: _Found) -> _Found:
+        """The same field in the pose of largest IoU, which is what a score compares."""
+        outline = deploy(found.fit.field).outline(self.phi)
+        pose = align(outline, self.target.points)
+        iou = exact_iou(pose.apply(outline), self.target)
+        return found if iou <= found.iou else replace(found, fit=replace(found.fit, pose=pose), iou=iou)
 
     def lifted(self, coarse: _Found, grid: tuple[int, int]) -> list[_Found]:
         """Looks on a finer grid from a fit on a coarse one; grids of equal parities have the same symmetries."""

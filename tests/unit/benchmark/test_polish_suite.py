@@ -36,8 +36,7 @@ def test_that_a_plain_measurement_repeats_what_the_fits_say() -> None:
 def test_that_a_search_does_no_worse_than_the_plain_fit() -> None:
     plain = measure_polish([load("letter-l")], grid=(2, 2))
     searched = measure_polish([load("letter-l")], grid=(2, 2), effort=1)
-    # Both fits end where another step would gain next to nothing.
-    assert searched["iou_exact"] >= plain["iou_exact"] - 1e-4  # type: ignore[operator]
+    assert searched["iou_exact"] >= plain["iou_exact"]  # type: ignore[operator]
     assert searched["success"] in (0.0, 1.0)
 
 
