@@ -12,7 +12,7 @@ from kirigami_studio.cli.console import ProgressLine, plain, print_json, say
 from kirigami_studio.cli.fabrication import checked_plan, material_settings
 from kirigami_studio.cli.inputs import are_many_targets, parse_grid, read_targets
 from kirigami_studio.evaluate.candidate import Candidate
-from kirigami_studio.evaluate.trimming import KEEP
+from kirigami_studio.evaluate.trimming import KEEP, LARGEST_KEEP
 from kirigami_studio.export.exporter import ExportJob
 from kirigami_studio.export.png import write_png
 from kirigami_studio.export.registry import export
@@ -172,7 +172,14 @@ def _keep(fabrication: FabricationSettings, grid: tuple[int, int]) -> float:
     material = find_material(fabrication.material)
     connector = material.connector_mm if fabrication.connector_mm is None else fabrication.connector_mm
     kerf = material.kerf_mm if fabrication.kerf_mm is None else fabrication.kerf_mm
-    return max(KEEP, needed_keep(deploy(RatioField.uniform(*grid)), fabrication.width_mm, connector, kerf))
+    needed = needed_keep(deploy(RatioField.uniform(*grid)), fabrication.width_mm, connector, kerf)
+    if needed > LARGEST_KEEP:
+        least = fabrication.width_mm * needed / LARGEST_KEEP
+        raise FabricationError(
+            f"Connectors of {connector:g} mm leave no room for trimming; make the sheet at least {least:.0f} mm wide, "
+            f"the connectors narrower, or leave --trim out."
+        )
+    return max(KEEP, needed)
 
 
 def _folder_name(name: str, used: set[str]) -> str:

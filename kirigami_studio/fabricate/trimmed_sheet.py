@@ -92,7 +92,9 @@ def kept_area(deployment: Deployment, kept: Sequence[FloatArray | None], width_m
     scale = width_mm / (high[0] - low[0])
     parts = [whole if part is None else part for part, whole in zip(kept, corners, strict=True)]
     panels = [Polygon((part - low) * scale) for part in parts]
-    united = shapely.get_parts(shapely.union_all(panels, grid_size=GRID_MM))
+    # Snapping may leave a gap of about one grid step between panels that share a side.
+    snapped = shapely.buffer(shapely.union_all(panels, grid_size=GRID_MM), 3.0 * GRID_MM, join_style="mitre")
+    united = shapely.get_parts(shapely.buffer(snapped, -3.0 * GRID_MM, join_style="mitre"))
     areas = [Polygon(part.exterior) for part in united if isinstance(part, Polygon) and part.area > INSIDE_MM**2]
     if len(areas) != 1:
         raise FabricationError(f"The trimmed sheet falls into {len(areas)} parts; keep more material at the hinges.")

@@ -43,3 +43,24 @@ def test_that_a_silhouette_becomes_a_cut_file_that_passes_its_check(
     assert project.candidate is not None
     assert project.candidate.score.siou == pytest.approx(best["siou"])
     assert project.provenance["model"] == "prior"
+
+
+def test_that_connectors_too_wide_for_trimming_name_the_width_that_serves(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["design", "heart", "--k", "1", "--no-polish", "--trim", "--connector-mm", "9"]) == 1
+    assert "at least 251 mm wide" in capsys.readouterr().err
+
+
+def test_that_a_run_whose_budget_ends_before_trimming_says_so(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["design", "heart", "--k", "1", "--no-polish", "--trim", "--budget", "0.001"]) == 1
+    assert "the budget ended before" in capsys.readouterr().err
+
+
+def test_that_a_trimmed_design_tells_both_scores_and_writes_a_trimmed_cut_file(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["design", "heart", "--k", "1", "--grid", "6x6", "--trim", "--out", str(tmp_path), "--json"]) == 0
+    answer = json.loads(capsys.readouterr().out)
+    assert answer["trimmed_iou"] == answer["best"]["trimmed_iou"] > answer["best"]["iou_exact"]
+    outline = next(iter(ezdxf.readfile(tmp_path / "cut.dxf").modelspace().query('LWPOLYLINE[layer=="OUTLINE"]')))
+    assert outline.closed
+    assert len(outline) > 4
