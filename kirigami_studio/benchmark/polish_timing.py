@@ -20,8 +20,8 @@ from kirigami_studio.polish.levenberg import SAMPLES, polish
 from kirigami_studio.polish.objective import Objective
 from kirigami_studio.polish.regularity import Regularity, RegularTerms
 from kirigami_studio.polish.sensitivity import OutlineModel
-from kirigami_studio.target.library import load
 from kirigami_studio.target.outline import Outline
+from kirigami_studio.target.silhouettes import load
 
 #: Candidates and steps of the timed run.
 K, STEPS = 32, 10

@@ -14,9 +14,9 @@ from kirigami_studio.foundation.files import write_atomically
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.pipeline.request import POLISH_STEPS
-from kirigami_studio.target.library import load, names
 from kirigami_studio.target.outline import Outline
 from kirigami_studio.target.read_image import outline_of_mask
+from kirigami_studio.target.silhouettes import load, names
 
 
 def benchmark(arguments: argparse.Namespace) -> int:

@@ -21,7 +21,7 @@ from kirigami_studio.gui.views.target_view import Tool
 
 if TYPE_CHECKING:
     from kirigami_studio.gui.dialogs.guide import GuideWindow
-    from kirigami_studio.gui.dialogs.library_picker import LibraryPicker
+    from kirigami_studio.gui.dialogs.silhouette_picker import SilhouettePicker
 
 OVERLAY_ACTIONS = {
     "show_target": Overlay.TARGET,
@@ -39,7 +39,7 @@ class Commands(QObject):
         self.controller = controller
         self.files: FileQuestions = FileChoosers(window)
         self.guide: GuideWindow | None = None
-        self.picker: LibraryPicker | None = None
+        self.picker: SilhouettePicker | None = None
         self._closing = False
         self._connect_actions()
 
@@ -122,9 +122,9 @@ class Commands(QObject):
 
     def show_library(self) -> None:
         """Open the popup with the library's silhouettes."""
-        from kirigami_studio.gui.dialogs.library_picker import LibraryPicker
+        from kirigami_studio.gui.dialogs.silhouette_picker import SilhouettePicker
 
-        self.picker = LibraryPicker(self.window, self.window.palette_)
+        self.picker = SilhouettePicker(self.window, self.window.palette_)
         self.picker.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         self.picker.chosen.connect(self.controller.open_target)
         self.picker.show_below(self.window.target.buttons["library"])

@@ -35,7 +35,7 @@ class Wiring(QObject):
     def _connect_panels(self) -> None:
         window, controller = self.window, self.controller
         window.target.open_wanted.connect(self.commands.ask_target)
-        window.target.library_wanted.connect(self.commands.show_library)
+        window.target.wants_silhouette.connect(self.commands.show_library)
         window.target.clear_wanted.connect(controller.clear_target)
         window.target.view.file_dropped.connect(self.commands.take_file)
         window.target.view.freehand_drawn.connect(controller.take_freehand)

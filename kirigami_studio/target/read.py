@@ -7,7 +7,7 @@ from pathlib import Path
 from types import MappingProxyType
 
 from kirigami_studio.foundation.errors import TargetError
-from kirigami_studio.target import library
+from kirigami_studio.target import silhouettes
 from kirigami_studio.target.outline import Outline
 
 
@@ -64,8 +64,8 @@ def read_target(source: str | Path) -> Outline:
     """
     if not isinstance(source, str | Path) or not str(source).strip():
         raise TargetError(f"A target is a file or the name of a library silhouette, got {source!r}.")
-    if isinstance(source, str) and source in library.names():
-        return library.load(source)
+    if isinstance(source, str) and source in silhouettes.names():
+        return silhouettes.load(source)
     path = Path(source).expanduser()
     kinds = ", ".join(READERS)
     try:
@@ -79,7 +79,7 @@ def read_target(source: str | Path) -> Outline:
         return reader(path)
     if exists:
         raise TargetError(f"{path.name} is of an unknown kind; a target is one of {kinds}.")
-    return library.load(str(source))
+    return silhouettes.load(str(source))
 
 
 def read_many(source: str | Path) -> list[Outline]:
@@ -92,7 +92,7 @@ def read_many(source: str | Path) -> list[Outline]:
     """
     path = Path(source) if isinstance(source, str | Path) else None
     try:
-        if path is None or (isinstance(source, str) and source in library.names()) or not path.is_dir():
+        if path is None or (isinstance(source, str) and source in silhouettes.names()) or not path.is_dir():
             return [read_target(source)]
     except (OSError, ValueError) as error:
         raise TargetError(f"The folder {str(source)[:80]} cannot be read; check its name and your rights.") from error

@@ -21,7 +21,7 @@ from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.pipeline.rank import ranked
 from kirigami_studio.project import edits, store
 from kirigami_studio.project.document import Document
-from kirigami_studio.target import library
+from kirigami_studio.target import silhouettes
 
 #: Said by the off-screen platform itself about what it lacks.
 PLATFORM_SAYS = "This plugin does not support"
@@ -104,7 +104,7 @@ def heart(window: MainWindow, until: Callable[[Callable[[], bool]], None]) -> Ma
 @pytest.fixture(scope="session")
 def designs() -> Document:
     """Three scored designs of 4 x 5 voids for the heart, without a generator."""
-    target, draw = library.load("heart"), np.random.default_rng(5)
+    target, draw = silhouettes.load("heart"), np.random.default_rng(5)
     found = []
     for index in range(3):
         field = RatioField.from_log10(0.08 * (index + 1) * draw.normal(size=(4, 5)))

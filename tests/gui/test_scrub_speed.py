@@ -15,13 +15,13 @@ from kirigami_studio.gui.scene.posed import PosedDesign
 from kirigami_studio.gui.views.layout_view import LayoutView
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
-from kirigami_studio.target import library
+from kirigami_studio.target import silhouettes
 
 
 @pytest.mark.parametrize(("first", "last"), [(math.pi, 0.3), (0.2, 0.0)], ids=["on the way", "near the target"])
 def test_that_every_slider_step_is_drawn(qtbot: QtBot, benchmark: BenchmarkFixture, first: float, last: float) -> None:
     field = RatioField.from_log10(np.random.default_rng(1).normal(size=(24, 24)) * 0.05)
-    deployment, target = deploy(field), library.load("heart")
+    deployment, target = deploy(field), silhouettes.load("heart")
     score = evaluate(deployment, target, 0.0)
     view = LayoutView()
     qtbot.addWidget(view)

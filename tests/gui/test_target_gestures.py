@@ -17,7 +17,7 @@ from pytestqt.qtbot import QtBot
 from kirigami_studio.gui.application import open_first
 from kirigami_studio.gui.main_window import MainWindow
 from kirigami_studio.gui.messages import Tone
-from kirigami_studio.target import library
+from kirigami_studio.target import silhouettes
 
 Until = Callable[[Callable[[], bool]], None]
 LEFT = Qt.MouseButton.LeftButton
@@ -33,11 +33,11 @@ def test_that_a_silhouette_is_found_by_typing_its_name_in_the_library(
 ) -> None:
     qtbot.mouseClick(window.target.buttons["library"], LEFT)
     picker = window.commands.picker
-    assert picker is not None and picker.list.count() == len(library.names()) >= 24
+    assert picker is not None and picker.list.count() == len(silhouettes.names()) >= 24
     qtbot.keyClicks(picker.search, "hexag")
     qtbot.keyClick(picker.search, Qt.Key.Key_Return)
     until(lambda: window.target.view.outline is not None)
-    assert window.controller.document.target == library.load("hexagon")
+    assert window.controller.document.target == silhouettes.load("hexagon")
     assert window.run.generate.isEnabled()
 
 
@@ -49,7 +49,7 @@ def test_that_the_library_prefers_the_title_that_fits_best(window: MainWindow, q
     assert sum(not picker.list.item(row).isHidden() for row in range(picker.list.count())) > 1
     qtbot.keyClick(picker.search, Qt.Key.Key_Return)
     until(lambda: window.controller.document.target is not None)
-    assert window.controller.document.target == library.load("star")
+    assert window.controller.document.target == silhouettes.load("star")
 
 
 def test_that_the_first_target_is_no_unsaved_change(window: MainWindow, until: Until) -> None:
@@ -57,7 +57,7 @@ def test_that_the_first_target_is_no_unsaved_change(window: MainWindow, until: U
     until(lambda: window.target.view.outline is not None)
     assert not window.controller.history.unsaved and not window.actions_["undo"].isEnabled()
     open_first(window, "star")
-    until(lambda: window.controller.document.target == library.load("star"))
+    until(lambda: window.controller.document.target == silhouettes.load("star"))
     assert window.controller.history.unsaved
 
 
@@ -68,7 +68,7 @@ def test_that_a_library_picture_is_chosen_by_click(window: MainWindow, qtbot: Qt
     item = picker.list.item(2)
     qtbot.mouseClick(picker.list.viewport(), LEFT, pos=picker.list.visualItemRect(item).center())
     until(lambda: window.controller.document.target is not None)
-    assert window.controller.document.target == library.load(library.names()[2])
+    assert window.controller.document.target == silhouettes.load(silhouettes.names()[2])
 
 
 def test_that_an_image_file_becomes_the_target(window: MainWindow, files: object, tmp_path: Path, until: Until) -> None:
@@ -201,4 +201,4 @@ def test_that_clearing_a_target_can_be_undone(heart: MainWindow, qtbot: QtBot) -
     qtbot.mouseClick(heart.target.buttons["clearTarget"], LEFT)
     assert heart.controller.document.target is None and not heart.run.generate.isEnabled()
     heart.actions_["undo"].trigger()
-    assert heart.target.view.outline == library.load("heart")
+    assert heart.target.view.outline == silhouettes.load("heart")

@@ -15,7 +15,7 @@ from kirigami_studio.polish.levenberg import SAMPLES, polish
 from kirigami_studio.polish.objective import Objective
 from kirigami_studio.polish.regularity import Regularity, RegularTerms
 from kirigami_studio.polish.sensitivity import OutlineModel
-from kirigami_studio.target.library import load
+from kirigami_studio.target.silhouettes import load
 
 STEP = 1e-6
 

@@ -28,7 +28,7 @@ class TargetPanel(Card):
     """The target view with its tools and the reader's notes."""
 
     open_wanted = Signal()
-    library_wanted = Signal()
+    wants_silhouette = Signal()
     clear_wanted = Signal()
 
     def __init__(self, parent: QWidget | None = None) -> None:
@@ -53,7 +53,7 @@ class TargetPanel(Card):
         self.body.addWidget(self.threshold)
         self.body.addWidget(self.notes)
         self.buttons["openTarget"].clicked.connect(self.open_wanted)
-        self.buttons["library"].clicked.connect(self.library_wanted)
+        self.buttons["library"].clicked.connect(self.wants_silhouette)
         self.buttons["clearTarget"].clicked.connect(self.clear_wanted)
         for name, tool in TOOLS.items():
             self.buttons[name].clicked.connect(lambda down, tool=tool: self.set_tool(tool if down else Tool.LOOK))

@@ -13,7 +13,7 @@ from kirigami_studio.benchmark.design_suite import design_figures, make_designs
 from kirigami_studio.benchmark.regularity_suite import measure_regularity
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.polish.regularity import PREFERENCES
-from kirigami_studio.target.library import load
+from kirigami_studio.target.silhouettes import load
 
 pytestmark = pytest.mark.torch
 

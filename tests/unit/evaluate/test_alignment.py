@@ -14,7 +14,7 @@ from kirigami_studio.evaluate.similarity import FloatArray, Similarity
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
-from kirigami_studio.target import library
+from kirigami_studio.target import silhouettes
 
 
 def iou(laid: FloatArray, fixed: FloatArray) -> float:
@@ -46,9 +46,9 @@ def brute_force(moving: FloatArray, fixed: FloatArray) -> float:
     return -min(run.fun for run in runs)
 
 
-@pytest.mark.parametrize("name", library.names())
+@pytest.mark.parametrize("name", silhouettes.names())
 def test_that_a_moved_copy_of_a_library_shape_is_found_again(name: str) -> None:
-    shape = library.load(name).points
+    shape = silhouettes.load(name).points
     known = Similarity(7.5, 2.1, (30.0, -12.0))
     found = align(shape, known.apply(shape))
     assert iou(found.apply(shape), known.apply(shape)) > 0.9999
@@ -62,7 +62,7 @@ def test_that_the_known_transform_of_an_asymmetric_shape_comes_back(letter_l: Fl
 
 @pytest.mark.parametrize("seed", range(3))
 def test_that_the_result_does_not_depend_on_the_pose_of_the_inputs(seed: int) -> None:
-    moving, fixed = random_outline(seed), library.load("heart").points
+    moving, fixed = random_outline(seed), silhouettes.load("heart").points
     plain = iou(align(moving, fixed).apply(moving), fixed)
     pose, frame = Similarity(40.0, 1.234 + seed, (-300.0, 7.0)), Similarity(0.01, -2.2, (1.0, 1.0))
     there, target = pose.apply(moving)[::-1], frame.apply(fixed)
@@ -71,7 +71,7 @@ def test_that_the_result_does_not_depend_on_the_pose_of_the_inputs(seed: int) ->
 
 @pytest.mark.parametrize(("seed", "name"), [(1, "heart"), (2, "star"), (3, "hexagon")])
 def test_that_brute_force_finds_nothing_much_better(seed: int, name: str) -> None:
-    moving, fixed = random_outline(seed, phi=0.6 if seed == 2 else 0.0), library.load(name).points
+    moving, fixed = random_outline(seed, phi=0.6 if seed == 2 else 0.0), silhouettes.load(name).points
     assert iou(align(moving, fixed).apply(moving), fixed) > brute_force(moving, fixed) - 0.003
 
 
@@ -91,13 +91,13 @@ def test_that_a_more_perturbed_copy_matches_less() -> None:
 
 
 def test_that_many_at_once_equal_one_by_one_bit_by_bit() -> None:
-    fixed = library.load("star").points
+    fixed = silhouettes.load("star").points
     outlines = [random_outline(seed) for seed in range(6)]
     assert align_many(outlines, fixed) == [align(outline, fixed) for outline in outlines]
 
 
 def test_that_no_outline_gives_no_alignment() -> None:
-    assert align_many([], library.load("star").points) == []
+    assert align_many([], silhouettes.load("star").points) == []
 
 
 def test_that_a_symmetric_shape_is_not_turned_needlessly() -> None:
@@ -106,15 +106,15 @@ def test_that_a_symmetric_shape_is_not_turned_needlessly() -> None:
 
 
 def test_that_the_tabulated_overlap_is_the_polygon_overlap() -> None:
-    target = alignment_target(library.load("star").points)
-    shape = library.load("heart").points + np.array([0.1, -0.2])
+    target = alignment_target(silhouettes.load("star").points)
+    shape = silhouettes.load("heart").points + np.array([0.1, -0.2])
     points, steps = edge_parts(as_plane(shape), 512)
     tabulated = float((target.lookup(points).real * steps.imag).sum())
     assert tabulated == pytest.approx(shapely.Polygon(shape).intersection(target.polygon).area, abs=0.004)
 
 
 def test_that_the_tabulated_depth_is_the_distance_to_the_outline() -> None:
-    target = alignment_target(library.load("heart").points)
+    target = alignment_target(silhouettes.load("heart").points)
     places = np.random.default_rng(1).uniform(-0.5, 0.5, (50, 2))
     exact = shapely.distance(target.ring, shapely.points(places))
     inside = shapely.contains_xy(target.polygon, places[:, 0], places[:, 1])

@@ -15,7 +15,7 @@ from kirigami_studio.evaluate.siou import mask_siou
 from kirigami_studio.foundation.errors import AngleError
 from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.lattice.ratio_field import RatioField
-from kirigami_studio.target import library
+from kirigami_studio.target import silhouettes
 from kirigami_studio.target.outline import Outline
 
 
@@ -35,7 +35,7 @@ def test_that_a_design_matches_its_own_silhouette_fully(phi: float) -> None:
 
 
 def test_that_the_transform_lays_the_layout_over_the_target() -> None:
-    sheet, target = random_deployment(4), library.load("heart")
+    sheet, target = random_deployment(4), silhouettes.load("heart")
     score = evaluate(sheet, target)
     laid = score.transform.apply(sheet.outline(0.0))
     assert score.transform.scale**2 * sheet.area(0.0) == pytest.approx(1.0, abs=0.25)
@@ -44,14 +44,14 @@ def test_that_the_transform_lays_the_layout_over_the_target() -> None:
 
 @pytest.mark.parametrize(("seed", "name", "phi"), [(1, "heart", 0.0), (2, "star", 0.7), (5, "hexagon", 0.0)])
 def test_that_raster_masks_and_polygons_tell_the_same_score(seed: int, name: str, phi: float) -> None:
-    sheet, target = random_deployment(seed), library.load(name)
+    sheet, target = random_deployment(seed), silhouettes.load(name)
     score = evaluate(sheet, target, phi)
     assert score.siou == pytest.approx(mask_siou(rasterise(sheet.outline(phi)), rasterise(target.points))[0], abs=0.01)
     assert score.siou == pytest.approx(score.iou_exact, abs=0.005)
 
 
 def test_that_the_uniform_layout_gains_nothing() -> None:
-    score = evaluate(deploy(RatioField.uniform(6, 8)), library.load("circle"))
+    score = evaluate(deploy(RatioField.uniform(6, 8)), silhouettes.load("circle"))
     assert score.siou_gain == 0.0
     assert score.iou_exact == score.uniform_iou
     assert (score.tv, score.tv_log10, score.feasible) == (0.0, 0.0, True)
@@ -59,7 +59,7 @@ def test_that_the_uniform_layout_gains_nothing() -> None:
 
 def test_that_the_floor_belongs_to_the_sheet_of_the_design() -> None:
     stretched = deploy(RatioField.uniform(6, 6), cell=(3.0, 1.0))
-    assert evaluate(stretched, library.load("circle")).siou_gain == 0.0
+    assert evaluate(stretched, silhouettes.load("circle")).siou_gain == 0.0
 
 
 def test_that_perturbing_a_match_lowers_its_score() -> None:
@@ -71,19 +71,19 @@ def test_that_perturbing_a_match_lowers_its_score() -> None:
 
 
 def test_that_a_batch_scores_as_its_members_do() -> None:
-    sheets, target = [random_deployment(seed) for seed in range(5)], library.load("star")
+    sheets, target = [random_deployment(seed) for seed in range(5)], silhouettes.load("star")
     assert evaluate_many(sheets, target, 0.3) == [evaluate(sheet, target, 0.3) for sheet in sheets]
     assert evaluate_many([], target) == []
 
 
 def test_that_designs_of_several_grids_can_be_scored_together() -> None:
     sheets = [deploy(RatioField.uniform(*grid)) for grid in ((4, 4), (6, 5), (4, 4))]
-    scores = evaluate_many(sheets, library.load("hexagon"))
-    assert scores == [evaluate(sheet, library.load("hexagon")) for sheet in sheets]
+    scores = evaluate_many(sheets, silhouettes.load("hexagon"))
+    assert scores == [evaluate(sheet, silhouettes.load("hexagon")) for sheet in sheets]
 
 
 def test_that_a_contact_on_the_way_makes_a_design_infeasible(colliding: Deployment) -> None:
-    score = evaluate(colliding, library.load("circle"))
+    score = evaluate(colliding, silhouettes.load("circle"))
     assert score.contact is not None
     assert score.n_invalid == 0
     assert score.overlap_ratio <= 0.02
@@ -91,7 +91,7 @@ def test_that_a_contact_on_the_way_makes_a_design_infeasible(colliding: Deployme
 
 
 def test_that_json_holds_the_keys_of_the_command_line(colliding: Deployment) -> None:
-    told = json.loads(json.dumps(evaluate(colliding, library.load("circle")).to_json()))
+    told = json.loads(json.dumps(evaluate(colliding, silhouettes.load("circle")).to_json()))
     wanted = {"siou", "siou_gain", "iou_exact", "tv", "feasible", "n_invalid", "overlap_ratio", "contact", "transform"}
     assert wanted <= told.keys()
     assert set(told["contact"]) == {"phi", "where"}
@@ -101,4 +101,4 @@ def test_that_json_holds_the_keys_of_the_command_line(colliding: Deployment) -> 
 @pytest.mark.parametrize("phi", [math.nan, -1.0, 3.5])
 def test_that_impossible_angles_are_refused(phi: float) -> None:
     with pytest.raises(AngleError):
-        evaluate(random_deployment(0), library.load("heart"), phi)
+        evaluate(random_deployment(0), silhouettes.load("heart"), phi)

@@ -12,7 +12,7 @@ from kirigami_studio.evaluate.silhouette import rasterise
 from kirigami_studio.evaluate.similarity import FloatArray, Similarity
 from kirigami_studio.evaluate.siou import mask_siou
 from kirigami_studio.foundation.errors import KirigamiError
-from kirigami_studio.target import library
+from kirigami_studio.target import silhouettes
 
 
 def test_that_good_matches_score_as_the_released_evaluator_does(oracles: Mapping[str, np.ndarray]) -> None:
@@ -44,14 +44,14 @@ def test_that_swapping_the_masks_changes_nothing(oracles: Mapping[str, np.ndarra
 
 
 def test_that_a_mask_matches_itself_fully() -> None:
-    mask = rasterise(library.load("star").points)
+    mask = rasterise(silhouettes.load("star").points)
     assert mask_siou(mask, mask)[0] == 1.0
 
 
 @pytest.mark.parametrize("size", [60, 128, 500])
 def test_that_size_place_and_rotation_of_the_mask_hardly_matter(size: int) -> None:
-    heart = rasterise(library.load("heart").points)
-    turned = rasterise(Similarity(1.0, 2.0).apply(library.load("heart").points), size)
+    heart = rasterise(silhouettes.load("heart").points)
+    turned = rasterise(Similarity(1.0, 2.0).apply(silhouettes.load("heart").points), size)
     placed = np.pad(turned, ((5, 40), (70, 3)))
     assert mask_siou(heart, placed)[0] > (0.965 if size == 60 else 0.98)
 
@@ -88,7 +88,7 @@ def test_that_all_pieces_of_a_mask_count() -> None:
 
 
 def test_that_grey_levels_are_read_like_booleans() -> None:
-    mask = rasterise(library.load("hexagon").points)
+    mask = rasterise(silhouettes.load("hexagon").points)
     assert mask_siou(mask * np.uint8(255), mask)[0] == 1.0
 
 
@@ -105,7 +105,7 @@ def test_that_grey_levels_are_read_like_booleans() -> None:
     ],
 )
 def test_that_masks_without_a_shape_are_refused(bad: object, sentence: str) -> None:
-    good = rasterise(library.load("hexagon").points)
+    good = rasterise(silhouettes.load("hexagon").points)
     with pytest.raises(KirigamiError, match=sentence):
         mask_siou(bad, good)  # type: ignore[arg-type]
 

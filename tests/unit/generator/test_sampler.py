@@ -10,7 +10,7 @@ import torch
 
 from kirigami_studio.generator.sampler import Z_LIMIT, draw_fields, pose_angle, posed
 from kirigami_studio.generator.weights import Model, load_model
-from kirigami_studio.target.library import load
+from kirigami_studio.target.silhouettes import load
 
 pytestmark = pytest.mark.torch
 

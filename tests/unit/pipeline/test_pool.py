@@ -21,7 +21,7 @@ from kirigami_studio.pipeline.pool import Pool, worker_command
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.pipeline.tasks import Answer, Polish, Task, scored
 from kirigami_studio.pipeline.watch import Watch
-from kirigami_studio.target.library import load
+from kirigami_studio.target.silhouettes import load
 
 pytestmark = pytest.mark.slow
 COUNT = 6

@@ -16,7 +16,7 @@ from kirigami_studio.pipeline.pool import Pool
 from kirigami_studio.pipeline.rank import ranked
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.pipeline.run import best_of, run
-from kirigami_studio.target.library import load
+from kirigami_studio.target.silhouettes import load
 
 pytestmark = pytest.mark.torch
 

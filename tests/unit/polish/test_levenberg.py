@@ -18,8 +18,8 @@ from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.polish.levenberg import Fit, polish
 from kirigami_studio.polish.regularity import Regularity
-from kirigami_studio.target.library import load
 from kirigami_studio.target.outline import Outline
+from kirigami_studio.target.silhouettes import load
 
 
 def iou(fit: Fit, target: Outline, phi: float = 0.0) -> float:

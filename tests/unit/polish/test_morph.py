@@ -7,7 +7,7 @@ import pytest
 import shapely
 
 from kirigami_studio.polish.morph import ACCURACY, thickened
-from kirigami_studio.target.library import load
+from kirigami_studio.target.silhouettes import load
 
 
 @pytest.mark.parametrize("name", ["letter-l", "crescent", "puzzle", "butterfly"])

@@ -7,7 +7,7 @@ import pytest
 from shapely.geometry import LineString, Point
 
 from kirigami_studio.foundation.errors import TargetError
-from kirigami_studio.target import library
+from kirigami_studio.target import silhouettes
 from kirigami_studio.target.outline import Outline
 from kirigami_studio.target.read_dxf import read_dxf
 
@@ -82,7 +82,7 @@ def test_that_every_kind_of_line_becomes_the_outline(draw, expected, dxf, iou) -
 
 
 def test_that_thousands_of_shuffled_lines_are_joined(dxf, iou) -> None:
-    heart = library.load("heart")
+    heart = silhouettes.load("heart")
     fine = np.asarray(heart.polygon.segmentize(0.002).exterior.coords) * 100
 
     def draw(space, _drawing) -> None:

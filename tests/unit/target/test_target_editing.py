@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from kirigami_studio.foundation.errors import TargetError
-from kirigami_studio.target import library
+from kirigami_studio.target import silhouettes
 from kirigami_studio.target.editing import mirrored, resampled, rotated, simplify, smooth_freehand
 from kirigami_studio.target.outline import Outline
 
@@ -16,7 +16,7 @@ from kirigami_studio.target.outline import Outline
 def stroke(name: str, tremor: float = 2.0, overshoot: int = 8) -> np.ndarray:
     """A hand's stroke around a library shape, about 300 units wide, drawn past its start."""
     generator = np.random.default_rng(len(name))
-    round_trip = resampled(library.load(name), 220) * 300
+    round_trip = resampled(silhouettes.load(name), 220) * 300
     once = round_trip + generator.normal(0, tremor, round_trip.shape)
     return np.concatenate([once, round_trip[:overshoot] + 4.0])
 
@@ -24,7 +24,7 @@ def stroke(name: str, tremor: float = 2.0, overshoot: int = 8) -> np.ndarray:
 @pytest.mark.parametrize("name", ["circle", "heart", "star", "square", "letter-l", "arrow"])
 def test_that_a_shaky_stroke_becomes_the_shape_meant(name, iou) -> None:
     outline = smooth_freehand(stroke(name))
-    assert iou(outline, library.load(name)) > 0.975
+    assert iou(outline, silhouettes.load(name)) > 0.975
     assert len(outline.points) < 200
 
 
@@ -32,20 +32,20 @@ def test_that_tremor_is_smoothed_and_corners_stay() -> None:
     shaky = stroke("star")
     smooth = smooth_freehand(shaky)
     assert smooth.polygon.length < 0.93 * Outline.from_points(shaky).polygon.length
-    tips = library.load("star").points[np.linalg.norm(library.load("star").points, axis=1) > 0.7]
+    tips = silhouettes.load("star").points[np.linalg.norm(silhouettes.load("star").points, axis=1) > 0.7]
     nearest = [np.min(np.linalg.norm(smooth.points - tip, axis=1)) for tip in tips]
     assert max(nearest) < 0.05
 
 
 def test_that_a_stroke_drawn_past_its_start_leaves_no_tail(iou) -> None:
-    circle = library.load("circle")
+    circle = silhouettes.load("circle")
     outline = smooth_freehand(np.concatenate([resampled(circle, 200), resampled(circle, 200)[:20] * 1.03]))
     assert iou(outline, circle) > 0.995
     assert outline.polygon.length < 1.01 * circle.polygon.length
 
 
 def test_that_an_open_stroke_is_closed_and_said() -> None:
-    half = resampled(library.load("circle"), 200)[:110]
+    half = resampled(silhouettes.load("circle"), 200)[:110]
     assert "closed by a straight line over" in smooth_freehand(half).notes[0]
 
 
@@ -62,7 +62,7 @@ def test_that_a_figure_of_eight_is_refused_with_its_crossing() -> None:
 
 
 def test_that_four_quarter_turns_are_no_turn(iou) -> None:
-    leaf = turned = library.load("leaf")
+    leaf = turned = silhouettes.load("leaf")
     for _ in range(4):
         turned = rotated(turned, math.pi / 2)
     np.testing.assert_allclose(turned.points, leaf.points, atol=1e-12)
@@ -70,7 +70,7 @@ def test_that_four_quarter_turns_are_no_turn(iou) -> None:
 
 
 def test_that_a_positive_angle_turns_counter_clockwise() -> None:
-    arrow = rotated(library.load("arrow"), math.pi / 2)
+    arrow = rotated(silhouettes.load("arrow"), math.pi / 2)
     tip = arrow.points[np.argmax(np.linalg.norm(arrow.points, axis=1))]
     wide = arrow.points[np.argmax(np.abs(arrow.points[:, 0]))]
     assert np.ptp(arrow.points[:, 1]) > np.ptp(arrow.points[:, 0])
@@ -85,14 +85,14 @@ def test_that_the_size_turns_with_the_outline() -> None:
 
 
 def test_that_mirroring_twice_is_nothing_and_stays_counter_clockwise(iou) -> None:
-    leaf = library.load("leaf")
+    leaf = silhouettes.load("leaf")
     assert mirrored(leaf).polygon.exterior.is_ccw
     assert iou(mirrored(mirrored(leaf)), leaf) > 1 - 1e-9
     assert iou(mirrored(leaf), leaf) < 0.9
 
 
 def test_that_simplifying_drops_vertices_within_the_tolerance() -> None:
-    gear = library.load("gear")
+    gear = silhouettes.load("gear")
     simpler = simplify(gear, 0.01)
     assert len(simpler.points) < len(gear.points) / 2
     assert simpler.polygon.hausdorff_distance(gear.polygon) < 0.013
@@ -102,11 +102,11 @@ def test_that_simplifying_drops_vertices_within_the_tolerance() -> None:
 @pytest.mark.parametrize("tolerance", [-1.0, math.nan, math.inf])
 def test_that_an_impossible_tolerance_is_refused(tolerance) -> None:
     with pytest.raises(TargetError, match="tolerance"):
-        simplify(library.load("gear"), tolerance)
+        simplify(silhouettes.load("gear"), tolerance)
 
 
 def test_that_resampling_is_even_along_the_contour() -> None:
-    square = library.load("square")
+    square = silhouettes.load("square")
     points = resampled(square, 40)
     steps = np.linalg.norm(np.roll(points, -1, axis=0) - points, axis=1)
     np.testing.assert_allclose(steps, 0.1, atol=1e-6)
@@ -114,16 +114,16 @@ def test_that_resampling_is_even_along_the_contour() -> None:
 
 
 def test_that_the_start_shifts_the_points_along_the_contour() -> None:
-    points = resampled(library.load("heart"), 100)
+    points = resampled(silhouettes.load("heart"), 100)
     np.testing.assert_allclose(
-        resampled(library.load("heart"), 100, start=0.25), np.roll(points, -25, axis=0), atol=1e-9
+        resampled(silhouettes.load("heart"), 100, start=0.25), np.roll(points, -25, axis=0), atol=1e-9
     )
     np.testing.assert_allclose(
-        resampled(library.load("heart"), 100, start=-0.75), np.roll(points, -25, axis=0), atol=1e-9
+        resampled(silhouettes.load("heart"), 100, start=-0.75), np.roll(points, -25, axis=0), atol=1e-9
     )
 
 
 @pytest.mark.parametrize(("count", "start"), [(2, 0.0), (0, 0.0), (True, 0.0), (3.5, 0.0), (10, math.nan)])
 def test_that_impossible_resampling_is_refused(count, start) -> None:
     with pytest.raises(TargetError):
-        resampled(library.load("heart"), count, start)
+        resampled(silhouettes.load("heart"), count, start)

@@ -9,7 +9,7 @@ import pytest
 from PIL import Image
 
 from kirigami_studio.foundation.errors import TargetError
-from kirigami_studio.target import library
+from kirigami_studio.target import silhouettes
 from kirigami_studio.target.outline import Outline
 from kirigami_studio.target.read_image import automatic_threshold, outline_of_mask, read_image
 
@@ -17,7 +17,7 @@ from kirigami_studio.target.read_image import automatic_threshold, outline_of_ma
 @pytest.mark.parametrize("name", ["heart", "star", "gear", "puzzle", "circle", "letter-l"])
 @pytest.mark.parametrize(("size", "least"), [(64, 0.985), (256, 0.997), (1000, 0.998)])
 def test_that_a_drawn_silhouette_comes_back(name, size, least, coverage, picture, iou) -> None:
-    wanted = library.load(name)
+    wanted = silhouettes.load(name)
     longest = np.max(np.ptp(wanted.points, axis=0))
     outline = read_image(picture(1 - coverage(wanted, size)))
     assert iou(outline, wanted) > least
@@ -28,7 +28,7 @@ def test_that_a_drawn_silhouette_comes_back(name, size, least, coverage, picture
 
 
 def test_that_a_very_large_picture_is_read_at_reduced_size(tmp_path, coverage, iou) -> None:
-    wanted = library.load("heart")
+    wanted = silhouettes.load("heart")
     path = tmp_path / "large.png"
     small = Image.fromarray(coverage(wanted, 1000) < 0.5)
     small.resize((8000, 8000)).save(path, compress_level=1)
@@ -46,27 +46,27 @@ def test_that_a_very_large_picture_is_read_at_reduced_size(tmp_path, coverage, i
     ],
 )
 def test_that_every_colour_mode_is_read(name, mode, coverage, tmp_path, iou) -> None:
-    wanted = library.load("heart")
+    wanted = silhouettes.load("heart")
     path = tmp_path / name
     Image.fromarray((255 * (1 - coverage(wanted, 256))).astype(np.uint8)).convert(mode).save(path)
     assert iou(read_image(path), wanted) > 0.99
 
 
 def test_that_sixteen_bit_pictures_use_their_own_black_and_white(coverage, tmp_path, iou) -> None:
-    wanted = library.load("star")
+    wanted = silhouettes.load("star")
     path = tmp_path / "deep.png"
     Image.fromarray((500 + 3000 * coverage(wanted, 256)).astype(np.uint16)).save(path)
     assert iou(read_image(path), wanted) > 0.99
 
 
 def test_that_a_white_mask_on_black_is_the_same_shape(coverage, picture, iou) -> None:
-    wanted = library.load("gear")
+    wanted = silhouettes.load("gear")
     assert iou(read_image(picture(coverage(wanted, 256))), wanted) > 0.99
 
 
 @pytest.mark.parametrize("colour", [0, 128, 255])
 def test_that_the_alpha_channel_counts_whatever_the_colour(colour, coverage, tmp_path, iou) -> None:
-    wanted = library.load("fish")
+    wanted = silhouettes.load("fish")
     alpha = Image.fromarray((255 * coverage(wanted, 256)).astype(np.uint8))
     path = tmp_path / "icon.png"
     Image.merge("LA", [Image.new("L", alpha.size, colour), alpha]).save(path)
@@ -74,7 +74,7 @@ def test_that_the_alpha_channel_counts_whatever_the_colour(colour, coverage, tmp
 
 
 def test_that_a_transparent_palette_colour_is_background(tmp_path, coverage, iou) -> None:
-    wanted = library.load("heart")
+    wanted = silhouettes.load("heart")
     indices = Image.fromarray((coverage(wanted, 256) > 0.5).astype(np.uint8), mode=None)
     indices = indices.convert("P")
     indices.putpalette([0, 0, 0, 20, 20, 20])
@@ -84,7 +84,7 @@ def test_that_a_transparent_palette_colour_is_background(tmp_path, coverage, iou
 
 
 def test_that_an_opaque_picture_with_an_alpha_channel_is_read_by_its_grey(coverage, picture, iou) -> None:
-    wanted = library.load("heart")
+    wanted = silhouettes.load("heart")
     assert iou(read_image(picture(1 - coverage(wanted, 256), mode="RGBA")), wanted) > 0.99
 
 
@@ -107,7 +107,7 @@ def test_that_row_zero_is_the_top() -> None:
 
 
 def test_that_islands_are_dropped_and_holes_filled_and_said(coverage, picture, iou) -> None:
-    wanted = library.load("square")
+    wanted = silhouettes.load("square")
     ink = coverage(wanted, 256, share=0.6)
     ink[100:130, 100:130] = 0
     ink[5:15, 5:15] = 1
@@ -119,7 +119,7 @@ def test_that_islands_are_dropped_and_holes_filled_and_said(coverage, picture, i
 
 
 def test_that_scanner_noise_does_not_change_the_shape(coverage, picture, iou) -> None:
-    wanted = library.load("heart")
+    wanted = silhouettes.load("heart")
     generator = np.random.default_rng(0)
     grey = 0.85 - 0.7 * coverage(wanted, 300) + generator.normal(0, 0.06, (300, 300))
     assert iou(read_image(picture(grey, "scan.jpg")), wanted) > 0.99
@@ -143,11 +143,11 @@ def test_that_the_automatic_threshold_is_midway_on_a_two_level_picture(picture) 
 @pytest.mark.parametrize("threshold", [0.0, 1.0, -3, float("nan"), True, "dark"])
 def test_that_an_impossible_threshold_is_refused(threshold, picture, coverage) -> None:
     with pytest.raises(TargetError, match="between 0"):
-        read_image(picture(1 - coverage(library.load("heart"), 64)), threshold)
+        read_image(picture(1 - coverage(silhouettes.load("heart"), 64)), threshold)
 
 
 def test_that_a_threshold_outside_the_contrast_is_refused(picture, coverage) -> None:
-    path = picture(0.8 - 0.3 * coverage(library.load("heart"), 64))
+    path = picture(0.8 - 0.3 * coverage(silhouettes.load("heart"), 64))
     with pytest.raises(TargetError, match="all one colour"):
         read_image(path, 0.1)
 

@@ -12,7 +12,7 @@ import pytest
 
 from kirigami_studio.foundation.errors import TargetError
 from kirigami_studio.foundation.resources import resource
-from kirigami_studio.target import library
+from kirigami_studio.target import silhouettes
 from kirigami_studio.target.outline import Outline
 
 SCRIPT = Path(__file__).resolve().parents[3] / "packaging" / "make_silhouettes.py"
@@ -30,18 +30,18 @@ def maker() -> ModuleType:
 
 def test_that_the_library_holds_the_shapes_people_ask_for_first() -> None:
     wanted = {"circle", "square", "triangle", "hexagon", "star", "heart", "flower", "crescent", "letter-l", "gear"}
-    assert wanted <= set(library.names())
-    assert len(library.names()) >= 24
+    assert wanted <= set(silhouettes.names())
+    assert len(silhouettes.names()) >= 24
 
 
-@pytest.mark.parametrize("name", library.names())
+@pytest.mark.parametrize("name", silhouettes.names())
 def test_that_every_silhouette_needs_no_repair_and_few_vertices(name) -> None:
-    outline = library.load(name)
+    outline = silhouettes.load(name)
     assert outline.notes == ()
     assert outline.name == name
     assert 3 <= len(outline.points) <= 300
-    assert library.entry(name).title
-    assert library.entry(name).about.endswith(".")
+    assert silhouettes.entry(name).title
+    assert silhouettes.entry(name).about.endswith(".")
 
 
 def test_that_the_script_makes_the_stored_files(maker, iou) -> None:
@@ -49,25 +49,25 @@ def test_that_the_script_makes_the_stored_files(maker, iou) -> None:
     assert sorted(made) == sorted(path.stem for path in resource("silhouettes").glob("*.json"))
     for name, silhouette in made.items():
         fresh = json.loads(maker.text(silhouette))
-        entry = library.entry(name)
+        entry = silhouettes.entry(name)
         assert (fresh["title"], fresh["about"]) == (entry.title, entry.about)
         # Vertices may differ where another GEOS version buffers differently; the shape may not.
-        assert iou(Outline.from_points(fresh["points"]), library.load(name)) > 0.9999
+        assert iou(Outline.from_points(fresh["points"]), silhouettes.load(name)) > 0.9999
 
 
 def test_that_no_two_silhouettes_are_alike(iou) -> None:
-    outlines = [library.load(name) for name in library.names()]
+    outlines = [silhouettes.load(name) for name in silhouettes.names()]
     pairs = [(a.name, b.name) for k, a in enumerate(outlines) for b in outlines[:k] if iou(a, b) > 0.985]
     assert pairs == []
 
 
 @pytest.mark.parametrize("spelling", ["six-point-star", "Six-Point-Star", "six point star", " six_point_star "])
 def test_that_spelling_is_forgiven(spelling) -> None:
-    assert library.load(spelling).name == "six-point-star"
+    assert silhouettes.load(spelling).name == "six-point-star"
 
 
 def test_that_an_unknown_name_is_answered_with_the_nearest() -> None:
     with pytest.raises(TargetError, match=r"'hart'.*heart"):
-        library.load("hart")
+        silhouettes.load("hart")
     with pytest.raises(TargetError, match=r"library has arrow, bean"):
-        library.load("qqqqqq")
+        silhouettes.load("qqqqqq")

@@ -11,7 +11,7 @@ import pytest
 from PIL import Image
 
 from kirigami_studio.foundation.errors import TargetError
-from kirigami_studio.target import library
+from kirigami_studio.target import silhouettes
 from kirigami_studio.target.read import READERS, read_many, read_target
 from kirigami_studio.target.read_json import read_json
 
@@ -86,8 +86,8 @@ def test_that_a_missing_file_an_empty_file_and_a_folder_are_named(suffix, tmp_pa
 
 
 def test_that_a_library_name_is_a_target() -> None:
-    assert read_target("heart") == library.load("heart")
-    assert read_target("Letter L") == library.load("letter-l")
+    assert read_target("heart") == silhouettes.load("heart")
+    assert read_target("Letter L") == silhouettes.load("letter-l")
 
 
 @pytest.mark.parametrize(
@@ -138,7 +138,7 @@ def test_that_a_folder_without_targets_or_with_a_bad_one_is_refused(tmp_path) ->
 def test_that_every_form_of_json_is_read(stored, tmp_path, iou) -> None:
     path = tmp_path / "square.json"
     path.write_text("\ufeff" + json.dumps(stored), encoding="utf-8")
-    assert iou(read_json(path), library.load("square")) > 0.999999
+    assert iou(read_json(path), silhouettes.load("square")) > 0.999999
 
 
 def test_that_json_may_name_itself_and_its_unit(tmp_path) -> None:

@@ -10,7 +10,7 @@ import pytest
 from shapely.geometry import Point, Polygon, box
 
 from kirigami_studio.foundation.errors import TargetError
-from kirigami_studio.target import library
+from kirigami_studio.target import silhouettes
 from kirigami_studio.target.outline import Outline
 from kirigami_studio.target.read_svg import read_svg
 
@@ -73,7 +73,7 @@ def test_that_a_turned_and_stretched_group_is_followed(svg, iou) -> None:
 
 
 def test_that_up_stays_up(svg, iou) -> None:
-    heart = library.load("heart")
+    heart = silhouettes.load("heart")
     points = " ".join(f"{100 + 50 * x:.4f},{100 - 50 * y:.4f}" for x, y in heart.points)
     assert iou(read_svg(svg(f'<polygon points="{points}"/>')), heart) > 0.9999
 

@@ -8,13 +8,13 @@ from PySide6.QtWidgets import QFrame, QLabel, QLineEdit, QListView, QListWidget,
 
 from kirigami_studio.gui.scene.thumbnail import target_pixmap
 from kirigami_studio.gui.theme import Palette
-from kirigami_studio.target import library
+from kirigami_studio.target import silhouettes
 
 PICTURE = QSize(64, 64)
 NAME_ROLE = Qt.ItemDataRole.UserRole
 
 
-class LibraryPicker(QFrame):
+class SilhouettePicker(QFrame):
     """Closes by itself once a silhouette is chosen or the user clicks elsewhere."""
 
     chosen = Signal(str)
@@ -52,9 +52,9 @@ class LibraryPicker(QFrame):
 
     def _fill(self, palette: Palette) -> None:
         ratio = self.devicePixelRatioF()
-        for name in library.names():
-            entry = library.entry(name)
-            picture = target_pixmap(library.load(name), PICTURE, ratio, palette)
+        for name in silhouettes.names():
+            entry = silhouettes.entry(name)
+            picture = target_pixmap(silhouettes.load(name), PICTURE, ratio, palette)
             item = QListWidgetItem(QIcon(picture), entry.title)
             item.setData(NAME_ROLE, name)
             item.setToolTip(entry.about)
