@@ -1,82 +1,160 @@
 """What the exact geometry says about the field on its way: where its outline stands against the target's.
 
-The velocity network sees, beside z and the target, the outline that z would make if it were decoded now and the
-displacements between the two boundaries, both ways.  Without it the network has to know the decoder by heart; with it,
-it only has to know which ratios move which part of the outline.
+The velocity network sees, beside z and the target, the outline that z would make if it were decoded now, the
+displacements between the two boundaries, both ways, and the Gauss-Newton direction: the change of z that would close
+them if the outline moved in proportion.  Without it the network has to know the decoder by heart; with it, it only has
+to know how far to trust a linear answer, and which of the many equivalent fields to make.
 """
 
 from __future__ import annotations
+
+from dataclasses import dataclass
 
 import torch
 from torch import Tensor
 
 from kirigami_studio.generator.conditioning import normalised
+from kirigami_studio.generator.gauss_newton import Residuals, gauss_newton_direction
+from kirigami_studio.generator.sheet import Carrier, Sheet
 from kirigami_studio.lattice.batched import BatchedLattice
+from kirigami_studio.lattice.batched_slopes import BatchedSlopes
 
 #: z is decoded within these bounds: early in the flow it still is noise.
 Z_BOUND = 1.5
-#: Displacements and positions are divided by these to come near unit variance.
+#: Displacements, positions and directions are divided by these to come near unit variance.
 GAP_SCALE = 0.05
 PLACE_SCALE = 0.4
+DIRECTION_SCALE = 0.25
+#: A direction longer than this in any ratio is far outside what its linear model can foresee.
+DIRECTION_BOUND = 1.0
+#: Fields looked at together: their derivatives stay in the processor's cache.
+CHUNK = 32
+
+
+@dataclass(frozen=True, slots=True)
+class Sight:
+    """What a network sees of fields.
+
+    Attributes
+    ----------
+    features : (B, F) tensor
+        Outline stations, displacements both ways and the direction on the network's grid, each near unit variance.
+    direction : (B, m * n) tensor
+        Gauss-Newton change of the fields on their sheet; empty without it.
+    """
+
+    features: Tensor
+    direction: Tensor
 
 
 class Feedback:
-    """Boundary displacements of fields against targets at phi = 0.
+    """Boundary displacements of one sheet's fields against targets.
 
     Parameters
     ----------
-    rows, columns : int
-        Grid of the fields.
+    own : (rows, columns)
+        The network's grid.
+    sheet : Sheet
+        Where the fields lie.
     device : torch.device
+    direction : bool
+        Also give the Gauss-Newton direction.
     """
 
-    def __init__(self, rows: int, columns: int, device: torch.device) -> None:
-        self.lattice = BatchedLattice(rows, columns, device)
-        self.vertices = int(self.lattice.unzipped.numel())
+    def __init__(self, own: tuple[int, int], sheet: Sheet, device: torch.device, direction: bool) -> None:
+        self.sheet, self.device = sheet, device
+        self.lattice = BatchedLattice(sheet.rows, sheet.columns, device)
+        self.carrier = Carrier(own, sheet, device)
+        self.slopes = BatchedSlopes(self.lattice, sheet.zipped) if direction else None
 
     @staticmethod
-    def width(rows: int, columns: int, loop_points: int) -> int:
-        """Number of features for a grid and a target loop of ``loop_points`` points."""
+    def width(rows: int, columns: int, loop_points: int, direction: bool) -> int:
+        """Number of features for a network's grid and a target loop of ``loop_points`` points."""
         vertices = 2 * (rows + columns) + 4
-        return 2 * vertices + 4 * vertices + loop_points
+        return 2 * vertices + 4 * vertices + loop_points + (rows * columns if direction else 0)
 
-    def __call__(self, z: Tensor, loop: Tensor) -> Tensor:
-        """Describe fields z (B, m * n) against target loops (B, S, 2): (B, width) without gradient.
-
-        Outline vertices (where they are), displacements from vertices and edge middles to the target, and displacements
-        from every second target point to the outline.
-        """
+    def __call__(self, z: Tensor, loop: Tensor) -> Sight:
+        """Describe fields z (B, m * n) of the sheet against target loops (B, S, 2), without gradient."""
         with torch.no_grad():
-            field = z.clamp(-Z_BOUND, Z_BOUND).view(-1, self.lattice.rows, self.lattice.columns)
-            outline = normalised(self.lattice.outline(torch.pow(10.0, field), 0.0)[:, self.lattice.unzipped])
-            samples = torch.stack([outline, 0.5 * (outline + outline.roll(-1, dims=1))], dim=2).flatten(1, 2)
-            squared = _squared_distances(samples, loop)
-            out = _to_loop(samples, loop, squared.argmin(dim=2))
-            back = _to_loop(loop[:, ::2], samples, squared[:, :, ::2].argmin(dim=1))
-            return torch.cat(
-                [outline.flatten(1) / PLACE_SCALE, out.flatten(1) / GAP_SCALE, back.flatten(1) / GAP_SCALE], dim=1
-            )
+            if self.slopes is None or self.device.type != "cpu":
+                return self._described(z, loop)
+            parts = zip(torch.split(z, CHUNK), torch.split(loop, CHUNK), strict=True)
+            seen = [self._described(*part) for part in parts]
+            return Sight(torch.cat([one.features for one in seen]), torch.cat([one.direction for one in seen]))
+
+    def _described(self, z: Tensor, loop: Tensor) -> Sight:
+        outline, slopes = self._outline(z.clamp(-Z_BOUND, Z_BOUND).view(-1, self.sheet.rows, self.sheet.columns))
+        samples = _with_middles(outline)
+        squared = squared_distances(samples, loop)
+        out, _ = to_loop(samples, loop, squared.argmin(dim=2))
+        back, place = to_loop(loop[:, ::2], samples, squared[:, :, ::2].argmin(dim=1))
+        stations, away = self.carrier.stations(outline), out
+        if not self.carrier.same_outline:
+            read = _with_middles(stations)
+            away, _ = to_loop(read, loop, squared_distances(read, loop).argmin(dim=2))
+        seen = [stations.flatten(1) / PLACE_SCALE, away.flatten(1) / GAP_SCALE, back.flatten(1) / GAP_SCALE]
+        if slopes is None:
+            return Sight(torch.cat(seen, dim=1), z[:, :0])
+        direction = gauss_newton_direction(Residuals.of(outline, loop, out, back, 0.5 * place), slopes)
+        direction = direction.clamp(-DIRECTION_BOUND, DIRECTION_BOUND)
+        seen.append(self.carrier.down(direction) / DIRECTION_SCALE)
+        return Sight(torch.cat(seen, dim=1), direction)
+
+    def _outline(self, field: Tensor) -> tuple[Tensor, Tensor | None]:
+        """Outlines of fields (B, m, n), unit area about the centroid, and their derivatives (B, L, 2, m * n)."""
+        if self.slopes is not None:
+            decoded, slopes = self.slopes(field, self.sheet.phi)
+            return normalised(decoded), _normalised_slopes(decoded, slopes)
+        decoded = self.lattice.outline(torch.pow(10.0, field), self.sheet.phi)
+        return normalised(decoded[:, self.lattice.unzipped] if self.sheet.zipped else decoded), None
 
 
-def _squared_distances(points: Tensor, loop: Tensor) -> Tensor:
+def _normalised_slopes(outline: Tensor, slopes: Tensor) -> Tensor:
+    """Derivatives (B, L, 2, C) of outlines (B, L, 2) scaled to unit area; a common shift is left out."""
+    before, after = outline.roll(1, dims=1), outline.roll(-1, dims=1)
+    x, y = outline[..., 0], outline[..., 1]
+    area = 0.5 * (x * after[..., 1] - y * after[..., 0]).sum(dim=1)
+    grows = 0.5 * torch.stack([after[..., 1] - before[..., 1], before[..., 0] - after[..., 0]], dim=-1)
+    growth = (grows.flatten(1)[:, None] @ slopes.flatten(1, 2))[:, 0] / (2 * area[:, None])
+    scaled = slopes - outline[..., None] * growth[:, None, None]
+    return scaled / area.abs().sqrt()[:, None, None, None]
+
+
+def _with_middles(outline: Tensor) -> Tensor:
+    """Vertices and edge middles in turn: (B, 2 L, 2)."""
+    return torch.stack([outline, 0.5 * (outline + outline.roll(-1, dims=1))], dim=2).flatten(1, 2)
+
+
+def squared_distances(points: Tensor, loop: Tensor) -> Tensor:
     """Squared distance of every point to every loop point: (B, Q, S)."""
     lengths = points.square().sum(dim=-1)[:, :, None] + loop.square().sum(dim=-1)[:, None]
     return lengths - 2 * points @ loop.transpose(1, 2)
 
 
-def _to_loop(points: Tensor, loop: Tensor, nearest: Tensor) -> Tensor:
-    """Displacement of points (B, Q, 2) to the closed polyline ``loop`` near its vertices ``nearest`` (B, Q)."""
+def to_loop(points: Tensor, loop: Tensor, nearest: Tensor) -> tuple[Tensor, Tensor]:
+    """Closest places on the closed polyline ``loop`` to points (B, Q, 2), near its vertices ``nearest`` (B, Q).
+
+    Returns
+    -------
+    gap : (B, Q, 2) tensor
+        Displacement from each point to its place.
+    place : (B, Q) tensor
+        Where the place is, in vertices of the loop, at least 0 and less than their number.
+    """
     count = loop.shape[1]
     at, before, after = (
         loop.gather(1, ((nearest + shift) % count)[..., None].expand(-1, -1, 2)) for shift in (0, -1, 1)
     )
-    gaps = [_to_segment(points, at, other) for other in (before, after)]
-    first = gaps[0].square().sum(-1, keepdim=True) <= gaps[1].square().sum(-1, keepdim=True)
-    return torch.where(first, gaps[0], gaps[1])
+    back, back_share = _to_segment(points, at, before)
+    on, on_share = _to_segment(points, at, after)
+    first = back.square().sum(-1, keepdim=True) <= on.square().sum(-1, keepdim=True)
+    share = torch.where(first, -back_share, on_share)[..., 0]
+    return torch.where(first, back, on), (nearest + share) % count
 
 
-def _to_segment(points: Tensor, start: Tensor, end: Tensor) -> Tensor:
-    """Displacement of each point to its own segment."""
+def _to_segment(points: Tensor, start: Tensor, end: Tensor) -> tuple[Tensor, Tensor]:
+    """Displacement (B, Q, 2) of each point to its own segment, and how far along the place is, (B, Q, 1)."""
     along = end - start
     share = ((points - start) * along).sum(-1, keepdim=True) / along.square().sum(-1, keepdim=True).clamp_min(1e-12)
-    return start + share.clamp(0, 1) * along - points
+    share = share.clamp(0, 1)
+    return start + share * along - points, share

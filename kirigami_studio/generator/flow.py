@@ -1,10 +1,17 @@
-"""From noise to design: few-step Euler integration of dz/dt = v(z, t, condition) (paper, Sec. 2.3)."""
+"""From noise to design: few-step integration of dz/dt = v(z, t, condition) (paper, Sec. 2.3), with correctors.
+
+Predictor-corrector sampling (the scheme of Song et al. 2021, arXiv 2011.13456): Euler steps carry noise to a design,
+correctors bring the finished design's exact outline nearer to the target's.
+"""
 
 from __future__ import annotations
 
 from torch import Tensor, full
 
 from kirigami_studio.generator.network import TargetCode, VelocityNetwork
+
+#: Fields stay where the training data are: x in [0.1, 10].
+Z_LIMIT = 1.0
 
 
 def integrate(network: VelocityNetwork, noise: Tensor, code: TargetCode, steps: int) -> Tensor:
@@ -17,14 +24,29 @@ def integrate(network: VelocityNetwork, noise: Tensor, code: TargetCode, steps: 
         z at t = 0.
     code : TargetCode of B targets
     steps : int
-        Equal Euler steps.
+        Evaluations of the network.  Where it has a corrector, half of them, rounded down, are corrections; the others
+        are equal Euler steps.
 
     Returns
     -------
     z : (B, m * n) tensor at t = 1
+        Fields of the sheet that the code is for.
     """
+    return trail(network, noise, code, steps)[-1]
+
+
+def trail(network: VelocityNetwork, noise: Tensor, code: TargetCode, steps: int) -> list[Tensor]:
+    """Like :func:`integrate`, but every finished field: after the Euler steps and after each correction."""
+    corrections = steps // 2 if network.corrects else 0
+    euler = steps - corrections
     z = noise
-    for step in range(steps):
-        t = full((z.shape[0],), step / steps, dtype=z.dtype, device=z.device)
-        z = z + network(z, t, code) / steps
-    return z
+    for step in range(euler):
+        t = full((z.shape[0],), step / euler, dtype=z.dtype, device=z.device)
+        z = z + network(z, t, code) / euler
+    z = code.on_sheet(z)
+    finished = [z]
+    for _ in range(corrections):
+        z = z.clamp(-Z_LIMIT, Z_LIMIT)
+        z = z + network.correction(z, code)
+        finished.append(z)
+    return finished

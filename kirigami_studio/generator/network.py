@@ -3,13 +3,18 @@
 from __future__ import annotations
 
 import math
-from dataclasses import asdict, dataclass
+from collections.abc import Iterable
+from dataclasses import asdict, dataclass, replace
 
 import torch
 from torch import Tensor, nn
 
 from kirigami_studio.generator.conditioning import ConditionLayout, condition, contour_points
 from kirigami_studio.generator.feedback import Feedback
+from kirigami_studio.generator.sheet import Carrier, Sheet
+
+#: Numbers that describe a sheet.
+SHEET_FEATURES = 5
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,6 +38,12 @@ class NetworkShape:
         Points of the target boundary that feedback measures against, see ``feedback``; 0 leaves feedback out.
     z_scale : float
         Standard deviation of the source noise; z is divided by it at the input.
+    direction : bool
+        Feedback gives the Gauss-Newton direction too.
+    preference : bool
+        The network takes a preference between match (0) and regularity (1).
+    sheets : bool
+        The network is told the sheet's grid and angle, which it may have met in training.
     """
 
     rows: int = 10
@@ -45,11 +56,14 @@ class NetworkShape:
     rays: int = 128
     loop_points: int = 192
     z_scale: float = 0.5
+    direction: bool = True
+    preference: bool = False
+    sheets: bool = False
 
     @property
     def feedback_width(self) -> int:
         """Number of feedback features."""
-        return Feedback.width(self.rows, self.columns, self.loop_points) if self.loop_points else 0
+        return Feedback.width(self.rows, self.columns, self.loop_points, self.direction) if self.loop_points else 0
 
     @property
     def condition_layout(self) -> ConditionLayout:
@@ -68,14 +82,42 @@ class TargetCode:
     encoded : (B, blocks * hidden) tensor
     loop : (B, loop_points, 2) tensor
         Target boundary for feedback.
+    carrier : Carrier
+        Between the network's grid and the sheet that all of them are for.
+    feedback : Feedback, optional
+        The exact geometry of that sheet; missing where the network does not look at it.
     """
 
     encoded: Tensor
     loop: Tensor
+    carrier: Carrier
+    feedback: Feedback | None
+
+    def picked(self, rows: slice) -> TargetCode:
+        """Some of the targets."""
+        return replace(self, encoded=self.encoded[rows], loop=self.loop[rows])
 
     def repeated(self, count: int) -> TargetCode:
         """Every target ``count`` times in a row."""
-        return TargetCode(self.encoded.repeat_interleave(count, dim=0), self.loop.repeat_interleave(count, dim=0))
+        return replace(
+            self,
+            encoded=self.encoded.repeat_interleave(count, dim=0),
+            loop=self.loop.repeat_interleave(count, dim=0),
+        )
+
+    def on_sheet(self, z: Tensor) -> Tensor:
+        """Fields (B, cells) of the network's grid as fields of the sheet: (B, m * n)."""
+        return self.carrier.up(z)
+
+
+def joined(codes: Iterable[TargetCode]) -> TargetCode:
+    """Codes for one sheet, one after another."""
+    parts = list(codes)
+    return replace(
+        parts[0],
+        encoded=torch.cat([part.encoded for part in parts]),
+        loop=torch.cat([part.loop for part in parts]),
+    )
 
 
 class _Block(nn.Module):
@@ -100,7 +142,7 @@ class VelocityNetwork(nn.Module):
     def __init__(self, shape: NetworkShape) -> None:
         super().__init__()
         self.shape = shape
-        self._decoder: Feedback | None = None
+        self._feedbacks: dict[Sheet, Feedback] = {}
         cells = shape.rows * shape.columns
         self.encode = nn.Sequential(
             nn.Linear(shape.condition_layout.width, shape.width * 2),
@@ -111,17 +153,57 @@ class VelocityNetwork(nn.Module):
         self.condition_per_block = nn.Linear(shape.width, shape.hidden * shape.blocks)
         self.enter = nn.Linear(cells + shape.time_features + shape.feedback_width, shape.width)
         self.time_per_block = nn.Linear(shape.time_features, shape.hidden * shape.blocks, bias=False)
+        self.prefer = nn.Linear(1, shape.hidden * shape.blocks, bias=False) if shape.preference else None
+        self.lie = nn.Linear(SHEET_FEATURES, shape.hidden * shape.blocks, bias=False) if shape.sheets else None
+        for layer in (self.prefer, self.lie):
+            if layer is not None:
+                nn.init.zeros_(layer.weight)
         self.blocks = nn.ModuleList(_Block(shape.width, shape.hidden) for _ in range(shape.blocks))
         self.norm = nn.LayerNorm(shape.width)
         self.leave = nn.Linear(shape.width, cells)
         nn.init.zeros_(self.leave.weight)
         nn.init.zeros_(self.leave.bias)
+        self.follow, self.amend = None, None
+        if shape.direction:
+            self.follow, self.amend = nn.Linear(shape.width, cells), nn.Linear(shape.width, cells)
+            for layer in (self.follow, self.amend):
+                nn.init.zeros_(layer.weight)
+                nn.init.zeros_(layer.bias)
 
-    def code(self, polygons: Tensor, shift: Tensor | None = None) -> TargetCode:
-        """Prepare normalised, posed target polygons (B, L, 2); ``shift`` (B,) moves the contour's start."""
-        described = condition(polygons, self.shape.condition_layout, shift)
-        loop = contour_points(polygons, self.shape.loop_points) if self.shape.loop_points else polygons[:, :0]
-        return TargetCode(self.condition_per_block(self.encode(described)), loop)
+    def code(
+        self,
+        polygons: Tensor,
+        shift: Tensor | None = None,
+        preference: Tensor | None = None,
+        sheet: Sheet | None = None,
+    ) -> TargetCode:
+        """Prepare targets.
+
+        Parameters
+        ----------
+        polygons : (B, L, 2) tensor
+            Normalised, in the pose that the network is to see.
+        shift : (B,) tensor, optional
+            Moves the contour's start.
+        preference : (B,) tensor, optional
+            0 for match, 1 for regularity; only networks with ``preference`` look at it, and take 0 when missing.
+        sheet : Sheet, optional
+            What is to show them; the network's own grid at phi = 0 when missing.
+        """
+        shape = self.shape
+        described = condition(polygons, shape.condition_layout, shift)
+        encoded = self.condition_per_block(self.encode(described))
+        if self.prefer is not None and preference is not None:
+            encoded = encoded + self.prefer(preference[:, None])
+        sheet = sheet or Sheet(shape.rows, shape.columns)
+        if self.lie is not None:
+            encoded = encoded + self.lie(_sheet_features(sheet, shape, polygons))
+        if not shape.loop_points:
+            return TargetCode(
+                encoded, polygons[:, :0], Carrier((shape.rows, shape.columns), sheet, polygons.device), None
+            )
+        feedback = self._feedback(sheet, polygons.device)
+        return TargetCode(encoded, contour_points(polygons, shape.loop_points), feedback.carrier, feedback)
 
     def forward(self, z: Tensor, t: Tensor, code: TargetCode) -> Tensor:
         """Velocity.
@@ -136,22 +218,62 @@ class VelocityNetwork(nn.Module):
         -------
         (B, m * n) tensor, dz / dt
         """
-        time = time_features(t, self.shape.time_features)
-        conditions = (code.encoded + self.time_per_block(time)).chunk(self.shape.blocks, dim=-1)
-        seen = [z / self.shape.z_scale, time]
-        if self.shape.loop_points:
-            seen.append(self._feedback(z.device)(z, code.loop))
-        x: Tensor = self.enter(torch.cat(seen, dim=-1))
-        for block, bias in zip(self.blocks, conditions, strict=True):
-            x = block(x, bias)
-        velocity: Tensor = self.leave(self.norm(x))
+        features = z[:, :0]
+        if code.feedback is not None:
+            features = code.feedback(code.on_sheet(z), code.loop).features
+        velocity: Tensor = self.leave(self._thought(z, t, code, features))
         return velocity
 
-    def _feedback(self, device: torch.device) -> Feedback:
-        """The decoder on the device in use, built at the first call."""
-        if self._decoder is None or self._decoder.lattice.device != device:
-            self._decoder = Feedback(self.shape.rows, self.shape.columns, device)
-        return self._decoder
+    @property
+    def corrects(self) -> bool:
+        """Whether the network has a corrector, see :meth:`correction`."""
+        return self.follow is not None
+
+    def correction(self, z: Tensor, code: TargetCode) -> Tensor:
+        """Change of finished fields z (B, m * n) of the sheet that brings their outlines nearer: (B, m * n).
+
+        The Gauss-Newton direction, taken as far in each ratio as the network thinks fit, and what the network adds.
+        """
+        if self.follow is None or self.amend is None or code.feedback is None:
+            return torch.zeros_like(z)
+        sight = code.feedback(z, code.loop)
+        carrier = code.carrier
+        x = self._thought(carrier.down(z), torch.ones_like(z[:, 0]), code, sight.features)
+        change: Tensor = (1.0 + carrier.up(self.follow(x))) * sight.direction + carrier.up(self.amend(x))
+        return change
+
+    def _thought(self, z: Tensor, t: Tensor, code: TargetCode, features: Tensor) -> Tensor:
+        """What the last block makes of a state: (B, width)."""
+        time = time_features(t, self.shape.time_features)
+        conditions = (code.encoded + self.time_per_block(time)).chunk(self.shape.blocks, dim=-1)
+        x: Tensor = self.enter(torch.cat([z / self.shape.z_scale, time, features], dim=-1))
+        for block, bias in zip(self.blocks, conditions, strict=True):
+            x = block(x, bias)
+        thought: Tensor = self.norm(x)
+        return thought
+
+    def _feedback(self, sheet: Sheet, device: torch.device) -> Feedback:
+        """The exact geometry of a sheet on the device in use, built when first asked for."""
+        found = self._feedbacks.get(sheet)
+        if found is None or found.device != device:
+            found = Feedback((self.shape.rows, self.shape.columns), sheet, device, self.shape.direction)
+            self._feedbacks[sheet] = found
+        return found
+
+
+def _sheet_features(sheet: Sheet, shape: NetworkShape, like: Tensor) -> Tensor:
+    """Grid and angle as numbers about zero, which are zero on the network's own sheet: (1, SHEET_FEATURES)."""
+    return like.new_tensor(
+        [
+            [
+                math.log(sheet.rows / shape.rows),
+                math.log(sheet.columns / shape.columns),
+                math.sin(sheet.phi),
+                1.0 - math.cos(sheet.phi),
+                float(not sheet.zipped),
+            ]
+        ]
+    )
 
 
 def time_features(t: Tensor, count: int) -> Tensor:

@@ -9,16 +9,14 @@ import torch
 from torch import Tensor
 
 from kirigami_studio.generator.conditioning import normalised, turned
-from kirigami_studio.generator.flow import integrate
+from kirigami_studio.generator.flow import Z_LIMIT, integrate
 from kirigami_studio.generator.pose import square_pose
-from kirigami_studio.generator.resize import resize_fields
+from kirigami_studio.generator.sheet import Sheet
 from kirigami_studio.generator.threads import one_torch_thread
 from kirigami_studio.generator.weights import Model
 from kirigami_studio.lattice.ratio_field import FloatArray, RatioField
 from kirigami_studio.target.outline import Outline
 
-#: Fields stay where the training data are: x in [0.1, 10].
-Z_LIMIT = 1.0
 #: Candidates drawn together, always this many: rounding in matrix products depends on the batch size, and nearest-point
 #: feedback can turn a rounding difference into a visible one.
 BATCH = 8
@@ -27,7 +25,7 @@ GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
 
 
 def draw_fields(
-    model: Model, target: Outline, grid: tuple[int, int], k: int, seed: int, steps: int
+    model: Model, target: Outline, grid: tuple[int, int], k: int, seed: int, steps: int, phi: float = 0.0
 ) -> tuple[RatioField, ...]:
     """Sample ``k`` ratio fields for ``target``.
 
@@ -40,22 +38,23 @@ def draw_fields(
     model : Model
     target : Outline
     grid : (rows, columns)
-        Other grids than the network's are reached by interpolation, see ``resize``.
+        Other grids than the network's are reached by interpolation, see ``sheet``; it sees their exact geometry.
     k, seed, steps : int
+    phi : float, radians, in [0, pi)
     """
     shape = model.network.shape
     whole = -(-k // BATCH) * BATCH
     noise = np.random.default_rng(seed).standard_normal((whole, shape.rows * shape.columns)) * shape.z_scale
+    sheet = Sheet(*grid, phi)
     drawn: list[Tensor] = []
     with torch.inference_mode(), one_torch_thread():
         for start in range(0, whole, BATCH):
-            code = model.network.code(posed(target, range(start, start + BATCH)))
+            code = model.code(posed(target, range(start, start + BATCH)), sheet)
             rows = torch.tensor(noise[start : start + BATCH], dtype=torch.float32)
             drawn.append(integrate(model.network, rows, code, steps))
     z = torch.cat(drawn)[:k].double().numpy()
-    fields = np.clip(z.reshape(k, shape.rows, shape.columns), -Z_LIMIT, Z_LIMIT)
-    resized: FloatArray = np.clip(resize_fields(fields, *grid), -Z_LIMIT, Z_LIMIT)
-    return tuple(RatioField.from_log10(np.round(field, 6)) for field in resized)
+    fields: FloatArray = np.clip(z.reshape(k, *grid), -Z_LIMIT, Z_LIMIT)
+    return tuple(RatioField.from_log10(np.round(field, 6)) for field in fields)
 
 
 def posed(target: Outline, candidates: range) -> Tensor:

@@ -13,13 +13,16 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+import torch
 from safetensors.torch import load as load_tensors
 from safetensors.torch import save as save_tensors
+from torch import Tensor
 
 from kirigami_studio.foundation.errors import ModelError, UsageError
 from kirigami_studio.foundation.files import write_atomically
 from kirigami_studio.foundation.resources import resource
-from kirigami_studio.generator.network import NetworkShape, VelocityNetwork
+from kirigami_studio.generator.network import NetworkShape, TargetCode, VelocityNetwork
+from kirigami_studio.generator.sheet import Sheet
 
 MANIFEST = "manifest.json"
 FORMAT = 1
@@ -36,11 +39,19 @@ class Model:
         In evaluation mode, float32.
     digest : str
         SHA-256 of the weight file, recorded in every project and export.
+    preference : float
+        What the variant prefers, from match (0) to regularity (1), where its network has the choice.
     """
 
     variant: str
     network: VelocityNetwork
     digest: str
+    preference: float = 0.0
+
+    def code(self, polygons: Tensor, sheet: Sheet) -> TargetCode:
+        """Prepare normalised, posed target polygons (B, L, 2) for a sheet."""
+        preference = torch.full((len(polygons),), self.preference)
+        return self.network.code(polygons, preference=preference, sheet=sheet)
 
 
 def model_folder() -> Path:
@@ -95,7 +106,7 @@ def load_model(variant: str, folder: Path | None = None) -> Model:
         network.load_state_dict({name: value.float() for name, value in load_tensors(content).items()})
     except Exception as error:  # safetensors and torch raise many kinds; all mean the same to the user
         raise ModelError(f"The weights {path.name} do not fit the network that the manifest describes.") from error
-    return Model(variant, network.eval().requires_grad_(False), digest)
+    return Model(variant, network.eval().requires_grad_(False), digest, float(entry.get("preference", 0.0)))
 
 
 def store_model(variant: str, network: VelocityNetwork, folder: Path, about: dict[str, object]) -> Path:

@@ -56,10 +56,7 @@ class BatchedLattice:
         nodes : (B, N, 2) tensor, unit cells
             Numbered as in :class:`kirigami_studio.lattice.topology.Topology`.
         """
-        if ratio.ndim != 3 or tuple(ratio.shape[1:]) != (self.rows, self.columns):
-            raise RatioError(f"Ratios must have shape (B, {self.rows}, {self.columns}), got {tuple(ratio.shape)}.")
-        x = ratio.to(self.device, self.dtype).flatten(1)[:, self._void]
-        weight = torch.stack([x / (1 + x), 1 / (1 + x)], dim=-1).flatten(1)
+        weight = self._weights(ratio)
         h = self._sweep(weight)
         return self._complete(h, weight)
 
@@ -80,31 +77,25 @@ class BatchedLattice:
         return deployed(*self.outline_parts(self.compact(ratio)), phi)
 
     def _sweep(self, weight: Tensor) -> Tensor:
-        """Block Thomas algorithm for the h rows: (B, m, n + 1, 2)."""
-        batch, m, width = weight.shape[0], self.rows, self.columns + 1
-        values = weight[:, self._pair[0]] * weight[:, self._pair[1]]
-        coupling = weight.new_zeros(batch, 2 * m * width * width)
-        coupling = coupling.index_copy(1, self._pair_slot, values).view(batch, 2, m, width, width)
-        constant = self._constant.expand(batch, -1, -1)
+        """Positions of the h rows: (B, m, n + 1, 2)."""
+        coupling = self._coupling(weight)
         known = weight[:, self._known_weight, None] * self._known_position
-        constant = constant.index_add(1, self._known_slot, known).view(batch, m, width, 2)
-        identity = torch.eye(width, device=self.device, dtype=self.dtype)
-        transfer: list[Tensor] = []
-        offset: list[Tensor] = []
-        for i in range(m):
-            lower, upper, right = coupling[:, 0, i], coupling[:, 1, i], constant[:, i]
-            if i == 0:
-                transfer.append(upper)
-                offset.append(right)
-                continue
-            pivot = identity - lower @ transfer[-1]
-            solved, _ = torch.linalg.solve_ex(pivot, torch.cat([upper, right + lower @ offset[-1]], dim=-1))
-            transfer.append(solved[..., :width])
-            offset.append(solved[..., width:])
-        h = [offset[-1]]
-        for i in range(m - 2, -1, -1):
-            h.append(transfer[i] @ h[-1] + offset[i])
-        return torch.stack(h[::-1], dim=1)
+        constant = self._constant.expand(weight.shape[0], -1, -1).index_add(1, self._known_slot, known)
+        return block_sweep(coupling[:, 0], coupling[:, 1], constant.view(-1, self.rows, self.columns + 1, 2))
+
+    def _coupling(self, weight: Tensor) -> Tensor:
+        """L and U of every block row: (B, 2, m, n + 1, n + 1)."""
+        m, width = self.rows, self.columns + 1
+        values = weight[:, self._pair[0]] * weight[:, self._pair[1]]
+        coupling = weight.new_zeros(weight.shape[0], 2 * m * width * width)
+        return coupling.index_copy(1, self._pair_slot, values).view(-1, 2, m, width, width)
+
+    def _weights(self, ratio: Tensor) -> Tensor:
+        """Stencil weights of designs (B, m, n), both ends of every free node: (B, 2 K)."""
+        if ratio.ndim != 3 or tuple(ratio.shape[1:]) != (self.rows, self.columns):
+            raise RatioError(f"Ratios must have shape (B, {self.rows}, {self.columns}), got {tuple(ratio.shape)}.")
+        x = ratio.to(self.device, self.dtype).flatten(1).index_select(1, self._void)
+        return torch.stack([x / (1 + x), 1 / (1 + x)], dim=-1).flatten(1)
 
     def _complete(self, h: Tensor, weight: Tensor) -> Tensor:
         """Add the edge nodes and the v family, which rests on the h family."""
@@ -167,6 +158,31 @@ class BatchedLattice:
 
     def _float(self, values: FloatArray) -> Tensor:
         return torch.tensor(values, dtype=self.dtype, device=self.device)
+
+
+def block_sweep(lower: Tensor, upper: Tensor, right: Tensor) -> Tensor:
+    """Solve h_i = lower_i h_{i-1} + upper_i h_{i+1} + right_i by the block Thomas algorithm.
+
+    Parameters
+    ----------
+    lower, upper : (B, m, w, w) tensors
+    right : (B, m, w, R) tensor
+
+    Returns
+    -------
+    h : (B, m, w, R) tensor
+    """
+    width = lower.shape[-1]
+    identity = torch.eye(width, device=lower.device, dtype=lower.dtype)
+    transfer, offset = [upper[:, 0]], [right[:, 0]]
+    for i in range(1, lower.shape[1]):
+        factors, pivots, _ = torch.linalg.lu_factor_ex(identity - lower[:, i] @ transfer[-1])
+        transfer.append(torch.linalg.lu_solve(factors, pivots, upper[:, i]))
+        offset.append(torch.linalg.lu_solve(factors, pivots, torch.baddbmm(right[:, i], lower[:, i], offset[-1])))
+    h = [offset[-1]]
+    for i in range(lower.shape[1] - 2, -1, -1):
+        h.append(torch.baddbmm(offset[i], transfer[i], h[-1]))
+    return torch.stack(h[::-1], dim=1)
 
 
 def deployed(even: Tensor, odd: Tensor, phi: float | Tensor) -> Tensor:

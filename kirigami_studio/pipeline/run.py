@@ -97,7 +97,7 @@ def sample(request: Request) -> tuple[RatioField, ...]:
     from kirigami_studio.generator.weights import load_model
 
     model = load_model(request.variant)
-    return draw_fields(model, request.target, request.grid, request.k, request.seed, request.steps)
+    return draw_fields(model, request.target, request.grid, request.k, request.seed, request.steps, request.phi)
 
 
 class _Work:

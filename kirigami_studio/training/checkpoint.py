@@ -63,3 +63,14 @@ class Checkpoint:
             return cls(**content)
         except Exception as error:  # torch raises many kinds on a damaged file
             raise ModelError(f"The checkpoint {path} cannot be read; delete it to start afresh.") from error
+
+    def require(self, settings: dict[str, Any], path: Path) -> None:
+        """Refuse to go on with other settings than the checkpoint's.
+
+        Raises
+        ------
+        ModelError
+        """
+        if self.settings != settings:
+            names = ", ".join(name for name in settings if self.settings.get(name) != settings[name])
+            raise ModelError(f"The checkpoint {path} was made with other settings ({names}); choose another folder.")

@@ -1,0 +1,105 @@
+"""How fields of one grid and one outline stand in for those of every other sheet.
+
+A network draws on its own grid; a sheet may have any.  Fields are carried between the two by the lattice's parity-wise
+interpolation, which is linear, and outlines are read at as many stations, side by side, as the network's own has
+vertices.  On the network's own sheet both are the identity.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+import torch
+from torch import Tensor
+
+from kirigami_studio.lattice.deployment import ZIPPED_BELOW
+from kirigami_studio.lattice.ratio_field import FloatArray
+from kirigami_studio.lattice.resize import resize_fields
+
+
+@dataclass(frozen=True, slots=True)
+class Sheet:
+    """What is to show the target.
+
+    Attributes
+    ----------
+    rows, columns : int
+    phi : float, radians, in [0, pi)
+    """
+
+    rows: int
+    columns: int
+    phi: float = 0.0
+
+    @property
+    def zipped(self) -> bool:
+        """Whether the edge hinges have zipped shut."""
+        return self.phi < ZIPPED_BELOW
+
+    @property
+    def side_vertices(self) -> tuple[int, int, int, int]:
+        """Outline vertices from one sheet corner to the next: left, bottom, right, top."""
+        m, n = (self.rows + 1, self.columns + 1) if self.zipped else (2 * self.rows + 1, 2 * self.columns + 1)
+        return m, n, m, n
+
+
+class Carrier:
+    """Constant matrices between a network's own grid and a sheet.
+
+    Parameters
+    ----------
+    own : (rows, columns)
+        The network's grid.
+    sheet : Sheet
+    device : torch.device
+    """
+
+    def __init__(self, own: tuple[int, int], sheet: Sheet, device: torch.device) -> None:
+        grid = sheet.rows, sheet.columns
+        self.same_grid = own == grid
+        self.same_outline = self.same_grid and sheet.zipped
+        self._up = self._down = self._stations = torch.empty(0, device=device)
+        if not self.same_grid:
+            self._up, self._down = (
+                torch.tensor(table, dtype=torch.float32, device=device)
+                for table in (_resizing(own, grid), _resizing(grid, own))
+            )
+        if not self.same_outline:
+            table = _reading(Sheet(*own).side_vertices, sheet.side_vertices)
+            self._stations = torch.tensor(table, dtype=torch.float32, device=device)
+
+    def up(self, z: Tensor) -> Tensor:
+        """Fields (B, own cells) on the sheet: (B, m * n)."""
+        return z if self.same_grid else z @ self._up
+
+    def down(self, z: Tensor) -> Tensor:
+        """Fields of the sheet (B, m * n) on the network's grid: (B, own cells)."""
+        return z if self.same_grid else z @ self._down
+
+    def stations(self, outline: Tensor) -> Tensor:
+        """The sheet's outline (B, L, 2) read at as many places as the network's own has vertices: (B, L_own, 2)."""
+        return outline if self.same_outline else self._stations @ outline
+
+
+@lru_cache(maxsize=32)
+def _resizing(old: tuple[int, int], new: tuple[int, int]) -> FloatArray:
+    """Matrix (old cells, new cells) of the parity-wise interpolation."""
+    cells = old[0] * old[1]
+    return resize_fields(np.eye(cells).reshape(cells, *old), *new).reshape(cells, -1)
+
+
+def _reading(own: tuple[int, ...], sides: tuple[int, ...]) -> FloatArray:
+    """Matrix (own vertices, vertices) that reads an outline at equal steps along each side."""
+    count = sum(sides)
+    table = np.zeros((sum(own), count))
+    row = first = 0
+    for stations, vertices in zip(own, sides, strict=True):
+        place = first + np.arange(stations) * vertices / stations
+        at = place.astype(np.intp)
+        rows = row + np.arange(stations)
+        table[rows, at] = 1.0 - (place - at)
+        table[rows, (at + 1) % count] += place - at
+        row, first = row + stations, first + vertices
+    return table

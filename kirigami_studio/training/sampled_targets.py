@@ -1,0 +1,109 @@
+"""Targets for losses on whole samples: silhouettes of random fields and drawn shapes, in any pose.
+
+Such a loss looks at what comes out of the sampler and needs no field that made the target, so it can also learn from
+drawings, and from poses that no sheet was in.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import torch
+from torch import Tensor
+
+from kirigami_studio.generator.conditioning import contour_points, normalised, turned
+from kirigami_studio.generator.network import TargetCode, VelocityNetwork, joined
+from kirigami_studio.generator.pose import square_pose
+from kirigami_studio.training.corpus import Chunk
+from kirigami_studio.training.validation import drawn_polygons
+
+#: Points of the target boundary that a loss measures against; the network sees fewer.
+LOSS_POINTS = 384
+#: Shares of the rows that stand upright and in another quarter turn; the rest lie in any pose.
+UPRIGHT, QUARTERS = 0.5, 0.25
+
+
+@dataclass(frozen=True, slots=True)
+class SampledTargets:
+    """Some rows of a batch, as parts of equally many vertices.
+
+    Attributes
+    ----------
+    seen : tuple of (B_i, L_i, 2) tensors
+        As they arrive: vertices a little off.
+    shifts : tuple of (B_i,) tensors
+        How far their contours' starts are moved, in point spacings.
+    loop : (B, 384, 2) tensor
+        The undisturbed boundaries.
+    """
+
+    seen: tuple[Tensor, ...]
+    shifts: tuple[Tensor, ...]
+    loop: Tensor
+
+    def code(self, network: VelocityNetwork, preference: Tensor | None = None) -> TargetCode:
+        """The targets for a network, with a preference (B,) for each where it takes one."""
+        if preference is None:
+            chosen: list[Tensor | None] = [None] * len(self.seen)
+        else:
+            chosen = list(torch.split(preference, [len(part) for part in self.seen]))
+        return joined(network.code(*part) for part in zip(self.seen, self.shifts, chosen, strict=True))
+
+
+class TargetSource:
+    """Draws targets with the generator of a training run.
+
+    Parameters
+    ----------
+    drawn : int
+        How many drawn shapes to make; 0 for random fields only.
+    seed : int
+    vertex_noise, shift_noise : float
+        Standard deviations of vertices (unit-area lengths) and of the contour's start (point spacings).
+    generator : torch.Generator
+    device : torch.device
+    """
+
+    def __init__(
+        self,
+        drawn: int,
+        seed: int,
+        vertex_noise: float,
+        shift_noise: float,
+        generator: torch.Generator,
+        device: torch.device,
+    ) -> None:
+        self.vertex_noise, self.shift_noise = vertex_noise, shift_noise
+        self.generator, self.device = generator, device
+        self.drawn = normalised(drawn_polygons(drawn, seed)).to(device) if drawn else None
+
+    def targets(self, chunk: Chunk, count: int, drawn_share: float) -> SampledTargets:
+        """``count`` targets, ``drawn_share`` of them drawn shapes if there are any, the others from ``chunk``."""
+        drawn_rows = round(drawn_share * count) if self.drawn is not None else 0
+        pools = [(chunk.polygons, count - drawn_rows)]
+        if self.drawn is not None:
+            pools.append((self.drawn, drawn_rows))
+        clean = [self._posed(pool[self._indices(len(pool), rows)]) for pool, rows in pools]
+        return SampledTargets(
+            tuple(part + self.vertex_noise * self._normal(part.shape) for part in clean),
+            tuple(self.shift_noise * self._normal(part.shape[:1]) for part in clean),
+            torch.cat([contour_points(part, LOSS_POINTS) for part in clean]),
+        )
+
+    def _posed(self, polygons: Tensor) -> Tensor:
+        """As candidates see a target: upright, in another quarter turn, or in any pose."""
+        upright = turned(polygons, -square_pose(polygons))
+        kind, angle = self._uniform(len(polygons)), 2 * math.pi * self._uniform(len(polygons))
+        quarter = (angle / (0.5 * math.pi)).floor() * (0.5 * math.pi)
+        other = torch.where(kind < UPRIGHT + QUARTERS, quarter, angle)
+        return turned(upright, torch.where(kind < UPRIGHT, torch.zeros_like(angle), other))
+
+    def _indices(self, size: int, count: int) -> Tensor:
+        return torch.randint(size, (count,), generator=self.generator, device=self.device)
+
+    def _uniform(self, count: int) -> Tensor:
+        return torch.rand(count, generator=self.generator, device=self.device)
+
+    def _normal(self, shape: torch.Size) -> Tensor:
+        return torch.randn(shape, generator=self.generator, device=self.device)

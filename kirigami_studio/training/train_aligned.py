@@ -1,0 +1,257 @@
+"""Alignment by backpropagation through the sampler and the exact decoder, anchored to the prior.
+
+The network is unrolled over the Euler steps that the studio takes; the loss is measured on what comes out (the idea of
+DRaFT, arXiv 2309.17400), so no reward has to be guessed from ranks.  One network learns the whole trade between match
+and regularity: the preference is an input, drawn anew for every row.  ``grpo`` holds the paper's rule.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+
+import torch
+from torch import Tensor
+
+from kirigami_studio.foundation.errors import ExportError, ModelError
+from kirigami_studio.generator.flow import Z_LIMIT, integrate, trail
+from kirigami_studio.generator.network import NetworkShape, VelocityNetwork
+from kirigami_studio.generator.weights import Model
+from kirigami_studio.training.checkpoint import Checkpoint
+from kirigami_studio.training.corpus import Chunk, Corpus
+from kirigami_studio.training.fields import mixed_fields
+from kirigami_studio.training.preference_loss import EARLY_WEIGHT, PreferenceTerms, trail_gap
+from kirigami_studio.training.sampled_targets import TargetSource
+from kirigami_studio.training.train_flow import grown_state, schedule
+
+#: The preference's weights begin at zero and have one input: they learn this much faster than the others.
+NEW_PACE = 30.0
+
+
+@dataclass(frozen=True, slots=True)
+class AlignSettings:
+    """Settings of one alignment run.
+
+    Attributes
+    ----------
+    prior : str
+        SHA-256 of the weights it begins with and stays near to.
+    steps : int
+        Optimiser steps.
+    batch : int
+        Targets a step, one sample each.
+    drawn : int
+        Drawn shapes among the targets, beside silhouettes of random fields.
+    drawn_share : float
+        Their share of every batch.
+    sampling_steps : int
+        Euler steps of the unrolled sampler.
+    learning_rate, average_decay : float
+    variation_weight : float
+        Cost of the paper's TV(x) / (m n) at preference 1, in units of area; proportional below.
+    anchor_weight : float
+        Cost of the mean squared distance of z to the prior's sample.
+    anchored_every : int
+        The prior is sampled too for every so-manieth row.
+    vertex_noise, shift_noise : float
+        As in :class:`kirigami_studio.training.train_flow.FlowSettings`; the loss looks at the undisturbed target.
+    chunk, passes, seed : int
+    shape : NetworkShape
+    """
+
+    prior: str
+    steps: int = 3000
+    batch: int = 64
+    drawn: int = 2000
+    drawn_share: float = 0.35
+    sampling_steps: int = 4
+    learning_rate: float = 1e-4
+    average_decay: float = 0.998
+    variation_weight: float = 0.03
+    anchor_weight: float = 0.3
+    anchored_every: int = 2
+    vertex_noise: float = 0.004
+    shift_noise: float = 0.3
+    chunk: int = 8192
+    passes: int = 1
+    seed: int = 0
+    shape: NetworkShape = field(default_factory=lambda: NetworkShape(preference=True))
+
+    def to_json(self) -> dict[str, object]:
+        return asdict(self)
+
+
+def train_aligned(
+    settings: AlignSettings,
+    folder: Path,
+    device: torch.device,
+    validate: Callable[[VelocityNetwork], dict[str, float]],
+    prior: Model,
+    *,
+    seconds: float = math.inf,
+    validate_every: int = 500,
+) -> Iterator[dict[str, float]]:
+    """Align, or go on aligning, in ``folder``; yields one record per validation.
+
+    Parameters
+    ----------
+    settings : AlignSettings
+    folder : Path
+        Created if needed; a checkpoint found there is resumed.
+    device : torch.device
+    validate : callable
+        Maps the averaged network to figures for the log.
+    prior : Model
+    seconds : float
+        Stop with a checkpoint after this wall time even if steps remain.
+    validate_every : int
+
+    Raises
+    ------
+    ExportError
+        The folder cannot be made or written.
+    ModelError
+        The checkpoint belongs to other settings, or the prior is not the one that the settings name.
+    """
+    if prior.digest != settings.prior:
+        raise ModelError("The prior to align is not the one that the settings name.")
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise ExportError(f"Cannot make the run folder {folder}: {error.strerror}. Choose another folder.") from error
+    run = AlignRun(settings, folder / "checkpoint.pt", device, prior)
+    began = time.perf_counter()
+    running: dict[str, float] = {}
+    while run.step < settings.steps:
+        for name, value in run.advance().items():
+            running[name] = running.get(name, value) + 0.02 * (value - running.get(name, value))
+        out_of_time = time.perf_counter() - began > seconds
+        if run.step % validate_every == 0 or run.step == settings.steps or out_of_time:
+            run.save()
+            record = {"step": float(run.step), "seconds": time.perf_counter() - began} | running
+            record |= validate(run.averaged())
+            with (folder / "log.jsonl").open("a", encoding="utf-8") as log:
+                log.write(json.dumps(record) + "\n")
+            yield record
+        if out_of_time:
+            break
+
+
+class AlignRun:
+    """The mutable part of an alignment run.
+
+    Parameters
+    ----------
+    settings : AlignSettings
+    path : Path
+        Of the checkpoint.
+    device : torch.device
+    prior : Model
+    """
+
+    def __init__(self, settings: AlignSettings, path: Path, device: torch.device, prior: Model) -> None:
+        self.settings, self.path, self.device = settings, path, device
+        self.prior = prior.network.to(device)
+        self.network = VelocityNetwork(settings.shape).to(device)
+        self.network.load_state_dict(grown_state(prior.network, settings.shape))
+        self.average = {name: value.detach().clone() for name, value in self.network.state_dict().items()}
+        new = [value for name, value in self.network.named_parameters() if name.startswith("prefer")]
+        old = [value for name, value in self.network.named_parameters() if not name.startswith("prefer")]
+        self.optimiser = torch.optim.AdamW(
+            [{"params": old, "pace": 1.0}, {"params": new, "pace": NEW_PACE}], betas=(0.9, 0.99), weight_decay=0.0
+        )
+        self.generator = torch.Generator(device=device).manual_seed(settings.seed)
+        self.corpus = Corpus(
+            mixed_fields, settings.shape.rows, settings.shape.columns, settings.seed, settings.chunk, device
+        )
+        self.source = TargetSource(
+            settings.drawn, settings.seed, settings.vertex_noise, settings.shift_noise, self.generator, device
+        )
+        self.step = 0
+        self._chunk: tuple[int, Chunk] | None = None
+        if path.exists():
+            self._resume()
+
+    def advance(self) -> dict[str, float]:
+        """One optimiser step; returns the parts of its loss."""
+        settings = self.settings
+        for group in self.optimiser.param_groups:
+            group["lr"] = group["pace"] * settings.learning_rate * schedule(self.step, settings.steps)
+        targets = self.source.targets(self._random_chunk(), settings.batch, settings.drawn_share)
+        preference = self._preferences(settings.batch)
+        noise = torch.randn(
+            (settings.batch, settings.shape.rows * settings.shape.columns), generator=self.generator, device=self.device
+        )
+        noise = noise * settings.shape.z_scale
+        finished = trail(self.network, noise, targets.code(self.network, preference), settings.sampling_steps)
+        terms, early = trail_gap(self.corpus.lattice, finished, targets.loop)
+        z = finished[-1]
+        anchored = slice(0, None, settings.anchored_every)
+        with torch.no_grad():
+            code = targets.code(self.prior).picked(anchored)
+            reference = integrate(self.prior, noise[anchored], code, settings.sampling_steps).clamp(-Z_LIMIT, Z_LIMIT)
+        anchor = (z[anchored] - reference).square().mean()
+        loss = self._loss(terms, anchor, preference) + EARLY_WEIGHT * early
+        self.optimiser.zero_grad(set_to_none=True)
+        loss.backward()
+        torch.nn.utils.clip_grad_norm_(self.network.parameters(), 1.0)
+        self.optimiser.step()
+        self.step += 1
+        with torch.no_grad():
+            names, values = zip(*self.network.state_dict().items(), strict=True)
+            decay = 1 - settings.average_decay
+            torch._foreach_lerp_([self.average[name] for name in names], list(values), decay)
+        return {
+            "loss": float(loss.detach()),
+            "match": float(terms.match.mean().detach()),
+            "variation": float(terms.variation.mean().detach()),
+            "anchor": float(anchor.detach()),
+        }
+
+    def averaged(self) -> VelocityNetwork:
+        """A copy of the network with the averaged weights."""
+        network = VelocityNetwork(self.settings.shape).to(self.device)
+        network.load_state_dict(self.average)
+        return network.eval()
+
+    def save(self) -> None:
+        """Write the checkpoint."""
+        Checkpoint(
+            self.step,
+            self.network.state_dict(),
+            self.average,
+            self.optimiser.state_dict(),
+            self.settings.to_json(),
+            self.generator.get_state(),
+        ).save(self.path)
+
+    def _resume(self) -> None:
+        state = Checkpoint.load(self.path)
+        state.require(self.settings.to_json(), self.path)
+        self.network.load_state_dict(state.network)
+        self.average = {name: value.to(self.device) for name, value in state.average.items()}
+        self.optimiser.load_state_dict(state.optimiser)
+        self.generator.set_state(state.generator)
+        self.step = state.step
+
+    def _loss(self, terms: PreferenceTerms, anchor: Tensor, preference: Tensor) -> Tensor:
+        settings = self.settings
+        smooth = settings.variation_weight * preference * terms.variation
+        return (terms.match + smooth + terms.excess).mean() + settings.anchor_weight * anchor
+
+    def _random_chunk(self) -> Chunk:
+        """The random fields that this step draws on."""
+        number = self.step * self.settings.batch // self.settings.chunk
+        if self._chunk is None or self._chunk[0] != number:
+            self._chunk = number, self.corpus.chunk(number)
+        return self._chunk[1]
+
+    def _preferences(self, rows: int) -> Tensor:
+        """0 for two in five rows, 1 for three in ten, anything between for the others."""
+        kind = torch.rand(rows, generator=self.generator, device=self.device)
+        between = torch.rand(rows, generator=self.generator, device=self.device)
+        return torch.where(kind < 0.4, 0.0 * kind, torch.where(kind < 0.7, torch.ones_like(kind), between))
