@@ -8,21 +8,21 @@ from __future__ import annotations
 
 from torch import Tensor, full
 
-from kirigami_studio.generator.network import TargetCode, VelocityNetwork
+from kirigami_studio.generator.velocity import Code, Velocity
 
 #: Fields stay where the training data are: x in [0.1, 10].
 Z_LIMIT = 1.0
 
 
-def integrate(network: VelocityNetwork, noise: Tensor, code: TargetCode, steps: int) -> Tensor:
+def integrate(network: Velocity, noise: Tensor, code: Code, steps: int) -> Tensor:
     """Follow the velocity field from t = 0 to t = 1.
 
     Parameters
     ----------
-    network : VelocityNetwork
+    network : Velocity
     noise : (B, m * n) tensor
         z at t = 0.
-    code : TargetCode of B targets
+    code : Code of B targets, the network's own
     steps : int
         Evaluations of the network.  Where it has a corrector, half of them, rounded down, are corrections; the others
         are equal Euler steps.

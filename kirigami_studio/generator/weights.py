@@ -1,7 +1,8 @@
 """Bundled weights: find, verify, load.
 
-``resources/models/manifest.json`` names each variant's file, its SHA-256 and the network's shape; the file is
-safetensors in half precision, so loading runs no code.  Training hands over exactly these two things.
+``resources/models/manifest.json`` names each variant's file, its SHA-256, the network's kind (``backbone``, a
+perceptron where it is not said) and shape; the file is safetensors in half precision, so loading runs no code.
+Training hands over exactly these two things.
 """
 
 from __future__ import annotations
@@ -21,8 +22,9 @@ from torch import Tensor
 from kirigami_studio.foundation.errors import ModelError, UsageError
 from kirigami_studio.foundation.files import write_atomically
 from kirigami_studio.foundation.resources import resource
-from kirigami_studio.generator.network import NetworkShape, TargetCode, VelocityNetwork
+from kirigami_studio.generator.backbones import PERCEPTRON, Network, backbone_of, network_of, shape_from_json
 from kirigami_studio.generator.sheet import Sheet
+from kirigami_studio.generator.velocity import Code
 
 MANIFEST = "manifest.json"
 FORMAT = 1
@@ -35,7 +37,7 @@ class Model:
     Attributes
     ----------
     variant : str
-    network : VelocityNetwork
+    network : Network
         In evaluation mode, float32.
     digest : str
         SHA-256 of the weight file, recorded in every project and export.
@@ -44,11 +46,11 @@ class Model:
     """
 
     variant: str
-    network: VelocityNetwork
+    network: Network
     digest: str
     preference: float = 0.0
 
-    def code(self, polygons: Tensor, sheet: Sheet) -> TargetCode:
+    def code(self, polygons: Tensor, sheet: Sheet) -> Code:
         """Prepare normalised, posed target polygons (B, L, 2) for a sheet."""
         preference = torch.full((len(polygons),), self.preference)
         return self.network.code(polygons, preference=preference, sheet=sheet)
@@ -102,20 +104,22 @@ def load_model(variant: str, folder: Path | None = None) -> Model:
             "install Kirigami Studio again."
         )
     try:
-        network = VelocityNetwork(NetworkShape(**entry["shape"]))
+        network = network_of(shape_from_json(entry.get("backbone", PERCEPTRON), entry["shape"]))
         network.load_state_dict({name: value.float() for name, value in load_tensors(content).items()})
+    except ModelError:
+        raise
     except Exception as error:  # safetensors and torch raise many kinds; all mean the same to the user
         raise ModelError(f"The weights {path.name} do not fit the network that the manifest describes.") from error
     return Model(variant, network.eval().requires_grad_(False), digest, float(entry.get("preference", 0.0)))
 
 
-def store_model(variant: str, network: VelocityNetwork, folder: Path, about: dict[str, object]) -> Path:
+def store_model(variant: str, network: Network, folder: Path, about: dict[str, object]) -> Path:
     """Write weights in half precision and enter them in the folder's manifest.
 
     Parameters
     ----------
     variant : str
-    network : VelocityNetwork
+    network : Network
     folder : Path
     about : dict
         What the model card's table needs: how it was trained, what it scored.
@@ -134,6 +138,7 @@ def store_model(variant: str, network: VelocityNetwork, folder: Path, about: dic
     manifest["variants"][variant] = {
         "file": path.name,
         "sha256": hashlib.sha256(content).hexdigest(),
+        "backbone": backbone_of(network.shape),
         "shape": network.shape.to_json(),
         "about": about,
     }

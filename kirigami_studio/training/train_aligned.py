@@ -28,6 +28,8 @@ from kirigami_studio.training.preference_loss import EARLY_WEIGHT, PreferenceTer
 from kirigami_studio.training.sampled_targets import TargetSource
 from kirigami_studio.training.train_flow import grown_state, schedule
 
+#: Share of the anchor that full regularity gives up: smooth fields cannot stay where rough ones were.
+ANCHOR_EASED = 0.8
 #: The preference's weights begin at zero and have one input: they learn this much faster than the others.
 NEW_PACE = 30.0
 
@@ -64,15 +66,15 @@ class AlignSettings:
     """
 
     prior: str
-    steps: int = 3000
-    batch: int = 64
+    steps: int = 4000
+    batch: int = 48
     drawn: int = 2000
     drawn_share: float = 0.35
     sampling_steps: int = 4
-    learning_rate: float = 1e-4
+    learning_rate: float = 2e-4
     average_decay: float = 0.998
-    variation_weight: float = 0.03
-    anchor_weight: float = 0.3
+    variation_weight: float = 0.06
+    anchor_weight: float = 0.5
     anchored_every: int = 2
     vertex_noise: float = 0.004
     shift_noise: float = 0.3
@@ -194,7 +196,8 @@ class AlignRun:
         with torch.no_grad():
             code = targets.code(self.prior).picked(anchored)
             reference = integrate(self.prior, noise[anchored], code, settings.sampling_steps).clamp(-Z_LIMIT, Z_LIMIT)
-        anchor = (z[anchored] - reference).square().mean()
+        kept = 1.0 - ANCHOR_EASED * preference[anchored]
+        anchor = (kept * (z[anchored] - reference).square().mean(dim=1)).mean()
         loss = self._loss(terms, anchor, preference) + EARLY_WEIGHT * early
         self.optimiser.zero_grad(set_to_none=True)
         loss.backward()

@@ -11,8 +11,8 @@ from torch import Tensor
 
 from kirigami_studio.generator.conditioning import normalised, turned
 from kirigami_studio.generator.flow import integrate
-from kirigami_studio.generator.network import VelocityNetwork
 from kirigami_studio.generator.pose import square_pose
+from kirigami_studio.generator.velocity import Velocity
 from kirigami_studio.lattice.batched import BatchedLattice
 from kirigami_studio.lattice.ratio_field import FloatArray
 from kirigami_studio.target.editing import resampled
@@ -26,7 +26,7 @@ VALIDATION_SEED = 20_001
 DRAWN_POINTS = 256
 
 
-def own_pose_iou(network: VelocityNetwork, z: Tensor, lattice: BatchedLattice, steps: int, seed: int) -> FloatArray:
+def own_pose_iou(network: Velocity, z: Tensor, lattice: BatchedLattice, steps: int, seed: int) -> FloatArray:
     """IoU of one sample for each target made by fields z (B, m, n), compared as they stand: (B,).
 
     A lower bound of sIoU, cheap enough to watch during training.
@@ -36,9 +36,7 @@ def own_pose_iou(network: VelocityNetwork, z: Tensor, lattice: BatchedLattice, s
         return _ious(_sampled(network, turned(targets, -square_pose(targets)), lattice, steps, seed), targets)
 
 
-def upright_iou(
-    network: VelocityNetwork, targets: Tensor, lattice: BatchedLattice, steps: int, seed: int
-) -> FloatArray:
+def upright_iou(network: Velocity, targets: Tensor, lattice: BatchedLattice, steps: int, seed: int) -> FloatArray:
     """IoU of one sample for each of the outlines (B, L, 2), compared as the network sees them, stood upright: (B,)."""
     with torch.no_grad():
         seen = normalised(targets)
@@ -52,7 +50,7 @@ def drawn_polygons(count: int, seed: int) -> Tensor:
     return torch.tensor(np.stack(shapes), dtype=torch.float32)
 
 
-def _sampled(network: VelocityNetwork, seen: Tensor, lattice: BatchedLattice, steps: int, seed: int) -> Tensor:
+def _sampled(network: Velocity, seen: Tensor, lattice: BatchedLattice, steps: int, seed: int) -> Tensor:
     """Outlines of one sample for each target as seen."""
     generator = torch.Generator().manual_seed(seed)
     noise = torch.randn((len(seen), lattice.rows * lattice.columns), generator=generator) * network.shape.z_scale
@@ -67,10 +65,10 @@ def _ious(results: Tensor, targets: Tensor) -> FloatArray:
     return np.asarray(common / (shapely.area(ours) + shapely.area(theirs) - common))
 
 
-def validator(count: int, device: torch.device, steps: int = 4) -> Callable[[VelocityNetwork], dict[str, float]]:
+def validator(count: int, device: torch.device, steps: int = 4) -> Callable[[Velocity], dict[str, float]]:
     """Make the function that training calls: mean IoU on ``count`` targets of each family."""
 
-    def measure(network: VelocityNetwork) -> dict[str, float]:
+    def measure(network: Velocity) -> dict[str, float]:
         rows, columns = network.shape.rows, network.shape.columns
         lattice = BatchedLattice(rows, columns, device)
         families = {

@@ -1,0 +1,247 @@
+"""The paper's network: a U-Net on the resized field, told the target's mask by a ControlNet branch.
+
+A field of m x n is resized to 32 x 32, passes a U-Net of four levels (64, 128, 256, 384 channels, two residual blocks
+each, attention in the last three, 32 groups, residual up and down sampling) and is resized back (paper, Appendix
+"Shared U-Net backbone").  The target is drawn into a mask of 128 x 128 and averaged down to 32 x 32.  A second copy of
+the U-Net's downward half sees the field and the mask and adds its features, through convolutions that begin at zero, to
+what the U-Net's upward half takes over (ControlNet: Zhang et al. 2023).
+
+Readings where the text leaves room: attention is one multi-head layer after each residual block, with two heads (the
+paper's head widths are half the channels), not the "12 transformer layers" of the paper's table, which would add about
+270 million weights to these 64 million; nothing is frozen, both branches train together from random weights.
+
+The paper's hyper-parameters as a command, 400 epochs of 5000 targets::
+
+    kirigami-studio train prior --backbone unet --coupling ot --batch 64 --noises 1 --learning-rate 2e-5
+        --weight-decay 0.05 --outline-weight 0 --steps 31250 --out runs/unet
+
+and eight Euler steps when sampling.  Training here stays as for every network: designs are drawn endlessly instead of
+5000 over and over, the learning rate follows a cosine, and an exponential average of the weights stands for the paper's
+stochastic weight averaging.
+
+Built from ``torch.nn``.  ``diffusers`` and MONAI offer the same network ready-made, but neither is among this
+program's dependencies, and each brings far more than one network (model hubs, imaging formats, schedulers).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import asdict, dataclass
+from typing import Any
+
+from torch import Tensor, cat, nn
+from torch.nn import functional
+
+from kirigami_studio.foundation.errors import UsageError
+from kirigami_studio.generator.conditioning import ConditionLayout
+from kirigami_studio.generator.masks import MASK_SIZE, filled_masks
+from kirigami_studio.generator.unet_blocks import Residual, SelfAttention, Stage, TimeEmbedding, zeroed
+
+#: Most groups of a group normalisation; narrow networks have fewer.
+GROUPS = 32
+HEADS = 2
+
+
+@dataclass(frozen=True, slots=True)
+class UNetShape:
+    """Everything needed to rebuild a U-Net for its weights; the paper's by default.
+
+    Attributes
+    ----------
+    rows, columns : int
+        Grid of the ratio fields it draws.
+    channels : tuple of int
+        Of each level, finest first; even numbers of at least 4.
+    residuals : int
+        Residual blocks a level.
+    latent : int
+        Pixels each way of the finest level; every further level halves them.
+    mask : int
+        Pixels each way of the target's mask; a multiple of ``latent``.
+    dropout : float
+        Of attention weights, in training.
+    z_scale : float
+        Standard deviation of the source noise; z is divided by it at the input.
+
+    Raises
+    ------
+    UsageError
+        Numbers that make no network.
+    """
+
+    rows: int = 10
+    columns: int = 10
+    channels: tuple[int, ...] = (64, 128, 256, 384)
+    residuals: int = 2
+    latent: int = 32
+    mask: int = MASK_SIZE
+    dropout: float = 0.1
+    z_scale: float = 0.5
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "channels", tuple(self.channels))
+        if not self.channels or any(width < 4 or width % 2 for width in self.channels):
+            raise UsageError(
+                f"The U-Net's channels must be even numbers of at least 4, one for each level, got {self.channels}."
+            )
+        if self.latent < 1 or self.latent % 2 ** (len(self.channels) - 1) or self.mask % self.latent:
+            raise UsageError(
+                f"A U-Net of {len(self.channels)} levels cannot halve {self.latent} pixels {len(self.channels) - 1} "
+                f"times, or its mask of {self.mask} pixels is not a multiple of them; give fewer levels."
+            )
+
+    @property
+    def groups(self) -> int:
+        """Groups of the normalisations: the most, up to 32, that divide every level's channels."""
+        return math.gcd(GROUPS, *self.channels)
+
+    @property
+    def condition_layout(self) -> ConditionLayout:
+        """The numbers by which conditional pairing compares targets; the network itself sees masks."""
+        return ConditionLayout()
+
+    def to_json(self) -> dict[str, Any]:
+        return {**asdict(self), "channels": list(self.channels)}
+
+
+@dataclass(frozen=True, slots=True)
+class MaskCode:
+    """A batch of targets as the U-Net uses them, computed once for all samples and steps.
+
+    Attributes
+    ----------
+    hint : (B, channels[0], latent, latent) tensor
+        The encoded mask, which the ControlNet branch adds to the field.
+    """
+
+    hint: Tensor
+
+    def repeated(self, count: int) -> MaskCode:
+        """Every target ``count`` times in a row."""
+        return MaskCode(self.hint.repeat_interleave(count, dim=0))
+
+
+def _attention(shape: UNetShape, level: int) -> SelfAttention | None:
+    """Attention of every level but the finest."""
+    return SelfAttention(shape.channels[level], HEADS, shape.groups, shape.dropout) if level else None
+
+
+class DownwardHalf(nn.Module):
+    """The field at every resolution, down to the middle; a ControlNet branch is a second one of these."""
+
+    def __init__(self, shape: UNetShape) -> None:
+        super().__init__()
+        time = 4 * shape.channels[0]
+        self.time = TimeEmbedding(shape.channels[0], time)
+        self.enter = nn.Conv2d(1, shape.channels[0], 3, padding=1)
+        self.stages = nn.ModuleList()
+        #: Channels of the features that the upward half takes over, in the order in which they arise.
+        self.skips = [shape.channels[0]]
+        for level, width in enumerate(shape.channels):
+            for _ in range(shape.residuals):
+                block = Residual(self.skips[-1], width, time, shape.groups)
+                self.stages.append(Stage(block, _attention(shape, level)))
+                self.skips.append(width)
+            if level + 1 < len(shape.channels):
+                halved = Residual(width, width, time, shape.groups, nn.AvgPool2d(2))
+                self.stages.append(Stage(halved, None))
+                self.skips.append(width)
+        last = self.skips[-1]
+        attention = SelfAttention(last, HEADS, shape.groups, shape.dropout)
+        self.middle_in = Stage(Residual(last, last, time, shape.groups), attention)
+        self.middle_out = Residual(last, last, time, shape.groups)
+
+    def forward(self, image: Tensor, t: Tensor, hint: Tensor | None = None) -> tuple[list[Tensor], Tensor, Tensor]:
+        """Image (B, 1, latent, latent), times (B,) -> features for the upward half, the middle, the time embedding."""
+        time = self.time(t)
+        x = self.enter(image) if hint is None else self.enter(image) + hint
+        features = [x]
+        for stage in self.stages:
+            x = stage(x, time)
+            features.append(x)
+        return features, self.middle_out(self.middle_in(x, time), time), time
+
+
+class UpwardHalf(nn.Module):
+    """From the middle back to the finest resolution, taking over the downward half's features on the way."""
+
+    def __init__(self, shape: UNetShape, skips: list[int]) -> None:
+        super().__init__()
+        time, below, left = 4 * shape.channels[0], shape.channels[-1], list(skips)
+        self.stages = nn.ModuleList()
+        #: For every stage, whether it takes over a feature (or doubles the resolution).
+        self.takes: list[bool] = []
+        for level in reversed(range(len(shape.channels))):
+            width = shape.channels[level]
+            for _ in range(shape.residuals + 1):
+                block = Residual(below + left.pop(), width, time, shape.groups)
+                self.stages.append(Stage(block, _attention(shape, level)))
+                self.takes.append(True)
+                below = width
+            if level:
+                doubled = Residual(width, width, time, shape.groups, nn.Upsample(scale_factor=2.0, mode="nearest"))
+                self.stages.append(Stage(doubled, None))
+                self.takes.append(False)
+        last = nn.Conv2d(below, 1, 3, padding=1)
+        self.leave = nn.Sequential(nn.GroupNorm(shape.groups, below), nn.SiLU(), zeroed(last))
+
+    def forward(self, x: Tensor, time: Tensor, features: list[Tensor]) -> Tensor:
+        """The middle (B, channels[-1], h, w), the time embedding and the features -> (B, 1, latent, latent)."""
+        left = list(features)
+        for stage, takes in zip(self.stages, self.takes, strict=True):
+            x = stage(cat([x, left.pop()], dim=1) if takes else x, time)
+        image: Tensor = self.leave(x)
+        return image
+
+
+class UNetVelocity(nn.Module):
+    """v(z_t, t, mask) of the flow (paper, Eq. CFM), on flattened fields."""
+
+    def __init__(self, shape: UNetShape) -> None:
+        super().__init__()
+        self.shape = shape
+        self.down = DownwardHalf(shape)
+        self.up = UpwardHalf(shape, self.down.skips)
+        self.control = DownwardHalf(shape)
+        self.control.load_state_dict(self.down.state_dict())
+        first = shape.channels[0]
+        self.hint = nn.Sequential(
+            nn.Conv2d(1, first, 3, padding=1),
+            nn.SiLU(),
+            nn.Conv2d(first, first, 3, padding=1),
+            nn.SiLU(),
+            zeroed(nn.Conv2d(first, first, 3, padding=1)),
+        )
+        self.gates = nn.ModuleList(zeroed(nn.Conv2d(width, width, 1)) for width in self.down.skips)
+        self.middle_gate = zeroed(nn.Conv2d(shape.channels[-1], shape.channels[-1], 1))
+
+    def code(self, polygons: Tensor, shift: Tensor | None = None) -> MaskCode:
+        """Prepare normalised, posed target polygons (B, L, 2); a mask does not know where the contour starts."""
+        masks = filled_masks(polygons, self.shape.mask)[:, None]
+        return MaskCode(self.hint(functional.avg_pool2d(masks, self.shape.mask // self.shape.latent)))
+
+    def forward(self, z: Tensor, t: Tensor, code: MaskCode) -> Tensor:
+        """Velocity.
+
+        Parameters
+        ----------
+        z : (B, m * n) tensor
+        t : (B,) tensor in [0, 1]
+        code : MaskCode of B targets
+
+        Returns
+        -------
+        (B, m * n) tensor, dz / dt
+        """
+        shape = self.shape
+        field = (z / shape.z_scale).view(-1, 1, shape.rows, shape.columns)
+        image = functional.interpolate(field, size=(shape.latent, shape.latent), mode="bilinear", align_corners=False)
+        features, middle, time = self.down(image, t)
+        controls, control, _ = self.control(image, t, code.hint)
+        features = [own + gate(added) for own, gate, added in zip(features, self.gates, controls, strict=True)]
+        velocity: Tensor = self.up(middle + self.middle_gate(control), time, features)
+        # Averaged over each cell's pixels: plain bilinear sampling would look at four of about ten.
+        cells = functional.interpolate(
+            velocity, size=(shape.rows, shape.columns), mode="bilinear", align_corners=False, antialias=True
+        )
+        return cells.flatten(1)

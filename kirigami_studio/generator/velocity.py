@@ -1,0 +1,77 @@
+"""What samples: the few things that integration, sampling and validation ask of a velocity network."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import fields
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar
+
+import torch
+from torch import Tensor
+
+from kirigami_studio.generator.conditioning import ConditionLayout
+
+if TYPE_CHECKING:
+    from _typeshed import DataclassInstance
+
+    Coded = TypeVar("Coded", bound=DataclassInstance)
+
+
+class VelocityShape(Protocol):
+    """Everything needed to rebuild a network for its weights.
+
+    Attributes
+    ----------
+    rows, columns : int
+        Grid of the ratio fields it draws.
+    z_scale : float
+        Standard deviation of the source noise.
+    condition_layout : ConditionLayout
+        The numbers by which pairing compares targets.
+    """
+
+    @property
+    def rows(self) -> int: ...
+
+    @property
+    def columns(self) -> int: ...
+
+    @property
+    def z_scale(self) -> float: ...
+
+    @property
+    def condition_layout(self) -> ConditionLayout: ...
+
+    def to_json(self) -> dict[str, Any]: ...
+
+
+class Code(Protocol):
+    """A batch of targets as a network uses them, computed once for all samples and steps.
+
+    It is a dataclass of tensors whose rows are the targets.
+    """
+
+    def repeated(self, count: int) -> Code:
+        """Every target ``count`` times in a row."""
+        ...
+
+
+class Velocity(Protocol):
+    """v(z_t, t, target) of the flow (paper, Eq. CFM)."""
+
+    @property
+    def shape(self) -> VelocityShape: ...
+
+    def code(self, polygons: Tensor, shift: Tensor | None = None) -> Code:
+        """Prepare normalised, posed target polygons (B, L, 2); ``shift`` (B,) moves the contour's start."""
+        ...
+
+    def __call__(self, z: Tensor, t: Tensor, code: Any) -> Tensor:
+        """dz / dt (B, m * n) of fields z (B, m * n) at times t (B,), for the B targets of its own ``code``."""
+        ...
+
+
+def joined(codes: Sequence[Coded]) -> Coded:
+    """One code of all targets of several codes of one network, in order."""
+    rows = ([getattr(code, field.name) for code in codes] for field in fields(codes[0]))
+    return type(codes[0])(*(torch.cat(tensors) for tensors in rows))
