@@ -11,6 +11,7 @@ from kirigami_studio.cli.inputs import parse_grid
 from kirigami_studio.foundation.errors import UsageError
 
 if TYPE_CHECKING:
+    from kirigami_studio.generator.backbones import Shape
     from kirigami_studio.training.train_flow import Sources
 
 #: Fits of drawn shapes by default: about 3800 shapes, each fitted twice, of which nine in ten come near enough.
@@ -71,7 +72,6 @@ def _drawn(arguments: argparse.Namespace, grid: tuple[int, int]) -> int:
 
 def train(arguments: argparse.Namespace) -> int:
     """Train the prior, or go on training it, and write its weights into the run folder."""
-    from kirigami_studio.generator.network import NetworkShape
     from kirigami_studio.generator.weights import store_model
     from kirigami_studio.training.device import training_device
     from kirigami_studio.training.train_flow import FlowSettings, finished_network, train_flow
@@ -79,23 +79,22 @@ def train(arguments: argparse.Namespace) -> int:
 
     if arguments.minutes is not None and arguments.minutes <= 0:
         raise UsageError(f"--minutes must be above 0, got {arguments.minutes:g}.")
+    shape = _shape(arguments)
     device = training_device(arguments.device, arguments.threads)
     sources = _sources(arguments)
     settings = FlowSettings(
         steps=arguments.steps,
+        noises=arguments.noises,
         learning_rate=arguments.learning_rate,
+        weight_decay=arguments.weight_decay,
         warm_start=sources.start.digest if sources.start else "",
         fits=sources.fits.digest if sources.fits else "",
         fit_share=arguments.fit_share,
         batch=arguments.batch,
-        noises=arguments.noises,
         coupling=arguments.coupling,
-        sample_weight=arguments.sample_weight,
-        sample_rows=arguments.sample_rows,
-        drawn=arguments.drawn,
         outline_weight=arguments.outline_weight,
         seed=arguments.seed,
-        shape=NetworkShape() if arguments.feedback else NetworkShape(loop_points=0),
+        shape=shape,
     )
     folder = Path(arguments.out)
     seconds = float("inf") if arguments.minutes is None else 60.0 * arguments.minutes
@@ -118,6 +117,28 @@ def train(arguments: argparse.Namespace) -> int:
     else:
         say(f"Weights: {path}")
     return 0
+
+
+def _shape(arguments: argparse.Namespace) -> Shape:
+    """The network to train, as asked for."""
+    from kirigami_studio.generator.network import NetworkShape
+    from kirigami_studio.generator.unet import UNetShape
+
+    if arguments.backbone != "unet":
+        if arguments.channels is not None:
+            raise UsageError("--channels belong to --backbone unet; leave them out.")
+        return NetworkShape(loop_points=0) if arguments.feedback is False else NetworkShape()
+    if arguments.feedback:
+        raise UsageError("--feedback belongs to the perceptron: the U-Net sees the target's mask only; leave it out.")
+    if arguments.channels is None:
+        return UNetShape()
+    try:
+        channels = tuple(int(word) for word in arguments.channels.split(","))
+    except ValueError:
+        raise UsageError(
+            f"--channels must be whole numbers by commas, such as 64,128,256,384, got '{arguments.channels}'."
+        ) from None
+    return UNetShape(channels=channels)
 
 
 def _sources(arguments: argparse.Namespace) -> Sources:

@@ -35,7 +35,7 @@ def integrate(network: Velocity, noise: Tensor, code: Code, steps: int) -> Tenso
     return trail(network, noise, code, steps)[-1]
 
 
-def trail(network: VelocityNetwork, noise: Tensor, code: TargetCode, steps: int) -> list[Tensor]:
+def trail(network: Velocity, noise: Tensor, code: Code, steps: int) -> list[Tensor]:
     """Like :func:`integrate`, but every finished field: after the Euler steps and after each correction."""
     corrections = steps // 2 if network.corrects else 0
     euler = steps - corrections

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
 from dataclasses import asdict, dataclass, replace
 
 import torch
@@ -108,16 +107,6 @@ class TargetCode:
     def on_sheet(self, z: Tensor) -> Tensor:
         """Fields (B, cells) of the network's grid as fields of the sheet: (B, m * n)."""
         return self.carrier.up(z)
-
-
-def joined(codes: Iterable[TargetCode]) -> TargetCode:
-    """Codes for one sheet, one after another."""
-    parts = list(codes)
-    return replace(
-        parts[0],
-        encoded=torch.cat([part.encoded for part in parts]),
-        loop=torch.cat([part.loop for part in parts]),
-    )
 
 
 class _Block(nn.Module):

@@ -29,12 +29,13 @@ import math
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from torch import Tensor, cat, nn
+from torch import Tensor, cat, nn, zeros_like
 from torch.nn import functional
 
 from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.generator.conditioning import ConditionLayout
 from kirigami_studio.generator.masks import MASK_SIZE, filled_masks
+from kirigami_studio.generator.sheet import Carrier, Sheet
 from kirigami_studio.generator.unet_blocks import Residual, SelfAttention, Stage, TimeEmbedding, zeroed
 
 #: Most groups of a group normalisation; narrow networks have fewer.
@@ -112,13 +113,24 @@ class MaskCode:
     ----------
     hint : (B, channels[0], latent, latent) tensor
         The encoded mask, which the ControlNet branch adds to the field.
+    carrier : Carrier
+        Between the network's grid and the sheet that the targets are for.
     """
 
     hint: Tensor
+    carrier: Carrier
 
     def repeated(self, count: int) -> MaskCode:
         """Every target ``count`` times in a row."""
-        return MaskCode(self.hint.repeat_interleave(count, dim=0))
+        return MaskCode(self.hint.repeat_interleave(count, dim=0), self.carrier)
+
+    def picked(self, rows: slice) -> MaskCode:
+        """Some of the targets."""
+        return MaskCode(self.hint[rows], self.carrier)
+
+    def on_sheet(self, z: Tensor) -> Tensor:
+        """Fields (B, cells) of the network's grid as fields of the sheet: (B, m * n)."""
+        return self.carrier.up(z)
 
 
 def _attention(shape: UNetShape, level: int) -> SelfAttention | None:
@@ -215,10 +227,30 @@ class UNetVelocity(nn.Module):
         self.gates = nn.ModuleList(zeroed(nn.Conv2d(width, width, 1)) for width in self.down.skips)
         self.middle_gate = zeroed(nn.Conv2d(shape.channels[-1], shape.channels[-1], 1))
 
-    def code(self, polygons: Tensor, shift: Tensor | None = None) -> MaskCode:
-        """Prepare normalised, posed target polygons (B, L, 2); a mask does not know where the contour starts."""
+    @property
+    def corrects(self) -> bool:
+        """The paper's network knows nothing of the exact geometry and corrects nothing."""
+        return False
+
+    def correction(self, z: Tensor, code: MaskCode) -> Tensor:
+        """No change."""
+        return zeros_like(z)
+
+    def code(
+        self,
+        polygons: Tensor,
+        shift: Tensor | None = None,
+        preference: Tensor | None = None,
+        sheet: Sheet | None = None,
+    ) -> MaskCode:
+        """Prepare normalised, posed target polygons (B, L, 2) for a sheet, the network's own grid when missing.
+
+        A mask does not know where the contour starts, and the network has no preference.
+        """
         masks = filled_masks(polygons, self.shape.mask)[:, None]
-        return MaskCode(self.hint(functional.avg_pool2d(masks, self.shape.mask // self.shape.latent)))
+        own = self.shape.rows, self.shape.columns
+        carrier = Carrier(own, sheet or Sheet(*own), polygons.device)
+        return MaskCode(self.hint(functional.avg_pool2d(masks, self.shape.mask // self.shape.latent)), carrier)
 
     def forward(self, z: Tensor, t: Tensor, code: MaskCode) -> Tensor:
         """Velocity.

@@ -10,6 +10,7 @@ import torch
 from torch import Tensor
 
 from kirigami_studio.generator.conditioning import ConditionLayout
+from kirigami_studio.generator.sheet import Sheet
 
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance
@@ -48,11 +49,19 @@ class VelocityShape(Protocol):
 class Code(Protocol):
     """A batch of targets as a network uses them, computed once for all samples and steps.
 
-    It is a dataclass of tensors whose rows are the targets.
+    It is a dataclass whose tensors have the targets as rows; what else it holds is the same for all of them.
     """
 
     def repeated(self, count: int) -> Code:
         """Every target ``count`` times in a row."""
+        ...
+
+    def picked(self, rows: slice) -> Code:
+        """Some of the targets."""
+        ...
+
+    def on_sheet(self, z: Tensor) -> Tensor:
+        """Fields (B, cells) of the network's grid as fields of the sheet: (B, m * n)."""
         ...
 
 
@@ -62,8 +71,26 @@ class Velocity(Protocol):
     @property
     def shape(self) -> VelocityShape: ...
 
-    def code(self, polygons: Tensor, shift: Tensor | None = None) -> Code:
-        """Prepare normalised, posed target polygons (B, L, 2); ``shift`` (B,) moves the contour's start."""
+    @property
+    def corrects(self) -> bool:
+        """Whether the network can also correct finished fields."""
+        ...
+
+    def code(
+        self,
+        polygons: Tensor,
+        shift: Tensor | None = None,
+        preference: Tensor | None = None,
+        sheet: Sheet | None = None,
+    ) -> Code:
+        """Prepare normalised, posed target polygons (B, L, 2) for a sheet, the network's own grid when missing.
+
+        ``shift`` (B,) moves the contour's start; ``preference`` (B,) runs from match, 0, to regularity, 1.
+        """
+        ...
+
+    def correction(self, z: Tensor, code: Any) -> Tensor:
+        """Change of finished fields z (B, m * n) of the sheet that brings their outlines nearer: (B, m * n)."""
         ...
 
     def __call__(self, z: Tensor, t: Tensor, code: Any) -> Tensor:
@@ -72,6 +99,9 @@ class Velocity(Protocol):
 
 
 def joined(codes: Sequence[Coded]) -> Coded:
-    """One code of all targets of several codes of one network, in order."""
-    rows = ([getattr(code, field.name) for code in codes] for field in fields(codes[0]))
-    return type(codes[0])(*(torch.cat(tensors) for tensors in rows))
+    """One code of all targets of several codes of one network for one sheet, in order."""
+
+    def merged(values: list[Any]) -> Any:
+        return torch.cat(values) if isinstance(values[0], Tensor) else values[0]
+
+    return type(codes[0])(*(merged([getattr(code, field.name) for code in codes]) for field in fields(codes[0])))

@@ -1,4 +1,4 @@
-"""What an aligned sample should be: a good match, smooth when asked for, and still the sample that the prior would draw.
+"""What an aligned sample should be: a good match, smooth when asked for, and near the sample that the prior draws.
 
 All three are differentiable through the exact decoder.
 

@@ -12,9 +12,10 @@ from dataclasses import dataclass
 import torch
 from torch import Tensor
 
+from kirigami_studio.generator.backbones import Network
 from kirigami_studio.generator.conditioning import contour_points, normalised, turned
-from kirigami_studio.generator.network import TargetCode, VelocityNetwork, joined
 from kirigami_studio.generator.pose import square_pose
+from kirigami_studio.generator.velocity import Code, joined
 from kirigami_studio.training.corpus import Chunk
 from kirigami_studio.training.validation import drawn_polygons
 
@@ -42,13 +43,13 @@ class SampledTargets:
     shifts: tuple[Tensor, ...]
     loop: Tensor
 
-    def code(self, network: VelocityNetwork, preference: Tensor | None = None) -> TargetCode:
+    def code(self, network: Network, preference: Tensor | None = None) -> Code:
         """The targets for a network, with a preference (B,) for each where it takes one."""
         if preference is None:
             chosen: list[Tensor | None] = [None] * len(self.seen)
         else:
             chosen = list(torch.split(preference, [len(part) for part in self.seen]))
-        return joined(network.code(*part) for part in zip(self.seen, self.shifts, chosen, strict=True))
+        return joined([network.code(*part) for part in zip(self.seen, self.shifts, chosen, strict=True)])
 
 
 class TargetSource:

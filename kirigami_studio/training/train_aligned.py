@@ -24,9 +24,10 @@ from kirigami_studio.generator.weights import Model
 from kirigami_studio.training.checkpoint import Checkpoint
 from kirigami_studio.training.corpus import Chunk, Corpus
 from kirigami_studio.training.fields import mixed_fields
+from kirigami_studio.training.growth import grown_state
 from kirigami_studio.training.preference_loss import EARLY_WEIGHT, PreferenceTerms, trail_gap
 from kirigami_studio.training.sampled_targets import TargetSource
-from kirigami_studio.training.train_flow import grown_state, schedule
+from kirigami_studio.training.train_flow import schedule
 
 #: Share of the anchor that full regularity gives up: smooth fields cannot stay where rough ones were.
 ANCHOR_EASED = 0.8

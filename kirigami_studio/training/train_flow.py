@@ -10,17 +10,18 @@ import json
 import math
 import time
 from collections.abc import Callable, Iterator
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
 import torch
 from torch import Tensor
 
 from kirigami_studio.foundation.errors import ExportError, ModelError
+from kirigami_studio.generator.backbones import Network, Shape, network_of
 from kirigami_studio.generator.conditioning import condition, turned
-from kirigami_studio.generator.flow import trail
-from kirigami_studio.generator.network import NetworkShape, VelocityNetwork, joined
+from kirigami_studio.generator.network import NetworkShape
 from kirigami_studio.generator.pose import square_pose
+from kirigami_studio.generator.velocity import Velocity, joined
 from kirigami_studio.generator.weights import Model
 from kirigami_studio.training.checkpoint import Checkpoint
 from kirigami_studio.training.corpus import Chunk, Corpus, zero_outline
@@ -28,12 +29,9 @@ from kirigami_studio.training.coupling import pair_noise
 from kirigami_studio.training.fields import mixed_fields
 from kirigami_studio.training.fitted_batches import FittedBatches, Targets
 from kirigami_studio.training.fitted_fields import FittedFields
-from kirigami_studio.training.preference_loss import EARLY_WEIGHT, trail_gap
-from kirigami_studio.training.sampled_targets import TargetSource
+from kirigami_studio.training.growth import grown_state
 
 WARM_UP_STEPS = 200
-#: Share of drawn shapes among sampled targets.
-DRAWN_SHARE = 0.35
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,14 +52,6 @@ class FlowSettings:
     outline_weight : float
         Weight of the squared outline error (unit-area lengths) of the predicted design, through the exact decoder,
         times t^2; on the draw with the largest t of each target.
-    sample_weight : float
-        Weight of the boundary gap (unit area) of finished samples, see ``preference_loss``; 0 leaves it out.
-    sample_rows : int
-        Targets a step that are sampled for it.
-    sample_steps : int
-        Euler steps of those samples.
-    drawn : int
-        Drawn shapes among their targets.
     coupling : str
         See :mod:`kirigami_studio.training.coupling`.
     chunk, passes : int
@@ -79,7 +69,8 @@ class FlowSettings:
     fit_share : float
         Their share of every batch.
     seed : int
-    shape : NetworkShape
+    shape : NetworkShape or UNetShape
+        Of the network; its kind says which backbone is trained.
     """
 
     steps: int = 12_000
@@ -89,10 +80,6 @@ class FlowSettings:
     weight_decay: float = 0.01
     average_decay: float = 0.999
     outline_weight: float = 50.0
-    sample_weight: float = 0.0
-    sample_rows: int = 32
-    sample_steps: int = 4
-    drawn: int = 0
     coupling: str = "independent"
     chunk: int = 32_768
     passes: int = 2
@@ -103,7 +90,7 @@ class FlowSettings:
     fits: str = ""
     fit_share: float = 0.3
     seed: int = 0
-    shape: NetworkShape = field(default_factory=NetworkShape)
+    shape: Shape = field(default_factory=NetworkShape)
 
     def to_json(self) -> dict[str, object]:
         return asdict(self)
@@ -146,7 +133,7 @@ def train_flow(
     settings: FlowSettings,
     folder: Path,
     device: torch.device,
-    validate: Callable[[VelocityNetwork], dict[str, float]],
+    validate: Callable[[Velocity], dict[str, float]],
     *,
     sources: Sources | None = None,
     seconds: float = math.inf,
@@ -199,7 +186,7 @@ def train_flow(
             break
 
 
-def finished_network(settings: FlowSettings, folder: Path, device: torch.device) -> VelocityNetwork:
+def finished_network(settings: FlowSettings, folder: Path, device: torch.device) -> Network:
     """The averaged network of the checkpoint in ``folder``: what is shipped."""
     return _Run(settings, folder / "checkpoint.pt", device, Sources()).averaged()
 
@@ -210,7 +197,7 @@ class _Run:
     def __init__(self, settings: FlowSettings, path: Path, device: torch.device, sources: Sources) -> None:
         self.settings, self.path, self.device = settings, path, device
         torch.manual_seed(settings.seed)
-        self.network = VelocityNetwork(settings.shape).to(device)
+        self.network = network_of(settings.shape).to(device)
         if sources.start:
             self.network.load_state_dict(grown_state(sources.start.network, settings.shape))
         self.average = {name: value.detach().clone() for name, value in self.network.state_dict().items()}
@@ -222,26 +209,18 @@ class _Run:
             mixed_fields, settings.shape.rows, settings.shape.columns, settings.seed, settings.chunk, device
         )
         self.fitted = FittedBatches(sources.fits, self.corpus.lattice, settings.seed) if sources.fits else None
-        self.sampled = TargetSource(
-            settings.drawn if settings.sample_weight else 0,
-            settings.seed,
-            settings.vertex_noise,
-            settings.shift_noise,
-            self.generator,
-            device,
-        )
         self.step = 0
         self._chunk: tuple[int, Chunk] | None = None
         if path.exists():
             self._resume()
 
     def advance(self) -> float:
-        """One optimiser step; returns the loss."""
+        """One optimiser step; returns the flow-matching loss."""
         for group in self.optimiser.param_groups:
             group["lr"] = self.settings.learning_rate * schedule(self.step, self.settings.steps)
+        # Dropout draws from torch's own generator: by the step, so that a resumed run draws the same.
+        torch.manual_seed(1_000_003 * self.settings.seed + self.step)
         loss = self._loss([self._random_targets(), *self._fitted_targets()])
-        if self.settings.sample_weight:
-            loss = loss + self.settings.sample_weight * self._sample_gap()
         self.optimiser.zero_grad(set_to_none=True)
         loss.backward()
         torch.nn.utils.clip_grad_norm_(self.network.parameters(), 1.0)
@@ -256,9 +235,9 @@ class _Run:
             torch._foreach_lerp_([self.average[name] for name in names], list(values), 1 - decay)
         return float(loss.detach())
 
-    def averaged(self) -> VelocityNetwork:
+    def averaged(self) -> Network:
         """A copy of the network with the averaged weights."""
-        network = VelocityNetwork(self.settings.shape).to(self.device)
+        network = network_of(self.settings.shape).to(self.device)
         network.load_state_dict(self.average)
         return network.eval()
 
@@ -292,19 +271,14 @@ class _Run:
         batch = settings.batch - settings.fitted_rows
         per_pass = settings.chunk // batch
         sweep, place = divmod(self.step, per_pass)
-        chunk = self._random_chunk(self.step)
-        order = torch.Generator().manual_seed(1_000_003 * settings.seed + sweep)
-        picked = torch.randperm(settings.chunk, generator=order)[place * batch : (place + 1) * batch]
-        picked = picked.to(self.device)
-        return Targets(chunk.z[picked], chunk.polygons[picked], on_sheet=False)
-
-    def _random_chunk(self, step: int) -> Chunk:
-        """The random fields that a step draws on."""
-        settings = self.settings
-        number = step // (settings.chunk // (settings.batch - settings.fitted_rows)) // settings.passes
+        number = sweep // settings.passes
         if self._chunk is None or self._chunk[0] != number:
             self._chunk = number, self.corpus.chunk(number)
-        return self._chunk[1]
+        order = torch.Generator().manual_seed(1_000_003 * settings.seed + sweep)
+        picked = torch.randperm(settings.chunk, generator=order)[place * batch : (place + 1) * batch]
+        chunk = self._chunk[1]
+        picked = picked.to(self.device)
+        return Targets(chunk.z[picked], chunk.polygons[picked], on_sheet=False)
 
     def _loss(self, parts: list[Targets]) -> Tensor:
         settings, draws = self.settings, self.settings.noises
@@ -328,16 +302,6 @@ class _Run:
         predicted = between[late] + (1 - t[late, None]) * velocity[late]
         return flow + settings.outline_weight * (t[late].square() * self._outline_error(predicted, z)).mean()
 
-    def _sample_gap(self) -> Tensor:
-        """Mean boundary gap of finished samples, and what z exceeds its bounds by."""
-        settings = self.settings
-        chunk = self._random_chunk(self.step)
-        targets = self.sampled.targets(chunk, settings.sample_rows, DRAWN_SHARE)
-        noise = self._normal(torch.Size((settings.sample_rows, chunk.z.shape[1]))) * settings.shape.z_scale
-        finished = trail(self.network, noise, targets.code(self.network), settings.sample_steps)
-        terms, before = trail_gap(self.corpus.lattice, finished, targets.loop)
-        return (terms.match + terms.excess).mean() + EARLY_WEIGHT * before
-
     def _outline_error(self, predicted: Tensor, z: Tensor) -> Tensor:
         """Mean squared distance of corresponding outline vertices at phi = 0, per design, unit-area lengths squared."""
         lattice = self.corpus.lattice
@@ -359,28 +323,6 @@ class _Run:
 
     def _normal(self, shape: torch.Size) -> Tensor:
         return torch.randn(shape, generator=self.generator, device=self.device)
-
-
-def grown_state(network: VelocityNetwork, shape: NetworkShape) -> dict[str, Tensor]:
-    """Weights of ``network`` for a network of ``shape`` that sees more: what is new counts for nothing at first.
-
-    Raises
-    ------
-    ModelError
-        The shapes differ in more than their inputs.
-    """
-    inputs = {"direction": shape.direction, "preference": shape.preference, "sheets": shape.sheets}
-    if replace(network.shape, **inputs) != shape or (network.shape.direction and not shape.direction):
-        raise ModelError("The weights to begin with belong to a network of another shape.")
-    state = dict(network.state_dict())
-    grown = VelocityNetwork(shape).state_dict()
-    for name, value in grown.items():
-        old = state.get(name)
-        if old is None:
-            state[name] = torch.zeros_like(value)
-        elif old.shape != value.shape:
-            state[name] = torch.cat([old, old.new_zeros(len(old), value.shape[1] - old.shape[1])], dim=1)
-    return {name: state[name] for name in grown}
 
 
 def schedule(step: int, steps: int) -> float:

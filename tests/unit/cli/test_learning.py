@@ -9,6 +9,8 @@ import numpy as np
 import pytest
 
 from kirigami_studio.cli import main
+from kirigami_studio.generator.unet import UNetShape
+from kirigami_studio.generator.weights import load_model
 from kirigami_studio.training.fitted_fields import FittedFields, fitted_block
 
 pytestmark = pytest.mark.torch
@@ -46,11 +48,35 @@ def test_that_training_begins_with_the_bundled_weights_and_sees_the_fits(
     assert second["record"]["drawn_iou"] == pytest.approx(first["record"]["drawn_iou"], abs=1e-3)
 
 
+def test_that_a_unet_is_trained_stored_and_gone_on_with(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    words = ["train", "prior", "--backbone", "unet", "--channels", "8,16", "--coupling", "ot", "--batch", "16"]
+    words += ["--noises", "1", "--learning-rate", "2e-5", "--weight-decay", "0.05", "--outline-weight", "0"]
+    words += ["--steps", "1", "--device", "cpu", "--out", str(tmp_path / "run")]
+    assert main([*words, "--json"]) == 0
+    answered = json.loads(capsys.readouterr().out)
+    assert answered["record"]["step"] == 1
+    entry = json.loads((tmp_path / "run" / "manifest.json").read_text())["variants"]["prior"]
+    assert (entry["backbone"], entry["shape"]["channels"]) == ("unet", [8, 16])
+    assert (entry["about"]["settings"]["weight_decay"], entry["about"]["settings"]["noises"]) == (0.05, 1)
+    assert load_model("prior", tmp_path / "run").network.shape == UNetShape(channels=(8, 16))
+    assert main(words) == 0  # finished already: stored again
+    assert main([*words, "--channels", "8,8"]) == 1
+    assert "other settings (shape)" in capsys.readouterr().err
+    assert main(["train", "prior", "--steps", "1", "--device", "cpu", "--out", str(tmp_path / "run")]) == 1
+    assert "shape" in capsys.readouterr().err
+
+
 @pytest.mark.parametrize(
     ("code", "words", "said"),
     [
         (2, ["dataset", "drawn", "--split", "test"], "training only"),
         (2, ["train", "prior", "--fit-share", "1"], "--fit-share"),
+        (2, ["train", "prior", "--channels", "8,16"], "--backbone unet"),
+        (2, ["train", "prior", "--backbone", "unet", "--feedback"], "--feedback belongs to the perceptron"),
+        (2, ["train", "prior", "--backbone", "unet", "--channels", "8;16"], "--channels must be whole numbers"),
+        (2, ["train", "prior", "--backbone", "unet", "--channels", "8,15"], "even numbers"),
+        (2, ["train", "prior", "--backbone", "unet", "--channels", "4,4,4,4,4,4,4"], "7 levels"),
+        (1, ["train", "prior", "--backbone", "unet", "--channels", "8,16", "--warm-start", "bundled"], "another shape"),
         (1, ["train", "prior", "--fits", "nowhere.npz"], "nowhere.npz"),
         (1, ["train", "prior", "--warm-start", "nowhere/prior.safetensors"], "nowhere"),
     ],
