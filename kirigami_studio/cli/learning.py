@@ -1,4 +1,4 @@
-"""``train`` and ``dataset``: the room beside the app, loaded only when asked for."""
+"""``train prior`` and ``dataset``: the room beside the app, loaded only when asked for."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from kirigami_studio.cli.aligning import starting_model
 from kirigami_studio.cli.console import ProgressLine, print_json, say
 from kirigami_studio.cli.inputs import parse_grid
 from kirigami_studio.foundation.errors import UsageError
@@ -143,16 +144,10 @@ def _shape(arguments: argparse.Namespace) -> Shape:
 
 def _sources(arguments: argparse.Namespace) -> Sources:
     """Weights to begin with and fits of drawn shapes, as asked for."""
-    from kirigami_studio.generator.weights import load_model
     from kirigami_studio.training.fitted_fields import FittedFields
     from kirigami_studio.training.train_flow import Sources
 
     if not 0.0 < arguments.fit_share < 1.0:
         raise UsageError(f"--fit-share must be between 0 and 1, got {arguments.fit_share:g}.")
-    start = None
-    if arguments.warm_start == "bundled":
-        start = load_model("prior")
-    elif arguments.warm_start is not None:
-        weights = Path(arguments.warm_start)
-        start = load_model(weights.stem, weights.parent)
+    start = None if arguments.warm_start is None else starting_model(arguments.warm_start)
     return Sources(start, None if arguments.fits is None else FittedFields.load(Path(arguments.fits)))

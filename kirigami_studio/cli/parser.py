@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from importlib import import_module
 from typing import Any
@@ -24,6 +24,7 @@ class Command:
     Attributes
     ----------
     name, about : str
+        A name of two words belongs to a group, see ``GROUPS``.
     run : str
         ``module:function`` inside this package, imported when the command is called.
     options : tuple
@@ -194,8 +195,7 @@ COMMANDS: tuple[Command, ...] = (
         JSON,
     ), ("kirigami-studio dataset sobol --out data --split test",
         "kirigami-studio dataset drawn --out runs/drawn --processes 2")),
-    Command("train", "train a generator; resumes from the checkpoint in its folder", "learning:train", (
-        option("stage", choices=("prior",), help="what to train"),
+    Command("train prior", "train a generator; resumes from the checkpoint in its folder", "learning:train", (
         option("--out", required=True, help="run folder: checkpoint, log, weights"),
         option("--steps", type=count, default=12_000, help="optimiser steps in all (default 12000)"),
         option("--minutes", type=number, default=None, help="stop with a checkpoint after this time"),
@@ -226,6 +226,33 @@ COMMANDS: tuple[Command, ...] = (
         "the paper's network and settings, 400 epochs of 5000 targets (on a GPU):",
         "kirigami-studio train prior --backbone unet --coupling ot --batch 64 --noises 1 --learning-rate 2e-5 "
         "--weight-decay 0.05 --outline-weight 0 --steps 31250 --out runs/unet")),
+    Command("train grpo", "align a generator with a reward, by the paper's rule; resumes as well", "aligning:grpo", (
+        option("--out", required=True, help="run folder: checkpoint, log, weights"),
+        option("--reward", choices=("accuracy", "regularity", "balanced"), default="accuracy",
+               help="what to prefer (default accuracy)"),
+        option("--start", default="bundled", metavar="WEIGHTS",
+               help="weights to align: 'bundled' (default), or the .safetensors of a run"),
+        option("--calls", type=count, default=10_000, help="designs decoded and scored in all (default 10000)"),
+        option("--group", type=count, default=4, help="designs of a target, compared with each other (default 4)"),
+        option("--batch", type=count, default=8, help="targets a step (default 8)"),
+        option("--temperature", type=positive, default=0.2, help="smaller: only the best count (default 0.2)"),
+        option("--learning-rate", type=positive, default=1e-5, help="constant (default 0.00001)"),
+        option("--rollout-steps", type=count, default=8, help="Euler steps, also of the validation (default 8)"),
+        option("--advantages", choices=("standardised", "centred"), default="standardised",
+               help="rewards minus their mean, divided by their deviation (the paper's rule) or not"),
+        option("--weight-clip", type=amount, default=0.0, help="largest weight of a design (default 0: no bound)"),
+        option("--reference", type=amount, default=0.0, help="pull to the weights started from (default 0)"),
+        option("--least-spread", type=amount, default=0.0,
+               help="leave out groups whose rewards deviate by less (default 0)"),
+        option("--average-decay", type=amount, default=0.0, help="hand over averaged weights (default 0: the last)"),
+        option("--minutes", type=number, default=None, help="stop with a checkpoint after this time"),
+        option("--validate-every", type=count, default=50, help="steps between validations (default 50)"),
+        option("--threads", type=count, default=1, help="processor threads (default 1)"),
+        option("--device", default="auto", help="auto, cpu or cuda (default auto)"),
+        option("--seed", type=whole, default=0, help="default 0"),
+        JSON,
+    ), ("kirigami-studio train grpo --reward accuracy --start bundled --calls 10000 --out runs/accuracy",
+        "kirigami-studio train grpo --reward balanced --start runs/prior/prior.safetensors --out runs/both")),
     Command("benchmark", "measure the generator, the polish or the lattice", "benchmarks:benchmark", (
         option("suite", choices=("generator", "polish", "designs", "regularity", "speed", "lattice"),
                help="what to measure"),
@@ -254,6 +281,9 @@ COMMANDS: tuple[Command, ...] = (
         "kirigami-studio benchmark lattice")),
 )  # fmt: skip
 
+#: First words of the commands with two, and what they have in common.
+GROUPS = {"train": "train a generator or align it with a reward"}
+
 
 def build_parser() -> argparse.ArgumentParser:
     """Build the parser from the table."""
@@ -264,18 +294,32 @@ def build_parser() -> argparse.ArgumentParser:
     parser.add_argument("--version", action="version", version=f"kirigami-studio {__version__}")
     parser.set_defaults(run=open_window)
     commands = parser.add_subparsers(title="commands", metavar="COMMAND")
+    groups: dict[str, Any] = {}
     for command in COMMANDS:
-        child = commands.add_parser(
-            command.name,
-            help=command.about,
-            description=command.about[0].upper() + command.about[1:] + ".",
-            epilog="examples:\n" + "\n".join(f"  {example}" for example in command.examples),
-            formatter_class=argparse.RawDescriptionHelpFormatter,
-        )
+        first, _, second = command.name.partition(" ")
+        if second and first not in groups:
+            shown = [
+                example for member in COMMANDS if member.name.startswith(f"{first} ") for example in member.examples
+            ]
+            group = _add(commands, first, GROUPS[first], shown)
+            groups[first] = group.add_subparsers(title="commands", metavar="COMMAND", required=True)
+        child = _add(groups[first] if second else commands, second or first, command.about, command.examples)
         for names, settings in command.options:
             child.add_argument(*names, **settings)
         child.set_defaults(run=_late(command.run))
     return parser
+
+
+def _add(commands: Any, name: str, about: str, examples: Iterable[str]) -> argparse.ArgumentParser:
+    """Add a parser whose help ends with examples (``commands`` is what ``add_subparsers`` gave)."""
+    child: argparse.ArgumentParser = commands.add_parser(
+        name,
+        help=about,
+        description=about[0].upper() + about[1:] + ".",
+        epilog="examples:\n" + "\n".join(f"  {example}" for example in examples),
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    return child
 
 
 def open_window(arguments: argparse.Namespace) -> int:

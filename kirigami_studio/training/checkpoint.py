@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import io
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -28,6 +28,8 @@ class Checkpoint:
         The run's settings, compared on resume.
     generator : tensor
         State of the noise generator.
+    more : dict
+        What one kind of training needs beside: plain numbers and text.
     """
 
     step: int
@@ -36,6 +38,7 @@ class Checkpoint:
     optimiser: dict[str, Any]
     settings: dict[str, Any]
     generator: torch.Tensor
+    more: dict[str, Any] = field(default_factory=dict)
 
     def save(self, path: Path) -> None:
         """Write beside the old checkpoint, then rename: an interrupted save loses nothing.
@@ -64,13 +67,14 @@ class Checkpoint:
         except Exception as error:  # torch raises many kinds on a damaged file
             raise ModelError(f"The checkpoint {path} cannot be read; delete it to start afresh.") from error
 
-    def require(self, settings: dict[str, Any], path: Path) -> None:
-        """Refuse to go on with other settings than the checkpoint's.
+    def check_settings(self, wanted: dict[str, Any], path: Path) -> None:
+        """Refuse to go on with other settings than those the checkpoint at ``path`` was made with.
 
         Raises
         ------
         ModelError
+            Names the settings that differ.
         """
-        if self.settings != settings:
-            names = ", ".join(name for name in settings if self.settings.get(name) != settings[name])
+        if self.settings != wanted:
+            names = ", ".join(name for name in wanted if self.settings.get(name) != wanted[name])
             raise ModelError(f"The checkpoint {path} was made with other settings ({names}); choose another folder.")

@@ -253,7 +253,7 @@ class _Run:
 
     def _resume(self) -> None:
         state = Checkpoint.load(self.path)
-        state.require(self.settings.to_json(), self.path)
+        state.check_settings(self.settings.to_json(), self.path)
         self.network.load_state_dict(state.network)
         self.average = {name: value.to(self.device) for name, value in state.average.items()}
         self.optimiser.load_state_dict(state.optimiser)

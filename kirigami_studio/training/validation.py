@@ -9,12 +9,13 @@ import shapely
 import torch
 from torch import Tensor
 
+from kirigami_studio.evaluate.regularity import total_variation
 from kirigami_studio.generator.conditioning import normalised, turned
 from kirigami_studio.generator.flow import integrate
 from kirigami_studio.generator.pose import square_pose
 from kirigami_studio.generator.velocity import Velocity
 from kirigami_studio.lattice.batched import BatchedLattice
-from kirigami_studio.lattice.ratio_field import FloatArray
+from kirigami_studio.lattice.ratio_field import FloatArray, RatioField
 from kirigami_studio.target.editing import resampled
 from kirigami_studio.training.corpus import zero_outline
 from kirigami_studio.training.drawn_shapes import drawn_shape
@@ -84,3 +85,27 @@ def validator(count: int, device: torch.device, steps: int = 4) -> Callable[[Vel
         return figures
 
     return measure
+
+
+def group_figures(network: VelocityNetwork, count: int, steps: int, samples: int = 16) -> dict[str, float]:
+    """How ``samples`` designs of one target in one pose differ, on ``count`` structured validation targets.
+
+    Returns
+    -------
+    figures : dict
+        ``spread``: standard deviation of z among the designs of a target, mean over cells and targets; ``tv``: mean of
+        the paper's total variation divided by m n.
+    """
+    rows, columns = network.shape.rows, network.shape.columns
+    device = next(network.parameters()).device
+    lattice = BatchedLattice(rows, columns, device)
+    fields = structured_fields(count, rows, columns, np.random.default_rng(VALIDATION_SEED))
+    with torch.no_grad():
+        targets = normalised(zero_outline(lattice, torch.tensor(fields, dtype=torch.float32, device=device)))
+        code = network.code(turned(targets, -square_pose(targets))).repeated(samples)
+        generator = torch.Generator().manual_seed(0)
+        noise = torch.randn((count * samples, rows * columns), generator=generator) * network.shape.z_scale
+        drawn = integrate(network, noise.to(device), code, steps).clamp(-Z_LIMIT, Z_LIMIT)
+    designs = drawn.cpu().double().view(count, samples, rows, columns)
+    variation = [total_variation(RatioField.from_log10(z)) for z in designs.flatten(0, 1).numpy()]
+    return {"spread": float(designs.std(dim=1).mean()), "tv": float(np.mean(variation))}

@@ -1,0 +1,78 @@
+"""``train grpo``: align a trained generator with a reward, as the paper does."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from kirigami_studio.cli.console import print_json, say
+from kirigami_studio.foundation.errors import UsageError
+
+if TYPE_CHECKING:
+    from kirigami_studio.generator.network import VelocityNetwork
+    from kirigami_studio.generator.weights import Model
+
+#: Validation targets of each family, and of the figures on groups of samples.
+VALIDATION_COUNT = 200
+GROUP_COUNT = 50
+
+
+def grpo(arguments: argparse.Namespace) -> int:
+    """Align a generator, or go on aligning it, and write its weights into the run folder."""
+    from kirigami_studio.generator.weights import store_model
+    from kirigami_studio.training.device import training_device
+    from kirigami_studio.training.grpo import GrpoSettings, aligned_network, train_grpo
+    from kirigami_studio.training.validation import group_figures, validator
+
+    if arguments.minutes is not None and arguments.minutes <= 0:
+        raise UsageError(f"--minutes must be above 0, got {arguments.minutes:g}.")
+    device = training_device(arguments.device, arguments.threads)
+    start = starting_model(arguments.start)
+    settings = GrpoSettings(
+        reward=arguments.reward,
+        start=start.digest,
+        calls=arguments.calls,
+        group=arguments.group,
+        batch=arguments.batch,
+        temperature=arguments.temperature,
+        learning_rate=arguments.learning_rate,
+        rollout_steps=arguments.rollout_steps,
+        advantages=arguments.advantages,
+        weight_clip=arguments.weight_clip,
+        reference=arguments.reference,
+        least_spread=arguments.least_spread,
+        average_decay=arguments.average_decay,
+        seed=arguments.seed,
+    )
+    watched = validator(VALIDATION_COUNT, device, settings.rollout_steps)
+
+    def validate(network: VelocityNetwork) -> dict[str, float]:
+        among = group_figures(network, GROUP_COUNT, settings.rollout_steps)
+        return watched(network) | {f"structured_{name}": value for name, value in among.items()}
+
+    folder = Path(arguments.out)
+    seconds = float("inf") if arguments.minutes is None else 60.0 * arguments.minutes
+    record: dict[str, float] = {}
+    for record in train_grpo(
+        settings, folder, device, validate, start, seconds=seconds, validate_every=arguments.validate_every
+    ):
+        if not arguments.json:
+            say(" ".join(f"{key} {value:.4f}" for key, value in record.items()))
+    about = {"validation": record, "settings": settings.to_json(), "start": start.variant}
+    path = store_model(f"grpo-{settings.reward}", aligned_network(folder, start), folder, about)
+    if arguments.json:
+        print_json({"files": [str(path)], "record": record})
+    else:
+        say(f"Weights: {path}")
+    return 0
+
+
+def starting_model(name: str) -> Model:
+    """The weights that a run begins with: ``bundled``, or a .safetensors file beside its manifest."""
+    from kirigami_studio.generator.weights import load_model
+
+    if name == "bundled":
+        return load_model("prior")
+    weights = Path(name)
+    return load_model(weights.stem, weights.parent)
