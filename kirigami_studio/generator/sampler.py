@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 import torch
@@ -24,8 +25,27 @@ BATCH = 8
 GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
 
 
+def pose_angle(index: int) -> float:
+    """Rotation of the target for candidate ``index``, radians: 0, then quarter turns alternating with poses between."""
+    quarter = 0.5 * math.pi * ((index // 2) % 4)
+    between = 0.5 * math.pi * ((index * GOLDEN) % 1.0) if index % 2 else 0.0
+    return quarter + between
+
+
+def one_pose(index: int) -> float:
+    """The same pose for every candidate: they then differ by their noise alone."""
+    return 0.0
+
+
 def draw_fields(
-    model: Model, target: Outline, grid: tuple[int, int], k: int, seed: int, steps: int, phi: float = 0.0
+    model: Model,
+    target: Outline,
+    grid: tuple[int, int],
+    k: int,
+    seed: int,
+    steps: int,
+    phi: float = 0.0,
+    poses: Callable[[int], float] = pose_angle,
 ) -> tuple[RatioField, ...]:
     """Sample ``k`` ratio fields for ``target``.
 
@@ -41,6 +61,8 @@ def draw_fields(
         Other grids than the network's are reached by interpolation, see ``sheet``; it sees their exact geometry.
     k, seed, steps : int
     phi : float, radians, in [0, pi)
+    poses : callable
+        Candidate's number -> rotation of the target, radians; ``one_pose`` shows it to all of them in one pose.
     """
     shape = model.network.shape
     whole = -(-k // BATCH) * BATCH
@@ -49,7 +71,7 @@ def draw_fields(
     drawn: list[Tensor] = []
     with torch.inference_mode(), one_torch_thread():
         for start in range(0, whole, BATCH):
-            code = model.code(posed(target, range(start, start + BATCH)), sheet)
+            code = model.code(posed(target, range(start, start + BATCH), poses), sheet)
             rows = torch.tensor(noise[start : start + BATCH], dtype=torch.float32)
             drawn.append(integrate(model.network, rows, code, steps))
     z = torch.cat(drawn)[:k].double().numpy()
@@ -57,16 +79,9 @@ def draw_fields(
     return tuple(RatioField.from_log10(np.round(field, 6)) for field in fields)
 
 
-def posed(target: Outline, candidates: range) -> Tensor:
+def posed(target: Outline, candidates: range, poses: Callable[[int], float] = pose_angle) -> Tensor:
     """The target's polygon in the pose of each candidate: (count, L, 2), unit area about the centroid."""
     polygon = normalised(torch.tensor(target.points, dtype=torch.float32)[None])
     upright = -square_pose(polygon)
-    angles = upright + torch.tensor([pose_angle(i) for i in candidates], dtype=torch.float32)
+    angles = upright + torch.tensor([poses(i) for i in candidates], dtype=torch.float32)
     return turned(polygon.expand(len(candidates), -1, -1), angles)
-
-
-def pose_angle(index: int) -> float:
-    """Rotation of the target for candidate ``index``, radians: 0, then quarter turns alternating with poses between."""
-    quarter = 0.5 * math.pi * ((index // 2) % 4)
-    between = 0.5 * math.pi * ((index * GOLDEN) % 1.0) if index % 2 else 0.0
-    return quarter + between

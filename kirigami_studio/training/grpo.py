@@ -33,10 +33,11 @@ import torch
 from torch import Tensor
 
 from kirigami_studio.foundation.errors import ExportError, ModelError, UsageError
+from kirigami_studio.generator.backbones import Network
 from kirigami_studio.generator.conditioning import turned
 from kirigami_studio.generator.flow import integrate
-from kirigami_studio.generator.network import TargetCode, VelocityNetwork
 from kirigami_studio.generator.pose import square_pose
+from kirigami_studio.generator.velocity import Code
 from kirigami_studio.generator.weights import Model
 from kirigami_studio.target.outline import Outline
 from kirigami_studio.training.checkpoint import Checkpoint
@@ -147,7 +148,7 @@ def train_grpo(
     settings: GrpoSettings,
     folder: Path,
     device: torch.device,
-    validate: Callable[[VelocityNetwork], dict[str, float]],
+    validate: Callable[[Network], dict[str, float]],
     start: Model,
     *,
     seconds: float = math.inf,
@@ -213,7 +214,7 @@ def train_grpo(
             break
 
 
-def aligned_network(folder: Path, start: Model) -> VelocityNetwork:
+def aligned_network(folder: Path, start: Model) -> Network:
     """The network of the checkpoint in ``folder``: what is handed over."""
     network = copy.deepcopy(start.network)
     network.load_state_dict(Checkpoint.load(folder / "checkpoint.pt").average)
@@ -259,7 +260,7 @@ class _Run:
         self.step += 1
         self._note(rewards, verdicts, designs, used, loss)
 
-    def averaged(self) -> VelocityNetwork:
+    def averaged(self) -> Network:
         """A copy of the network with the weights that would be handed over."""
         network = copy.deepcopy(self.prior)
         network.load_state_dict(self.average)
@@ -352,7 +353,7 @@ class _Run:
                 self.average[name].lerp_(value, 1.0 - self.settings.average_decay)
         return float(loss.detach())
 
-    def _prior_velocity(self, between: Tensor, t: Tensor, code: TargetCode) -> Tensor:
+    def _prior_velocity(self, between: Tensor, t: Tensor, code: Code) -> Tensor:
         with torch.no_grad():
             return self.prior(between, t, code)
 

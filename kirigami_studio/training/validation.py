@@ -87,7 +87,7 @@ def validator(count: int, device: torch.device, steps: int = 4) -> Callable[[Vel
     return measure
 
 
-def group_figures(network: VelocityNetwork, count: int, steps: int, samples: int = 16) -> dict[str, float]:
+def group_figures(network: Velocity, count: int, steps: int, samples: int = 16) -> dict[str, float]:
     """How ``samples`` designs of one target in one pose differ, on ``count`` structured validation targets.
 
     Returns

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import torch
 
-from kirigami_studio.generator.sampler import Z_LIMIT, draw_fields, pose_angle, posed
+from kirigami_studio.generator.sampler import Z_LIMIT, draw_fields, one_pose, pose_angle, posed
 from kirigami_studio.generator.weights import Model, load_model
 from kirigami_studio.target.silhouettes import load
 
@@ -61,3 +61,13 @@ def test_that_posing_turns_the_target_rigidly() -> None:
     polygons = posed(load("hexagon"), range(5))
     radius = polygons.norm(dim=-1)
     assert torch.allclose(radius, radius[:1].expand_as(radius), atol=1e-5)
+
+
+def test_that_all_candidates_can_be_drawn_in_the_first_ones_pose(model: Model) -> None:
+    polygons = posed(load("heart"), range(5), one_pose)
+    assert torch.equal(polygons, polygons[:1].expand_as(polygons))
+    assert torch.equal(polygons[0], posed(load("heart"), range(5))[0])
+    own = draw_fields(model, load("heart"), (10, 10), 4, 0, 4)
+    same = draw_fields(model, load("heart"), (10, 10), 4, 0, 4, poses=one_pose)
+    assert np.allclose(same[0].log10, own[0].log10, atol=1e-4)
+    assert not np.allclose(same[1].log10, own[1].log10, atol=0.1)
