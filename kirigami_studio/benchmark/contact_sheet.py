@@ -50,7 +50,8 @@ def write_contact_sheet(made: Sequence[Made], path: Path) -> None:
 def _tiles(one: Made) -> list[tuple[Image.Image, tuple[str, str]]]:
     grid = f"{one.request.grid[0]} x {one.request.grid[1]}"
     plain = replace(one.best, trim=None)
-    tiles = [(_drawn(plain, one), (f"{one.target.name}, {grid}", f"IoU {plain.score.iou_exact:.3f}"))]
+    agreement = f"IoU {plain.score.iou_exact:.3f} (uniform {plain.score.uniform_iou:.3f})"
+    tiles = [(_drawn(plain, one), (f"{one.target.name}, {grid}", agreement))]
     if one.best.trim is not None:
         tiles.append((_drawn(one.best, one), ("trimmed", f"IoU {one.best.trim.iou:.3f}")))
     return tiles

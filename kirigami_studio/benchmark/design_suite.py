@@ -14,6 +14,9 @@ from kirigami_studio.pipeline.request import Request
 from kirigami_studio.pipeline.run import best_of
 from kirigami_studio.target.outline import Outline
 
+#: Names in the list of the worst.
+WORST_LISTED = 12
+
 
 @dataclass(frozen=True, slots=True)
 class Made:
@@ -68,15 +71,26 @@ def design_figures(made: Sequence[Made]) -> dict[str, object]:
     -------
     figures : dict
         ``iou_exact`` and, where designs were trimmed, ``trimmed_iou``, each with its bootstrap 95 % interval over
-        targets, the worst and its name; ``siou``, ``uniform_iou``, ``success`` (sIoU >= 0.85 and feasible), ``tv``,
-        ``seconds`` a target, and ``shapes``: the same for each by name.
+        targets, the worst and its name; ``siou``, ``uniform_siou``, ``uniform_iou``, ``siou_gain`` over the uniform
+        layout with its interval, ``below_uniform`` and ``below_uniform_exact`` (names of targets that the uniform
+        layout of the same grid shows better, by sIoU and by exact IoU), ``worst`` (names by sIoU, lowest first),
+        ``success`` (sIoU >= 0.85 and feasible), ``tv``, ``seconds`` a target, and ``shapes``: the same for each by
+        name.
     """
     scores = [one.best.score for one in made]
     figures: dict[str, object] = {
         "targets": len(made),
         **_summary("iou_exact", [score.iou_exact for score in scores], made),
         "siou": float(np.mean([score.siou for score in scores])),
+        "uniform_siou": float(np.mean([score.uniform_siou for score in scores])),
         "uniform_iou": float(np.mean([score.uniform_iou for score in scores])),
+        "siou_gain": float(np.mean([score.siou_gain for score in scores])),
+        "siou_gain_interval": bootstrap_interval(np.array([score.siou_gain for score in scores])),
+        "below_uniform": [one.target.name for one in made if one.best.score.siou_gain < 0],
+        "below_uniform_exact": [
+            one.target.name for one in made if one.best.score.iou_exact < one.best.score.uniform_iou
+        ],
+        "worst": [one.target.name for one in worst_of(made, WORST_LISTED)],
         "success": float(np.mean([score.siou >= SUCCESS_SIOU and score.feasible for score in scores])),
         "tv": float(np.mean([score.tv for score in scores])),
         "seconds": float(np.mean([one.seconds for one in made])),
@@ -89,6 +103,11 @@ def design_figures(made: Sequence[Made]) -> dict[str, object]:
     return figures
 
 
+def worst_of(made: Sequence[Made], count: int) -> list[Made]:
+    """The ``count`` designs with the lowest sIoU, lowest first."""
+    return sorted(made, key=lambda one: one.best.score.siou)[:count]
+
+
 def shape_figures(one: Made) -> dict[str, object]:
     """The line of one target."""
     score = one.best.score
@@ -96,7 +115,9 @@ def shape_figures(one: Made) -> dict[str, object]:
         "grid": f"{one.request.grid[0]}x{one.request.grid[1]}",
         "iou_exact": score.iou_exact,
         "siou": score.siou,
+        "uniform_siou": score.uniform_siou,
         "uniform_iou": score.uniform_iou,
+        "siou_gain": score.siou_gain,
         "tv": score.tv,
         "feasible": score.feasible,
         "seconds": one.seconds,

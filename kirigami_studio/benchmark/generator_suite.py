@@ -56,17 +56,16 @@ def measure_generator(
             per_seed.append(best_of(request).best.score)
             report(number * len(seeds) + len(per_seed), total)
         scores.append(per_seed)
+    settings = {"targets": len(targets), "seeds": list(seeds), "k": k, "steps": steps, "polish": polish}
+    return {**settings, "grid": list(grid), "variant": variant, **score_figures(scores)}
+
+
+def score_figures(scores: Sequence[Sequence[Score]]) -> dict[str, object]:
+    """Figures over the scores of every target (outer) and seed (inner), as :func:`measure_generator` quotes them."""
     siou = np.array([[score.siou for score in row] for row in scores])
     exact = np.array([[score.iou_exact for score in row] for row in scores])
     feasible = np.array([[score.feasible for score in row] for row in scores])
     return {
-        "targets": len(targets),
-        "seeds": list(seeds),
-        "k": k,
-        "steps": steps,
-        "polish": polish,
-        "grid": list(grid),
-        "variant": variant,
         "siou": float(siou.mean()),
         "siou_interval": bootstrap_interval(siou.mean(axis=1)),
         "worst": float(siou.min()),
@@ -91,5 +90,15 @@ def bootstrap_interval(values: npt.NDArray[np.float64], seed: int = 0) -> tuple[
     return float(low), float(high)
 
 
-def _mean(scores: list[list[Score]], name: str) -> float:
+def bootstrap_ratio_interval(
+    values: npt.NDArray[np.float64], reference: npt.NDArray[np.float64], seed: int = 0
+) -> tuple[float, float]:
+    """95 % bootstrap interval of the ratio of two means over the same targets, which are drawn in pairs."""
+    rng = np.random.default_rng(seed)
+    drawn = rng.integers(len(values), size=(BOOTSTRAP_DRAWS, len(values)))
+    low, high = np.quantile(values[drawn].mean(axis=1) / reference[drawn].mean(axis=1), (0.025, 0.975))
+    return float(low), float(high)
+
+
+def _mean(scores: Sequence[Sequence[Score]], name: str) -> float:
     return float(np.mean([getattr(score, name) for row in scores for score in row]))

@@ -18,6 +18,9 @@ from kirigami_studio.target.outline import Outline
 from kirigami_studio.target.read_image import outline_of_mask
 from kirigami_studio.target.silhouettes import load, names
 
+#: Samples and targets of a family where ``--k`` and ``--count`` do not say.
+SPREAD_K, SPREAD_TARGETS, ROBUSTNESS_TARGETS = 32, 50, 100
+
 
 def benchmark(arguments: argparse.Namespace) -> int:
     """Run one suite, print its figures and write them where asked."""
@@ -42,7 +45,7 @@ def _generator_suite(arguments: argparse.Namespace, line: ProgressLine) -> dict[
         results[family] = measure_generator(
             outlines,
             arguments.variant,
-            k=arguments.k,
+            k=arguments.k or 1,
             steps=arguments.steps,
             polish=arguments.polish,
             grid=parse_grid(arguments.grid),
@@ -71,7 +74,7 @@ def _polish_suite(arguments: argparse.Namespace, line: ProgressLine) -> dict[str
 def _designs_suite(arguments: argparse.Namespace, line: ProgressLine) -> dict[str, object]:
     """The whole program on targets, shape by shape, with pictures where asked for."""
     from kirigami_studio.benchmark.contact_sheet import write_contact_sheet
-    from kirigami_studio.benchmark.design_suite import design_figures, make_designs
+    from kirigami_studio.benchmark.design_suite import design_figures, make_designs, worst_of
     from kirigami_studio.pipeline.request import Request
 
     results: dict[str, object] = {}
@@ -81,7 +84,7 @@ def _designs_suite(arguments: argparse.Namespace, line: ProgressLine) -> dict[st
                 Request(
                     outline,
                     parse_grid(grid),
-                    k=arguments.k,
+                    k=arguments.k or 1,
                     seed=arguments.seeds[0],
                     variant=arguments.variant,
                     steps=arguments.steps,
@@ -97,7 +100,8 @@ def _designs_suite(arguments: argparse.Namespace, line: ProgressLine) -> dict[st
         made = make_designs(requests, lambda done, total, family=family: line.show(f"{family}: {done} of {total}"))  # type: ignore[misc]
         results[family] = design_figures(made)
         if arguments.picture is not None:
-            write_contact_sheet(made, Path(arguments.picture))
+            shown = made if arguments.worst is None else worst_of(made, arguments.worst)
+            write_contact_sheet(shown, Path(arguments.picture))
     return results
 
 
@@ -118,6 +122,79 @@ def _regularity_suite(arguments: argparse.Namespace, line: ProgressLine) -> dict
     }
 
 
+def _variants_suite(arguments: argparse.Namespace, line: ProgressLine) -> dict[str, object]:
+    """Bundled variants side by side, each beside the prior."""
+    from kirigami_studio.benchmark.variants_suite import measure_variants
+
+    variants = _variants(arguments)
+    return {
+        family: measure_variants(
+            outlines,
+            variants,
+            k=arguments.k or 1,
+            steps=arguments.steps,
+            grid=parse_grid(arguments.grid),
+            seeds=tuple(arguments.seeds),
+            report=lambda done, total, family=family: line.show(f"{family}: {done} of {total}"),  # type: ignore[misc]
+        )
+        for family, outlines in _target_sets(arguments).items()
+    }
+
+
+def _spread_suite(arguments: argparse.Namespace, line: ProgressLine) -> dict[str, object]:
+    """How much the samples for one target differ, variant by variant."""
+    from kirigami_studio.benchmark.spread_suite import measure_spread
+
+    variants = _variants(arguments)
+    return {
+        family: measure_spread(
+            outlines,
+            variants,
+            k=arguments.k or SPREAD_K,
+            steps=arguments.steps,
+            grid=parse_grid(arguments.grid),
+            seed=arguments.seeds[0],
+            report=lambda done, total, family=family: line.show(f"{family}: {done} of {total}"),  # type: ignore[misc]
+        )
+        for family, outlines in _target_sets(arguments, SPREAD_TARGETS).items()
+    }
+
+
+def _robustness_suite(arguments: argparse.Namespace, line: ProgressLine) -> dict[str, object]:
+    """What turned, shaky, coarse and fine drawings cost, variant by variant."""
+    from kirigami_studio.benchmark.robustness_suite import measure_robustness
+
+    # The suite draws the exact shapes into pixels itself.
+    sets = _target_sets(arguments, ROBUSTNESS_TARGETS, exact=True)
+    return {
+        family: {
+            variant: measure_robustness(
+                outlines,
+                variant,
+                steps=arguments.steps,
+                grid=parse_grid(arguments.grid),
+                seeds=tuple(arguments.seeds),
+                report=lambda done, total, of=f"{family}, {variant}": line.show(f"{of}: {done} of {total}"),  # type: ignore[misc]
+            )
+            for variant in _variants(arguments)
+        }
+        for family, outlines in sets.items()
+    }
+
+
+def _generation_speed_suite(arguments: argparse.Namespace, line: ProgressLine) -> dict[str, object]:
+    """Timings of loading and sampling, variant by variant."""
+    from kirigami_studio.benchmark.generation_timing import generation_timings
+
+    line.show("Timing the generator")
+    return generation_timings(
+        _variants(arguments),
+        steps=arguments.steps,
+        grid=parse_grid(arguments.grid),
+        report=lambda done, total: line.show(f"Timing the generator: {done} of {total} variants"),
+    )
+
+
 def _speed_suite(arguments: argparse.Namespace, line: ProgressLine) -> dict[str, object]:
     """Timings of scoring and polishing."""
     from kirigami_studio.benchmark.polish_timing import polish_timings
@@ -134,8 +211,29 @@ def _lattice_suite(arguments: argparse.Namespace, line: ProgressLine) -> dict[st
     return dict(lattice_timings())
 
 
-def _target_sets(arguments: argparse.Namespace) -> dict[str, list[Outline]]:
-    """Named lists of targets: ``--targets``, or the test splits of both families."""
+def _variants(arguments: argparse.Namespace) -> tuple[str, ...]:
+    """The variants that ``--variants`` names, or all that are bundled.
+
+    Raises
+    ------
+    UsageError
+        One of them is not bundled.
+    """
+    from kirigami_studio.generator.weights import digest_of
+    from kirigami_studio.generator.weights import variants as bundled
+
+    if arguments.variants is None:
+        return bundled()
+    named = tuple(dict.fromkeys(name.strip() for name in arguments.variants.split(",")))
+    for name in named:
+        digest_of(name)
+    return named
+
+
+def _target_sets(
+    arguments: argparse.Namespace, usual: int | None = None, exact: bool = False
+) -> dict[str, list[Outline]]:
+    """Named lists of targets: ``--targets``, or a split of both families, of ``usual`` size unless told otherwise."""
     if arguments.targets == ["library"]:
         return {"library": [load(name) for name in names()]}
     if arguments.targets:
@@ -145,11 +243,12 @@ def _target_sets(arguments: argparse.Namespace) -> dict[str, list[Outline]]:
         return {"targets": found}
     from kirigami_studio.training.dataset import SPLITS, generate_split
 
-    size, offset = SPLITS["test"]
+    size, offset = SPLITS[arguments.split]
+    count = arguments.count or usual or size
     sets = {}
     for family in ("structured", "sobol"):
-        split = generate_split(family, arguments.count or size, arguments.data_seed * len(SPLITS) + offset)
-        if arguments.exact:
+        split = generate_split(family, count, arguments.data_seed * len(SPLITS) + offset)
+        if exact or arguments.exact:
             layouts = [deploy(RatioField(ratio)).outline(0.0) for ratio in split.ratios]
             sets[family] = [Outline.from_points(layout, f"{family} {k}") for k, layout in enumerate(layouts)]
         else:
@@ -159,6 +258,10 @@ def _target_sets(arguments: argparse.Namespace) -> dict[str, list[Outline]]:
 
 SUITES: dict[str, Callable[[argparse.Namespace, ProgressLine], dict[str, object]]] = {
     "generator": _generator_suite,
+    "variants": _variants_suite,
+    "spread": _spread_suite,
+    "robustness": _robustness_suite,
+    "generation-speed": _generation_speed_suite,
     "polish": _polish_suite,
     "designs": _designs_suite,
     "regularity": _regularity_suite,

@@ -9,9 +9,14 @@ import pytest
 from PIL import Image
 
 from kirigami_studio.benchmark.contact_sheet import write_contact_sheet
-from kirigami_studio.benchmark.design_suite import design_figures, make_designs
+from kirigami_studio.benchmark.design_suite import Made, design_figures, make_designs, worst_of
 from kirigami_studio.benchmark.regularity_suite import measure_regularity
+from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.evaluate.score import evaluate
+from kirigami_studio.lattice.deployment import deploy
+from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.pipeline.request import Request
+from kirigami_studio.polish.levenberg import polish
 from kirigami_studio.polish.regularity import PREFERENCES
 from kirigami_studio.target.silhouettes import load
 
@@ -30,11 +35,26 @@ def test_that_every_target_gets_its_best_grid_its_line_and_its_pictures(tmp_path
     assert figures["iou_exact_worst"] == min(line["iou_exact"] for line in shapes.values())
     assert all(line["iou_exact"] > line["uniform_iou"] for line in shapes.values())
     assert "trimmed_iou" not in figures
+    assert figures["siou_gain"] == pytest.approx(figures["siou"] - figures["uniform_siou"])  # type: ignore[operator]
     path = tmp_path / "all.png"
     write_contact_sheet(made, path)
     with Image.open(path) as picture:
         assert picture.width > 1000
         assert len(picture.convert("RGB").getcolors(1 << 24) or []) > 50
+
+
+def test_that_designs_below_the_uniform_sheet_and_the_worst_are_named() -> None:
+    jagged = RatioField.from_log10(np.random.default_rng(0).uniform(-1, 1, (6, 6)))
+    fields = {"square": jagged, "heart": polish(RatioField.uniform(6, 6), load("heart"), steps=5).field}
+    made = []
+    for name, field in fields.items():
+        target = load(name)
+        best = Candidate(field, evaluate(deploy(field), target), 0, 0)
+        made.append(Made(target, Request(target, (6, 6), k=1), best, 0.1, 1))
+    figures = design_figures(made)
+    assert figures["below_uniform"] == figures["below_uniform_exact"] == ["square"]
+    assert figures["worst"] == ["square", "heart"]
+    assert worst_of(made, 1) == [made[0]]
 
 
 def test_that_trimmed_figures_stand_beside_the_untrimmed_ones(tmp_path: Path) -> None:
