@@ -71,7 +71,7 @@ def measure_spread(
         for name in names:
             request = Request(target, grid, k=k, seed=seed, variant=name, steps=steps)
             for poses, angle in POSES.items():
-                fields = draw_fields(load_model(name), target, grid, k, seed, steps, angle)
+                fields = draw_fields(load_model(name), target, grid, k, seed, steps, poses=angle)
                 found[name][poses].append(spread_of(scored(request, fields, 0)))
                 report(done := done + 1, total)
     settings = {"targets": len(targets), "seed": seed, "k": k, "steps": steps, "grid": list(grid), "alike": ALIKE}

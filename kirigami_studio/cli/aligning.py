@@ -10,7 +10,7 @@ from kirigami_studio.cli.console import print_json, say
 from kirigami_studio.foundation.errors import UsageError
 
 if TYPE_CHECKING:
-    from kirigami_studio.generator.network import VelocityNetwork
+    from kirigami_studio.generator.backbones import Network
     from kirigami_studio.generator.weights import Model
 
 #: Validation targets of each family, and of the figures on groups of samples.
@@ -47,7 +47,7 @@ def grpo(arguments: argparse.Namespace) -> int:
     )
     watched = validator(VALIDATION_COUNT, device, settings.rollout_steps)
 
-    def validate(network: VelocityNetwork) -> dict[str, float]:
+    def validate(network: Network) -> dict[str, float]:
         among = group_figures(network, GROUP_COUNT, settings.rollout_steps)
         return watched(network) | {f"structured_{name}": value for name, value in among.items()}
 

@@ -9,13 +9,14 @@ to know how far to trust a linear answer, and which of the many equivalent field
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import torch
 from torch import Tensor
 
 from kirigami_studio.generator.conditioning import normalised
 from kirigami_studio.generator.gauss_newton import Residuals, gauss_newton_direction
-from kirigami_studio.generator.sheet import Carrier, Sheet
+from kirigami_studio.generator.sheet import Sheet, carrier_between
 from kirigami_studio.lattice.batched import BatchedLattice
 from kirigami_studio.lattice.batched_slopes import BatchedSlopes
 
@@ -63,9 +64,9 @@ class Feedback:
 
     def __init__(self, own: tuple[int, int], sheet: Sheet, device: torch.device, direction: bool) -> None:
         self.sheet, self.device = sheet, device
-        self.lattice = BatchedLattice(sheet.rows, sheet.columns, device)
-        self.carrier = Carrier(own, sheet, device)
-        self.slopes = BatchedSlopes(self.lattice, sheet.zipped) if direction else None
+        self.lattice, slopes = _geometry(sheet.rows, sheet.columns, sheet.zipped, device)
+        self.carrier = carrier_between(own, sheet, device)
+        self.slopes = slopes if direction else None
 
     @staticmethod
     def width(rows: int, columns: int, loop_points: int, direction: bool) -> int:
@@ -107,6 +108,13 @@ class Feedback:
             return normalised(decoded), _normalised_slopes(decoded, slopes)
         decoded = self.lattice.outline(torch.pow(10.0, field), self.sheet.phi)
         return normalised(decoded[:, self.lattice.unzipped] if self.sheet.zipped else decoded), None
+
+
+@lru_cache(maxsize=256)
+def _geometry(rows: int, columns: int, zipped: bool, device: torch.device) -> tuple[BatchedLattice, BatchedSlopes]:
+    """The tables of a grid, which take longer to build than to use: the same for every angle."""
+    lattice = BatchedLattice(rows, columns, device)
+    return lattice, BatchedSlopes(lattice, zipped)
 
 
 def _normalised_slopes(outline: Tensor, slopes: Tensor) -> Tensor:

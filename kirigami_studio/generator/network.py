@@ -10,7 +10,7 @@ from torch import Tensor, nn
 
 from kirigami_studio.generator.conditioning import ConditionLayout, condition, contour_points
 from kirigami_studio.generator.feedback import Feedback
-from kirigami_studio.generator.sheet import Carrier, Sheet
+from kirigami_studio.generator.sheet import Carrier, Sheet, carrier_between
 
 #: Numbers that describe a sheet.
 SHEET_FEATURES = 5
@@ -131,7 +131,6 @@ class VelocityNetwork(nn.Module):
     def __init__(self, shape: NetworkShape) -> None:
         super().__init__()
         self.shape = shape
-        self._feedbacks: dict[Sheet, Feedback] = {}
         cells = shape.rows * shape.columns
         self.encode = nn.Sequential(
             nn.Linear(shape.condition_layout.width, shape.width * 2),
@@ -187,11 +186,10 @@ class VelocityNetwork(nn.Module):
         sheet = sheet or Sheet(shape.rows, shape.columns)
         if self.lie is not None:
             encoded = encoded + self.lie(_sheet_features(sheet, shape, polygons))
+        own, device = (shape.rows, shape.columns), polygons.device
         if not shape.loop_points:
-            return TargetCode(
-                encoded, polygons[:, :0], Carrier((shape.rows, shape.columns), sheet, polygons.device), None
-            )
-        feedback = self._feedback(sheet, polygons.device)
+            return TargetCode(encoded, polygons[:, :0], carrier_between(own, sheet, device), None)
+        feedback = Feedback(own, sheet, device, shape.direction)
         return TargetCode(encoded, contour_points(polygons, shape.loop_points), feedback.carrier, feedback)
 
     def forward(self, z: Tensor, t: Tensor, code: TargetCode) -> Tensor:
@@ -240,14 +238,6 @@ class VelocityNetwork(nn.Module):
             x = block(x, bias)
         thought: Tensor = self.norm(x)
         return thought
-
-    def _feedback(self, sheet: Sheet, device: torch.device) -> Feedback:
-        """The exact geometry of a sheet on the device in use, built when first asked for."""
-        found = self._feedbacks.get(sheet)
-        if found is None or found.device != device:
-            found = Feedback((self.shape.rows, self.shape.columns), sheet, device, self.shape.direction)
-            self._feedbacks[sheet] = found
-        return found
 
 
 def _sheet_features(sheet: Sheet, shape: NetworkShape, like: Tensor) -> Tensor:

@@ -83,7 +83,16 @@ class Carrier:
         return outline if self.same_outline else self._stations @ outline
 
 
-@lru_cache(maxsize=32)
+def carrier_between(own: tuple[int, int], sheet: Sheet, device: torch.device) -> Carrier:
+    """The carrier of a sheet; it depends on the angle only by whether the edge hinges have zipped."""
+    return _carrier(own, sheet.rows, sheet.columns, sheet.zipped, device)
+
+
+@lru_cache(maxsize=256)
+def _carrier(own: tuple[int, int], rows: int, columns: int, zipped: bool, device: torch.device) -> Carrier:
+    return Carrier(own, Sheet(rows, columns, 0.0 if zipped else 1.0), device)
+
+
 def _resizing(old: tuple[int, int], new: tuple[int, int]) -> FloatArray:
     """Matrix (old cells, new cells) of the parity-wise interpolation."""
     cells = old[0] * old[1]

@@ -35,7 +35,7 @@ from torch.nn import functional
 from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.generator.conditioning import ConditionLayout
 from kirigami_studio.generator.masks import MASK_SIZE, filled_masks
-from kirigami_studio.generator.sheet import Carrier, Sheet
+from kirigami_studio.generator.sheet import Carrier, Sheet, carrier_between
 from kirigami_studio.generator.unet_blocks import Residual, SelfAttention, Stage, TimeEmbedding, zeroed
 
 #: Most groups of a group normalisation; narrow networks have fewer.
@@ -249,7 +249,7 @@ class UNetVelocity(nn.Module):
         """
         masks = filled_masks(polygons, self.shape.mask)[:, None]
         own = self.shape.rows, self.shape.columns
-        carrier = Carrier(own, sheet or Sheet(*own), polygons.device)
+        carrier = carrier_between(own, sheet or Sheet(*own), polygons.device)
         return MaskCode(self.hint(functional.avg_pool2d(masks, self.shape.mask // self.shape.latent)), carrier)
 
     def forward(self, z: Tensor, t: Tensor, code: MaskCode) -> Tensor:

@@ -11,6 +11,7 @@ from numpy.random import Generator
 from torch import Tensor
 
 from kirigami_studio.generator.conditioning import normalised
+from kirigami_studio.generator.sheet import Sheet
 from kirigami_studio.lattice.batched import BatchedLattice
 from kirigami_studio.lattice.ratio_field import FloatArray
 
@@ -63,3 +64,9 @@ class Corpus:
 def zero_outline(lattice: BatchedLattice, z: Tensor) -> Tensor:
     """Outline at phi = 0 of fields z (B, m, n): (B, 2 (m + n) + 4, 2), differentiable."""
     return lattice.outline(torch.pow(10.0, z), 0.0)[:, lattice.unzipped]
+
+
+def sheet_outline(lattice: BatchedLattice, sheet: Sheet, z: Tensor) -> Tensor:
+    """Outline of fields z (B, m, n) at the sheet's angle, zipped edge hinges left out: (B, L, 2), differentiable."""
+    outline = lattice.outline(torch.pow(10.0, z), sheet.phi)
+    return outline[:, lattice.unzipped] if sheet.zipped else outline

@@ -19,8 +19,9 @@ from torch import Tensor
 
 from kirigami_studio.generator.conditioning import normalised
 from kirigami_studio.generator.feedback import squared_distances, to_loop
+from kirigami_studio.generator.sheet import Sheet
 from kirigami_studio.lattice.batched import BatchedLattice
-from kirigami_studio.training.corpus import zero_outline
+from kirigami_studio.training.corpus import sheet_outline
 
 #: Distance (unit-area lengths) above which a gap counts linearly; below, its square over twice this.
 SOFTNESS = 0.002
@@ -47,27 +48,32 @@ class PreferenceTerms:
     excess: Tensor
 
 
-def preference_terms(lattice: BatchedLattice, z: Tensor, loop: Tensor) -> PreferenceTerms:
-    """Measure fields z (B, m * n) against target boundaries (B, S, 2), unit area, in the same pose; differentiable."""
+def preference_terms(lattice: BatchedLattice, sheet: Sheet, z: Tensor, loop: Tensor) -> PreferenceTerms:
+    """Measure fields z (B, m * n) of a sheet against target boundaries (B, S, 2); differentiable.
+
+    Both have unit area about the centroid and lie in the same pose.
+    """
     field = z.view(-1, lattice.rows, lattice.columns)
     inside = field.clamp(-1.0, 1.0)
     # Bounded where it counts, but with a way back for what lies outside.
     return PreferenceTerms(
-        boundary_gap(normalised(zero_outline(lattice, inside)), loop),
+        boundary_gap(normalised(sheet_outline(lattice, sheet, inside)), loop),
         _total_variation(torch.pow(10.0, inside)),
         (field - inside).square().mean(dim=(1, 2)) * RANGE_WEIGHT,
     )
 
 
-def trail_gap(lattice: BatchedLattice, finished: list[Tensor], loop: Tensor) -> tuple[PreferenceTerms, Tensor]:
+def trail_gap(
+    lattice: BatchedLattice, sheet: Sheet, finished: list[Tensor], loop: Tensor
+) -> tuple[PreferenceTerms, Tensor]:
     """Terms of the last of several finished fields, and the mean gap of those before it, 0 if there are none.
 
     A correction is not differentiated through, so what it starts from has to be told by itself how good it is.
     """
-    terms = preference_terms(lattice, finished[-1], loop)
+    terms = preference_terms(lattice, sheet, finished[-1], loop)
     if len(finished) == 1:
         return terms, torch.zeros_like(terms.match).mean()
-    early = [preference_terms(lattice, z, loop) for z in finished[:-1]]
+    early = [preference_terms(lattice, sheet, z, loop) for z in finished[:-1]]
     return terms, torch.stack([one.match + one.excess for one in early]).mean()
 
 

@@ -15,8 +15,8 @@ from torch import Tensor
 from kirigami_studio.generator.backbones import Network
 from kirigami_studio.generator.conditioning import contour_points, normalised, turned
 from kirigami_studio.generator.pose import square_pose
+from kirigami_studio.generator.sheet import Sheet
 from kirigami_studio.generator.velocity import Code, joined
-from kirigami_studio.training.corpus import Chunk
 from kirigami_studio.training.validation import drawn_polygons
 
 #: Points of the target boundary that a loss measures against; the network sees fewer.
@@ -43,13 +43,13 @@ class SampledTargets:
     shifts: tuple[Tensor, ...]
     loop: Tensor
 
-    def code(self, network: Network, preference: Tensor | None = None) -> Code:
-        """The targets for a network, with a preference (B,) for each where it takes one."""
+    def code(self, network: Network, sheet: Sheet, preference: Tensor | None = None) -> Code:
+        """The targets for a network and a sheet, with a preference (B,) for each where it takes one."""
         if preference is None:
             chosen: list[Tensor | None] = [None] * len(self.seen)
         else:
             chosen = list(torch.split(preference, [len(part) for part in self.seen]))
-        return joined([network.code(*part) for part in zip(self.seen, self.shifts, chosen, strict=True)])
+        return joined([network.code(*part, sheet) for part in zip(self.seen, self.shifts, chosen, strict=True)])
 
 
 class TargetSource:
@@ -79,13 +79,12 @@ class TargetSource:
         self.generator, self.device = generator, device
         self.drawn = normalised(drawn_polygons(drawn, seed)).to(device) if drawn else None
 
-    def targets(self, chunk: Chunk, count: int, drawn_share: float) -> SampledTargets:
-        """``count`` targets, ``drawn_share`` of them drawn shapes if there are any, the others from ``chunk``."""
-        drawn_rows = round(drawn_share * count) if self.drawn is not None else 0
-        pools = [(chunk.polygons, count - drawn_rows)]
-        if self.drawn is not None:
-            pools.append((self.drawn, drawn_rows))
-        clean = [self._posed(pool[self._indices(len(pool), rows)]) for pool, rows in pools]
+    def targets(self, silhouettes: Tensor, drawn: int) -> SampledTargets:
+        """All of ``silhouettes`` (B, L, 2), unit area about the centroid, and ``drawn`` drawn shapes, if any."""
+        pools = [silhouettes]
+        if self.drawn is not None and drawn:
+            pools.append(self.drawn[self._indices(len(self.drawn), drawn)])
+        clean = [self._posed(pool) for pool in pools]
         return SampledTargets(
             tuple(part + self.vertex_noise * self._normal(part.shape) for part in clean),
             tuple(self.shift_noise * self._normal(part.shape[:1]) for part in clean),

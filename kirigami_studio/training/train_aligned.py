@@ -14,15 +14,19 @@ from collections.abc import Callable, Iterator
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
+import numpy as np
 import torch
 from torch import Tensor
 
 from kirigami_studio.foundation.errors import ExportError, ModelError
+from kirigami_studio.generator.conditioning import normalised
 from kirigami_studio.generator.flow import Z_LIMIT, integrate, trail
 from kirigami_studio.generator.network import NetworkShape, VelocityNetwork
+from kirigami_studio.generator.sheet import Sheet
 from kirigami_studio.generator.weights import Model
+from kirigami_studio.lattice.batched import BatchedLattice
 from kirigami_studio.training.checkpoint import Checkpoint
-from kirigami_studio.training.corpus import Chunk, Corpus
+from kirigami_studio.training.corpus import sheet_outline
 from kirigami_studio.training.fields import mixed_fields
 from kirigami_studio.training.growth import grown_state
 from kirigami_studio.training.preference_loss import EARLY_WEIGHT, PreferenceTerms, trail_gap
@@ -31,8 +35,10 @@ from kirigami_studio.training.train_flow import schedule
 
 #: Share of the anchor that full regularity gives up: smooth fields cannot stay where rough ones were.
 ANCHOR_EASED = 0.8
-#: The preference's weights begin at zero and have one input: they learn this much faster than the others.
-NEW_PACE = 30.0
+#: The weights of preference and sheet begin at zero and have few inputs: they learn this much faster than the others.
+NEW_LAYERS, NEW_PACE = ("prefer", "lie"), 30.0
+#: Least and most voids each way of other sheets, the share of them at phi = 0, and the largest angle of the others.
+GRIDS, FLAT_SHARE, LARGEST_PHI = (6, 16), 0.6, 2 * math.pi / 3
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,7 +68,9 @@ class AlignSettings:
         The prior is sampled too for every so-manieth row.
     vertex_noise, shift_noise : float
         As in :class:`kirigami_studio.training.train_flow.FlowSettings`; the loss looks at the undisturbed target.
-    chunk, passes, seed : int
+    other_sheets : float
+        Share of the steps that draw on another sheet than the network's own.
+    seed : int
     shape : NetworkShape
     """
 
@@ -79,10 +87,9 @@ class AlignSettings:
     anchored_every: int = 2
     vertex_noise: float = 0.004
     shift_noise: float = 0.3
-    chunk: int = 8192
-    passes: int = 1
+    other_sheets: float = 0.6
     seed: int = 0
-    shape: NetworkShape = field(default_factory=lambda: NetworkShape(preference=True))
+    shape: NetworkShape = field(default_factory=lambda: NetworkShape(preference=True, sheets=True))
 
     def to_json(self) -> dict[str, object]:
         return asdict(self)
@@ -162,20 +169,17 @@ class AlignRun:
         self.network = VelocityNetwork(settings.shape).to(device)
         self.network.load_state_dict(grown_state(prior.network, settings.shape))
         self.average = {name: value.detach().clone() for name, value in self.network.state_dict().items()}
-        new = [value for name, value in self.network.named_parameters() if name.startswith("prefer")]
-        old = [value for name, value in self.network.named_parameters() if not name.startswith("prefer")]
+        new = [value for name, value in self.network.named_parameters() if name.startswith(NEW_LAYERS)]
+        old = [value for name, value in self.network.named_parameters() if not name.startswith(NEW_LAYERS)]
         self.optimiser = torch.optim.AdamW(
             [{"params": old, "pace": 1.0}, {"params": new, "pace": NEW_PACE}], betas=(0.9, 0.99), weight_decay=0.0
         )
         self.generator = torch.Generator(device=device).manual_seed(settings.seed)
-        self.corpus = Corpus(
-            mixed_fields, settings.shape.rows, settings.shape.columns, settings.seed, settings.chunk, device
-        )
+        self._lattices: dict[tuple[int, int], BatchedLattice] = {}
         self.source = TargetSource(
             settings.drawn, settings.seed, settings.vertex_noise, settings.shift_noise, self.generator, device
         )
         self.step = 0
-        self._chunk: tuple[int, Chunk] | None = None
         if path.exists():
             self._resume()
 
@@ -184,18 +188,20 @@ class AlignRun:
         settings = self.settings
         for group in self.optimiser.param_groups:
             group["lr"] = group["pace"] * settings.learning_rate * schedule(self.step, settings.steps)
-        targets = self.source.targets(self._random_chunk(), settings.batch, settings.drawn_share)
+        sheet = self._sheet()
+        drawn = round(settings.drawn_share * settings.batch) if settings.drawn else 0
+        targets = self.source.targets(self._silhouettes(sheet, settings.batch - drawn), drawn)
         preference = self._preferences(settings.batch)
-        noise = torch.randn(
-            (settings.batch, settings.shape.rows * settings.shape.columns), generator=self.generator, device=self.device
-        )
+        cells = settings.shape.rows * settings.shape.columns
+        noise = torch.randn((settings.batch, cells), generator=self.generator, device=self.device)
         noise = noise * settings.shape.z_scale
-        finished = trail(self.network, noise, targets.code(self.network, preference), settings.sampling_steps)
-        terms, early = trail_gap(self.corpus.lattice, finished, targets.loop)
+        code = targets.code(self.network, sheet, preference)
+        finished = trail(self.network, noise, code, settings.sampling_steps)
+        terms, early = trail_gap(self._lattice(sheet), sheet, finished, targets.loop)
         z = finished[-1]
         anchored = slice(0, None, settings.anchored_every)
         with torch.no_grad():
-            code = targets.code(self.prior).picked(anchored)
+            code = targets.code(self.prior, sheet).picked(anchored)
             reference = integrate(self.prior, noise[anchored], code, settings.sampling_steps).clamp(-Z_LIMIT, Z_LIMIT)
         kept = 1.0 - ANCHOR_EASED * preference[anchored]
         anchor = (kept * (z[anchored] - reference).square().mean(dim=1)).mean()
@@ -247,12 +253,28 @@ class AlignRun:
         smooth = settings.variation_weight * preference * terms.variation
         return (terms.match + smooth + terms.excess).mean() + settings.anchor_weight * anchor
 
-    def _random_chunk(self) -> Chunk:
-        """The random fields that this step draws on."""
-        number = self.step * self.settings.batch // self.settings.chunk
-        if self._chunk is None or self._chunk[0] != number:
-            self._chunk = number, self.corpus.chunk(number)
-        return self._chunk[1]
+    def _sheet(self) -> Sheet:
+        """The sheet of this step: the network's own, or any of 6 to 16 voids each way and any useful angle."""
+        settings, own = self.settings, Sheet(self.settings.shape.rows, self.settings.shape.columns)
+        rng = np.random.default_rng((settings.seed, self.step))
+        if rng.random() >= settings.other_sheets:
+            return own
+        rows, columns = (int(count) for count in rng.integers(GRIDS[0], GRIDS[1] + 1, size=2))
+        phi = 0.0 if rng.random() < FLAT_SHARE else float(rng.uniform(0.0, LARGEST_PHI))
+        return Sheet(rows, columns, phi)
+
+    def _lattice(self, sheet: Sheet) -> BatchedLattice:
+        grid = sheet.rows, sheet.columns
+        if grid not in self._lattices:
+            self._lattices[grid] = BatchedLattice(*grid, self.device)
+        return self._lattices[grid]
+
+    def _silhouettes(self, sheet: Sheet, count: int) -> Tensor:
+        """What random fields of a sheet show: (B, L, 2), unit area about the centroid."""
+        rng = np.random.default_rng((self.settings.seed, 1, self.step))
+        fields = torch.tensor(mixed_fields(count, sheet.rows, sheet.columns, rng), dtype=torch.float32)
+        with torch.no_grad():
+            return normalised(sheet_outline(self._lattice(sheet), sheet, fields.to(self.device)))
 
     def _preferences(self, rows: int) -> Tensor:
         """0 for two in five rows, 1 for three in ten, anything between for the others."""

@@ -21,7 +21,7 @@ from kirigami_studio.generator.backbones import Network, Shape, network_of
 from kirigami_studio.generator.conditioning import condition, turned
 from kirigami_studio.generator.network import NetworkShape
 from kirigami_studio.generator.pose import square_pose
-from kirigami_studio.generator.velocity import Velocity, joined
+from kirigami_studio.generator.velocity import joined
 from kirigami_studio.generator.weights import Model
 from kirigami_studio.training.checkpoint import Checkpoint
 from kirigami_studio.training.corpus import Chunk, Corpus, zero_outline
@@ -133,7 +133,7 @@ def train_flow(
     settings: FlowSettings,
     folder: Path,
     device: torch.device,
-    validate: Callable[[Velocity], dict[str, float]],
+    validate: Callable[[Network], dict[str, float]],
     *,
     sources: Sources | None = None,
     seconds: float = math.inf,

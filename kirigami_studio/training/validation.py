@@ -10,6 +10,7 @@ import torch
 from torch import Tensor
 
 from kirigami_studio.evaluate.regularity import total_variation
+from kirigami_studio.generator.backbones import Network
 from kirigami_studio.generator.conditioning import normalised, turned
 from kirigami_studio.generator.flow import integrate
 from kirigami_studio.generator.pose import square_pose
@@ -66,10 +67,10 @@ def _ious(results: Tensor, targets: Tensor) -> FloatArray:
     return np.asarray(common / (shapely.area(ours) + shapely.area(theirs) - common))
 
 
-def validator(count: int, device: torch.device, steps: int = 4) -> Callable[[Velocity], dict[str, float]]:
+def validator(count: int, device: torch.device, steps: int = 4) -> Callable[[Network], dict[str, float]]:
     """Make the function that training calls: mean IoU on ``count`` targets of each family."""
 
-    def measure(network: Velocity) -> dict[str, float]:
+    def measure(network: Network) -> dict[str, float]:
         rows, columns = network.shape.rows, network.shape.columns
         lattice = BatchedLattice(rows, columns, device)
         families = {
@@ -87,7 +88,9 @@ def validator(count: int, device: torch.device, steps: int = 4) -> Callable[[Vel
     return measure
 
 
-def group_figures(network: Velocity, count: int, steps: int, samples: int = 16) -> dict[str, float]:
+def group_figures(
+    network: Network, count: int, steps: int, samples: int = 16, preference: float = 0.0
+) -> dict[str, float]:
     """How ``samples`` designs of one target in one pose differ, on ``count`` structured validation targets.
 
     Returns
@@ -102,7 +105,8 @@ def group_figures(network: Velocity, count: int, steps: int, samples: int = 16) 
     fields = structured_fields(count, rows, columns, np.random.default_rng(VALIDATION_SEED))
     with torch.no_grad():
         targets = normalised(zero_outline(lattice, torch.tensor(fields, dtype=torch.float32, device=device)))
-        code = network.code(turned(targets, -square_pose(targets))).repeated(samples)
+        asked = torch.full((count,), preference, device=device)
+        code = network.code(turned(targets, -square_pose(targets)), preference=asked).repeated(samples)
         generator = torch.Generator().manual_seed(0)
         noise = torch.randn((count * samples, rows * columns), generator=generator) * network.shape.z_scale
         drawn = integrate(network, noise.to(device), code, steps).clamp(-Z_LIMIT, Z_LIMIT)
