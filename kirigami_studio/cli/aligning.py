@@ -1,4 +1,4 @@
-"""``train grpo``: align a trained generator with a reward, as the paper does."""
+"""``train align`` and ``train grpo``: from a trained prior to what people prefer."""
 
 from __future__ import annotations
 
@@ -61,6 +61,51 @@ def grpo(arguments: argparse.Namespace) -> int:
             say(" ".join(f"{key} {value:.4f}" for key, value in record.items()))
     about = {"validation": record, "settings": settings.to_json(), "start": start.variant}
     path = store_model(f"grpo-{settings.reward}", aligned_network(folder, start), folder, about)
+    if arguments.json:
+        print_json({"files": [str(path)], "record": record})
+    else:
+        say(f"Weights: {path}")
+    return 0
+
+
+def align(arguments: argparse.Namespace) -> int:
+    """Align a prior through the sampler, or go on aligning it, and write the variants into the run folder."""
+    from kirigami_studio.generator.weights import store_variants
+    from kirigami_studio.training.device import training_device
+    from kirigami_studio.training.train_aligned import VARIANTS, AlignSettings, aligned_network, train_aligned
+    from kirigami_studio.training.validation import preference_figures
+
+    if arguments.minutes is not None and arguments.minutes <= 0:
+        raise UsageError(f"--minutes must be above 0, got {arguments.minutes:g}.")
+    if arguments.other_sheets > 1.0:
+        raise UsageError(f"--other-sheets is a share from 0 to 1, got {arguments.other_sheets:g}.")
+    device = training_device(arguments.device, arguments.threads)
+    prior = starting_model(arguments.start)
+    settings = AlignSettings(
+        prior=prior.digest,
+        steps=arguments.steps,
+        batch=arguments.batch,
+        drawn=arguments.drawn,
+        learning_rate=arguments.learning_rate,
+        variation_weight=arguments.variation_weight,
+        anchor_weight=arguments.anchor_weight,
+        other_sheets=arguments.other_sheets,
+        seed=arguments.seed,
+    )
+    folder = Path(arguments.out)
+    seconds = float("inf") if arguments.minutes is None else 60.0 * arguments.minutes
+
+    def validate(network: Network) -> dict[str, float]:
+        return preference_figures(network, VALIDATION_COUNT, tuple(VARIANTS.values()), settings.sampling_steps)
+
+    record: dict[str, float] = {}
+    for record in train_aligned(
+        settings, folder, device, validate, prior, seconds=seconds, validate_every=arguments.validate_every
+    ):
+        if not arguments.json:
+            say(" ".join(f"{key} {value:.4f}" for key, value in record.items()))
+    about = {"validation": record, "settings": settings.to_json()}
+    path = store_variants("aligned", VARIANTS, aligned_network(settings, folder, device, prior), folder, about)
     if arguments.json:
         print_json({"files": [str(path)], "record": record})
     else:

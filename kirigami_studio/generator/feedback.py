@@ -58,15 +58,12 @@ class Feedback:
     sheet : Sheet
         Where the fields lie.
     device : torch.device
-    direction : bool
-        Also give the Gauss-Newton direction.
     """
 
-    def __init__(self, own: tuple[int, int], sheet: Sheet, device: torch.device, direction: bool) -> None:
+    def __init__(self, own: tuple[int, int], sheet: Sheet, device: torch.device) -> None:
         self.sheet, self.device = sheet, device
-        self.lattice, slopes = _geometry(sheet.rows, sheet.columns, sheet.zipped, device)
+        self.lattice, self.slopes = _geometry(sheet.rows, sheet.columns, sheet.zipped, device)
         self.carrier = carrier_between(own, sheet, device)
-        self.slopes = slopes if direction else None
 
     @staticmethod
     def width(rows: int, columns: int, loop_points: int, direction: bool) -> int:
@@ -74,17 +71,21 @@ class Feedback:
         vertices = 2 * (rows + columns) + 4
         return 2 * vertices + 4 * vertices + loop_points + (rows * columns if direction else 0)
 
-    def __call__(self, z: Tensor, loop: Tensor) -> Sight:
-        """Describe fields z (B, m * n) of the sheet against target loops (B, S, 2), without gradient."""
+    def __call__(self, z: Tensor, loop: Tensor, direction: bool) -> Sight:
+        """Describe fields z (B, m * n) of the sheet against target loops (B, S, 2), without gradient.
+
+        The Gauss-Newton direction takes most of the time and is left out where nobody asks for it.
+        """
         with torch.no_grad():
-            if self.slopes is None or self.device.type != "cpu":
-                return self._described(z, loop)
+            if not direction or self.device.type != "cpu":
+                return self._described(z, loop, direction)
             parts = zip(torch.split(z, CHUNK), torch.split(loop, CHUNK), strict=True)
-            seen = [self._described(*part) for part in parts]
+            seen = [self._described(*part, direction) for part in parts]
             return Sight(torch.cat([one.features for one in seen]), torch.cat([one.direction for one in seen]))
 
-    def _described(self, z: Tensor, loop: Tensor) -> Sight:
-        outline, slopes = self._outline(z.clamp(-Z_BOUND, Z_BOUND).view(-1, self.sheet.rows, self.sheet.columns))
+    def _described(self, z: Tensor, loop: Tensor, wanted: bool) -> Sight:
+        field = z.clamp(-Z_BOUND, Z_BOUND).view(-1, self.sheet.rows, self.sheet.columns)
+        outline, slopes = self._outline(field, wanted)
         samples = _with_middles(outline)
         squared = squared_distances(samples, loop)
         out, _ = to_loop(samples, loop, squared.argmin(dim=2))
@@ -101,9 +102,9 @@ class Feedback:
         seen.append(self.carrier.down(direction) / DIRECTION_SCALE)
         return Sight(torch.cat(seen, dim=1), direction)
 
-    def _outline(self, field: Tensor) -> tuple[Tensor, Tensor | None]:
-        """Outlines of fields (B, m, n), unit area about the centroid, and their derivatives (B, L, 2, m * n)."""
-        if self.slopes is not None:
+    def _outline(self, field: Tensor, wanted: bool) -> tuple[Tensor, Tensor | None]:
+        """Outlines of fields (B, m, n), unit area about the centroid; if wanted their derivatives (B, L, 2, m * n)."""
+        if wanted:
             decoded, slopes = self.slopes(field, self.sheet.phi)
             return normalised(decoded), _normalised_slopes(decoded, slopes)
         decoded = self.lattice.outline(torch.pow(10.0, field), self.sheet.phi)

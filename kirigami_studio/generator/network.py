@@ -55,7 +55,7 @@ class NetworkShape:
     rays: int = 128
     loop_points: int = 192
     z_scale: float = 0.5
-    direction: bool = True
+    direction: bool = False
     preference: bool = False
     sheets: bool = False
 
@@ -189,7 +189,7 @@ class VelocityNetwork(nn.Module):
         own, device = (shape.rows, shape.columns), polygons.device
         if not shape.loop_points:
             return TargetCode(encoded, polygons[:, :0], carrier_between(own, sheet, device), None)
-        feedback = Feedback(own, sheet, device, shape.direction)
+        feedback = Feedback(own, sheet, device)
         return TargetCode(encoded, contour_points(polygons, shape.loop_points), feedback.carrier, feedback)
 
     def forward(self, z: Tensor, t: Tensor, code: TargetCode) -> Tensor:
@@ -207,23 +207,26 @@ class VelocityNetwork(nn.Module):
         """
         features = z[:, :0]
         if code.feedback is not None:
-            features = code.feedback(code.on_sheet(z), code.loop).features
+            features = code.feedback(code.on_sheet(z), code.loop, self.shape.direction).features
         velocity: Tensor = self.leave(self._thought(z, t, code, features))
         return velocity
 
     @property
     def corrects(self) -> bool:
-        """Whether the network has a corrector, see :meth:`correction`."""
-        return self.follow is not None
+        """Whether the network looks at the exact geometry, which then can correct finished fields."""
+        return self.shape.loop_points > 0
 
     def correction(self, z: Tensor, code: TargetCode) -> Tensor:
         """Change of finished fields z (B, m * n) of the sheet that brings their outlines nearer: (B, m * n).
 
-        The Gauss-Newton direction, taken as far in each ratio as the network thinks fit, and what the network adds.
+        The Gauss-Newton direction; a network that was trained to correct takes it as far in each ratio as it thinks
+        fit, and adds to it.
         """
-        if self.follow is None or self.amend is None or code.feedback is None:
+        if code.feedback is None:
             return torch.zeros_like(z)
-        sight = code.feedback(z, code.loop)
+        sight = code.feedback(z, code.loop, True)
+        if self.follow is None or self.amend is None:
+            return sight.direction
         carrier = code.carrier
         x = self._thought(carrier.down(z), torch.ones_like(z[:, 0]), code, sight.features)
         change: Tensor = (1.0 + carrier.up(self.follow(x))) * sight.direction + carrier.up(self.amend(x))

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -114,7 +115,7 @@ def load_model(variant: str, folder: Path | None = None) -> Model:
 
 
 def store_model(variant: str, network: Network, folder: Path, about: dict[str, object]) -> Path:
-    """Write weights in half precision and enter them in the folder's manifest.
+    """Write weights in half precision and enter them in the folder's manifest as one variant.
 
     Parameters
     ----------
@@ -129,19 +130,38 @@ def store_model(variant: str, network: Network, folder: Path, about: dict[str, o
     path : Path
         The safetensors file.
     """
-    tensors = {name: value.detach().cpu().half().contiguous() for name, value in network.state_dict().items()}
-    content = save_tensors(tensors, metadata={"variant": variant, "format": str(FORMAT)})
-    path = folder / f"{variant}.safetensors"
+    return store_variants(variant, {variant: 0.0}, network, folder, about)
+
+
+def store_variants(
+    name: str, preferences: Mapping[str, float], network: Network, folder: Path, about: dict[str, object]
+) -> Path:
+    """Like :func:`store_model`, for one network that serves several variants by the preference it is given.
+
+    Parameters
+    ----------
+    name : str
+        Of the file, without its ending.
+    preferences : mapping of str to float
+        Variants and what they prefer, from match (0) to regularity (1).
+    network, folder, about
+        As in :func:`store_model`.
+    """
+    tensors = {key: value.detach().cpu().half().contiguous() for key, value in network.state_dict().items()}
+    content = save_tensors(tensors, metadata={"variant": name, "format": str(FORMAT)})
+    path = folder / f"{name}.safetensors"
     write_atomically(path, content)
     empty: dict[str, Any] = {"format": FORMAT, "variants": {}}
     manifest = _manifest(folder) if (folder / MANIFEST).exists() else empty
-    manifest["variants"][variant] = {
-        "file": path.name,
-        "sha256": hashlib.sha256(content).hexdigest(),
-        "backbone": backbone_of(network.shape),
-        "shape": network.shape.to_json(),
-        "about": about,
-    }
+    for variant, preference in preferences.items():
+        manifest["variants"][variant] = {
+            "file": path.name,
+            "sha256": hashlib.sha256(content).hexdigest(),
+            "backbone": backbone_of(network.shape),
+            "preference": preference,
+            "shape": network.shape.to_json(),
+            "about": about,
+        }
     write_atomically(folder / MANIFEST, (json.dumps(manifest, indent=2) + "\n").encode())
     return path
 

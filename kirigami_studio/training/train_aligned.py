@@ -41,6 +41,10 @@ NEW_LAYERS, NEW_PACE = ("prefer", "lie"), 30.0
 GRIDS, FLAT_SHARE, LARGEST_PHI = (6, 16), 0.6, 2 * math.pi / 3
 
 
+#: What is bundled of an aligned network: names and preferences.
+VARIANTS = {"accuracy": 0.0, "balanced": 0.5, "regularity": 1.0}
+
+
 @dataclass(frozen=True, slots=True)
 class AlignSettings:
     """Settings of one alignment run.
@@ -89,7 +93,7 @@ class AlignSettings:
     shift_noise: float = 0.3
     other_sheets: float = 0.6
     seed: int = 0
-    shape: NetworkShape = field(default_factory=lambda: NetworkShape(preference=True, sheets=True))
+    shape: NetworkShape = field(default_factory=lambda: NetworkShape(direction=True, preference=True, sheets=True))
 
     def to_json(self) -> dict[str, object]:
         return asdict(self)
@@ -149,6 +153,11 @@ def train_aligned(
             yield record
         if out_of_time:
             break
+
+
+def aligned_network(settings: AlignSettings, folder: Path, device: torch.device, prior: Model) -> VelocityNetwork:
+    """The averaged network of the checkpoint in ``folder``: what is shipped."""
+    return AlignRun(settings, folder / "checkpoint.pt", device, prior).averaged()
 
 
 class AlignRun:
