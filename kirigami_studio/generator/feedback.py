@@ -15,6 +15,7 @@ import torch
 from torch import Tensor
 
 from kirigami_studio.generator.conditioning import normalised
+from kirigami_studio.generator.evenness import evenness_terms
 from kirigami_studio.generator.gauss_newton import Residuals, gauss_newton_direction
 from kirigami_studio.generator.sheet import Sheet, carrier_between
 from kirigami_studio.lattice.batched import BatchedLattice
@@ -71,19 +72,22 @@ class Feedback:
         vertices = 2 * (rows + columns) + 4
         return 2 * vertices + 4 * vertices + loop_points + (rows * columns if direction else 0)
 
-    def __call__(self, z: Tensor, loop: Tensor, direction: bool) -> Sight:
+    def __call__(self, z: Tensor, loop: Tensor, direction: bool, evenness: Tensor | None = None) -> Sight:
         """Describe fields z (B, m * n) of the sheet against target loops (B, S, 2), without gradient.
 
-        The Gauss-Newton direction takes most of the time and is left out where nobody asks for it.
+        The Gauss-Newton direction takes most of the time and is left out where nobody asks for it; ``evenness`` (B,)
+        is the cost of TV(x) / (m n) in it.
         """
         with torch.no_grad():
             if not direction or self.device.type != "cpu":
-                return self._described(z, loop, direction)
-            parts = zip(torch.split(z, CHUNK), torch.split(loop, CHUNK), strict=True)
-            seen = [self._described(*part, direction) for part in parts]
+                return self._described(z, loop, direction, evenness)
+            none = [None] * -(-len(z) // CHUNK)
+            costs = none if evenness is None else torch.split(evenness, CHUNK)
+            parts = zip(torch.split(z, CHUNK), torch.split(loop, CHUNK), costs, strict=True)
+            seen = [self._described(field, target, direction, cost) for field, target, cost in parts]
             return Sight(torch.cat([one.features for one in seen]), torch.cat([one.direction for one in seen]))
 
-    def _described(self, z: Tensor, loop: Tensor, wanted: bool) -> Sight:
+    def _described(self, z: Tensor, loop: Tensor, wanted: bool, evenness: Tensor | None) -> Sight:
         field = z.clamp(-Z_BOUND, Z_BOUND).view(-1, self.sheet.rows, self.sheet.columns)
         outline, slopes = self._outline(field, wanted)
         samples = _with_middles(outline)
@@ -97,7 +101,8 @@ class Feedback:
         seen = [stations.flatten(1) / PLACE_SCALE, away.flatten(1) / GAP_SCALE, back.flatten(1) / GAP_SCALE]
         if slopes is None:
             return Sight(torch.cat(seen, dim=1), z[:, :0])
-        direction = gauss_newton_direction(Residuals.of(outline, loop, out, back, 0.5 * place), slopes)
+        even = evenness_terms(field, evenness) if evenness is not None and bool(evenness.any()) else None
+        direction = gauss_newton_direction(Residuals.of(outline, loop, out, back, 0.5 * place), slopes, even)
         direction = direction.clamp(-DIRECTION_BOUND, DIRECTION_BOUND)
         seen.append(self.carrier.down(direction) / DIRECTION_SCALE)
         return Sight(torch.cat(seen, dim=1), direction)

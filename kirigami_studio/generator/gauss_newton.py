@@ -81,7 +81,7 @@ class Residuals:
         )
 
 
-def gauss_newton_direction(residuals: Residuals, slopes: Tensor) -> Tensor:
+def gauss_newton_direction(residuals: Residuals, slopes: Tensor, even: tuple[Tensor, Tensor] | None = None) -> Tensor:
     """Damped Gauss-Newton change of z; the outline's shift is free.
 
     Parameters
@@ -89,6 +89,8 @@ def gauss_newton_direction(residuals: Residuals, slopes: Tensor) -> Tensor:
     residuals : Residuals of B outlines
     slopes : (B, L, 2, C) tensor
         Derivative of the outlines (unit-area lengths) by the C entries of z.
+    even : ((B, C) tensor, (B, C, C) tensor), optional
+        Descent and matrix of what else is wanted of z, see ``evenness``.
 
     Returns
     -------
@@ -101,8 +103,12 @@ def gauss_newton_direction(residuals: Residuals, slopes: Tensor) -> Tensor:
     normal = columns.mT @ (matrix @ columns)
     diagonal = normal.diagonal(dim1=1, dim2=2)
     diagonal += DAMPING * diagonal[:, :-2].mean(dim=1, keepdim=True) + 1e-12
+    descent = columns.mT @ gradient[..., None]
+    if even is not None:
+        descent[:, :-2, 0] += even[0]
+        normal[:, :-2, :-2] += even[1]
     factor, _ = torch.linalg.cholesky_ex(normal)
-    change: Tensor = torch.cholesky_solve(columns.mT @ gradient[..., None], factor)
+    change: Tensor = torch.cholesky_solve(descent, factor)
     return torch.nan_to_num(change[:, :-2, 0], nan=0.0, posinf=0.0, neginf=0.0)
 
 

@@ -12,6 +12,9 @@ from kirigami_studio.generator.conditioning import ConditionLayout, condition, c
 from kirigami_studio.generator.feedback import Feedback
 from kirigami_studio.generator.sheet import Carrier, Sheet, carrier_between
 
+#: What corrections take TV(x) / (m n) to cost at full preference for regularity, in squared unit-area lengths: a third
+#: less variation for half a point of match or less (40 structured and 40 Sobol outlines, prior).
+EVENNESS = 1.5e-4
 #: Numbers that describe a sheet.
 SHEET_FEATURES = 5
 
@@ -85,16 +88,19 @@ class TargetCode:
         Between the network's grid and the sheet that all of them are for.
     feedback : Feedback, optional
         The exact geometry of that sheet; missing where the network does not look at it.
+    evenness : (B,) tensor
+        What corrections take TV(x) / (m n) to cost, see ``evenness``.
     """
 
     encoded: Tensor
     loop: Tensor
     carrier: Carrier
     feedback: Feedback | None
+    evenness: Tensor
 
     def picked(self, rows: slice) -> TargetCode:
         """Some of the targets."""
-        return replace(self, encoded=self.encoded[rows], loop=self.loop[rows])
+        return replace(self, encoded=self.encoded[rows], loop=self.loop[rows], evenness=self.evenness[rows])
 
     def repeated(self, count: int) -> TargetCode:
         """Every target ``count`` times in a row."""
@@ -102,6 +108,7 @@ class TargetCode:
             self,
             encoded=self.encoded.repeat_interleave(count, dim=0),
             loop=self.loop.repeat_interleave(count, dim=0),
+            evenness=self.evenness.repeat_interleave(count),
         )
 
     def on_sheet(self, z: Tensor) -> Tensor:
@@ -174,23 +181,27 @@ class VelocityNetwork(nn.Module):
         shift : (B,) tensor, optional
             Moves the contour's start.
         preference : (B,) tensor, optional
-            0 for match, 1 for regularity; only networks with ``preference`` look at it, and take 0 when missing.
+            0 for match, 1 for regularity, 0 when missing.  Corrections follow it in any network; those with
+            ``preference`` also draw by it.
         sheet : Sheet, optional
             What is to show them; the network's own grid at phi = 0 when missing.
         """
         shape = self.shape
         described = condition(polygons, shape.condition_layout, shift)
         encoded = self.condition_per_block(self.encode(described))
-        if self.prefer is not None and preference is not None:
+        if preference is None:
+            preference = polygons.new_zeros(len(polygons))
+        if self.prefer is not None:
             encoded = encoded + self.prefer(preference[:, None])
+        evenness = EVENNESS * preference.square()
         sheet = sheet or Sheet(shape.rows, shape.columns)
         if self.lie is not None:
             encoded = encoded + self.lie(_sheet_features(sheet, shape, polygons))
         own, device = (shape.rows, shape.columns), polygons.device
         if not shape.loop_points:
-            return TargetCode(encoded, polygons[:, :0], carrier_between(own, sheet, device), None)
+            return TargetCode(encoded, polygons[:, :0], carrier_between(own, sheet, device), None, evenness)
         feedback = Feedback(own, sheet, device)
-        return TargetCode(encoded, contour_points(polygons, shape.loop_points), feedback.carrier, feedback)
+        return TargetCode(encoded, contour_points(polygons, shape.loop_points), feedback.carrier, feedback, evenness)
 
     def forward(self, z: Tensor, t: Tensor, code: TargetCode) -> Tensor:
         """Velocity.
@@ -224,7 +235,7 @@ class VelocityNetwork(nn.Module):
         """
         if code.feedback is None:
             return torch.zeros_like(z)
-        sight = code.feedback(z, code.loop, True)
+        sight = code.feedback(z, code.loop, True, code.evenness)
         if self.follow is None or self.amend is None:
             return sight.direction
         carrier = code.carrier

@@ -21,6 +21,8 @@ from kirigami_studio.training.validation import drawn_polygons
 
 #: Points of the target boundary that a loss measures against; the network sees fewer.
 LOSS_POINTS = 384
+#: Contour points of a target as it arrives, a pixel or two apart on a mask of 128.
+SEEN_POINTS = 256
 #: Shares of the rows that stand upright and in another quarter turn; the rest lie in any pose.
 UPRIGHT, QUARTERS = 0.5, 0.25
 
@@ -32,7 +34,7 @@ class SampledTargets:
     Attributes
     ----------
     seen : tuple of (B_i, L_i, 2) tensors
-        As they arrive: vertices a little off.
+        As they arrive: contour points a little off.
     shifts : tuple of (B_i,) tensors
         How far their contours' starts are moved, in point spacings.
     loop : (B, 384, 2) tensor
@@ -60,8 +62,10 @@ class TargetSource:
     drawn : int
         How many drawn shapes to make; 0 for random fields only.
     seed : int
-    vertex_noise, shift_noise : float
-        Standard deviations of vertices (unit-area lengths) and of the contour's start (point spacings).
+    vertex_noise : float
+        Largest standard deviation of contour points, unit-area lengths.
+    shift_noise : float
+        Standard deviation of the contour's start, point spacings.
     generator : torch.Generator
     device : torch.device
     """
@@ -86,10 +90,16 @@ class TargetSource:
             pools.append(self.drawn[self._indices(len(self.drawn), drawn)])
         clean = [self._posed(pool) for pool in pools]
         return SampledTargets(
-            tuple(part + self.vertex_noise * self._normal(part.shape) for part in clean),
+            tuple(self._disturbed(part) for part in clean),
             tuple(self.shift_noise * self._normal(part.shape[:1]) for part in clean),
             torch.cat([contour_points(part, LOSS_POINTS) for part in clean]),
         )
+
+    def _disturbed(self, polygons: Tensor) -> Tensor:
+        """As a pixel contour or a hand draws them: many points, every outline with a noise of its own size."""
+        points = contour_points(polygons, SEEN_POINTS)
+        scale = self.vertex_noise * self._uniform(len(points))
+        return points + scale[:, None, None] * self._normal(points.shape)
 
     def _posed(self, polygons: Tensor) -> Tensor:
         """As candidates see a target: upright, in another quarter turn, or in any pose."""

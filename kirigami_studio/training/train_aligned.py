@@ -33,8 +33,6 @@ from kirigami_studio.training.preference_loss import EARLY_WEIGHT, PreferenceTer
 from kirigami_studio.training.sampled_targets import TargetSource
 from kirigami_studio.training.train_flow import schedule
 
-#: Share of the anchor that full regularity gives up: smooth fields cannot stay where rough ones were.
-ANCHOR_EASED = 0.8
 #: The weights of preference and sheet begin at zero and have few inputs: they learn this much faster than the others.
 NEW_LAYERS, NEW_PACE = ("prefer", "lie"), 30.0
 #: Least and most voids each way of other sheets, the share of them at phi = 0, and the largest angle of the others.
@@ -70,8 +68,11 @@ class AlignSettings:
         Cost of the mean squared distance of z to the prior's sample.
     anchored_every : int
         The prior is sampled too for every so-manieth row.
-    vertex_noise, shift_noise : float
-        As in :class:`kirigami_studio.training.train_flow.FlowSettings`; the loss looks at the undisturbed target.
+    vertex_noise : float
+        Largest standard deviation of the target's contour as the network sees it, unit-area lengths (a pixel of 128 is
+        about 0.009); drawn anew for every row.  The loss looks at the undisturbed target.
+    shift_noise : float
+        Standard deviation of the contour's start, in point spacings.
     other_sheets : float
         Share of the steps that draw on another sheet than the network's own.
     seed : int
@@ -79,19 +80,19 @@ class AlignSettings:
     """
 
     prior: str
-    steps: int = 4000
+    steps: int = 3000
     batch: int = 48
-    drawn: int = 2000
+    drawn: int = 1000
     drawn_share: float = 0.35
     sampling_steps: int = 4
     learning_rate: float = 2e-4
     average_decay: float = 0.998
-    variation_weight: float = 0.06
+    variation_weight: float = 0.015
     anchor_weight: float = 0.5
     anchored_every: int = 2
-    vertex_noise: float = 0.004
+    vertex_noise: float = 0.008
     shift_noise: float = 0.3
-    other_sheets: float = 0.6
+    other_sheets: float = 0.5
     seed: int = 0
     shape: NetworkShape = field(default_factory=lambda: NetworkShape(direction=True, preference=True, sheets=True))
 
@@ -210,10 +211,9 @@ class AlignRun:
         z = finished[-1]
         anchored = slice(0, None, settings.anchored_every)
         with torch.no_grad():
-            code = targets.code(self.prior, sheet).picked(anchored)
+            code = targets.code(self.prior, sheet, preference).picked(anchored)
             reference = integrate(self.prior, noise[anchored], code, settings.sampling_steps).clamp(-Z_LIMIT, Z_LIMIT)
-        kept = 1.0 - ANCHOR_EASED * preference[anchored]
-        anchor = (kept * (z[anchored] - reference).square().mean(dim=1)).mean()
+        anchor = (z[anchored] - reference).square().mean()
         loss = self._loss(terms, anchor, preference) + EARLY_WEIGHT * early
         self.optimiser.zero_grad(set_to_none=True)
         loss.backward()
