@@ -13,6 +13,9 @@ from dataclasses import dataclass
 import torch
 from torch import Tensor
 
+#: Points averaged to one by :func:`smoothed_points`.
+SUBSAMPLES = 6
+
 
 @dataclass(frozen=True, slots=True)
 class ConditionLayout:
@@ -105,6 +108,19 @@ def contour_points(polygons: Tensor, count: int, shift: Tensor | None = None) ->
     b = following.gather(1, edge[..., None].expand(-1, -1, 2))
     points: Tensor = a + fraction.clamp(0, 1)[..., None] * (b - a)
     return points
+
+
+def smoothed_points(polygons: Tensor, count: int) -> Tensor:
+    """Like :func:`contour_points`, every point the mean of the boundary within half a spacing: (B, count, 2).
+
+    Jitter of single contour points, by pixels or by a hand, averages out; what is longer than a spacing stays.
+    """
+    fine = contour_points(polygons, SUBSAMPLES * count)
+    windows = fine.roll(SUBSAMPLES // 2, dims=1).view(len(fine), count, SUBSAMPLES, 2)
+    # Half of the first and of the one after the last make the window symmetric about its point.
+    following = windows.roll(-1, dims=1)[:, :, 0]
+    mean: Tensor = (windows.sum(dim=2) - 0.5 * windows[:, :, 0] + 0.5 * following) / SUBSAMPLES
+    return mean
 
 
 def _start_arc(polygons: Tensor, following: Tensor, begin: Tensor, length: Tensor) -> Tensor:

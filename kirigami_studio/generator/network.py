@@ -8,7 +8,7 @@ from dataclasses import asdict, dataclass, replace
 import torch
 from torch import Tensor, nn
 
-from kirigami_studio.generator.conditioning import ConditionLayout, condition, contour_points
+from kirigami_studio.generator.conditioning import ConditionLayout, condition, smoothed_points
 from kirigami_studio.generator.feedback import Feedback
 from kirigami_studio.generator.sheet import Carrier, Sheet, carrier_between
 
@@ -201,7 +201,7 @@ class VelocityNetwork(nn.Module):
         if not shape.loop_points:
             return TargetCode(encoded, polygons[:, :0], carrier_between(own, sheet, device), None, evenness)
         feedback = Feedback(own, sheet, device)
-        return TargetCode(encoded, contour_points(polygons, shape.loop_points), feedback.carrier, feedback, evenness)
+        return TargetCode(encoded, smoothed_points(polygons, shape.loop_points), feedback.carrier, feedback, evenness)
 
     def forward(self, z: Tensor, t: Tensor, code: TargetCode) -> Tensor:
         """Velocity.

@@ -51,6 +51,10 @@ class Model:
     digest: str
     preference: float = 0.0
 
+    def decodings(self, steps: int) -> int:
+        """How often one sample of ``steps`` network evaluations decodes a layout: comparable with the paper's #F."""
+        return steps if self.network.corrects else 0
+
     def code(self, polygons: Tensor, sheet: Sheet) -> Code:
         """Prepare normalised, posed target polygons (B, L, 2) for a sheet."""
         preference = torch.full((len(polygons),), self.preference)

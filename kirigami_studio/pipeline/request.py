@@ -36,7 +36,8 @@ class Request:
     variant : str
         Name of a bundled generator variant, see :func:`kirigami_studio.generator.weights.variants`.
     steps : int, 1..64
-        Euler steps of the flow.
+        Evaluations of the network for each sample: Euler steps of the flow, then corrections, see
+        :func:`kirigami_studio.generator.flow.integrate`.
     polish : int, 0..200
         Steps of the fit on the exact geometry that every candidate gets after sampling, in one or two rounds;
         0 leaves them as drawn.
@@ -75,7 +76,7 @@ class Request:
             raise AngleError(f"The target angle must lie in [0, pi) radians, got {self.phi:g}; 0 is the usual choice.")
         for name, value, low, high in (
             ("candidates (k)", self.k, 1, LARGEST_K),
-            ("Euler steps", self.steps, 1, LARGEST_STEPS),
+            ("sampling steps", self.steps, 1, LARGEST_STEPS),
             ("the seed", self.seed, 0, 2**63 - 1),
             ("polishing steps", self.polish, 0, LARGEST_POLISH),
             ("the search effort", self.search, 0, LARGEST_SEARCH),

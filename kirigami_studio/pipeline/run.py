@@ -80,7 +80,9 @@ def run(request: Request, cancel: Callable[[], bool] = never, pool: Pool | None 
     work = _Work(request, watch, _gaining(pool or shared_pool(), request))
     yield Started(request.k)
     yield Progress(0, request.k, "Loading the generator")
-    yield from work.score(sample(request))
+    fields = sample(request)
+    work.evaluations += request.k * decodings(request)
+    yield from work.score(fields)
     if request.polish:
         yield from work.polish()
     if request.search:
@@ -98,6 +100,13 @@ def sample(request: Request) -> tuple[RatioField, ...]:
 
     model = load_model(request.variant)
     return draw_fields(model, request.target, request.grid, request.k, request.seed, request.steps, request.phi)
+
+
+def decodings(request: Request) -> int:
+    """How often the generator decodes a sample while it draws it; scoring it is one more."""
+    from kirigami_studio.generator.weights import load_model
+
+    return load_model(request.variant).decodings(request.steps)
 
 
 class _Work:

@@ -27,7 +27,7 @@ class DesignSettings:
     variant : str
         Name of the generator variant.
     steps : int, >= 1
-        Euler steps of the flow.
+        Evaluations of the network for each sample: Euler steps of the flow, then corrections.
     polish : int, >= 0
         Steps of the fit on the exact geometry; 0 leaves candidates as drawn.
     prefer : str
