@@ -90,7 +90,9 @@ def carrier_between(own: tuple[int, int], sheet: Sheet, device: torch.device) ->
 
 @lru_cache(maxsize=256)
 def _carrier(own: tuple[int, int], rows: int, columns: int, zipped: bool, device: torch.device) -> Carrier:
-    return Carrier(own, Sheet(rows, columns, 0.0 if zipped else 1.0), device)
+    # Kept for later: a table made while sampling, without gradients, must serve training too.
+    with torch.inference_mode(False):
+        return Carrier(own, Sheet(rows, columns, 0.0 if zipped else 1.0), device)
 
 
 def _resizing(old: tuple[int, int], new: tuple[int, int]) -> FloatArray:
