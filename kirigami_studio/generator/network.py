@@ -41,7 +41,7 @@ class NetworkShape:
     z_scale : float
         Standard deviation of the source noise; z is divided by it at the input.
     direction : bool
-        Feedback gives the Gauss-Newton direction too.
+        Feedback, where there is any, gives the Gauss-Newton direction too, and the network can correct.
     preference : bool
         The network takes a preference between match (0) and regularity (1).
     sheets : bool
@@ -159,7 +159,7 @@ class VelocityNetwork(nn.Module):
         nn.init.zeros_(self.leave.weight)
         nn.init.zeros_(self.leave.bias)
         self.follow, self.amend = None, None
-        if shape.direction:
+        if shape.direction and shape.loop_points:
             self.follow, self.amend = nn.Linear(shape.width, cells), nn.Linear(shape.width, cells)
             for layer in (self.follow, self.amend):
                 nn.init.zeros_(layer.weight)
