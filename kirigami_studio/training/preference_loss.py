@@ -80,14 +80,17 @@ def trail_gap(
 def boundary_gap(outline: Tensor, loop: Tensor) -> Tensor:
     """Length-weighted soft distances between outlines (B, L, 2) and target loops (B, S, 2), both ways, halved: (B,)."""
     following = outline.roll(-1, dims=1)
-    shares = outline.new_tensor([1 / 6, 1 / 2, 5 / 6])[:, None]
+    # The vertices are among the samples, so that the line through them cuts no corner.
+    shares = outline.new_tensor([0.0, 1 / 3, 2 / 3])[:, None]
     samples = (outline[:, :, None] * (1 - shares) + following[:, :, None] * shares).flatten(1, 2)
     with torch.no_grad():
         squared = squared_distances(samples, loop)
         nearest, nearest_back = squared.argmin(dim=2), squared.argmin(dim=1)
     out, _ = to_loop(samples, loop, nearest)
     back, _ = to_loop(loop, samples, nearest_back)
-    length = (following - outline).norm(dim=-1).repeat_interleave(len(shares), dim=1) / len(shares)
+    third = (following - outline).norm(dim=-1) / 3
+    # A vertex stands for half a third of the edges on both sides.
+    length = torch.stack([0.5 * (third + third.roll(1, dims=1)), third, third], dim=2).flatten(1)
     perimeter = (loop.roll(-1, dims=1) - loop).norm(dim=-1).sum(dim=1) / loop.shape[1]
     outward = (length * _soft_length(out)).sum(dim=1)
     return 0.5 * (outward + perimeter * _soft_length(back).sum(dim=1))
