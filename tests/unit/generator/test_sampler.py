@@ -3,14 +3,23 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 import torch
 
+from kirigami_studio.evaluate.score import evaluate
+from kirigami_studio.generator.network import VelocityNetwork
 from kirigami_studio.generator.sampler import Z_LIMIT, draw_fields, one_pose, pose_angle, posed
+from kirigami_studio.generator.sheet import Sheet
 from kirigami_studio.generator.weights import Model, load_model
+from kirigami_studio.lattice.deployment import deploy
+from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.lattice.resize import resize_fields
+from kirigami_studio.target.outline import Outline
 from kirigami_studio.target.silhouettes import load
+from kirigami_studio.training.growth import grown_state
 
 pytestmark = pytest.mark.torch
 
@@ -18,6 +27,19 @@ pytestmark = pytest.mark.torch
 @pytest.fixture(scope="module")
 def model() -> Model:
     return load_model("prior")
+
+
+@pytest.fixture(scope="module")
+def corrector(model: Model) -> Model:
+    """The bundled model with at least a plain Gauss-Newton corrector."""
+    shape = replace(model.network.shape, direction=True)  # type: ignore[type-var]
+    network = VelocityNetwork(shape)  # type: ignore[arg-type]
+    network.load_state_dict(grown_state(model.network, shape))  # type: ignore[arg-type]
+    return Model("corrector", network.eval().requires_grad_(False), model.digest)
+
+
+def mean_match(fields: tuple[RatioField, ...], target: Outline, phi: float = 0.0) -> float:
+    return float(np.mean([evaluate(deploy(field), target, phi).iou_exact for field in fields]))
 
 
 def test_that_the_same_seed_draws_the_same_fields(model: Model) -> None:
@@ -71,3 +93,40 @@ def test_that_all_candidates_can_be_drawn_in_the_first_ones_pose(model: Model) -
     same = draw_fields(model, load("heart"), (10, 10), 4, 0, 4, poses=one_pose)
     assert np.allclose(same[0].log10, own[0].log10, atol=1e-4)
     assert not np.allclose(same[1].log10, own[1].log10, atol=0.1)
+
+
+@pytest.mark.parametrize("sheet", [Sheet(10, 10, 0.5), Sheet(7, 12), Sheet(12, 7, 1.2), Sheet(3, 4, 0.8)], ids=str)
+def test_that_every_sheet_gets_fields_of_its_own_grid_that_seed_and_number_decide(
+    corrector: Model, sheet: Sheet
+) -> None:
+    grid = sheet.rows, sheet.columns
+    few, many = (draw_fields(corrector, load("star"), grid, k, 3, 4, sheet.phi) for k in (2, 9))
+    assert all(field.ratio.shape == grid for field in many)
+    assert all(np.abs(field.log10).max() <= Z_LIMIT + 1e-12 for field in many)
+    assert many[:2] == few
+    assert many[8] not in many[:8]
+    assert draw_fields(corrector, load("star"), grid, 2, 4, 4, sheet.phi)[0] != few[0]
+
+
+def test_that_the_angle_is_taken_into_account(corrector: Model) -> None:
+    target = load("drop")
+    flat, opened = (draw_fields(corrector, target, (10, 10), 4, 0, 4, phi) for phi in (0.0, 0.6))
+    assert not np.allclose(flat[0].log10, opened[0].log10, atol=0.05)
+    assert mean_match(opened, target, 0.6) > mean_match(flat, target, 0.6)
+
+
+def test_that_another_grid_is_matched_better_than_by_carrying_fields_over(model: Model, corrector: Model) -> None:
+    heart = load("heart")
+    own = draw_fields(model, heart, (10, 10), 16, 0, 4)
+    carried = resize_fields(np.stack([field.log10 for field in own]), 16, 16)
+    resized = tuple(RatioField.from_log10(np.clip(z, -Z_LIMIT, Z_LIMIT)) for z in carried)
+    plain = mean_match(resized, heart)
+    assert mean_match(draw_fields(model, heart, (16, 16), 16, 0, 4), heart) > plain
+    assert mean_match(draw_fields(corrector, heart, (16, 16), 16, 0, 4), heart) > plain + 0.005
+
+
+def test_that_a_correction_improves_what_the_euler_step_drew(corrector: Model) -> None:
+    target = load("heart")
+    half = draw_fields(corrector, target, (12, 12), 8, 0, 1)
+    whole = draw_fields(corrector, target, (12, 12), 8, 0, 2)  # the same Euler step and one correction
+    assert mean_match(whole, target) > mean_match(half, target)

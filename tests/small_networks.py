@@ -1,0 +1,36 @@
+"""Networks of a few thousand random weights, and silhouettes of known fields for them."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import torch
+
+from kirigami_studio.generator.conditioning import normalised
+from kirigami_studio.generator.network import NetworkShape, VelocityNetwork
+from kirigami_studio.generator.sheet import Sheet
+from kirigami_studio.lattice.batched import BatchedLattice
+from kirigami_studio.training.corpus import sheet_outline
+
+SMALL = NetworkShape(4, 4, 32, 64, 1, 16, 24, 32, 96)
+
+
+def random_network(kind: type[VelocityNetwork] = VelocityNetwork, **changes: object) -> VelocityNetwork:
+    """A network that makes something of its input; its corrector still is the plain Gauss-Newton step."""
+    torch.manual_seed(0)
+    network = kind(replace(SMALL, **changes))  # type: ignore[arg-type]
+    for layer in (network.leave, *(block.contract for block in network.blocks)):
+        torch.nn.init.normal_(layer.weight, std=0.1)
+    return network.eval().requires_grad_(False)
+
+
+def random_fields(sheet: Sheet, count: int, scale: float = 0.3, seed: int = 0) -> torch.Tensor:
+    """z of fields of a sheet: (count, m * n)."""
+    generator = torch.Generator().manual_seed(seed)
+    return scale * torch.randn((count, sheet.rows * sheet.columns), generator=generator)
+
+
+def silhouettes(z: torch.Tensor, sheet: Sheet) -> torch.Tensor:
+    """Outlines of fields z (B, m * n) of a sheet: (B, L, 2), unit area about the centroid."""
+    lattice = BatchedLattice(sheet.rows, sheet.columns)
+    return normalised(sheet_outline(lattice, sheet, z.view(-1, sheet.rows, sheet.columns)))

@@ -1,0 +1,167 @@
+"""The velocity network: what it looks at, and how it corrects finished fields."""
+
+from __future__ import annotations
+
+import pytest
+import torch
+from small_networks import SMALL, random_fields, random_network, silhouettes
+
+from kirigami_studio.generator.conditioning import contour_points
+from kirigami_studio.generator.network import NetworkShape, VelocityNetwork
+from kirigami_studio.generator.sheet import Sheet
+from kirigami_studio.generator.velocity import joined
+from kirigami_studio.training.preference_loss import boundary_gap
+
+pytestmark = pytest.mark.torch
+OWN = Sheet(4, 4)
+OTHERS = [Sheet(6, 5), Sheet(4, 4, 0.9), Sheet(7, 6, 0.6)]
+TARGETS = silhouettes(random_fields(OWN, 4), OWN)
+
+
+def gaps(z: torch.Tensor, targets: torch.Tensor, sheet: Sheet) -> torch.Tensor:
+    return boundary_gap(silhouettes(z, sheet), contour_points(targets, 384))
+
+
+@pytest.mark.parametrize("sheet", [OWN, *OTHERS], ids=str)
+def test_that_a_correction_brings_outlines_nearer_to_their_targets(sheet: Sheet) -> None:
+    network = random_network()
+    wanted = random_fields(sheet, 6)
+    targets = silhouettes(wanted, sheet)
+    z = wanted + random_fields(sheet, 6, 0.1, seed=1)
+    code = network.code(targets, sheet=sheet)
+    change = network.correction(z, code)
+    assert change.shape == z.shape
+    assert float((gaps(z + change, targets, sheet) / gaps(z, targets, sheet)).max()) < 0.7
+    assert float((gaps(z - change, targets, sheet) / gaps(z, targets, sheet)).min()) > 1.2
+
+
+@pytest.mark.parametrize("sheet", [OWN, *OTHERS], ids=str)
+def test_that_gates_at_zero_leave_the_plain_gauss_newton_step(sheet: Sheet) -> None:
+    network = random_network()
+    z = random_fields(sheet, 4, seed=2)
+    code = network.code(TARGETS, sheet=sheet)
+    assert code.feedback is not None
+    assert torch.equal(network.correction(z, code), code.feedback(z, code.loop).direction)
+
+
+@pytest.mark.parametrize("sheet", [OWN, *OTHERS], ids=str)
+def test_that_the_gates_scale_the_step_and_add_to_it(sheet: Sheet) -> None:
+    plain, gated = random_network(), random_network()
+    assert gated.follow is not None and gated.amend is not None
+    gated.follow.bias.fill_(-0.75)
+    gated.amend.bias.fill_(0.1)
+    z = random_fields(sheet, 4, seed=2)
+    step = plain.correction(z, plain.code(TARGETS, sheet=sheet))
+    change = gated.correction(z, gated.code(TARGETS, sheet=sheet))
+    # Numbers that are the same all over the network's grid are the same all over every other one.
+    torch.testing.assert_close(change, 0.25 * step + 0.1, atol=1e-4, rtol=1e-3)
+
+
+def test_that_the_corrector_learns_from_what_it_returns() -> None:
+    network = random_network().requires_grad_(True)
+    z = random_fields(OTHERS[0], 4, seed=2)
+    network.correction(z, network.code(TARGETS, sheet=OTHERS[0])).square().sum().backward()
+    assert network.follow is not None and network.amend is not None
+    for layer in (network.follow, network.amend):
+        assert layer.weight.grad is not None and float(layer.weight.grad.abs().max()) > 0
+
+
+@pytest.mark.parametrize("changes", [{"direction": False}, {"loop_points": 0}, {"loop_points": 0, "direction": False}])
+def test_that_networks_without_the_direction_correct_nothing(changes: dict[str, object]) -> None:
+    network = random_network(**changes)
+    z = random_fields(OWN, 4)
+    assert not network.corrects
+    assert torch.equal(network.correction(z, network.code(TARGETS)), torch.zeros_like(z))
+    assert random_network().corrects
+
+
+@pytest.mark.parametrize("sheet", [OWN, *OTHERS], ids=str)
+@pytest.mark.parametrize("loop_points", [0, 96])
+def test_that_velocities_lie_on_the_networks_grid_whatever_the_sheet(sheet: Sheet, loop_points: int) -> None:
+    network = random_network(loop_points=loop_points)
+    code = network.code(TARGETS, sheet=sheet)
+    velocity = network(random_fields(OWN, 4), torch.full((4,), 0.3), code)
+    assert velocity.shape == (4, 16)
+    assert code.on_sheet(velocity).shape == (4, sheet.rows * sheet.columns)
+    own = network(random_fields(OWN, 4), torch.full((4,), 0.3), network.code(TARGETS))
+    # Only what it sees of the sheet's geometry can make a difference.
+    assert torch.allclose(velocity, own, atol=1e-5) == (sheet == OWN or not loop_points)
+
+
+def test_that_a_preference_counts_once_its_weights_are_not_zero() -> None:
+    network = random_network(preference=True)
+    z, t = random_fields(OWN, 4), torch.full((4,), 0.5)
+
+    def velocity(preference: torch.Tensor | None) -> torch.Tensor:
+        result: torch.Tensor = network(z, t, network.code(TARGETS, preference=preference))
+        return result
+
+    assert torch.equal(velocity(torch.ones(4)), velocity(torch.zeros(4)))
+    assert network.prefer is not None
+    torch.nn.init.normal_(network.prefer.weight)
+    assert torch.equal(velocity(None), velocity(torch.zeros(4)))
+    whole, mixed = velocity(torch.ones(4)), velocity(torch.tensor([1.0, 0.0, 1.0, 0.5]))
+    changed = (whole - velocity(None)).abs().amax(dim=1)
+    assert float(changed.min()) > 1e-3
+    torch.testing.assert_close(mixed[[0, 2]], whole[[0, 2]])
+    torch.testing.assert_close(mixed[1], velocity(None)[1])
+    assert not torch.allclose(mixed[3], whole[3], atol=1e-4)
+    change = network.correction(z, network.code(TARGETS, preference=torch.ones(4)))
+    assert network.follow is not None
+    torch.nn.init.normal_(network.follow.weight)
+    other = [network.correction(z, network.code(TARGETS, preference=torch.full((4,), p))) for p in (0.0, 1.0)]
+    assert not torch.allclose(other[0], other[1], atol=1e-4) and not torch.allclose(other[1], change, atol=1e-4)
+
+
+def test_that_networks_without_a_preference_ignore_it() -> None:
+    network = random_network()
+    codes = [network.code(TARGETS, preference=preference) for preference in (None, torch.ones(4))]
+    assert torch.equal(codes[0].encoded, codes[1].encoded)
+
+
+def test_that_the_sheets_numbers_are_zero_on_the_own_sheet_and_tell_others_apart() -> None:
+    network, told = random_network(), random_network(sheets=True)
+    assert told.lie is not None
+    assert torch.equal(told.code(TARGETS, sheet=OTHERS[0]).encoded, told.code(TARGETS).encoded)
+    torch.nn.init.normal_(told.lie.weight)
+    described = [told.code(TARGETS, sheet=sheet).encoded for sheet in [OWN, *OTHERS, Sheet(5, 6), Sheet(4, 4, 0.5)]]
+    assert torch.equal(described[0], told.code(TARGETS).encoded)
+    assert described[0].shape == network.code(TARGETS).encoded.shape
+    for place, one in enumerate(described):
+        assert all(not torch.allclose(one, other, atol=1e-3) for other in described[place + 1 :])
+
+
+@pytest.mark.parametrize("sheet", [OWN, OTHERS[2]], ids=str)
+def test_that_repeated_picked_and_joined_codes_act_like_their_targets(sheet: Sheet) -> None:
+    network = random_network(preference=True, sheets=True)
+    whole = network.code(TARGETS, preference=torch.ones(4), sheet=sheet)
+    z, t = random_fields(sheet, 4, seed=3), torch.linspace(0, 0.9, 4)
+    noise = random_fields(OWN, 4, 0.5)
+    velocity, change = network(noise, t, whole), network.correction(z, whole)
+    apart = joined([network.code(TARGETS[:1], None, torch.ones(1), sheet),
+                    network.code(TARGETS[1:], None, torch.ones(3), sheet)])  # fmt: skip
+    assert apart.feedback is not None and apart.feedback.sheet == sheet
+    torch.testing.assert_close(network(noise, t, apart), velocity, atol=1e-3, rtol=1e-3)
+    torch.testing.assert_close(network.correction(z, apart), change, atol=1e-3, rtol=1e-3)
+    picked = whole.picked(slice(1, None, 2))
+    torch.testing.assert_close(network(noise[1::2], t[1::2], picked), velocity[1::2], atol=1e-3, rtol=1e-3)
+    torch.testing.assert_close(network.correction(z[1::2], picked), change[1::2], atol=1e-3, rtol=1e-3)
+    twice = whole.repeated(2)
+    doubled = network.correction(z.repeat_interleave(2, dim=0), twice)
+    torch.testing.assert_close(doubled, change.repeat_interleave(2, dim=0), atol=1e-3, rtol=1e-3)
+    assert twice.feedback is picked.feedback is whole.feedback is not None
+
+
+def test_that_repeated_codes_give_each_target_to_consecutive_rows() -> None:
+    code = random_network().code(TARGETS)
+    repeated = code.repeated(3)
+    assert torch.equal(repeated.loop[2], code.loop[0])
+    assert torch.equal(repeated.encoded[3], code.encoded[1])
+
+
+def test_that_a_shape_survives_being_written_down() -> None:
+    shape = NetworkShape(4, 6, preference=True, sheets=True, direction=False)
+    assert NetworkShape(**shape.to_json()) == shape  # type: ignore[arg-type]
+    # Weights of before these inputs existed name them not at all, or say that they see no direction.
+    old = {name: value for name, value in SMALL.to_json().items() if name not in {"preference", "sheets"}}
+    assert not VelocityNetwork(NetworkShape(**{**old, "direction": False})).corrects  # type: ignore[arg-type]

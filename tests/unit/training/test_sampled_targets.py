@@ -1,0 +1,86 @@
+"""Targets for losses on whole samples."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+import torch
+from small_networks import random_fields, random_network, silhouettes
+
+from kirigami_studio.generator.conditioning import contour_points, turned
+from kirigami_studio.generator.pose import square_pose
+from kirigami_studio.generator.sheet import Sheet
+from kirigami_studio.training.preference_loss import boundary_gap
+from kirigami_studio.training.sampled_targets import LOSS_POINTS, TargetSource
+
+pytestmark = pytest.mark.torch
+CPU = torch.device("cpu")
+OWN = Sheet(4, 4)
+
+
+def source(drawn: int = 0, noise: float = 0.0, seed: int = 0) -> TargetSource:
+    return TargetSource(drawn, 3, noise, noise, torch.Generator().manual_seed(seed), CPU)
+
+
+def test_that_poses_are_upright_in_half_and_quarter_turns_in_another_quarter_of_the_rows() -> None:
+    shapes = silhouettes(random_fields(OWN, 1, 0.5), OWN)
+    upright = turned(shapes, -square_pose(shapes))
+    (seen,) = source().targets(shapes.expand(400, -1, -1), 0).seen
+    # The angle by which each row's first vertex was turned.
+    start, ends = (torch.view_as_complex(points[:, 0].contiguous()) for points in (upright, seen))
+    angles = torch.angle(ends / start)
+    torch.testing.assert_close(seen, turned(upright.expand(400, -1, -1), angles), atol=1e-4, rtol=0)
+    quarters = angles / (0.5 * math.pi)
+    still = float((angles.abs() < 1e-3).float().mean())
+    whole = float(((quarters - quarters.round()).abs() < 1e-3).float().mean())
+    # A quarter of the quarter turns is none at all.
+    assert still == pytest.approx(0.5 + 0.25 / 4, abs=0.06)
+    assert whole == pytest.approx(0.75, abs=0.06)
+    assert {-2, -1, 0, 1, 2} >= set(quarters[(quarters - quarters.round()).abs() < 1e-3].round().tolist()) >= {-1, 0, 1}
+
+
+def test_that_the_loss_looks_at_the_undisturbed_boundary() -> None:
+    shapes = silhouettes(random_fields(OWN, 6), OWN)
+    clean, noisy = (source(noise=noise).targets(shapes, 0) for noise in (0.0, 0.01))
+    assert clean.loop.shape == (6, LOSS_POINTS, 2)
+    torch.testing.assert_close(clean.loop, contour_points(clean.seen[0], LOSS_POINTS))
+    assert torch.equal(noisy.loop, clean.loop)
+    assert float((noisy.seen[0] - clean.seen[0]).std()) == pytest.approx(0.01, rel=0.2)
+    assert not clean.shifts[0].any() and noisy.shifts[0].any()
+
+
+def test_that_drawn_shapes_follow_the_silhouettes() -> None:
+    shapes = silhouettes(random_fields(OWN, 3), OWN)
+    made = source(drawn=4).targets(shapes, 2)
+    assert [len(part) for part in made.seen] == [3, 2] == [len(part) for part in made.shifts]
+    torch.testing.assert_close(made.loop[:3], contour_points(made.seen[0], LOSS_POINTS))
+    torch.testing.assert_close(made.loop[3:], contour_points(made.seen[1], LOSS_POINTS))
+    assert len(source(drawn=4).targets(shapes, 0).seen) == len(source().targets(shapes, 2).seen) == 1
+
+
+def test_that_the_same_generator_draws_the_same_targets() -> None:
+    shapes = silhouettes(random_fields(OWN, 3), OWN)
+    first, same, other = (source(4, 0.01, seed).targets(shapes, 2) for seed in (0, 0, 1))
+    assert all(torch.equal(a, b) for a, b in zip(first.seen, same.seen, strict=True))
+    assert torch.equal(first.loop, same.loop)
+    assert not torch.equal(first.loop, other.loop)
+
+
+@pytest.mark.parametrize("sheet", [OWN, Sheet(5, 6, 0.7)], ids=str)
+def test_that_codes_keep_each_targets_own_preference_and_boundary(sheet: Sheet) -> None:
+    network = random_network(preference=True)
+    assert network.prefer is not None
+    torch.nn.init.normal_(network.prefer.weight)
+    made = source(drawn=4).targets(silhouettes(random_fields(sheet, 3), sheet), 2)
+    preference = torch.tensor([0.0, 0.25, 0.5, 0.75, 1.0])
+    code = made.code(network, sheet, preference)
+    shapes = [one[None] for part in made.seen for one in part]
+    for row, (shape, asked) in enumerate(zip(shapes, preference, strict=True)):
+        alone = network.code(shape, torch.zeros(1), asked[None], sheet)
+        torch.testing.assert_close(code.encoded[row], alone.encoded[0], atol=1e-4, rtol=1e-4)
+        assert int(boundary_gap(code.loop[row].expand(5, -1, -1), made.loop).argmin()) == row
+    assert code.feedback is not None and code.feedback.sheet == sheet
+    torch.testing.assert_close(
+        made.code(network, sheet).encoded, made.code(network, sheet, torch.zeros(5)).encoded, atol=1e-5, rtol=1e-5
+    )
