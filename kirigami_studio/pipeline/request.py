@@ -60,7 +60,7 @@ class Request:
     phi: float = 0.0
     k: int = 32
     seed: int = 0
-    variant: str = "prior"
+    variant: str = "balanced"
     steps: int = 4
     polish: int = 0
     prefer: str = "balanced"

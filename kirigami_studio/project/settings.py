@@ -45,7 +45,7 @@ class DesignSettings:
     phi: float = 0.0
     k: int = 32
     seed: int = 0
-    variant: str = "prior"
+    variant: str = "balanced"
     steps: int = 4
     polish: int = 15
     prefer: str = "balanced"

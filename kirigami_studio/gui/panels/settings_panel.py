@@ -29,10 +29,10 @@ TOOLTIP = Qt.ItemDataRole.ToolTipRole
 
 #: What is known about a generator by its name; others are listed by name alone.
 VARIANTS = {
-    "prior": ("Prior", "Learned from random sheets: the widest choice."),
-    "accuracy": ("Accuracy", "Fine-tuned for the closest match."),
-    "regularity": ("Regularity", "Fine-tuned for even panels that are easy to cut."),
-    "balanced": ("Balanced", "Fine-tuned for match and evenness together."),
+    "prior": ("Prior", "As learned from random sheets: the widest choice, rougher fields."),
+    "accuracy": ("Accuracy", "Aligned with the geometry for the closest match."),
+    "regularity": ("Regularity", "Aligned for even panels that are easy to cut, at a little less match."),
+    "balanced": ("Balanced", "Aligned for match and evenness together; the usual choice."),
 }
 
 
@@ -103,7 +103,7 @@ class SettingsPanel(Card):
         self.search.setToolTip(SEARCH)
         self.search.setMinimumHeight(29)
         self._lay_out()
-        self.set_variants(("prior",))
+        self.set_variants(("balanced",))
         self._connect()
 
     def _lay_out(self) -> None:
