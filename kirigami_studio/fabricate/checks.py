@@ -144,7 +144,17 @@ def _connector_problems(plan: CutPlan, kerf: float) -> list[Problem]:
             )
         )
     thinnest = int(np.argmin(finished))
-    if finished[thinnest] < plan.material.min_ligament_mm - WIDTH_TOLERANCE_MM:
+    if finished[thinnest] <= 0.0:
+        x, y = hinges.position[thinnest]
+        problems.append(
+            Problem(
+                f"Nothing is left of the connector at x = {x:.2f}, y = {y:.2f} mm: the sheet would fall into "
+                f"pieces there; widen the connectors.",
+                Severity.ERROR,
+                (float(x), float(y)),
+            )
+        )
+    elif finished[thinnest] < plan.material.min_ligament_mm - WIDTH_TOLERANCE_MM:
         x, y = hinges.position[thinnest]
         problems.append(
             Problem(

@@ -35,7 +35,7 @@ def test_that_generating_fills_the_gallery_best_first_and_is_one_undo_step(
     assert heart.controller.stage is not None and heart.controller.stage.candidate == found[0]
     assert heart.stage.view.phi == pytest.approx(0.0)
     provenance = heart.controller.document.provenance
-    assert provenance["model"] == "prior" and len(provenance["model_sha256"]) == 64
+    assert provenance["model"] == "balanced" and len(provenance["model_sha256"]) == 64
     assert any(candidate.polished for candidate in found)
     assert not heart.run.stop.isVisible()
     heart.actions_["undo"].trigger()

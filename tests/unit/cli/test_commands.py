@@ -146,9 +146,11 @@ def test_that_a_sheet_that_would_fall_apart_is_not_exported(capsys: pytest.Captu
 
 
 @pytest.mark.torch
-def test_that_unpolished_candidates_cost_one_evaluation_each(capsys: pytest.CaptureFixture[str]) -> None:
-    answered = answer(capsys, "design", "heart", "--k", 2, "--no-polish", "--json")
-    assert answered["forward_evaluations"] == 2
+def test_that_unpolished_candidates_cost_a_layout_for_every_step_and_one_for_the_score(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    answered = answer(capsys, "design", "heart", "--k", 2, "--no-polish", "--steps", 3, "--json")
+    assert answered["forward_evaluations"] == 2 * (3 + 1)
     assert not any(candidate["polished"] for candidate in answered["candidates"])
     promised = {"ratio", "siou", "siou_gain", "tv", "feasible", "n_invalid", "overlap_ratio", "seed", "polished"}
     assert promised <= answered["best"].keys()

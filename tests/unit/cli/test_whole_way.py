@@ -42,7 +42,7 @@ def test_that_a_silhouette_becomes_a_cut_file_that_passes_its_check(
     project = load(tmp_path / "design.kiri")
     assert project.candidate is not None
     assert project.candidate.score.siou == pytest.approx(best["siou"])
-    assert project.provenance["model"] == "prior"
+    assert project.provenance["model"] == "balanced"
 
 
 def test_that_connectors_too_wide_for_trimming_name_the_width_that_serves(capsys: pytest.CaptureFixture[str]) -> None:
