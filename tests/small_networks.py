@@ -12,7 +12,7 @@ from kirigami_studio.generator.sheet import Sheet
 from kirigami_studio.lattice.batched import BatchedLattice
 from kirigami_studio.training.corpus import sheet_outline
 
-SMALL = NetworkShape(4, 4, 32, 64, 1, 16, 24, 32, 96)
+SMALL = NetworkShape(4, 4, 32, 64, 1, 16, 24, 32, 96, direction=True)
 
 
 def random_network(kind: type[VelocityNetwork] = VelocityNetwork, **changes: object) -> VelocityNetwork:

@@ -39,7 +39,7 @@ def gaps_of(features: torch.Tensor, points: int) -> torch.Tensor:
 @pytest.mark.parametrize("direction", [False, True])
 def test_that_a_field_is_no_distance_away_from_its_own_outline(direction: bool) -> None:
     z = smooth_noise(3, 36)
-    sight = Feedback(OWN, SHEET, CPU, direction)(z, own_loop(z, 960))
+    sight = Feedback(OWN, SHEET, CPU)(z, own_loop(z, 960), direction)
     assert float(gaps_of(sight.features, 960).abs().max()) < 2e-3
     assert sight.direction.shape == (3, 36 if direction else 0)
     if direction:
@@ -49,7 +49,7 @@ def test_that_a_field_is_no_distance_away_from_its_own_outline(direction: bool) 
 def test_that_feedback_points_from_the_outline_to_the_target() -> None:
     z = torch.zeros(1, 36)
     moved = own_loop(z, 960) + torch.tensor([0.02, 0.0])
-    gaps = gaps_of(Feedback(OWN, SHEET, CPU, True)(z, moved).features, 960)[0]
+    gaps = gaps_of(Feedback(OWN, SHEET, CPU)(z, moved, True).features, 960)[0]
     out, back = gaps[:56], gaps[56:]
     upright_sides = out[:, 1].abs() < 1e-4
     assert float(out[upright_sides, 0].max()) == pytest.approx(0.02, abs=1e-3)
@@ -61,7 +61,7 @@ def test_that_feedback_points_from_the_outline_to_the_target() -> None:
 
 def test_that_the_first_features_are_the_outline() -> None:
     z = smooth_noise(2, 36)
-    features = Feedback(OWN, SHEET, CPU, False)(z, own_loop(z, 64)).features
+    features = Feedback(OWN, SHEET, CPU)(z, own_loop(z, 64), False).features
     outline = normalised(sheet_outline(BatchedLattice(*OWN), SHEET, z.view(-1, 6, 6)))
     torch.testing.assert_close(features[:, :PLACES].view(2, 28, 2) * PLACE_SCALE, outline, atol=1e-5, rtol=0)
 
@@ -71,7 +71,7 @@ def test_that_the_first_features_are_the_outline() -> None:
 def test_that_the_promised_feature_count_is_delivered_on_every_sheet(sheet: Sheet, direction: bool) -> None:
     cells = sheet.rows * sheet.columns
     z = smooth_noise(2, cells)
-    sight = Feedback(OWN, sheet, CPU, direction)(z, own_loop(-z, 64, sheet))
+    sight = Feedback(OWN, sheet, CPU)(z, own_loop(-z, 64, sheet), direction)
     assert sight.features.shape == (2, Feedback.width(*OWN, 64, direction))
     assert sight.direction.shape == (2, cells if direction else 0)
     assert torch.isfinite(sight.features).all()
@@ -82,7 +82,7 @@ def test_that_the_promised_feature_count_is_delivered_on_every_sheet(sheet: Shee
 @pytest.mark.parametrize("sheet", [Sheet(4, 7), Sheet(9, 8, 0.7)], ids=str)
 def test_that_gaps_vanish_on_another_sheets_own_outline_too(sheet: Sheet) -> None:
     z = smooth_noise(2, sheet.rows * sheet.columns)
-    sight = Feedback(OWN, sheet, CPU, True)(z, own_loop(z, 960, sheet))
+    sight = Feedback(OWN, sheet, CPU)(z, own_loop(z, 960, sheet), True)
     gaps = gaps_of(sight.features, 960)
     # Stations lie on the outline; the middles between them may cut its corners.
     assert float(gaps[:, 0:56:2].abs().max()) < 4e-3
@@ -92,19 +92,19 @@ def test_that_gaps_vanish_on_another_sheets_own_outline_too(sheet: Sheet) -> Non
 
 def test_that_the_direction_reaches_the_features_on_the_networks_grid() -> None:
     z = smooth_noise(2, 36)
-    own = Feedback(OWN, SHEET, CPU, True)(z, own_loop(-z, 64))
+    own = Feedback(OWN, SHEET, CPU)(z, own_loop(-z, 64), True)
     assert torch.equal(own.features[:, -36:] * DIRECTION_SCALE, own.direction)
     sheet = Sheet(9, 8)
-    feedback = Feedback(OWN, sheet, CPU, True)
-    other = feedback(smooth_noise(2, 72), own_loop(-smooth_noise(2, 72), 64, sheet))
+    feedback = Feedback(OWN, sheet, CPU)
+    other = feedback(smooth_noise(2, 72), own_loop(-smooth_noise(2, 72), 64, sheet), True)
     torch.testing.assert_close(other.features[:, -36:] * DIRECTION_SCALE, feedback.carrier.down(other.direction))
 
 
 def test_that_many_fields_are_described_like_few() -> None:
     z = smooth_noise(CHUNK + 5, 36)
-    loop, feedback = own_loop(-z, 64), Feedback(OWN, SHEET, CPU, True)
-    together = feedback(z, loop)
-    alone = [feedback(z[row : row + 1], loop[row : row + 1]) for row in (0, CHUNK - 1, CHUNK, CHUNK + 4)]
+    loop, feedback = own_loop(-z, 64), Feedback(OWN, SHEET, CPU)
+    together = feedback(z, loop, True)
+    alone = [feedback(z[row : row + 1], loop[row : row + 1], True) for row in (0, CHUNK - 1, CHUNK, CHUNK + 4)]
     rows = [0, CHUNK - 1, CHUNK, CHUNK + 4]
     places = slice(0, PLACES)
     for row, one in zip(rows, alone, strict=True):
@@ -114,7 +114,7 @@ def test_that_many_fields_are_described_like_few() -> None:
 
 def test_that_noise_out_of_bounds_is_described_in_numbers() -> None:
     z = 4.0 * smooth_noise(4, 36, 1.0)
-    sight = Feedback(OWN, SHEET, CPU, True)(z, own_loop(torch.zeros(4, 36), 64))
+    sight = Feedback(OWN, SHEET, CPU)(z, own_loop(torch.zeros(4, 36), 64), True)
     assert torch.isfinite(sight.features).all() and torch.isfinite(sight.direction).all()
 
 

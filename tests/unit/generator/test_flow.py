@@ -34,14 +34,16 @@ def targets(sheet: Sheet, count: int = 3) -> torch.Tensor:
     return silhouettes(random_fields(sheet, count), sheet)
 
 
-@pytest.mark.parametrize("loop_points", [0, 96])
-def test_that_euler_steps_follow_the_velocity(loop_points: int) -> None:
+@pytest.mark.parametrize(("loop_points", "steps"), [(0, 2), (96, 4)])
+def test_that_euler_steps_follow_the_velocity(loop_points: int, steps: int) -> None:
     network = random_network(loop_points=loop_points, direction=False)
     code = network.code(targets(OWN))
     noise = random_fields(OWN, 3, 0.5, seed=1)
     half = noise + 0.5 * network(noise, torch.zeros(3), code)
     expected = half + 0.5 * network(half, torch.full((3,), 0.5), code)
-    assert torch.allclose(integrate(network, noise, code, 2), expected, atol=1e-6)
+    finished = trail(network, noise, code, steps)
+    assert torch.allclose(finished[0], expected, atol=1e-6)
+    assert len(finished) == (3 if loop_points else 1)
     assert not torch.allclose(expected, noise, atol=1e-3)
 
 
@@ -52,16 +54,19 @@ def test_that_euler_steps_follow_the_velocity(loop_points: int) -> None:
         (5, [0.0, pytest.approx(1 / 3), pytest.approx(2 / 3), "correct", "correct"]),
     ],
 )  # fmt: skip
+@pytest.mark.parametrize("direction", [False, True])
 @pytest.mark.parametrize("sheet", [OWN, OTHER], ids=str)
-def test_that_half_of_the_steps_are_corrections(sheet: Sheet, steps: int, asked: list[object]) -> None:
-    network = random_network(Recorded)
+def test_that_half_of_the_steps_are_corrections(
+    sheet: Sheet, direction: bool, steps: int, asked: list[object]
+) -> None:
+    network = random_network(Recorded, direction=direction)
     integrate(network, random_fields(OWN, 3, 1.0, seed=1), network.code(targets(sheet), sheet=sheet), steps)
     assert network.__dict__["asked"] == asked
 
 
-@pytest.mark.parametrize("changes", [{"direction": False}, {"loop_points": 0}])
-def test_that_networks_without_the_direction_take_euler_steps_only(changes: dict[str, object]) -> None:
-    network = random_network(Recorded, **changes)
+@pytest.mark.parametrize("direction", [False, True])
+def test_that_networks_without_the_geometry_take_euler_steps_only(direction: bool) -> None:
+    network = random_network(Recorded, loop_points=0, direction=direction)
     code = network.code(targets(OTHER), sheet=OTHER)
     noise = random_fields(OWN, 3, 0.5, seed=1)
     drawn = integrate(network, noise, code, 4)
@@ -87,9 +92,10 @@ def test_that_corrections_are_added_to_the_euler_steps_on_the_sheet(sheet: Sheet
     assert torch.equal(integrate(network, noise, code, 4), last)
 
 
+@pytest.mark.parametrize("direction", [False, True])
 @pytest.mark.parametrize("sheet", [OWN, Sheet(6, 6), Sheet(5, 6, 0.7)], ids=str)
-def test_that_corrections_bring_samples_nearer_to_their_targets(sheet: Sheet) -> None:
-    network = random_network()
+def test_that_corrections_bring_samples_nearer_to_their_targets(sheet: Sheet, direction: bool) -> None:
+    network = random_network(direction=direction)
     shapes = targets(sheet, 12)
     code = network.code(shapes, sheet=sheet)
     finished = trail(network, random_fields(OWN, 12, 0.4, seed=1), code, 8)

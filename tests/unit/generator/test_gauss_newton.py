@@ -30,7 +30,7 @@ def fields(sheet: Sheet, scale: float, seed: int) -> torch.Tensor:
 
 
 def directions(z: torch.Tensor, loop: torch.Tensor, sheet: Sheet) -> torch.Tensor:
-    return Feedback((sheet.rows, sheet.columns), sheet, CPU, True)(z, loop).direction
+    return Feedback((sheet.rows, sheet.columns), sheet, CPU)(z, loop, True).direction
 
 
 def vertex_residuals(outline: torch.Tensor, gap: torch.Tensor) -> Residuals:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 import torch
 from small_networks import SMALL, random_fields, random_network, silhouettes
 
 from kirigami_studio.generator.conditioning import contour_points
-from kirigami_studio.generator.network import NetworkShape, VelocityNetwork
+from kirigami_studio.generator.network import EVENNESS, NetworkShape, VelocityNetwork
 from kirigami_studio.generator.sheet import Sheet
 from kirigami_studio.generator.velocity import joined
 from kirigami_studio.training.preference_loss import boundary_gap
@@ -41,7 +43,7 @@ def test_that_gates_at_zero_leave_the_plain_gauss_newton_step(sheet: Sheet) -> N
     z = random_fields(sheet, 4, seed=2)
     code = network.code(TARGETS, sheet=sheet)
     assert code.feedback is not None
-    assert torch.equal(network.correction(z, code), code.feedback(z, code.loop).direction)
+    assert torch.equal(network.correction(z, code), code.feedback(z, code.loop, True).direction)
 
 
 @pytest.mark.parametrize("sheet", [OWN, *OTHERS], ids=str)
@@ -66,13 +68,31 @@ def test_that_the_corrector_learns_from_what_it_returns() -> None:
         assert layer.weight.grad is not None and float(layer.weight.grad.abs().max()) > 0
 
 
-@pytest.mark.parametrize("changes", [{"direction": False}, {"loop_points": 0}, {"loop_points": 0, "direction": False}])
-def test_that_networks_without_the_direction_correct_nothing(changes: dict[str, object]) -> None:
-    network = random_network(**changes)
+@pytest.mark.parametrize("direction", [False, True])
+def test_that_networks_without_the_geometry_correct_nothing(direction: bool) -> None:
+    network = random_network(loop_points=0, direction=direction)
     z = random_fields(OWN, 4)
     assert not network.corrects
     assert torch.equal(network.correction(z, network.code(TARGETS)), torch.zeros_like(z))
-    assert random_network().corrects
+
+
+@pytest.mark.parametrize("sheet", [OWN, *OTHERS], ids=str)
+@pytest.mark.parametrize("asked", [0.0, 1.0])
+def test_that_networks_that_were_not_trained_to_correct_take_the_plain_gauss_newton_step(
+    sheet: Sheet, asked: float
+) -> None:
+    network, trained = random_network(direction=False), random_network()
+    assert network.corrects and network.follow is network.amend is None
+    z, preference = random_fields(sheet, 4, seed=2), torch.full((4,), asked)
+    code = network.code(TARGETS, preference=preference, sheet=sheet)
+    assert code.feedback is not None
+    change = network.correction(z, code)
+    assert float(change.abs().mean()) > 0.01
+    assert torch.equal(change, code.feedback(z, code.loop, True, code.evenness).direction)
+    # The same as where gates begin.
+    assert torch.equal(change, trained.correction(z, trained.code(TARGETS, preference=preference, sheet=sheet)))
+    # Its velocity does without the direction, so it has fewer inputs.
+    assert network.enter.in_features == trained.enter.in_features - 16
 
 
 @pytest.mark.parametrize("sheet", [OWN, *OTHERS], ids=str)
@@ -106,17 +126,40 @@ def test_that_a_preference_counts_once_its_weights_are_not_zero() -> None:
     torch.testing.assert_close(mixed[[0, 2]], whole[[0, 2]])
     torch.testing.assert_close(mixed[1], velocity(None)[1])
     assert not torch.allclose(mixed[3], whole[3], atol=1e-4)
-    change = network.correction(z, network.code(TARGETS, preference=torch.ones(4)))
+    # What gates make of the preference, with the Gauss-Newton step itself held to the match alone.
+    codes = [network.code(TARGETS, preference=torch.full((4,), p)) for p in (0.0, 1.0)]
+    codes = [replace(code, evenness=torch.zeros(4)) for code in codes]
+    before = [network.correction(z, code) for code in codes]
+    assert torch.equal(before[0], before[1])
     assert network.follow is not None
     torch.nn.init.normal_(network.follow.weight)
-    other = [network.correction(z, network.code(TARGETS, preference=torch.full((4,), p))) for p in (0.0, 1.0)]
-    assert not torch.allclose(other[0], other[1], atol=1e-4) and not torch.allclose(other[1], change, atol=1e-4)
+    after = [network.correction(z, code) for code in codes]
+    assert not torch.allclose(after[0], after[1], atol=1e-4) and not torch.allclose(after[1], before[1], atol=1e-4)
 
 
-def test_that_networks_without_a_preference_ignore_it() -> None:
+@pytest.mark.parametrize("direction", [False, True])
+def test_that_networks_without_a_preference_draw_the_same_but_correct_by_it(direction: bool) -> None:
+    network = random_network(direction=direction)
+    preferences = (None, torch.zeros(4), torch.ones(4))
+    codes = [network.code(TARGETS, preference=preference) for preference in preferences]
+    assert all(torch.equal(code.encoded, codes[0].encoded) for code in codes)
+    z, t = random_fields(OWN, 4, seed=2), torch.full((4,), 0.5)
+    assert torch.equal(network(z, t, codes[2]), network(z, t, codes[0]))
+    none, match, even = (network.correction(z, code) for code in codes)
+    assert torch.equal(none, match)
+    assert float((even - match).abs().amax(dim=1).min()) > 1e-3
+
+
+def test_that_the_cost_of_variation_grows_with_the_square_of_the_preference() -> None:
     network = random_network()
-    codes = [network.code(TARGETS, preference=preference) for preference in (None, torch.ones(4))]
-    assert torch.equal(codes[0].encoded, codes[1].encoded)
+    evenness = network.code(TARGETS, preference=torch.tensor([0.0, 0.5, 1.0, 0.25])).evenness
+    torch.testing.assert_close(evenness, EVENNESS * torch.tensor([0.0, 0.25, 1.0, 0.0625]))
+    assert not network.code(TARGETS).evenness.any()
+    z = random_fields(OWN, 4, seed=2)
+    mixed = network.correction(z, network.code(TARGETS, preference=torch.tensor([0.0, 0.0, 1.0, 1.0])))
+    match, even = (network.correction(z, network.code(TARGETS, preference=torch.full((4,), p))) for p in (0.0, 1.0))
+    torch.testing.assert_close(mixed[:2], match[:2], atol=1e-3, rtol=1e-3)
+    torch.testing.assert_close(mixed[2:], even[2:], atol=1e-3, rtol=1e-3)
 
 
 def test_that_the_sheets_numbers_are_zero_on_the_own_sheet_and_tell_others_apart() -> None:
@@ -134,12 +177,13 @@ def test_that_the_sheets_numbers_are_zero_on_the_own_sheet_and_tell_others_apart
 @pytest.mark.parametrize("sheet", [OWN, OTHERS[2]], ids=str)
 def test_that_repeated_picked_and_joined_codes_act_like_their_targets(sheet: Sheet) -> None:
     network = random_network(preference=True, sheets=True)
-    whole = network.code(TARGETS, preference=torch.ones(4), sheet=sheet)
+    asked = torch.tensor([1.0, 0.5, 0.0, 1.0])
+    whole = network.code(TARGETS, preference=asked, sheet=sheet)
     z, t = random_fields(sheet, 4, seed=3), torch.linspace(0, 0.9, 4)
     noise = random_fields(OWN, 4, 0.5)
     velocity, change = network(noise, t, whole), network.correction(z, whole)
-    apart = joined([network.code(TARGETS[:1], None, torch.ones(1), sheet),
-                    network.code(TARGETS[1:], None, torch.ones(3), sheet)])  # fmt: skip
+    apart = joined([network.code(TARGETS[:1], None, asked[:1], sheet),
+                    network.code(TARGETS[1:], None, asked[1:], sheet)])  # fmt: skip
     assert apart.feedback is not None and apart.feedback.sheet == sheet
     torch.testing.assert_close(network(noise, t, apart), velocity, atol=1e-3, rtol=1e-3)
     torch.testing.assert_close(network.correction(z, apart), change, atol=1e-3, rtol=1e-3)
@@ -162,6 +206,7 @@ def test_that_repeated_codes_give_each_target_to_consecutive_rows() -> None:
 def test_that_a_shape_survives_being_written_down() -> None:
     shape = NetworkShape(4, 6, preference=True, sheets=True, direction=False)
     assert NetworkShape(**shape.to_json()) == shape  # type: ignore[arg-type]
-    # Weights of before these inputs existed name them not at all, or say that they see no direction.
-    old = {name: value for name, value in SMALL.to_json().items() if name not in {"preference", "sheets"}}
-    assert not VelocityNetwork(NetworkShape(**{**old, "direction": False})).corrects  # type: ignore[arg-type]
+    # Weights of before these inputs existed do not name them.
+    new = {"direction", "preference", "sheets"}
+    old = VelocityNetwork(NetworkShape(**{k: v for k, v in SMALL.to_json().items() if k not in new}))  # type: ignore[arg-type]
+    assert old.follow is old.amend is old.prefer is old.lie is None

@@ -37,17 +37,20 @@ def test_that_a_grown_network_gives_the_same_velocity(new: dict[str, bool], shee
     theirs = network(z, t, network.code(targets, sheet=sheet))
     assert float(theirs.abs().mean()) > 0.05
     torch.testing.assert_close(ours, theirs, atol=1e-4, rtol=1e-4)
-    assert larger.corrects == new.get("direction", False)
+    assert larger.corrects
+    assert (larger.follow is not None) == (larger.amend is not None) == new.get("direction", False)
 
 
 def test_that_a_grown_corrector_begins_as_the_plain_gauss_newton_step() -> None:
-    larger = grown(random_network(direction=False), replace(SMALL, **ALL))
+    network = random_network(direction=False)
+    larger = grown(network, replace(SMALL, **ALL))
     z, targets = random_fields(OWN, 4, seed=1), silhouettes(random_fields(OWN, 4), OWN)
     code = larger.code(targets, preference=torch.ones(4))
     assert code.feedback is not None
-    step = code.feedback(z, code.loop).direction
+    step = code.feedback(z, code.loop, True, code.evenness).direction
     assert float(step.abs().mean()) > 0.01
     assert torch.equal(larger.correction(z, code), step)
+    assert torch.equal(network.correction(z, network.code(targets, preference=torch.ones(4))), step)
 
 
 def test_that_a_corrector_that_has_learnt_keeps_what_it_knows() -> None:
