@@ -152,7 +152,7 @@ def store_variants(
         As in :func:`store_model`.
     """
     tensors = {key: value.detach().cpu().half().contiguous() for key, value in network.state_dict().items()}
-    content = save_tensors(tensors, metadata={"variant": name, "format": str(FORMAT)})
+    content = save_tensors(tensors, metadata={"format": str(FORMAT)})
     path = folder / f"{name}.safetensors"
     write_atomically(path, content)
     empty: dict[str, Any] = {"format": FORMAT, "variants": {}}

@@ -1,4 +1,4 @@
-"""``train grpo`` from a file of weights to a file of weights, and what it refuses."""
+"""``train grpo`` and ``train align`` from a file of weights to a file of weights, and what they refuse."""
 
 from __future__ import annotations
 
@@ -7,10 +7,12 @@ from pathlib import Path
 
 import pytest
 import torch
+from safetensors.torch import load_file
 
 from kirigami_studio.cli import main
 from kirigami_studio.generator.network import NetworkShape, VelocityNetwork
-from kirigami_studio.generator.weights import load_model, store_model
+from kirigami_studio.generator.weights import load_model, store_model, variants
+from kirigami_studio.training.train_aligned import VARIANTS
 
 pytestmark = pytest.mark.torch
 
@@ -20,6 +22,13 @@ def weights(tmp_path_factory: pytest.TempPathFactory) -> Path:
     torch.manual_seed(0)
     network = VelocityNetwork(NetworkShape(4, 4, 32, 64, 1, 16, 24, 32, 48))
     return store_model("prior", network, tmp_path_factory.mktemp("prior"), {})
+
+
+@pytest.fixture(scope="module")
+def sighted(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A prior of the shape that is aligned, which is the bundled one's."""
+    torch.manual_seed(0)
+    return store_model("prior", VelocityNetwork(NetworkShape()), tmp_path_factory.mktemp("sighted"), {})
 
 
 def test_that_weights_are_aligned_and_written_with_their_manifest(
@@ -67,9 +76,81 @@ def test_that_what_is_missing_or_makes_no_sense_is_refused_in_a_sentence(
     assert not (tmp_path / "out").exists()
 
 
+def test_that_a_prior_is_aligned_to_three_variants_of_one_file_and_resumed(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path, sighted: Path
+) -> None:
+    # Watching 200 targets of each family takes most of a minute.
+    monkeypatch.setattr("kirigami_studio.cli.aligning.VALIDATION_COUNT", 3)
+    run = tmp_path / "run"
+    words = ["train", "align", "--start", str(sighted), "--steps", "2", "--batch", "4", "--drawn", "3",
+             "--learning-rate", "0.01", "--device", "cpu", "--out", str(run)]  # fmt: skip
+    # Stopped at once, which means after one step.
+    assert main([*words, "--minutes", "0.00001", "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["record"]["step"] == 1
+    first = load_file(run / "aligned.safetensors")
+    assert main([*words, "--json"]) == 0
+    answered = json.loads(capsys.readouterr().out)
+    assert answered["record"]["step"] == 2
+    wanted = {f"{family}_{figure}_{preference}" for family in ("structured", "sobol", "drawn")
+              for figure in ("iou", "tv", "spread") for preference in ("0", "0.5", "1")}  # fmt: skip
+    assert wanted | {"loss", "match", "variation", "anchor"} <= answered["record"].keys()
+    assert answered["record"]["structured_tv_1"] < answered["record"]["structured_tv_0"]
+    assert [Path(name).name for name in answered["files"]] == ["aligned.safetensors"]
+    assert variants(run) == tuple(VARIANTS) == ("accuracy", "balanced", "regularity")
+    models = [load_model(name, run) for name in VARIANTS]
+    assert [model.preference for model in models] == list(VARIANTS.values()) == [0.0, 0.5, 1.0]
+    assert len({model.digest for model in models}) == 1
+    about = json.loads((run / "manifest.json").read_text())["variants"]["balanced"]["about"]
+    assert about["settings"]["prior"] == load_model("prior", sighted.parent).digest
+    assert about["validation"]["step"] == 2
+    steps = [json.loads(line)["step"] for line in (run / "log.jsonl").read_text().splitlines()]
+    assert steps == [1, 2]
+    before = load_file(run / "aligned.safetensors")
+    assert main(words) == 0
+    assert "aligned.safetensors" in capsys.readouterr().out
+    after = load_file(run / "aligned.safetensors")
+    assert before.keys() == after.keys() and all(torch.equal(value, after[name]) for name, value in before.items())
+    # One step alone gave other weights.
+    assert not torch.equal(first["leave.weight"], after["leave.weight"])
+    assert main([*words, "--anchor-weight", "0"]) == 1
+    assert "other settings (anchor_weight)" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("code", "words", "said"),
+    [
+        (1, ["--start", "nowhere/prior.safetensors"], "nowhere"),
+        (2, ["--other-sheets", "2"], "--other-sheets is a share from 0 to 1, got 2"),
+        (2, ["--minutes", "0"], "--minutes must be above 0, got 0"),
+        (2, ["--minutes", "-3"], "--minutes must be above 0, got -3"),
+        (2, ["--device", "abacus"], "abacus"),
+    ],
+)
+def test_that_alignment_refuses_what_makes_no_sense_in_a_sentence(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path, code: int, words: list[str], said: str
+) -> None:
+    assert main(["train", "align", *words, "--steps", "1", "--out", str(tmp_path / "out")]) == code
+    sentence = capsys.readouterr().err
+    assert said in sentence and len(sentence.splitlines()) == 1
+    assert not (tmp_path / "out").exists()
+
+
+def test_that_alignment_refuses_a_prior_of_another_shape_in_a_sentence(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path, weights: Path
+) -> None:
+    words = ["--start", str(weights), "--steps", "1", "--drawn", "2", "--batch", "2", "--device", "cpu"]
+    assert main(["train", "align", *words, "--out", str(tmp_path / "out")]) == 1
+    sentence = capsys.readouterr().err
+    assert "another shape" in sentence and len(sentence.splitlines()) == 1
+    assert not list(tmp_path.glob("out/*.safetensors"))
+
+
 @pytest.mark.parametrize(
     ("words", "said"),
     [
+        (["align", "--reward", "accuracy"], "--reward accuracy"), (["align", "--steps", "0"], "1 or more"),
+        (["align", "--other-sheets", "-1"], "0 or more"), (["align", "--learning-rate", "0"], "above 0"),
+        (["align", "--variation-weight", "nan"], "finite"), (["align", "--anchor-weight", "-1"], "0 or more"),
         (["grpo", "--reward", "beauty"], "--reward"), (["grpo", "--temperature", "0"], "above 0"),
         (["grpo", "--calls", "0"], "1 or more"), (["grpo", "--reference", "-1"], "0 or more"),
         (["grpo", "--learning-rate", "nan"], "finite"), (["grpo", "--steps", "5"], "--steps 5"),
@@ -86,12 +167,13 @@ def test_that_each_stage_takes_its_own_options_only(
     assert not (tmp_path / "out").exists()
 
 
-def test_that_both_stages_show_their_own_examples(capsys: pytest.CaptureFixture[str]) -> None:
+def test_that_all_stages_show_their_own_examples(capsys: pytest.CaptureFixture[str]) -> None:
     shown = {}
-    for words in ([], ["prior"], ["grpo"]):
+    for words in ([], ["prior"], ["align"], ["grpo"]):
         with pytest.raises(SystemExit):
             main(["train", *words, "--help"])
         shown[" ".join(words)] = capsys.readouterr().out.split("examples:")[1]
     assert "train prior" in shown["prior"] and "train grpo" not in shown["prior"]
     assert "train grpo" in shown["grpo"] and "train prior" not in shown["grpo"]
-    assert "train prior" in shown[""] and "train grpo" in shown[""]
+    assert all(f"train {stage}" in shown[""] for stage in ("prior", "align", "grpo"))
+    assert "train align" in shown["align"] and "train grpo" not in shown["align"]

@@ -8,11 +8,13 @@ import pytest
 import torch
 
 from kirigami_studio.generator.conditioning import (
+    SUBSAMPLES,
     ConditionLayout,
     condition,
     contour_points,
     normalised,
     outer_radius,
+    smoothed_points,
     square_phase,
     turned,
 )
@@ -70,6 +72,59 @@ def test_that_contour_points_are_equally_spaced_and_start_on_the_positive_axis()
     assert float(gaps.max() - gaps.min()) < 1e-4
     assert float(points[0, 1].abs()) < 1e-9
     assert float(points[0, 0]) > 0
+
+
+def test_that_smoothed_points_of_a_circle_are_equally_spaced_on_a_circle() -> None:
+    polygon = normalised(circle())
+    points = smoothed_points(polygon, 96)[0]
+    assert points.shape == (96, 2)
+    gaps = (points.roll(-1, 0) - points).norm(dim=-1)
+    assert float(gaps.max() - gaps.min()) < 1e-4
+    radius = points.norm(dim=-1)
+    assert float(radius.max() - radius.min()) < 1e-4
+    # A mean over an arc lies inside of it, by a sixth of the square of half its angle.
+    assert float(radius.mean()) == pytest.approx((1 - (math.pi / 96) ** 2 / 6) / math.sqrt(math.pi), abs=3e-5)
+    # Every point stands for the one at its place, the first on the positive axis.
+    assert float((points - contour_points(polygon, 96)[0]).norm(dim=-1).max()) < 3e-4
+
+
+def test_that_the_noise_of_single_contour_points_averages_out() -> None:
+    polygon, count = normalised(circle(96 * SUBSAMPLES)), 96
+    size = 1e-3
+    noise = torch.randn(polygon.shape, generator=torch.Generator().manual_seed(0), dtype=torch.float64)
+    # Along the radius, so that the length of the outline and the places along it hardly change.
+    outwards = polygon / polygon.norm(dim=-1, keepdim=True)
+    noisy = polygon + size * noise[..., :1] * outwards
+
+    def spread(points: torch.Tensor) -> float:
+        return float(points.norm(dim=-1).std())
+
+    single, mean = spread(contour_points(noisy, count)), spread(smoothed_points(noisy, count))
+    # Reading an edge between two noisy vertices averages a little as well, at most to 0.7 of the noise.
+    assert 0.6 * size < single < 1.1 * size
+    assert mean == pytest.approx(size / math.sqrt(SUBSAMPLES), rel=0.2)
+    assert mean < 0.7 * single
+
+
+def test_that_smoothing_keeps_straight_edges_straight_and_corners_within_half_a_spacing() -> None:
+    polygon = normalised(rectangle(3.0, 2.0))
+    points, sharp = smoothed_points(polygon, 100)[0], contour_points(polygon, 100)[0]
+    half = polygon[0].abs().amax(dim=0)
+    spacing = 4 * float(half.sum()) / 100
+    to_corner = (sharp.abs() - half).abs().amax(dim=1)
+    inner = to_corner > 0.51 * spacing
+    assert 90 <= int(inner.sum()) < 100
+    torch.testing.assert_close(points[inner], sharp[inner], atol=1e-9, rtol=0)
+    moved = (points - sharp).norm(dim=-1)[~inner]
+    assert 0.01 * spacing < float(moved.max()) < 0.3 * spacing
+
+
+def test_that_smoothed_points_go_round_like_contour_points_on_every_outline_of_a_batch() -> None:
+    wide, tall = (normalised(rectangle(*sides)) for sides in ((3.0, 2.0), (1.0, 2.0)))
+    both = smoothed_points(torch.cat([wide, tall]), 64)
+    torch.testing.assert_close(both[0], smoothed_points(wide, 64)[0])
+    torch.testing.assert_close(both[1], smoothed_points(tall, 64)[0])
+    assert float((both - contour_points(torch.cat([wide, tall]), 64)).norm(dim=-1).max()) < 0.02
 
 
 def test_that_superfluous_vertices_do_not_change_the_description() -> None:

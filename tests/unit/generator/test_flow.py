@@ -56,9 +56,7 @@ def test_that_euler_steps_follow_the_velocity(loop_points: int, steps: int) -> N
 )  # fmt: skip
 @pytest.mark.parametrize("direction", [False, True])
 @pytest.mark.parametrize("sheet", [OWN, OTHER], ids=str)
-def test_that_half_of_the_steps_are_corrections(
-    sheet: Sheet, direction: bool, steps: int, asked: list[object]
-) -> None:
+def test_that_half_of_the_steps_are_corrections(sheet: Sheet, direction: bool, steps: int, asked: list[object]) -> None:
     network = random_network(Recorded, direction=direction)
     integrate(network, random_fields(OWN, 3, 1.0, seed=1), network.code(targets(sheet), sheet=sheet), steps)
     assert network.__dict__["asked"] == asked

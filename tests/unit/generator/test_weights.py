@@ -3,17 +3,29 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 import torch
 
+from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.foundation.errors import ModelError, UsageError
-from kirigami_studio.generator.network import NetworkShape, VelocityNetwork
-from kirigami_studio.generator.sampler import draw_fields
+from kirigami_studio.generator.feedback import Feedback
+from kirigami_studio.generator.network import EVENNESS, NetworkShape, TargetCode, VelocityNetwork
+from kirigami_studio.generator.sampler import BATCH, draw_fields, posed
+from kirigami_studio.generator.sheet import Sheet
 from kirigami_studio.generator.unet import UNetShape, UNetVelocity
-from kirigami_studio.generator.weights import digest_of, load_model, model_folder, store_model, variants
+from kirigami_studio.generator.weights import (
+    digest_of,
+    load_model,
+    model_folder,
+    store_model,
+    store_variants,
+    variants,
+)
+from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.target.silhouettes import load
 
 pytestmark = pytest.mark.torch
@@ -25,6 +37,14 @@ def folder(tmp_path: Path) -> Path:
     torch.manual_seed(0)
     store_model("tiny", VelocityNetwork(SMALL), tmp_path, {"steps": 0})
     return tmp_path
+
+
+@pytest.fixture(scope="module")
+def pair(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The bundled prior as three variants, by what they prefer."""
+    place = tmp_path_factory.mktemp("pair")
+    store_variants("prior", {"match": 0.0, "half": 0.5, "even": 1.0}, load_model("prior").network, place, {})
+    return place
 
 
 def test_that_stored_weights_come_back_in_half_precision(folder: Path) -> None:
@@ -39,6 +59,67 @@ def test_that_a_manifest_without_a_backbone_means_the_perceptron(folder: Path) -
     assert manifest["variants"]["tiny"].pop("backbone") == "perceptron"
     (folder / "manifest.json").write_text(json.dumps(manifest))
     assert isinstance(load_model("tiny", folder).network, VelocityNetwork)
+
+
+@pytest.mark.parametrize("steps", [1, 2, 5])
+def test_that_networks_that_look_at_the_geometry_decode_once_a_step(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, steps: int
+) -> None:
+    store_model("blind", VelocityNetwork(replace(SMALL, loop_points=0)), folder, {})
+    store_model("picture", UNetVelocity(UNetShape(4, 4, channels=(8, 16))), folder, {})
+    store_model("corrector", VelocityNetwork(replace(SMALL, direction=True)), folder, {})
+    looked: list[int] = []
+    describe = Feedback._described
+
+    def counted(self: Feedback, z: torch.Tensor, *others: object) -> object:
+        looked.append(len(z))
+        return describe(self, z, *others)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(Feedback, "_described", counted)
+    for variant, expected in (("tiny", steps), ("corrector", steps), ("blind", 0), ("picture", 0)):
+        looked.clear()
+        model = load_model(variant, folder)
+        draw_fields(model, load("heart"), (4, 4), k=BATCH, seed=0, steps=steps)
+        assert model.decodings(steps) == expected == sum(looked) / BATCH, variant
+
+
+def test_that_one_network_serves_variants_that_prefer_differently(folder: Path) -> None:
+    network = VelocityNetwork(replace(SMALL, preference=True))
+    path = store_variants("pair", {"match": 0.0, "even": 1.0}, network, folder, {"steps": 3})
+    assert path == folder / "pair.safetensors" and path.exists()
+    assert variants(folder) == ("tiny", "match", "even")
+    match, even = (load_model(name, folder) for name in ("match", "even"))
+    assert (match.variant, match.preference, even.variant, even.preference) == ("match", 0.0, "even", 1.0)
+    assert match.digest == even.digest == digest_of("match", folder) != load_model("tiny", folder).digest
+    entry = json.loads((folder / "manifest.json").read_text())["variants"]["even"]
+    assert (entry["file"], entry["about"]) == ("pair.safetensors", {"steps": 3})
+    polygon = posed(load("heart"), range(2))
+    codes = [model.code(polygon, Sheet(4, 4)) for model in (match, even)]
+    assert all(isinstance(code, TargetCode) for code in codes)
+    assert [code.evenness.tolist() for code in codes] == [[0.0, 0.0], pytest.approx([EVENNESS] * 2)]  # type: ignore[attr-defined]
+
+
+def test_that_a_manifest_without_a_preference_means_the_match(folder: Path) -> None:
+    manifest = json.loads((folder / "manifest.json").read_text())
+    assert manifest["variants"]["tiny"].pop("preference") == 0.0
+    (folder / "manifest.json").write_text(json.dumps(manifest))
+    assert load_model("tiny", folder).preference == 0.0
+
+
+@pytest.mark.parametrize("grid", [(10, 10), (12, 9)])
+@pytest.mark.parametrize(("shape", "cost"), [("heart", 0.02), ("drop", 0.02), ("star", 0.05)])
+def test_that_a_preference_for_regularity_gives_smoother_designs_at_a_small_cost_of_match(
+    pair: Path, shape: str, cost: float, grid: tuple[int, int]
+) -> None:
+    def measured(variant: str) -> tuple[float, float]:
+        fields = draw_fields(load_model(variant, pair), load(shape), grid, k=8, seed=0, steps=8)
+        scores = [evaluate(deploy(field), load(shape)) for field in fields]
+        return float(np.mean([score.tv for score in scores])), float(np.mean([score.iou_exact for score in scores]))
+
+    match, even, half = (measured(variant) for variant in ("match", "even", "half"))
+    assert even[0] < 0.85 * match[0]
+    assert even[0] < half[0] < match[0]
+    assert even[1] > match[1] - cost
 
 
 def test_that_a_unet_comes_back_beside_a_perceptron(folder: Path) -> None:

@@ -11,11 +11,12 @@ import pytest
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.errors import AngleError, Cancelled, GridError, UsageError
+from kirigami_studio.generator.weights import load_model
 from kirigami_studio.pipeline.events import CandidateFound, CandidateImproved, Finished, Progress, Started
 from kirigami_studio.pipeline.pool import Pool
 from kirigami_studio.pipeline.rank import ranked
 from kirigami_studio.pipeline.request import Request
-from kirigami_studio.pipeline.run import best_of, run
+from kirigami_studio.pipeline.run import best_of, decodings, run
 from kirigami_studio.target.silhouettes import load
 
 pytestmark = pytest.mark.torch
@@ -32,7 +33,15 @@ def test_that_events_come_in_order(request_for_heart: Request) -> None:
     assert isinstance(events[1], Progress)
     assert [event.index for event in events if isinstance(event, CandidateFound)] == [0, 1, 2, 3]
     assert isinstance(events[-1], Finished)
-    assert events[-1].result.forward_evaluations == 4
+    # Every step of the generator looks at the exact geometry, and every candidate is scored once.
+    assert events[-1].result.forward_evaluations == 4 * (1 + request_for_heart.steps)
+
+
+@pytest.mark.parametrize("steps", [1, 3, 8])
+def test_that_looks_at_the_geometry_while_drawing_are_counted(request_for_heart: Request, steps: int) -> None:
+    asked = replace(request_for_heart, k=2, steps=steps)
+    assert load_model(asked.variant).decodings(steps) == decodings(asked) == steps
+    assert best_of(asked).forward_evaluations == 2 * (1 + steps)
 
 
 def test_that_the_same_request_gives_the_same_candidates(request_for_heart: Request) -> None:
@@ -107,10 +116,11 @@ def test_that_polishing_improves_every_candidate_and_counts_its_decodings(reques
     fitted = best_of(replace(request_for_heart, polish=10))
     before = {candidate.index: candidate.score.siou for candidate in drawn.candidates}
     after = {candidate.index: candidate.score.siou for candidate in fitted.candidates}
-    assert all(after[index] >= before[index] for index in before)
-    assert fitted.best.polished
-    assert fitted.best.score.siou > drawn.best.score.siou + 0.02
-    assert fitted.forward_evaluations > 4 * 10
+    # Samples come corrected, so the best of them have little more than a hundredth left to gain.
+    assert all(after[index] > before[index] + 0.005 for index in before)
+    assert np.mean(list(after.values())) > np.mean(list(before.values())) + 0.01
+    assert all(candidate.polished for candidate in fitted.candidates)
+    assert fitted.forward_evaluations > drawn.forward_evaluations + 4 * 10
 
 
 def test_that_improvements_are_reported_under_the_index_of_their_candidate(request_for_heart: Request) -> None:

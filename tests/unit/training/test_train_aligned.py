@@ -55,13 +55,16 @@ def same(first: VelocityNetwork, second: VelocityNetwork) -> bool:
     return all(torch.equal(value, other[name]) for name, value in first.state_dict().items())
 
 
-def measured(network: VelocityNetwork, preference: float) -> tuple[PreferenceTerms, float]:
-    """Terms of samples for silhouettes that training does not draw, and the gap before the last correction."""
+def measured(network: VelocityNetwork, preference: float, even: bool = True) -> tuple[PreferenceTerms, float]:
+    """Terms of samples for silhouettes that training does not draw, and the gap before the last correction.
+
+    Corrections count the variation only if ``even``.
+    """
     targets = silhouettes(random_fields(OWN, 48, 0.4, seed=11), OWN)
     noise = random_fields(OWN, 48, SMALL.z_scale, seed=12)
     with torch.no_grad():
         code = network.code(targets, preference=torch.full((48,), preference))
-        finished = trail(network, noise, code, 4)
+        finished = trail(network, noise, code if even else replace(code, evenness=torch.zeros(48)), 4)
         terms, early = trail_gap(BatchedLattice(4, 4), OWN, finished, contour_points(targets, 384))
     return terms, float(early)
 
@@ -82,17 +85,21 @@ def test_that_alignment_lowers_the_loss_on_targets_that_it_has_not_seen(
 
 
 def test_that_asking_for_regularity_gives_smoother_fields(tmp_path: Path, prior: Model, tiny: AlignSettings) -> None:
-    def variation(asked: float) -> float:
-        return float(measured(run.averaged(), asked)[0].variation.mean())
+    def variation(asked: float, even: bool = False) -> float:
+        return float(measured(run.averaged(), asked, even)[0].variation.mean())
 
     settings = replace(
         tiny, steps=30, batch=16, drawn=0, other_sheets=0.0, learning_rate=0.04, average_decay=0.0, variation_weight=0.3
     )
     run = run_of(settings, tmp_path, prior)
     assert variation(0.0) == pytest.approx(variation(1.0), rel=1e-4)
+    # Corrections follow the preference from the beginning; what is learnt comes on top.
+    untrained = variation(1.0, even=True)
+    assert untrained < 0.85 * variation(0.0)
     for _ in range(30):
         run.advance()
     assert variation(1.0) < 0.85 * variation(0.0)
+    assert variation(1.0, even=True) < untrained
 
 
 def test_that_the_anchor_holds_samples_near_the_priors(tmp_path: Path, prior: Model, tiny: AlignSettings) -> None:
