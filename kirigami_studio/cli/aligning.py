@@ -105,7 +105,8 @@ def align(arguments: argparse.Namespace) -> int:
         if not arguments.json:
             say(" ".join(f"{key} {value:.4f}" for key, value in record.items()))
     network = aligned_network(settings, folder, device, prior)
-    about = {"validation": record or validate(network), "settings": settings.to_json()}
+    record = record or validate(network)
+    about = {"validation": record, "settings": settings.to_json()}
     path = store_variants("aligned", VARIANTS, network, folder, about)
     if arguments.json:
         print_json({"files": [str(path)], "record": record})

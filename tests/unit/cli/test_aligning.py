@@ -92,13 +92,13 @@ def test_that_a_prior_is_aligned_to_three_variants_of_one_file_and_resumed(
     answered = json.loads(capsys.readouterr().out)
     assert answered["record"]["step"] == 2
     wanted = {f"{family}_{figure}_{preference}" for family in ("structured", "sobol", "drawn")
-              for figure in ("iou", "tv", "spread") for preference in ("0", "0.5", "1")}  # fmt: skip
+              for figure in ("iou", "tv", "spread") for preference in ("0", "0.35", "0.9")}  # fmt: skip
     assert wanted | {"loss", "match", "variation", "anchor"} <= answered["record"].keys()
-    assert answered["record"]["structured_tv_1"] < answered["record"]["structured_tv_0"]
+    assert answered["record"]["structured_tv_0.9"] < answered["record"]["structured_tv_0"]
     assert [Path(name).name for name in answered["files"]] == ["aligned.safetensors"]
     assert variants(run) == tuple(VARIANTS) == ("accuracy", "balanced", "regularity")
     models = [load_model(name, run) for name in VARIANTS]
-    assert [model.preference for model in models] == list(VARIANTS.values()) == [0.0, 0.5, 1.0]
+    assert [model.preference for model in models] == list(VARIANTS.values()) == [0.0, 0.35, 0.9]
     assert len({model.digest for model in models}) == 1
     about = json.loads((run / "manifest.json").read_text())["variants"]["balanced"]["about"]
     assert about["settings"]["prior"] == load_model("prior", sighted.parent).digest
@@ -108,6 +108,7 @@ def test_that_a_prior_is_aligned_to_three_variants_of_one_file_and_resumed(
     before = load_file(run / "aligned.safetensors")
     assert main(words) == 0
     assert "aligned.safetensors" in capsys.readouterr().out
+    assert json.loads((run / "manifest.json").read_text())["variants"]["balanced"]["about"]["validation"]["sobol_iou_0"]
     after = load_file(run / "aligned.safetensors")
     assert before.keys() == after.keys() and all(torch.equal(value, after[name]) for name, value in before.items())
     # One step alone gave other weights.

@@ -191,4 +191,6 @@ def test_that_every_bundled_variant_loads_and_is_small_enough_for_git() -> None:
     for variant in variants():
         model = load_model(variant)
         assert len(model.digest) == 64
-        assert (model_folder() / f"{variant}.safetensors").stat().st_size < 16_000_000
+    files = sorted(model_folder().glob("*.safetensors"))
+    assert [file.stem for file in files] == ["aligned", "prior"]
+    assert all(file.stat().st_size < 16_000_000 for file in files)
