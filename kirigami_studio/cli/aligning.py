@@ -25,8 +25,7 @@ def grpo(arguments: argparse.Namespace) -> int:
     from kirigami_studio.training.grpo import GrpoSettings, aligned_network, train_grpo
     from kirigami_studio.training.validation import group_figures, validator
 
-    if arguments.minutes is not None and arguments.minutes <= 0:
-        raise UsageError(f"--minutes must be above 0, got {arguments.minutes:g}.")
+    seconds = seconds_allowed(arguments)
     device = training_device(arguments.device, arguments.threads)
     start = starting_model(arguments.start)
     settings = GrpoSettings(
@@ -52,7 +51,6 @@ def grpo(arguments: argparse.Namespace) -> int:
         return watched(network) | {f"structured_{name}": value for name, value in among.items()}
 
     folder = Path(arguments.out)
-    seconds = float("inf") if arguments.minutes is None else 60.0 * arguments.minutes
     record: dict[str, float] = {}
     for record in train_grpo(
         settings, folder, device, validate, start, seconds=seconds, validate_every=arguments.validate_every
@@ -75,8 +73,7 @@ def align(arguments: argparse.Namespace) -> int:
     from kirigami_studio.training.train_aligned import VARIANTS, AlignSettings, aligned_network, train_aligned
     from kirigami_studio.training.validation import preference_figures
 
-    if arguments.minutes is not None and arguments.minutes <= 0:
-        raise UsageError(f"--minutes must be above 0, got {arguments.minutes:g}.")
+    seconds = seconds_allowed(arguments)
     if arguments.other_sheets > 1.0:
         raise UsageError(f"--other-sheets is a share from 0 to 1, got {arguments.other_sheets:g}.")
     device = training_device(arguments.device, arguments.threads)
@@ -93,7 +90,6 @@ def align(arguments: argparse.Namespace) -> int:
         seed=arguments.seed,
     )
     folder = Path(arguments.out)
-    seconds = float("inf") if arguments.minutes is None else 60.0 * arguments.minutes
 
     def validate(network: Network) -> dict[str, float]:
         return preference_figures(network, VALIDATION_COUNT, tuple(VARIANTS.values()), settings.sampling_steps)
@@ -113,6 +109,15 @@ def align(arguments: argparse.Namespace) -> int:
     else:
         say(f"Weights: {path}")
     return 0
+
+
+def seconds_allowed(arguments: argparse.Namespace) -> float:
+    """Wall time of a run by ``--minutes``; infinite without."""
+    if arguments.minutes is None:
+        return float("inf")
+    if arguments.minutes <= 0:
+        raise UsageError(f"--minutes must be above 0, got {arguments.minutes:g}.")
+    return 60.0 * float(arguments.minutes)
 
 
 def starting_model(name: str) -> Model:

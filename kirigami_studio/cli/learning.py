@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from kirigami_studio.cli.aligning import starting_model
+from kirigami_studio.cli.aligning import seconds_allowed, starting_model
 from kirigami_studio.cli.console import ProgressLine, print_json, say
 from kirigami_studio.cli.inputs import parse_grid
 from kirigami_studio.foundation.errors import UsageError
@@ -78,8 +78,7 @@ def train(arguments: argparse.Namespace) -> int:
     from kirigami_studio.training.train_flow import FlowSettings, finished_network, train_flow
     from kirigami_studio.training.validation import validator
 
-    if arguments.minutes is not None and arguments.minutes <= 0:
-        raise UsageError(f"--minutes must be above 0, got {arguments.minutes:g}.")
+    seconds = seconds_allowed(arguments)
     shape = _shape(arguments)
     device = training_device(arguments.device, arguments.threads)
     sources = _sources(arguments)
@@ -98,7 +97,6 @@ def train(arguments: argparse.Namespace) -> int:
         shape=shape,
     )
     folder = Path(arguments.out)
-    seconds = float("inf") if arguments.minutes is None else 60.0 * arguments.minutes
     record: dict[str, float] = {}
     for record in train_flow(
         settings,

@@ -21,7 +21,6 @@ The run folder holds ``checkpoint.pt`` and ``log.jsonl`` as that of ``train_flow
 from __future__ import annotations
 
 import copy
-import json
 import math
 import time
 from collections import Counter
@@ -32,7 +31,7 @@ from pathlib import Path
 import torch
 from torch import Tensor
 
-from kirigami_studio.foundation.errors import ExportError, ModelError, UsageError
+from kirigami_studio.foundation.errors import ModelError, UsageError
 from kirigami_studio.generator.backbones import Network
 from kirigami_studio.generator.conditioning import turned
 from kirigami_studio.generator.flow import integrate
@@ -43,6 +42,7 @@ from kirigami_studio.target.outline import Outline
 from kirigami_studio.training.checkpoint import Checkpoint
 from kirigami_studio.training.corpus import Corpus
 from kirigami_studio.training.fields import Z_LIMIT, mixed_fields
+from kirigami_studio.training.learner import CHECKPOINT, Learner, logged, opened
 from kirigami_studio.training.rewards import Reward, Verdict, judge
 
 #: The small constant of Eq. grpo_adv.
@@ -188,20 +188,14 @@ def train_grpo(
     """
     if start.digest != settings.start:
         raise ModelError("The weights to start from are not those that the settings name.")
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise ExportError(f"Cannot make the run folder {folder}: {error.strerror}. Choose another folder.") from error
-    run = _Run(settings, folder / "checkpoint.pt", device, start)
+    run = _Run(settings, opened(folder), device, start)
     began = time.perf_counter()
 
     def record() -> dict[str, float]:
         run.save()
         figures = {"step": float(run.step), "calls": float(run.calls), **run.taken_means()}
         figures |= {"seconds": time.perf_counter() - began} | validate(run.averaged())
-        with (folder / "log.jsonl").open("a", encoding="utf-8") as log:
-            log.write(json.dumps(figures) + "\n")
-        return figures
+        return logged(folder, figures)
 
     if run.step == 0 or not run.targets_left:
         yield record()
@@ -217,7 +211,7 @@ def train_grpo(
 def aligned_network(folder: Path, start: Model) -> Network:
     """The network of the checkpoint in ``folder``: what is handed over."""
     network = copy.deepcopy(start.network)
-    network.load_state_dict(Checkpoint.load(folder / "checkpoint.pt").average)
+    network.load_state_dict(Checkpoint.load(folder / CHECKPOINT).average)
     return network.eval()
 
 
@@ -228,19 +222,24 @@ class _Run:
         self.settings, self.path, self.device = settings, path, device
         self.prior = copy.deepcopy(start.network).to(device).eval().requires_grad_(False)
         self.network = copy.deepcopy(self.prior).requires_grad_(True)
-        self.average = {name: value.detach().clone() for name, value in self.network.state_dict().items()}
-        self.optimiser = torch.optim.Adam(self.network.parameters(), lr=settings.learning_rate)
+        optimiser = torch.optim.Adam(self.network.parameters(), lr=settings.learning_rate)
         self.generator = torch.Generator(device=device).manual_seed(settings.seed)
+        self.learner = Learner(self.network, optimiser, self.generator, device)
         shape = start.network.shape
         self.grid, self.z_scale = (shape.rows, shape.columns), shape.z_scale
         self.corpus = Corpus(mixed_fields, *self.grid, settings.seed, settings.batch, device)
         self.reward = Reward(settings.reward)
-        self.step = self.calls = 0
+        self.calls = 0
         self._totals: Counter[str] = Counter()
         if path.exists():
             self._resume()
         elif settings.scaling_calls:
             self._measure_scales()
+
+    @property
+    def step(self) -> int:
+        """Finished steps."""
+        return self.learner.step
 
     @property
     def targets_left(self) -> int:
@@ -257,14 +256,12 @@ class _Run:
         loss = math.nan
         if used.any() or self.settings.reference:
             loss = self._update(seen, designs, self._weights(rewards) * used[:, None], int(used.sum()))
-        self.step += 1
+        self.learner.step += 1
         self._note(rewards, verdicts, designs, used, loss)
 
     def averaged(self) -> Network:
         """A copy of the network with the weights that would be handed over."""
-        network = copy.deepcopy(self.prior)
-        network.load_state_dict(self.average)
-        return network
+        return self.learner.averaged(copy.deepcopy(self.prior))
 
     def taken_means(self) -> dict[str, float]:
         """Means over the designs since the last call; nothing before the first step."""
@@ -274,25 +271,13 @@ class _Run:
         return found | {name: totals[name] / totals["designs"] for name in names if totals["designs"]}
 
     def save(self) -> None:
-        Checkpoint(
-            self.step,
-            self.network.state_dict(),
-            self.average,
-            self.optimiser.state_dict(),
-            self.settings.to_json(),
-            self.generator.get_state(),
-            {"calls": self.calls, "siou_scale": self.reward.siou_scale, "tv_scale": self.reward.tv_scale},
-        ).save(self.path)
+        more = {"calls": self.calls, "siou_scale": self.reward.siou_scale, "tv_scale": self.reward.tv_scale}
+        self.learner.save(self.path, self.settings.to_json(), more)
 
     def _resume(self) -> None:
-        state = Checkpoint.load(self.path)
-        state.check_settings(self.settings.to_json(), self.path)
-        self.network.load_state_dict(state.network)
-        self.average = {name: value.to(self.device) for name, value in state.average.items()}
-        self.optimiser.load_state_dict(state.optimiser)
-        self.generator.set_state(state.generator)
-        self.step, self.calls = state.step, int(state.more["calls"])
-        self.reward = Reward(self.settings.reward, state.more["siou_scale"], state.more["tv_scale"])
+        more = self.learner.resume(self.path, self.settings.to_json())
+        self.calls = int(more["calls"])
+        self.reward = Reward(self.settings.reward, more["siou_scale"], more["tv_scale"])
 
     def _measure_scales(self) -> None:
         """Scales of the balanced reward from the prior's own samples."""
@@ -345,12 +330,7 @@ class _Run:
             raise ModelError(
                 "Training diverged: the loss is no longer a number. Start again with a lower learning rate."
             )
-        self.optimiser.zero_grad(set_to_none=True)
-        loss.backward()
-        self.optimiser.step()
-        with torch.no_grad():
-            for name, value in self.network.state_dict().items():
-                self.average[name].lerp_(value, 1.0 - self.settings.average_decay)
+        self.learner.learn(loss, self.settings.average_decay)
         return float(loss.detach())
 
     def _prior_velocity(self, between: Tensor, t: Tensor, code: Code) -> Tensor:

@@ -7,7 +7,6 @@ and regularity: the preference is an input, drawn anew for every row.  ``grpo`` 
 
 from __future__ import annotations
 
-import json
 import math
 import time
 from collections.abc import Callable, Iterator
@@ -18,20 +17,20 @@ import numpy as np
 import torch
 from torch import Tensor
 
-from kirigami_studio.foundation.errors import ExportError, ModelError
+from kirigami_studio.foundation.errors import ModelError
 from kirigami_studio.generator.conditioning import normalised
 from kirigami_studio.generator.flow import Z_LIMIT, integrate, trail
 from kirigami_studio.generator.network import NetworkShape, VelocityNetwork
 from kirigami_studio.generator.sheet import Sheet
 from kirigami_studio.generator.weights import Model
 from kirigami_studio.lattice.batched import BatchedLattice
-from kirigami_studio.training.checkpoint import Checkpoint
 from kirigami_studio.training.corpus import sheet_outline
 from kirigami_studio.training.fields import mixed_fields
 from kirigami_studio.training.growth import grown_state
+from kirigami_studio.training.learner import CHECKPOINT, Learner, logged, opened
 from kirigami_studio.training.preference_loss import EARLY_WEIGHT, PreferenceTerms, trail_gap
 from kirigami_studio.training.sampled_targets import TargetSource
-from kirigami_studio.training.train_flow import schedule
+from kirigami_studio.training.train_flow import LARGEST_GRADIENT, schedule
 
 #: The weights of preference and sheet begin at zero and have few inputs: they learn this much faster than the others.
 NEW_LAYERS, NEW_PACE = ("prefer", "lie"), 30.0
@@ -134,11 +133,7 @@ def train_aligned(
     """
     if prior.digest != settings.prior:
         raise ModelError("The prior to align is not the one that the settings name.")
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise ExportError(f"Cannot make the run folder {folder}: {error.strerror}. Choose another folder.") from error
-    run = AlignRun(settings, folder / "checkpoint.pt", device, prior)
+    run = AlignRun(settings, opened(folder), device, prior)
     began = time.perf_counter()
     running: dict[str, float] = {}
     while run.step < settings.steps:
@@ -149,16 +144,14 @@ def train_aligned(
             run.save()
             record = {"step": float(run.step), "seconds": time.perf_counter() - began} | running
             record |= validate(run.averaged())
-            with (folder / "log.jsonl").open("a", encoding="utf-8") as log:
-                log.write(json.dumps(record) + "\n")
-            yield record
+            yield logged(folder, record)
         if out_of_time:
             break
 
 
 def aligned_network(settings: AlignSettings, folder: Path, device: torch.device, prior: Model) -> VelocityNetwork:
     """The averaged network of the checkpoint in ``folder``: what is shipped."""
-    return AlignRun(settings, folder / "checkpoint.pt", device, prior).averaged()
+    return AlignRun(settings, folder / CHECKPOINT, device, prior).averaged()
 
 
 class AlignRun:
@@ -178,25 +171,29 @@ class AlignRun:
         self.prior = prior.network.to(device)
         self.network = VelocityNetwork(settings.shape).to(device)
         self.network.load_state_dict(grown_state(prior.network, settings.shape))
-        self.average = {name: value.detach().clone() for name, value in self.network.state_dict().items()}
         new = [value for name, value in self.network.named_parameters() if name.startswith(NEW_LAYERS)]
         old = [value for name, value in self.network.named_parameters() if not name.startswith(NEW_LAYERS)]
-        self.optimiser = torch.optim.AdamW(
+        optimiser = torch.optim.AdamW(
             [{"params": old, "pace": 1.0}, {"params": new, "pace": NEW_PACE}], betas=(0.9, 0.99), weight_decay=0.0
         )
         self.generator = torch.Generator(device=device).manual_seed(settings.seed)
+        self.learner = Learner(self.network, optimiser, self.generator, device)
         self._lattices: dict[tuple[int, int], BatchedLattice] = {}
         self.source = TargetSource(
             settings.drawn, settings.seed, settings.vertex_noise, settings.shift_noise, self.generator, device
         )
-        self.step = 0
         if path.exists():
-            self._resume()
+            self.learner.resume(path, settings.to_json())
+
+    @property
+    def step(self) -> int:
+        """Finished optimiser steps."""
+        return self.learner.step
 
     def advance(self) -> dict[str, float]:
         """One optimiser step; returns the parts of its loss."""
         settings = self.settings
-        for group in self.optimiser.param_groups:
+        for group in self.learner.optimiser.param_groups:
             group["lr"] = group["pace"] * settings.learning_rate * schedule(self.step, settings.steps)
         sheet = self._sheet()
         drawn = round(settings.drawn_share * settings.batch) if settings.drawn else 0
@@ -215,15 +212,8 @@ class AlignRun:
             reference = integrate(self.prior, noise[anchored], code, settings.sampling_steps).clamp(-Z_LIMIT, Z_LIMIT)
         anchor = (z[anchored] - reference).square().mean()
         loss = self._loss(terms, anchor, preference) + EARLY_WEIGHT * early
-        self.optimiser.zero_grad(set_to_none=True)
-        loss.backward()
-        torch.nn.utils.clip_grad_norm_(self.network.parameters(), 1.0)
-        self.optimiser.step()
-        self.step += 1
-        with torch.no_grad():
-            names, values = zip(*self.network.state_dict().items(), strict=True)
-            decay = 1 - settings.average_decay
-            torch._foreach_lerp_([self.average[name] for name in names], list(values), decay)
+        self.learner.learn(loss, settings.average_decay, LARGEST_GRADIENT)
+        self.learner.step += 1
         return {
             "loss": float(loss.detach()),
             "match": float(terms.match.mean().detach()),
@@ -233,29 +223,11 @@ class AlignRun:
 
     def averaged(self) -> VelocityNetwork:
         """A copy of the network with the averaged weights."""
-        network = VelocityNetwork(self.settings.shape).to(self.device)
-        network.load_state_dict(self.average)
-        return network.eval()
+        return self.learner.averaged(VelocityNetwork(self.settings.shape))
 
     def save(self) -> None:
         """Write the checkpoint."""
-        Checkpoint(
-            self.step,
-            self.network.state_dict(),
-            self.average,
-            self.optimiser.state_dict(),
-            self.settings.to_json(),
-            self.generator.get_state(),
-        ).save(self.path)
-
-    def _resume(self) -> None:
-        state = Checkpoint.load(self.path)
-        state.check_settings(self.settings.to_json(), self.path)
-        self.network.load_state_dict(state.network)
-        self.average = {name: value.to(self.device) for name, value in state.average.items()}
-        self.optimiser.load_state_dict(state.optimiser)
-        self.generator.set_state(state.generator)
-        self.step = state.step
+        self.learner.save(self.path, self.settings.to_json())
 
     def _loss(self, terms: PreferenceTerms, anchor: Tensor, preference: Tensor) -> Tensor:
         settings = self.settings

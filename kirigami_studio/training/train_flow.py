@@ -6,7 +6,6 @@ One command for CPU and GPU, resumable: the run folder holds ``checkpoint.pt``, 
 
 from __future__ import annotations
 
-import json
 import math
 import time
 from collections.abc import Callable, Iterator
@@ -16,22 +15,24 @@ from pathlib import Path
 import torch
 from torch import Tensor
 
-from kirigami_studio.foundation.errors import ExportError, ModelError
+from kirigami_studio.foundation.errors import ModelError
 from kirigami_studio.generator.backbones import Network, Shape, network_of
 from kirigami_studio.generator.conditioning import condition, turned
 from kirigami_studio.generator.network import NetworkShape
 from kirigami_studio.generator.pose import square_pose
 from kirigami_studio.generator.velocity import joined
 from kirigami_studio.generator.weights import Model
-from kirigami_studio.training.checkpoint import Checkpoint
 from kirigami_studio.training.corpus import Chunk, Corpus, zero_outline
 from kirigami_studio.training.coupling import pair_noise
 from kirigami_studio.training.fields import mixed_fields
 from kirigami_studio.training.fitted_batches import FittedBatches, Targets
 from kirigami_studio.training.fitted_fields import FittedFields
 from kirigami_studio.training.growth import grown_state
+from kirigami_studio.training.learner import CHECKPOINT, Learner, logged, opened
 
 WARM_UP_STEPS = 200
+#: Gradients are scaled down to this norm.
+LARGEST_GRADIENT = 1.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -164,11 +165,7 @@ def train_flow(
     """
     sources = sources or Sources()
     sources.check(settings)
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise ExportError(f"Cannot make the run folder {folder}: {error.strerror}. Choose another folder.") from error
-    run = _Run(settings, folder / "checkpoint.pt", device, sources)
+    run = _Run(settings, opened(folder), device, sources)
     began = time.perf_counter()
     running = math.nan
     while run.step < settings.steps:
@@ -179,16 +176,14 @@ def train_flow(
             run.save()
             record = {"step": float(run.step), "loss": running, "seconds": time.perf_counter() - began}
             record |= validate(run.averaged())
-            with (folder / "log.jsonl").open("a", encoding="utf-8") as log:
-                log.write(json.dumps(record) + "\n")
-            yield record
+            yield logged(folder, record)
         if out_of_time:
             break
 
 
 def finished_network(settings: FlowSettings, folder: Path, device: torch.device) -> Network:
     """The averaged network of the checkpoint in ``folder``: what is shipped."""
-    return _Run(settings, folder / "checkpoint.pt", device, Sources()).averaged()
+    return _Run(settings, folder / CHECKPOINT, device, Sources()).averaged()
 
 
 class _Run:
@@ -200,65 +195,45 @@ class _Run:
         self.network = network_of(settings.shape).to(device)
         if sources.start:
             self.network.load_state_dict(grown_state(sources.start.network, settings.shape))
-        self.average = {name: value.detach().clone() for name, value in self.network.state_dict().items()}
-        self.optimiser = torch.optim.AdamW(
+        optimiser = torch.optim.AdamW(
             self.network.parameters(), lr=settings.learning_rate, betas=(0.9, 0.99), weight_decay=settings.weight_decay
         )
         self.generator = torch.Generator(device=device).manual_seed(settings.seed)
+        self.learner = Learner(self.network, optimiser, self.generator, device)
         self.corpus = Corpus(
             mixed_fields, settings.shape.rows, settings.shape.columns, settings.seed, settings.chunk, device
         )
         self.fitted = FittedBatches(sources.fits, self.corpus.lattice, settings.seed) if sources.fits else None
-        self.step = 0
         self._chunk: tuple[int, Chunk] | None = None
         if path.exists():
-            self._resume()
+            self.learner.resume(path, settings.to_json())
+
+    @property
+    def step(self) -> int:
+        """Finished optimiser steps."""
+        return self.learner.step
 
     def advance(self) -> float:
         """One optimiser step; returns the flow-matching loss."""
-        for group in self.optimiser.param_groups:
+        for group in self.learner.optimiser.param_groups:
             group["lr"] = self.settings.learning_rate * schedule(self.step, self.settings.steps)
         # Dropout draws from torch's own generator: by the step, so that a resumed run draws the same.
         torch.manual_seed(1_000_003 * self.settings.seed + self.step)
         loss = self._loss([self._random_targets(), *self._fitted_targets()])
-        self.optimiser.zero_grad(set_to_none=True)
-        loss.backward()
-        torch.nn.utils.clip_grad_norm_(self.network.parameters(), 1.0)
-        self.optimiser.step()
-        self.step += 1
         decay = self.settings.average_decay
         if not self.settings.warm_start:
             # Random weights must not linger in the average.
-            decay = min(decay, (1 + self.step) / (10 + self.step))
-        with torch.no_grad():
-            names, values = zip(*self.network.state_dict().items(), strict=True)
-            torch._foreach_lerp_([self.average[name] for name in names], list(values), 1 - decay)
+            decay = min(decay, (2 + self.step) / (11 + self.step))
+        self.learner.learn(loss, decay, LARGEST_GRADIENT)
+        self.learner.step += 1
         return float(loss.detach())
 
     def averaged(self) -> Network:
         """A copy of the network with the averaged weights."""
-        network = network_of(self.settings.shape).to(self.device)
-        network.load_state_dict(self.average)
-        return network.eval()
+        return self.learner.averaged(network_of(self.settings.shape))
 
     def save(self) -> None:
-        Checkpoint(
-            self.step,
-            self.network.state_dict(),
-            self.average,
-            self.optimiser.state_dict(),
-            self.settings.to_json(),
-            self.generator.get_state(),
-        ).save(self.path)
-
-    def _resume(self) -> None:
-        state = Checkpoint.load(self.path)
-        state.check_settings(self.settings.to_json(), self.path)
-        self.network.load_state_dict(state.network)
-        self.average = {name: value.to(self.device) for name, value in state.average.items()}
-        self.optimiser.load_state_dict(state.optimiser)
-        self.generator.set_state(state.generator)
-        self.step = state.step
+        self.learner.save(self.path, self.settings.to_json())
 
     def _fitted_targets(self) -> tuple[Targets, ...]:
         if self.fitted is None:

@@ -167,7 +167,7 @@ def test_that_sheets_follow_from_seed_and_step(tmp_path: Path, prior: Model, tin
     def sheets(settings: AlignSettings, steps: range) -> list[Sheet]:
         run = run_of(settings, tmp_path, prior)
         drawn = []
-        for run.step in steps:
+        for run.learner.step in steps:
             drawn.append(run._sheet())
         return drawn
 
