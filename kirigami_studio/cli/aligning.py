@@ -100,7 +100,7 @@ def align(arguments: argparse.Namespace) -> int:
     ):
         if not arguments.json:
             say(" ".join(f"{key} {value:.4f}" for key, value in record.items()))
-    network = aligned_network(settings, folder, device, prior)
+    network = aligned_network(settings, folder, device)
     record = record or validate(network)
     about = {"validation": record, "settings": settings.to_json()}
     path = store_variants("aligned", VARIANTS, network, folder, about)

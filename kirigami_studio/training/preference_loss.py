@@ -3,7 +3,7 @@
 All three are differentiable through the exact decoder.
 
 * *match*: distances between the boundaries both ways, each weighted by the boundary length it stands for: for small
-  gaps twice the area by which the silhouettes differ, a soft 1 - IoU.
+  gaps the area by which the silhouettes differ, a soft 1 - IoU.
 * *variation*: the paper's TV(x) per void.
 * *anchor*: squared distance of z to what the frozen prior draws from the same noise (reference regression).  Outlines
   fix only some of the directions of z; along the others the anchor keeps every sample where it was, and with it the

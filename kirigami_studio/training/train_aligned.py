@@ -1,6 +1,6 @@
 """Alignment by backpropagation through the sampler and the exact decoder, anchored to the prior.
 
-The network is unrolled over the Euler steps that the studio takes; the loss is measured on what comes out (the idea of
+The network is unrolled over the steps that the studio takes; the loss is measured on what comes out (the idea of
 DRaFT, arXiv 2309.17400), so no reward has to be guessed from ranks.  One network learns the whole trade between match
 and regularity: the preference is an input, drawn anew for every row.  ``grpo`` holds the paper's rule.
 """
@@ -24,6 +24,7 @@ from kirigami_studio.generator.network import NetworkShape, VelocityNetwork
 from kirigami_studio.generator.sheet import Sheet
 from kirigami_studio.generator.weights import Model
 from kirigami_studio.lattice.batched import BatchedLattice
+from kirigami_studio.training.checkpoint import Checkpoint
 from kirigami_studio.training.corpus import sheet_outline
 from kirigami_studio.training.fields import mixed_fields
 from kirigami_studio.training.growth import grown_state
@@ -36,8 +37,6 @@ from kirigami_studio.training.train_flow import LARGEST_GRADIENT, schedule
 NEW_LAYERS, NEW_PACE = ("prefer", "lie"), 30.0
 #: Least and most voids each way of other sheets, the share of them at phi = 0, and the largest angle of the others.
 GRIDS, FLAT_SHARE, LARGEST_PHI = (6, 16), 0.6, 2 * math.pi / 3
-
-
 #: What is bundled of an aligned network: names and preferences, chosen on validation figures.
 VARIANTS = {"accuracy": 0.0, "balanced": 0.35, "regularity": 0.9}
 
@@ -66,7 +65,7 @@ class AlignSettings:
     anchor_weight : float
         Cost of the mean squared distance of z to the prior's sample.
     anchored_every : int
-        The prior is sampled too for every so-manieth row.
+        The prior is sampled too for one row in this many.
     vertex_noise : float
         Largest standard deviation of the target's contour as the network sees it, unit-area lengths (a pixel of 128 is
         about 0.009); drawn anew for every row.  The loss looks at the undisturbed target.
@@ -149,9 +148,11 @@ def train_aligned(
             break
 
 
-def aligned_network(settings: AlignSettings, folder: Path, device: torch.device, prior: Model) -> VelocityNetwork:
+def aligned_network(settings: AlignSettings, folder: Path, device: torch.device) -> VelocityNetwork:
     """The averaged network of the checkpoint in ``folder``: what is shipped."""
-    return AlignRun(settings, folder / CHECKPOINT, device, prior).averaged()
+    network = VelocityNetwork(settings.shape)
+    network.load_state_dict(Checkpoint.load(folder / CHECKPOINT).average)
+    return network.to(device).eval()
 
 
 class AlignRun:
