@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from kirigami_studio.generator.resize import resize_fields
+from kirigami_studio.lattice.resize import resize_fields
 
 
 def test_that_the_same_grid_is_left_untouched() -> None:
