@@ -13,8 +13,8 @@ from kirigami_studio.generator.feedback import Feedback
 from kirigami_studio.generator.sheet import Carrier, Sheet, carrier_between
 
 #: What corrections take TV(x) / (m n) to cost at full preference for regularity, in squared unit-area lengths: a third
-#: less variation for half a point of match or less on 40 structured and 40 Sobol outlines with the prior; drawn shapes
-#: with arms lose more.
+#: less variation for half a point of match or less (tried once on 40 structured and 40 Sobol outlines with the prior);
+#: drawn shapes with arms lose more.
 EVENNESS = 1.5e-4
 #: Numbers that describe a sheet.
 SHEET_FEATURES = 5
@@ -42,7 +42,8 @@ class NetworkShape:
     z_scale : float
         Standard deviation of the source noise; z is divided by it at the input.
     direction : bool
-        Feedback, where there is any, gives the Gauss-Newton direction too, and the network can correct.
+        Feedback, where there is any, gives the Gauss-Newton direction too, and the network says how far corrections
+        follow it; without, they follow it all the way.
     preference : bool
         The network takes a preference between match (0) and regularity (1).
     sheets : bool
@@ -150,6 +151,7 @@ class VelocityNetwork(nn.Module):
         self.enter = nn.Linear(cells + shape.time_features + shape.feedback_width, shape.width)
         self.time_per_block = nn.Linear(shape.time_features, shape.hidden * shape.blocks, bias=False)
         self.prefer = nn.Linear(1, shape.hidden * shape.blocks, bias=False) if shape.preference else None
+        # How the sheet lies: its grid and angle.
         self.lie = nn.Linear(SHEET_FEATURES, shape.hidden * shape.blocks, bias=False) if shape.sheets else None
         for layer in (self.prefer, self.lie):
             if layer is not None:

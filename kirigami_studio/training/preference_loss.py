@@ -58,7 +58,7 @@ def preference_terms(lattice: BatchedLattice, sheet: Sheet, z: Tensor, loop: Ten
     # Bounded where it counts, but with a way back for what lies outside.
     return PreferenceTerms(
         boundary_gap(normalised(sheet_outline(lattice, sheet, inside)), loop),
-        _total_variation(torch.pow(10.0, inside)),
+        total_variation(torch.pow(10.0, inside)),
         (field - inside).square().mean(dim=(1, 2)) * RANGE_WEIGHT,
     )
 
@@ -101,6 +101,7 @@ def _soft_length(gap: Tensor) -> Tensor:
     return torch.sqrt(gap.square().sum(dim=-1) + SOFTNESS**2) - SOFTNESS
 
 
-def _total_variation(x: Tensor) -> Tensor:
+def total_variation(x: Tensor) -> Tensor:
+    """The paper's TV(x) / (m n) of ratios (B, m, n): (B,), differentiable; ``evaluate.regularity`` for one field."""
     down, right = x.diff(dim=1).abs().sum(dim=(1, 2)), x.diff(dim=2).abs().sum(dim=(1, 2))
     return (down + right) / x[0].numel()

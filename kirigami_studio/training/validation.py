@@ -21,6 +21,7 @@ from kirigami_studio.target.editing import resampled
 from kirigami_studio.training.corpus import zero_outline
 from kirigami_studio.training.drawn_shapes import drawn_shape
 from kirigami_studio.training.fields import Z_LIMIT, sobol_fields, structured_fields
+from kirigami_studio.training.preference_loss import total_variation as batched_variation
 
 #: Seed of the fields that training watches; the test splits of ``dataset`` use others.
 VALIDATION_SEED = 20_001
@@ -147,12 +148,11 @@ def preference_figures(
                 code = network.code(seen, preference=asked).repeated(samples)
                 z = integrate(network, noise, code, steps).clamp(-Z_LIMIT, Z_LIMIT)
                 made = normalised(zero_outline(lattice, z.view(-1, rows, columns)))
-                x = torch.pow(10.0, z.view(-1, rows, columns))
-                rough = x.diff(dim=1).abs().sum(dim=(1, 2)) + x.diff(dim=2).abs().sum(dim=(1, 2))
+                variation = batched_variation(torch.pow(10.0, z.view(-1, rows, columns)))
                 figures[f"{family}_iou_{preference:g}"] = float(
                     _ious(made, seen.repeat_interleave(samples, dim=0)).mean()
                 )
-                figures[f"{family}_tv_{preference:g}"] = float(rough.mean()) / (rows * columns)
+                figures[f"{family}_tv_{preference:g}"] = float(variation.mean())
                 spread = z.view(count, samples, -1).std(dim=1).mean()
                 figures[f"{family}_spread_{preference:g}"] = float(spread)
     return figures

@@ -112,13 +112,14 @@ def test_that_an_unknown_variant_is_refused_before_any_candidate(request_for_hea
 
 
 def test_that_polishing_improves_every_candidate_and_counts_its_decodings(request_for_heart: Request) -> None:
-    drawn = best_of(request_for_heart)
-    fitted = best_of(replace(request_for_heart, polish=10))
+    # One Euler step and no correction: samples that leave the polish as much to do as it always had.
+    rough = replace(request_for_heart, steps=1)
+    drawn = best_of(rough)
+    fitted = best_of(replace(rough, polish=10))
     before = {candidate.index: candidate.score.siou for candidate in drawn.candidates}
     after = {candidate.index: candidate.score.siou for candidate in fitted.candidates}
-    # Samples come corrected, so the best of them have less than a hundredth left to gain.
-    assert all(after[index] > before[index] + 0.002 for index in before)
-    assert np.mean(list(after.values())) > np.mean(list(before.values())) + 0.005
+    assert all(after[index] > before[index] for index in before)
+    assert fitted.best.score.siou > drawn.best.score.siou + 0.02
     assert all(candidate.polished for candidate in fitted.candidates)
     assert fitted.forward_evaluations > drawn.forward_evaluations + 4 * 10
 
