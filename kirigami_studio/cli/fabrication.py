@@ -15,10 +15,10 @@ from kirigami_studio.export.profile import DEFAULT_PROFILE, find_profile
 from kirigami_studio.export.registry import export as export_file
 from kirigami_studio.export.registry import find_exporter
 from kirigami_studio.fabricate.checks import Report, Severity, check_plan
-from kirigami_studio.fabricate.cut_plan import CutPlan, plan_cuts
+from kirigami_studio.fabricate.cut_plan import CutPlan
 from kirigami_studio.fabricate.material import default_material, find_material
 from kirigami_studio.foundation.errors import FabricationError, ProjectError, UsageError
-from kirigami_studio.lattice.deployment import deploy
+from kirigami_studio.project.cutting import plan_of
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.settings import FabricationSettings
 from kirigami_studio.project.store import load
@@ -38,15 +38,7 @@ def checked_plan(candidate: Candidate, fabrication: FabricationSettings) -> tupl
     FabricationError
         The plan cannot be made, or the sheet would not survive it.
     """
-    trim = candidate.trim
-    plan = plan_cuts(
-        deploy(candidate.field if trim is None else trim.field),
-        fabrication.width_mm,
-        fabrication.connector_mm,
-        fabrication.kerf_mm,
-        find_material(fabrication.material),
-        kept=None if trim is None else trim.kept,
-    )
+    plan = plan_of(candidate, fabrication)
     report = check_plan(plan)
     for problem in report.problems:
         if problem.severity is Severity.ERROR:

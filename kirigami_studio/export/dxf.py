@@ -24,7 +24,7 @@ from kirigami_studio import __version__
 from kirigami_studio.export.dxf_content import PARSER_FAULTS
 from kirigami_studio.export.profile import DEFAULT_PROFILE, Profile, find_profile
 from kirigami_studio.export.verified import write_verified
-from kirigami_studio.fabricate.cut_plan import CutPath, CutPlan, Layer
+from kirigami_studio.fabricate.cut_plan import CutPath, CutPlan
 from kirigami_studio.foundation.errors import ExportError
 from kirigami_studio.lattice.ratio_field import FloatArray
 
@@ -87,7 +87,7 @@ def dxf_bytes(plan: CutPlan, version: str, profile: Profile) -> bytes:
         # R12 knows no units, and ezdxf.new would log that at every export.
         document = Drawing.new("R12") if version == "R12" else new(version, units=units.MM)
         document.header["$MEASUREMENT"] = 1
-        for layer in Layer:
+        for layer in plan.layers:
             document.layers.add(layer.value, color=profile.colour[layer])
         _draw(document, plan, version, profile)
         _describe(document, plan, version)
@@ -163,7 +163,7 @@ def _first_difference(document: Drawing, plan: CutPlan, version: str, profile: P
     if tuple(document.header["$EXTMIN"])[:2] != (0.0, 0.0) or tuple(document.header["$EXTMAX"])[:2] != plan.bounds_mm:
         return f"its extents are {document.header['$EXTMIN']} to {document.header['$EXTMAX']}"
     layers = {layer.dxf.name for layer in document.layers}
-    if layers - UNAVOIDABLE_LAYERS != {layer.value for layer in Layer}:
+    if layers - UNAVOIDABLE_LAYERS != {layer.value for layer in plan.layers}:
         return f"its layers are {', '.join(sorted(layers))}"
     if errors := document.audit().errors:
         return f"ezdxf's audit found {len(errors)} errors, the first: {errors[0].message}"

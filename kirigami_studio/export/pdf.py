@@ -15,7 +15,7 @@ from kirigami_studio.export import palette
 from kirigami_studio.export.exporter import ExportJob
 from kirigami_studio.export.palette import Colour
 from kirigami_studio.export.verified import write_verified
-from kirigami_studio.fabricate.cut_plan import CutPlan, Layer
+from kirigami_studio.fabricate.cut_plan import CutPlan
 from kirigami_studio.foundation.errors import ExportError
 
 MARGIN_MM = 10.0
@@ -75,11 +75,11 @@ def _pdf_bytes(plan: CutPlan, page: tuple[float, float]) -> bytes:
     left, bottom = MARGIN_MM, MARGIN_MM + FOOTER_MM
     canvas.setLineWidth(CUT_LINE_MM * mm)
     canvas.setLineCap(1)
-    for layer in Layer:
+    for layer in plan.layers:
         _stroke_colour(canvas, palette.LAYER_COLOUR[layer])
         for cut in plan.on_layer(layer):
             line = canvas.beginPath()
-            (x, y), *rest = cut.points.tolist()
+            (x, y), *rest = cut.flattened.tolist()
             line.moveTo((left + x) * mm, (bottom + y) * mm)
             for x, y in rest:
                 line.lineTo((left + x) * mm, (bottom + y) * mm)

@@ -13,7 +13,7 @@ from types import MappingProxyType
 from kirigami_studio.fabricate.cut_plan import Layer
 from kirigami_studio.foundation.errors import ExportError
 
-RED, GREEN, BLUE = 1, 3, 5
+RED, GREEN, BLUE, MAGENTA = 1, 3, 5, 6
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,7 +34,7 @@ class Profile:
 
 
 _ALL_RED = MappingProxyType(dict.fromkeys(Layer, RED))
-_BY_LAYER = MappingProxyType({Layer.SLITS: RED, Layer.EDGE_SLITS: GREEN, Layer.OUTLINE: BLUE})
+_BY_LAYER = MappingProxyType({Layer.RELIEF: MAGENTA, Layer.SLITS: RED, Layer.EDGE_SLITS: GREEN, Layer.OUTLINE: BLUE})
 PROFILES: Mapping[str, Profile] = MappingProxyType(
     {
         "any": Profile("any", "Any machine: everything red, cut in file order (MeerK40t, K40 Whisperer)", _ALL_RED),

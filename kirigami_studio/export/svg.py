@@ -11,9 +11,9 @@ import numpy as np
 from kirigami_studio.export import palette
 from kirigami_studio.export.exporter import ExportJob
 from kirigami_studio.export.palette import hexadecimal
-from kirigami_studio.export.profile import BLUE, GREEN, RED, Profile, find_profile
+from kirigami_studio.export.profile import BLUE, GREEN, MAGENTA, RED, Profile, find_profile
 from kirigami_studio.export.verified import write_verified
-from kirigami_studio.fabricate.cut_plan import CutPlan, Layer
+from kirigami_studio.fabricate.cut_plan import CutPlan
 from kirigami_studio.foundation.errors import ExportError
 from kirigami_studio.lattice.ratio_field import FloatArray
 
@@ -21,7 +21,7 @@ NAMESPACE = "http://www.w3.org/2000/svg"
 #: Line width (mm) of cut lines; laser drivers take anything thinner than 0.1 mm as a line to cut.
 CUT_LINE_MM = 0.05
 LAYOUT_MARGIN_MM = 5.0
-ACI_COLOUR = {RED: (255, 0, 0), GREEN: (0, 255, 0), BLUE: (0, 0, 255)}
+ACI_COLOUR = {RED: (255, 0, 0), GREEN: (0, 255, 0), BLUE: (0, 0, 255), MAGENTA: (255, 0, 255)}
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,13 +46,13 @@ def write_cut_svg(plan: CutPlan, path: str | Path, profile: Profile) -> None:
     """
     width, height = plan.bounds_mm
     root = _root(width, height, f"Kirigami cut plan, sheet {plan.size_mm[0]:g} x {plan.size_mm[1]:g} mm")
-    for layer in Layer:
+    for layer in plan.layers:
         colour = hexadecimal(ACI_COLOUR[profile.colour[layer]])
         group = ElementTree.SubElement(
             root, "g", {"id": layer.value, "fill": "none", "stroke": colour, "stroke-width": f"{CUT_LINE_MM:g}"}
         )
         for cut in plan.on_layer(layer):
-            ElementTree.SubElement(group, "path", {"d": _path_data(cut.points, height, cut.closed)})
+            ElementTree.SubElement(group, "path", {"d": _path_data(cut.flattened, height, cut.closed)})
     _write(root, Path(path), len(plan.paths), (width, height))
 
 

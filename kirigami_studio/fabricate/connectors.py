@@ -14,6 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from kirigami_studio.fabricate.lengths import check_length
 from kirigami_studio.fabricate.slits import SHEET_EDGE, CutTable
 from kirigami_studio.foundation.errors import FabricationError
 from kirigami_studio.lattice.ratio_field import FloatArray
@@ -66,24 +67,6 @@ def hinge_widths(count: int, default_mm: float, single_mm: Mapping[int, float] |
             raise FabricationError(f"There is no hinge {hinge}: this sheet has hinges 0 to {count - 1}.")
         widths[hinge] = check_length(f"The connector width of hinge {hinge}", width)
     return widths
-
-
-def check_length(what: str, value: float, zero_allowed: bool = False) -> float:
-    """Return a length in mm as float, or refuse it by name.
-
-    Raises
-    ------
-    FabricationError
-        Not a number, not finite, negative, or zero where that makes no sense.
-    """
-    try:
-        length = float(value)
-    except (TypeError, ValueError):
-        raise FabricationError(f"{what} must be a number of millimetres, got {value!r}.") from None
-    if not math.isfinite(length) or length < 0 or (length == 0 and not zero_allowed):
-        bound = "0 mm or more" if zero_allowed else "above 0 mm"
-        raise FabricationError(f"{what} must be {bound}, got {length:g} mm; type a positive width in millimetres.")
-    return length
 
 
 def shorten(

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, field
 from enum import Enum
 from functools import cached_property
 
@@ -13,9 +13,12 @@ import shapely
 from shapely.geometry import Polygon
 
 from kirigami_studio.fabricate import ordering, timing
-from kirigami_studio.fabricate.connectors import Hinges, check_length, finished_widths, hinge_widths, shorten
+from kirigami_studio.fabricate.bulges import flattened
+from kirigami_studio.fabricate.connectors import Hinges, finished_widths, hinge_widths, shorten
 from kirigami_studio.fabricate.kerf import OVERCUT_MM, edge_cut_paths, outline_path
+from kirigami_studio.fabricate.lengths import check_length
 from kirigami_studio.fabricate.material import Material, default_material
+from kirigami_studio.fabricate.options import CutOptions
 from kirigami_studio.fabricate.slits import CutTable, cut_table, sheet_lines
 from kirigami_studio.fabricate.trimmed_sheet import (
     CutPiece,
@@ -36,8 +39,9 @@ WIDER_MM = 1e-3
 
 
 class Layer(Enum):
-    """Groups of paths that a machine may treat differently; the values are the layer names in files."""
+    """Groups of paths that a machine may treat differently, in the order of cutting; the values are names in files."""
 
+    RELIEF = "RELIEF"
     SLITS = "SLITS"
     EDGE_SLITS = "EDGE_SLITS"
     OUTLINE = "OUTLINE"
@@ -55,20 +59,31 @@ class CutPath:
     closed : bool
     cut : int
         Number of the cut in :class:`CutTable`, -1 for the outline.
+    bulges : (P,) float or None
+        Arcs, see ``bulges``; None where all edges are straight.
     """
 
     points: FloatArray
     layer: Layer
     closed: bool
     cut: int = -1
+    bulges: FloatArray | None = None
 
     def __post_init__(self) -> None:
         self.points.setflags(write=False)
+        if self.bulges is not None:
+            self.bulges.setflags(write=False)
+
+    @property
+    def flattened(self) -> FloatArray:
+        """Points (V, 2), mm, with chords for arcs; the first point of a closed path is not repeated."""
+        return self.points if self.bulges is None else flattened(self.points, self.bulges, self.closed)
 
     @property
     def travelled(self) -> FloatArray:
-        """Points as the head visits them; a closed path comes back to its first point."""
-        return np.concatenate([self.points, self.points[:1]]) if self.closed else self.points
+        """Flattened points as the head visits them; a closed path comes back to its first point."""
+        points = self.flattened
+        return np.concatenate([points, points[:1]]) if self.closed else points
 
     @property
     def length(self) -> float:
@@ -92,6 +107,7 @@ class CutPlan:
     material : Material
     design_hash : str
         Identifies the ratios that the plan was made from.
+    options : CutOptions
     notes : tuple of str
         Sentences that a person should read before cutting.
     """
@@ -104,6 +120,7 @@ class CutPlan:
     hinges: Hinges
     material: Material
     design_hash: str
+    options: CutOptions = field(default_factory=CutOptions)
     notes: tuple[str, ...] = ()
 
     @cached_property
@@ -127,8 +144,14 @@ class CutPlan:
     @property
     def bounds_mm(self) -> tuple[float, float]:
         """Width and height of everything the head cuts, overcuts included; the lower corner is (0, 0)."""
-        corner = np.concatenate([path.points for path in self.paths]).max(axis=0)
+        corner = np.concatenate([path.flattened for path in self.paths]).max(axis=0)
         return float(corner[0]), float(corner[1])
+
+    @property
+    def layers(self) -> tuple[Layer, ...]:
+        """The layers that hold paths, in the order of cutting."""
+        used = {path.layer for path in self.paths}
+        return tuple(layer for layer in Layer if layer in used)
 
     def on_layer(self, layer: Layer) -> tuple[CutPath, ...]:
         """The paths of one layer, in the order of cutting."""
@@ -141,7 +164,7 @@ def plan_cuts(
     connector_mm: float | None = None,
     kerf_mm: float | None = None,
     material: Material | None = None,
-    single_widths_mm: Mapping[int, float] | None = None,
+    options: CutOptions | None = None,
     overcut_mm: float = OVERCUT_MM,
     kept: Sequence[FloatArray | None] | None = None,
 ) -> CutPlan:
@@ -156,8 +179,8 @@ def plan_cuts(
         Finished connector width and full cut width; the material's values unless given.
     material : Material, optional
         The default preset unless given.
-    single_widths_mm : mapping of hinge number to width, optional
-        Finished widths of single hinges, numbered as in :class:`CutTable`.
+    options : CutOptions, optional
+        Straight connectors of one width, in the shortest order, without tabs, unless given.
     overcut_mm : float
         Reach of edge cuts beyond the outline.
     kept : sequence of (P, 2) float or None, unit cells, optional
@@ -170,7 +193,7 @@ def plan_cuts(
         A size, width or kerf that makes no sense, a cut without room for its connectors, or too little material kept
         at a hinge.
     """
-    material = material or default_material()
+    material, options = material or default_material(), options or CutOptions()
     width = check_length("The sheet width", width_mm)
     connector = check_length("The connector width", material.connector_mm if connector_mm is None else connector_mm)
     kerf = check_length("The kerf", material.kerf_mm if kerf_mm is None else kerf_mm, zero_allowed=True)
@@ -179,7 +202,7 @@ def plan_cuts(
     lines, size = sheet_lines(deployment, width)
     junctions = lines[table.hinge_cut, table.hinge_end]
     _check_size(size)
-    widths = hinge_widths(table.hinge_count, connector, single_widths_mm)
+    widths = hinge_widths(table.hinge_count, connector, dict(options.hinge_mm))
     lines = shorten(lines, table, size, widths, kerf)
     parts = () if kept is None else tuple(kept)
     trimmed = any(part is not None for part in parts)
@@ -213,6 +236,7 @@ def plan_cuts(
         hinges=hinges,
         material=material,
         design_hash=_design_hash(deployment, parts if trimmed else ()),
+        options=options,
         notes=_notes(hinges, material, connector, kerf),
     )
 

@@ -16,9 +16,10 @@ from kirigami_studio.foundation.errors import ProjectError
 from kirigami_studio.lattice.deployment import check_phi, deploy
 from kirigami_studio.lattice.ratio_field import FloatArray, RatioField
 from kirigami_studio.project.document import Document
+from kirigami_studio.project.fabrication_record import fabrication_json, fabrication_of
 from kirigami_studio.project.json_record import Record, read_json
 from kirigami_studio.project.migrations import Members
-from kirigami_studio.project.settings import DesignSettings, FabricationSettings
+from kirigami_studio.project.settings import DesignSettings
 from kirigami_studio.target.outline import Outline
 
 DESIGN = "design.json"
@@ -42,12 +43,7 @@ def encode(document: Document) -> dict[str, bytes]:
             "prefer": document.settings.prefer,
             "search": document.settings.search,
         },
-        "fabrication": {
-            "width_mm": document.fabrication.width_mm,
-            "material": document.fabrication.material,
-            "connector_mm": document.fabrication.connector_mm,
-            "kerf_mm": document.fabrication.kerf_mm,
-        },
+        "fabrication": fabrication_json(document.fabrication),
         "candidates": [_candidate_json(entry) for entry in document.candidates],
         "chosen": document.chosen,
         "provenance": dict(sorted(document.provenance.items())),
@@ -74,7 +70,7 @@ def decode(members: Members) -> Document:
     if DESIGN not in members:
         raise ProjectError(f"it lacks {DESIGN}")
     design = Record(read_json(members[DESIGN], DESIGN), DESIGN)
-    settings, fabrication = design.record("settings"), design.record("fabrication")
+    settings = design.record("settings")
     entries = design.list("candidates")
     records = [Record(entry, f"{DESIGN}.candidates[{k}]") for k, entry in enumerate(entries)]
     fields = _read_ratios(members, RATIOS, len(records))
@@ -99,12 +95,7 @@ def decode(members: Members) -> Document:
             for record, field in zip(records, fields, strict=True)
         ),
         chosen=design.whole("chosen") if design.holds("chosen") else None,
-        fabrication=FabricationSettings(
-            width_mm=fabrication.number("width_mm"),
-            material=fabrication.text("material"),
-            connector_mm=fabrication.number("connector_mm") if fabrication.holds("connector_mm") else None,
-            kerf_mm=fabrication.number("kerf_mm") if fabrication.holds("kerf_mm") else None,
-        ),
+        fabrication=fabrication_of(design.record("fabrication")),
         provenance=design.texts("provenance"),
     )
 

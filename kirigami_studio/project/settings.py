@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from kirigami_studio.fabricate.material import DEFAULT_PRESET
+from kirigami_studio.fabricate.options import CutOptions
 from kirigami_studio.foundation.errors import AngleError, GridError, UsageError
 from kirigami_studio.lattice.ratio_field import check_grid
 
@@ -88,6 +89,11 @@ class FabricationSettings:
         Finished width of a connector; None takes the material's own.
     kerf_mm : float or None
         Width of the cut; None takes the material's own.
+    options : CutOptions
+    profile : str
+        Key of the machine profile that cut files are written for.
+    dxf_version : str
+        DXF dialect of cut files.
 
     Raises
     ------
@@ -99,6 +105,9 @@ class FabricationSettings:
     material: str = DEFAULT_PRESET
     connector_mm: float | None = None
     kerf_mm: float | None = None
+    options: CutOptions = field(default_factory=CutOptions)
+    profile: str = "any"
+    dxf_version: str = "R2010"
 
     def __post_init__(self) -> None:
         if not _is_number(self.width_mm) or not 0 < self.width_mm <= LARGEST_SHEET_MM:
@@ -107,6 +116,10 @@ class FabricationSettings:
             )
         if not isinstance(self.material, str) or not self.material:
             raise UsageError(f"The material must be the name of a preset, got {self.material!r}.")
+        if not isinstance(self.profile, str) or not self.profile:
+            raise UsageError(f"The machine profile must be a name, got {self.profile!r}.")
+        if not isinstance(self.dxf_version, str) or not self.dxf_version:
+            raise UsageError(f"The DXF version must be a name, got {self.dxf_version!r}.")
         for name, value, zero_allowed in (("connector", self.connector_mm, False), ("kerf", self.kerf_mm, True)):
             if value is None:
                 continue

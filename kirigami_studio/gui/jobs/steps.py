@@ -191,18 +191,10 @@ def planning(order: Order, cancel: Cancel) -> Iterator[Planned]:
 def planned(order: Order) -> Planned:
     """Plan the cuts and check them, in one go; a trimmed design gets its trimmed outline."""
     from kirigami_studio.fabricate.checks import check_plan
-    from kirigami_studio.fabricate.cut_plan import plan_cuts
-    from kirigami_studio.fabricate.material import find_material
+    from kirigami_studio.project.cutting import plan_of
 
-    settings, trim = order.settings, order.candidate.trim
-    plan = plan_cuts(
-        order.deployment,
-        width_mm=settings.width_mm,
-        connector_mm=settings.connector_mm,
-        kerf_mm=settings.kerf_mm,
-        material=find_material(settings.material),
-        kept=None if trim is None else trim.kept,
-    )
+    trim = order.candidate.trim
+    plan = plan_of(order.candidate, order.settings, order.deployment)
     return Planned(plan, check_plan(plan), 0.0 if trim is None else trim.removed_share)
 
 

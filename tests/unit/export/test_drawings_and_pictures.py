@@ -56,7 +56,7 @@ def test_that_the_cut_svg_is_true_to_size_for_another_reader(job: ExportJob, tmp
         np.testing.assert_allclose(points, expected, atol=2e-3)
     root = ElementTree.parse(tmp_path / "cut.svg").getroot()
     assert root.get("width") == f"{width:g}mm"
-    assert [group.get("id") for group in root.iter(f"{SVG_NS}g")] == [layer.value for layer in Layer]
+    assert [group.get("id") for group in root.iter(f"{SVG_NS}g")] == [layer.value for layer in plan.layers]
     assert [group.get("stroke") for group in root.iter(f"{SVG_NS}g")] == ["#ff0000", "#00ff00", "#0000ff"]
 
 

@@ -15,6 +15,7 @@ import pytest
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.score import evaluate
+from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions, CutOrder
 from kirigami_studio.foundation.errors import ExportError, ProjectError
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
@@ -23,6 +24,7 @@ from kirigami_studio.polish.levenberg import polish
 from kirigami_studio.project import store
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.migrations import MIGRATIONS, Members, migrate
+from kirigami_studio.project.settings import FabricationSettings
 from kirigami_studio.target.outline import Outline
 
 Change = Callable[[dict[str, bytes]], None]
@@ -84,7 +86,7 @@ def test_that_equal_documents_give_equal_bytes(document: Document, tmp_path: Pat
 
 def test_that_the_manifest_names_format_and_versions(document: Document) -> None:
     manifest = json.loads(members_of(document)["manifest.json"])
-    assert manifest["version"] == 2
+    assert manifest["version"] == 3
     assert manifest["app_version"]
 
 
@@ -114,8 +116,8 @@ def test_that_another_kind_of_file_is_a_sentence(content: bytes, tmp_path: Path)
 
 def test_that_a_newer_project_asks_for_an_update(document: Document, tmp_path: Path) -> None:
     members = members_of(document)
-    members["manifest.json"] = members["manifest.json"].replace(b'"version": 2', b'"version": 3')
-    with pytest.raises(ProjectError, match=r"newer .*format 3.* up to 2.*update the program\.$"):
+    members["manifest.json"] = members["manifest.json"].replace(b'"version": 3', b'"version": 4')
+    with pytest.raises(ProjectError, match=r"newer .*format 4.* up to 3.*update the program\.$"):
         store.load(write_members(tmp_path / "newer.kiri", members))
 
 
@@ -125,15 +127,60 @@ def test_that_a_project_of_the_first_format_opens_with_the_usual_preferences(
     members = members_of(document)
     design = json.loads(members["design.json"])
     del design["settings"]["prefer"], design["settings"]["search"]
+    for name in ("options", "profile", "dxf_version"):
+        del design["fabrication"][name]
     for candidate in design["candidates"]:
         del candidate["drawn"], candidate["trim"]
     members["design.json"] = json.dumps(design).encode()
     del members["drawn.npy"]
-    members["manifest.json"] = members["manifest.json"].replace(b'"version": 2', b'"version": 1')
+    members["manifest.json"] = members["manifest.json"].replace(b'"version": 3', b'"version": 1')
     opened = store.load(write_members(tmp_path / "old.kiri", members))
     usual = replace(document.settings, prefer="balanced", search=0)
     bare = tuple(replace(candidate, drawn=None) for candidate in document.candidates)
     assert opened == replace(document, settings=usual, candidates=bare)
+
+
+def test_that_a_project_of_the_second_format_is_cut_as_before(document: Document, tmp_path: Path) -> None:
+    document = replace(document, fabrication=FabricationSettings(80.0, connector_mm=0.4))
+    members = members_of(document)
+    design = json.loads(members["design.json"])
+    for name in ("options", "profile", "dxf_version"):
+        del design["fabrication"][name]
+    members["design.json"] = json.dumps(design).encode()
+    members["manifest.json"] = members["manifest.json"].replace(b'"version": 3', b'"version": 2')
+    assert store.load(write_members(tmp_path / "old.kiri", members)) == document
+
+
+def test_that_all_choices_about_the_cuts_come_back(document: Document, tmp_path: Path) -> None:
+    options = CutOptions(ConnectorStyle.TEARDROP, CutOrder.SPREAD, 8, 0.7, ((1, 0.4), (5, 0.9)), (2, 3))
+    settings = FabricationSettings(90.0, options=options, profile="lightburn", dxf_version="R12")
+    store.save(replace(document, fabrication=settings), tmp_path / "cut.kiri")
+    assert store.load(tmp_path / "cut.kiri").fabrication == settings
+
+
+@pytest.mark.parametrize(
+    ("place", "value", "said"),
+    [
+        ("style", "glued", "'glued' is none of straight"),
+        ("order", "random", "'random' is none of shortest"),
+        ("tabs", -1, "0 to 200 tabs"),
+        ("tab_mm", 0.0, "width of a tab"),
+        ("hinge_mm", [[3]], "no hinge with its width"),
+        ("hinge_mm", [[3, "wide"]], "no width"),
+        ("hinge_mm", [[3, -1.0]], "hinge 3"),
+        ("removed", [5, 4], "ascending"),
+        ("removed", ["5"], "no hinge number"),
+    ],
+)
+def test_that_choices_which_make_no_sense_are_named(
+    place: str, value: object, said: str, document: Document, tmp_path: Path
+) -> None:
+    members = members_of(document)
+    design = json.loads(members["design.json"])
+    design["fabrication"]["options"][place] = value
+    members["design.json"] = json.dumps(design).encode()
+    with pytest.raises(ProjectError, match=said):
+        store.load(write_members(tmp_path / "odd.kiri", members))
 
 
 def test_that_every_truncation_is_refused_or_whole(document: Document, tmp_path: Path) -> None:

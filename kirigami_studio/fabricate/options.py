@@ -1,0 +1,82 @@
+"""What a person may choose about the cuts beyond their widths: connector style, order, tabs, single hinges."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from enum import Enum
+from itertools import pairwise
+
+from kirigami_studio.fabricate.lengths import check_length
+from kirigami_studio.foundation.errors import FabricationError
+
+#: Finished width (mm) of a tab unless told otherwise: common for thin sheet.
+TAB_MM = 0.5
+#: More tabs than this on one outline are a typing error.
+MOST_TABS = 200
+
+
+class ConnectorStyle(Enum):
+    """How a slit ends before its hinge; the values are the names on the command line and in files."""
+
+    STRAIGHT = "straight"
+    ROUND = "round"
+    TEARDROP = "teardrop"
+    ARC = "arc"
+    DOUBLE = "double"
+
+
+class CutOrder(Enum):
+    """In which order the slits are cut; the values are the names on the command line and in files."""
+
+    SHORTEST = "shortest"
+    ROWS = "rows"
+    INSIDE_OUT = "inside-out"
+    SPREAD = "spread"
+
+
+@dataclass(frozen=True, slots=True)
+class CutOptions:
+    """Choices about the cuts.
+
+    Attributes
+    ----------
+    style : ConnectorStyle
+    order : CutOrder
+    tabs : int
+        Uncut places of the outline that hold the sheet until it is taken out; 0 for none.
+    tab_mm : float
+        Finished width of a tab.
+    hinge_mm : tuple of (hinge, width)
+        Finished widths of single connectors, numbered as in ``slits.CutTable``, in ascending order of the hinges.
+    removed : tuple of int
+        Hinges without a connector, in ascending order: their slits are cut through.
+
+    Raises
+    ------
+    FabricationError
+        With the number that does not fit.
+    """
+
+    style: ConnectorStyle = ConnectorStyle.STRAIGHT
+    order: CutOrder = CutOrder.SHORTEST
+    tabs: int = 0
+    tab_mm: float = TAB_MM
+    hinge_mm: tuple[tuple[int, float], ...] = ()
+    removed: tuple[int, ...] = ()
+
+    def __post_init__(self) -> None:
+        if not 0 <= self.tabs <= MOST_TABS:
+            raise FabricationError(f"The outline can have 0 to {MOST_TABS} tabs, got {self.tabs}.")
+        check_length("The width of a tab", self.tab_mm)
+        hinges = [hinge for hinge, _ in self.hinge_mm]
+        if not (_ascending(hinges) and _ascending(self.removed)):
+            raise FabricationError("Every hinge can be given a width or removed once, in ascending order.")
+        for hinge, width in self.hinge_mm:
+            check_length(f"The connector width of hinge {hinge}", width)
+        if both := set(hinges) & set(self.removed):
+            raise FabricationError(f"Hinge {min(both)} has both a width and no connector; choose one.")
+
+
+def _ascending(numbers: Sequence[int]) -> bool:
+    return all(number >= 0 for number in numbers) and all(a < b for a, b in pairwise(numbers))
