@@ -74,12 +74,15 @@ def align(arguments: argparse.Namespace) -> int:
     from kirigami_studio.training.validation import preference_figures
 
     seconds = seconds_allowed(arguments)
-    if arguments.other_sheets > 1.0:
-        raise UsageError(f"--other-sheets is a share from 0 to 1, got {arguments.other_sheets:g}.")
+    for name in ("other_sheets", "pictured"):
+        if (share := getattr(arguments, name)) > 1.0:
+            raise UsageError(f"--{name.replace('_', '-')} is a share from 0 to 1, got {share:g}.")
     device = training_device(arguments.device, arguments.threads)
     prior = starting_model(arguments.start)
+    begin = None if arguments.go_on is None else starting_model(arguments.go_on, "accuracy")
     settings = AlignSettings(
         prior=prior.digest,
+        begin="" if begin is None else begin.digest,
         steps=arguments.steps,
         batch=arguments.batch,
         drawn=arguments.drawn,
@@ -87,6 +90,7 @@ def align(arguments: argparse.Namespace) -> int:
         variation_weight=arguments.variation_weight,
         anchor_weight=arguments.anchor_weight,
         other_sheets=arguments.other_sheets,
+        pictured_share=arguments.pictured,
         seed=arguments.seed,
     )
     folder = Path(arguments.out)
@@ -96,7 +100,7 @@ def align(arguments: argparse.Namespace) -> int:
 
     record: dict[str, float] = {}
     for record in train_aligned(
-        settings, folder, device, validate, prior, seconds=seconds, validate_every=arguments.validate_every
+        settings, folder, device, validate, prior, begin, seconds=seconds, validate_every=arguments.validate_every
     ):
         if not arguments.json:
             say(" ".join(f"{key} {value:.4f}" for key, value in record.items()))
@@ -120,11 +124,10 @@ def seconds_allowed(arguments: argparse.Namespace) -> float:
     return 60.0 * float(arguments.minutes)
 
 
-def starting_model(name: str) -> Model:
-    """The weights that a run begins with: ``bundled``, or a .safetensors file beside its manifest."""
-    from kirigami_studio.generator.weights import load_model
+def starting_model(name: str, bundled: str = "prior") -> Model:
+    """The weights that a run begins with: ``bundled`` ones, or a .safetensors file beside its manifest."""
+    from kirigami_studio.generator.weights import load_model, load_weights
 
     if name == "bundled":
-        return load_model("prior")
-    weights = Path(name)
-    return load_model(weights.stem, weights.parent)
+        return load_model(bundled)
+    return load_weights(Path(name))

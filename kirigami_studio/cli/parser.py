@@ -241,6 +241,10 @@ COMMANDS: tuple[Command, ...] = (
                help="cost of leaving what the prior draws from the same noise (default 0.5)"),
         option("--other-sheets", type=amount, default=0.5,
                help="share of the steps on other grids and angles than the prior's (default 0.5)"),
+        option("--pictured", type=amount, default=0.5,
+               help="share of the targets that are seen as read from a picture (default 0.5)"),
+        option("--go-on", default=None, metavar="WEIGHTS",
+               help="begin with these aligned weights: 'bundled', or a .safetensors file (default: the prior's)"),
         option("--minutes", type=number, default=None, help="stop with a checkpoint after this time"),
         option("--validate-every", type=count, default=500, help="steps between validations (default 500)"),
         option("--threads", type=count, default=1, help="processor threads (default 1)"),
@@ -248,6 +252,7 @@ COMMANDS: tuple[Command, ...] = (
         option("--seed", type=whole, default=0, help="default 0"),
         JSON,
     ), ("kirigami-studio train align --out runs/aligned",
+        "kirigami-studio train align --go-on bundled --seed 1 --out runs/further",
         "kirigami-studio train align --start runs/prior/prior.safetensors --minutes 30 --out runs/aligned")),
     Command("train grpo", "align a generator with a reward, by the paper's rule; resumes as well", "aligning:grpo", (
         option("--out", required=True, help="run folder: checkpoint, log, weights"),

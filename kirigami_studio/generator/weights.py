@@ -118,6 +118,20 @@ def load_model(variant: str, folder: Path | None = None) -> Model:
     return Model(variant, network.eval().requires_grad_(False), digest, float(entry.get("preference", 0.0)))
 
 
+def load_weights(path: Path) -> Model:
+    """Load a weights file that lies beside its manifest, as the first variant that it serves.
+
+    Raises
+    ------
+    ModelError
+        The manifest does not know the file; else as :func:`load_model`.
+    """
+    for variant, entry in _manifest(path.parent)["variants"].items():
+        if entry["file"] == path.name:
+            return load_model(variant, path.parent)
+    raise ModelError(f"The list of generator models in {path.parent} does not know {path.name}.")
+
+
 def store_model(variant: str, network: Network, folder: Path, about: dict[str, object]) -> Path:
     """Write weights in half precision and enter them in the folder's manifest as one variant.
 

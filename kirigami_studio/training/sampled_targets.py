@@ -17,12 +17,13 @@ from kirigami_studio.generator.conditioning import contour_points, normalised, t
 from kirigami_studio.generator.pose import square_pose
 from kirigami_studio.generator.sheet import Sheet
 from kirigami_studio.generator.velocity import Code, joined
+from kirigami_studio.training.pictured_targets import pictured
 from kirigami_studio.training.validation import drawn_polygons
 
 #: Points of the target boundary that a loss measures against; the network sees fewer.
 LOSS_POINTS = 384
-#: Contour points of a target as it arrives, a pixel or two apart on a mask of 128.
-SEEN_POINTS = 256
+#: Contour points of a target as it arrives, about a pixel apart on a mask of 128.
+SEEN_POINTS = 384
 #: Shares of the rows that stand upright and in another quarter turn; the rest lie in any pose.
 UPRIGHT, QUARTERS = 0.5, 0.25
 
@@ -66,6 +67,8 @@ class TargetSource:
         Largest standard deviation of contour points, unit-area lengths.
     shift_noise : float
         Standard deviation of the contour's start, point spacings.
+    pictured_share : float
+        Share of the rows that arrive from a picture, see ``pictured_targets``; the others with noise on their points.
     generator : torch.Generator
     device : torch.device
     """
@@ -76,10 +79,11 @@ class TargetSource:
         seed: int,
         vertex_noise: float,
         shift_noise: float,
+        pictured_share: float,
         generator: torch.Generator,
         device: torch.device,
     ) -> None:
-        self.vertex_noise, self.shift_noise = vertex_noise, shift_noise
+        self.vertex_noise, self.shift_noise, self.pictured_share = vertex_noise, shift_noise, pictured_share
         self.generator, self.device = generator, device
         self.drawn = normalised(drawn_polygons(drawn, seed)).to(device) if drawn else None
 
@@ -96,10 +100,14 @@ class TargetSource:
         )
 
     def _disturbed(self, polygons: Tensor) -> Tensor:
-        """As a pixel contour or a hand draws them: many points, every outline with a noise of its own size."""
+        """As a hand draws them, with a noise of its own size on every outline, or as they are read from a picture."""
         points = contour_points(polygons, SEEN_POINTS)
         scale = self.vertex_noise * self._uniform(len(points))
-        return points + scale[:, None, None] * self._normal(points.shape)
+        points = points + scale[:, None, None] * self._normal(points.shape)
+        read = self._uniform(len(points)) < self.pictured_share
+        if bool(read.any()):
+            points[read] = pictured(polygons[read], SEEN_POINTS, self.generator)
+        return points
 
     def _posed(self, polygons: Tensor) -> Tensor:
         """As candidates see a target: upright, in another quarter turn, or in any pose."""

@@ -48,7 +48,9 @@ class AlignSettings:
     Attributes
     ----------
     prior : str
-        SHA-256 of the weights it begins with and stays near to.
+        SHA-256 of the weights it stays near to, and begins with unless ``begin`` names others.
+    begin : str
+        SHA-256 of aligned weights to go on from; empty for none.
     steps : int
         Optimiser steps.
     batch : int
@@ -69,6 +71,8 @@ class AlignSettings:
     vertex_noise : float
         Largest standard deviation of the target's contour as the network sees it, unit-area lengths (a pixel of 128 is
         about 0.009); drawn anew for every row.  The loss looks at the undisturbed target.
+    pictured_share : float
+        Share of the targets that the network sees as read from a picture instead, see ``pictured_targets``.
     shift_noise : float
         Standard deviation of the contour's start, in point spacings.
     other_sheets : float
@@ -78,6 +82,7 @@ class AlignSettings:
     """
 
     prior: str
+    begin: str = ""
     steps: int = 3000
     batch: int = 48
     drawn: int = 1000
@@ -88,7 +93,8 @@ class AlignSettings:
     variation_weight: float = 0.015
     anchor_weight: float = 0.5
     anchored_every: int = 2
-    vertex_noise: float = 0.008
+    vertex_noise: float = 0.01
+    pictured_share: float = 0.5
     shift_noise: float = 0.3
     other_sheets: float = 0.5
     seed: int = 0
@@ -104,6 +110,7 @@ def train_aligned(
     device: torch.device,
     validate: Callable[[VelocityNetwork], dict[str, float]],
     prior: Model,
+    begin: Model | None = None,
     *,
     seconds: float = math.inf,
     validate_every: int = 500,
@@ -119,6 +126,8 @@ def train_aligned(
     validate : callable
         Maps the averaged network to figures for the log.
     prior : Model
+    begin : Model, optional
+        Aligned weights to go on from.
     seconds : float
         Stop with a checkpoint after this wall time even if steps remain.
     validate_every : int
@@ -132,7 +141,9 @@ def train_aligned(
     """
     if prior.digest != settings.prior:
         raise ModelError("The prior to align is not the one that the settings name.")
-    run = AlignRun(settings, opened(folder), device, prior)
+    if (begin.digest if begin else "") != settings.begin:
+        raise ModelError("The weights to begin with are not those that the settings name.")
+    run = AlignRun(settings, opened(folder), device, prior, begin)
     began = time.perf_counter()
     running: dict[str, float] = {}
     while run.step < settings.steps:
@@ -165,13 +176,17 @@ class AlignRun:
         Of the checkpoint.
     device : torch.device
     prior : Model
+    begin : Model, optional
+        Aligned weights to go on from.
     """
 
-    def __init__(self, settings: AlignSettings, path: Path, device: torch.device, prior: Model) -> None:
+    def __init__(
+        self, settings: AlignSettings, path: Path, device: torch.device, prior: Model, begin: Model | None = None
+    ) -> None:
         self.settings, self.path, self.device = settings, path, device
         self.prior = prior.network.to(device)
         self.network = VelocityNetwork(settings.shape).to(device)
-        self.network.load_state_dict(grown_state(prior.network, settings.shape))
+        self.network.load_state_dict(grown_state((begin or prior).network, settings.shape))
         new = [value for name, value in self.network.named_parameters() if name.startswith(NEW_LAYERS)]
         old = [value for name, value in self.network.named_parameters() if not name.startswith(NEW_LAYERS)]
         optimiser = torch.optim.AdamW(
@@ -181,7 +196,13 @@ class AlignRun:
         self.learner = Learner(self.network, optimiser, self.generator, device)
         self._lattices: dict[tuple[int, int], BatchedLattice] = {}
         self.source = TargetSource(
-            settings.drawn, settings.seed, settings.vertex_noise, settings.shift_noise, self.generator, device
+            settings.drawn,
+            settings.seed,
+            settings.vertex_noise,
+            settings.shift_noise,
+            settings.pictured_share,
+            self.generator,
+            device,
         )
         if path.exists():
             self.learner.resume(path, settings.to_json())

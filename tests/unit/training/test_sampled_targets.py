@@ -21,8 +21,8 @@ OWN = Sheet(4, 4)
 NEAR = 0.01
 
 
-def source(drawn: int = 0, noise: float = 0.0, seed: int = 0) -> TargetSource:
-    return TargetSource(drawn, 3, noise, noise, torch.Generator().manual_seed(seed), CPU)
+def source(drawn: int = 0, noise: float = 0.0, seed: int = 0, pictured: float = 0.0) -> TargetSource:
+    return TargetSource(drawn, 3, noise, noise, pictured, torch.Generator().manual_seed(seed), CPU)
 
 
 def in_common(points: torch.Tensor) -> torch.Tensor:
@@ -101,3 +101,21 @@ def test_that_codes_keep_each_targets_own_preference_and_boundary(sheet: Sheet) 
     torch.testing.assert_close(
         made.code(network, sheet).encoded, made.code(network, sheet, torch.zeros(5)).encoded, atol=1e-5, rtol=1e-5
     )
+
+
+def test_that_targets_from_a_picture_are_where_they_were_but_not_quite() -> None:
+    shapes = silhouettes(random_fields(OWN, 40), OWN)
+    made = source(pictured=1.0).targets(shapes, 0)
+    again = source(pictured=1.0).targets(shapes, 0)
+    assert torch.equal(made.seen[0], again.seen[0])
+    gap = boundary_gap(made.seen[0], made.loop)
+    # A pixel of the coarsest picture is about 0.025; the contour runs well within it, and corners are rounded.
+    assert 5e-4 < float(gap.mean()) < 0.02 and float(gap.max()) < 0.04
+
+
+def test_that_only_a_share_of_the_targets_comes_from_a_picture() -> None:
+    shapes = silhouettes(random_fields(OWN, 200), OWN)
+    clean, mixed = (source(pictured=share).targets(shapes, 0) for share in (0.0, 0.3))
+    exact = boundary_gap(mixed.seen[0], mixed.loop) < 1e-4
+    assert float(exact.float().mean()) == pytest.approx(0.7, abs=0.1)
+    assert clean.seen[0].shape == mixed.seen[0].shape == (200, SEEN_POINTS, 2)

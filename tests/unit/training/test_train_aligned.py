@@ -89,7 +89,15 @@ def test_that_asking_for_regularity_gives_smoother_fields(tmp_path: Path, prior:
         return float(measured(run.averaged(), asked, even)[0].variation.mean())
 
     settings = replace(
-        tiny, steps=30, batch=16, drawn=0, other_sheets=0.0, learning_rate=0.04, average_decay=0.0, variation_weight=0.3
+        tiny,
+        steps=30,
+        batch=16,
+        drawn=0,
+        other_sheets=0.0,
+        pictured_share=0.0,
+        learning_rate=0.04,
+        average_decay=0.0,
+        variation_weight=0.3,
     )
     run = run_of(settings, tmp_path, prior)
     assert variation(0.0) == pytest.approx(variation(1.0), rel=1e-4)
