@@ -90,12 +90,12 @@ def test_that_asking_for_regularity_gives_smoother_fields(tmp_path: Path, prior:
 
     settings = replace(
         tiny,
-        steps=30,
-        batch=16,
+        steps=60,
+        batch=32,
         drawn=0,
         other_sheets=0.0,
         pictured_share=0.0,
-        learning_rate=0.04,
+        learning_rate=0.02,
         average_decay=0.0,
         variation_weight=0.3,
     )
@@ -104,7 +104,7 @@ def test_that_asking_for_regularity_gives_smoother_fields(tmp_path: Path, prior:
     # Corrections follow the preference from the beginning; what is learnt comes on top.
     untrained = variation(1.0, even=True)
     assert untrained < 0.85 * variation(0.0)
-    for _ in range(30):
+    for _ in range(60):
         run.advance()
     assert variation(1.0) < 0.85 * variation(0.0)
     assert variation(1.0, even=True) < untrained
