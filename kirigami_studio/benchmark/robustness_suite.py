@@ -20,7 +20,7 @@ from kirigami_studio.evaluate.silhouette import MASK_SIZE, rasterise
 from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.lattice.ratio_field import FloatArray
 from kirigami_studio.pipeline.request import Request
-from kirigami_studio.pipeline.run import sample
+from kirigami_studio.pipeline.run import best_of, sample
 from kirigami_studio.pipeline.tasks import scored
 from kirigami_studio.target.outline import Outline
 from kirigami_studio.target.read_image import outline_of_mask
@@ -37,7 +37,9 @@ class Disturbance:
     pixels : int
         Side of the mask that it is drawn into; the longer side of its bounding box fills it.
     noise : float
-        Standard deviation of the contour noise, in pixels of a 128-pixel mask; see :func:`shaken`.
+        Size of the contour noise, in pixels of a 128-pixel mask; see :func:`shaken`.
+    bounded : bool
+        The size is the largest displacement, all smaller ones being as likely; else the standard deviation.
     redrawn : bool
         The shaken contour is filled into a mask of ``pixels`` again and read from there, as from a picture.
     """
@@ -45,6 +47,7 @@ class Disturbance:
     turned: bool = False
     pixels: int = MASK_SIZE
     noise: float = 0.0
+    bounded: bool = False
     redrawn: bool = False
 
     def seen(self, shape: Outline, rng: Generator) -> Outline:
@@ -54,7 +57,7 @@ class Disturbance:
             points = _turned(points, rng.uniform(0.0, 2.0 * math.pi))
         outline = outline_of_mask(rasterise(points, self.pixels), shape.name)
         if self.noise:
-            outline = Outline.from_points(shaken(outline.points, self.noise, rng), shape.name)
+            outline = Outline.from_points(shaken(outline.points, self.noise, rng, self.bounded), shape.name)
         if self.redrawn:
             outline = outline_of_mask(rasterise(outline.points, self.pixels), shape.name)
         return outline
@@ -63,6 +66,7 @@ class Disturbance:
 #: What is compared with the clean 128-pixel mask.
 DISTURBANCES: dict[str, Disturbance] = {
     "turned": Disturbance(turned=True),
+    "contour_noise_bounded": Disturbance(noise=1.0, bounded=True),
     "contour_noise": Disturbance(noise=1.0),
     "contour_noise_redrawn": Disturbance(noise=1.0, redrawn=True),
     "mask_64": Disturbance(pixels=64),
@@ -72,19 +76,21 @@ DISTURBANCES: dict[str, Disturbance] = {
 }
 
 
-def shaken(points: FloatArray, noise: float, rng: Generator) -> FloatArray:
+def shaken(points: FloatArray, noise: float, rng: Generator, bounded: bool = False) -> FloatArray:
     """Move a contour in and out.
 
     It is resampled at equal arc length, one pixel apart, where a pixel is 1/128 of the longer side of the bounding box;
-    every point is moved along the contour's normal there by its own normally distributed amount, independent of its
-    neighbours.  The contour may cross itself afterwards; ``Outline.from_points`` keeps the large piece.
+    every point is moved along the contour's normal there by its own random amount, independent of its neighbours.  The
+    contour may cross itself afterwards; ``Outline.from_points`` keeps the large piece.
 
     Parameters
     ----------
     points : (L, 2) float
     noise : float, pixels
-        Standard deviation.
+        Standard deviation of normally distributed amounts, or the largest of evenly distributed ones.
     rng : Generator
+    bounded : bool
+        Which of the two.
 
     Returns
     -------
@@ -96,7 +102,9 @@ def shaken(points: FloatArray, noise: float, rng: Generator) -> FloatArray:
     even = resampled(plane, max(3, round(length / pixel)))
     along = np.roll(even, -1) - np.roll(even, 1)
     normal = -1j * along / np.maximum(np.abs(along), 1e-12)
-    return as_points(even + normal * rng.normal(0.0, noise * pixel, len(even)))
+    size = noise * pixel
+    amounts = rng.uniform(-size, size, len(even)) if bounded else rng.normal(0.0, size, len(even))
+    return as_points(even + normal * amounts)
 
 
 def measure_robustness(
@@ -104,17 +112,20 @@ def measure_robustness(
     variant: str,
     *,
     steps: int = 4,
+    polish: int = 0,
     grid: tuple[int, int] = (10, 10),
     seeds: Sequence[int] = (0, 1, 2),
     report: Callable[[int, int], None] = lambda done, total: None,
 ) -> dict[str, object]:
-    """One unpolished sample for the clean and for every disturbed target, all scored against the clean one.
+    """One sample for the clean and for every disturbed target, all scored against the clean one.
+
+    Polished, it tells what the disturbance itself takes away: a fit follows what it is given as closely as it can.
 
     Parameters
     ----------
     shapes : sequence of Outline
         Exact shapes; the clean target is the contour of their 128-pixel mask.
-    variant, steps, grid
+    variant, steps, polish, grid
         As in :class:`Request`.
     seeds : sequence of int
         Sampling seeds, the same for clean and disturbed targets; every seed also has its own angle and noise.
@@ -143,13 +154,21 @@ def measure_robustness(
             row = []
             for seed in seeds:
                 target = case.seen(shape, np.random.default_rng([seed, number]))
-                drawn = Request(target, grid, k=1, seed=seed, variant=variant, steps=steps)
+                drawn = Request(target, grid, k=1, seed=seed, variant=variant, steps=steps, polish=polish)
                 wanted = Request(clean, grid, k=1, seed=seed, variant=variant, steps=steps)
-                row.append(scored(wanted, sample(drawn), 0)[0].score)
+                fields = (best_of(drawn).best.field,) if polish else sample(drawn)
+                row.append(scored(wanted, fields, 0)[0].score)
                 report(done := done + 1, total)
             scores[name].append(row)
     siou = {name: np.array([[score.siou for score in row] for row in rows]) for name, rows in scores.items()}
-    settings = {"targets": len(shapes), "seeds": list(seeds), "steps": steps, "grid": list(grid), "variant": variant}
+    settings = {
+        "targets": len(shapes),
+        "seeds": list(seeds),
+        "steps": steps,
+        "polish": polish,
+        "grid": list(grid),
+        "variant": variant,
+    }
     return {**settings, **{name: _line(name, scores[name], siou) for name in cases}}
 
 

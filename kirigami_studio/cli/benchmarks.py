@@ -172,6 +172,7 @@ def _robustness_suite(arguments: argparse.Namespace, line: ProgressLine) -> dict
                 outlines,
                 variant,
                 steps=arguments.steps,
+                polish=arguments.polish,
                 grid=parse_grid(arguments.grid),
                 seeds=tuple(arguments.seeds),
                 report=lambda done, total, of=f"{family}, {variant}": line.show(f"{of}: {done} of {total}"),  # type: ignore[misc]

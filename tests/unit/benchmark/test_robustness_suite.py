@@ -37,6 +37,22 @@ def test_that_shaken_points_leave_the_contour_by_one_pixel_each_on_their_own() -
     assert np.diff(turn) == pytest.approx(2.0 * np.pi / len(moved), rel=1e-3)  # along the normal only
 
 
+def test_that_bounded_noise_stays_within_its_bound_and_fills_it() -> None:
+    angle = np.linspace(0.0, 2.0 * np.pi, 20_000, endpoint=False)
+    circle = 64.0 * np.column_stack([np.cos(angle), np.sin(angle)])
+    depth = np.hypot(*shaken(circle, 1.0, np.random.default_rng(0), bounded=True).T) - 64.0
+    assert 0.95 < depth.max() <= 1.001 and -1.001 <= depth.min() < -0.95
+    assert depth.std() == pytest.approx(1.0 / np.sqrt(3.0), abs=0.05)
+
+
+def test_that_a_fit_to_a_shaken_contour_follows_the_noise() -> None:
+    figures: Any = measure_robustness([load("heart")], "prior", polish=5, seeds=(0,))
+    plain: Any = measure_robustness([load("heart")], "prior", seeds=(0,))
+    assert figures["polish"] == 5
+    assert figures["clean"]["siou"] > plain["clean"]["siou"]
+    assert figures["contour_noise"]["siou_difference"] < -0.002
+
+
 def test_that_disturbances_keep_the_shape_and_coarse_pixels_keep_less_of_it() -> None:
     star, rng = load("star"), np.random.default_rng(3)
     clean = Disturbance().seen(star, rng)
@@ -45,6 +61,7 @@ def test_that_disturbances_keep_the_shape_and_coarse_pixels_keep_less_of_it() ->
     assert all(0.9 < value < 1.0 for value in seen.values())
     assert seen["mask_64"] < seen["mask_256"]
     assert seen["contour_noise"] < seen["contour_noise_redrawn"]
+    assert seen["contour_noise"] < seen["contour_noise_bounded"]
     assert seen["together_64"] < seen["turned"]
 
 
