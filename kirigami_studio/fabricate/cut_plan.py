@@ -5,21 +5,22 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from enum import Enum
 from functools import cached_property
 
 import numpy as np
 import shapely
 from shapely.geometry import Polygon
 
-from kirigami_studio.fabricate import ordering, timing
-from kirigami_studio.fabricate.bulges import flattened
+from kirigami_studio.fabricate import timing
 from kirigami_studio.fabricate.connectors import Hinges, finished_widths, hinge_widths, shorten
+from kirigami_studio.fabricate.cut_path import CutPath as CutPath
+from kirigami_studio.fabricate.cut_path import Layer as Layer
 from kirigami_studio.fabricate.kerf import OVERCUT_MM, edge_cut_paths, outline_path
 from kirigami_studio.fabricate.lengths import check_length
 from kirigami_studio.fabricate.material import Material, default_material
 from kirigami_studio.fabricate.options import CutOptions
-from kirigami_studio.fabricate.slits import CutTable, cut_table, sheet_lines
+from kirigami_studio.fabricate.ordering import in_cutting_order
+from kirigami_studio.fabricate.slits import cut_table, sheet_lines
 from kirigami_studio.fabricate.trimmed_sheet import (
     CutPiece,
     kept_area,
@@ -36,59 +37,6 @@ LARGEST_SHEET_MM = 3000.0
 DECIMALS = 4
 #: A connector counts as wider than asked above this difference (mm).
 WIDER_MM = 1e-3
-
-
-class Layer(Enum):
-    """Groups of paths that a machine may treat differently, in the order of cutting; the values are names in files."""
-
-    RELIEF = "RELIEF"
-    SLITS = "SLITS"
-    EDGE_SLITS = "EDGE_SLITS"
-    OUTLINE = "OUTLINE"
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class CutPath:
-    """One cut without lifting.
-
-    Attributes
-    ----------
-    points : (P, 2) float, mm
-        In the direction of cutting; the first point of a closed path is not repeated.
-    layer : Layer
-    closed : bool
-    cut : int
-        Number of the cut in :class:`CutTable`, -1 for the outline.
-    bulges : (P,) float or None
-        Arcs, see ``bulges``; None where all edges are straight.
-    """
-
-    points: FloatArray
-    layer: Layer
-    closed: bool
-    cut: int = -1
-    bulges: FloatArray | None = None
-
-    def __post_init__(self) -> None:
-        self.points.setflags(write=False)
-        if self.bulges is not None:
-            self.bulges.setflags(write=False)
-
-    @property
-    def flattened(self) -> FloatArray:
-        """Points (V, 2), mm, with chords for arcs; the first point of a closed path is not repeated."""
-        return self.points if self.bulges is None else flattened(self.points, self.bulges, self.closed)
-
-    @property
-    def travelled(self) -> FloatArray:
-        """Flattened points as the head visits them; a closed path comes back to its first point."""
-        points = self.flattened
-        return np.concatenate([points, points[:1]]) if self.closed else points
-
-    @property
-    def length(self) -> float:
-        """Cut length, mm."""
-        return float(timing.segment_lengths(self.travelled).sum())
 
 
 @dataclass(frozen=True, eq=False)
@@ -227,8 +175,11 @@ def plan_cuts(
         requested_mm=widths,
         finished_mm=finished,
     )
+    paths = [
+        CutPath(piece.points, Layer.EDGE_SLITS if piece.opens else Layer.SLITS, False, piece.cut) for piece in pieces
+    ]
     return CutPlan(
-        paths=_in_cutting_order(table, pieces, ring, size),
+        paths=in_cutting_order([*paths, CutPath(ring, Layer.OUTLINE, True)], options.order, table),
         size_mm=size,
         connector_mm=connector,
         kerf_mm=kerf,
@@ -262,30 +213,6 @@ def _check_size(size: tuple[float, float]) -> None:
             f"A sheet of {size[0]:g} x {size[1]:g} mm cannot be planned; both sides must lie between "
             f"{SMALLEST_SHEET_MM:g} and {LARGEST_SHEET_MM:g} mm, so change the sheet width."
         )
-
-
-def _in_cutting_order(
-    table: CutTable, pieces: Sequence[CutPiece], outline: FloatArray, size: tuple[float, float]
-) -> tuple[CutPath, ...]:
-    place = {int(cut): index for index, cut in enumerate(ordering.serpentine(table))}
-    slits = sorted((piece for piece in pieces if not piece.opens), key=lambda piece: place[piece.cut])
-    paths = []
-    if slits:
-        backwards = ordering.shortest_flips(np.array([piece.points for piece in slits]), np.zeros(2))
-        paths = [
-            CutPath(piece.points[::-1].copy() if flip else piece.points, Layer.SLITS, False, piece.cut)
-            for piece, flip in zip(slits, backwards, strict=True)
-        ]
-    edges = [piece for piece in pieces if piece.opens]
-    before = paths[-1].points[-1] if paths else np.zeros(2)
-    if edges:
-        mouths = np.array([piece.points[0] for piece in edges])
-        for index in ordering.around(mouths, before, size):
-            paths.append(CutPath(edges[index].points, Layer.EDGE_SLITS, False, edges[index].cut))
-        before = paths[-1].points[-1]
-    nearest = int(np.argmin(np.linalg.norm(outline - before, axis=1)))
-    paths.append(CutPath(np.roll(outline, -nearest, axis=0), Layer.OUTLINE, True))
-    return tuple(paths)
 
 
 def _notes(hinges: Hinges, material: Material, connector: float, kerf: float) -> tuple[str, ...]:

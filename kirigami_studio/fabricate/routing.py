@@ -1,0 +1,230 @@
+"""Short ways through a set of paths, each of which may be cut in one or several ways (directions, starting points).
+
+Places are complex numbers x + i y in mm.  Every choice is made by index where distances are equal, so that the same
+paths give the same tour.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from kirigami_studio.lattice.topology import IntArray
+
+ComplexArray = npt.NDArray[np.complex128]
+#: A change that saves less (mm) is rounding.
+SAVED_MM = 1e-9
+#: Longest run of paths that is lifted out of a tour and put in elsewhere.
+LONGEST_RUN = 3
+#: A kick exchanges two neighbouring blocks within so many paths.
+WIDEST_KICK = 30
+#: Kicks that even a short tour is given.
+FEWEST_KICKS = 50
+#: A tour is given one kick for each path, and fewer where their number times that of the paths gets above this; a kick
+#: takes under a millisecond at 600 paths and longer where there are more.
+MOST_KICK_WORK = 360_000
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Ways:
+    """The ways in which one path may be cut.
+
+    Attributes
+    ----------
+    entries, exits : (M,) complex, mm
+        Where each way begins and ends.
+    turnable : bool
+        Whether every way has its reverse among them.
+    """
+
+    entries: ComplexArray
+    exits: ComplexArray
+    turnable: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Tour:
+    """Paths in the order of cutting, and the way in which each one is cut.
+
+    Attributes
+    ----------
+    order, way : tuple of int
+        ``way[k]`` is that of path ``order[k]``.
+    length : float, mm
+        From the start through all of them, cuts left out.
+    """
+
+    order: tuple[int, ...]
+    way: tuple[int, ...]
+    length: float
+
+
+def shortest_tour(paths: Sequence[Ways], start: complex) -> Tour:
+    """Order paths by nearest neighbours, then exchange (2-opt with flips), move (or-opt) and kick.
+
+    Parameters
+    ----------
+    paths : sequence of Ways, not empty
+    start : complex, mm
+        Where the head waits.
+    """
+    turnable = all(path.turnable for path in paths)
+    kicks = min(max(len(paths), FEWEST_KICKS), MOST_KICK_WORK // len(paths))
+    tour = nearest_neighbours(paths, start)
+    while True:
+        entries, exits = _ends(paths, tour)
+        places = _Improvement(entries, exits, start, turnable).run(kicks)
+        better = best_ways(paths, [tour.order[place] for place in places], start)
+        if better.length >= tour.length - SAVED_MM:
+            return tour
+        tour, kicks = better, 0
+
+
+def nearest_neighbours(paths: Sequence[Ways], start: complex) -> Tour:
+    """Go on to the nearest place where a path that is left may begin."""
+    entries = np.concatenate([path.entries for path in paths])
+    exits = np.concatenate([path.exits for path in paths])
+    counts = [len(path.entries) for path in paths]
+    owner = np.repeat(np.arange(len(paths)), counts)
+    first = np.concatenate([[0], np.cumsum(counts)[:-1]])
+    left = entries.copy()
+    order, way, length, here = [], [], 0.0, start
+    for _ in paths:
+        distance = np.abs(left - here)
+        nearest = int(np.argmin(distance))
+        length += float(distance[nearest])
+        path = int(owner[nearest])
+        order.append(path)
+        way.append(nearest - int(first[path]))
+        here = complex(exits[nearest])
+        left[first[path] : first[path] + counts[path]] = np.inf
+    return Tour(tuple(order), tuple(way), length)
+
+
+def best_ways(paths: Sequence[Ways], order: Sequence[int], start: complex) -> Tour:
+    """Keep the order and choose for each path the way that makes the whole tour shortest (dynamic programming)."""
+    cost = np.zeros(1)
+    exits = np.array([start])
+    came_from: list[IntArray] = []
+    for path in order:
+        step = cost[:, None] + np.abs(exits[:, None] - paths[path].entries)
+        came_from.append(np.argmin(step, axis=0))
+        cost, exits = np.min(step, axis=0), paths[path].exits
+    length, way = float(cost.min()), [int(np.argmin(cost))]
+    for choice in came_from[:0:-1]:
+        way.append(int(choice[way[-1]]))
+    return Tour(tuple(order), tuple(way[::-1][: len(order)]), length)
+
+
+def _ends(paths: Sequence[Ways], tour: Tour) -> tuple[ComplexArray, ComplexArray]:
+    chosen = list(zip(tour.order, tour.way, strict=True))
+    entries = np.array([paths[path].entries[way] for path, way in chosen])
+    return entries, np.array([paths[path].exits[way] for path, way in chosen])
+
+
+class _Improvement:
+    """A tour while it is being improved, with one entry and one exit for each path.
+
+    Gap k lies before the k-th path of the tour, the last gap after them all; its cost is that of the way through it.
+    Only gaps near the last change are looked at again.
+    """
+
+    def __init__(self, entries: ComplexArray, exits: ComplexArray, start: complex, turnable: bool) -> None:
+        count = len(entries)
+        self.before = np.concatenate([[start], exits])
+        self.after = np.concatenate([entries, [0.0]])
+        self.weight = np.ones(count + 1)
+        self.weight[-1] = 0.0  # the tour may end anywhere
+        self.place = np.arange(count)
+        self.turnable = turnable
+        self.look = np.ones(count + 1, dtype=np.bool_)
+        self.cost = self.weight * np.abs(self.before - self.after)
+
+    def run(self, kicks: int) -> list[int]:
+        """Improve and kick; returns the paths' former places in their new order."""
+        self._settle()
+        generator = np.random.default_rng(0)  # the same for every tour
+        for _ in range(kicks if len(self.place) >= 3 else 0):
+            self._kick(generator)
+        return [int(place) for place in self.place]
+
+    def _settle(self) -> None:
+        """Improve until no gap offers anything."""
+        while np.any(self.look):
+            for gap in np.flatnonzero(self.look).tolist():
+                while self.look[gap]:
+                    self.look[gap] = self._exchange(gap) or self._move(gap)
+
+    def _kick(self, generator: np.random.Generator) -> None:
+        """Swap two neighbouring blocks at a random place, settle, and go back if the tour is longer than before."""
+        before = self.before.copy(), self.after.copy(), self.cost.copy(), self.place.copy()
+        span = min(WIDEST_KICK, len(self.place))
+        low = int(generator.integers(0, len(self.place) - span + 1))
+        one, two, three = np.sort(generator.choice(span + 1, 3, replace=False)) + low
+        source = np.r_[two:three, one:two]
+        self._rearrange(int(one), int(three), source, np.zeros(len(source), dtype=np.bool_))
+        self._settle()
+        if self.cost.sum() > before[2].sum():
+            self.before, self.after, self.cost, self.place = before
+
+    def _exchange(self, gap: int) -> bool:
+        """Cut the paths between this gap and the best other one in reverse."""
+        if not self.turnable:
+            return False
+        joined = np.abs(self.before - self.before[gap])
+        joined += self.weight * (self.weight[gap] * np.abs(self.after - self.after[gap]))
+        saved = self.cost + self.cost[gap] - joined
+        saved[gap] = 0.0
+        other = int(np.argmax(saved))
+        if saved[other] <= SAVED_MM:
+            return False
+        low, high = min(gap, other), max(gap, other)
+        self._rearrange(low, high, np.arange(low, high)[::-1], np.ones(high - low, dtype=np.bool_))
+        return True
+
+    def _move(self, gap: int) -> bool:
+        """Lift out a few paths after this gap and put them into the best other gap, turned or not."""
+        best, chosen = SAVED_MM, (0, 0, False)
+        count = len(self.place)
+        for run in range(1, min(LONGEST_RUN, count - gap) + 1):
+            end = gap + run
+            first, last = self.after[gap], self.before[end]
+            closed = self.weight[end] * abs(self.before[gap] - self.after[end])
+            saved_here = self.cost[gap] + self.cost[end] - closed
+            if saved_here <= best:
+                continue
+            for turned in (False, True) if self.turnable else (False,):
+                one, two = (last, first) if turned else (first, last)
+                added = np.abs(self.before - one) + self.weight * np.abs(self.after - two) - self.cost
+                added[gap : end + 1] = np.inf
+                other = int(np.argmin(added))
+                if saved_here - added[other] > best:
+                    best, chosen = float(saved_here - added[other]), (run, other, turned)
+        run, other, turned = chosen
+        if run == 0:
+            return False
+        block = np.arange(gap, gap + run)[:: -1 if turned else 1]
+        flips = np.full(run, turned)
+        if other < gap:
+            rest = np.arange(other, gap)
+            self._rearrange(other, gap + run, np.r_[block, rest], np.r_[flips, np.zeros(len(rest), dtype=np.bool_)])
+        else:
+            rest = np.arange(gap + run, other)
+            self._rearrange(gap, other, np.r_[rest, block], np.r_[np.zeros(len(rest), dtype=np.bool_), flips])
+        return True
+
+    def _rearrange(self, low: int, high: int, source: IntArray, flipped: npt.NDArray[np.bool_]) -> None:
+        """Replace the paths at ``low`` to ``high - 1`` by those at ``source``, some of them turned."""
+        entries, exits = self.after[source], self.before[source + 1]
+        self.after[low:high] = np.where(flipped, exits, entries)
+        self.before[low + 1 : high + 1] = np.where(flipped, entries, exits)
+        self.place[low:high] = self.place[source]
+        touched = slice(low, high + 1)
+        self.cost[touched] = self.weight[touched] * np.abs(self.before[touched] - self.after[touched])
+        self.look[low:high] = np.where(flipped, self.look[source + 1], self.look[source])
+        steps = np.flatnonzero(np.diff(source) != np.where(flipped[0], -1, 1))
+        for gap in (low, high, *(low + 1 + steps[:2]).tolist()):
+            self.look[max(gap - 1, 0) : gap + 2] = True
