@@ -27,6 +27,14 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--update-goldens", action="store_true", help="write golden files instead of comparing with them")
 
 
+@pytest.fixture(autouse=True)
+def own_materials(tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """An empty folder of own materials, so that no test sees or touches those of whoever runs it."""
+    folder = tmp_path_factory.mktemp("materials")
+    monkeypatch.setenv("KIRIGAMI_STUDIO_MATERIALS", str(folder))
+    return folder
+
+
 @pytest.fixture(scope="session")
 def repository() -> Path:
     """The checkout's root folder."""

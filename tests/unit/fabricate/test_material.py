@@ -12,11 +12,25 @@ from kirigami_studio.foundation.errors import FabricationError
 from kirigami_studio.foundation.resources import resource
 
 
-def test_that_the_four_presets_are_bundled_and_none_claims_to_be_calibrated() -> None:
-    assert list(presets()) == ["film-uv", "card-co2", "drag-knife", "pet-co2"]
+def test_that_the_five_presets_are_bundled_and_none_claims_to_be_calibrated() -> None:
+    assert list(presets()) == ["film-uv", "card-co2", "drag-knife", "foil-uv", "pet-co2"]
     assert not any(material.calibrated for material in presets().values())
     assert all(material.connector_mm > material.min_ligament_mm for material in presets().values())
     assert presets()["drag-knife"].kerf_mm == 0.0
+    assert presets()["foil-uv"].strain_limit == 0.05 < presets()["film-uv"].strain_limit
+    assert all("strain limit" in material.note.lower() for material in presets().values())
+
+
+def test_that_files_from_before_the_newer_entries_still_load_with_their_defaults(tmp_path: Path) -> None:
+    newer = ("strain_limit", "on_delay_s", "off_delay_s", "passes", "min_slit_mm")
+    lines = resource("materials", "drag-knife.toml").read_text(encoding="utf-8").splitlines()
+    old = [line for line in lines if not line.startswith(newer)]
+    assert len(old) == len(lines) - len(newer)
+    (tmp_path / "old.toml").write_text("\n".join(old), encoding="utf-8")
+    material = read_preset(tmp_path / "old.toml")
+    assert (material.strain_limit, material.on_delay_s, material.off_delay_s) == (0.05, 0.0, 0.0)
+    assert (material.passes, material.min_slit_mm) == (1, 0.1)
+    assert material.speed_mm_s == presets()["drag-knife"].speed_mm_s
 
 
 def test_that_a_material_is_found_by_key_or_full_name_in_any_case() -> None:
@@ -36,6 +50,13 @@ def test_that_an_unknown_material_is_refused_with_the_known_ones() -> None:
         (("kerf_mm = 0.02", "kerf_mm = nan"), "kerf_mm must be a number"),
         (("speed_mm_s = 100.0", "speed_mm_s = 0"), "speed_mm_s must be a number above 0"),
         (("calibrated = false", 'calibrated = "no"'), "calibrated must be a bool"),
+        (("strain_limit = 0.45", "strain_limit = 0.0"), "strain_limit must be a number above 0"),
+        (("on_delay_s = 0.0", "on_delay_s = -1.0"), "on_delay_s must be a number 0 or more"),
+        (("passes = 1", "passes = 0"), "passes must be 1 or more, got 0"),
+        (("passes = 1", "passes = 1.5"), "passes must be a int, got 1.5"),
+        (("passes = 1", "passes = true"), "passes must be a int, got True"),
+        (("min_slit_mm = 0.1", "min_slit_mm = inf"), "min_slit_mm must be a number above 0"),
+        (("passes = 1", 'passes = 1\nmeasured_on = "yesterday"'), "a day like 2026-11-21, got 'yesterday'"),
         (("calibrated = false", ""), "lacks calibrated"),
         (("calibrated = false", "calibrated = false\nkerf = 1.0"), "unknown entries kerf"),
         (("calibrated = false", "calibrated = ="), "cannot be read"),
