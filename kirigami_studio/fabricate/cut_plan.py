@@ -78,16 +78,21 @@ class CutPlan:
     @cached_property
     def travel_mm(self) -> float:
         """Way with the beam off, from the origin to the first cut and between cuts."""
-        return float(timing.travel_lengths([path.travelled for path in self.paths]).sum())
+        return float(timing.travel_lengths(self.paths).sum())
 
     @cached_property
+    def times(self) -> timing.CutTimes:
+        """Seconds for cutting, travel and switching, and the range that the job may take."""
+        return timing.cut_times(self.paths, self.material)
+
+    @property
     def seconds_estimate(self) -> float:
-        return timing.job_seconds([path.travelled for path in self.paths], self.material)
+        return self.times.total
 
     @property
     def min_connector_mm(self) -> float:
-        """Smallest finished connector."""
-        return float(self.hinges.finished_mm.min())
+        """Smallest finished connector; infinite where there is none."""
+        return float(self.hinges.finished_mm.min(initial=np.inf))
 
     @property
     def bounds_mm(self) -> tuple[float, float]:
