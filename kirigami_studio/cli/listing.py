@@ -1,4 +1,4 @@
-"""``targets``, ``materials`` and ``variants``: what there is to choose from."""
+"""``targets`` and ``variants``: what there is to choose from."""
 
 from __future__ import annotations
 
@@ -13,13 +13,6 @@ def targets(arguments: argparse.Namespace) -> int:
     from kirigami_studio.target.silhouettes import names
 
     return _listing(arguments, "targets", names())
-
-
-def materials(arguments: argparse.Namespace) -> int:
-    """List the material presets."""
-    from kirigami_studio.fabricate.material import presets
-
-    return _listing(arguments, "materials", list(presets()))
 
 
 def variants(arguments: argparse.Namespace) -> int:

@@ -128,6 +128,8 @@ def _piece_problems(pieces: list[Polygon], kerf: float) -> list[Problem]:
 def _connector_problems(plan: CutPlan, kerf: float) -> list[Problem]:
     """Connectors narrower than asked (an error) or than the material bears (a warning)."""
     hinges = plan.hinges
+    if not len(hinges):
+        return []
     finished = hinges.finished_mm + plan.kerf_mm - kerf
     problems = []
     short = hinges.requested_mm - finished

@@ -10,7 +10,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
+from typing import Any
 
 import numpy as np
 
@@ -48,6 +49,13 @@ class Hinges:
     def __post_init__(self) -> None:
         for array in (self.position, self.cut, self.end, self.through, self.requested_mm, self.finished_mm):
             array.setflags(write=False)
+
+    @classmethod
+    def none(cls) -> Hinges:
+        """For a plan that has no hinges."""
+        shapes: dict[str, Any] = {field.name: np.empty(0) for field in fields(cls)}
+        shapes |= {name: np.empty(0, dtype=np.intp) for name in ("cut", "end", "through")}
+        return cls(**(shapes | {"position": np.empty((0, 2))}))
 
     def __len__(self) -> int:
         return int(self.position.shape[0])

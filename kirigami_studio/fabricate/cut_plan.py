@@ -91,8 +91,8 @@ class CutPlan:
 
     @property
     def min_connector_mm(self) -> float:
-        """Smallest finished connector; infinite where there is none."""
-        return float(self.hinges.finished_mm.min(initial=np.inf))
+        """Smallest finished connector; what was asked for in a plan without hinges."""
+        return float(self.hinges.finished_mm.min()) if len(self.hinges) else self.connector_mm
 
     @property
     def bounds_mm(self) -> tuple[float, float]:

@@ -1,0 +1,133 @@
+"""``materials`` and ``coupon``: list, copy, change, calibrate and delete materials, and measure one."""
+
+from __future__ import annotations
+
+import argparse
+from datetime import date
+from pathlib import Path
+
+from kirigami_studio.cli.console import print_json, say
+from kirigami_studio.export.dxf import write_dxf
+from kirigami_studio.export.pdf import write_pdf
+from kirigami_studio.export.profile import DEFAULT_PROFILE, find_profile
+from kirigami_studio.export.svg import write_cut_svg
+from kirigami_studio.fabricate.checks import check_plan
+from kirigami_studio.fabricate.coupon import kerf_from_gaps, plan_coupon
+from kirigami_studio.fabricate.material import Material, default_material, find_material, library
+from kirigami_studio.fabricate.material_copies import changed_copy, delete_copy, mark_calibrated, save_copy
+from kirigami_studio.foundation.errors import UsageError
+
+
+def materials(arguments: argparse.Namespace) -> int:
+    """List all materials, or save or delete one of one's own."""
+    _refuse_loose_options(arguments)
+    if arguments.delete is not None:
+        delete_copy(arguments.delete)
+        return _answer(arguments, {"deleted": arguments.delete}, f"{arguments.delete}: deleted")
+    if arguments.copy is not None:
+        return _copy(arguments)
+    return _list(arguments)
+
+
+def _refuse_loose_options(arguments: argparse.Namespace) -> None:
+    """Options that mean nothing without ``--copy`` or beside ``--delete``."""
+    if arguments.copy is not None and arguments.delete is not None:
+        raise UsageError("Either copy a material or delete one, not both.")
+    if arguments.copy is None and (arguments.key is not None or arguments.set or arguments.calibrated):
+        raise UsageError("--as, --set and --calibrated belong to --copy KEY; name the material to copy.")
+    if arguments.calibrated and arguments.by is None:
+        raise UsageError("--calibrated needs --by NAME: who measured the coupon.")
+
+
+def _copy(arguments: argparse.Namespace) -> int:
+    """Save a changed copy under its new key, or under the old one, which it then stands for."""
+    changes: dict[str, object] = {}
+    for entry in arguments.set:
+        name, equals, value = entry.partition("=")
+        if not equals or not value.strip():
+            raise UsageError(f"--set takes NAME=VALUE, for example kerf_mm=0.03, got {entry!r}.")
+        changes[name.strip()] = value.strip()
+    key = arguments.copy if arguments.key is None else arguments.key
+    made = changed_copy(arguments.copy, key, changes)
+    if arguments.calibrated:
+        made = mark_calibrated(made, date.today(), arguments.by)
+    else:
+        save_copy(made)
+    return _answer(arguments, {"saved": made.key, "calibrated": made.calibrated}, f"{_line(made, own=True)}: saved")
+
+
+def _list(arguments: argparse.Namespace) -> int:
+    found = library()
+    if arguments.json:
+        print_json(
+            {
+                "materials": list(found.materials),
+                "own": sorted(found.own),
+                "calibrated": [key for key, material in found.materials.items() if material.calibrated],
+                "faults": list(found.faults),
+            }
+        )
+        return 0
+    for key, material in found.materials.items():
+        say(_line(material, key in found.own))
+    for fault in found.faults:
+        say(f"Left out: {fault}")
+    return 0
+
+
+def _line(material: Material, own: bool) -> str:
+    """Key, whose it is, whether and when it was calibrated, and its name."""
+    state = "uncalibrated"
+    if material.calibrated:
+        state = " ".join(part for part in ("calibrated", material.measured_on, material.measured_by) if part)
+    return f"{material.key:<12} {'own' if own else 'bundled':<8} {state:<14} {material.name}"
+
+
+def coupon(arguments: argparse.Namespace) -> int:
+    """Write the calibration coupon of a material, or turn what was measured on it into a kerf."""
+    if arguments.gap_mm:
+        return _measured(arguments)
+    if arguments.out is None:
+        raise UsageError("coupon needs --out FILE for the coupon, or --gap-mm for what was measured on it.")
+    profile = find_profile(arguments.profile or DEFAULT_PROFILE)
+    path = Path(arguments.out)
+    material = default_material() if arguments.material is None else find_material(arguments.material)
+    plan = plan_coupon(material, arguments.kerf_mm)
+    match path.suffix.lower():
+        case ".dxf":
+            write_dxf(plan, path, arguments.dxf_version, profile)
+        case ".svg":
+            write_cut_svg(plan, path, profile)
+        case ".pdf":
+            write_pdf(plan, path)
+        case _:
+            raise UsageError(f"A coupon is written as .dxf, .svg or .pdf, got {path.name}.")
+    report = check_plan(plan)
+    content: dict[str, object] = {
+        "files": [str(path)],
+        "size_mm": plan.size_mm,
+        "seconds_estimate": plan.seconds_estimate,
+        "pieces": report.pieces,
+        "notes": plan.notes,
+    }
+    width, height = plan.size_mm
+    title = f"{path}: coupon of {width:g} x {height:g} mm for {material.key}, about {plan.seconds_estimate:.0f} s"
+    return _answer(arguments, content, "\n".join([title, *plan.notes]))
+
+
+def _measured(arguments: argparse.Namespace) -> int:
+    found = kerf_from_gaps(arguments.gap_mm)
+    kerf, doubt = round(found.kerf_mm, 4), round(found.doubt_mm, 4)
+    sentence = (
+        f"Kerf {kerf:g} mm (readings within {doubt:g} mm of it). Keep it, for example, with: "
+        f"kirigami-studio materials --copy KEY --as NEW --set kerf_mm={kerf:g} --calibrated --by NAME"
+    )
+    return _answer(arguments, {"kerf_mm": found.kerf_mm, "doubt_mm": found.doubt_mm}, sentence)
+
+
+def _answer(arguments: argparse.Namespace, content: dict[str, object], sentence: str) -> int:
+    if arguments.json:
+        print_json(content)
+    else:
+        say(sentence)
+    return 0
