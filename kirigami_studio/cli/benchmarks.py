@@ -20,6 +20,8 @@ from kirigami_studio.target.silhouettes import load, names
 
 #: Samples and targets of a family where ``--k`` and ``--count`` do not say.
 SPREAD_K, SPREAD_TARGETS, ROBUSTNESS_TARGETS = 32, 50, 100
+#: Designs that are planned and checked where ``--count`` does not say.
+FABRICATED_DESIGNS = 200
 
 
 def benchmark(arguments: argparse.Namespace) -> int:
@@ -212,6 +214,18 @@ def _lattice_suite(arguments: argparse.Namespace, line: ProgressLine) -> dict[st
     return dict(lattice_timings())
 
 
+def _fabrication_suite(arguments: argparse.Namespace, line: ProgressLine) -> dict[str, object]:
+    """Timings of plan, check and DXF, travel of the orders of cutting, and random designs planned and checked."""
+    from kirigami_studio.benchmark.fabrication_suite import measure_fabrication
+
+    line.show("Timing plans and orders")
+    return measure_fabrication(
+        arguments.count or FABRICATED_DESIGNS,
+        arguments.seeds[0],
+        report=lambda done, total: line.show(f"Random designs: {done} of {total}"),
+    )
+
+
 def _variants(arguments: argparse.Namespace) -> tuple[str, ...]:
     """The variants that ``--variants`` names, or all that are bundled.
 
@@ -268,4 +282,5 @@ SUITES: dict[str, Callable[[argparse.Namespace, ProgressLine], dict[str, object]
     "regularity": _regularity_suite,
     "speed": _speed_suite,
     "lattice": _lattice_suite,
+    "fabrication": _fabrication_suite,
 }

@@ -164,8 +164,7 @@ class _Improvement:
         span = min(WIDEST_KICK, len(self.place))
         low = int(generator.integers(0, len(self.place) - span + 1))
         one, two, three = np.sort(generator.choice(span + 1, 3, replace=False)) + low
-        source = np.r_[two:three, one:two]
-        self._rearrange(int(one), int(three), source, np.zeros(len(source), dtype=np.bool_))
+        self._rearrange(int(one), (np.arange(two, three), np.arange(one, two)), (False, False))
         self._settle()
         if self.cost.sum() > before[2].sum():
             self.before, self.after, self.cost, self.place = before
@@ -182,7 +181,7 @@ class _Improvement:
         if saved[other] <= SAVED_MM:
             return False
         low, high = min(gap, other), max(gap, other)
-        self._rearrange(low, high, np.arange(low, high)[::-1], np.ones(high - low, dtype=np.bool_))
+        self._rearrange(low, (np.arange(low, high),), (True,))
         return True
 
     def _move(self, gap: int) -> bool:
@@ -206,25 +205,29 @@ class _Improvement:
         run, other, turned = chosen
         if run == 0:
             return False
-        block = np.arange(gap, gap + run)[:: -1 if turned else 1]
-        flips = np.full(run, turned)
+        block = np.arange(gap, gap + run)
         if other < gap:
-            rest = np.arange(other, gap)
-            self._rearrange(other, gap + run, np.r_[block, rest], np.r_[flips, np.zeros(len(rest), dtype=np.bool_)])
+            self._rearrange(other, (block, np.arange(other, gap)), (turned, False))
         else:
-            rest = np.arange(gap + run, other)
-            self._rearrange(gap, other, np.r_[rest, block], np.r_[np.zeros(len(rest), dtype=np.bool_), flips])
+            self._rearrange(gap, (np.arange(gap + run, other), block), (False, turned))
         return True
 
-    def _rearrange(self, low: int, high: int, source: IntArray, flipped: npt.NDArray[np.bool_]) -> None:
-        """Replace the paths at ``low`` to ``high - 1`` by those at ``source``, some of them turned."""
-        entries, exits = self.after[source], self.before[source + 1]
-        self.after[low:high] = np.where(flipped, exits, entries)
-        self.before[low + 1 : high + 1] = np.where(flipped, entries, exits)
-        self.place[low:high] = self.place[source]
+    def _rearrange(self, low: int, blocks: tuple[IntArray, ...], turned: tuple[bool, ...]) -> None:
+        """Put blocks of paths, some of them turned, one after another from ``low`` on; they are what was there."""
+        entries, exits, look = [], [], []
+        for block, back in zip(blocks, turned, strict=True):
+            start, stop = self.after[block], self.before[block + 1]
+            entries.append(stop[::-1] if back else start)
+            exits.append(start[::-1] if back else stop)
+            # A gap inside a turned block is the one after its path was, before.
+            look.append(self.look[block + 1][::-1] if back else self.look[block])
+        order = [block[::-1] if back else block for block, back in zip(blocks, turned, strict=True)]
+        high = low + sum(len(block) for block in blocks)
+        self.after[low:high] = np.concatenate(entries)
+        self.before[low + 1 : high + 1] = np.concatenate(exits)
+        self.look[low:high] = np.concatenate(look)
+        self.place[low:high] = self.place[np.concatenate(order)]
         touched = slice(low, high + 1)
         self.cost[touched] = self.weight[touched] * np.abs(self.before[touched] - self.after[touched])
-        self.look[low:high] = np.where(flipped, self.look[source + 1], self.look[source])
-        steps = np.flatnonzero(np.diff(source) != np.where(flipped[0], -1, 1))
-        for gap in (low, high, *(low + 1 + steps[:2]).tolist()):
+        for gap in (low, low + len(blocks[0]), high):
             self.look[max(gap - 1, 0) : gap + 2] = True
