@@ -6,7 +6,7 @@ The file is read back with ezdxf and compared with the plan before it takes its 
 from __future__ import annotations
 
 import threading
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from io import StringIO
 from pathlib import Path
@@ -15,18 +15,16 @@ import numpy as np
 from ezdxf import units, zoom
 from ezdxf._options import options
 from ezdxf.document import Drawing
-from ezdxf.entities.dxfentity import DXFEntity
-from ezdxf.entities.lwpolyline import LWPolyline
-from ezdxf.entities.polyline import Polyline
-from ezdxf.filemanagement import new, readfile
+from ezdxf.filemanagement import new
 
 from kirigami_studio import __version__
-from kirigami_studio.export.dxf_content import PARSER_FAULTS
+from kirigami_studio.export.drawn_file import DrawnFile, bent_otherwise
+from kirigami_studio.export.dxf_reading import read_with_ezdxf
 from kirigami_studio.export.profile import DEFAULT_PROFILE, Profile, find_profile
+from kirigami_studio.export.strokes import Stroke, extent, layer_colours, strokes_of
 from kirigami_studio.export.verified import write_verified
-from kirigami_studio.fabricate.cut_plan import CutPath, CutPlan
+from kirigami_studio.fabricate.cut_plan import CutPlan
 from kirigami_studio.foundation.errors import ExportError
-from kirigami_studio.lattice.ratio_field import FloatArray
 
 VERSIONS = ("R2010", "R12")
 #: Layers that every DXF document has whether wanted or not.
@@ -52,7 +50,7 @@ def _fixed_metadata() -> Iterator[None]:
 def write_dxf(
     plan: CutPlan, path: str | Path, version: str = "R2010", profile: str | Profile = DEFAULT_PROFILE
 ) -> None:
-    """Write a plan, read it back and compare.
+    """Write a plan as one file, read it back and compare.
 
     Parameters
     ----------
@@ -61,7 +59,7 @@ def write_dxf(
     version : str
         "R2010", or "R12" for old programs; an R12 file cannot say its unit: import it as mm.
     profile : str or Profile
-        Colour scheme.
+        What the machine's program wants; see ``layer_files`` for one file per layer.
 
     Raises
     ------
@@ -70,7 +68,9 @@ def write_dxf(
     """
     chosen = find_profile(profile) if isinstance(profile, str) else profile
     content = dxf_bytes(plan, version, chosen)
-    write_verified(Path(path), content, lambda written: _verify(written, plan, version, chosen))
+    strokes = strokes_of(plan, chosen)
+    size = extent(strokes)
+    write_verified(Path(path), content, lambda written: check_written(written, strokes, size, version))
 
 
 def dxf_bytes(plan: CutPlan, version: str, profile: Profile) -> bytes:
@@ -79,18 +79,25 @@ def dxf_bytes(plan: CutPlan, version: str, profile: Profile) -> bytes:
     Raises
     ------
     ExportError
-        Unknown version.
+        Unknown version, or a plan that the profile cannot show.
     """
+    strokes = strokes_of(plan, profile)
+    return strokes_dxf(strokes, extent(strokes), version, facts_of(plan, profile))
+
+
+def strokes_dxf(strokes: Sequence[Stroke], size: tuple[float, float], version: str, facts: dict[str, str]) -> bytes:
+    """Return a DXF of any strokes, inside an extent (mm) that starts at the origin, with facts about its making."""
     if version not in VERSIONS:
         raise ExportError(f"The DXF version must be {' or '.join(VERSIONS)}, got {version!r}.")
     with _fixed_metadata():
         # R12 knows no units, and ezdxf.new would log that at every export.
         document = Drawing.new("R12") if version == "R12" else new(version, units=units.MM)
         document.header["$MEASUREMENT"] = 1
-        for layer in plan.layers:
-            document.layers.add(layer.value, color=profile.colour[layer])
-        _draw(document, plan, version, profile)
-        _describe(document, plan, version)
+        for name, colour in layer_colours(strokes).items():
+            document.layers.add(name, color=colour)
+        _draw(document, strokes, version)
+        _frame(document, size)
+        _describe(document, facts, version)
         if version != "R12":
             _sort_classes(document)
         text = StringIO()
@@ -105,16 +112,24 @@ def _sort_classes(document: Drawing) -> None:
     section.classes = dict(sorted(section.classes.items()))
 
 
-def _draw(document: Drawing, plan: CutPlan, version: str, profile: Profile) -> None:
+def _draw(document: Drawing, strokes: Sequence[Stroke], version: str) -> None:
     modelspace = document.modelspace()
-    for path in plan.paths:
-        points = [(float(x), float(y)) for x, y in path.points]
-        attributes = {"layer": path.layer.value, "color": profile.colour[path.layer]}
+    for stroke in strokes:
+        bent = stroke.bulges is not None
+        rows = stroke.points if stroke.bulges is None else np.column_stack([stroke.points, stroke.bulges])
+        points = [tuple(float(value) for value in row) for row in rows]
+        attributes = {"layer": stroke.layer, "color": stroke.colour}
+        form = "xyb" if bent else "xy"
         if version == "R12":
-            modelspace.add_polyline2d(points, close=path.closed, dxfattribs=attributes)
+            modelspace.add_polyline2d(points, format=form, close=stroke.closed, dxfattribs=attributes)
         else:
-            modelspace.add_lwpolyline(points, close=path.closed, dxfattribs=attributes)
-    width, height = plan.bounds_mm
+            modelspace.add_lwpolyline(points, format=form, close=stroke.closed, dxfattribs=attributes)
+
+
+def _frame(document: Drawing, size: tuple[float, float]) -> None:
+    """Say how large the drawing is, and let viewers open on it."""
+    modelspace = document.modelspace()
+    width, height = size
     modelspace.reset_extents((0.0, 0.0, 0.0), (width, height, 0.0))
     # ezdxf takes a corner at the origin for a missing one and would leave the header's extents empty.
     document.header["$EXTMIN"] = (0.0, 0.0, 0.0)
@@ -123,17 +138,23 @@ def _draw(document: Drawing, plan: CutPlan, version: str, profile: Profile) -> N
     zoom.window(modelspace, (0.0, 0.0), (width, height))
 
 
-def _describe(document: Drawing, plan: CutPlan, version: str) -> None:
-    """Say in the file how it was made; R12 has no custom variables, only ezdxf's own records."""
-    facts = {
+def facts_of(plan: CutPlan, profile: Profile) -> dict[str, str]:
+    """What a file says about how it was made."""
+    kerf = 0.0 if profile.slots else plan.kerf_mm
+    paths = "beam centre lines, kerf already allowed for: apply no kerf offset"
+    return {
         "KIRIGAMI_STUDIO": __version__,
         "DESIGN": plan.design_hash,
         "SIZE_MM": f"{plan.size_mm[0]:.4f} x {plan.size_mm[1]:.4f}",
         "CONNECTOR_MM": f"{plan.connector_mm:g}",
-        "KERF_MM": f"{plan.kerf_mm:g}",
+        "KERF_MM": f"{kerf:g}",
         "MATERIAL": plan.material.key,
-        "PATHS": "beam centre lines, kerf already allowed for: apply no kerf offset",
+        "PATHS": "edges of the finished part: apply the kerf offset of the machine" if profile.slots else paths,
     }
+
+
+def _describe(document: Drawing, facts: dict[str, str], version: str) -> None:
+    """Say in the file how it was made; R12 has no custom variables, only ezdxf's own records."""
     record = document.ezdxf_metadata()
     for key, value in facts.items():
         record[key] = value
@@ -141,8 +162,8 @@ def _describe(document: Drawing, plan: CutPlan, version: str) -> None:
             document.header.custom_vars.append(key, value)
 
 
-def _verify(path: Path, plan: CutPlan, version: str, profile: Profile) -> None:
-    """Read a written file back and compare everything that a cutter sees with the plan.
+def check_written(path: Path, strokes: Sequence[Stroke], size: tuple[float, float], version: str) -> None:
+    """Read a written file back and compare everything that a cutter sees with what was meant.
 
     Raises
     ------
@@ -150,45 +171,39 @@ def _verify(path: Path, plan: CutPlan, version: str, profile: Profile) -> None:
         With the first difference.
     """
     try:
-        document = readfile(path)
-    except PARSER_FAULTS as error:
-        raise ExportError(f"The DXF did not read back: {error}. Nothing was written; please report it.") from error
-    if fault := _first_difference(document, plan, version, profile):
+        content = read_with_ezdxf(path)
+    except ExportError as error:
+        raise ExportError(f"The DXF did not read back: {error} Nothing was written; please report it.") from error
+    if fault := _first_difference(content, strokes, size, version):
         raise ExportError(f"The DXF did not pass its own check: {fault}. Nothing was written; please report it.")
 
 
-def _first_difference(document: Drawing, plan: CutPlan, version: str, profile: Profile) -> str | None:
-    if version != "R12" and document.header.get("$INSUNITS") != units.MM:
-        return f"its unit is {document.header.get('$INSUNITS')} instead of 4 (mm)"
-    if tuple(document.header["$EXTMIN"])[:2] != (0.0, 0.0) or tuple(document.header["$EXTMAX"])[:2] != plan.bounds_mm:
-        return f"its extents are {document.header['$EXTMIN']} to {document.header['$EXTMAX']}"
-    layers = {layer.dxf.name for layer in document.layers}
-    if layers - UNAVOIDABLE_LAYERS != {layer.value for layer in plan.layers}:
-        return f"its layers are {', '.join(sorted(layers))}"
-    if errors := document.audit().errors:
-        return f"ezdxf's audit found {len(errors)} errors, the first: {errors[0].message}"
-    entities = list(document.modelspace())
-    if len(entities) != len(plan.paths):
-        return f"it holds {len(entities)} entities instead of {len(plan.paths)}"
-    for number, (entity, path) in enumerate(zip(entities, plan.paths, strict=True)):
-        if fault := _entity_difference(entity, path, profile):
+def _first_difference(
+    content: DrawnFile, strokes: Sequence[Stroke], size: tuple[float, float], version: str
+) -> str | None:
+    if version != "R12" and content.unit != units.MM:
+        return f"its unit is {content.unit} instead of 4 (mm)"
+    if content.extent != size:
+        return f"its extents go to {content.extent}"
+    if set(content.layers) - UNAVOIDABLE_LAYERS != set(layer_colours(strokes)):
+        return f"its layers are {', '.join(sorted(content.layers))}"
+    if content.others:
+        return f"it holds a {content.others[0]} instead of a polyline"
+    if len(content.strokes) != len(strokes):
+        return f"it holds {len(content.strokes)} entities instead of {len(strokes)}"
+    for number, (found, meant) in enumerate(zip(content.strokes, strokes, strict=True)):
+        if fault := _stroke_difference(found, meant):
             return f"entity {number} {fault}"
     return None
 
 
-def _entity_difference(entity: DXFEntity, path: CutPath, profile: Profile) -> str | None:
-    if isinstance(entity, LWPolyline):
-        points: FloatArray = np.array(list(entity.vertices()), dtype=np.float64)
-        closed = bool(entity.closed)
-    elif isinstance(entity, Polyline):
-        points = np.array([(point.x, point.y) for point in entity.points()], dtype=np.float64)
-        closed = bool(entity.is_closed)
-    else:
-        return f"is a {entity.dxftype()} instead of a polyline"
-    if (entity.dxf.layer, entity.dxf.color) != (path.layer.value, profile.colour[path.layer]):
-        return f"is on layer {entity.dxf.layer} in colour {entity.dxf.color}"
-    if closed != path.closed:
-        return f"is {'closed' if closed else 'open'}"
-    if points.shape != path.points.shape or not np.all(np.abs(points - path.points) <= SAME_MM):
-        return f"has the points {points.tolist()} instead of {path.points.tolist()}"
+def _stroke_difference(found: Stroke, meant: Stroke) -> str | None:
+    if (found.layer, found.colour) != (meant.layer, meant.colour):
+        return f"is on layer {found.layer} in colour {found.colour}"
+    if found.closed != meant.closed:
+        return f"is {'closed' if found.closed else 'open'}"
+    if found.points.shape != meant.points.shape or not np.all(np.abs(found.points - meant.points) <= SAME_MM):
+        return f"has the points {found.points.tolist()} instead of {meant.points.tolist()}"
+    if bent_otherwise([found], [meant], SAME_MM):
+        return "has other arcs than were meant"
     return None

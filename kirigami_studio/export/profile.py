@@ -1,7 +1,7 @@
-"""How a machine's program wants the layers coloured (AutoCAD colour index, ACI).
+"""How a machine's program wants its cut files: colours (AutoCAD colour index, ACI), arcs, layers, closed contours.
 
-Programs choose the operation by colour: MeerK40t cuts pure red only and engraves blue; K40 Whisperer engraves blue;
-LightBurn makes one cut setting for each colour.  No scheme suits them all, so a person picks one.
+Programs choose the operation by colour: MeerK40t cuts pure red only, engraves blue and rasters white; K40 Whisperer
+engraves blue; LightBurn makes one cut setting for each colour.  No scheme suits them all, so a person picks one.
 """
 
 from __future__ import annotations
@@ -13,12 +13,16 @@ from types import MappingProxyType
 from kirigami_studio.fabricate.cut_plan import Layer
 from kirigami_studio.foundation.errors import ExportError
 
-RED, GREEN, BLUE, MAGENTA = 1, 3, 5, 6
+RED, GREEN, BLUE, MAGENTA, WHITE = 1, 3, 5, 6, 7
+#: Layer of a file that keeps everything together.
+ONE_LAYER = "SHEET"
+#: Layer of closed contours that stand for slits.
+SLOT_LAYER = "SLOTS"
 
 
 @dataclass(frozen=True, slots=True)
 class Profile:
-    """One colour scheme.
+    """What one kind of program or service wants.
 
     Attributes
     ----------
@@ -26,21 +30,64 @@ class Profile:
         For the command line, and for a person.
     colour : mapping of Layer to int
         AutoCAD colour index.
+    one_layer : bool
+        Everything on the layer ``ONE_LAYER``, in file order.
+    flatten : bool
+        Arcs as chords.
+    file_per_layer : bool
+        A folder of files instead of one file.
+    slots : bool
+        Closed contours only: every slit becomes the outline of the slot that it burns.
+    note : str
+        A sentence to read before importing, or nothing.
     """
 
     key: str
     name: str
     colour: Mapping[Layer, int]
+    one_layer: bool = False
+    flatten: bool = False
+    file_per_layer: bool = False
+    slots: bool = False
+    note: str = ""
+
+    def layer_name(self, layer: Layer) -> str:
+        """Name of a layer in files of this profile."""
+        if self.one_layer:
+            return ONE_LAYER
+        return SLOT_LAYER if self.slots and layer is not Layer.OUTLINE else layer.value
 
 
 _ALL_RED = MappingProxyType(dict.fromkeys(Layer, RED))
+_ALL_WHITE = MappingProxyType(dict.fromkeys(Layer, WHITE))
 _BY_LAYER = MappingProxyType({Layer.RELIEF: MAGENTA, Layer.SLITS: RED, Layer.EDGE_SLITS: GREEN, Layer.OUTLINE: BLUE})
-PROFILES: Mapping[str, Profile] = MappingProxyType(
-    {
-        "any": Profile("any", "Any machine: everything red, cut in file order (MeerK40t, K40 Whisperer)", _ALL_RED),
-        "lightburn": Profile("lightburn", "LightBurn: one colour for each layer", _BY_LAYER),
-    }
+_TABLE = (
+    Profile("any", "Any machine: everything red, cut in file order", _ALL_RED),
+    Profile("lightburn", "LightBurn: one colour for each layer", _BY_LAYER),
+    Profile("k40", "MeerK40t, K40 Whisperer: everything red, arcs as chords", _ALL_RED, flatten=True),
+    Profile(
+        "single",
+        "One colour, one layer: for programs that sort by colour or layer",
+        _ALL_WHITE,
+        one_layer=True,
+        note="White lines are rastered by MeerK40t and engraved by some others: choose the k40 profile for those.",
+    ),
+    Profile(
+        "layers",
+        "One file for each layer, in a folder (CircuitPro)",
+        _ALL_WHITE,
+        file_per_layer=True,
+        note="Import all files of the folder at one origin and cut them in the order of their numbers.",
+    ),
+    Profile(
+        "slots",
+        "Cutting service: closed contours only, every slit as a slot",
+        _BY_LAYER,
+        slots=True,
+        note="Contours are the edges of the finished part: the service has to allow for its kerf.",
+    ),
 )
+PROFILES: Mapping[str, Profile] = MappingProxyType({profile.key: profile for profile in _TABLE})
 DEFAULT_PROFILE = "any"
 
 

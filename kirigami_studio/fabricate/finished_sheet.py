@@ -58,12 +58,12 @@ def remaining_pieces(boundary: BaseGeometry, cuts: Sequence[LineString], kerf_mm
     return sorted(pieces, key=lambda piece: -piece.area)
 
 
-def smallest_ligament(cuts: Sequence[LineString], outline: BaseGeometry | None, kerf_mm: float) -> Ligament | None:
+def smallest_ligament(cuts: Sequence[BaseGeometry], outline: BaseGeometry | None, kerf_mm: float) -> Ligament | None:
     """Find the narrowest finished ligament between any two cuts, or between a cut and the outline.
 
     Parameters
     ----------
-    cuts : sequence of LineString, mm
+    cuts : sequence of LineString or MultiLineString, mm
     outline : geometry, mm, optional
         Centre line of the outline cut; cuts that cross it on purpose (edge cuts) are not measured against it.
     kerf_mm : float

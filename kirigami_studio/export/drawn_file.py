@@ -1,0 +1,73 @@
+"""What a reader found in a cut file, and how it differs from what was meant."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from kirigami_studio.export.strokes import Stroke
+
+#: Code of millimetres in ``$INSUNITS``.
+MILLIMETRES = 4
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class DrawnFile:
+    """A cut file as one reader sees it.
+
+    Attributes
+    ----------
+    reader : str
+        What read it, for the report.
+    strokes : tuple of Stroke
+        In file order.
+    unit : int or None
+        Code of the file's unit as in ``$INSUNITS``; None when the file has none.
+    extent : (width, height) or None, mm
+        What the header says.
+    layers : mapping of str to int
+        Colour of each layer.
+    others : tuple of str
+        Kinds of entities that are no polylines.
+    """
+
+    reader: str
+    strokes: tuple[Stroke, ...]
+    unit: int | None
+    extent: tuple[float, float] | None
+    layers: Mapping[str, int] = field(default_factory=dict)
+    others: tuple[str, ...] = ()
+
+    @property
+    def length(self) -> float:
+        """Length of all strokes, mm."""
+        return sum(stroke.length for stroke in self.strokes)
+
+
+def largest_shift(found: Sequence[Stroke], meant: Sequence[Stroke]) -> float:
+    """Largest distance (mm) of a point from where it was meant; infinite when the points do not pair up."""
+    worst = 0.0
+    if len(found) != len(meant):
+        return float("inf")
+    for one, other in zip(found, meant, strict=True):
+        if one.points.shape != other.points.shape:
+            return float("inf")
+        worst = max(worst, float(np.linalg.norm(one.points - other.points, axis=1).max()))
+    return worst
+
+
+def bent_otherwise(found: Sequence[Stroke], meant: Sequence[Stroke], tolerance: float) -> int:
+    """Number of strokes whose arcs differ by more than ``tolerance`` in a bulge."""
+    return sum(
+        not np.allclose(_bulges(one), _bulges(other), rtol=0.0, atol=tolerance)
+        for one, other in zip(found, meant, strict=True)
+    )
+
+
+def _bulges(stroke: Stroke) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
+    bulges = np.zeros(len(stroke.points)) if stroke.bulges is None else np.array(stroke.bulges)
+    if not stroke.closed:
+        bulges[-1] = 0.0
+    return bulges
