@@ -46,6 +46,19 @@ class DrawnFile:
         return sum(stroke.length for stroke in self.strokes)
 
 
+def one_drawing(files: Sequence[DrawnFile]) -> DrawnFile:
+    """Lay files of one origin upon each other; what they do not share (unit, extent) is lost."""
+    first = files[0]
+    return DrawnFile(
+        reader=first.reader,
+        strokes=tuple(stroke for content in files for stroke in content.strokes),
+        unit=first.unit if len({content.unit for content in files}) == 1 else None,
+        extent=first.extent if len({content.extent for content in files}) == 1 else None,
+        layers={name: colour for content in files for name, colour in content.layers.items()},
+        others=tuple(kind for content in files for kind in content.others),
+    )
+
+
 def largest_shift(found: Sequence[Stroke], meant: Sequence[Stroke]) -> float:
     """Largest distance (mm) of a point from where it was meant; infinite when the points do not pair up."""
     worst = 0.0

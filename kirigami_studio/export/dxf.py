@@ -17,9 +17,9 @@ from ezdxf._options import options
 from ezdxf.document import Drawing
 from ezdxf.filemanagement import new
 
-from kirigami_studio import __version__
 from kirigami_studio.export.drawn_file import DrawnFile, bent_otherwise
 from kirigami_studio.export.dxf_reading import read_with_ezdxf
+from kirigami_studio.export.facts import facts_of
 from kirigami_studio.export.profile import DEFAULT_PROFILE, Profile, find_profile
 from kirigami_studio.export.strokes import Stroke, extent, layer_colours, strokes_of
 from kirigami_studio.export.verified import write_verified
@@ -136,21 +136,6 @@ def _frame(document: Drawing, size: tuple[float, float]) -> None:
     document.header["$EXTMAX"] = (width, height, 0.0)
     modelspace.reset_limits((0.0, 0.0), (width, height))
     zoom.window(modelspace, (0.0, 0.0), (width, height))
-
-
-def facts_of(plan: CutPlan, profile: Profile) -> dict[str, str]:
-    """What a file says about how it was made."""
-    kerf = 0.0 if profile.slots else plan.kerf_mm
-    paths = "beam centre lines, kerf already allowed for: apply no kerf offset"
-    return {
-        "KIRIGAMI_STUDIO": __version__,
-        "DESIGN": plan.design_hash,
-        "SIZE_MM": f"{plan.size_mm[0]:.4f} x {plan.size_mm[1]:.4f}",
-        "CONNECTOR_MM": f"{plan.connector_mm:g}",
-        "KERF_MM": f"{kerf:g}",
-        "MATERIAL": plan.material.key,
-        "PATHS": "edges of the finished part: apply the kerf offset of the machine" if profile.slots else paths,
-    }
 
 
 def _describe(document: Drawing, facts: dict[str, str], version: str) -> None:

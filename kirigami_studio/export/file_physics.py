@@ -62,21 +62,21 @@ def file_physics(strokes: Sequence[Stroke], plan: CutPlan, profile: Profile) -> 
     loops = [Polygon(line) for line, stroke in zip(inner, strokes, strict=False) if stroke.closed]
     sheet: BaseGeometry = boundary.difference(shapely.union_all(loops))
     pieces = remaining_pieces(sheet, inner, kerf)
-    cuts = _joined(inner, strokes, plan)
+    cuts = _joined(inner, strokes, plan, profile)
     ligament = smallest_ligament(cuts, boundary.exterior, kerf) if cuts else None
     return Physics(len(pieces), None if ligament is None else ligament.width_mm, max(overlap_length(lines), 0.0))
 
 
-def _joined(lines: list[LineString], strokes: Sequence[Stroke], plan: CutPlan) -> list[BaseGeometry]:
+def _joined(lines: list[LineString], strokes: Sequence[Stroke], plan: CutPlan, profile: Profile) -> list[BaseGeometry]:
     """Cuts as one geometry each: relief cuts belong to what they touch, slits of a removed connector to each other.
 
     Two slits that touch although every connector was kept stay two, so that nothing is left between them.
     """
     if not lines:
         return []
-    # By number, because a profile may keep everything on one layer.
-    known = [path.layer is Layer.RELIEF for path in plan.paths] if len(plan.paths) == len(strokes) else []
-    relief = np.array(known[: len(lines)] or [False] * len(lines))
+    relief = np.array([stroke.layer == Layer.RELIEF.value for stroke in strokes[: len(lines)]])
+    if profile.one_layer and len(plan.paths) == len(strokes):
+        relief = np.array([path.layer is Layer.RELIEF for path in plan.paths[: len(lines)]])
     one, other = shapely.STRtree(lines).query(lines, predicate="dwithin", distance=TOUCH_MM)
     meant = relief[one] | relief[other] | bool(plan.options.removed)
     graph = coo_array((np.ones(int(meant.sum())), (one[meant], other[meant])), shape=(len(lines), len(lines)))

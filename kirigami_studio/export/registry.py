@@ -9,8 +9,10 @@ from pathlib import Path
 from kirigami_studio.export.animation import GifExporter
 from kirigami_studio.export.dxf import write_dxf
 from kirigami_studio.export.exporter import Exporter, ExportJob
+from kirigami_studio.export.layer_files import layer_folder, write_layer_files
 from kirigami_studio.export.pdf import PdfExporter
 from kirigami_studio.export.png import PngExporter
+from kirigami_studio.export.profile import find_profile
 from kirigami_studio.export.svg import SvgExporter
 from kirigami_studio.foundation.errors import ExportError
 
@@ -23,8 +25,12 @@ class DxfExporter:
     name: str = "DXF cut file"
 
     def write(self, job: ExportJob, path: Path) -> None:
-        """Write the job's cut plan in its DXF version and profile."""
-        write_dxf(job.required_plan, path, job.dxf_version, job.profile)
+        """Write the job's cut plan in its DXF version and profile: one file, or a folder of them."""
+        profile = find_profile(job.profile)
+        if profile.file_per_layer:
+            write_layer_files(job.required_plan, path, job.dxf_version, profile)
+        else:
+            write_dxf(job.required_plan, path, job.dxf_version, profile)
 
 
 def exporters() -> Mapping[str, Exporter]:
@@ -50,7 +56,7 @@ def find_exporter(path: str | Path) -> Exporter:
 
 
 def export(job: ExportJob, path: str | Path) -> Path:
-    """Write one file of the kind that its extension names, and return its path.
+    """Write one file of the kind that its extension names, and return its path (of a folder for files per layer).
 
     Raises
     ------
@@ -59,4 +65,10 @@ def export(job: ExportJob, path: str | Path) -> Path:
     """
     goal = Path(path)
     find_exporter(goal).write(job, goal)
-    return goal
+    return written_path(goal, job.profile)
+
+
+def written_path(path: Path, profile_key: str) -> Path:
+    """Where a file of this name is found: a profile may make a folder of a DXF."""
+    in_folder = path.suffix.lower() == ".dxf" and find_profile(profile_key).file_per_layer
+    return layer_folder(path) if in_folder else path

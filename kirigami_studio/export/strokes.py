@@ -10,7 +10,7 @@ import numpy as np
 from kirigami_studio.export.profile import Profile
 from kirigami_studio.export.slots import slot_contours
 from kirigami_studio.fabricate.bulges import CHORD_MM, flattened
-from kirigami_studio.fabricate.cut_plan import CutPlan
+from kirigami_studio.fabricate.cut_plan import DECIMALS, CutPlan
 from kirigami_studio.lattice.ratio_field import FloatArray
 
 
@@ -74,7 +74,7 @@ def strokes_of(plan: CutPlan, profile: Profile) -> tuple[Stroke, ...]:
     found = []
     for path in plan.paths:
         flat = profile.flatten and path.bulges is not None
-        points, bulges = (path.flattened, None) if flat else (path.points, path.bulges)
+        points, bulges = (np.round(path.flattened, DECIMALS) + 0.0, None) if flat else (path.points, path.bulges)
         found.append(Stroke(points, path.closed, profile.layer_name(path.layer), profile.colour[path.layer], bulges))
     return tuple(found)
 

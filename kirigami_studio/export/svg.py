@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import groupby
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -10,10 +11,12 @@ import numpy as np
 
 from kirigami_studio.export import palette
 from kirigami_studio.export.exporter import ExportJob
+from kirigami_studio.export.facts import facts_of
 from kirigami_studio.export.palette import hexadecimal
-from kirigami_studio.export.profile import BLUE, GREEN, MAGENTA, RED, Profile, find_profile
+from kirigami_studio.export.profile import BLUE, GREEN, MAGENTA, RED, WHITE, Profile, find_profile
+from kirigami_studio.export.strokes import Stroke, extent, strokes_of
 from kirigami_studio.export.verified import write_verified
-from kirigami_studio.fabricate.cut_plan import CutPlan
+from kirigami_studio.fabricate.cut_plan import DECIMALS, CutPlan
 from kirigami_studio.foundation.errors import ExportError
 from kirigami_studio.lattice.ratio_field import FloatArray
 
@@ -21,7 +24,8 @@ NAMESPACE = "http://www.w3.org/2000/svg"
 #: Line width (mm) of cut lines; laser drivers take anything thinner than 0.1 mm as a line to cut.
 CUT_LINE_MM = 0.05
 LAYOUT_MARGIN_MM = 5.0
-ACI_COLOUR = {RED: (255, 0, 0), GREEN: (0, 255, 0), BLUE: (0, 0, 255), MAGENTA: (255, 0, 255)}
+#: What the AutoCAD colours of the profiles look like on white.
+ACI_COLOUR = {RED: (255, 0, 0), GREEN: (0, 255, 0), BLUE: (0, 0, 255), MAGENTA: (255, 0, 255), WHITE: (0, 0, 0)}
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,23 +41,47 @@ class SvgExporter:
 
 
 def write_cut_svg(plan: CutPlan, path: str | Path, profile: Profile) -> None:
-    """Write a plan as true-size SVG, one group for each layer, paths in cutting order.
+    """Write a plan as true-size SVG: one group for each layer, lines and true arcs in cutting order.
 
     Raises
     ------
     ExportError
         The place cannot be written, or the file did not read back.
     """
-    width, height = plan.bounds_mm
+    strokes = strokes_of(plan, profile)
+    width, height = extent(strokes)
     root = _root(width, height, f"Kirigami cut plan, sheet {plan.size_mm[0]:g} x {plan.size_mm[1]:g} mm")
-    for layer in plan.layers:
-        colour = hexadecimal(ACI_COLOUR[profile.colour[layer]])
-        group = ElementTree.SubElement(
-            root, "g", {"id": layer.value, "fill": "none", "stroke": colour, "stroke-width": f"{CUT_LINE_MM:g}"}
-        )
-        for cut in plan.on_layer(layer):
-            ElementTree.SubElement(group, "path", {"d": _path_data(cut.flattened, height, cut.closed)})
-    _write(root, Path(path), len(plan.paths), (width, height))
+    facts = facts_of(plan, profile)
+    ElementTree.SubElement(root, "desc").text = "; ".join(f"{key} {value}" for key, value in facts.items())
+    for number, ((name, colour), run) in enumerate(groupby(strokes, lambda stroke: (stroke.layer, stroke.colour))):
+        # A layer that comes back later in the cutting order needs a name of its own.
+        again = any(element.get("id") == name for element in root)
+        attributes = {"id": f"{name}.{number}" if again else name, "fill": "none"}
+        attributes |= {"stroke": hexadecimal(ACI_COLOUR[colour]), "stroke-width": f"{CUT_LINE_MM:g}"}
+        group = ElementTree.SubElement(root, "g", attributes)
+        for stroke in run:
+            ElementTree.SubElement(group, "path", {"d": _stroke_data(stroke, height)})
+    _write(root, Path(path), len(strokes), (width, height))
+
+
+def _stroke_data(stroke: Stroke, height: float) -> str:
+    """SVG path data of lines and arcs; y is turned over, and a turn to the left stays one."""
+    if stroke.bulges is None:
+        return _path_data(stroke.points, height, stroke.closed)
+    points = np.stack([stroke.points[:, 0], height - stroke.points[:, 1]], axis=1).round(DECIMALS)
+    stops = np.roll(points, -1, axis=0)
+    edges = len(points) if stroke.closed else len(points) - 1
+    words = [f"M {_number(points[0, 0])},{_number(points[0, 1])}"]
+    for start, (x, y), bulge in zip(points[:edges], stops, stroke.bulges, strict=False):
+        goal = f"{_number(x)},{_number(y)}"
+        if bulge == 0.0:
+            words.append(f"L {goal}")
+            continue
+        radius = float(np.hypot(x - start[0], y - start[1])) * (1.0 + bulge**2) / (4.0 * abs(bulge))
+        words.append(f"A {radius:.8f} {radius:.8f} 0 {int(abs(bulge) > 1.0)} {int(bulge < 0.0)} {goal}")
+    if stroke.closed and stroke.bulges[-1] == 0.0:
+        words.pop()
+    return " ".join(words) + (" Z" if stroke.closed else "")
 
 
 def write_layout_svg(job: ExportJob, path: str | Path, width_mm: float = 100.0) -> None:

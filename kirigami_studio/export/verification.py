@@ -6,12 +6,14 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from kirigami_studio.export.drawn_file import MILLIMETRES, DrawnFile, bent_otherwise, largest_shift
+from kirigami_studio.export.drawn_file import MILLIMETRES, DrawnFile, bent_otherwise, largest_shift, one_drawing
 from kirigami_studio.export.dxf_reading import read_with_ezdxf
 from kirigami_studio.export.file_physics import Physics, file_physics
 from kirigami_studio.export.group_codes import read_group_codes
+from kirigami_studio.export.layer_files import by_layer, layer_folder, layer_paths
 from kirigami_studio.export.profile import Profile, find_profile
 from kirigami_studio.export.strokes import Stroke, extent, layer_colours, strokes_of
+from kirigami_studio.export.svg_reading import read_with_svgelements, read_with_xml
 from kirigami_studio.fabricate.checks import OVERLAP_TOLERANCE_MM, WIDTH_TOLERANCE_MM
 from kirigami_studio.fabricate.cut_plan import CutPlan
 from kirigami_studio.foundation.errors import ExportError
@@ -90,7 +92,11 @@ class Format:
     bulge: float
 
 
-FORMATS = {".dxf": Format((read_with_ezdxf, read_group_codes), 1e-9, 1e-9)}
+#: SVG has four decimals, and arcs by their radius.
+FORMATS = {
+    ".dxf": Format((read_with_ezdxf, read_group_codes), 1e-9, 1e-9),
+    ".svg": Format((read_with_svgelements, read_with_xml), 2e-4, 5e-3),
+}
 
 
 def verify_export(plan: CutPlan, path: str | Path, profile_key: str, version: str = "R2010") -> Verification:
@@ -100,7 +106,7 @@ def verify_export(plan: CutPlan, path: str | Path, profile_key: str, version: st
     ----------
     plan : CutPlan
     path : str or Path
-        A cut file.
+        A cut file; of a profile with one file per layer, its folder or the name that the folder was made for.
     profile_key : str
     version : str
         DXF dialect that it was written in.
@@ -112,9 +118,15 @@ def verify_export(plan: CutPlan, path: str | Path, profile_key: str, version: st
     """
     goal, profile = Path(path), find_profile(profile_key)
     strokes = strokes_of(plan, profile)
-    kind = FORMATS.get(goal.suffix.lower())
-    if kind is None:
+    if profile.file_per_layer and goal.suffix.lower() != ".svg":
+        goal, kind = layer_folder(goal), FORMATS[".dxf"]
+        parts = layer_paths(goal)
+        strokes = tuple(stroke for part in by_layer(strokes).values() for stroke in part)
+        contents = [one_drawing([read(part) for part in parts]) for read in kind.readers]
+        return _judged(plan, goal, profile, version, strokes, contents, kind)
+    if goal.suffix.lower() not in FORMATS:
         raise ExportError(f"{goal} cannot be verified; cut files end in {', '.join(FORMATS)}.")
+    kind = FORMATS[goal.suffix.lower()]
     contents = [read(goal) for read in kind.readers]
     return _judged(plan, goal, profile, version, strokes, contents, kind)
 
@@ -133,7 +145,7 @@ def _judged(
         *_agreed(contents, strokes, version, kind),
         *_physics_findings(physics, plan),
     ]
-    warnings = [*plan.notes, *_cautions(plan, profile, version, strokes)]
+    warnings = [*plan.notes, *_cautions(plan, profile, version, strokes, path)]
     seconds = plan.seconds_estimate
     return Verification(
         path=path,
@@ -242,10 +254,10 @@ def _physics_findings(physics: Physics, plan: CutPlan) -> list[Finding]:
     return found
 
 
-def _cautions(plan: CutPlan, profile: Profile, version: str, strokes: Sequence[Stroke]) -> list[str]:
+def _cautions(plan: CutPlan, profile: Profile, version: str, strokes: Sequence[Stroke], path: Path) -> list[str]:
     """What a person should know about this profile and version."""
     found = [profile.note] if profile.note else []
-    if version == "R12":
+    if version == "R12" and path.suffix.lower() != ".svg":
         found.append("There is no unit in an R12 file: import it as mm.")
     if profile.slots:
         length = sum(stroke.length for stroke in strokes)

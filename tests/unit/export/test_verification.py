@@ -14,7 +14,8 @@ from kirigami_studio.export import verification
 from kirigami_studio.export.dxf import write_dxf
 from kirigami_studio.export.dxf_reading import read_with_ezdxf
 from kirigami_studio.export.group_codes import read_group_codes
-from kirigami_studio.export.profile import PROFILES
+from kirigami_studio.export.profile import PROFILES, find_profile
+from kirigami_studio.export.svg import write_cut_svg
 from kirigami_studio.export.verification import Verification, verify_export
 from kirigami_studio.fabricate.cut_plan import CutPlan, plan_cuts
 from kirigami_studio.foundation.errors import ExportError
@@ -47,6 +48,46 @@ def test_that_a_written_file_passes_with_two_readers(profile: str, version: str,
         assert report.cut_length_mm == pytest.approx(plan.cut_length_mm, rel=1e-9)
     assert any("import it as mm" in warning for warning in report.warnings) is (version == "R12")
     assert 0.0 < report.seconds_low <= report.seconds_high
+
+
+@pytest.mark.parametrize("profile", PROFILES)
+def test_that_a_written_svg_passes_with_two_readers(profile: str, plan: CutPlan, tmp_path: Path) -> None:
+    write_cut_svg(plan, tmp_path / "sheet.svg", find_profile(profile))
+    report = verify_export(plan, tmp_path / "sheet.svg", profile)
+    assert report.ok, bad(report)
+    assert report.pieces == 1
+
+
+@pytest.mark.parametrize(
+    ("found", "meant", "word"),
+    [
+        ('mm" height', 'px" height', "unit is 0"),
+        ("#ff0000", "#0000ff", "SLITS in colour 5"),
+        ('id="SLITS"', 'id="CUTS"', "CUTS in colour 1"),
+        (" L ", " L 1,1 L ", "their numbers differ"),
+        (" Z", "", "0 closed"),
+        ("<title>", "<text>A</text><title>", "1 other things (text)"),
+    ],
+)
+def test_that_every_difference_in_an_svg_is_a_bad_finding(
+    found: str, meant: str, word: str, plan: CutPlan, tmp_path: Path
+) -> None:
+    path = tmp_path / "sheet.svg"
+    write_cut_svg(plan, path, find_profile("any"))
+    content = path.read_text()
+    assert found in content
+    path.write_text(content.replace(found, meant, 1))
+    report = verify_export(plan, path, "any")
+    assert not report.ok
+    assert word in bad(report)
+
+
+def test_that_svg_path_data_with_curves_is_refused(plan: CutPlan, tmp_path: Path) -> None:
+    path = tmp_path / "sheet.svg"
+    write_cut_svg(plan, path, find_profile("any"))
+    path.write_text(path.read_text().replace(" L ", " C 1,1 2,2 ", 1))
+    with pytest.raises(ExportError, match="not a readable SVG"):
+        verify_export(plan, path, "any")
 
 
 @pytest.mark.parametrize("version", ["R2010", "R12"])

@@ -1,0 +1,22 @@
+"""What every cut file says about how it was made."""
+
+from __future__ import annotations
+
+from kirigami_studio import __version__
+from kirigami_studio.export.profile import Profile
+from kirigami_studio.fabricate.cut_plan import CutPlan
+
+
+def facts_of(plan: CutPlan, profile: Profile) -> dict[str, str]:
+    """What a file says about how it was made."""
+    kerf = 0.0 if profile.slots else plan.kerf_mm
+    paths = "beam centre lines, kerf already allowed for: apply no kerf offset"
+    return {
+        "KIRIGAMI_STUDIO": __version__,
+        "DESIGN": plan.design_hash,
+        "SIZE_MM": f"{plan.size_mm[0]:.4f} x {plan.size_mm[1]:.4f}",
+        "CONNECTOR_MM": f"{plan.connector_mm:g}",
+        "KERF_MM": f"{kerf:g}",
+        "MATERIAL": plan.material.key,
+        "PATHS": "edges of the finished part: apply the kerf offset of the machine" if profile.slots else paths,
+    }

@@ -1,0 +1,121 @@
+"""Cut plan -> a folder with one DXF for each layer and nothing else, numbered in the order of cutting.
+
+All files share one origin and one extent, so that a program that imports them one by one lays them upon each other.
+The folder appears whole or not at all.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import re
+import shutil
+import tempfile
+from collections.abc import Sequence
+from functools import partial
+from pathlib import Path
+
+from kirigami_studio.export.dxf import check_written, strokes_dxf
+from kirigami_studio.export.facts import facts_of
+from kirigami_studio.export.profile import Profile
+from kirigami_studio.export.strokes import Stroke, extent, strokes_of
+from kirigami_studio.export.verified import write_verified
+from kirigami_studio.fabricate.cut_plan import CutPlan
+from kirigami_studio.foundation.errors import ExportError
+
+OWN_NAME = re.compile(r"[1-9]_[A-Z_]+\.dxf")
+
+
+def layer_folder(path: Path) -> Path:
+    """The folder that stands for a cut file of this name: ``cut.dxf`` -> ``cut``."""
+    return path.with_suffix("") if path.suffix.lower() == ".dxf" else path
+
+
+def write_layer_files(plan: CutPlan, path: str | Path, version: str, profile: Profile) -> Path:
+    """Write the folder and return it.
+
+    Parameters
+    ----------
+    plan : CutPlan
+    path : str or Path
+        The folder, or a ``.dxf`` name whose stem names it.
+    version : str
+    profile : Profile
+
+    Raises
+    ------
+    ExportError
+        A folder that holds other files, a place that cannot be written, or a file that did not read back.
+    """
+    folder = layer_folder(Path(path))
+    _refuse_strange_content(folder)
+    strokes = strokes_of(plan, profile)
+    size, facts = extent(strokes), facts_of(plan, profile)
+    fresh: Path | None = None
+    try:
+        folder.parent.mkdir(parents=True, exist_ok=True)
+        fresh = Path(tempfile.mkdtemp(prefix=f".{folder.name}.", dir=folder.parent))
+        for name, part in by_layer(strokes).items():
+            verify = partial(check_written, strokes=part, size=size, version=version)
+            write_verified(fresh / name, strokes_dxf(part, size, version, facts), verify)
+        fresh.chmod(0o755)
+        _put_in_place(fresh, folder)
+        fresh = None
+    except OSError as error:
+        reason = error.strerror or str(error)
+        raise ExportError(f"Cannot write {folder}: {reason}. Choose another folder or free some space.") from error
+    finally:
+        if fresh is not None:
+            shutil.rmtree(fresh, ignore_errors=True)
+    return folder
+
+
+def layer_paths(folder: Path) -> list[Path]:
+    """The files of such a folder in the order of cutting.
+
+    Raises
+    ------
+    ExportError
+        No such folder, or other files in it.
+    """
+    if not folder.is_dir():
+        raise ExportError(f"{folder} is no folder of layer files; export it again.")
+    _refuse_strange_content(folder)
+    return sorted(folder.iterdir())
+
+
+def by_layer(strokes: Sequence[Stroke]) -> dict[str, list[Stroke]]:
+    """Strokes by the name of their file; layers in the order in which they begin."""
+    parts: dict[str, list[Stroke]] = {}
+    for stroke in strokes:
+        parts.setdefault(stroke.layer, []).append(stroke)
+    return {f"{number}_{name}.dxf": part for number, (name, part) in enumerate(parts.items(), start=1)}
+
+
+def _refuse_strange_content(folder: Path) -> None:
+    """A folder of ours may be replaced; nothing else may be lost or mixed in."""
+    if not folder.exists():
+        return
+    if not folder.is_dir():
+        raise ExportError(f"Cannot write {folder}: a file stands there. Choose another name.")
+    strange = sorted(entry.name for entry in folder.iterdir() if not OWN_NAME.fullmatch(entry.name))
+    if strange:
+        raise ExportError(
+            f"The folder {folder} holds other files ({strange[0]}); layer files need a folder of their own."
+        )
+
+
+def _put_in_place(fresh: Path, folder: Path) -> None:
+    """Exchange the folders; an older one comes back if that fails."""
+    if not folder.exists():
+        fresh.replace(folder)
+        return
+    old = Path(tempfile.mkdtemp(prefix=f".{folder.name}.old.", dir=folder.parent)) / folder.name
+    folder.replace(old)
+    try:
+        fresh.replace(folder)
+    except OSError:
+        old.replace(folder)
+        raise
+    finally:
+        with contextlib.suppress(OSError):
+            shutil.rmtree(old.parent)

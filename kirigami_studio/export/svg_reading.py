@@ -1,0 +1,157 @@
+"""Two readers of cut SVGs: svgelements, and the XML with a few words of path data read here."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any, cast
+from xml.etree import ElementTree
+
+import numpy as np
+from svgelements import SVG, Arc, Close, Group, Line, Move
+from svgelements import Path as SvgPath
+
+from kirigami_studio.export.drawn_file import MILLIMETRES, DrawnFile
+from kirigami_studio.export.strokes import Stroke
+from kirigami_studio.export.svg import ACI_COLOUR, NAMESPACE
+from kirigami_studio.foundation.errors import ExportError
+
+MM_PER_PX = 25.4 / 96.0
+#: A scale that differs from mm by less than this is mm.
+SAME_SCALE = 1e-6
+_COLOURS = {"#{:02x}{:02x}{:02x}".format(*colour): index for index, colour in ACI_COLOUR.items()}
+#: Colour of a stroke in none of the profiles' colours.
+UNKNOWN_COLOUR = -1
+_WORDS = re.compile(r"[MLAZ]|-?\d+(?:\.\d+)?(?:e-?\d+)?")
+
+Row = tuple[float, float, float]
+
+
+def read_with_svgelements(path: Path) -> DrawnFile:
+    """Read a cut SVG with svgelements, which knows units, inheritance and arcs.
+
+    Raises
+    ------
+    ExportError
+        No readable SVG.
+    """
+    try:
+        # svgelements carries no types.
+        svg: Any = cast(Any, SVG).parse(path)
+        box = svg.viewbox
+        scale = float(svg.width) / float(box.width) * MM_PER_PX
+        height = float(svg.height) * MM_PER_PX
+        strokes = tuple(
+            _stroke(*_segments(path), str(group.id), str(path.stroke.hex), height) for group, path in _grouped(svg)
+        )
+    except (OSError, ElementTree.ParseError, AttributeError, ValueError, TypeError, ZeroDivisionError) as error:
+        raise ExportError(f"{path} is not a readable SVG: {error}. Export it again.") from error
+    unit = MILLIMETRES if abs(scale - 1.0) < SAME_SCALE else 0
+    extent = (float(svg.width) * MM_PER_PX, height)
+    return DrawnFile("svgelements", strokes, unit, extent, _layers(strokes))
+
+
+def read_with_xml(path: Path) -> DrawnFile:
+    """Read a cut SVG as XML; path data may hold the words M, L, A and Z only.
+
+    Raises
+    ------
+    ExportError
+        No readable SVG, or path data with other words.
+    """
+    try:
+        root = ElementTree.parse(path).getroot()
+        width, height = (str(root.get(name)) for name in ("width", "height"))
+        box = [float(number) for number in str(root.get("viewBox")).split()]
+        size = (_millimetres(width), _millimetres(height))
+        strokes = tuple(
+            _stroke(*_words(str(element.get("d"))), str(group.get("id")), str(group.get("stroke")), size[1])
+            for group in root.findall(f"{{{NAMESPACE}}}g")
+            for element in group.findall(f"{{{NAMESPACE}}}path")
+        )
+    except (OSError, ElementTree.ParseError, ValueError, StopIteration) as error:
+        raise ExportError(f"{path} is not a readable SVG: {error}. Export it again.") from error
+    millimetres = width.endswith("mm") and height.endswith("mm") and tuple(box) == (0.0, 0.0, *size)
+    others = tuple(
+        element.tag.removeprefix(f"{{{NAMESPACE}}}")
+        for element in root.iter()
+        if element.tag not in {f"{{{NAMESPACE}}}{known}" for known in ("svg", "g", "path", "title", "desc")}
+    )
+    return DrawnFile("the XML reader", strokes, MILLIMETRES if millimetres else 0, size, _layers(strokes), others)
+
+
+def _millimetres(side: str) -> float:
+    """The number of a length, whatever its unit says."""
+    return float(re.sub("[a-z]+$", "", side))
+
+
+def _layers(strokes: tuple[Stroke, ...]) -> dict[str, int]:
+    return {stroke.layer: stroke.colour for stroke in strokes}
+
+
+def _stroke(rows: list[Row], closed: bool, group: str, colour: str, height: float) -> Stroke:
+    """Turn y up again; rows are x, y and the bulge of the edge that follows, in SVG's frame."""
+    table = np.array(rows, dtype=np.float64).reshape(-1, 3)
+    if closed and len(table) > 1 and np.array_equal(table[0, :2], table[-1, :2]):
+        table = table[:-1]
+    points = np.stack([table[:, 0], height - table[:, 1]], axis=1)
+    layer = group.partition(".")[0]
+    return Stroke(
+        points, closed, layer, _COLOURS.get(colour, UNKNOWN_COLOUR), -table[:, 2] if table[:, 2].any() else None
+    )
+
+
+def _grouped(svg: Any) -> list[tuple[Any, Any]]:
+    """Every path with the group that holds it."""
+    groups = [element for element in svg if isinstance(element, Group)]
+    return [(group, path) for group in groups for path in group if isinstance(path, SvgPath)]
+
+
+def _segments(element: Any) -> tuple[list[Row], bool]:
+    """Points in mm and bulges of one path as svgelements sees it."""
+    rows: list[Row] = []
+    for segment in element.segments(transformed=True):
+        kind = type(segment)
+        if kind is Close:
+            return rows, True
+        if kind not in (Move, Line, Arc):
+            raise ValueError(f"a path holds a {kind.__name__}")
+        if kind is Arc:
+            rows[-1] = (*rows[-1][:2], math.tan(float(segment.sweep) / 4.0))
+        rows.append((float(segment.end.x) * MM_PER_PX, float(segment.end.y) * MM_PER_PX, 0.0))
+    return rows, False
+
+
+def _words(data: str) -> tuple[list[Row], bool]:
+    """Points and bulges of path data."""
+    if _WORDS.sub("", data).strip(" ,"):
+        raise ValueError(f"the path data {data[:40]!r} holds other words than M, L, A and Z")
+    words = iter(_WORDS.findall(data))
+    rows: list[Row] = []
+    for word in words:
+        if word == "Z":
+            return rows, True
+        if word == "A":
+            radius, _, _, large, sweep = (float(next(words)) for _ in range(5))
+            x, y = _pair(words)
+            start = rows[-1]
+            rows[-1] = (*start[:2], _bulge(math.hypot(x - start[0], y - start[1]), radius, large > 0.5, sweep > 0.5))
+        elif word in ("M", "L"):
+            x, y = _pair(words)
+        else:
+            raise ValueError(f"a coordinate {word} without a word before it")
+        rows.append((x, y, 0.0))
+    return rows, False
+
+
+def _pair(words: Iterator[str]) -> tuple[float, float]:
+    return float(next(words)), float(next(words))
+
+
+def _bulge(chord: float, radius: float, large: bool, sweep: bool) -> float:
+    """Bulge of an SVG arc in SVG's frame: positive for sweep 1."""
+    half = math.asin(min(1.0, 0.5 * chord / radius))
+    angle = 2.0 * (math.pi - half if large else half)
+    return math.tan(angle / 4.0) * (1.0 if sweep else -1.0)
