@@ -12,7 +12,7 @@ export PIP_DISABLE_PIP_VERSION_CHECK := 1
 QUICK_TESTS := tests/architecture tests/property $(wildcard $(addprefix tests/unit/,foundation lattice evaluate fabricate project)) \
   --ignore=tests/unit/evaluate/test_siou.py
 
-.PHONY: help setup run test quick lint bench demo states clean
+.PHONY: help setup run test quick lint bench consumers demo states clean
 .DEFAULT_GOAL := help
 
 help:
@@ -22,6 +22,7 @@ help:
 	@echo "make quick   the tests that need neither Qt nor torch, in under 20 seconds"
 	@echo "make lint    ruff, mypy and the import contracts"
 	@echo "make bench   print the timings of the exact geometry"
+	@echo "make consumers  let MeerK40t, in an environment of its own, plan our cut files"
 	@echo "make demo    design a heart on the command line into out/heart"
 	@echo "make states  pictures of every state of the window into out/states"
 	@echo "make clean   remove what the other targets made, .venv excepted"
@@ -61,6 +62,13 @@ lint: setup
 
 bench: setup
 	$(BIN)/python -m kirigami_studio.benchmark.lattice_timing
+
+# MeerK40t pins what it likes, so it lives apart; the tests find it here.
+CONSUMERS := .venv-consumers
+consumers: setup
+	test -x $(CONSUMERS)/bin/python || $(PYTHON) -m venv $(CONSUMERS)
+	$(CONSUMERS)/bin/python -m pip install -q meerk40t ezdxf Pillow
+	$(BIN)/python -m pytest tests/consumers
 
 demo: setup
 	$(BIN)/kirigami-studio design heart --k 8 --out out/heart
