@@ -10,6 +10,7 @@ from kirigami_studio.export.animation import GifExporter
 from kirigami_studio.export.dxf import write_dxf
 from kirigami_studio.export.exporter import Exporter, ExportJob
 from kirigami_studio.export.layer_files import layer_folder, write_layer_files
+from kirigami_studio.export.lightburn import LightBurnExporter
 from kirigami_studio.export.pdf import PdfExporter
 from kirigami_studio.export.png import PngExporter
 from kirigami_studio.export.profile import find_profile
@@ -34,8 +35,10 @@ class DxfExporter:
 
 
 def exporters() -> Mapping[str, Exporter]:
-    """Return all exporters by extension (lower case, with the dot), cut files first."""
-    known: tuple[Exporter, ...] = (DxfExporter(), SvgExporter(), PdfExporter(), PngExporter(), GifExporter())
+    """Return all exporters by extension (lower case, with the dot)."""
+    known: tuple[Exporter, ...] = (
+        DxfExporter(), SvgExporter(), PdfExporter(), PngExporter(), GifExporter(), LightBurnExporter(),
+    )  # fmt: skip
     return {exporter.extension: exporter for exporter in known}
 
 

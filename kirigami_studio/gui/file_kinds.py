@@ -39,6 +39,7 @@ FILE_KINDS = (
     FileKind(".pdf", "PDF cut sheet, mm", "Cut sheet at 1:1, to print or to plot", True),
     FileKind(".png", "PNG picture", "Picture of the opened sheet over its target", False),
     FileKind(".gif", "GIF animation", "The sheet opening from flat to the target angle", False),
+    FileKind(".lbrn2", "LightBurn project", "Named layers in cutting order; connectors on the tool layer", True),
 )
 
 

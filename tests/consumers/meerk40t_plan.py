@@ -55,14 +55,27 @@ def planned(path: str) -> dict[str, Any]:
     cuts = [part for part in kernel.planner.default_plan.plan if isinstance(part, CutCode)]
     per_mm = UNITS_PER_MM / kernel.device.view.native_scale_x
     operations = [
-        {"type": op.type, "label": op.label, "elements": len(op.children)} for op in elements.ops() if op.children
+        {
+            "type": op.type,
+            "label": op.label,
+            "elements": len(op.children),
+            "drawn_mm": sum(child.node.as_geometry().length() for child in op.children) / UNITS_PER_MM,
+        }
+        for op in elements.ops()
+        if op.children
     ]
     return {
         "elements": Counter(str(node.type) for node in elements.elems()),
         "operations": operations,
         "cut_mm": sum(part.length_cut() for part in cuts) / per_mm,
         "note": elements.note,
+        "first_points": [_first_point(node) for node in elements.elems() if node.type != "elem ellipse"],
     }
+
+
+def _first_point(node: Any) -> tuple[float, float]:
+    point = node.as_geometry().first_point
+    return point.real / UNITS_PER_MM, point.imag / UNITS_PER_MM
 
 
 def main(paths: list[str]) -> None:
@@ -71,7 +84,7 @@ def main(paths: list[str]) -> None:
     with contextlib.redirect_stdout(io.StringIO()):
         for path in paths:
             found[path] = planned(path)
-    print(json.dumps(found))
+    sys.stdout.write(json.dumps(found) + "\n")
 
 
 if __name__ == "__main__":

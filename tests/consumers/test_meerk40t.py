@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from kirigami_studio.export.dxf import write_dxf
+from kirigami_studio.export.lightburn import write_lightburn
 from kirigami_studio.fabricate.cut_plan import CutPlan, plan_cuts
 from kirigami_studio.fabricate.material import find_material
 from kirigami_studio.lattice.deployment import deploy
@@ -61,3 +62,26 @@ def test_that_the_lightburn_colours_are_not_for_meerk40t(meerk40t_plans: Planner
     write_dxf(PLANS[0], path, "R2010", "lightburn")
     (found,) = meerk40t_plans([path])
     assert "op engrave" in [entry["type"] for entry in found["operations"]]
+
+
+def test_that_the_lightburn_project_has_the_layers_and_lengths_of_the_plan(
+    meerk40t_plans: Planner, tmp_path: Path
+) -> None:
+    made = PLANS[1]
+    write_lightburn(made, tmp_path / "sheet.lbrn2")
+    (found,) = meerk40t_plans([tmp_path / "sheet.lbrn2"])
+    assert [entry["label"] for entry in found["operations"]] == [*(layer.value for layer in made.layers), "CONNECTORS"]
+    assert [entry["type"] for entry in found["operations"]] == ["op cut"] * len(made.layers) + ["op engrave"]
+    for entry, layer in zip(found["operations"], made.layers, strict=False):
+        assert entry["elements"] == len(made.on_layer(layer))
+        assert entry["drawn_mm"] == pytest.approx(sum(path.length for path in made.on_layer(layer)), rel=SAME_LENGTH)
+    assert found["operations"][-1]["elements"] == len(made.hinges)
+    assert "apply no kerf offset" in found["note"]
+
+
+def test_that_the_lightburn_project_is_not_mirrored(meerk40t_plans: Planner, tmp_path: Path) -> None:
+    write_lightburn(PLANS[1], tmp_path / "sheet.lbrn2")
+    write_dxf(PLANS[1], tmp_path / "sheet.dxf")
+    one, other = (np.array(found["first_points"])
+                  for found in meerk40t_plans([tmp_path / "sheet.lbrn2", tmp_path / "sheet.dxf"]))  # fmt: skip
+    np.testing.assert_allclose(one - one.mean(axis=0), other - other.mean(axis=0), atol=1e-2)

@@ -16,7 +16,14 @@ from kirigami_studio.gui.main_window import MainWindow
 from kirigami_studio.gui.messages import Tone
 
 Until = Callable[[Callable[[], bool]], None]
-FIRST_BYTES = {".dxf": b"  0\n", ".svg": b"<?xml", ".pdf": b"%PDF", ".png": b"\x89PNG", ".gif": b"GIF8"}
+FIRST_BYTES = {
+    ".dxf": b"  0\n",
+    ".svg": b"<?xml",
+    ".pdf": b"%PDF",
+    ".png": b"\x89PNG",
+    ".gif": b"GIF8",
+    ".lbrn2": b"<?xml",
+}
 
 
 def test_that_the_window_offers_what_the_exporters_write() -> None:
@@ -40,7 +47,7 @@ def test_that_a_refused_plan_still_leaves_pictures(designed: MainWindow, until: 
     designed.fabrication.lengths["connector_mm"].setValue(20.0)
     until(lambda: not designed.fabrication.export.isEnabled())
     allowed = {extension: action.isEnabled() for extension, action in designed.fabrication.kinds.items()}
-    assert allowed == {".dxf": False, ".svg": False, ".pdf": False, ".png": True, ".gif": True}
+    assert allowed == {".dxf": False, ".svg": False, ".pdf": False, ".png": True, ".gif": True, ".lbrn2": False}
     assert designed.fabrication.more.isEnabled()
 
 

@@ -26,7 +26,14 @@ def job(make_design: Callable[..., Deployment]) -> ExportJob:
 
 @pytest.mark.parametrize(
     ("extension", "magic"),
-    [(".dxf", b"  0\nSECTION"), (".svg", b"<?xml"), (".pdf", b"%PDF-"), (".png", b"\x89PNG"), (".gif", b"GIF89a")],
+    [
+        (".dxf", b"  0\nSECTION"),
+        (".svg", b"<?xml"),
+        (".pdf", b"%PDF-"),
+        (".png", b"\x89PNG"),
+        (".gif", b"GIF89a"),
+        (".lbrn2", b"<?xml"),
+    ],
 )
 def test_that_every_extension_writes_its_kind_of_file(
     extension: str, magic: bytes, job: ExportJob, tmp_path: Path
@@ -45,7 +52,7 @@ def test_that_an_unknown_extension_is_refused_with_the_known_ones(
         export(job, tmp_path / name)
 
 
-@pytest.mark.parametrize("extension", [".dxf", ".svg", ".pdf"])
+@pytest.mark.parametrize("extension", [".dxf", ".svg", ".pdf", ".lbrn2"])
 def test_that_a_cut_file_without_a_plan_is_refused(extension: str, job: ExportJob, tmp_path: Path) -> None:
     with pytest.raises(ExportError, match="needs a cut plan"):
         export(ExportJob(job.deployment), tmp_path / f"cut{extension}")
@@ -57,7 +64,7 @@ def test_that_the_version_and_profile_of_the_job_reach_the_file(job: ExportJob, 
     assert check_file(export(old, tmp_path / "cut.dxf")).unit == "none"
 
 
-@pytest.mark.parametrize("extension", [".dxf", ".svg", ".pdf", ".png", ".gif"])
+@pytest.mark.parametrize("extension", [".dxf", ".svg", ".pdf", ".png", ".gif", ".lbrn2"])
 def test_that_a_place_that_cannot_be_written_is_refused_by_name(extension: str, job: ExportJob, tmp_path: Path) -> None:
     (tmp_path / "file").write_text("in the way")
     with pytest.raises(ExportError, match=r"Cannot write .*Choose another folder"):

@@ -1,0 +1,166 @@
+"""Cut plan -> LightBurn project (.lbrn2): named layers with priorities in the order of cutting, connectors on T1.
+
+The file is XML; a path is a list of vertices (``V x y``, with handles where a curve leaves or arrives) and a list of
+primitives between them (``L`` line, ``B`` Bezier curve).  Arcs become Bezier curves of a quarter turn at most.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from pathlib import Path
+from xml.etree import ElementTree
+
+import numpy as np
+
+from kirigami_studio.export.exporter import ExportJob
+from kirigami_studio.export.facts import facts_of
+from kirigami_studio.export.lightburn_reading import layer_lengths
+from kirigami_studio.export.profile import find_profile
+from kirigami_studio.export.strokes import layer_colours, strokes_of
+from kirigami_studio.export.verified import write_verified
+from kirigami_studio.fabricate.bulges import arc_of
+from kirigami_studio.fabricate.cut_plan import CutPath, CutPlan, Layer
+from kirigami_studio.foundation.errors import ExportError
+from kirigami_studio.lattice.ratio_field import FloatArray
+
+#: Numbers of the palette: magenta, red, green, blue, as in the DXF profile.
+PALETTE_NUMBER = {Layer.RELIEF: 7, Layer.SLITS: 2, Layer.EDGE_SLITS: 3, Layer.OUTLINE: 1}
+#: The first tool layer, which LightBurn shows and never cuts.
+TOOL_LAYER = 30
+MARKER_RADIUS_MM = 0.5
+#: A Bezier curve stands for at most this much of an arc (radians): the error is below 0.03 % of the radius.
+LARGEST_TURN = math.pi / 2.0
+#: Share by which a length may differ after reading back: arcs as Bezier curves, measured along chords.
+SAME_LENGTH = 5e-4
+
+
+@dataclass(frozen=True, slots=True)
+class LightBurnExporter:
+    """Cut plan as LightBurn project."""
+
+    extension: str = ".lbrn2"
+    name: str = "LightBurn project"
+
+    def write(self, job: ExportJob, path: Path) -> None:
+        """Write the job's cut plan; the layers are LightBurn's own, whatever the profile."""
+        write_lightburn(job.required_plan, path)
+
+
+def write_lightburn(plan: CutPlan, path: str | Path) -> None:
+    """Write a plan as LightBurn project and read it back.
+
+    Raises
+    ------
+    ExportError
+        The place cannot be written, or the file did not read back.
+    """
+    content = lightburn_bytes(plan)
+    strokes = strokes_of(plan, find_profile("any"))
+    meant = {name: sum(stroke.length for stroke in strokes if stroke.layer == name) for name in layer_colours(strokes)}
+
+    def verify(written: Path) -> None:
+        found = layer_lengths(written)
+        for name, length in meant.items():
+            if abs(found.get(name, 0.0) - length) > SAME_LENGTH * length:
+                raise ExportError(
+                    f"The LightBurn file did not read back: {found.get(name, 0.0):.3f} instead of {length:.3f} mm on "
+                    f"{name}. Nothing was written."
+                )
+
+    write_verified(Path(path), content, verify)
+
+
+def lightburn_bytes(plan: CutPlan) -> bytes:
+    """Return the project's XML."""
+    # Mirrored in y means that y counts upwards.
+    root = ElementTree.Element(
+        "LightBurnProject",
+        {"AppVersion": "1.0.00", "FormatVersion": "1", "MaterialHeight": "0", "MirrorX": "False", "MirrorY": "True"},
+    )
+    for priority, layer in enumerate(plan.layers):
+        _add_setting(root, "Cut", PALETTE_NUMBER[layer], layer.value, priority, plan.material.speed_mm_s)
+    _add_setting(root, "Tool", TOOL_LAYER, "CONNECTORS", len(plan.layers), plan.material.speed_mm_s)
+    for path in plan.paths:
+        _add_path(root, path)
+    for x, y in plan.hinges.position.tolist():
+        size = f"{MARKER_RADIUS_MM:g}"
+        marker = ElementTree.SubElement(
+            root, "Shape", {"Type": "Ellipse", "CutIndex": str(TOOL_LAYER), "Rx": size, "Ry": size}
+        )
+        ElementTree.SubElement(marker, "XForm").text = f"1 0 0 1 {x:.4f} {y:.4f}"
+    notes = [f"{key} {value}" for key, value in facts_of(plan, find_profile("lightburn")).items()]
+    ElementTree.SubElement(root, "Notes", {"ShowOnLoad": "0", "Notes": "\n".join([*notes, *plan.notes])})
+    ElementTree.indent(root)
+    content: bytes = ElementTree.tostring(root, encoding="utf-8", xml_declaration=True)
+    return content
+
+
+def _add_setting(root: ElementTree.Element, kind: str, index: int, name: str, priority: int, speed: float) -> None:
+    setting = ElementTree.SubElement(root, "CutSetting", {"type": kind})
+    values = {"index": index, "name": name, "priority": priority, "speed": f"{speed:g}", "kerf": 0}
+    for key, value in values.items():
+        ElementTree.SubElement(setting, key, {"Value": str(value)})
+
+
+def _add_path(root: ElementTree.Element, path: CutPath) -> None:
+    shape = ElementTree.SubElement(root, "Shape", {"Type": "Path", "CutIndex": str(PALETTE_NUMBER[path.layer])})
+    ElementTree.SubElement(shape, "XForm").text = "1 0 0 1 0 0"
+    vertices, primitives = _vertices(path)
+    ElementTree.SubElement(shape, "VertList").text = "".join(vertices)
+    ElementTree.SubElement(shape, "PrimList").text = "".join(primitives)
+
+
+def _vertices(path: CutPath) -> tuple[list[str], list[str]]:
+    """Vertices with their handles, and the primitives between them."""
+    points: list[FloatArray] = [path.points[0]]
+    leaving: dict[int, FloatArray] = {}
+    arriving: dict[int, FloatArray] = {}
+    edges = len(path.points) if path.closed else len(path.points) - 1
+    for edge in range(edges):
+        stop = path.points[(edge + 1) % len(path.points)]
+        bulge = 0.0 if path.bulges is None else float(path.bulges[edge])
+        for first, second, goal in _curves(points[-1], stop, bulge):
+            leaving[len(points) - 1] = first
+            points.append(goal)
+            arriving[len(points) - 1] = second
+        if bulge == 0.0:
+            points.append(stop)
+    count = len(points) - 1 if path.closed else len(points)
+    if path.closed and count in arriving:
+        arriving[0] = arriving[count]
+    told = [
+        f"V{points[i][0]:.4f} {points[i][1]:.4f}" + _handle("c0", leaving.get(i)) + _handle("c1", arriving.get(i))
+        for i in range(count)
+    ]
+    drawn = [f"{'B' if i in leaving else 'L'}{i} {(i + 1) % count}" for i in range(len(points) - 1)]
+    return told, drawn
+
+
+def _handle(name: str, point: FloatArray | None) -> str:
+    return f"{name}x1" if point is None else f"{name}x{point[0]:.6f}{name}y{point[1]:.6f}"
+
+
+def _curves(start: FloatArray, stop: FloatArray, bulge: float) -> list[tuple[FloatArray, FloatArray, FloatArray]]:
+    """Bezier curves of an arc: both handles and the end of each; none for a straight edge."""
+    if bulge == 0.0:
+        return []
+    centre, _ = arc_of(start, stop, bulge)
+    whole = 4.0 * math.atan(bulge)
+    count = math.ceil(abs(whole) / LARGEST_TURN)
+    turn = whole / count
+    reach = 4.0 / 3.0 * math.tan(turn / 4.0)
+    arm = start - centre
+    found = []
+    for number in range(1, count + 1):
+        following = _turned(start - centre, turn * number)
+        handles = (centre + arm + reach * _turned(arm, math.pi / 2.0),
+                   centre + following - reach * _turned(following, math.pi / 2.0))  # fmt: skip
+        found.append((*handles, stop if number == count else centre + following))
+        arm = following
+    return found
+
+
+def _turned(arm: FloatArray, angle: float) -> FloatArray:
+    c, s = math.cos(angle), math.sin(angle)
+    return np.array([c * arm[0] - s * arm[1], s * arm[0] + c * arm[1]])

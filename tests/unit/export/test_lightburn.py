@@ -1,0 +1,67 @@
+"""LightBurn projects: layers in cutting order, arcs as curves, connectors where nothing is cut."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+
+from kirigami_studio.export import lightburn
+from kirigami_studio.export.lightburn_reading import layer_lengths
+from kirigami_studio.fabricate.cut_plan import CutPath, CutPlan, Layer, plan_cuts
+from kirigami_studio.foundation.errors import ExportError
+from kirigami_studio.lattice.deployment import Deployment
+
+
+@pytest.fixture
+def plan(make_design: Callable[..., Deployment]) -> CutPlan:
+    """A 4 x 5 design at the default size."""
+    return plan_cuts(make_design(4, 5, seed=1))
+
+
+def test_that_layers_have_names_and_priorities_in_cutting_order(plan: CutPlan, tmp_path: Path) -> None:
+    lightburn.write_lightburn(plan, tmp_path / "sheet.lbrn2")
+    root = ElementTree.parse(tmp_path / "sheet.lbrn2").getroot()
+    settings = {setting.find("name").get("Value"): setting for setting in root.findall("CutSetting")}  # type: ignore[union-attr]
+    assert list(settings) == ["SLITS", "EDGE_SLITS", "OUTLINE", "CONNECTORS"]
+    assert [int(setting.find("priority").get("Value")) for setting in settings.values()] == [0, 1, 2, 3]  # type: ignore[union-attr, arg-type]
+    assert settings["CONNECTORS"].get("type") == "Tool"
+    assert settings["CONNECTORS"].find("index").get("Value") == "30"  # type: ignore[union-attr]
+    markers = [shape for shape in root.findall("Shape") if shape.get("CutIndex") == "30"]
+    assert len(markers) == len(plan.hinges)
+    assert "KERF_MM 0.02" in str(root.find("Notes").get("Notes"))  # type: ignore[union-attr]
+
+
+def test_that_each_layer_has_the_length_of_the_plan(plan: CutPlan, tmp_path: Path) -> None:
+    lightburn.write_lightburn(plan, tmp_path / "sheet.lbrn2")
+    found = layer_lengths(tmp_path / "sheet.lbrn2")
+    for layer in plan.layers:
+        assert found[layer.value] == pytest.approx(sum(path.length for path in plan.on_layer(layer)), rel=1e-5)
+
+
+def test_that_arcs_become_curves_of_their_length(plan: CutPlan, tmp_path: Path) -> None:
+    half_circles = CutPath(np.array([[1.0, 1.0], [3.0, 1.0]]), Layer.RELIEF, True, 0, np.array([1.0, 1.0]))
+    most_of_a_circle = CutPath(np.array([[5.0, 5.0], [6.0, 5.0]]), Layer.RELIEF, False, 0, np.array([-2.0, 0.0]))
+    bent = replace(plan, paths=(half_circles, most_of_a_circle, *plan.paths))
+    lightburn.write_lightburn(bent, tmp_path / "sheet.lbrn2")
+    arc = 0.5 * (1 + 4.0) / (2 * 2.0) * 4 * np.arctan(2.0)
+    assert layer_lengths(tmp_path / "sheet.lbrn2")["RELIEF"] == pytest.approx(2 * np.pi + arc, rel=5e-4)
+
+
+def test_that_a_shorter_file_is_refused(plan: CutPlan, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    short = lightburn.lightburn_bytes(replace(plan, paths=plan.paths[1:]))
+    monkeypatch.setattr(lightburn, "lightburn_bytes", lambda _: short)
+    with pytest.raises(ExportError, match="did not read back"):
+        lightburn.write_lightburn(plan, tmp_path / "sheet.lbrn2")
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("content", ["", "<LightBurnProject>", '<A><Shape CutIndex="9"/></A>'])
+def test_that_what_is_no_project_is_refused(content: str, tmp_path: Path) -> None:
+    (tmp_path / "sheet.lbrn2").write_text(content)
+    with pytest.raises(ExportError, match="not a readable LightBurn project"):
+        layer_lengths(tmp_path / "sheet.lbrn2")
