@@ -11,6 +11,7 @@ import numpy as np
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.evaluate.trimming import Trim
+from kirigami_studio.export.paper import NO_PAPER
 from kirigami_studio.export.profile import DEFAULT_PROFILE
 from kirigami_studio.fabricate.cut_plan import CutPlan
 from kirigami_studio.foundation.errors import ExportError
@@ -35,7 +36,9 @@ class ExportJob:
         Takes the layout's frame at ``phi`` to the target's.
     dxf_version : str
     profile : str
-        Key of the colour profile.
+        Key of the machine profile.
+    paper : str
+        Key of the paper that a PDF is spread over; "none" for one page as large as the sheet.
     trim : Trim or None
         What was cut off the edge panels; pictures show what stays.
     """
@@ -47,6 +50,7 @@ class ExportJob:
     transform: Similarity = field(default_factory=Similarity)
     dxf_version: str = "R2010"
     profile: str = DEFAULT_PROFILE
+    paper: str = NO_PAPER
     trim: Trim | None = None
 
     @classmethod
