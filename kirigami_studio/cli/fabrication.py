@@ -5,19 +5,25 @@ from __future__ import annotations
 import argparse
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 from kirigami_studio.cli.console import print_json, say
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.export.animation import FRAMES, write_animation
 from kirigami_studio.export.dxf_check import check_file
+from kirigami_studio.export.export_set import ExportSet, export_all
 from kirigami_studio.export.exporter import ExportJob
-from kirigami_studio.export.profile import DEFAULT_PROFILE, find_profile
+from kirigami_studio.export.profile import find_profile
 from kirigami_studio.export.registry import export as export_file
 from kirigami_studio.export.registry import find_exporter
+from kirigami_studio.export.sidecar import sidecar_path, write_sidecar
+from kirigami_studio.export.verification import FORMATS, Verification, verify_export
 from kirigami_studio.fabricate.checks import Report, Severity, check_plan
 from kirigami_studio.fabricate.cut_plan import CutPlan
 from kirigami_studio.fabricate.material import default_material, find_material
-from kirigami_studio.foundation.errors import FabricationError, ProjectError, UsageError
+from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions, CutOrder
+from kirigami_studio.fabricate.slits import cut_table
+from kirigami_studio.foundation.errors import ExportError, FabricationError, ProjectError, UsageError
 from kirigami_studio.project.cutting import plan_of
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.settings import FabricationSettings
@@ -47,18 +53,24 @@ def checked_plan(candidate: Candidate, fabrication: FabricationSettings) -> tupl
 
 
 def export(arguments: argparse.Namespace) -> int:
-    """Write one cut or picture file from a project and report what is in it."""
-    profile = find_profile(arguments.profile or DEFAULT_PROFILE)
-    find_exporter(arguments.out)
+    """Write cut or picture files from a project, verify the cut files, and report what is in them."""
+    if not arguments.all:
+        find_exporter(arguments.out)
     document = load(arguments.project)
-    plan, report = checked_plan(_chosen(document), _overridden(document.fabrication, arguments))
-    job = replace(_job(document), plan=plan, dxf_version=arguments.dxf_version, profile=profile.key)
-    path = export_file(job, arguments.out)
+    settings = _overridden(document.fabrication, arguments)
+    _check_hinges(_chosen(document), settings.options)
+    plan, report = checked_plan(_chosen(document), settings)
+    job = replace(_job(document), plan=plan, dxf_version=settings.dxf_version, profile=settings.profile,
+                  paper=arguments.paper)  # fmt: skip
+    written = _written(job, arguments)
     warnings = [*plan.notes, *(problem.text for problem in report.problems)]
+    warnings += [text for found in written.verifications for text in found.warnings]
+    warnings = list(dict.fromkeys(warnings))
+    bad = [finding.text for found in written.verifications for finding in found.findings if not finding.ok]
     if arguments.json:
         print_json(
             {
-                "files": [str(path)],
+                "files": [str(path) for path in written.files],
                 "size_mm": plan.size_mm,
                 "cut_length_mm": plan.cut_length_mm,
                 "travel_mm": plan.travel_mm,
@@ -66,17 +78,47 @@ def export(arguments: argparse.Namespace) -> int:
                 "pieces": report.pieces,
                 "min_connector_mm": plan.min_connector_mm,
                 "warnings": warnings,
+                "verified": [_summary(found) for found in written.verifications],
             }
         )
-        return 0
+        return 0 if written.ok else 1
     say(
-        f"{path}: {plan.size_mm[0]:.2f} x {plan.size_mm[1]:.2f} mm, cut {plan.cut_length_mm:.1f} mm, travel "
-        f"{plan.travel_mm:.1f} mm, about {plan.seconds_estimate:.0f} s, {report.pieces} piece(s), smallest connector "
-        f"{plan.min_connector_mm:.3f} mm"
+        f"{', '.join(str(path) for path in written.files)}: {plan.size_mm[0]:.2f} x {plan.size_mm[1]:.2f} mm, cut "
+        f"{plan.cut_length_mm:.1f} mm, travel {plan.travel_mm:.1f} mm, about {plan.seconds_estimate:.0f} s, "
+        f"{report.pieces} piece(s), smallest connector {plan.min_connector_mm:.3f} mm"
     )
+    for found in written.verifications:
+        state = "verified by two readers" if found.ok else "NOT as planned"
+        say(f"  {found.path}: {state}, {len(found.findings)} findings")
+    for text in bad:
+        say(f"  fault: {text}")
     for warning in warnings:
         say(f"  note: {warning}")
-    return 0
+    return 0 if written.ok else 1
+
+
+def _written(job: ExportJob, arguments: argparse.Namespace) -> ExportSet:
+    """Write what was asked for: the whole set, or one file with its record beside it if that was asked for."""
+    if arguments.all:
+        return export_all(job, arguments.out, sidecar=arguments.sidecar is not False)
+    path = export_file(job, arguments.out)
+    files, verified = [path], []
+    if Path(arguments.out).suffix.lower() in FORMATS:
+        verified.append(verify_export(job.required_plan, path, job.profile, job.dxf_version))
+    if arguments.sidecar:
+        files.append(write_sidecar(job, sidecar_path(Path(arguments.out)), [path]))
+    return ExportSet(tuple(files), tuple(verified))
+
+
+def _summary(found: Verification) -> dict[str, object]:
+    return {
+        "file": str(found.path),
+        "ok": found.ok,
+        "pieces": found.pieces,
+        "cut_length_mm": found.cut_length_mm,
+        "seconds": [found.seconds_low, found.seconds_high],
+        "findings": [finding.text for finding in found.findings],
+    }
 
 
 def check(arguments: argparse.Namespace) -> int:
@@ -127,16 +169,58 @@ def _chosen(document: Document) -> Candidate:
 
 
 def _job(document: Document) -> ExportJob:
-    return ExportJob.of(_chosen(document), None if document.target is None else document.target.points)
+    job = ExportJob.of(_chosen(document), None if document.target is None else document.target.points)
+    return replace(job, provenance=document.provenance)
 
 
 def _overridden(saved: FabricationSettings, arguments: argparse.Namespace) -> FabricationSettings:
-    """The project's settings with the command line's on top."""
-    changes = {
-        name: value
-        for name in ("width_mm", "connector_mm", "kerf_mm")
-        if (value := getattr(arguments, name)) is not None
+    """The project's settings with the command line's on top.
+
+    Raises
+    ------
+    UsageError
+        An option that no settings can hold.
+    """
+    given = {name: value for name, value in vars(arguments).items() if value is not None}
+    changes: dict[str, Any] = {
+        name: given[name] for name in ("width_mm", "connector_mm", "kerf_mm", "dxf_version") if name in given
     }
     if arguments.material is not None:
         changes["material"] = find_material(arguments.material).key
+    try:
+        if "profile" in given:
+            changes["profile"] = find_profile(given["profile"]).key
+        return replace(saved, **changes, options=_cut_options(saved.options, given))
+    except (FabricationError, ExportError) as error:
+        raise UsageError(str(error)) from error
+
+
+def _cut_options(saved: CutOptions, given: dict[str, Any]) -> CutOptions:
+    """The project's choices about the cuts with the command line's on top."""
+    changes: dict[str, Any] = {name: given[name] for name in ("tabs", "tab_mm") if name in given}
+    if "style" in given:
+        changes["style"] = ConnectorStyle(given["style"])
+    if "order" in given:
+        changes["order"] = CutOrder(given["order"])
+    if "hinge_mm" in given:
+        changes["hinge_mm"] = tuple(sorted(_hinge_width(text) for text in given["hinge_mm"]))
+    if "remove" in given:
+        changes["removed"] = tuple(sorted(given["remove"]))
     return replace(saved, **changes)
+
+
+def _check_hinges(candidate: Candidate, options: CutOptions) -> None:
+    """Refuse numbers of connectors that the design does not have."""
+    count = cut_table(candidate.field.rows, candidate.field.columns).hinge_count
+    beyond = [hinge for hinge in (*(hinge for hinge, _ in options.hinge_mm), *options.removed) if hinge >= count]
+    if beyond:
+        raise UsageError(f"There is no hinge {beyond[0]}: this sheet has hinges 0 to {count - 1}.")
+
+
+def _hinge_width(text: str) -> tuple[int, float]:
+    """``"3=0.8"`` -> (3, 0.8)."""
+    number, _, width = text.partition("=")
+    try:
+        return int(number), float(width)
+    except ValueError:
+        raise UsageError(f"--hinge-mm takes a connector and its width in mm, such as 3=0.8, got {text!r}.") from None

@@ -11,6 +11,7 @@ from typing import Any
 
 from kirigami_studio import __version__
 from kirigami_studio.cli.inputs import parse_angle
+from kirigami_studio.fabricate.options import ConnectorStyle, CutOrder
 from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.polish.regularity import PREFERENCES
 
@@ -109,6 +110,14 @@ WIDTHS = (
     option("--connector-mm", type=positive, default=None, help="finished ligament width; default from the material"),
     option("--kerf-mm", type=number, default=None, help="width of the cut; default from the material"),
 )
+CUTS = (
+    option("--style", choices=[style.value for style in ConnectorStyle], default=None, help="how slits end"),
+    option("--order", choices=[order.value for order in CutOrder], default=None, help="order of cutting"),
+    option("--tabs", type=whole, default=None, help="uncut places of the outline that hold the sheet"),
+    option("--tab-mm", type=positive, default=None, help="finished width of a tab"),
+    option("--hinge-mm", nargs="+", metavar="N=W", default=None, help="widths of single connectors, by their numbers"),
+    option("--remove", nargs="+", type=whole, metavar="N", default=None, help="connectors to leave out, by number"),
+)
 
 COMMANDS: tuple[Command, ...] = (
     Command("design", "from a target silhouette to ranked candidates and a cut file", "design:design", (
@@ -163,12 +172,19 @@ COMMANDS: tuple[Command, ...] = (
     ), ("kirigami-studio siou result.png target.png",)),
     Command("export", "write a saved project as a cut or picture file", "fabrication:export", (
         option("project", help="a .kiri project"),
-        option("--out", required=True, help="file to write: .dxf .svg .pdf .png .gif"),
+        option("--out", required=True, help="file to write: .dxf .svg .pdf .lbrn2 .png .gif; a folder with --all"),
+        option("--all", action="store_true", help="write the whole set, verified, into the folder --out"),
         *WIDTHS,
-        option("--profile", default=None, help="machine profile of DXF files"),
-        option("--dxf-version", default="R2010", choices=("R2010", "R12"), help="DXF dialect (default R2010)"),
+        *CUTS,
+        option("--profile", default=None, help="any, lightburn, k40, single, layers or slots (default: the project's)"),
+        option("--dxf-version", default=None, choices=("R2010", "R12"), help="DXF dialect (default: the project's)"),
+        option("--paper", default="none", choices=("none", "a4", "letter"), help="spread a PDF over pages"),
+        option("--sidecar", action=argparse.BooleanOptionalAction, default=None,
+               help="write all settings beside the cut file as .json (default: with --all)"),
         JSON,
-    ), ("kirigami-studio export heart.kiri --out heart.dxf --width-mm 80 --connector-mm 0.6",)),
+    ), ("kirigami-studio export heart.kiri --out heart.dxf --width-mm 80 --connector-mm 0.6",
+        "kirigami-studio export heart.kiri --out heart/ --all --profile k40 --paper a4",
+        "kirigami-studio export heart.kiri --out heart.dxf --style round --tabs 4 --hinge-mm 3=0.8 7=1 --remove 12")),
     Command("check", "re-read a cut file and list what is wrong with it", "fabrication:check", (
         option("file", help="a .dxf file"),
         JSON,

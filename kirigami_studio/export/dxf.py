@@ -6,7 +6,7 @@ The file is read back with ezdxf and compared with the plan before it takes its 
 from __future__ import annotations
 
 import threading
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from io import StringIO
 from pathlib import Path
@@ -85,8 +85,31 @@ def dxf_bytes(plan: CutPlan, version: str, profile: Profile) -> bytes:
     return strokes_dxf(strokes, extent(strokes), version, facts_of(plan, profile))
 
 
-def strokes_dxf(strokes: Sequence[Stroke], size: tuple[float, float], version: str, facts: dict[str, str]) -> bytes:
-    """Return a DXF of any strokes, inside an extent (mm) that starts at the origin, with facts about its making."""
+def strokes_dxf(
+    strokes: Sequence[Stroke],
+    size: tuple[float, float],
+    version: str,
+    facts: dict[str, str],
+    mark: Callable[[Drawing], None] | None = None,
+) -> bytes:
+    """Return a DXF of any strokes.
+
+    Parameters
+    ----------
+    strokes : sequence of Stroke
+    size : (width, height), mm
+        What the header says; the lower left corner is the origin.
+    version : str
+    facts : dict
+        About the making of the file.
+    mark : function, optional
+        Draws more; never for a cut file.
+
+    Raises
+    ------
+    ExportError
+        Unknown version.
+    """
     if version not in VERSIONS:
         raise ExportError(f"The DXF version must be {' or '.join(VERSIONS)}, got {version!r}.")
     with _fixed_metadata():
@@ -96,6 +119,8 @@ def strokes_dxf(strokes: Sequence[Stroke], size: tuple[float, float], version: s
         for name, colour in layer_colours(strokes).items():
             document.layers.add(name, color=colour)
         _draw(document, strokes, version)
+        if mark is not None:
+            mark(document)
         _frame(document, size)
         _describe(document, facts, version)
         if version != "R12":
@@ -161,6 +186,20 @@ def check_written(path: Path, strokes: Sequence[Stroke], size: tuple[float, floa
         raise ExportError(f"The DXF did not read back: {error} Nothing was written; please report it.") from error
     if fault := _first_difference(content, strokes, size, version):
         raise ExportError(f"The DXF did not pass its own check: {fault}. Nothing was written; please report it.")
+
+
+def check_marked(path: Path, strokes: Sequence[Stroke], marks: Mapping[str, int]) -> None:
+    """Read a drawing with marks back: the strokes as they were meant, and as many marks of each kind.
+
+    Raises
+    ------
+    ExportError
+        With the first difference.
+    """
+    content = read_with_ezdxf(path)
+    wrong = [kind for kind, count in marks.items() if content.others.count(kind) != count]
+    if wrong or len(content.strokes) != len(strokes) or any(map(_stroke_difference, content.strokes, strokes)):
+        raise ExportError("The drawing did not read back as it was meant. Nothing was written; please report it.")
 
 
 def _first_difference(

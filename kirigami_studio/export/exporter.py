@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
+from types import MappingProxyType
 from typing import Protocol
 
 import numpy as np
@@ -39,6 +41,8 @@ class ExportJob:
         Key of the machine profile.
     paper : str
         Key of the paper that a PDF is spread over; "none" for one page as large as the sheet.
+    provenance : mapping of str to str
+        Where the design comes from: version of the program, name and hash of the model.
     trim : Trim or None
         What was cut off the edge panels; pictures show what stays.
     """
@@ -51,6 +55,7 @@ class ExportJob:
     dxf_version: str = "R2010"
     profile: str = DEFAULT_PROFILE
     paper: str = NO_PAPER
+    provenance: Mapping[str, str] = field(default_factory=lambda: MappingProxyType({}))
     trim: Trim | None = None
 
     @classmethod

@@ -1,0 +1,129 @@
+"""What a cut file was made from, as JSON beside it: enough to make the same bytes again."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Sequence
+from dataclasses import fields
+from enum import Enum
+from pathlib import Path
+from typing import Any
+
+from kirigami_studio import __version__
+from kirigami_studio.export.exporter import ExportJob
+from kirigami_studio.export.verified import write_verified
+from kirigami_studio.fabricate.cut_plan import CutPlan
+from kirigami_studio.foundation.errors import ExportError
+
+#: Raised when entries change their meaning.
+VERSION = 1
+
+
+def sidecar_path(cut_file: Path) -> Path:
+    """``sheet.dxf`` -> ``sheet.json``; the same beside a folder of files."""
+    return cut_file.with_suffix(".json")
+
+
+def write_sidecar(job: ExportJob, path: str | Path, cut_files: Sequence[Path] = ()) -> Path:
+    """Write the record of a job, and return its path.
+
+    Parameters
+    ----------
+    job : ExportJob
+        With its plan.
+    path : str or Path
+    cut_files : sequence of Path
+        Written files that the record names with their SHA-256.
+
+    Raises
+    ------
+    ExportError
+        No plan, or an unwritable place.
+    """
+    goal = Path(path)
+    record = sidecar_record(job, cut_files)
+    content = json.dumps(record, indent=1, sort_keys=True, allow_nan=False).encode() + b"\n"
+
+    def verify(written: Path) -> None:
+        if json.loads(written.read_bytes()) != record:
+            raise ExportError(f"The record {goal} did not read back. Nothing was written; please report it.")
+
+    write_verified(goal, content, verify)
+    return goal
+
+
+def sidecar_record(job: ExportJob, cut_files: Sequence[Path] = ()) -> dict[str, Any]:
+    """Return the record: names, numbers, lists and nothing that depends on time or place."""
+    plan = job.required_plan
+    field = job.deployment.field
+    kept = None
+    if job.trim is not None:
+        kept = [None if part is None else part.tolist() for part in job.trim.kept]
+    return {
+        "version": VERSION,
+        "application": f"kirigami-studio {__version__}",
+        "design": {
+            "hash": plan.design_hash,
+            "rows": field.rows,
+            "columns": field.columns,
+            "ratio": field.ratio.tolist(),
+            "phi": float(job.phi),
+            "kept": kept,
+        },
+        "fabrication": {
+            "width_mm": float(plan.size_mm[0]),
+            "connector_mm": plan.connector_mm,
+            "kerf_mm": plan.kerf_mm,
+            "overcut_mm": plan.overcut_mm,
+            "material": _plain(plan.material),
+            "options": _plain(plan.options),
+            "profile": job.profile,
+            "dxf_version": job.dxf_version,
+            "paper": job.paper,
+        },
+        "expected": _expected(plan),
+        "provenance": dict(sorted(job.provenance.items())),
+        "files": {name: digest for path in cut_files for name, digest in _digests(path)},
+    }
+
+
+def _expected(plan: CutPlan) -> dict[str, Any]:
+    return {
+        "size_mm": [float(side) for side in plan.size_mm],
+        "cut_length_mm": plan.cut_length_mm,
+        "travel_mm": plan.travel_mm,
+        "seconds": plan.seconds_estimate,
+        "paths": {layer.value: len(plan.on_layer(layer)) for layer in plan.layers},
+        "min_connector_mm": plan.min_connector_mm,
+        "notes": list(plan.notes),
+    }
+
+
+def _plain(value: Any) -> Any:
+    """Turn a flat dataclass into what JSON knows."""
+    entries = {entry.name: getattr(value, entry.name) for entry in fields(value)}
+    return {name: _entry(entry) for name, entry in entries.items()}
+
+
+def _entry(value: Any) -> Any:
+    if isinstance(value, Enum):
+        return value.value
+    return [_entry(item) for item in value] if isinstance(value, tuple) else value
+
+
+def _digests(path: Path) -> list[tuple[str, str]]:
+    """Name and SHA-256 of a file, or of the files of a folder with the folder's name in front.
+
+    Raises
+    ------
+    ExportError
+        The file cannot be read.
+    """
+    try:
+        parts = sorted(path.iterdir()) if path.is_dir() else [path]
+        return [
+            (part.relative_to(path.parent).as_posix(), hashlib.sha256(part.read_bytes()).hexdigest()) for part in parts
+        ]
+    except OSError as error:
+        raise ExportError(f"Cannot read {path}: {error.strerror or error}. Export it again.") from error

@@ -1,0 +1,162 @@
+"""The whole set in one folder, its record and the reference drawing."""
+
+from __future__ import annotations
+
+import errno
+import hashlib
+import json
+import os
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import ezdxf
+import numpy as np
+import pytest
+
+from kirigami_studio.export import verified
+from kirigami_studio.export.dxf import write_dxf
+from kirigami_studio.export.dxf_check import check_file
+from kirigami_studio.export.dxf_reference import write_reference
+from kirigami_studio.export.export_set import export_all
+from kirigami_studio.export.exporter import ExportJob
+from kirigami_studio.export.profile import PROFILES
+from kirigami_studio.export.registry import export
+from kirigami_studio.export.sidecar import write_sidecar
+from kirigami_studio.fabricate.cut_plan import plan_cuts
+from kirigami_studio.fabricate.material import Material
+from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions, CutOrder
+from kirigami_studio.foundation.errors import ExportError
+from kirigami_studio.lattice.deployment import Deployment, deploy
+from kirigami_studio.lattice.ratio_field import RatioField
+
+MakeDesign = Callable[..., Deployment]
+
+
+@pytest.fixture
+def job(make_design: MakeDesign) -> ExportJob:
+    """A small design with its plan, and word of its model."""
+    design = make_design(4, 5, seed=1)
+    return ExportJob(design, plan=plan_cuts(design, 90.0), provenance={"model": "balanced", "model_sha256": "ab12"})
+
+
+@pytest.mark.parametrize("profile", PROFILES)
+def test_that_the_set_is_complete_and_every_cut_file_verified(profile: str, job: ExportJob, tmp_path: Path) -> None:
+    told: list[Path] = []
+    found = export_all(replace(job, profile=profile, paper="a4"), tmp_path / "set", tell=told.append)
+    assert found.ok
+    assert len(found.verifications) == 3
+    assert all(report.pieces == 1 for report in found.verifications)
+    assert told == list(found.files)
+    names = {"cut.svg", "cut.lbrn2", "cut.pdf", "cut.json", "layout.svg", "preview.png", "reference.dxf"}
+    names |= {"cut", "cut_r12"} if profile == "layers" else {"cut.dxf", "cut_r12.dxf"}
+    assert {path.name for path in (tmp_path / "set").iterdir()} == names == {path.name for path in found.files}
+
+
+def test_that_the_same_job_gives_the_same_set(job: ExportJob, tmp_path: Path) -> None:
+    for name in ("one", "two"):
+        export_all(job, tmp_path / name)
+    for path in (tmp_path / "one").iterdir():
+        assert path.read_bytes() == (tmp_path / "two" / path.name).read_bytes(), path.name
+
+
+def test_that_the_record_alone_gives_the_same_cut_file_again(make_design: MakeDesign, tmp_path: Path) -> None:
+    design = make_design(4, 5, seed=3)
+    options = CutOptions(hinge_mm=((2, 0.6), (7, 0.9)))
+    plan = plan_cuts(design, 120.0, connector_mm=0.4, kerf_mm=0.05, options=options)
+    path = export(ExportJob(design, plan=plan), tmp_path / "sheet.dxf")
+    record = json.loads(write_sidecar(ExportJob(design, plan=plan), tmp_path / "sheet.json", [path]).read_text())
+    made = record["fabrication"]
+    again = plan_cuts(
+        deploy(RatioField(np.array(record["design"]["ratio"]))),
+        made["width_mm"],
+        made["connector_mm"],
+        made["kerf_mm"],
+        Material(**made["material"]),
+        CutOptions(
+            style=ConnectorStyle(made["options"]["style"]),
+            order=CutOrder(made["options"]["order"]),
+            tabs=made["options"]["tabs"],
+            tab_mm=made["options"]["tab_mm"],
+            hinge_mm=tuple((hinge, width) for hinge, width in made["options"]["hinge_mm"]),
+            removed=tuple(made["options"]["removed"]),
+        ),
+        made["overcut_mm"],
+    )
+    write_dxf(again, tmp_path / "again.dxf", made["dxf_version"], made["profile"])
+    assert again.design_hash == record["design"]["hash"]
+    assert (tmp_path / "again.dxf").read_bytes() == path.read_bytes()
+    assert record["files"] == {"sheet.dxf": hashlib.sha256(path.read_bytes()).hexdigest()}
+
+
+def test_that_the_record_names_application_model_and_expectations(job: ExportJob, tmp_path: Path) -> None:
+    one = write_sidecar(job, tmp_path / "one.json").read_bytes()
+    assert one == write_sidecar(job, tmp_path / "two.json").read_bytes()
+    record = json.loads(one)
+    assert record["provenance"] == {"model": "balanced", "model_sha256": "ab12"}
+    assert record["application"].startswith("kirigami-studio ")
+    assert record["expected"]["cut_length_mm"] == pytest.approx(job.required_plan.cut_length_mm)
+    assert record["expected"]["paths"] == {"SLITS": 20, "EDGE_SLITS": 9, "OUTLINE": 1}
+    assert str(tmp_path) not in one.decode()
+
+
+def test_that_the_reference_shows_every_connector_and_is_not_taken_for_a_cut_file(
+    job: ExportJob, tmp_path: Path
+) -> None:
+    plan = job.required_plan
+    path = write_reference(plan, tmp_path / "reference.dxf")
+    modelspace = ezdxf.readfile(path).modelspace()
+    circles = [entity for entity in modelspace if entity.dxftype() == "CIRCLE"]
+    assert {circle.dxf.layer for circle in circles} == {"CONNECTORS"}
+    centres = np.array([(circle.dxf.center.x, circle.dxf.center.y) for circle in circles])
+    np.testing.assert_array_equal(centres, plan.hinges.position)
+    texts = [entity.dxf.text for entity in modelspace if entity.dxftype() == "TEXT"]
+    assert "PURPOSE: reference, not for cutting" in texts
+    assert {str(number) for number in range(len(plan.hinges))} <= set(texts)
+    assert not check_file(path).ok
+
+
+@pytest.mark.parametrize("profile", PROFILES)
+def test_that_no_cut_file_holds_a_marker(profile: str, job: ExportJob, tmp_path: Path) -> None:
+    path = export(replace(job, profile=profile), tmp_path / "sheet.dxf")
+    for part in sorted(path.iterdir()) if path.is_dir() else [path]:
+        assert {entity.dxftype() for entity in ezdxf.readfile(part).modelspace()} == {"LWPOLYLINE"}
+
+
+@pytest.mark.parametrize("name", ["cut.dxf", "cut.svg", "cut.pdf", "cut.lbrn2", "cut.json", "reference.dxf"])
+def test_that_a_full_disk_leaves_the_old_file(
+    name: str, job: ExportJob, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    export_all(job, tmp_path)
+    before = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
+    fsync, stem = os.fsync, f".{Path(name).stem}."
+
+    def full(handle: int) -> None:
+        here = Path(f"/proc/self/fd/{handle}").readlink() if Path("/proc/self/fd").exists() else Path()
+        if here.name.startswith(stem) and here.suffix == Path(name).suffix:
+            raise OSError(errno.ENOSPC, "No space left on device")
+        fsync(handle)
+
+    monkeypatch.setattr(verified.os, "fsync", full)
+    with pytest.raises(ExportError, match="No space left on device"):
+        export_all(replace(job, plan=replace(job.required_plan, notes=("another",))), tmp_path)
+    assert {path.name for path in tmp_path.iterdir()} == set(before)
+    assert (tmp_path / name).read_bytes() == before[name]
+
+
+def test_that_a_place_that_cannot_be_written_is_refused(job: ExportJob, tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("in the way")
+    with pytest.raises(ExportError, match="Cannot write"):
+        export_all(job, tmp_path / "file" / "set")
+    with pytest.raises(ExportError, match="needs a cut plan"):
+        export_all(ExportJob(job.deployment), tmp_path / "set")
+    assert [path.name for path in tmp_path.iterdir()] == ["file"]
+
+
+def test_that_telling_may_stop_the_set(job: ExportJob, tmp_path: Path) -> None:
+    def stop(path: Path) -> None:
+        raise ExportError(f"stopped at {path.name}")
+
+    with pytest.raises(ExportError, match=r"stopped at cut\.dxf"):
+        export_all(job, tmp_path, tell=stop)
+    assert [path.name for path in tmp_path.iterdir()] == ["cut.dxf"]
