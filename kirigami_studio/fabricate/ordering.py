@@ -156,7 +156,9 @@ def _by_rows(group: _Group) -> Tour:
         turn = np.argsort(np.angle(entries - group.centre), kind="stable")
         return group.by_ways(np.roll(turn, -int(np.argmin(np.abs(entries[turn] - group.start)))))
     row, along = _rows(group)
-    return group.by_ways(np.lexsort((np.where(row % 2 == 0, along, -along), row)))
+    sense = np.where(row % 2 == 0, 1.0, -1.0)
+    # Paths of one slit (its holes, its bars) go from left to right as well.
+    return group.by_ways(np.lexsort((sense * group.middles.real, sense * along, row)))
 
 
 def _rows(group: _Group) -> tuple[IntArray, FloatArray]:
@@ -182,7 +184,7 @@ def _inside_out(group: _Group) -> Tour:
     for number in np.unique(ring):
         members = np.flatnonzero(ring == number)
         ways = [group.ways[member] for member in members]
-        tour = shortest_tour(ways, here)
+        tour = shortest_tour(ways, here, kicked=False)
         order += [int(members[index]) for index in tour.order]
         here = _last_place(ways, tour)
     return group.by_ways(order)

@@ -62,7 +62,7 @@ class Tour:
     length: float
 
 
-def shortest_tour(paths: Sequence[Ways], start: complex) -> Tour:
+def shortest_tour(paths: Sequence[Ways], start: complex, kicked: bool = True) -> Tour:
     """Order paths by nearest neighbours, then exchange (2-opt with flips), move (or-opt) and kick.
 
     Parameters
@@ -70,9 +70,11 @@ def shortest_tour(paths: Sequence[Ways], start: complex) -> Tour:
     paths : sequence of Ways, not empty
     start : complex, mm
         Where the head waits.
+    kicked : bool
+        Whether to go on where neither an exchange nor a move saves anything; takes most of the time.
     """
     turnable = all(path.turnable for path in paths)
-    kicks = min(max(len(paths), FEWEST_KICKS), MOST_KICK_WORK // len(paths))
+    kicks = min(max(len(paths), FEWEST_KICKS), MOST_KICK_WORK // len(paths)) if kicked else 0
     tour = nearest_neighbours(paths, start)
     while True:
         entries, exits = _ends(paths, tour)

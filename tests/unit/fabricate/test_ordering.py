@@ -175,14 +175,15 @@ def test_that_spread_keeps_away_from_what_is_still_hot(make_design: MakeDesign) 
     assert rows.travel_mm < spread.travel_mm < 0.5 * travel([spread.paths[index] for index in shuffled])
 
 
-def test_that_double_cuts_and_pieces_of_one_cut_stay_in_their_row() -> None:
+def test_that_several_paths_of_one_slit_are_cut_along_the_row_to_and_fro() -> None:
     table = cut_table(3, 3)
     paths = [
-        CutPath(np.array([[x, y], [x + 5.0, y]]), Layer.SLITS, False, 3 * (2 - row) + column)
+        CutPath(np.array([[x + shift, y], [x + shift + 2.0, y]]), Layer.SLITS, False, 3 * (2 - row) + column)
         for row, y in enumerate((5.0, 15.0, 25.0))
         for column, x in enumerate((2.0, 12.0, 22.0))
-        for _ in range(2)
+        for shift in (4.0, 0.0)
     ]
     ordered = in_cutting_order(paths, CutOrder.ROWS, table)
-    heights = [path.points[0, 1] for path in ordered]
-    assert heights == sorted(heights)
+    forth = [2.0, 6.0, 12.0, 16.0, 22.0, 26.0]
+    expected = [(x, y) for y, row in ((5.0, forth), (15.0, forth[::-1]), (25.0, forth)) for x in row]
+    assert [(path.points[:, 0].min(), path.points[0, 1]) for path in ordered] == expected
