@@ -355,7 +355,8 @@ COMMANDS: tuple[Command, ...] = (
         "kirigami-studio benchmark polish --targets library --effort 1",
         "kirigami-studio benchmark designs --targets library --k 8 --polish 15 --effort 1 --trim --picture all.png",
         "kirigami-studio benchmark generator --k 4 --polish 15 --seeds 0 --exact",
-        "kirigami-studio benchmark lattice")),
+        "kirigami-studio benchmark lattice",
+        "kirigami-studio benchmark fabrication")),
 )  # fmt: skip
 
 #: First words of the commands with two, and what they have in common.
