@@ -6,6 +6,7 @@ notches of the outline.  The contours are where the finished material ends, so t
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -13,12 +14,14 @@ import shapely
 from shapely.geometry import LineString, Polygon
 
 from kirigami_studio.fabricate.cut_plan import DECIMALS, CutPath, CutPlan, Layer
-from kirigami_studio.fabricate.finished_sheet import DUST_MM2, TIP_SEGMENTS
+from kirigami_studio.fabricate.finished_sheet import DUST_MM2
 from kirigami_studio.foundation.errors import ExportError
 from kirigami_studio.lattice.ratio_field import FloatArray
 
 #: Corners of the outline are kept sharp up to this many times half the kerf.
 MITRE_LIMIT = 5.0
+#: Chord tolerance (mm) of round slot ends; half of what finished widths are checked to.
+TIP_CHORD_MM = 5e-4
 
 
 def slot_contours(plan: CutPlan) -> list[tuple[Layer, FloatArray]]:
@@ -64,7 +67,7 @@ def _finished_sheet(plan: CutPlan) -> Polygon:
     ring = joined_ring([path.flattened for path in plan.on_layer(Layer.OUTLINE)])
     outline = Polygon(ring).buffer(-half, join_style="mitre", mitre_limit=MITRE_LIMIT)
     lines = np.array([LineString(path.travelled) for path in plan.paths if path.layer is not Layer.OUTLINE])
-    burned = shapely.union_all(shapely.buffer(lines, half, quad_segs=TIP_SEGMENTS))
+    burned = shapely.union_all(shapely.buffer(lines, half, quad_segs=_quarter_chords(half)))
     inside = [LineString(path.travelled) for path in plan.paths if path.closed and path.layer is not Layer.OUTLINE]
     burned = shapely.union_all([burned, *(Polygon(line) for line in inside)])
     left = shapely.get_parts(outline.difference(burned))
@@ -74,6 +77,12 @@ def _finished_sheet(plan: CutPlan) -> Polygon:
             f"The sheet would fall into {len(pieces)} pieces as slots of {plan.kerf_mm:g} mm; widen the connectors."
         )
     return pieces[0]
+
+
+def _quarter_chords(radius: float) -> int:
+    """Chords of a quarter circle that stay within ``TIP_CHORD_MM`` of it, two at least."""
+    turn = 2.0 * math.acos(max(0.0, 1.0 - TIP_CHORD_MM / radius))
+    return max(2, math.ceil(0.5 * math.pi / turn))
 
 
 def _in_cutting_order(sheet: Polygon, plan: CutPlan) -> list[shapely.LinearRing]:

@@ -39,7 +39,7 @@ def read_with_svgelements(path: Path) -> DrawnFile:
     """
     try:
         # svgelements carries no types.
-        svg: Any = cast(Any, SVG).parse(path)
+        svg: Any = cast(Any, SVG).parse(path, reify=False)
         box = svg.viewbox
         scale = float(svg.width) / float(box.width) * MM_PER_PX
         height = float(svg.height) * MM_PER_PX
@@ -110,9 +110,12 @@ def _grouped(svg: Any) -> list[tuple[Any, Any]]:
 
 
 def _segments(element: Any) -> tuple[list[Row], bool]:
-    """Points in mm and bulges of one path as svgelements sees it."""
+    """Points in the drawing's own unit and bulges of one path as svgelements sees it.
+
+    The scale to the printed size is judged by itself, because svgelements rounds the transform to seven digits.
+    """
     rows: list[Row] = []
-    for segment in element.segments(transformed=True):
+    for segment in element.segments(transformed=False):
         kind = type(segment)
         if kind is Close:
             return rows, True
@@ -120,7 +123,7 @@ def _segments(element: Any) -> tuple[list[Row], bool]:
             raise ValueError(f"a path holds a {kind.__name__}")
         if kind is Arc:
             rows[-1] = (*rows[-1][:2], math.tan(float(segment.sweep) / 4.0))
-        rows.append((float(segment.end.x) * MM_PER_PX, float(segment.end.y) * MM_PER_PX, 0.0))
+        rows.append((float(segment.end.x), float(segment.end.y), 0.0))
     return rows, False
 
 

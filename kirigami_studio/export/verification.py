@@ -95,7 +95,7 @@ class Format:
 #: SVG has four decimals, and arcs by their radius.
 FORMATS = {
     ".dxf": Format((read_with_ezdxf, read_group_codes), 1e-9, 1e-9),
-    ".svg": Format((read_with_svgelements, read_with_xml), 2e-4, 5e-3),
+    ".svg": Format((read_with_svgelements, read_with_xml), 1e-4, 5e-3),
 }
 
 

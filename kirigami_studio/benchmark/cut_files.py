@@ -1,0 +1,142 @@
+"""Random designs through every machine profile and both DXF versions: files written, read twice, judged.
+
+python -m kirigami_studio.benchmark.cut_files --count 200 --json
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+import tempfile
+import time
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from kirigami_studio.export.exporter import ExportJob
+from kirigami_studio.export.profile import PROFILES
+from kirigami_studio.export.registry import export
+from kirigami_studio.export.verification import verify_export
+from kirigami_studio.fabricate.cut_plan import plan_cuts
+from kirigami_studio.fabricate.material import presets
+from kirigami_studio.foundation.errors import KirigamiError
+from kirigami_studio.lattice.deployment import deploy
+from kirigami_studio.lattice.ratio_field import RatioField
+
+#: DXF in both versions, and SVG.
+FORMS = (("R2010", ".dxf"), ("R12", ".dxf"), ("R2010", ".svg"))
+SMALLEST_GRID, LARGEST_GRID = 2, 8
+#: Largest random logarithm of a ratio, and the widths of the sheets (mm).
+SPREAD = 0.4
+WIDTHS_MM = (150.0, 400.0)
+
+
+@dataclass(frozen=True, slots=True)
+class CutFileFigures:
+    """What came of it.
+
+    Attributes
+    ----------
+    designs, files, passed : int
+        Designs planned, files written, files that both readers found as planned.
+    refused : int
+        Designs without room for their connectors; they give no files.
+    failures : tuple of str
+        The first bad finding of every file that did not pass.
+    write_seconds, verify_seconds : float
+        Median for one file.
+    slots_length_ratio : (least, median, largest)
+        Length of the contours of the slots profile to that of the centre lines.
+    """
+
+    designs: int
+    files: int
+    passed: int
+    refused: int
+    failures: tuple[str, ...]
+    write_seconds: float
+    verify_seconds: float
+    slots_length_ratio: tuple[float, float, float]
+
+    def sentences(self) -> list[str]:
+        """The figures for a person."""
+        low, middle, high = self.slots_length_ratio
+        return [
+            f"{self.passed} of {self.files} files of {self.designs} designs passed with two readers; {self.refused} "
+            f"designs had no room for their connectors.",
+            f"One file takes {self.write_seconds:.3f} s to write and {self.verify_seconds:.3f} s to verify (median).",
+            f"As slots the cut is {low:.2f} to {high:.2f} times as long (median {middle:.2f}).",
+            *self.failures,
+        ]
+
+
+def cut_file_figures(count: int = 200, seed: int = 0) -> CutFileFigures:
+    """Write and verify ``count`` random designs in every profile."""
+    passed, failures = 0, []
+    writing: list[float] = []
+    verifying: list[float] = []
+    ratios: list[float] = []
+    jobs = list(_jobs(count, seed))
+    with tempfile.TemporaryDirectory() as folder:
+        for number, job in enumerate(jobs):
+            for profile in PROFILES:
+                for version, extension in FORMS:
+                    start = time.perf_counter()
+                    made = replace(job, profile=profile, dxf_version=version)
+                    path = export(made, Path(folder) / f"{profile}{extension}")
+                    written = time.perf_counter()
+                    report = verify_export(job.required_plan, path, profile, version)
+                    writing.append(written - start)
+                    verifying.append(time.perf_counter() - written)
+                    if profile == "slots":
+                        ratios.append(report.cut_length_mm / job.required_plan.cut_length_mm)
+                    if report.ok:
+                        passed += 1
+                    else:
+                        bad = next(finding.text for finding in report.findings if not finding.ok)
+                        failures.append(f"Design {number}, {profile}, {version} {extension}: {bad}")
+    return CutFileFigures(
+        designs=len(jobs),
+        files=len(writing),
+        passed=passed,
+        refused=count - len(jobs),
+        failures=tuple(failures),
+        write_seconds=float(np.median(writing)),
+        verify_seconds=float(np.median(verifying)),
+        slots_length_ratio=(min(ratios), float(np.median(ratios)), max(ratios)),
+    )
+
+
+def _jobs(count: int, seed: int) -> Iterator[ExportJob]:
+    """Designs of random grids, ratios, widths and materials; those without room for connectors are left out."""
+    materials = [material for material in presets().values() if material.kerf_mm > 0.0]
+    for number in range(count):
+        random = np.random.default_rng([seed, number])
+        rows, columns = (int(side) for side in random.integers(SMALLEST_GRID, LARGEST_GRID + 1, 2))
+        spread = float(random.uniform(0.0, SPREAD))
+        design = deploy(RatioField.from_log10(random.uniform(-spread, spread, (rows, columns))))
+        width = float(random.uniform(*WIDTHS_MM))
+        try:
+            plan = plan_cuts(design, width, material=materials[number % len(materials)])
+        except KirigamiError:
+            continue
+        yield ExportJob(design, plan=plan)
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Print the figures, as sentences or as one JSON object; 1 when a file did not pass."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
+    parser.add_argument("--count", type=int, default=200, help="designs (default 200)")
+    parser.add_argument("--seed", type=int, default=0, help="of the designs (default 0)")
+    parser.add_argument("--json", action="store_true", help="print one JSON object")
+    wanted = parser.parse_args(arguments)
+    figures = cut_file_figures(wanted.count, wanted.seed)
+    sys.stdout.write((json.dumps(asdict(figures)) if wanted.json else "\n".join(figures.sentences())) + "\n")
+    return 0 if figures.passed == figures.files else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
