@@ -1,0 +1,139 @@
+"""``export`` on the command line: the whole set, profiles, records and choices about the cuts."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import ezdxf
+import numpy as np
+import pytest
+
+from kirigami_studio.cli import main
+from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.evaluate.score import evaluate
+from kirigami_studio.export.profile import PROFILES
+from kirigami_studio.fabricate.options import CutOptions
+from kirigami_studio.lattice.deployment import deploy
+from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.project.document import Document
+from kirigami_studio.project.settings import DesignSettings, FabricationSettings
+from kirigami_studio.project.store import save
+from kirigami_studio.target.outline import Outline
+
+
+@pytest.fixture
+def project(tmp_path: Path) -> Path:
+    """A saved project of a 4 x 5 design whose target is its own outline, for the k40 profile."""
+    field = RatioField.from_log10(np.random.default_rng(1).uniform(-0.3, 0.3, (4, 5)))
+    target = Outline.from_points(deploy(field).outline(0.0), "own")
+    document = Document(
+        target=target,
+        settings=DesignSettings((4, 5)),
+        candidates=(Candidate(field, evaluate(deploy(field), target), seed=0, index=0),),
+        chosen=0,
+        fabrication=FabricationSettings(width_mm=120.0, options=CutOptions(hinge_mm=((1, 0.4),)), profile="k40"),
+        provenance={"model": "balanced"},
+    )
+    path = tmp_path / "own.kiri"
+    save(document, path)
+    return path
+
+
+def run(capsys: pytest.CaptureFixture[str], *argv: object) -> tuple[int, str, str]:
+    code = main([str(word) for word in argv])
+    captured = capsys.readouterr()
+    return code, captured.out, captured.err
+
+
+def test_that_all_writes_and_verifies_the_whole_set(
+    capsys: pytest.CaptureFixture[str], project: Path, tmp_path: Path
+) -> None:
+    code, out, _ = run(capsys, "export", project, "--out", tmp_path / "set", "--all", "--paper", "a4", "--json")
+    report = json.loads(out)
+    assert code == 0
+    assert {Path(path).name for path in report["files"]} == {path.name for path in (tmp_path / "set").iterdir()}
+    assert [found["ok"] for found in report["verified"]] == [True] * 3
+    record = json.loads((tmp_path / "set" / "cut.json").read_text())
+    assert record["provenance"] == {"model": "balanced"}
+    assert record["fabrication"]["profile"] == "k40"
+    assert record["fabrication"]["options"]["hinge_mm"] == [[1, 0.4]]
+    code, out, _ = run(capsys, "export", project, "--out", tmp_path / "bare", "--all", "--no-sidecar")
+    assert code == 0
+    assert out.count("verified by two readers") == 3
+    assert not (tmp_path / "bare" / "cut.json").exists()
+
+
+@pytest.mark.parametrize("profile", PROFILES)
+def test_that_a_profile_reaches_the_file_and_its_verification(
+    profile: str, capsys: pytest.CaptureFixture[str], project: Path, tmp_path: Path
+) -> None:
+    code, out, _ = run(capsys, "export", project, "--out", tmp_path / "x.dxf", "--profile", profile, "--json")
+    report = json.loads(out)
+    assert code == 0
+    assert report["verified"][0]["ok"]
+    note = PROFILES[profile].note
+    assert not note or note in report["warnings"]
+
+
+def test_that_one_file_gets_a_record_when_asked_for(
+    capsys: pytest.CaptureFixture[str], project: Path, tmp_path: Path
+) -> None:
+    code, out, _ = run(capsys, "export", project, "--out", tmp_path / "x.dxf", "--sidecar", "--json")
+    assert code == 0
+    assert [Path(path).name for path in json.loads(out)["files"]] == ["x.dxf", "x.json"]
+    assert run(capsys, "export", project, "--out", tmp_path / "y.dxf")[0] == 0
+    assert not (tmp_path / "y.json").exists()
+
+
+def test_that_single_widths_change_the_plan(capsys: pytest.CaptureFixture[str], project: Path, tmp_path: Path) -> None:
+    def finished(*more: object) -> float:
+        code, out, err = run(capsys, "export", project, "--out", tmp_path / "x.dxf", "--sidecar", "--json", *more)
+        assert code == 0, err
+        return float(json.loads(out)["cut_length_mm"])
+
+    plain = finished()
+    assert finished("--hinge-mm", "5=1.5", "3=1.2") < plain
+    record = json.loads((tmp_path / "x.json").read_text())
+    assert record["fabrication"]["options"]["hinge_mm"] == [[3, 1.2], [5, 1.5]]
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (["--profile", "axe"], "no machine profile 'axe'"),
+        (["--hinge-mm", "5"], "such as 3=0.8, got '5'"),
+        (["--hinge-mm", "5=wide"], "got '5=wide'"),
+        (["--hinge-mm", "5=-1"], "hinge 5"),
+        (["--hinge-mm", "5=nan"], "hinge 5"),
+        (["--hinge-mm", "999=1"], "no hinge 999: this sheet has hinges 0 to"),
+        (["--hinge-mm", "5=1", "5=2"], "once"),
+        (["--remove", "999"], "no hinge 999"),
+        (["--remove", "1"], "both a width and no connector"),
+        (["--tabs", "9999"], "0 to 200 tabs"),
+    ],
+)
+def test_that_bad_choices_are_wrong_usage_in_one_sentence(
+    options: list[str], words: str, capsys: pytest.CaptureFixture[str], project: Path, tmp_path: Path
+) -> None:
+    code, out, err = run(capsys, "export", project, "--out", tmp_path / "x.dxf", *options)
+    assert (code, out, len(err.splitlines())) == (2, "", 1)
+    assert words in err
+    assert not (tmp_path / "x.dxf").exists()
+
+
+@pytest.mark.parametrize(
+    "options", [["--style", "curly"], ["--order", "random"], ["--tab-mm", "0"], ["--paper", "a9"], ["--remove", "-1"]]
+)
+def test_that_unknown_names_and_impossible_numbers_exit_with_two(options: list[str], project: Path) -> None:
+    with pytest.raises(SystemExit) as stopped:
+        main(["export", str(project), "--out", "x.dxf", *options])
+    assert stopped.value.code == 2
+
+
+def test_that_the_project_chooses_the_version_unless_told(
+    capsys: pytest.CaptureFixture[str], project: Path, tmp_path: Path
+) -> None:
+    for more, release in (([], "R2010"), (["--dxf-version", "R12"], "R12")):
+        assert run(capsys, "export", project, "--out", tmp_path / "x.dxf", *more)[0] == 0
+        assert ezdxf.readfile(tmp_path / "x.dxf").acad_release == release
