@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -13,10 +13,12 @@ from shapely.geometry import LineString, Polygon
 from shapely.geometry.base import BaseGeometry
 
 from kirigami_studio.export.dxf_content import DrawnPath, DxfContent, read_content
+from kirigami_studio.export.outline_tabs import tabbed_outline
 from kirigami_studio.export.placement import placement_problems
 from kirigami_studio.fabricate.checks import OVERLAP_TOLERANCE_MM, Problem, Severity
 from kirigami_studio.fabricate.cut_plan import LARGEST_SHEET_MM, SMALLEST_SHEET_MM, Layer
-from kirigami_studio.fabricate.finished_sheet import overlap_length, remaining_pieces, smallest_ligament
+from kirigami_studio.fabricate.finished_sheet import Overlap, overlap, remaining_pieces, smallest_ligament
+from kirigami_studio.fabricate.joints import ending_on_others
 from kirigami_studio.foundation.errors import ExportError
 
 #: Machine programs choose the operation by these words in a layer's name (MeerK40t, K40 Whisperer).
@@ -95,14 +97,17 @@ def check_file(path: str | Path, kerf_mm: float | None = None) -> FileReport:
     lines = [LineString(drawn.points) for drawn in content.paths]
     size = np.ptp(np.concatenate([drawn.points for drawn in content.paths]), axis=0)
     bounds = (float(size[0]), float(size[1]))
-    overlap = max(overlap_length(lines), 0.0)
-    problems += [*_size_problems(bounds), *_double_problems(content.paths, overlap)]
-    outline = _find_outline(content.paths, problems)
+    twice = overlap(lines)
+    problems += [*_size_problems(bounds), *_double_problems(content.paths, twice)]
+    if content.facts.get("TABS", "0") == "0":
+        outline = _find_outline(content.paths, problems)
+    else:
+        outline = tabbed_outline(content, problems)
     problems += placement_problems(content.paths, outline)
-    pieces, ligament = _physics(content.paths, outline, kerf, problems)
+    pieces, ligament = _physics(content, outline, kerf, problems)
     length = float(sum(line.length for line in lines))
-    return FileReport(Path(path), tuple(problems), content.unit, content.layers, len(lines), length, overlap, bounds,
-                      kerf, pieces, ligament)  # fmt: skip
+    return FileReport(Path(path), tuple(problems), content.unit, content.layers, len(lines), length,
+                      twice.length_mm, bounds, kerf, pieces, ligament)  # fmt: skip
 
 
 def _kerf(content: DxfContent, kerf_mm: float | None) -> float:
@@ -139,7 +144,7 @@ def _size_problems(bounds: tuple[float, float]) -> list[Problem]:
     ]
 
 
-def _double_problems(paths: Sequence[DrawnPath], overlap: float) -> list[Problem]:
+def _double_problems(paths: Sequence[DrawnPath], twice: Overlap) -> list[Problem]:
     seen: Counter[tuple[tuple[float, float], ...]] = Counter()
     for drawn in paths:
         points = np.round(drawn.points / SAME_POINT_MM).astype(np.int64)
@@ -158,8 +163,9 @@ def _double_problems(paths: Sequence[DrawnPath], overlap: float) -> list[Problem
                 where,
             )
         )
-    if overlap > OVERLAP_TOLERANCE_MM:
-        problems.append(Problem(f"{overlap:.3f} mm of the cuts overlap other cuts; join or trim them."))
+    if twice.length_mm > OVERLAP_TOLERANCE_MM:
+        text = f"{twice.length_mm:.3f} mm of the cuts overlap other cuts; join or trim them."
+        problems.append(Problem(text, Severity.ERROR, twice.where))
     return problems
 
 
@@ -209,29 +215,53 @@ def _open_outline(chains: Sequence[LineString]) -> Problem:
 
 
 def _physics(
-    paths: Sequence[DrawnPath], outline: Polygon | None, kerf: float, problems: list[Problem]
+    content: DxfContent, outline: Polygon | None, kerf: float, problems: list[Problem]
 ) -> tuple[int | None, float | None]:
     """Cut the sheet: number of pieces and narrowest ligament."""
     if outline is None:
         return None, None
     ring = outline.exterior
     near_ring = ring.buffer(SAME_POINT_MM)
-    inner = [drawn for drawn in paths if not LineString(drawn.points).within(near_ring)]
+    inner = [drawn for drawn in content.paths if not LineString(drawn.points).within(near_ring)]
     holes = [Polygon(drawn.points) for drawn in inner if drawn.closed and len(drawn.points) > 3]
     sheet: BaseGeometry = outline.difference(shapely.union_all([hole for hole in holes if hole.is_valid]))
-    cuts = _chains(inner) if inner else []
-    pieces = len(remaining_pieces(sheet, cuts, kerf))
+    cuts, joined = _inner_cuts(inner, content.facts, problems)
+    left = remaining_pieces(sheet, cuts, kerf)
+    pieces = len(left)
     if pieces != 1:
-        problems.append(
-            Problem(f"The sheet falls into {pieces} pieces with a kerf of {kerf:g} mm; leave wider connectors.")
-        )
-    ligament = smallest_ligament(cuts, ring, kerf)
+        loose = left[1].representative_point() if left else outline.centroid
+        text = f"The sheet falls into {pieces} pieces with a kerf of {kerf:g} mm; leave wider connectors."
+        problems.append(Problem(text, Severity.ERROR, (float(loose.x), float(loose.y))))
+    ligament = smallest_ligament(cuts, ring, kerf, joined)
     if ligament is None:
         return pieces, None
     if ligament.width_mm <= 0 and pieces == 1:
         # In a foreign drawing cuts may cross on purpose; in ours a connector is lost.
-        ours = any(drawn.layer in (Layer.SLITS.value, Layer.EDGE_SLITS.value) for drawn in paths)
+        ours = any(drawn.layer in (Layer.SLITS.value, Layer.EDGE_SLITS.value) for drawn in content.paths)
         x, y = ligament.where
         text = f"Cuts run into each other at x = {x:.2f}, y = {y:.2f}; no connector is left there."
         problems.append(Problem(text, Severity.ERROR if ours else Severity.WARNING, ligament.where))
     return pieces, ligament.width_mm
+
+
+def _inner_cuts(
+    inner: Sequence[DrawnPath], facts: Mapping[str, str], problems: list[Problem]
+) -> tuple[list[LineString], set[tuple[int, int]]]:
+    """All cuts but the outline, and which of them meet on purpose.
+
+    Lines of a foreign file are joined to chains.  A file of ours says how many cuts end on another one (slits on their
+    relief holes, arcs and bars, and on each other where a connector was removed).
+    """
+    if "JOINS" not in facts:
+        return (_chains(inner) if inner else []), set()
+    lines = [LineString(drawn.points) for drawn in inner]
+    ends = ending_on_others(lines)
+    if f"{len(ends)}" == facts["JOINS"]:
+        return lines, set(ends)
+    x, y = shapely.get_coordinates(lines[ends[0][0]])[0] if ends else inner[0].points[0]
+    text = (
+        f"{len(ends)} cuts end on another cut where the file speaks of {facts['JOINS']}: a connector is lost or a slit "
+        f"misses its end; write the file again."
+    )
+    problems.append(Problem(text, Severity.ERROR, (float(x), float(y))))
+    return lines, set()

@@ -26,6 +26,8 @@ from kirigami_studio.lattice.ratio_field import FloatArray
 LARGEST_FILE = 100_000_000
 #: Chord tolerance (mm) for curves.
 FLATTEN_MM = 0.005
+#: Facts about a file's making that its check needs; R12 files keep them among ezdxf's own records.
+RECORDED_FACTS = ("KERF_MM", "TABS", "TAB_MM", "JOINS")
 #: What ezdxf raises on damaged files, depending on where the damage is.
 PARSER_FAULTS = (
     DXFError,
@@ -172,8 +174,9 @@ def _unit_factor(document: Drawing, content: DxfContent) -> float:
 def _facts(document: Drawing) -> dict[str, str]:
     facts = {str(key): str(value) for key, value in document.header.custom_vars}
     record = document.ezdxf_metadata()
-    if "KERF_MM" not in facts and "KERF_MM" in record:
-        facts["KERF_MM"] = str(record["KERF_MM"])
+    for key in RECORDED_FACTS:
+        if key not in facts and key in record:
+            facts[key] = str(record[key])
     return facts
 
 

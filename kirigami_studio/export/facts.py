@@ -5,6 +5,7 @@ from __future__ import annotations
 from kirigami_studio import __version__
 from kirigami_studio.export.profile import Profile
 from kirigami_studio.fabricate.cut_plan import CutPlan
+from kirigami_studio.fabricate.joints import joint_count
 
 
 def facts_of(plan: CutPlan, profile: Profile) -> dict[str, str]:
@@ -19,4 +20,15 @@ def facts_of(plan: CutPlan, profile: Profile) -> dict[str, str]:
         "KERF_MM": f"{kerf:g}",
         "MATERIAL": plan.material.key,
         "PATHS": "edges of the finished part: apply the kerf offset of the machine" if profile.slots else paths,
+        **({} if profile.slots else _deliberate(plan)),
     }
+
+
+def _deliberate(plan: CutPlan) -> dict[str, str]:
+    """What a check of the file would otherwise take for faults: gaps of the outline, cuts that end on other cuts."""
+    facts: dict[str, str] = {}
+    if plan.options.tabs:
+        facts |= {"TABS": f"{plan.options.tabs}", "TAB_MM": f"{plan.options.tab_mm:g}"}
+    if joints := joint_count(plan):
+        facts["JOINS"] = f"{joints}"
+    return facts

@@ -14,8 +14,9 @@ from kirigami_studio.export.layer_files import by_layer, layer_folder, layer_pat
 from kirigami_studio.export.profile import Profile, find_profile
 from kirigami_studio.export.strokes import Stroke, extent, layer_colours, strokes_of
 from kirigami_studio.export.svg_reading import read_with_svgelements, read_with_xml
-from kirigami_studio.fabricate.checks import OVERLAP_TOLERANCE_MM, WIDTH_TOLERANCE_MM
+from kirigami_studio.fabricate.checks import OVERLAP_TOLERANCE_MM
 from kirigami_studio.fabricate.cut_plan import CutPlan
+from kirigami_studio.fabricate.sheet_checks import WIDTH_TOLERANCE_MM
 from kirigami_studio.foundation.errors import ExportError
 
 Reader = Callable[[Path], DrawnFile]

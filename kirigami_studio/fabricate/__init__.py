@@ -9,6 +9,15 @@ edge cut
 T-junction
     Where a cut ends on the middle of another cut (the *through* cut) or on the sheet's edge.  Cuts stop short of it;
     what remains is the *connector* (the hinge of the finished sheet).
+seat
+    The frame of one T-junction: the through cut's direction, the slit's slant, and the gap between them.
+ending
+    The shape that a slit ends in: nothing (straight), a relief hole, an arc around the junction, or a bar along the
+    through cut.
+joint
+    A place where cuts meet on purpose: a slit and its ending, or two slits whose connector was removed.
+tab
+    A place where the outline is not cut, so that the sheet stays held.
 ligament
     Material left between two cuts; its *finished* width is measured after the kerf has burned away.
 kerf

@@ -10,6 +10,8 @@ from kirigami_studio.lattice.ratio_field import FloatArray
 
 #: Largest distance (mm) between an arc and the chords that stand for it.
 CHORD_MM = 0.005
+#: The same where finished widths are measured, which are promised to a micrometre.
+MEASURED_CHORD_MM = 2e-4
 
 
 def flattened(points: FloatArray, bulges: FloatArray, closed: bool, chord_mm: float = CHORD_MM) -> FloatArray:
@@ -30,7 +32,7 @@ def flattened(points: FloatArray, bulges: FloatArray, closed: bool, chord_mm: fl
     vertices : (V, 2) float, mm
         The given points and those between; a closed path is not repeated at its first point.
     """
-    following = np.roll(points, -1, axis=0)
+    following = [*points[1:], points[0]]
     parts = [points[:1]]
     for start, stop, bulge in zip(points, following, bulges, strict=True):
         parts += [_between(start, stop, float(bulge), chord_mm), stop[None]]
@@ -40,10 +42,10 @@ def flattened(points: FloatArray, bulges: FloatArray, closed: bool, chord_mm: fl
 
 def arc_of(start: FloatArray, stop: FloatArray, bulge: float) -> tuple[FloatArray, float]:
     """Centre (2,) and radius of the arc of an edge; the bulge is not 0."""
-    chord = stop - start
-    left = np.array([-chord[1], chord[0]])
-    centre: FloatArray = 0.5 * (start + stop) + left * (1.0 - bulge**2) / (4.0 * bulge)
-    return centre, float(np.linalg.norm(chord)) * (1.0 + bulge**2) / (4.0 * abs(bulge))
+    x, y = float(stop[0] - start[0]), float(stop[1] - start[1])
+    height = (1.0 - bulge**2) / (4.0 * bulge)
+    centre = np.array([0.5 * (start[0] + stop[0]) - y * height, 0.5 * (start[1] + stop[1]) + x * height])
+    return centre, math.hypot(x, y) * (1.0 + bulge**2) / (4.0 * abs(bulge))
 
 
 def _between(start: FloatArray, stop: FloatArray, bulge: float, chord_mm: float) -> FloatArray:
@@ -54,8 +56,8 @@ def _between(start: FloatArray, stop: FloatArray, bulge: float, chord_mm: float)
     angle = 4.0 * math.atan(bulge)
     largest = 2.0 * math.acos(max(0.0, 1.0 - chord_mm / radius))
     count = max(2, math.ceil(abs(angle) / largest))
-    turns = angle * np.arange(1, count) / count
-    arm = start - centre
-    c, s = np.cos(turns), np.sin(turns)
-    points: FloatArray = centre + np.stack([c * arm[0] - s * arm[1], s * arm[0] + c * arm[1]], axis=1)
+    x, y = float(start[0] - centre[0]), float(start[1] - centre[1])
+    turned = complex(x, y) * np.exp(1j * angle / count * np.arange(1, count))
+    points = np.empty((count - 1, 2))
+    points[:, 0], points[:, 1] = centre[0] + turned.real, centre[1] + turned.imag
     return points

@@ -1,45 +1,35 @@
-"""The physics check of a plan: one piece, connectors as wide as asked, nothing cut twice; each problem has a place."""
+"""The physics check of a plan: one piece, widths as asked, nothing cut twice, connectors that bear their bending."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from enum import Enum
 
-import numpy as np
 from shapely.geometry import LineString, Polygon
 
-from kirigami_studio.fabricate.cut_plan import CutPlan, Layer
-from kirigami_studio.fabricate.finished_sheet import overlap_length, remaining_pieces, smallest_ligament
+from kirigami_studio.fabricate.cut_plan import CutPath, CutPlan, Layer
+from kirigami_studio.fabricate.findings import Problem as Problem
+from kirigami_studio.fabricate.findings import Severity as Severity
+from kirigami_studio.fabricate.finished_sheet import (
+    Ligament,
+    Overlap,
+    overlap,
+    remaining_pieces,
+    smallest_ligament,
+)
+from kirigami_studio.fabricate.flexing import Flexing, flexing, strain_problems
+from kirigami_studio.fabricate.joints import joined_pairs, measured_line
+from kirigami_studio.fabricate.panel_sizes import smallest_edge, smallest_neck
+from kirigami_studio.fabricate.sheet_checks import (
+    WIDTH_TOLERANCE_MM,
+    connector_problems,
+    panel_problems,
+    piece_problems,
+    tab_problems,
+)
 
-#: Tolerance (mm) for finished widths; coordinates are rounded to a tenth of it.
-WIDTH_TOLERANCE_MM = 1e-3
 #: Overlaps shorter than this (mm) are rounding.
 OVERLAP_TOLERANCE_MM = 1e-6
-
-
-class Severity(Enum):
-    """An error spoils the sheet; a warning may."""
-
-    ERROR = "error"
-    WARNING = "warning"
-
-
-@dataclass(frozen=True, slots=True)
-class Problem:
-    """One finding.
-
-    Attributes
-    ----------
-    text : str
-        What is wrong and what to try.
-    severity : Severity
-    where : (x, y) or None, mm
-        A place to look at, in the frame of the plan or file.
-    """
-
-    text: str
-    severity: Severity = Severity.ERROR
-    where: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,6 +47,10 @@ class Report:
         Smallest finished distance between any two cuts.
     overlap_mm : float
         Length cut more than once.
+    min_edge_mm, min_neck_mm : float or None
+        Smallest finished edge and neck of the untrimmed panels; None without any.
+    flexing : Flexing or None
+        How far the connectors turn and how much that strains them; None without a target angle.
     """
 
     problems: tuple[Problem, ...]
@@ -64,6 +58,9 @@ class Report:
     min_connector_mm: float
     min_ligament_mm: float
     overlap_mm: float
+    min_edge_mm: float | None = None
+    min_neck_mm: float | None = None
+    flexing: Flexing | None = None
 
     @property
     def ok(self) -> bool:
@@ -71,7 +68,9 @@ class Report:
         return not any(problem.severity is Severity.ERROR for problem in self.problems)
 
 
-def check_plan(plan: CutPlan, kerf_mm: float | None = None) -> Report:
+def check_plan(
+    plan: CutPlan, kerf_mm: float | None = None, phi: float | None = None, strain_limit: float | None = None
+) -> Report:
     """Cut the plan in the computer and look at what is left.
 
     Parameters
@@ -79,91 +78,67 @@ def check_plan(plan: CutPlan, kerf_mm: float | None = None) -> Report:
     plan : CutPlan
     kerf_mm : float, optional
         The kerf the machine really has; the plan's own unless given.
+    phi : float, radians, optional
+        Target angle of the deployment; without it nothing is said about how far the connectors bend.
+    strain_limit : float, optional
+        Breaking strain of the material; without it the strain is estimated but not judged.
     """
     kerf = plan.kerf_mm if kerf_mm is None else kerf_mm
-    cuts = [LineString(path.points) for path in plan.paths if not path.closed]
-    outline = plan.on_layer(Layer.OUTLINE)[0]
-    boundary = Polygon(outline.points)
-    pieces = remaining_pieces(boundary, cuts, kerf)
-    ligament = smallest_ligament(cuts, boundary.exterior, kerf)
-    overlap = overlap_length([*cuts, boundary.exterior])
-    problems = [*_piece_problems(pieces, kerf), *_connector_problems(plan, kerf)]
-    if overlap > OVERLAP_TOLERANCE_MM:
-        problems.append(Problem(f"{overlap:.4f} mm would be cut twice; report this design, it should not happen."))
-    if ligament is not None and ligament.width_mm < plan.min_connector_mm - plan.kerf_mm + kerf - WIDTH_TOLERANCE_MM:
-        problems.append(
-            Problem(
-                f"Two cuts leave only {ligament.width_mm:.3f} mm of material at x = {ligament.where[0]:.2f}, "
-                f"y = {ligament.where[1]:.2f} mm, less than the connectors; a larger sheet "
-                f"or a calmer design widens it.",
-                Severity.ERROR if ligament.width_mm <= 0 else Severity.WARNING,
-                ligament.where,
-            )
-        )
+    inner = [path for path in plan.paths if path.layer is not Layer.OUTLINE]
+    lines = [measured_line(path) for path in inner]
+    boundary = Polygon(plan.outline)
+    pieces = _pieces(inner, boundary, kerf)
+    ligament = smallest_ligament(lines, boundary.exterior, kerf, joined_pairs(plan, inner, lines))
+    twice = overlap([LineString(path.travelled) for path in plan.paths])
+    edge, neck = smallest_edge(plan.panels, kerf), smallest_neck(plan.panels, kerf)
+    bent = None if phi is None else flexing(plan, phi)
+    problems = [
+        *piece_problems(pieces, boundary, kerf, len(plan.options.removed)),
+        *tab_problems(plan),
+        *connector_problems(plan, kerf),
+        *_overlap_problems(twice),
+        *_ligament_problems(plan, kerf, ligament),
+        *panel_problems(plan, kerf, edge, neck),
+        *([] if bent is None or strain_limit is None else strain_problems(plan, bent, strain_limit)),
+    ]
     return Report(
         problems=tuple(problems),
         pieces=len(pieces),
         min_connector_mm=plan.min_connector_mm + plan.kerf_mm - kerf,
         min_ligament_mm=ligament.width_mm if ligament is not None else float("inf"),
-        overlap_mm=max(overlap, 0.0),
+        overlap_mm=twice.length_mm,
+        min_edge_mm=None if edge is None else edge.size_mm,
+        min_neck_mm=None if neck is None else neck.size_mm,
+        flexing=bent,
     )
 
 
-def _piece_problems(pieces: list[Polygon], kerf: float) -> list[Problem]:
-    if len(pieces) == 1:
+def _pieces(inner: Sequence[CutPath], boundary: Polygon, kerf: float) -> list[Polygon]:
+    """What is left of the sheet once its tabs are broken; what falls out of relief holes does not count."""
+    cuts = [Polygon(path.flattened) if path.closed else LineString(path.flattened) for path in inner]
+    return remaining_pieces(boundary, cuts, kerf)
+
+
+def _overlap_problems(twice: Overlap) -> list[Problem]:
+    if twice.where is None or twice.length_mm <= OVERLAP_TOLERANCE_MM:
         return []
-    if not pieces:
-        return [Problem(f"Nothing is left of the sheet with a kerf of {kerf:g} mm; use a smaller kerf.")]
-    loose = pieces[1].representative_point()
+    text = (
+        f"{twice.length_mm:.4f} mm would be cut twice, near x = {twice.where[0]:.2f}, y = {twice.where[1]:.2f} mm; "
+        f"report this design, it should not happen."
+    )
+    return [Problem(text, Severity.ERROR, twice.where)]
+
+
+def _ligament_problems(plan: CutPlan, kerf: float, ligament: Ligament | None) -> list[Problem]:
+    """Two cuts nearer to each other than the connectors are wide."""
+    if ligament is None or ligament.width_mm >= plan.min_connector_mm - plan.kerf_mm + kerf - WIDTH_TOLERANCE_MM:
+        return []
+    x, y = ligament.where
     return [
         Problem(
-            f"With a kerf of {kerf:g} mm the sheet falls into {len(pieces)} pieces, one of them at x = {loose.x:.2f}, "
-            f"y = {loose.y:.2f} mm; widen the connectors or use a smaller kerf.",
-            Severity.ERROR,
-            (float(loose.x), float(loose.y)),
+            f"Two cuts leave only {ligament.width_mm:.3f} mm of material at x = {x:.2f}, y = {y:.2f} mm, less than "
+            f"the connectors; a larger sheet or a calmer design widens it.",
+            Severity.ERROR if ligament.width_mm <= 0 else Severity.WARNING,
+            ligament.where,
         )
     ]
-
-
-def _connector_problems(plan: CutPlan, kerf: float) -> list[Problem]:
-    """Connectors narrower than asked (an error) or than the material bears (a warning)."""
-    hinges = plan.hinges
-    if not len(hinges):
-        return []
-    finished = hinges.finished_mm + plan.kerf_mm - kerf
-    problems = []
-    short = hinges.requested_mm - finished
-    if np.any(short > WIDTH_TOLERANCE_MM):
-        worst = int(np.argmax(short))
-        x, y = hinges.position[worst]
-        problems.append(
-            Problem(
-                f"{int(np.sum(short > WIDTH_TOLERANCE_MM))} connectors come out narrower than asked, the worst "
-                f"{finished[worst]:.3f} instead of {hinges.requested_mm[worst]:.3f} mm at x = {x:.2f}, y = {y:.2f} mm; "
-                f"plan the cuts with the kerf that the machine really has.",
-                Severity.ERROR,
-                (float(x), float(y)),
-            )
-        )
-    thinnest = int(np.argmin(finished))
-    if finished[thinnest] <= 0.0:
-        x, y = hinges.position[thinnest]
-        problems.append(
-            Problem(
-                f"Nothing is left of the connector at x = {x:.2f}, y = {y:.2f} mm: the sheet would fall into "
-                f"pieces there; widen the connectors.",
-                Severity.ERROR,
-                (float(x), float(y)),
-            )
-        )
-    elif finished[thinnest] < plan.material.min_ligament_mm - WIDTH_TOLERANCE_MM:
-        x, y = hinges.position[thinnest]
-        problems.append(
-            Problem(
-                f"The connector at x = {x:.2f}, y = {y:.2f} mm is {finished[thinnest]:.3f} mm wide; "
-                f"{plan.material.name!r} is known to bear {plan.material.min_ligament_mm:g} mm.",
-                Severity.WARNING,
-                (float(x), float(y)),
-            )
-        )
-    return problems

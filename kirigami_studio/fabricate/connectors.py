@@ -9,7 +9,7 @@ sheet (the outline runs half a kerf outside): ``(width + kerf / 2) / sin(theta)`
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 from typing import Any
 
@@ -19,7 +19,7 @@ from kirigami_studio.fabricate.lengths import check_length
 from kirigami_studio.fabricate.slits import SHEET_EDGE, CutTable
 from kirigami_studio.foundation.errors import FabricationError
 from kirigami_studio.lattice.ratio_field import FloatArray
-from kirigami_studio.lattice.topology import IntArray
+from kirigami_studio.lattice.topology import BoolArray, IntArray
 
 #: A cut shorter than this (mm), or than twice the kerf, is a burned dot and separates nothing.
 SHORTEST_CUT_MM = 0.1
@@ -36,7 +36,9 @@ class Hinges:
     cut, end, through : (H,) int
         Number of the shortened cut, which end of it, and the cut it rests on (or ``SHEET_EDGE``).
     requested_mm, finished_mm : (H,) float
-        Width asked for, and the width measured between the shortened cuts after the kerf.
+        Width asked for, and the width measured between the cuts after the kerf; both 0 for a removed connector.
+    flexure_mm : (H,) float
+        Length over which the connector bends.
     """
 
     position: FloatArray
@@ -45,10 +47,17 @@ class Hinges:
     through: IntArray
     requested_mm: FloatArray
     finished_mm: FloatArray
+    flexure_mm: FloatArray
 
     def __post_init__(self) -> None:
-        for array in (self.position, self.cut, self.end, self.through, self.requested_mm, self.finished_mm):
-            array.setflags(write=False)
+        for name in self.__slots__:
+            getattr(self, name).setflags(write=False)
+
+    @property
+    def removed(self) -> BoolArray:
+        """Which connectors were removed on purpose (H,)."""
+        gone: BoolArray = self.requested_mm == 0.0
+        return gone
 
     @classmethod
     def none(cls) -> Hinges:
@@ -61,8 +70,10 @@ class Hinges:
         return int(self.position.shape[0])
 
 
-def hinge_widths(count: int, default_mm: float, single_mm: Mapping[int, float] | None = None) -> FloatArray:
-    """Return the finished width of every hinge: the default, except where ``single_mm`` names a hinge.
+def hinge_widths(
+    count: int, default_mm: float, single_mm: Mapping[int, float] | None = None, removed: Sequence[int] = ()
+) -> FloatArray:
+    """Return the finished width of every hinge: the default, except where ``single_mm`` names a hinge; 0 if removed.
 
     Raises
     ------
@@ -70,9 +81,11 @@ def hinge_widths(count: int, default_mm: float, single_mm: Mapping[int, float] |
         A width that is not finite and positive, or a hinge number that does not exist.
     """
     widths = np.full(count, check_length("The connector width", default_mm))
-    for hinge, width in (single_mm or {}).items():
+    for hinge in [*(single_mm or {}), *removed]:
         if not 0 <= hinge < count:
             raise FabricationError(f"There is no hinge {hinge}: this sheet has hinges 0 to {count - 1}.")
+    widths[list(removed)] = 0.0
+    for hinge, width in (single_mm or {}).items():
         widths[hinge] = check_length(f"The connector width of hinge {hinge}", width)
     return widths
 
@@ -139,29 +152,3 @@ def _refuse_cuts_without_room(
         f"the sheet at least {math.ceil(100.0 * needed[worst] / length[worst]) / 100.0:.2f} times wider or the "
         f"connectors narrower ({int(np.sum(length < needed))} cuts are too short)."
     )
-
-
-def finished_widths(lines: FloatArray, table: CutTable, outline: FloatArray, kerf_mm: float) -> FloatArray:
-    """Measure each connector: distance of the shortened tip to the shortened cut it rests on, less the kerf.
-
-    Parameters
-    ----------
-    lines : (C, 2, 2) float, mm
-        Shortened cuts.
-    outline : (4, 2) float, mm
-        Centre line of the outline cut, a rectangle.
-
-    Returns
-    -------
-    finished : (H,) float, mm
-    """
-    tip = lines[table.hinge_cut, table.hinge_end]
-    start, stop = lines[table.hinge_through, 0], lines[table.hinge_through, 1]
-    run = stop - start
-    along = np.sum((tip - start) * run, axis=1) / np.sum(run * run, axis=1)
-    nearest = start + np.clip(along, 0.0, 1.0)[:, None] * run
-    to_cut = np.linalg.norm(tip - nearest, axis=1)
-    low, high = outline.min(axis=0), outline.max(axis=0)
-    to_edge = np.minimum(tip - low, high - tip).min(axis=1)
-    finished: FloatArray = np.where(table.hinge_through == SHEET_EDGE, to_edge, to_cut) - kerf_mm
-    return finished

@@ -12,21 +12,21 @@ import shapely
 from shapely.geometry import Polygon
 
 from kirigami_studio.fabricate import timing
-from kirigami_studio.fabricate.connectors import Hinges, finished_widths, hinge_widths, shorten
+from kirigami_studio.fabricate.connectors import Hinges, hinge_widths, shorten
 from kirigami_studio.fabricate.cut_path import CutPath as CutPath
 from kirigami_studio.fabricate.cut_path import Layer as Layer
+from kirigami_studio.fabricate.hinged_cuts import hinged_cuts, relief_radius
 from kirigami_studio.fabricate.kerf import OVERCUT_MM, edge_cut_paths, outline_path
 from kirigami_studio.fabricate.lengths import check_length
 from kirigami_studio.fabricate.material import Material, default_material
+from kirigami_studio.fabricate.notes import plan_notes
 from kirigami_studio.fabricate.options import CutOptions
 from kirigami_studio.fabricate.ordering import in_cutting_order
+from kirigami_studio.fabricate.panel_sizes import panels_in_mm
+from kirigami_studio.fabricate.seats import seats
 from kirigami_studio.fabricate.slits import cut_table, sheet_lines
-from kirigami_studio.fabricate.trimmed_sheet import (
-    CutPiece,
-    kept_area,
-    trimmed_cuts,
-    widths_beside_outline,
-)
+from kirigami_studio.fabricate.tabs import joined_ring, tabbed
+from kirigami_studio.fabricate.trimmed_sheet import CutPiece, kept_area, trimmed_cuts
 from kirigami_studio.foundation.errors import FabricationError
 from kirigami_studio.lattice.deployment import Deployment
 from kirigami_studio.lattice.ratio_field import FloatArray
@@ -35,8 +35,6 @@ SMALLEST_SHEET_MM = 5.0
 LARGEST_SHEET_MM = 3000.0
 #: Coordinates are rounded to this many decimals (mm), so that equal points are equal in every file.
 DECIMALS = 4
-#: A connector counts as wider than asked above this difference (mm).
-WIDER_MM = 1e-3
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,7 +44,8 @@ class CutPlan:
     Attributes
     ----------
     paths : tuple of CutPath
-        In the order of cutting: slits, edge cuts, outline.  Smallest coordinates are 0, y up.
+        In the order of cutting: relief holes, slits, edge cuts, outline (one closed path, or as many open ones as there
+        are tabs).  Smallest coordinates are 0, y up.
     size_mm : (width, height)
         The finished sheet; of a trimmed one, what it was before.
     connector_mm, kerf_mm, overcut_mm : float
@@ -58,6 +57,8 @@ class CutPlan:
     options : CutOptions
     notes : tuple of str
         Sentences that a person should read before cutting.
+    panels : tuple of (P, 2) float, mm
+        Panels between the centre lines of the cuts, row by row; four corners each unless trimmed.
     """
 
     paths: tuple[CutPath, ...]
@@ -70,6 +71,7 @@ class CutPlan:
     design_hash: str
     options: CutOptions = field(default_factory=CutOptions)
     notes: tuple[str, ...] = ()
+    panels: tuple[FloatArray, ...] = ()
 
     @cached_property
     def cut_length_mm(self) -> float:
@@ -91,8 +93,16 @@ class CutPlan:
 
     @property
     def min_connector_mm(self) -> float:
-        """Smallest finished connector; what was asked for in a plan without hinges."""
-        return float(self.hinges.finished_mm.min()) if len(self.hinges) else self.connector_mm
+        """Smallest finished connector, removed ones left out (0 when all are); as asked in a plan without hinges."""
+        if not len(self.hinges):
+            return self.connector_mm
+        finished = self.hinges.finished_mm[~self.hinges.removed]
+        return float(finished.min()) if finished.size else 0.0
+
+    @property
+    def outline(self) -> FloatArray:
+        """Centre line of the outline as one ring (P, 2), mm, tabs closed; the first point is not repeated."""
+        return joined_ring([path.points for path in self.on_layer(Layer.OUTLINE)])
 
     @property
     def bounds_mm(self) -> tuple[float, float]:
@@ -153,38 +163,45 @@ def plan_cuts(
     overcut = check_length("The overcut", overcut_mm)
     table = cut_table(deployment.field.rows, deployment.field.columns)
     lines, size = sheet_lines(deployment, width)
-    junctions = lines[table.hinge_cut, table.hinge_end]
     _check_size(size)
-    widths = hinge_widths(table.hinge_count, connector, dict(options.hinge_mm))
-    lines = shorten(lines, table, size, widths, kerf)
+    relief_radius(options.style, material)
+    widths = hinge_widths(table.hinge_count, connector, dict(options.hinge_mm), options.removed)
+    shortened = shorten(lines, table, size, widths, kerf)
     parts = () if kept is None else tuple(kept)
     trimmed = any(part is not None for part in parts)
     if trimmed:
-        outline, pieces = trimmed_cuts(kept_area(deployment, parts, width), lines, table, kerf, overcut)
+        outline, pieces = trimmed_cuts(kept_area(deployment, parts, width), shortened, table, kerf, overcut)
     else:
         outline = Polygon(outline_path(size, kerf))
-        slits, edges = lines[: table.slit_count], edge_cut_paths(lines, table, size, kerf, overcut)
+        slits, edges = shortened[: table.slit_count], edge_cut_paths(shortened, table, size, kerf, overcut)
         pieces = [CutPiece(cut, points, cut >= table.slit_count) for cut, points in enumerate([*slits, *edges])]
+    cuts = hinged_cuts(
+        pieces,
+        shortened[table.hinge_cut, table.hinge_end],
+        seats(lines, shortened, table, size, widths, kerf),
+        table,
+        outline,
+        options,
+        material,
+        kerf,
+        overcut,
+    )
     ring = shapely.get_coordinates(shapely.orient_polygons(outline).exterior)[:-1]
-    origin = np.concatenate([ring, *(piece.points for piece in pieces)]).min(axis=0)
-    pieces = [CutPiece(piece.cut, _on_grid(piece.points - origin), piece.opens) for piece in pieces]
-    lines, ring = _on_grid(lines - origin), _on_grid(ring - origin)
-    finished = finished_widths(lines, table, _on_grid(outline_path(size, kerf) - origin), kerf)
-    if trimmed:
-        finished = widths_beside_outline(lines, table, pieces, Polygon(ring), finished, kerf)
+    origin = np.concatenate([ring, *(piece.points for piece in cuts.pieces)]).min(axis=0)
+    cuts, ring = cuts.moved(lambda points: _on_grid(points - origin)), _on_grid(ring - origin)
     hinges = Hinges(
-        position=_on_grid(junctions - origin),
+        position=np.array([seat.junction for seat in cuts.seats]),
         cut=table.hinge_cut,
         end=table.hinge_end,
         through=table.hinge_through,
         requested_mm=widths,
-        finished_mm=finished,
+        finished_mm=cuts.widths(table, options.removed, Polygon(ring), kerf),
+        flexure_mm=cuts.flexure_mm,
     )
-    paths = [
-        CutPath(piece.points, Layer.EDGE_SLITS if piece.opens else Layer.SLITS, False, piece.cut) for piece in pieces
-    ]
     return CutPlan(
-        paths=in_cutting_order([*paths, CutPath(ring, Layer.OUTLINE, True)], options.order, table),
+        paths=in_cutting_order(
+            [*map(_path, cuts.pieces), *_outline_paths(ring, cuts.pieces, options, kerf)], options.order, table
+        ),
         size_mm=size,
         connector_mm=connector,
         kerf_mm=kerf,
@@ -193,8 +210,19 @@ def plan_cuts(
         material=material,
         design_hash=_design_hash(deployment, parts if trimmed else ()),
         options=options,
-        notes=_notes(hinges, material, connector, kerf),
+        notes=plan_notes(hinges, material, connector, kerf, options.style, cuts.straight),
+        panels=panels_in_mm(deployment, parts, width, origin),
     )
+
+
+def _outline_paths(ring: FloatArray, pieces: Sequence[CutPiece], options: CutOptions, kerf: float) -> list[CutPath]:
+    """The outline as one closed path, or as the open ones between its tabs."""
+    if options.tabs == 0:
+        return [CutPath(ring, Layer.OUTLINE, True)]
+    exterior = Polygon(ring).exterior
+    over = [shapely.intersection(piece.line, exterior) for piece in pieces if piece.opens and not piece.closed]
+    parts = tabbed(ring, options.tabs, options.tab_mm + kerf, shapely.get_coordinates(over))
+    return [CutPath(_on_grid(part), Layer.OUTLINE, False) for part in parts]
 
 
 def _on_grid(points: FloatArray) -> FloatArray:
@@ -220,27 +248,6 @@ def _check_size(size: tuple[float, float]) -> None:
         )
 
 
-def _notes(hinges: Hinges, material: Material, connector: float, kerf: float) -> tuple[str, ...]:
-    notes = []
-    if not material.calibrated:
-        notes.append(f"The preset {material.name!r} is uncalibrated: cut a test piece first.")
-    narrowest = float(hinges.requested_mm.min())
-    if narrowest < material.min_ligament_mm:
-        notes.append(
-            f"Connectors of {narrowest:g} mm are below the {material.min_ligament_mm:g} mm that {material.name!r} "
-            f"is known to bear; they may tear."
-        )
-    wider = hinges.finished_mm - hinges.requested_mm > WIDER_MM
-    if np.any(wider):
-        where = hinges.position[int(np.argmax(hinges.finished_mm - hinges.requested_mm))]
-        notes.append(
-            f"{int(wider.sum())} of {len(hinges)} connectors come out wider than asked, because the slit they rest on "
-            f"ends before them (widest {hinges.finished_mm.max():.3f} mm near x = {where[0]:.1f}, "
-            f"y = {where[1]:.1f} mm); a larger sheet or narrower connectors avoid it."
-        )
-    if connector + kerf < 2.0 * material.join_tolerance_mm:
-        notes.append(
-            f"Cut ends lie {connector + kerf:.3f} mm apart: programs that join gaps up to "
-            f"{material.join_tolerance_mm:g} mm may close them; switch joining off when importing."
-        )
-    return tuple(notes)
+def _path(piece: CutPiece) -> CutPath:
+    layer = Layer.RELIEF if piece.closed else Layer.EDGE_SLITS if piece.opens else Layer.SLITS
+    return CutPath(piece.points, layer, piece.closed, piece.cut, piece.bulges)

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 import shapely
-from shapely.geometry import LineString, Polygon
+from shapely.geometry import Polygon
 from shapely.geometry.base import BaseGeometry
+
+from kirigami_studio.lattice.topology import IntArray
 
 #: A blade without kerf still parts the material: width (mm) given to such a cut.
 BLADE_MM = 2e-3
@@ -38,27 +40,48 @@ class Ligament:
     where: tuple[float, float]
 
 
-def remaining_pieces(boundary: BaseGeometry, cuts: Sequence[LineString], kerf_mm: float) -> list[Polygon]:
+@dataclass(frozen=True, slots=True)
+class Overlap:
+    """What is cut more than once.
+
+    Attributes
+    ----------
+    length_mm : float
+        Altogether.
+    where : (x, y) or None, mm
+        Middle of the longest stretch.
+    """
+
+    length_mm: float
+    where: tuple[float, float] | None
+
+
+def remaining_pieces(boundary: BaseGeometry, cuts: Sequence[BaseGeometry], kerf_mm: float) -> list[Polygon]:
     """Cut the sheet and return what is left, largest piece first.
 
     Parameters
     ----------
     boundary : Polygon or MultiPolygon, mm
         Area inside the centre line of the outline cut, holes left out.
-    cuts : sequence of LineString, mm
-        Centre lines of all other cuts.
+    cuts : sequence of LineString or Polygon, mm
+        Centre lines of all other cuts; the polygon inside that of a hole, whose middle falls out.
     kerf_mm : float
         Full cut width; 0 for a blade.
     """
     width = max(kerf_mm, BLADE_MM)
     all_cuts = np.array([*cuts, boundary.boundary], dtype=object)
-    burned = shapely.union_all(shapely.buffer(all_cuts, 0.5 * width, quad_segs=TIP_SEGMENTS))
+    burned = shapely.disjoint_subset_union_all(shapely.buffer(all_cuts, 0.5 * width, quad_segs=TIP_SEGMENTS))
     left = shapely.get_parts(boundary.difference(burned))
     pieces = [piece for piece in left if isinstance(piece, Polygon) and piece.area > DUST_MM2]
     return sorted(pieces, key=lambda piece: -piece.area)
 
 
-def smallest_ligament(cuts: Sequence[BaseGeometry], outline: BaseGeometry | None, kerf_mm: float) -> Ligament | None:
+def smallest_ligament(
+    cuts: Sequence[BaseGeometry],
+    outline: BaseGeometry | None,
+    kerf_mm: float,
+    joined: Collection[tuple[int, int]] = (),
+) -> Ligament | None:
     """Find the narrowest finished ligament between any two cuts, or between a cut and the outline.
 
     Parameters
@@ -67,6 +90,8 @@ def smallest_ligament(cuts: Sequence[BaseGeometry], outline: BaseGeometry | None
     outline : geometry, mm, optional
         Centre line of the outline cut; cuts that cross it on purpose (edge cuts) are not measured against it.
     kerf_mm : float
+    joined : collection of (int, int)
+        Cuts that meet on purpose, by number, the lower one first; there is no ligament between these two.
 
     Returns
     -------
@@ -76,11 +101,7 @@ def smallest_ligament(cuts: Sequence[BaseGeometry], outline: BaseGeometry | None
     lines = np.array(cuts, dtype=object)
     found: list[tuple[float, BaseGeometry, BaseGeometry]] = []
     if len(lines) > 1:
-        tree = shapely.STRtree(lines)
-        (first, second), distance = tree.query_nearest(lines, exclusive=True, return_distance=True, all_matches=False)
-        if len(distance):
-            worst = int(np.argmin(distance))
-            found.append((float(distance[worst]), lines[first[worst]], lines[second[worst]]))
+        found += _nearest_two(lines, joined)
     if outline is not None and len(lines):
         inside = lines[~shapely.intersects(lines, outline)]
         if len(inside):
@@ -94,14 +115,60 @@ def smallest_ligament(cuts: Sequence[BaseGeometry], outline: BaseGeometry | None
     return Ligament(gap - kerf_mm, (float(middle[0]), float(middle[1])))
 
 
+def _nearest_two(
+    lines: npt.NDArray[np.object_], joined: Collection[tuple[int, int]]
+) -> list[tuple[float, BaseGeometry, BaseGeometry]]:
+    """The two lines that are nearest to each other, of those that are not joined, and how near; or nothing."""
+    group = _groups(len(lines), joined)
+    order = np.argsort(group, kind="stable")
+    united: npt.NDArray[np.object_] = np.asarray(shapely.geometrycollections(lines[order], indices=group[order]))
+    tree = shapely.STRtree(united)
+    (first, second), distance = tree.query_nearest(united, exclusive=True, return_distance=True, all_matches=False)
+    worst = int(np.argmin(distance)) if len(distance) else -1
+    nearest = [(float(distance[worst]), united[first[worst]], united[second[worst]])] if len(distance) else []
+    if not joined:
+        return nearest
+    # Within a group only those count that are not joined themselves; what is nearer than its neighbours matters.
+    reach = nearest[0][0] if nearest else float(np.hypot(*np.ptp(shapely.get_coordinates(lines), axis=0)))
+    one, other = shapely.STRtree(lines).query(lines, "dwithin", reach)
+    known = set(joined)
+    pairs = [(a, b) for a, b in zip(one.tolist(), other.tolist(), strict=True) if a < b and (a, b) not in known]
+    close = [
+        (float(shapely.distance(lines[a], lines[b])), lines[a], lines[b]) for a, b in pairs if group[a] == group[b]
+    ]
+    return sorted([*nearest, *close], key=lambda entry: entry[0])[:1]
+
+
+def _groups(count: int, joined: Collection[tuple[int, int]]) -> IntArray:
+    """Number of the group of each of ``count`` cuts (count,), where joined cuts are in one group."""
+    leader = list(range(count))
+
+    def find(index: int) -> int:
+        while leader[index] != index:
+            leader[index] = leader[leader[index]]
+            index = leader[index]
+        return index
+
+    for first, second in joined:
+        one, other = find(first), find(second)
+        leader[max(one, other)] = min(one, other)
+    found: IntArray = np.unique([find(index) for index in range(count)], return_inverse=True)[1]
+    return found
+
+
 def overlap_length(lines: Sequence[BaseGeometry]) -> float:
-    """Length that would be cut more than once, mm.
+    """Length that would be cut more than once, mm."""
+    return overlap(lines).length_mm
+
+
+def overlap(lines: Sequence[BaseGeometry]) -> Overlap:
+    """Find what would be cut more than once.
 
     Every segment is compared with those before it that lie within ``SAME_LINE_MM`` of it.  (The length of the union
     does not tell: half of a slanted line, drawn again, misses the whole by a rounding error, and both count.)
     """
     if not lines:
-        return 0.0
+        return Overlap(0.0, None)
     segments = _segments(lines)
     first, second = shapely.STRtree(segments).query(segments, predicate="dwithin", distance=SAME_LINE_MM)
     earlier = first > second
@@ -111,7 +178,13 @@ def overlap_length(lines: Sequence[BaseGeometry]) -> float:
     for index, low, high in zip(first[earlier].tolist(), start.tolist(), stop.tolist(), strict=True):
         if high > low:
             stretches.setdefault(index, []).append((low, high))
-    return sum(_covered(intervals) for intervals in stretches.values())
+    covered = {index: _covered(intervals) for index, intervals in stretches.items()}
+    if not covered:
+        return Overlap(0.0, None)
+    longest = max(covered, key=covered.__getitem__)
+    low, high = max(stretches[longest], key=lambda stretch: stretch[1] - stretch[0])
+    x, y = shapely.get_coordinates(shapely.line_interpolate_point(segments[longest], 0.5 * (low + high)))[0]
+    return Overlap(sum(covered.values()), (float(x), float(y)))
 
 
 def _segments(lines: Sequence[BaseGeometry]) -> npt.NDArray[np.object_]:

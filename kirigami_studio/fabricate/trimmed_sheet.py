@@ -17,6 +17,7 @@ import shapely
 from shapely.geometry import LineString, Point, Polygon
 from shapely.geometry.base import BaseGeometry
 
+from kirigami_studio.fabricate.bulges import MEASURED_CHORD_MM, flattened
 from kirigami_studio.fabricate.finished_sheet import overlap_length, remaining_pieces
 from kirigami_studio.fabricate.slits import CutTable
 from kirigami_studio.foundation.errors import FabricationError
@@ -62,11 +63,26 @@ class CutPiece:
     points : (P, 2) float, mm
     opens : bool
         Whether it crosses the outline; it then begins outside.
+    bulges : (P,) float or None
+        Arcs, see ``bulges``.
+    closed : bool
+        Whether it is a relief hole; its first point is not repeated.
     """
 
     cut: int
     points: FloatArray
     opens: bool
+    bulges: FloatArray | None = None
+    closed: bool = False
+
+    @property
+    def line(self) -> LineString:
+        """Its centre line, with chords for arcs so fine that widths can be measured on it."""
+        if self.bulges is None and not self.closed:
+            return LineString(self.points)
+        bulges = np.zeros(len(self.points)) if self.bulges is None else self.bulges
+        points = flattened(self.points, bulges, self.closed, MEASURED_CHORD_MM)
+        return LineString(np.concatenate([points, points[:1]]) if self.closed else points)
 
 
 def kept_area(deployment: Deployment, kept: Sequence[FloatArray | None], width_mm: float) -> Polygon:
@@ -287,49 +303,6 @@ def _lengths_inside(starts: FloatArray, ways: FloatArray, outline: Polygon) -> F
     crossed = ~shapely.is_empty(met)
     lengths: FloatArray = np.where(crossed, first, np.where(outside, 0.0, np.inf))
     return lengths
-
-
-def widths_beside_outline(
-    lines: FloatArray, table: CutTable, pieces: Sequence[CutPiece], outline: Polygon, widths: FloatArray, kerf_mm: float
-) -> FloatArray:
-    """Correct the finished widths of connectors whose through cut was trimmed.
-
-    Such a connector ends at the outline wherever the through cut is gone.
-
-    Parameters
-    ----------
-    lines : (C, 2, 2) float, mm
-        Shortened cuts of the whole sheet.
-    widths : (H,) float, mm
-        Finished widths in the whole sheet.
-
-    Returns
-    -------
-    corrected : (H,) float, mm
-    """
-    remaining: dict[int, list[LineString]] = {}
-    for piece in pieces:
-        remaining.setdefault(piece.cut, []).append(LineString(piece.points))
-    whole = {piece.cut for piece in pieces if not piece.opens}
-    corrected = widths.copy()
-    for hinge in np.flatnonzero(table.hinge_through >= 0):
-        through = int(table.hinge_through[hinge])
-        if through in whole:
-            continue
-        tip = lines[table.hinge_cut[hinge], table.hinge_end[hinge]]
-        beyond = _beyond(tip, lines[through], widths[hinge] + kerf_mm)
-        ends = shapely.union_all([*remaining.get(through, []), shapely.intersection(outline.exterior, beyond)])
-        corrected[hinge] = shapely.distance(Point(tip), ends) - kerf_mm
-    return corrected
-
-
-def _beyond(tip: FloatArray, through: FloatArray, gap: float) -> Polygon:
-    """The area beside the through cut, seen from a tip ``gap`` away: from half way to it to as far again behind it."""
-    along = (through[1] - through[0]) / np.linalg.norm(through[1] - through[0])
-    across = np.array([-along[1], along[0]])
-    across *= np.sign(np.dot(through[0] - tip, across))
-    near, far, side = 0.5 * gap * across, 2.0 * gap * across, 3.0 * gap * along
-    return Polygon([tip + near - side, tip + near + side, tip + far + side, tip + far - side])
 
 
 def _largest(shape: BaseGeometry) -> Polygon:

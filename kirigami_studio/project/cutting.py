@@ -34,3 +34,8 @@ def plan_of(candidate: Candidate, settings: FabricationSettings, deployment: Dep
         options=settings.options,
         kept=None if trim is None else trim.kept,
     )
+
+
+def target_angle(candidate: Candidate) -> float:
+    """Angle (radians) that a finished design is opened to."""
+    return candidate.score.phi if candidate.trim is None else candidate.trim.phi

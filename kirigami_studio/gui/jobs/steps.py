@@ -191,11 +191,12 @@ def planning(order: Order, cancel: Cancel) -> Iterator[Planned]:
 def planned(order: Order) -> Planned:
     """Plan the cuts and check them, in one go; a trimmed design gets its trimmed outline."""
     from kirigami_studio.fabricate.checks import check_plan
-    from kirigami_studio.project.cutting import plan_of
+    from kirigami_studio.project.cutting import plan_of, target_angle
 
     trim = order.candidate.trim
     plan = plan_of(order.candidate, order.settings, order.deployment)
-    return Planned(plan, check_plan(plan), 0.0 if trim is None else trim.removed_share)
+    report = check_plan(plan, phi=target_angle(order.candidate))
+    return Planned(plan, report, 0.0 if trim is None else trim.removed_share)
 
 
 def exporting(order: Order, path: Path, cancel: Cancel) -> Iterator[Exported]:

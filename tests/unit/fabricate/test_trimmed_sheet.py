@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 
 import numpy as np
 import pytest
 import shapely
+from cut_sheets import bitten, mouths
 from shapely.geometry import LineString, Point, Polygon
 
 from kirigami_studio.fabricate.checks import check_plan
@@ -20,25 +21,6 @@ from kirigami_studio.lattice.deployment import Deployment
 from kirigami_studio.lattice.ratio_field import FloatArray
 
 MakeDesign = Callable[..., Deployment]
-Kept = Sequence[FloatArray | None]
-
-
-def bitten(deployment: Deployment, places: Sequence[tuple[float, float]], radius: float) -> Kept:
-    """Panels with round bites out of the compact sheet's edge, in its own frame."""
-    bites = shapely.union_all([Point(place).buffer(radius) for place in places])
-    corners = deployment.compact[deployment.topology.panel_nodes.reshape(-1, 4)]
-    kept: list[FloatArray | None] = []
-    for panel in corners:
-        rest = Polygon(panel).difference(bites, grid_size=1e-9)
-        whole = rest.area > Polygon(panel).area - 1e-9
-        kept.append(None if whole else shapely.get_coordinates(shapely.orient_polygons(rest).exterior)[:-1])
-    return kept
-
-
-def mouths(deployment: Deployment) -> list[tuple[float, float]]:
-    """Where edge cuts begin on the compact sheet's edge."""
-    table = cut_table(deployment.field.rows, deployment.field.columns)
-    return [(float(x), float(y)) for x, y in deployment.compact[table.ends[table.slit_count :, 0]]]
 
 
 @pytest.fixture

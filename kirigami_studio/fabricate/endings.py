@@ -1,0 +1,143 @@
+"""How a slit ends before its hinge: the shapes of the connector styles, drawn in the hinge's own frame.
+
+Every shape is a path of its own that the slit ends on, at one of its points, so that nothing is cut twice and the kerf
+closes the joint.  The place of the shape that is nearest to the through cut leaves exactly the finished width:
+
+round, teardrop
+    A hole around a centre at ``gap + radius`` from the through cut; a teardrop's apex is two radii up the slit.
+arc
+    A circle's arc around the junction, ``HALF_ANGLES`` each way from the perpendicular, its ends ``gap`` from the
+    through cut: two necks joined by a round pad.
+double
+    A bar along the through cut, ``gap`` from it, up to ``BAR_SPANS`` spans (finished width and kerf) each way from the
+    slit: a ligament that bends over the whole length of the bar.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from kirigami_studio.fabricate.options import ConnectorStyle
+from kirigami_studio.fabricate.seats import Seat
+from kirigami_studio.lattice.ratio_field import FloatArray
+
+#: Half-angles (degrees) of an arc, from the one that is wanted to the least that still makes a pad.
+HALF_ANGLES = (45.0, 35.0, 25.0)
+#: An arc goes on at least this far (degrees) beyond its slit, so that the slit ends within it.
+BEYOND_SLIT = 10.0
+#: Arcs that would reach this far (degrees) from the perpendicular are no longer necks beside a pad.
+WIDEST_HALF_ANGLE = 70.0
+#: Half the length of a bar in spans, from the one that is wanted to the least.
+BAR_SPANS = (3.0, 2.0, 1.5)
+#: The shorter side of a bar or arc measures at least this many spans along the through cut.
+SHORTEST_SIDE = 0.4
+#: From a teardrop's centre to its apex, in radii.
+APEX_RADII = 2.0
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Ending:
+    """The end of one slit.
+
+    Attributes
+    ----------
+    tip : (2,) float, mm
+        Where the slit ends; one of ``points``.
+    points : (P, 2) float, mm
+    bulges : (P,) float or None
+        See ``bulges``.
+    closed : bool
+        A relief hole, whose inside falls out.
+    flexure_mm : float
+        Length over which the connector bends.
+    """
+
+    tip: FloatArray
+    points: FloatArray
+    bulges: FloatArray | None
+    closed: bool
+    flexure_mm: float
+
+
+def attempts(style: ConnectorStyle) -> int:
+    """How many sizes of a style there are, largest first."""
+    return {ConnectorStyle.ARC: len(HALF_ANGLES), ConnectorStyle.DOUBLE: len(BAR_SPANS)}.get(style, 1)
+
+
+def ending(style: ConnectorStyle, seat: Seat, radius_mm: float, attempt: int = 0) -> Ending | None:
+    """Draw the end of a slit.
+
+    Parameters
+    ----------
+    style : ConnectorStyle
+        Any but ``STRAIGHT``.
+    seat : Seat
+    radius_mm : float
+        Of relief holes.
+    attempt : int
+        Which of the sizes.
+
+    Returns
+    -------
+    ending : Ending or None
+        None where the through cut is too short or the slit too slanted for the style.
+    """
+    if style is ConnectorStyle.ROUND:
+        return _round(seat, radius_mm)
+    if style is ConnectorStyle.TEARDROP:
+        return _teardrop(seat, radius_mm)
+    if style is ConnectorStyle.ARC:
+        return _arc(seat, math.radians(HALF_ANGLES[attempt]))
+    return _bar(seat, BAR_SPANS[attempt] * seat.span_mm)
+
+
+def _round(seat: Seat, radius: float) -> Ending:
+    centre = seat.junction + seat.distance(seat.gap_mm + radius) * seat.along
+    tip = centre + radius * seat.along
+    return Ending(tip, np.stack([tip, centre - radius * seat.along]), np.ones(2), True, seat.span_mm)
+
+
+def _teardrop(seat: Seat, radius: float) -> Ending:
+    centre = seat.junction + seat.distance(seat.gap_mm + radius) * seat.along
+    tip = centre + APEX_RADII * radius * seat.along
+    touching = math.acos(1.0 / APEX_RADII)
+    left, right = (centre + radius * _turned(seat.along, angle) for angle in (touching, -touching))
+    # Two arcs, each below half a circle, which every reader of bulges takes.
+    bulge = math.tan((math.pi - touching) / 4.0)
+    points = np.stack([tip, left, centre - radius * seat.along, right])
+    return Ending(tip, points, np.array([0.0, bulge, bulge, 0.0]), True, seat.span_mm)
+
+
+def _arc(seat: Seat, half_angle: float) -> Ending | None:
+    beyond = abs(seat.slant) + math.radians(BEYOND_SLIT)
+    angle = max(half_angle, beyond)
+    if angle > math.radians(WIDEST_HALF_ANGLE):
+        return None
+    # Along the through cut, an end at this angle is ``gap tan(angle)`` away from the junction.
+    sides = np.minimum(angle, np.arctan(np.maximum(seat.reach_mm, 0.0) / seat.gap_mm))
+    if sides.min() < math.atan(SHORTEST_SIDE) or sides[int(seat.slant > 0.0)] < beyond:
+        return None
+    radius = seat.gap_mm / math.cos(float(sides.max()))
+    first, last = -float(sides[0]), float(sides[1])
+    points = np.stack([seat.at(turn, radius) for turn in (first, seat.slant, last)])
+    bulges = np.array([math.tan((seat.slant - first) / 4.0), math.tan((last - seat.slant) / 4.0), 0.0])
+    return Ending(points[1], points, bulges, False, radius * (math.sin(last) - math.sin(first)))
+
+
+def _bar(seat: Seat, half_length: float) -> Ending | None:
+    tip = seat.junction + seat.distance(seat.gap_mm) * seat.along
+    offset = seat.gap_mm * math.tan(seat.slant)
+    sides = np.minimum(half_length, seat.reach_mm + np.array([offset, -offset]))
+    if sides.min() < SHORTEST_SIDE * seat.span_mm or sides.sum() < 1.99 * BAR_SPANS[-1] * seat.span_mm:
+        return None
+    points = np.stack([tip - sides[0] * seat.side, tip, tip + sides[1] * seat.side])
+    return Ending(tip, points, None, False, float(sides.sum()))
+
+
+def _turned(vector: FloatArray, angle: float) -> FloatArray:
+    c, s = math.cos(angle), math.sin(angle)
+    turned: FloatArray = np.array([c * vector[0] - s * vector[1], s * vector[0] + c * vector[1]])
+    return turned

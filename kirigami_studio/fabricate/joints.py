@@ -1,0 +1,66 @@
+"""Where cuts meet on purpose: a slit ends on its relief hole, arc or bar, or, without a connector, on another slit."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import shapely
+from shapely.geometry import LineString
+
+from kirigami_studio.fabricate.bulges import MEASURED_CHORD_MM, flattened
+from kirigami_studio.fabricate.cut_plan import CutPath, CutPlan, Layer
+
+#: Coordinates are rounded to half of this (mm): what is nearer touches.
+TOUCH_MM = 2e-4
+
+#: Numbers of two cuts, the lower one first.
+Pair = tuple[int, int]
+
+
+def measured_line(path: CutPath) -> LineString:
+    """A path's centre line (mm), with chords for arcs so fine that widths can be measured on it."""
+    if path.bulges is None:
+        return LineString(path.travelled)
+    points = flattened(path.points, path.bulges, path.closed, MEASURED_CHORD_MM)
+    return LineString(np.concatenate([points, points[:1]]) if path.closed else points)
+
+
+def joined_pairs(plan: CutPlan, paths: Sequence[CutPath], lines: Sequence[LineString]) -> set[Pair]:
+    """Pairs of a plan's paths that meet on purpose: of one slit, or of two whose connector was removed."""
+    removed = plan.hinges.removed
+    through = plan.hinges.through
+    meant = {frozenset(pair) for pair in zip(plan.hinges.cut[removed].tolist(), through[removed].tolist(), strict=True)}
+    return {
+        pair
+        for pair in touching(lines)
+        if paths[pair[0]].cut == paths[pair[1]].cut or frozenset(paths[index].cut for index in pair) in meant
+    }
+
+
+def joint_count(plan: CutPlan) -> int:
+    """How many ends of a plan's cuts lie on another cut, the outline left out; all of them are meant."""
+    inner = [path for path in plan.paths if path.layer is not Layer.OUTLINE]
+    return len(ending_on_others([measured_line(path) for path in inner]))
+
+
+def touching(lines: Sequence[LineString]) -> set[Pair]:
+    """All pairs of lines (mm) that touch or cross."""
+    shapes = np.array(lines, dtype=object)
+    one, other = shapely.STRtree(shapes).query(shapes, "dwithin", TOUCH_MM)
+    return {(first, second) for first, second in zip(one.tolist(), other.tolist(), strict=True) if first < second}
+
+
+def ending_on_others(lines: Sequence[LineString]) -> list[Pair]:
+    """For every end of an open line that lies on another line, which two they are."""
+    both = np.array([[line.coords[0], line.coords[-1]] for line in lines]).reshape(-1, 2, 2)
+    # A ring of a file may miss its own first point by a rounding error.
+    open_lines = np.flatnonzero(np.linalg.norm(both[:, 1] - both[:, 0], axis=1) > TOUCH_MM)
+    if not open_lines.size:
+        return []
+    ends = both[open_lines].reshape(-1, 2)
+    end, line = shapely.STRtree(np.array(lines, dtype=object)).query(shapely.points(ends), "dwithin", TOUCH_MM)
+    owner = np.repeat(open_lines, 2)[end]
+    met = owner != line
+    ordered = np.sort(np.stack([owner[met], line[met]], axis=1), axis=1)
+    return [(int(first), int(second)) for first, second in ordered]

@@ -1,0 +1,132 @@
+"""Whatever the design, style, widths and kerf: the cut sheet is one piece and its connectors are as wide as asked."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from cut_sheets import bitten, connector_distances, covered_hinges, drawn_line, finished_pieces, mouths
+from hypothesis import assume, given
+from hypothesis import strategies as st
+from lattice_strategies import grids, ratio_fields
+from shapely.geometry import Polygon
+
+from kirigami_studio.fabricate.checks import check_plan
+from kirigami_studio.fabricate.cut_plan import CutPlan, Layer, plan_cuts
+from kirigami_studio.fabricate.joints import ending_on_others, touching
+from kirigami_studio.fabricate.material import default_material
+from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions
+from kirigami_studio.foundation.errors import FabricationError
+from kirigami_studio.lattice.deployment import deploy
+from kirigami_studio.lattice.ratio_field import RatioField
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Wish:
+    """What a plan is made from."""
+
+    field: RatioField
+    width_mm: float
+    connector_mm: float
+    kerf_mm: float
+    radius_mm: float
+    options: CutOptions
+    bite: float
+
+    def plan(self) -> CutPlan:
+        """The plan; an impossible wish is no example."""
+        design = deploy(self.field)
+        material = replace(default_material(), relief_radius_mm=self.radius_mm, min_ligament_mm=1e-3)
+        kept = bitten(design, mouths(design), self.bite) if self.bite else None
+        try:
+            return plan_cuts(
+                design, self.width_mm, self.connector_mm, self.kerf_mm, material, options=self.options, kept=kept
+            )
+        except FabricationError:
+            assume(False)
+            raise
+
+
+@st.composite
+def wishes(draw: st.DrawFn, trimmed: bool = False) -> Wish:
+    """Sheets of 8 to 30 mm a cell; connectors up to a seventh of that."""
+    field = draw(ratio_fields(grids(5), decades=0.5 if trimmed else 0.75))
+    cell = draw(st.floats(8.0, 30.0))
+    connector = draw(st.floats(0.05, 0.07 * cell))
+    kerf = draw(st.sampled_from([0.0, 0.02, 0.15, 0.4]))
+    options = CutOptions(
+        style=draw(st.sampled_from(list(ConnectorStyle))),
+        tabs=draw(st.integers(0, 4)),
+        hinge_mm=tuple((hinge, draw(st.floats(0.05, 0.07 * cell))) for hinge in (0, 5)),
+    )
+    bite = draw(st.floats(0.05, 0.2)) if trimmed else 0.0
+    return Wish(field, cell * (field.columns + 1), connector, kerf, draw(st.floats(0.03, 0.5)), options, bite)
+
+
+@given(wish=wishes())
+def test_that_connectors_are_as_wide_as_asked_and_the_sheet_is_one_piece(wish: Wish) -> None:
+    plan = wish.plan()
+    finished, there = connector_distances(plan), covered_hinges(plan)
+    error = finished - plan.hinges.requested_mm
+    assert np.abs(error[there]).max(initial=0.0) <= 1e-3
+    assert error.min() >= -1e-3
+    np.testing.assert_allclose(plan.hinges.finished_mm, finished, atol=5e-4)
+    assert check_plan(plan).pieces == 1
+    if plan.kerf_mm:
+        assert finished_pieces(plan, plan.kerf_mm) == 1
+
+
+@given(wish=wishes())
+def test_that_a_kerf_wider_than_every_gap_frees_every_panel(wish: Wish) -> None:
+    plan = wish.plan()
+    assume(plan.hinges.finished_mm.max() - plan.hinges.requested_mm.min() < 2.0)
+    report = check_plan(plan, kerf_mm=plan.kerf_mm + float(plan.hinges.finished_mm.max()) + 0.01)
+    assert report.pieces != 1 and not report.ok
+    assert report.min_connector_mm < 0.0
+
+
+@given(wish=wishes(trimmed=True))
+def test_that_trimmed_sheets_are_one_piece_with_no_connector_narrower_than_asked(wish: Wish) -> None:
+    plan = wish.plan()
+    assert (plan.hinges.finished_mm - plan.hinges.requested_mm).min() >= -1e-3
+    report = check_plan(plan)
+    assert report.pieces == 1
+    assert not any("narrower" in problem.text for problem in report.problems)
+
+
+@given(wish=st.one_of(wishes(), wishes(trimmed=True)))
+def test_that_plans_are_finite_above_the_origin_closed_where_they_must_be_and_cut_nothing_twice(wish: Wish) -> None:
+    plan = wish.plan()
+    points = np.concatenate([path.points for path in plan.paths])
+    assert np.all(np.isfinite(points)) and points.min(axis=0).tolist() == [0.0, 0.0]
+    assert check_plan(plan).overlap_mm < 1e-6
+    closed = {path.layer for path in plan.paths if path.closed}
+    assert closed <= {Layer.RELIEF, Layer.OUTLINE}
+    assert len(plan.on_layer(Layer.OUTLINE)) == max(1, plan.options.tabs)
+    layers = [path.layer for path in plan.paths]
+    assert layers == sorted(layers, key=list(Layer).index)
+    assert Polygon(plan.outline).is_valid
+
+
+@given(wish=wishes())
+def test_that_cuts_meet_only_where_a_slit_ends_on_its_own_shape(wish: Wish) -> None:
+    inner = [path for path in wish.plan().paths if path.layer is not Layer.OUTLINE]
+    lines = [drawn_line(path) for path in inner]
+    meeting = set(ending_on_others(lines))
+    assert touching(lines) == meeting
+    assert all(inner[one].cut == inner[other].cut for one, other in meeting)
+
+
+@given(wish=wishes())
+def test_that_finished_widths_and_panels_do_not_change_with_the_kerf(wish: Wish) -> None:
+    plans = [
+        replace(wish, kerf_mm=kerf, options=replace(wish.options, style=ConnectorStyle.STRAIGHT)).plan()
+        for kerf in (0.0, 0.05, 0.3)
+    ]
+    there = np.all([covered_hinges(plan) for plan in plans], axis=0)
+    for plan in plans:
+        np.testing.assert_allclose(plan.hinges.finished_mm[there], plan.hinges.requested_mm[there], atol=1e-3)
+        assert plan.size_mm == plans[0].size_mm
+    nominal = Polygon(plans[0].outline)
+    left, bottom, right, top = nominal.bounds
+    np.testing.assert_allclose((right - left, top - bottom), plans[0].size_mm, atol=2e-4)
