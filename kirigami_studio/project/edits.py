@@ -7,7 +7,9 @@ from dataclasses import dataclass, replace
 from typing import TypedDict, Unpack
 
 from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions, CutOrder
 from kirigami_studio.project.document import Document
+from kirigami_studio.project.settings import FabricationSettings
 from kirigami_studio.target.outline import Outline
 
 
@@ -50,6 +52,18 @@ class FabricationChange(TypedDict, total=False):
     material: str
     connector_mm: float | None
     kerf_mm: float | None
+    options: CutOptions
+    profile: str
+    dxf_version: str
+
+
+class OptionsChange(TypedDict, total=False):
+    """Fields of :class:`CutOptions` that hold for the whole sheet, which an edit may replace."""
+
+    style: ConnectorStyle
+    order: CutOrder
+    tabs: int
+    tab_mm: float
 
 
 _NAMES = {
@@ -66,6 +80,13 @@ _NAMES = {
     "material": "the material",
     "connector_mm": "the connector width",
     "kerf_mm": "the kerf",
+    "options": "the cuts",
+    "profile": "the machine profile",
+    "dxf_version": "the DXF version",
+    "style": "the connector style",
+    "order": "the cutting order",
+    "tabs": "the number of tabs",
+    "tab_mm": "the tab width",
 }
 
 
@@ -101,11 +122,13 @@ def set_candidates(
 ) -> Edit:
     """Take the designs of a finished run, best first, and choose the best.
 
-    ``target`` is the one that the run was made for, if the document should return to it.
+    ``target`` is the one that the run was made for, if the document should return to it.  Choices about single hinges
+    stay while the grid stays: on another one their numbers would name other places.
     """
     found = tuple(candidates)
     changed = replace(
         document,
+        fabrication=_without_strange_hinges(document, found),
         target=document.target if target is None else target,
         candidates=found,
         chosen=0 if found else None,
@@ -113,6 +136,15 @@ def set_candidates(
     )
     count = len(found)
     return Edit(f"Generate {count} design{'' if count == 1 else 's'}", changed)
+
+
+def _without_strange_hinges(document: Document, found: tuple[Candidate, ...]) -> FabricationSettings:
+    settings, options = document.fabrication, document.fabrication.options
+    before = {candidate.field.ratio.shape for candidate in document.candidates}
+    after = {candidate.field.ratio.shape for candidate in found}
+    if before == after or not (options.hinge_mm or options.removed):
+        return settings
+    return replace(settings, options=replace(options, hinge_mm=(), removed=()))
 
 
 def replace_candidate(document: Document, index: int, candidate: Candidate, gesture: str) -> Edit:
@@ -144,6 +176,19 @@ def set_fabrication(document: Document, **changes: Unpack[FabricationChange]) ->
     """
     changed = replace(document, fabrication=replace(document.fabrication, **changes))
     return Edit(_label(changes), changed, merge_key=_merge_key("fabrication", changes))
+
+
+def set_cut_options(document: Document, **changes: Unpack[OptionsChange]) -> Edit:
+    """Change what holds for all cuts of the sheet; dragging one number is one undo step.
+
+    Raises
+    ------
+    FabricationError
+        The number does not fit; see :class:`CutOptions`.
+    """
+    options = replace(document.fabrication.options, **changes)
+    changed = replace(document, fabrication=replace(document.fabrication, options=options))
+    return Edit(_label(changes), changed, merge_key=_merge_key("options", changes))
 
 
 def _label(changes: Mapping[str, object]) -> str:
