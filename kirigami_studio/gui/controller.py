@@ -18,7 +18,8 @@ from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.gui.comparing import Comparing
 from kirigami_studio.gui.cutting import Cutting
-from kirigami_studio.gui.design_run import DesignRun
+from kirigami_studio.gui.design_run import DesignRun, request_of
+from kirigami_studio.gui.fabricating import Fabricating
 from kirigami_studio.gui.finishing import Finishing
 from kirigami_studio.gui.jobs import steps
 from kirigami_studio.gui.jobs.board import Board, Ears
@@ -30,7 +31,6 @@ from kirigami_studio.gui.storing import Storing
 from kirigami_studio.gui.tracing import Tracing
 from kirigami_studio.gui.views.gallery_model import Entry
 from kirigami_studio.pipeline.events import Result
-from kirigami_studio.pipeline.request import Request
 from kirigami_studio.project import edits
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.edits import Edit, FabricationChange, SettingsChange
@@ -60,6 +60,7 @@ class Controller(QObject):
         self.run = DesignRun(self.board, shelf, self)
         self.finishing = Finishing(self.board, shelf, lambda: self.document, self)
         self.comparing = Comparing(self.board, shelf, self)
+        self.fabricating = Fabricating(lambda: self.document, self)
         self.cutting = Cutting(self.board, self)
         self.tracing = Tracing(self.board, self)
         self.reading = Reading(self.board, self.tracing, self)
@@ -74,7 +75,9 @@ class Controller(QObject):
         self.run.failed.connect(self._run_failed)
         self.showing.settled.connect(self._plan_soon)
         self.showing.stage_changed.connect(self._forget_stage)
-        self.finishing.edited.connect(self._apply)
+        for part in (self.finishing, self.fabricating):
+            part.edited.connect(self._apply)
+        self.fabricating.refused.connect(self._refuse)
         self.reading.read.connect(self._take_read)
         self.tracing.traced.connect(self._take_traced)
         self.tracing.refused.connect(self.status)
@@ -86,7 +89,7 @@ class Controller(QObject):
         for status in (self.finishing.status, self.cutting.status, self.storing.status):
             status.connect(self.status)
         parts = (self.showing, self.finishing, self.comparing, self.reading, self.storing)
-        for failed in (part.failed for part in parts):
+        for failed in (source.failed for source in parts):
             failed.connect(self._tell_failure)
 
     @property
@@ -190,10 +193,7 @@ class Controller(QObject):
 
     def change_fabrication(self, **changes: Unpack[FabricationChange]) -> None:
         """Change how the design is cut."""
-        try:
-            self._apply(edits.set_fabrication(self.document, **changes))
-        except KirigamiError as error:
-            self._refuse(error)
+        self.fabricating.change(**changes)
 
     def end_drag(self) -> None:
         """A number was typed or dragged to its end: the next change is an undo step of its own."""
@@ -203,25 +203,13 @@ class Controller(QObject):
 
     def generate(self) -> None:
         """Start a run for the present target and settings."""
-        document, settings = self.document, self.document.settings
         if self.running:
             return
-        if document.target is None:
+        if self.document.target is None:
             self.message.emit(Message("Choose or draw a target first, then press Generate.", Tone.HINT))
             return
         try:
-            request = Request(
-                document.target,
-                settings.grid,
-                settings.phi,
-                settings.k,
-                settings.seed,
-                settings.variant,
-                settings.steps,
-                settings.polish,
-                prefer=settings.prefer,
-                search=settings.search,
-            )
+            request = request_of(self.document.target, self.document.settings)
         except KirigamiError as error:
             self._refuse(error)
             return

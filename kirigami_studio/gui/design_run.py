@@ -15,6 +15,8 @@ from kirigami_studio.pipeline.events import CandidateFound, CandidateImproved, F
 from kirigami_studio.pipeline.provenance import provenance
 from kirigami_studio.pipeline.rank import rank_key
 from kirigami_studio.pipeline.request import Request
+from kirigami_studio.project.settings import DesignSettings
+from kirigami_studio.target.outline import Outline
 
 
 class DesignRun(QObject):
@@ -107,3 +109,25 @@ class DesignRun(QObject):
     def _over(self, completed: bool) -> None:
         self._number = None
         self.ended.emit(completed)
+
+
+def request_of(target: Outline, settings: DesignSettings) -> Request:
+    """The run that these settings ask for.
+
+    Raises
+    ------
+    KirigamiError
+        The settings do not go together.
+    """
+    return Request(
+        target,
+        settings.grid,
+        settings.phi,
+        settings.k,
+        settings.seed,
+        settings.variant,
+        settings.steps,
+        settings.polish,
+        prefer=settings.prefer,
+        search=settings.search,
+    )
