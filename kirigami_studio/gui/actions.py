@@ -87,6 +87,7 @@ COMMANDS = (
     Command(
         "before", "&Before polish", "&View", ("B",), "before", "Show the design as it was drawn", False, True, True
     ),
+    Command("cuts", "&Cuts", "&View", ("C",), "cuts", "Show the cut plan as it will burn", False, True),
     Command("fit", "Show &everything", "&View", ("0",), "fit", "Fit the layout into the view", gap=True),
     Command("theme", "&Dark theme", "&View", ("Ctrl+D",), "moon", "Switch between light and dark", True, gap=True),
     Command("guide", "&Guide", "&Help", ("F1",), "guide", "Open the user guide", True),

@@ -69,7 +69,8 @@ class Commands(QObject):
             "play": self._play,
             "to_flat": partial(bar.set_phi, math.pi),
             "to_target": self._to_target,
-            "fit": window.stage.view.fit,
+            "cuts": window.stage.cuts_switch.click,
+            "fit": window.stage.fit,
             "theme": lambda: window.set_theme(LIGHT if window.palette_.dark else DARK),
             "guide": self.show_guide,
         }
@@ -149,8 +150,8 @@ class Commands(QObject):
             focused.click()
         elif isinstance(focused, QComboBox):
             focused.showPopup()
-        elif self.window.stage.deployment.play.isEnabled():
-            self.window.stage.deployment.play.toggle()
+        elif self.window.stage.player.play.isEnabled():
+            self.window.stage.player.play.toggle()
 
     def _to_target(self) -> None:
         stage = self.controller.stage

@@ -1,7 +1,8 @@
 """Two palettes, one look: every colour of the window and of the drawings comes from here.
 
 Blue is the sheet, orange the target: the pair that people with any colour vision tell apart.  Faults are black on
-yellow and carry a shape of their own, so that no meaning rests on colour alone.
+yellow and carry a shape of their own, so that no meaning rests on colour alone.  Cuts are blue, orange, green-blue and
+black (the colours of Okabe and Ito), connectors five shades of purple from narrow to wide.
 """
 
 from __future__ import annotations
@@ -50,6 +51,12 @@ class Palette:
     extra: str
     fault: str
     fault_line: str
+    cut_sheet: str
+    slits: str
+    edge_slits: str
+    relief: str
+    current_cut: str
+    widths: tuple[str, ...]
 
     @property
     def dark(self) -> bool:
@@ -84,6 +91,12 @@ LIGHT = Palette(
     extra="#0c2f5e",
     fault="#ffd60a",
     fault_line="#14110a",
+    cut_sheet="#e9edf2",
+    slits="#0064a6",
+    edge_slits="#c95000",
+    relief="#008a66",
+    current_cut="#ffb000",
+    widths=("#4a0d67", "#73308f", "#9a58b3", "#bb85cf", "#d6b0e4"),
 )
 
 DARK = Palette(
@@ -114,6 +127,12 @@ DARK = Palette(
     extra="#cfe6ff",
     fault="#ffd60a",
     fault_line="#14110a",
+    cut_sheet="#262d35",
+    slits="#56b4e9",
+    edge_slits="#f09a3e",
+    relief="#2fc79d",
+    current_cut="#ffe14d",
+    widths=("#f6dcff", "#dfb2f2", "#c088da", "#9d63ba", "#7a4597"),
 )
 
 PALETTES = {palette.name: palette for palette in (LIGHT, DARK)}

@@ -7,6 +7,7 @@ from PySide6.QtGui import QAction
 
 from kirigami_studio.gui.commands import OVERLAY_ACTIONS, Commands
 from kirigami_studio.gui.controller import Controller
+from kirigami_studio.gui.jobs.steps import Planned
 from kirigami_studio.gui.messages import Tone
 from kirigami_studio.gui.shell import Shell
 from kirigami_studio.gui.views.gallery_model import Entry
@@ -50,12 +51,18 @@ class Wiring(QObject):
         window.run.cancel_wanted.connect(controller.cancel)
         window.gallery.view.chosen.connect(controller.choose)
         window.fabrication.changed.connect(lambda changes: controller.change_fabrication(**changes))
+        window.fabrication.options_changed.connect(lambda changes: controller.fabricating.change_options(**changes))
         window.fabrication.edited.connect(controller.end_drag)
         window.fabrication.export_wanted.connect(self.commands.export)
         window.stage.before_wanted.connect(controller.compare)
         window.stage.trim_wanted.connect(controller.trim)
         window.stage.switches_changed.connect(self._show_switches)
         window.stage.overlays_changed.connect(self._show_overlay_actions)
+        cuts = window.stage.cuts
+        cuts.width_wanted.connect(controller.fabricating.set_hinge_width)
+        cuts.remove_wanted.connect(controller.fabricating.remove_hinges)
+        cuts.reset_wanted.connect(controller.fabricating.reset_hinges)
+        cuts.edited.connect(controller.end_drag)
 
     def _connect_controller(self) -> None:
         window, controller = self.window, self.controller
@@ -68,8 +75,8 @@ class Wiring(QObject):
         controller.run.started.connect(self._show_run)
         controller.run.progressed.connect(window.run.show_progress)
         controller.run.ended.connect(self._end_run)
-        controller.cutting.planned.connect(window.fabrication.show_plan)
-        controller.cutting.refused.connect(window.fabrication.show_refusal)
+        controller.cutting.planned.connect(self._show_plan)
+        controller.cutting.refused.connect(self._show_refusal)
         controller.variants_known.connect(window.settings.set_variants)
         controller.message.connect(window.messages.add)
         controller.status.connect(window.says.setText)
@@ -134,6 +141,15 @@ class Wiring(QObject):
             facts.insert(2, f"trimmed IoU {100 * entry.candidate.trim.iou:.1f} %")
         self.window.facts.setText("   ·   ".join(facts))
 
+    def _show_plan(self, planned: Planned | None) -> None:
+        self.window.fabrication.show_plan(planned)
+        self.window.stage.cuts.show_plan(planned)
+        self.window.stage.refresh_header()
+
+    def _show_refusal(self, sentence: str) -> None:
+        self.window.fabrication.show_refusal(sentence)
+        self.window.stage.cuts.show_refusal(sentence)
+
     def _show_trimming(self, busy: bool) -> None:
         self.window.stage.show_trimming(busy)
         self.window.actions_["cancel"].setEnabled(busy or self.controller.running)
@@ -141,7 +157,7 @@ class Wiring(QObject):
     def _show_switches(self) -> None:
         """The header's switches have their actions in the menu, which show the same."""
         stage = self.window.stage
-        for name, button in (("before", stage.before), ("trim", stage.trim)):
+        for name, button in (("before", stage.before), ("trim", stage.trim), ("cuts", stage.cuts_switch)):
             action: QAction = self.window.actions_[name]
             action.setEnabled(button.isEnabled())
             action.setChecked(button.isChecked())
@@ -164,6 +180,7 @@ class Wiring(QObject):
         self.window.gallery.view.set_hint("Generating …", "The first designs appear in a moment.")
         self.window.stage.view.set_hint("generate", "Generating …", "The best design so far will be shown here.")
         self.window.fabrication.show_waiting()
+        self.window.stage.cuts.show_plan(None)
         self.window.actions_["cancel"].setEnabled(True)
         self.window.actions_["generate"].setEnabled(False)
         self.window.messages.dismiss(Tone.HINT, Tone.DONE)

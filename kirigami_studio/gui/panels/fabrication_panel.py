@@ -4,30 +4,29 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QSignalBlocker, QSize, Qt, Signal
-from PySide6.QtGui import QAction
+from PySide6.QtCore import QSignalBlocker, Qt, Signal
 from PySide6.QtWidgets import (
     QComboBox,
     QDoubleSpinBox,
     QGridLayout,
     QHBoxLayout,
     QLabel,
-    QMenu,
-    QPushButton,
     QSizePolicy,
-    QToolButton,
     QVBoxLayout,
     QWidget,
 )
 
 from kirigami_studio.fabricate.material import presets
 from kirigami_studio.gui import icons
-from kirigami_studio.gui.file_kinds import FILE_KINDS
-from kirigami_studio.gui.panels.card import Card, captioned, compact, muted_label, tool_button
+from kirigami_studio.gui.panels.card import Card, ScrolledWhenShort, captioned, compact, muted_label, tool_button
+from kirigami_studio.gui.panels.export_row import ExportRow
+from kirigami_studio.gui.panels.more_options import MoreOptions
+from kirigami_studio.gui.readable import UNKNOWN, readable_length, readable_range, readable_size
 from kirigami_studio.gui.theme import LIGHT, Palette
 from kirigami_studio.project.settings import FabricationSettings
 
 if TYPE_CHECKING:
+    from kirigami_studio.fabricate.cut_plan import CutPlan
     from kirigami_studio.gui.jobs.steps import Planned
 
 #: Field, label, lowest, highest, step (mm), decimals, tooltip.
@@ -52,6 +51,8 @@ LENGTHS = (
         "Full width of the cut, mm; the slits are shortened for it. 0 for a blade.",
     ),
 )
+#: Height (pixels) that unfolded numbers keep in a small window, where they scroll.
+LEAST_DETAILS = 150
 #: Key and label of the live numbers, in reading order.
 NUMBERS = (
     ("size", "Sheet"),
@@ -62,14 +63,12 @@ NUMBERS = (
     ("ligament", "Min. ligament"),
 )
 
-UNKNOWN = "\N{EN DASH}"
-TIMES = "\N{MULTIPLICATION SIGN}"
-
 
 class FabricationPanel(Card):
     """Reports changed fields by name and shows the plan that they lead to."""
 
     changed = Signal(dict)  #: field of FabricationSettings -> value
+    options_changed = Signal(dict)  #: field of CutOptions -> value
     edited = Signal()
     export_wanted = Signal(str)  #: extension
 
@@ -96,44 +95,18 @@ class FabricationPanel(Card):
         self.warnings.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
         self.warnings.setMinimumHeight(2 * self.warnings.fontMetrics().lineSpacing() + 2)
         self.warnings.setAlignment(Qt.AlignmentFlag.AlignTop)
-        self._build_export()
+        self.options = MoreOptions()
+        self.options.changed.connect(self.changed)
+        self.options.options_changed.connect(self.options_changed)
+        self.options.edited.connect(self.edited)
+        self.exports = ExportRow()
+        self.exports.export_wanted.connect(self.export_wanted)
+        self.export, self.more, self.kinds = self.exports.export, self.exports.more, self.exports.kinds
         self._build_fold()
         self._lay_out()
         self.body.addWidget(self.warnings)
-        self.body.addLayout(self._export_row())
+        self.body.addWidget(self.exports)
         self.show_plan(None)
-
-    def _build_export(self) -> None:
-        self.export = QPushButton("Export DXF")
-        self.export.setObjectName("primary")
-        self.export.setFocusPolicy(Qt.FocusPolicy.TabFocus)
-        self.export.setIconSize(QSize(18, 18))
-        self.export.setToolTip("Write the cut file in mm, DXF R2010, and check it (Ctrl+E)")
-        self.export.clicked.connect(lambda: self.export_wanted.emit(".dxf"))
-        self.more = QToolButton()
-        self.more.setObjectName("moreExports")
-        self.more.setFocusPolicy(Qt.FocusPolicy.TabFocus)
-        self.more.setToolTip("Export another kind of file: SVG, PDF, PNG, GIF")
-        self.more.setAccessibleName("Export another kind of file")
-        self.more.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)
-        menu = QMenu(self.more)
-        menu.setToolTipsVisible(True)
-        self.kinds: dict[str, QAction] = {}
-        for kind in FILE_KINDS:
-            action = menu.addAction(f"{kind.title} …")
-            action.setToolTip(kind.tip)
-            action.triggered.connect(lambda _=False, kind=kind: self.export_wanted.emit(kind.extension))
-            self.kinds[kind.extension] = action
-        self.more.setMenu(menu)
-
-    def _export_row(self) -> QHBoxLayout:
-        row = QHBoxLayout()
-        row.setSpacing(6)
-        row.addWidget(self.export, 1)
-        row.addWidget(self.more)
-        self.more.setFixedWidth(38)
-        self.more.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Ignored)
-        return row
 
     def _build_fold(self) -> None:
         """The button that folds the numbers away, and the summary that stands for them."""
@@ -164,7 +137,7 @@ class FabricationPanel(Card):
     def _set_folded(self, folded: bool) -> None:
         self._folded = folded
         self.fold.setToolTip("Show material, widths and cutting numbers." if folded else "Fold the numbers away.")
-        self.details.setVisible(not folded)
+        self.scrolled.setVisible(not folded)
         self._show_summary()
         self._show_warning()
         self._dress_fold()
@@ -183,7 +156,7 @@ class FabricationPanel(Card):
         box.setToolTip(tip)
         box.setAccessibleName(label.replace("&", "").replace(", mm", " in millimetres"))
         box.setKeyboardTracking(False)
-        compact(box, 92)
+        compact(box, 82)
         box.valueChanged.connect(lambda value: self.changed.emit({field: value}))
         box.editingFinished.connect(self.edited)
         return box
@@ -216,7 +189,9 @@ class FabricationPanel(Card):
             table.setColumnStretch(column, stretch)
         rows.addSpacing(2)
         rows.addLayout(table)
-        self.body.addWidget(self.details)
+        rows.addWidget(self.options)
+        self.scrolled = ScrolledWhenShort(self.details, LEAST_DETAILS)
+        self.body.addWidget(self.scrolled)
 
     def _take_material(self, index: int) -> None:
         """A new material brings its own connector and kerf."""
@@ -240,20 +215,22 @@ class FabricationPanel(Card):
         for field, value in own.items():
             with QSignalBlocker(self.lengths[field]):
                 self.lengths[field].setValue(value)
+        self.options.show_settings(settings)
+        self.exports.show_goal(self.options.profile.currentText(), settings.dxf_version)
 
     def show_plan(self, planned: Planned | None) -> None:
         """Show what the plan amounts to; None when there is no design."""
-        self._allow(cuts=planned is not None, pictures=planned is not None)
+        self.exports.allow(cuts=planned is not None, pictures=planned is not None)
         if planned is None:
             self._forget_numbers()
             self._warn("Choose a design to see its cut plan.", calm=True)
             return
         plan, report = planned.plan, planned.report
         texts = {
-            "size": f"{plan.size_mm[0]:.0f} {TIMES} {plan.size_mm[1]:.0f} mm",
+            "size": readable_size(*plan.size_mm),
             "slits": f"{len(plan.paths)}",
             "length": readable_length(plan.cut_length_mm),
-            "time": readable_time(plan.seconds_estimate),
+            "time": readable_range(*time_range(plan)),
             "pieces": f"{report.pieces}",
             "ligament": f"{report.min_ligament_mm:.2f} mm",
         }
@@ -283,16 +260,9 @@ class FabricationPanel(Card):
 
     def show_refusal(self, sentence: str) -> None:
         """Say why no plan can be made with these numbers."""
-        self._allow(cuts=False, pictures=True)
+        self.exports.allow(cuts=False, pictures=True)
         self._forget_numbers()
         self._warn(sentence, calm=False)
-
-    def _allow(self, cuts: bool, pictures: bool) -> None:
-        """Offer only what can be written: a picture needs a design, a cut file a plan."""
-        self.export.setEnabled(cuts)
-        self.more.setEnabled(cuts or pictures)
-        for kind in FILE_KINDS:
-            self.kinds[kind.extension].setEnabled(cuts if kind.cuts else pictures)
 
     def _forget_numbers(self) -> None:
         self._summaries = ("", "")
@@ -317,16 +287,11 @@ class FabricationPanel(Card):
     def set_palette(self, palette: Palette) -> None:
         """Draw in other colours."""
         self._palette = palette
-        self.more.setIcon(icons.icon("down", palette))
+        for part in (self.options, self.exports):
+            part.set_palette(palette)
         self._dress_fold()
-        self.export.setIcon(icons.icon("export", palette, palette.on_accent))
 
 
-def readable_length(mm: float) -> str:
-    """Millimetres up to a metre, then metres."""
-    return f"{mm:.0f} mm" if mm < 1000 else f"{mm / 1000:.2f} m"
-
-
-def readable_time(seconds: float) -> str:
-    """Seconds up to two minutes, then minutes."""
-    return f"{seconds:.0f} s" if seconds < 120 else f"{seconds / 60:.1f} min"
+def time_range(plan: CutPlan) -> tuple[float, float]:
+    """Shortest and longest time (s) that the job is expected to take."""
+    return plan.seconds_estimate, plan.seconds_estimate

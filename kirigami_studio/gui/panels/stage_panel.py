@@ -1,14 +1,16 @@
-"""The chosen design, large: layout view, overlays, before and after, trim, deployment."""
+"""The chosen design, large: layout or cuts, overlays, before and after, trim, deployment."""
 
 from __future__ import annotations
 
 from PySide6.QtCore import QSignalBlocker, Signal
 from PySide6.QtGui import QResizeEvent
-from PySide6.QtWidgets import QToolButton, QWidget
+from PySide6.QtWidgets import QStackedWidget, QToolButton, QVBoxLayout, QWidget
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.gui import icons
 from kirigami_studio.gui.panels.card import INSET, Card, FittingLabel, tool_button
+from kirigami_studio.gui.panels.cut_bar import CutBar
+from kirigami_studio.gui.panels.cuts_page import CutsPage
 from kirigami_studio.gui.panels.deployment_bar import DeploymentBar
 from kirigami_studio.gui.theme import Palette
 from kirigami_studio.gui.views.gallery_model import Entry, described
@@ -30,6 +32,7 @@ NEVER_DRAWN = "Before polish (B). Nothing to compare: this design was not drawn 
 TRIM = "Trim to target (Ctrl+T). Cuts the edge panels along the target; every hinge keeps its material."
 UNTRIM = "Trim to target (Ctrl+T). Press again to bring back what was cut off."
 TRIMMING = "Trim to target: at work. Press again, or Esc, to stop."
+CUTS = "Cuts: show the cut plan as it will burn (C)."
 #: Pixels between the title and the numbers at least.
 GAP = 12
 
@@ -40,7 +43,7 @@ class StagePanel(Card):
     overlays_changed = Signal(object)
     before_wanted = Signal(bool)  #: whether the drawn state is to be shown
     trim_wanted = Signal(bool)
-    switches_changed = Signal()  #: the state of :attr:`before` or :attr:`trim`
+    switches_changed = Signal()  #: the state of :attr:`before`, :attr:`trim` or :attr:`cuts_switch`
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__("Layout", parent)
@@ -51,16 +54,25 @@ class StagePanel(Card):
         self._trimmable, self._trimming = True, False
         self.view = LayoutView()
         self.deployment = DeploymentBar()
+        self.cuts = CutsPage()
         self.numbers = FittingLabel()
         self.header.addWidget(self.numbers)
         self.header.addSpacing(8)
+        self.cuts_switch = tool_button("cuts", CUTS, checkable=True)
+        self.cuts_switch.toggled.connect(self._toggle_cuts)
         self.before = tool_button("before", BEFORE, checkable=True)
         self.before.toggled.connect(self._toggle_before)
         self.trim = tool_button("trim", TRIM, checkable=True)
         self.trim.clicked.connect(self.trim_wanted)
-        for switch in (self.before, self.trim):
+        for switch in (self.cuts_switch, self.before, self.trim):
             self.header.addWidget(switch)
         self.header.addSpacing(6)
+        self._add_overlays()
+        self._add_pages()
+        self.deployment.phi_changed.connect(self.view.set_phi)
+
+    def _add_overlays(self) -> None:
+        """The switches at the right of the header: what is drawn over the layout, or over the cuts."""
         self.toggles: dict[Overlay, QToolButton] = {}
         for overlay, _, tip in OVERLAYS:
             button = tool_button(f"show{overlay.value.capitalize()}", tip, checkable=True)
@@ -68,12 +80,55 @@ class StagePanel(Card):
             button.toggled.connect(self._tell_overlays)
             self.toggles[overlay] = button
             self.header.addWidget(button)
+        for button in self.cuts.toggles.values():
+            self.header.addWidget(button)
+            button.hide()
         self.whole = tool_button("fit", "Show everything (0).")
-        self.whole.clicked.connect(self.view.fit)
+        self.whole.clicked.connect(self.fit)
         self.header.addWidget(self.whole)
-        self.body.addWidget(self.view, 1)
-        self.body.addWidget(self.deployment)
-        self.deployment.phi_changed.connect(self.view.set_phi)
+
+    def _add_pages(self) -> None:
+        layout = QWidget()
+        layout.setObjectName("plain")
+        column = QVBoxLayout(layout)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.setSpacing(8)
+        column.addWidget(self.view, 1)
+        column.addWidget(self.deployment)
+        self.pages = QStackedWidget()
+        self.pages.addWidget(layout)
+        self.pages.addWidget(self.cuts)
+        self.body.addWidget(self.pages, 1)
+
+    @property
+    def showing_cuts(self) -> bool:
+        """Whether the cut plan is shown instead of the layout."""
+        return self.cuts_switch.isChecked()
+
+    @property
+    def player(self) -> DeploymentBar | CutBar:
+        """What Space plays now."""
+        return self.cuts.bar if self.showing_cuts else self.deployment
+
+    def fit(self) -> None:
+        """Show everything of what is in sight."""
+        (self.cuts.view if self.showing_cuts else self.view).fit()
+
+    def refresh_header(self) -> None:
+        """The cut plan has changed."""
+        self._show_title()
+
+    def _toggle_cuts(self, on: bool) -> None:
+        for bar in (self.deployment, self.cuts.bar):
+            bar.play.setChecked(False)
+        self.pages.setCurrentIndex(1 if on else 0)
+        for button in (self.before, *self.toggles.values()):
+            button.setVisible(not on)
+        for button in self.cuts.toggles.values():
+            button.setVisible(on)
+        (self.cuts.view if on else self.view).setFocus()
+        self._show_title()
+        self.switches_changed.emit()
 
     @property
     def showing_before(self) -> bool:
@@ -158,6 +213,8 @@ class StagePanel(Card):
 
     def _texts(self) -> tuple[str, ...]:
         """What the header says, longest first."""
+        if self.showing_cuts:
+            return self.cuts.summary
         if self._entry is None:
             return ()
         score, trim = self._entry.candidate.score, self._entry.candidate.trim
@@ -172,7 +229,8 @@ class StagePanel(Card):
 
     def _fit_numbers(self) -> None:
         """Put the longest text that fits into the header; none fits beside many buttons in a narrow stage."""
-        buttons = [self.before, self.trim, *self.toggles.values(), self.whole]
+        overlays = self.cuts.toggles.values() if self.showing_cuts else (self.before, *self.toggles.values())
+        buttons = [self.cuts_switch, self.trim, *overlays, self.whole]
         used = sum(button.sizeHint().width() + self.header.spacing() for button in buttons) + 14
         room = self.width() - 2 * INSET - used - self.title.sizeHint().width() - GAP
         fits = self.numbers.fit(room)
@@ -188,9 +246,15 @@ class StagePanel(Card):
         """Draw in other colours."""
         self.view.set_palette(palette)
         self.deployment.set_palette(palette)
+        self.cuts.set_palette(palette)
         for overlay, icon, _ in OVERLAYS:
             self.toggles[overlay].setIcon(icons.icon(icon, palette))
-        for button, icon in ((self.before, "before"), (self.trim, "trim"), (self.whole, "fit")):
+        for button, icon in (
+            (self.cuts_switch, "cuts"),
+            (self.before, "before"),
+            (self.trim, "trim"),
+            (self.whole, "fit"),
+        ):
             button.setIcon(icons.icon(icon, palette))
 
     def _tell_overlays(self) -> None:

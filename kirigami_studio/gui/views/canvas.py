@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
 from PySide6.QtCore import QPointF, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QColor, QFont, QMouseEvent, QPainter, QPaintEvent, QPen, QPixmap, QResizeEvent, QWheelEvent
 from PySide6.QtWidgets import QSizePolicy, QWidget
@@ -44,6 +45,10 @@ class Canvas(QWidget):
         """World box to be shown; None when there is nothing yet."""
         return None
 
+    def scene_box(self) -> QRectF:
+        """Pixels in which everything is shown; the rest is for notes."""
+        return QRectF(self.rect())
+
     def paint_scene(self, painter: QPainter, frame: Frame) -> None:
         """Draw the scene."""
 
@@ -66,8 +71,9 @@ class Canvas(QWidget):
         bounds = self.scene_bounds()
         if bounds is None:
             return None
-        fitted = Frame.fitting(bounds, QRectF(self.rect()), min(MARGIN, 0.06 * min(self.width(), self.height())))
-        return fitted.zoomed(self._zoom, QRectF(self.rect()).center()).moved(self._shift.x(), self._shift.y())
+        box = self.scene_box()
+        fitted = Frame.fitting(bounds, box, min(MARGIN, 0.06 * min(self.width(), self.height())))
+        return fitted.zoomed(self._zoom, box.center()).moved(self._shift.x(), self._shift.y())
 
     def fit(self) -> None:
         """Show everything again."""
@@ -79,12 +85,22 @@ class Canvas(QWidget):
         """Zoom, keeping the pixel ``about`` (the middle unless given) in place."""
         wanted = min(max(self._zoom * factor, SMALLEST_ZOOM), LARGEST_ZOOM)
         factor = wanted / self._zoom
-        middle = QRectF(self.rect()).center()
+        middle = self.scene_box().center()
         offset = (about or middle) - middle
         self._shift = offset + (self._shift - offset) * factor
         self._zoom = wanted
         self.zoom_changed.emit(self._zoom)
         self.update()
+
+    def zoom_to(self, place: tuple[float, float], zoom: float) -> None:
+        """Bring a place of the world to the middle, enlarged ``zoom`` times over the fitted picture."""
+        self.fit()
+        self.zoom(zoom)
+        frame = self.frame()
+        if frame is not None:
+            x, y = frame.to_pixels(np.array(place)).tolist()
+            self._shift += self.scene_box().center() - QPointF(x, y)
+            self.update()
 
     # events --------------------------------------------------------------------------------------------------------
 

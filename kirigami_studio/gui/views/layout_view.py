@@ -7,11 +7,11 @@ from enum import Enum
 
 import numpy as np
 import numpy.typing as npt
-from PySide6.QtCore import QRectF, Qt
-from PySide6.QtGui import QColor, QPainter
+from PySide6.QtGui import QPainter
 from PySide6.QtWidgets import QWidget
 
 from kirigami_studio.evaluate.score import Score
+from kirigami_studio.gui.scene.chips import Chip, legend_boxes, paint_caption, paint_legend
 from kirigami_studio.gui.scene.fault_items import Fault, contact_place, faults, inverted_panels, paint_fault
 from kirigami_studio.gui.scene.frame import Bounds, Frame
 from kirigami_studio.gui.scene.layout_items import paint_panels, turning_left
@@ -159,47 +159,14 @@ class LayoutView(Canvas):
     def paint_notes(self, painter: QPainter) -> None:
         if self._design is None:
             return
-        lines = []
+        chips = []
         if self._areas is not None:
-            lines.append((self.palette_.missing, f"missing {100 * self._areas.missing_share:.1f} %"))
-            lines.append((self.palette_.extra, f"extra {100 * self._areas.extra_share:.1f} %"))
+            chips.append(Chip(self.palette_.missing, f"missing {100 * self._areas.missing_share:.1f} %"))
+            chips.append(Chip(self.palette_.extra, f"extra {100 * self._areas.extra_share:.1f} %"))
         if self._faults:
             count = len(self._faults)
-            lines.append((self.palette_.fault, "1 fault" if count == 1 else f"{count} faults"))
-        self._paint_legend(painter, lines)
+            chips.append(Chip(self.palette_.fault, "1 fault" if count == 1 else f"{count} faults"))
+        boxes = legend_boxes(chips, painter.fontMetrics(), self.width(), self.height())
+        paint_legend(painter, chips, boxes, self.palette_)
         if self._caption:
-            self._paint_caption(painter)
-
-    def _paint_caption(self, painter: QPainter) -> None:
-        metrics = painter.fontMetrics()
-        width = min(metrics.horizontalAdvance(self._caption) + 20.0, self.width() - 20.0)
-        box = QRectF(10.0, 10.0, width, metrics.height() + 10.0)
-        self._paint_chip(painter, box)
-        text = metrics.elidedText(self._caption, Qt.TextElideMode.ElideRight, round(width - 18.0))
-        painter.setPen(QColor(self.palette_.text))
-        painter.drawText(box, int(Qt.AlignmentFlag.AlignCenter), text)
-
-    def _paint_chip(self, painter: QPainter, box: QRectF) -> None:
-        back = QColor(self.palette_.surface)
-        back.setAlpha(225)
-        painter.setPen(QColor(self.palette_.border))
-        painter.setBrush(back)
-        painter.drawRoundedRect(box, 6, 6)
-
-    def _paint_legend(self, painter: QPainter, lines: list[tuple[str, str]]) -> None:
-        """Small chips in the lower left corner: a swatch and a number."""
-        metrics = painter.fontMetrics()
-        height = metrics.height() + 10.0
-        x, y = 14.0, self.height() - height - 14.0
-        for colour, text in lines:
-            width = metrics.horizontalAdvance(text) + 36.0
-            if x > 14.0 and x + width > self.width() - 14.0:
-                x, y = 14.0, y - height - 6.0
-            box = QRectF(x, y, width, height)
-            self._paint_chip(painter, box)
-            painter.setPen(Qt.PenStyle.NoPen)
-            painter.setBrush(QColor(colour))
-            painter.drawRoundedRect(QRectF(x + 10, box.center().y() - 5, 10, 10), 2, 2)
-            painter.setPen(QColor(self.palette_.text))
-            painter.drawText(box.adjusted(27, 0, 0, 0), int(Qt.AlignmentFlag.AlignVCenter), text)
-            x += width + 8.0
+            paint_caption(painter, self._caption, self.width(), self.palette_)

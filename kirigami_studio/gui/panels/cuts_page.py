@@ -1,0 +1,121 @@
+"""The second view of the stage: the cuts as they will burn, what is wrong with them, and their connectors."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import Signal
+from PySide6.QtWidgets import QToolButton, QVBoxLayout, QWidget
+
+from kirigami_studio.gui import icons
+from kirigami_studio.gui.panels.card import tool_button
+from kirigami_studio.gui.panels.cut_bar import CutBar
+from kirigami_studio.gui.panels.hinge_bar import HingeBar
+from kirigami_studio.gui.panels.problem_list import ProblemList
+from kirigami_studio.gui.readable import readable_size
+from kirigami_studio.gui.scene.cut_steps import cut_steps
+from kirigami_studio.gui.theme import Palette
+from kirigami_studio.gui.views.cut_view import CutOverlay, CutView
+
+if TYPE_CHECKING:
+    from kirigami_studio.fabricate.cut_plan import CutPlan
+    from kirigami_studio.gui.jobs.steps import Planned
+
+OVERLAYS = (
+    (CutOverlay.TRAVEL, "travel", "Show the moves between cuts, dashed."),
+    (
+        CutOverlay.CONNECTORS,
+        "connector",
+        "Show the connectors. Dark: narrow, light: wide (in the dark theme reversed).",
+    ),
+    (CutOverlay.PROBLEMS, "fault", "Mark what the cut check found."),
+)
+
+
+class CutsPage(QWidget):
+    """Shows one plan and reports what is wanted of its connectors."""
+
+    width_wanted = Signal(object, float)  #: frozenset of hinges, mm
+    remove_wanted = Signal(object)  #: frozenset of hinges
+    reset_wanted = Signal(object)  #: frozenset of hinges
+    edited = Signal()
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._plan: CutPlan | None = None
+        self.view = CutView()
+        self.problems = ProblemList()
+        self.hinges = HingeBar()
+        self.bar = CutBar()
+        self.toggles: dict[CutOverlay, QToolButton] = {}
+        for overlay, _, tip in OVERLAYS:
+            button = tool_button(f"cut{overlay.value.capitalize()}", tip, checkable=True)
+            button.setChecked(overlay in self.view.overlays)
+            button.toggled.connect(self._tell_overlays)
+            self.toggles[overlay] = button
+        column = QVBoxLayout(self)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.setSpacing(8)
+        column.addWidget(self.view, 1)
+        for part in (self.problems, self.hinges, self.bar):
+            column.addWidget(part)
+        self._connect()
+
+    def _connect(self) -> None:
+        view, hinges = self.view, self.hinges
+        self.bar.step_changed.connect(view.show_step)
+        self.problems.picked.connect(view.go_to)
+        view.problem_picked.connect(self._take_picked)
+        view.selection_changed.connect(lambda chosen: hinges.show_selection(self._plan, chosen))
+        view.typed.connect(hinges.type_width)
+        view.remove_wanted.connect(lambda: self.remove_wanted.emit(view.selected))
+        hinges.selected.connect(self._take_rule)
+        hinges.width_wanted.connect(lambda width: self.width_wanted.emit(view.selected, width))
+        hinges.remove_wanted.connect(lambda: self.remove_wanted.emit(view.selected))
+        hinges.reset_wanted.connect(lambda: self.reset_wanted.emit(view.selected))
+        hinges.edited.connect(self.edited)
+
+    @property
+    def summary(self) -> tuple[str, ...]:
+        """What the header says, longest first."""
+        if self._plan is None:
+            return ()
+        size, count = readable_size(*self._plan.size_mm), len(self._plan.paths)
+        kerf = f"kerf {self._plan.kerf_mm:g} mm"
+        return f"{size}  ·  {count} cuts  ·  {kerf}", f"{size}  ·  {kerf}", size
+
+    def show_plan(self, planned: Planned | None) -> None:
+        """Show another plan, or the empty state; a new picture of one sheet keeps its place."""
+        plan = None if planned is None else planned.plan
+        problems = () if planned is None else planned.report.problems
+        new_sheet = self._plan is None or plan is None or self._plan.size_mm != plan.size_mm
+        self._plan = plan
+        self.view.set_caption("")
+        self.view.show_plan(plan, problems)
+        self.problems.show_problems(problems)
+        self.hinges.show_selection(plan, self.view.selected)
+        self.bar.set_steps(None if plan is None else cut_steps(plan))
+        if new_sheet:
+            self.view.fit()
+
+    def show_refusal(self, sentence: str) -> None:
+        """There is no plan for the present numbers; the last one stays in sight, and says so."""
+        self.view.set_caption(f"Not the present numbers: {sentence}" if self._plan is not None else "")
+
+    def set_palette(self, palette: Palette) -> None:
+        """Draw in other colours."""
+        for part in (self.view, self.problems, self.hinges, self.bar):
+            part.set_palette(palette)
+        for overlay, icon, _ in OVERLAYS:
+            self.toggles[overlay].setIcon(icons.icon(icon, palette))
+
+    def _take_picked(self, problem: int) -> None:
+        self.problems.show_picked(problem)
+        self.view.go_to(problem)
+
+    def _take_rule(self, hinges: frozenset[int]) -> None:
+        self.toggles[CutOverlay.CONNECTORS].setChecked(True)
+        self.view.gestures.select(hinges)
+
+    def _tell_overlays(self) -> None:
+        self.view.set_overlays(frozenset(overlay for overlay, one in self.toggles.items() if one.isChecked()))

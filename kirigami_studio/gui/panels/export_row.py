@@ -1,0 +1,63 @@
+"""The button that writes the cut file, and the menu of other kinds."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import QSize, Qt, Signal
+from PySide6.QtGui import QAction
+from PySide6.QtWidgets import QHBoxLayout, QMenu, QPushButton, QSizePolicy, QToolButton, QWidget
+
+from kirigami_studio.gui import icons
+from kirigami_studio.gui.file_kinds import FILE_KINDS
+from kirigami_studio.gui.theme import Palette
+
+
+class ExportRow(QWidget):
+    """Reports which kind of file is wanted."""
+
+    export_wanted = Signal(str)  #: extension
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.export = QPushButton("Export DXF")
+        self.export.setObjectName("primary")
+        self.export.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+        self.export.setIconSize(QSize(18, 18))
+        self.export.clicked.connect(lambda: self.export_wanted.emit(".dxf"))
+        self.more = QToolButton()
+        self.more.setObjectName("moreExports")
+        self.more.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+        self.more.setToolTip("Export another kind of file: SVG, PDF, PNG, GIF")
+        self.more.setAccessibleName("Export another kind of file")
+        self.more.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)
+        self.menu = QMenu(self.more)
+        self.menu.setToolTipsVisible(True)
+        self.kinds: dict[str, QAction] = {}
+        for kind in FILE_KINDS:
+            action = self.menu.addAction(f"{kind.title} …")
+            action.setToolTip(kind.tip)
+            action.triggered.connect(lambda _=False, kind=kind: self.export_wanted.emit(kind.extension))
+            self.kinds[kind.extension] = action
+        self.more.setMenu(self.menu)
+        row = QHBoxLayout(self)
+        row.setContentsMargins(0, 0, 0, 0)
+        row.setSpacing(6)
+        row.addWidget(self.export, 1)
+        row.addWidget(self.more)
+        self.more.setFixedWidth(38)
+        self.more.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Ignored)
+
+    def show_goal(self, profile: str, version: str) -> None:
+        """Say in the tooltip what the cut file is written for."""
+        self.export.setToolTip(f"Write the cut file in mm, DXF {version}, and check it (Ctrl+E).\nFor: {profile}.")
+
+    def allow(self, cuts: bool, pictures: bool) -> None:
+        """Offer only what can be written: a picture needs a design, a cut file a plan."""
+        self.export.setEnabled(cuts)
+        self.more.setEnabled(cuts or pictures)
+        for kind in FILE_KINDS:
+            self.kinds[kind.extension].setEnabled(cuts if kind.cuts else pictures)
+
+    def set_palette(self, palette: Palette) -> None:
+        """Draw in other colours."""
+        self.more.setIcon(icons.icon("down", palette))
+        self.export.setIcon(icons.icon("export", palette, palette.on_accent))

@@ -1,0 +1,128 @@
+"""What may be done to the selected connectors: a width of their own, cut through, back to the usual."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import QSignalBlocker, Qt, Signal
+from PySide6.QtGui import QKeyEvent, QResizeEvent
+from PySide6.QtWidgets import QDoubleSpinBox, QHBoxLayout, QMenu, QToolButton, QWidget
+
+from kirigami_studio.fabricate.cut_plan import CutPlan
+from kirigami_studio.gui import icons
+from kirigami_studio.gui.panels.card import FittingLabel, tool_button
+from kirigami_studio.gui.scene.hinge_rules import RULES
+from kirigami_studio.gui.theme import Palette
+
+WIDTH_TIP = "Finished width of the selected connectors, mm (0.02 to 20)."
+
+
+class HingeBar(QWidget):
+    """Shows how many connectors are selected and reports what is wanted of them."""
+
+    selected = Signal(object)  #: frozenset of int, by a rule
+    width_wanted = Signal(float)  #: mm
+    remove_wanted = Signal()
+    reset_wanted = Signal()
+    edited = Signal()  #: the number was left
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._plan: CutPlan | None = None
+        self.rules = QToolButton()
+        self.rules.setObjectName("hingeRules")
+        self.rules.setText("Select \N{BLACK DOWN-POINTING SMALL TRIANGLE}")
+        self.rules.setToolTip("Select connectors by a rule, or click them in the drawing.")
+        self.rules.setAccessibleName("Select connectors by a rule")
+        self.rules.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+        self.rules.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)
+        menu = QMenu(self.rules)
+        menu.setToolTipsVisible(True)
+        self.choices = []
+        for text, tip, rule in RULES:
+            action = menu.addAction(text)
+            action.setToolTip(tip)
+            action.triggered.connect(lambda _=False, rule=rule: self._apply(rule))
+            self.choices.append(action)
+        self.rules.setMenu(menu)
+        self.says = FittingLabel()
+        self.width_mm = QDoubleSpinBox()
+        self.width_mm.setObjectName("hingeWidth")
+        self.width_mm.setRange(0.02, 20.0)
+        self.width_mm.setSingleStep(0.05)
+        self.width_mm.setDecimals(3)
+        self.width_mm.setSuffix(" mm")
+        self.width_mm.setKeyboardTracking(False)
+        self.width_mm.setToolTip(WIDTH_TIP)
+        self.width_mm.setAccessibleName("Width of the selected connectors in millimetres")
+        self.width_mm.setFixedWidth(108)
+        self.width_mm.lineEdit().setTextMargins(6, 0, 0, 0)
+        self.remove = tool_button("removeHinges", "Cut through: leave no connector here (Delete).")
+        self.reset = tool_button("resetHinges", "Usual width: give the selected connectors the sheet's width again.")
+        self._lay_out()
+        self.width_mm.valueChanged.connect(self.width_wanted)
+        self.width_mm.editingFinished.connect(self.edited)
+        self.remove.clicked.connect(self.remove_wanted)
+        self.reset.clicked.connect(self.reset_wanted)
+        self.show_selection(None, frozenset())
+
+    def _lay_out(self) -> None:
+        row = QHBoxLayout(self)
+        row.setContentsMargins(0, 0, 0, 0)
+        row.setSpacing(6)
+        row.addWidget(self.rules)
+        row.addWidget(self.says)
+        row.addStretch(1)
+        for part in (self.width_mm, self.remove, self.reset):
+            row.addWidget(part)
+
+    def show_selection(self, plan: CutPlan | None, hinges: frozenset[int]) -> None:
+        """Show what is selected; the number is what these connectors were asked to be."""
+        self._plan = plan
+        self.rules.setEnabled(plan is not None)
+        for part in (self.width_mm, self.remove, self.reset):
+            part.setEnabled(bool(hinges) and plan is not None)
+        self.says.set_texts(*_told(hinges))
+        self._fit()
+        if plan is not None and hinges:
+            asked = plan.hinges.requested_mm[sorted(hinges)]
+            with QSignalBlocker(self.width_mm):
+                self.width_mm.setValue(float(asked[0]))
+            own = {hinge for hinge, _ in plan.options.hinge_mm} | set(plan.options.removed)
+            self.reset.setEnabled(bool(own & hinges))
+
+    def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802 - Qt's name
+        super().resizeEvent(event)
+        self._fit()
+
+    def _fit(self) -> None:
+        """Say what is selected in as many words as there is room for."""
+        others = (self.rules, self.width_mm, self.remove, self.reset)
+        self.says.fit(self.width() - sum(part.sizeHint().width() + 6 for part in others) - 8)
+
+    def set_palette(self, palette: Palette) -> None:
+        """Draw in other colours."""
+        self.remove.setIcon(icons.icon("sever", palette))
+        self.reset.setIcon(icons.icon("reset", palette))
+
+    def type_width(self, letter: str) -> None:
+        """Start typing a width with this letter."""
+        self.width_mm.setFocus(Qt.FocusReason.ShortcutFocusReason)
+        self.width_mm.lineEdit().setText(letter)
+
+    def keyPressEvent(self, event: QKeyEvent) -> None:  # noqa: N802 - Qt's name
+        """Enter in the number field is for the number, not for the window."""
+        if event.key() in (Qt.Key.Key_Return, Qt.Key.Key_Enter):
+            event.accept()
+        else:
+            super().keyPressEvent(event)
+
+    def _apply(self, rule: object) -> None:
+        if self._plan is not None and callable(rule):
+            self.selected.emit(rule(self._plan))
+
+
+def _told(hinges: frozenset[int]) -> tuple[str, ...]:
+    if not hinges:
+        return ("No connector selected", "None")
+    if len(hinges) == 1:
+        return (f"Connector {min(hinges)}", f"{min(hinges)}")
+    return (f"{len(hinges)} connectors", f"{len(hinges)}")

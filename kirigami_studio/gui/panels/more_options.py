@@ -1,0 +1,156 @@
+"""Choices about the cuts that most sheets leave as they are: connector style, order, tabs, what files are for."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import QSignalBlocker, Qt, Signal
+from PySide6.QtWidgets import QComboBox, QDoubleSpinBox, QGridLayout, QSizePolicy, QSpinBox, QVBoxLayout, QWidget
+
+from kirigami_studio.export.profile import PROFILES
+from kirigami_studio.fabricate.options import MOST_TABS, ConnectorStyle, CutOrder
+from kirigami_studio.gui import icons
+from kirigami_studio.gui.panels.card import captioned, compact, tool_button
+from kirigami_studio.gui.theme import LIGHT, Palette
+from kirigami_studio.project.settings import FabricationSettings
+
+TOOLTIP = Qt.ItemDataRole.ToolTipRole
+#: Value, label, what it means.
+STYLES = (
+    (ConnectorStyle.STRAIGHT, "Straight", "The slit ends in a plain tip."),
+    (ConnectorStyle.ROUND, "Round", "A round hole at the slit's end takes the stress off the tip."),
+    (ConnectorStyle.TEARDROP, "Teardrop", "A drop-shaped hole at the slit's end: round, without a step."),
+    (ConnectorStyle.ARC, "Arc", "A short arc across the slit's end guides the connector."),
+    (ConnectorStyle.DOUBLE, "Double", "Two narrow connectors side by side that twist like a hinge."),
+)
+ORDERS = (
+    (CutOrder.SHORTEST, "Shortest way", "As little travel as can be found."),
+    (CutOrder.ROWS, "Row by row", "Rows from one side to the other."),
+    (CutOrder.INSIDE_OUT, "Inside out", "From the middle outwards: the sheet stays flat longest."),
+    (CutOrder.SPREAD, "Spread", "Far apart one after the other, to spread the heat."),
+)
+VERSIONS = (
+    ("R2010", "R2010", "The usual choice: holds the unit mm and light polylines."),
+    ("R12", "R12", "For old programs. Holds no unit: import it as mm."),
+)
+PROFILE_TIP = "Machine profile: how colours and layers of cut files are arranged for your machine's program."
+
+
+class MoreOptions(QWidget):
+    """Reports each changed field by name; folded away until asked for."""
+
+    options_changed = Signal(dict)  #: field of CutOptions -> value
+    changed = Signal(dict)  #: field of FabricationSettings -> value
+    edited = Signal()  #: a number was left
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._palette: Palette = LIGHT
+        self.fold = tool_button("moreOptions", "More options: connector style, order, tabs, machine, DXF version.")
+        self.fold.setText("More options")
+        self.fold.setToolButtonStyle(Qt.ToolButtonStyle.ToolButtonTextBesideIcon)
+        self.fold.setCheckable(True)
+        self.style_ = _choice("connectorStyle", "Connector style", STYLES)
+        self.order = _choice("cutOrder", "Cutting order", ORDERS)
+        self.profile = _choice(
+            "machineProfile", "Machine profile", tuple((key, one.name, one.note) for key, one in PROFILES.items())
+        )
+        self.profile.setToolTip(PROFILE_TIP)
+        self.dxf_version = _choice("dxfVersion", "DXF version", VERSIONS)
+        self.tabs = QSpinBox()
+        self.tabs.setObjectName("tabs")
+        self.tabs.setRange(0, MOST_TABS)
+        self.tabs.setSpecialValueText("None")
+        self.tabs.setAccessibleName("Number of tabs")
+        self.tabs.setToolTip(
+            f"Uncut places of the outline that hold the sheet until it is taken out (0 to {MOST_TABS})."
+        )
+        self.tab_mm = QDoubleSpinBox()
+        self.tab_mm.setObjectName("tabWidth")
+        self.tab_mm.setRange(0.05, 20.0)
+        self.tab_mm.setSingleStep(0.1)
+        self.tab_mm.setDecimals(2)
+        self.tab_mm.setAccessibleName("Tab width in millimetres")
+        self.tab_mm.setToolTip("Finished width of a tab, mm (0.05 to 20).")
+        self.content = QWidget()
+        self.content.setObjectName("plain")
+        self._lay_out()
+        self._connect()
+        self.content.hide()
+
+    def _lay_out(self) -> None:
+        table = QGridLayout(self.content)
+        table.setContentsMargins(0, 0, 0, 0)
+        table.setHorizontalSpacing(8)
+        table.setVerticalSpacing(6)
+        table.addLayout(captioned("Connector st&yle", self.style_, self.style_), 0, 0, 1, 2)
+        table.addLayout(captioned("&Order", self.order, self.order), 0, 2, 1, 2)
+        table.addLayout(captioned("&Tabs", self.tabs, self.tabs), 1, 0)
+        table.addLayout(captioned("Tab, mm", self.tab_mm, self.tab_mm), 1, 1)
+        table.addLayout(captioned("DXF &version", self.dxf_version, self.dxf_version), 1, 2, 1, 2)
+        table.addLayout(captioned("Mac&hine profile", self.profile, self.profile), 2, 0, 1, 4)
+        for column in range(4):
+            table.setColumnStretch(column, 1)
+        whole = QVBoxLayout(self)
+        whole.setContentsMargins(0, 0, 0, 0)
+        whole.setSpacing(6)
+        whole.addWidget(self.fold, 0, Qt.AlignmentFlag.AlignLeft)
+        whole.addWidget(self.content)
+
+    def _connect(self) -> None:
+        self.fold.toggled.connect(self._show_content)
+        for name, box in (("style", self.style_), ("order", self.order)):
+            box.activated.connect(lambda _, name=name, box=box: self.options_changed.emit({name: box.currentData()}))
+        for name, box in (("profile", self.profile), ("dxf_version", self.dxf_version)):
+            box.activated.connect(lambda _, name=name, box=box: self.changed.emit({name: box.currentData()}))
+        self.tabs.valueChanged.connect(lambda value: self.options_changed.emit({"tabs": value}))
+        self.tab_mm.valueChanged.connect(lambda value: self.options_changed.emit({"tab_mm": value}))
+        for number in (self.tabs, self.tab_mm):
+            number.setKeyboardTracking(False)
+            compact(number, 62)
+            number.editingFinished.connect(self.edited)
+
+    def show_settings(self, settings: FabricationSettings) -> None:
+        """Show the document's choices without reporting them as gestures."""
+        options = settings.options
+        for box, value in (
+            (self.style_, options.style),
+            (self.order, options.order),
+            (self.profile, settings.profile),
+            (self.dxf_version, settings.dxf_version),
+        ):
+            with QSignalBlocker(box):
+                _choose(box, value)
+        with QSignalBlocker(self.tabs), QSignalBlocker(self.tab_mm):
+            self.tabs.setValue(options.tabs)
+            self.tab_mm.setValue(options.tab_mm)
+        self.tab_mm.setEnabled(options.tabs > 0)
+
+    def set_palette(self, palette: Palette) -> None:
+        """Draw in other colours."""
+        self._palette = palette
+        self.fold.setIcon(icons.icon("up" if self.fold.isChecked() else "down", palette))
+
+    def _show_content(self, shown: bool) -> None:
+        self.content.setVisible(shown)
+        self.set_palette(self._palette)
+
+
+def _choice(name: str, accessible: str, rows: tuple[tuple[object, str, str], ...]) -> QComboBox:
+    box = QComboBox()
+    box.setObjectName(name)
+    box.setAccessibleName(accessible)
+    box.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+    box.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
+    for value, label, about in rows:
+        box.addItem(label, value)
+        box.setItemData(box.count() - 1, about or label, TOOLTIP)
+    box.setToolTip(f"{accessible}: {', '.join(label.lower() for _, label, _ in rows)}.")
+    return box
+
+
+def _choose(box: QComboBox, value: object) -> None:
+    """Choose a value; one that is not on offer, as from a newer project, is added under its own name."""
+    rows = [row for row in range(box.count()) if box.itemData(row) == value]
+    if not rows:
+        box.addItem(str(value), value)
+        rows = [box.count() - 1]
+    box.setCurrentIndex(rows[0])

@@ -1,0 +1,111 @@
+"""The connectors of a plan as markers: coloured by their finished width, picked by the mouse."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+from PySide6.QtCore import QLineF, QPointF, QRectF, Qt
+from PySide6.QtGui import QColor, QPainter, QPen, QPolygonF
+
+from kirigami_studio.fabricate.cut_plan import CutPlan
+from kirigami_studio.gui.scene.frame import Frame
+from kirigami_studio.gui.theme import Palette
+
+FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.intp]
+
+#: Radius (pixels) of a marker, and how far from its middle it still takes a click.
+RADIUS, REACH = 3.2, 9.0
+#: Widths closer than this (mm) get one colour.
+SAME_MM = 2e-3
+
+
+@dataclass(frozen=True, eq=False)
+class Connectors:
+    """The markers of a plan; made once for each plan."""
+
+    plan: CutPlan
+
+    def __len__(self) -> int:
+        return len(self.plan.hinges)
+
+    @cached_property
+    def removed(self) -> npt.NDArray[np.bool_]:
+        """Which hinges have no connector: (H,) bool."""
+        removed = np.zeros(len(self), dtype=np.bool_)
+        removed[[hinge for hinge in self.plan.options.removed if hinge < len(self)]] = True
+        return removed
+
+    @cached_property
+    def span_mm(self) -> tuple[float, float]:
+        """Smallest and largest finished width of those that are there."""
+        there = self.plan.hinges.finished_mm[~self.removed]
+        return (float(there.min()), float(there.max())) if there.size else (0.0, 0.0)
+
+    @property
+    def varied(self) -> bool:
+        """Whether they are not all of one width."""
+        low, high = self.span_mm
+        return high - low >= SAME_MM
+
+    def shade(self, count: int) -> IntArray:
+        """Which of ``count`` colours, narrow to wide, each hinge gets: (H,) int."""
+        low, high = self.span_mm
+        if not self.varied:
+            return np.zeros(len(self), dtype=np.intp)
+        share = np.clip((np.nan_to_num(self.plan.hinges.finished_mm) - low) / (high - low), 0.0, 1.0)
+        shade: IntArray = np.minimum((share * count).astype(np.intp), count - 1)
+        return shade
+
+    def described(self, hinge: int) -> str:
+        """What a person reads about one hinge."""
+        hinges = self.plan.hinges
+        if self.removed[hinge]:
+            return f"Hinge {hinge}: no connector, cut through"
+        asked, finished = hinges.requested_mm[hinge], hinges.finished_mm[hinge]
+        return f"Hinge {hinge}: asked for {asked:.3f} mm, finished {finished:.3f} mm"
+
+    def nearest(self, place: QPointF, frame: Frame) -> int | None:
+        """The hinge under a pixel, if any."""
+        away = np.linalg.norm(frame.to_pixels(self.plan.hinges.position) - (place.x(), place.y()), axis=1)
+        hinge = int(np.argmin(away))
+        return hinge if away[hinge] <= REACH else None
+
+    def within(self, box: QRectF, frame: Frame) -> frozenset[int]:
+        """The hinges inside a box of pixels."""
+        x, y = frame.to_pixels(self.plan.hinges.position).T
+        inside = (x >= box.left()) & (x <= box.right()) & (y >= box.top()) & (y <= box.bottom())
+        return frozenset(np.flatnonzero(inside).tolist())
+
+
+def paint_connectors(
+    painter: QPainter, connectors: Connectors, frame: Frame, palette: Palette, selected: frozenset[int]
+) -> None:
+    """Draw a dot for each connector, a cross where one was removed, and a ring around the selected ones."""
+    pixels = frame.to_pixels(connectors.plan.hinges.position)
+    colours = palette.widths
+    shade = connectors.shade(len(colours))
+    for index, colour in enumerate(colours):
+        _paint_dots(painter, pixels[(shade == index) & ~connectors.removed], colour, 2.0 * RADIUS)
+    painter.setPen(QPen(QColor(palette.text), 1.6))
+    painter.drawLines(_crosses(pixels[connectors.removed]))
+    painter.setBrush(Qt.BrushStyle.NoBrush)
+    for colour, width in ((palette.surface, 4.4), (palette.accent, 2.2)):
+        painter.setPen(QPen(QColor(colour), width))
+        for hinge in sorted(selected):
+            painter.drawEllipse(QPointF(*pixels[hinge].tolist()), RADIUS + 3.5, RADIUS + 3.5)
+
+
+def _paint_dots(painter: QPainter, pixels: FloatArray, colour: str, width: float) -> None:
+    pen = QPen(QColor(colour), width)
+    pen.setCapStyle(Qt.PenCapStyle.RoundCap)
+    painter.setPen(pen)
+    painter.drawPoints(QPolygonF([QPointF(x, y) for x, y in pixels.tolist()]))
+
+
+def _crosses(pixels: FloatArray) -> list[QLineF]:
+    arms = ((-RADIUS, -RADIUS), (-RADIUS, RADIUS))
+    return [QLineF(x + dx, y + dy, x - dx, y - dy) for x, y in pixels.tolist() for dx, dy in arms]

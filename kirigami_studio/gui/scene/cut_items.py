@@ -1,0 +1,192 @@
+"""A cut plan as the beam sees it: the sheet, every cut as wide as it burns, the moves between, the start.
+
+While cuts are a pixel thin a layer is one path.  Wider ones are stroked one by one, out of the same cached paths: for
+625 cuts Qt's raster engine needs 60 ms for one path that holds them all and 6 ms for the single ones.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+from PySide6.QtCore import QLineF, QPointF, QRectF, Qt
+from PySide6.QtGui import QColor, QPainter, QPainterPath, QPen
+
+from kirigami_studio.fabricate.cut_plan import CutPlan, Layer
+from kirigami_studio.gui.scene.frame import Bounds, Frame
+from kirigami_studio.gui.scene.paths import line_path
+from kirigami_studio.gui.theme import Palette
+
+FloatArray = npt.NDArray[np.float64]
+
+#: No cut is drawn thinner than this (pixels), whatever its kerf.
+THINNEST = 1.0
+#: Cuts that are still to come are this opaque while the job is played.
+FAINT = 0.28
+#: Edge length (pixels) of the mark where the job starts.
+START = 6.0
+
+
+@dataclass(frozen=True, eq=False)
+class CutDrawing:
+    """What is drawn of a plan, in mm, y up; made once for each plan."""
+
+    plan: CutPlan
+
+    @cached_property
+    def cuts(self) -> tuple[QPainterPath, ...]:
+        """Every cut in the order of cutting."""
+        return tuple(line_path(path.flattened, path.closed) for path in self.plan.paths)
+
+    @cached_property
+    def boxes(self) -> FloatArray:
+        """Left, bottom, right, top of every cut: (P, 4)."""
+        corners = [(path.flattened.min(axis=0), path.flattened.max(axis=0)) for path in self.plan.paths]
+        boxes: FloatArray = np.array([[*low, *high] for low, high in corners])
+        return boxes
+
+    @cached_property
+    def on_layer(self) -> dict[Layer, npt.NDArray[np.bool_]]:
+        """Which cuts lie on each layer that is used, in the order of cutting: (P,) bool."""
+        paths = self.plan.paths
+        return {layer: np.array([path.layer is layer for path in paths]) for layer in self.plan.layers}
+
+    @cached_property
+    def sheet(self) -> QPainterPath:
+        """The finished sheet's area: inside of the outline, which tabs may have parted."""
+        return line_path(_ring([path.flattened for path in self.plan.on_layer(Layer.OUTLINE)]), closed=True)
+
+    @cached_property
+    def travel(self) -> FloatArray:
+        """Start and end of the move before every cut: (P, 2, 2); the job starts at the origin."""
+        travelled = [path.travelled for path in self.plan.paths]
+        exits = [np.zeros(2), *(points[-1] for points in travelled[:-1])]
+        moves: FloatArray = np.stack([exits, [points[0] for points in travelled]], axis=1)
+        return moves
+
+    @cached_property
+    def bounds(self) -> Bounds:
+        """Everything that is cut, and the origin."""
+        width, height = self.plan.bounds_mm
+        return Bounds(0.0, 0.0, width, height)
+
+    def pen_width(self, frame: Frame) -> float:
+        """Width (pixels) of a cut as it is drawn: its kerf, or the thinnest that is well seen."""
+        return max(self.plan.kerf_mm * frame.scale, THINNEST)
+
+
+def layer_colour(layer: Layer, palette: Palette) -> str:
+    """Colour of a layer's cuts."""
+    return {
+        Layer.SLITS: palette.slits,
+        Layer.EDGE_SLITS: palette.edge_slits,
+        Layer.OUTLINE: palette.text,
+        Layer.RELIEF: palette.relief,
+    }[layer]
+
+
+def paint_cut_sheet(painter: QPainter, drawing: CutDrawing, frame: Frame, palette: Palette) -> None:
+    """Draw the material under the cuts."""
+    with_frame(painter, frame)
+    painter.setPen(Qt.PenStyle.NoPen)
+    painter.setBrush(QColor(palette.cut_sheet))
+    painter.drawPath(drawing.sheet)
+    painter.restore()
+
+
+def paint_cuts(painter: QPainter, drawing: CutDrawing, frame: Frame, palette: Palette, step: int, view: QRectF) -> None:
+    """Draw the first ``step`` cuts, the others faintly, and the last of the first ones as the one under way.
+
+    Parameters
+    ----------
+    step : int
+        0 to the number of cuts; when all are cut none is under way.
+    view : QRectF, pixels
+        What lies outside is left out.
+    """
+    last, seen = len(drawing.cuts), _in_view(drawing, frame, view)
+    width = drawing.pen_width(frame) / frame.scale
+    thin = width * frame.scale * painter.device().devicePixelRatio() <= THINNEST
+    done = np.arange(last) < (step if step == last else step - 1)
+    with_frame(painter, frame)
+    painter.setBrush(Qt.BrushStyle.NoBrush)
+    for layer, of_layer in reversed(drawing.on_layer.items()):
+        painter.setPen(_pen(layer_colour(layer, palette), width))
+        for opacity, which in ((FAINT, seen & of_layer & ~done), (1.0, seen & of_layer & done)):
+            painter.setOpacity(opacity)
+            _stroke(painter, [drawing.cuts[index] for index in np.flatnonzero(which)], thin)
+    painter.setOpacity(1.0)
+    if 0 < step < last:
+        painter.setPen(_pen(palette.current_cut, width + 3.0 / frame.scale))
+        painter.drawPath(drawing.cuts[step - 1])
+    painter.restore()
+
+
+def paint_travel(painter: QPainter, drawing: CutDrawing, frame: Frame, palette: Palette, step: int) -> None:
+    """Draw the moves with the beam off up to this step, dashed."""
+    moves = frame.to_pixels(drawing.travel[:step])
+    pen = QPen(QColor(palette.muted), 1.0, Qt.PenStyle.CustomDashLine)
+    pen.setDashPattern([4.0, 3.0])
+    painter.setPen(pen)
+    painter.drawLines([QLineF(*start, *stop) for start, stop in moves.tolist()])
+
+
+def paint_start(painter: QPainter, drawing: CutDrawing, frame: Frame, palette: Palette) -> None:
+    """Mark the first point of the first cut with a square, and the head's origin with a cross."""
+    points = frame.to_pixels(np.stack([drawing.travel[0, 0], drawing.travel[0, 1]])).tolist()
+    (x, y), first = points[0], QPointF(*points[1])
+    painter.setPen(QPen(QColor(palette.text), 1.6))
+    painter.drawLines([QLineF(x - START, y, x + START, y), QLineF(x, y - START, x, y + START)])
+    painter.setBrush(QColor(palette.surface))
+    painter.drawRect(QRectF(first - QPointF(START, START) / 2, first + QPointF(START, START) / 2))
+
+
+def with_frame(painter: QPainter, frame: Frame) -> None:
+    """Let the painter draw in mm, y up, until its restore."""
+    painter.save()
+    painter.translate(*frame.origin)
+    painter.scale(frame.scale, -frame.scale)
+
+
+def _pen(colour: str, width: float) -> QPen:
+    return QPen(QColor(colour), width, Qt.PenStyle.SolidLine, Qt.PenCapStyle.RoundCap, Qt.PenJoinStyle.RoundJoin)
+
+
+def _stroke(painter: QPainter, cuts: list[QPainterPath], thin: bool) -> None:
+    if thin and cuts:
+        whole = QPainterPath()
+        for cut in cuts:
+            whole.addPath(cut)
+        painter.drawPath(whole)
+        return
+    for cut in cuts:
+        painter.drawPath(cut)
+
+
+def _in_view(drawing: CutDrawing, frame: Frame, view: QRectF) -> npt.NDArray[np.bool_]:
+    """Which cuts can be seen: (P,) bool."""
+    left, top = frame.to_world(view.topLeft())
+    right, bottom = frame.to_world(view.bottomRight())
+    margin = drawing.pen_width(frame) / frame.scale
+    boxes = drawing.boxes
+    seen: npt.NDArray[np.bool_] = (
+        (boxes[:, 0] <= right + margin)
+        & (boxes[:, 2] >= left - margin)
+        & (boxes[:, 1] <= top + margin)
+        & (boxes[:, 3] >= bottom - margin)
+    )
+    return seen
+
+
+def _ring(pieces: list[FloatArray]) -> FloatArray:
+    """Join the pieces of a parted outline, each to the nearest end of those before: (V, 2)."""
+    ring, *rest = pieces
+    while rest:
+        ends = np.array([[piece[0], piece[-1]] for piece in rest])
+        distance = np.linalg.norm(ends - ring[-1], axis=2)
+        index, end = np.unravel_index(int(np.argmin(distance)), distance.shape)
+        piece = rest.pop(int(index))
+        ring = np.concatenate([ring, piece[::-1] if end else piece])
+    return ring

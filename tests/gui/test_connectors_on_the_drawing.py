@@ -1,0 +1,194 @@
+"""Single connectors: picked in the drawing or by rule, given a width, cut through, reset; each one undo step."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from PySide6.QtCore import QPoint, QPointF, Qt
+from PySide6.QtWidgets import QApplication
+from pytestqt.qtbot import QtBot
+
+from kirigami_studio.fabricate.cut_plan import Layer
+from kirigami_studio.fabricate.slits import SHEET_EDGE
+from kirigami_studio.gui.main_window import MainWindow
+from kirigami_studio.gui.panels.cuts_page import CutsPage
+from kirigami_studio.gui.scene.hinge_rules import RULES
+from kirigami_studio.project.settings import FabricationSettings
+
+Until = Callable[[Callable[[], bool]], None]
+LEFT, SHIFT = Qt.MouseButton.LeftButton, Qt.KeyboardModifier.ShiftModifier
+
+
+@pytest.fixture
+def cutting(designed: MainWindow, qtbot: QtBot) -> MainWindow:
+    designed.resize(1440, 900)
+    qtbot.mouseClick(designed.stage.cuts_switch, LEFT)
+    QApplication.processEvents()
+    return designed
+
+
+def place(page: CutsPage, hinge: int) -> QPoint:
+    frame = page.view.frame()
+    assert frame is not None and page._plan is not None
+    return QPointF(*frame.to_pixels(page._plan.hinges.position[hinge]).tolist()).toPoint()
+
+
+def lonely(page: CutsPage, count: int) -> list[int]:
+    """Hinges with no other near them, so that a click can only mean them."""
+    assert page._plan is not None
+    at = page._plan.hinges.position
+    away = np.linalg.norm(at[:, None] - at[None], axis=2) + 1e9 * np.eye(len(at))
+    return np.argsort(-away.min(axis=1))[:count].tolist()
+
+
+def fabrication(window: MainWindow) -> FabricationSettings:
+    return window.controller.document.fabrication
+
+
+def test_that_clicks_select_one_connector_or_more(cutting: MainWindow, qtbot: QtBot) -> None:
+    page = cutting.stage.cuts
+    first, second = lonely(page, 2)
+    qtbot.mouseClick(page.view, LEFT, pos=place(page, first))
+    assert page.view.selected == {first} and page.hinges.says.text() == f"Connector {first}"
+    qtbot.mouseClick(page.view, LEFT, SHIFT, place(page, second))
+    assert page.view.selected == {first, second} and page.hinges.says.text() == "2 connectors"
+    qtbot.mouseClick(page.view, LEFT, SHIFT, place(page, first))
+    assert page.view.selected == {second}
+    qtbot.mouseClick(page.view, LEFT, pos=QPoint(3, 3))
+    assert page.view.selected == frozenset() and not page.hinges.remove.isEnabled()
+
+
+def test_that_a_band_selects_what_is_inside(cutting: MainWindow, qtbot: QtBot) -> None:
+    page = cutting.stage.cuts
+    frame = page.view.frame()
+    assert frame is not None and page._plan is not None
+    low, high = np.array([12.0, 12.0]), np.array([61.0, 55.0])
+    start, stop = (QPointF(*frame.to_pixels(corner).tolist()).toPoint() for corner in (low, high))
+    qtbot.mousePress(page.view, LEFT, SHIFT, start)
+    qtbot.mouseMove(page.view, stop)
+    page.view.gestures.move(QPointF(stop))
+    page.view.grab()
+    qtbot.mouseRelease(page.view, LEFT, SHIFT, stop)
+    inside = np.all((page._plan.hinges.position > low) & (page._plan.hinges.position < high), axis=1)
+    assert page.view.selected == set(np.flatnonzero(inside).tolist()) and page.view.gestures.band is None
+    assert page.view.frame() == frame
+
+
+def test_that_a_drag_without_shift_moves_the_picture_and_keeps_the_selection(cutting: MainWindow, qtbot: QtBot) -> None:
+    page = cutting.stage.cuts
+    page.view.gestures.select(frozenset({2}))
+    before = page.view.frame()
+    qtbot.mousePress(page.view, LEFT, pos=QPoint(4, 4))
+    qtbot.mouseMove(page.view, QPoint(40, 30))
+    qtbot.mouseRelease(page.view, LEFT, pos=QPoint(40, 30))
+    assert page.view.selected == {2} and page.view.frame() != before
+
+
+def test_that_a_typed_width_reaches_the_plan_and_undoes_in_one_step(
+    cutting: MainWindow, qtbot: QtBot, until: Until
+) -> None:
+    page = cutting.stage.cuts
+    page.view.setFocus()
+    page.view.gestures.select(frozenset({3, 7}))
+    for letter in "0.3":
+        qtbot.keyClicks(QApplication.focusWidget(), letter)
+    assert QApplication.focusWidget() is page.hinges.width_mm
+    qtbot.keyClick(page.hinges.width_mm, Qt.Key.Key_Return)
+    assert fabrication(cutting).options.hinge_mm == ((3, 0.3), (7, 0.3))
+    until(lambda: page._plan is not None and page._plan.options.hinge_mm != ())
+    assert page._plan is not None
+    assert page._plan.hinges.finished_mm[[3, 7]] == pytest.approx(0.3, abs=2e-3)
+    assert page.view.selected == {3, 7}
+    assert cutting.controller.history.undo_label == "Set 2 connectors to 0.3 mm"
+    cutting.actions_["undo"].trigger()
+    assert fabrication(cutting).options.hinge_mm == () and cutting.controller.history.undo_label is None
+
+
+def test_that_steps_of_the_number_are_one_undo_step(cutting: MainWindow) -> None:
+    page = cutting.stage.cuts
+    page.view.gestures.select(frozenset({5}))
+    for _ in range(4):
+        page.hinges.width_mm.stepUp()
+    assert fabrication(cutting).options.hinge_mm == ((5, 0.4),)
+    cutting.actions_["undo"].trigger()
+    assert fabrication(cutting).options.hinge_mm == ()
+
+
+def test_that_delete_cuts_through_and_reset_brings_the_usual_width_back(cutting: MainWindow, qtbot: QtBot) -> None:
+    page = cutting.stage.cuts
+    cutting.controller.fabricating.set_hinge_width(frozenset({4, 9}), 0.5)
+    page.view.setFocus()
+    page.view.gestures.select(frozenset({4}))
+    qtbot.keyClick(page.view, Qt.Key.Key_Delete)
+    options = fabrication(cutting).options
+    assert options.removed == (4,) and options.hinge_mm == ((9, 0.5),)
+    assert cutting.controller.history.undo_label == "Cut through connector 4"
+    cutting.controller.fabricating.reset_hinges(frozenset({4, 9}))
+    assert fabrication(cutting).options.removed == () and fabrication(cutting).options.hinge_mm == ()
+    cutting.actions_["undo"].trigger()
+    assert fabrication(cutting).options.removed == (4,)
+
+
+def test_that_delete_without_a_selection_changes_nothing(cutting: MainWindow, qtbot: QtBot) -> None:
+    cutting.stage.cuts.view.setFocus()
+    qtbot.keyClick(cutting.stage.cuts.view, Qt.Key.Key_Delete)
+    assert cutting.controller.history.undo_label is None
+
+
+def test_that_zero_still_fits_while_nothing_is_selected(cutting: MainWindow, qtbot: QtBot) -> None:
+    view = cutting.stage.cuts.view
+    view.setFocus()
+    before = view.frame()
+    view.zoom(2.0)
+    qtbot.keyClick(view, Qt.Key.Key_0)
+    assert view.frame() == before
+
+
+def test_that_escape_forgets_the_selection_and_arrows_walk(cutting: MainWindow, qtbot: QtBot) -> None:
+    view = cutting.stage.cuts.view
+    view.setFocus()
+    qtbot.keyClick(view, Qt.Key.Key_Right)
+    assert view.selected == {0}
+    qtbot.keyClick(view, Qt.Key.Key_Right)
+    qtbot.keyClick(view, Qt.Key.Key_Right)
+    qtbot.keyClick(view, Qt.Key.Key_Left)
+    assert view.selected == {1}
+    qtbot.keyClick(view, Qt.Key.Key_Escape)
+    assert view.selected == frozenset()
+
+
+def test_that_rules_select_what_they_name(cutting: MainWindow) -> None:
+    page = cutting.stage.cuts
+    plan = page._plan
+    assert plan is not None
+    found = {}
+    for (name, _, _), action in zip(RULES, page.hinges.choices, strict=True):
+        action.trigger()
+        found[name.replace("&", "")] = page.view.selected
+    assert found["All connectors"] == set(range(len(plan.hinges)))
+    opening = {path.cut for path in plan.on_layer(Layer.EDGE_SLITS)}
+    assert found["Edge connectors"] == {
+        hinge
+        for hinge in range(len(plan.hinges))
+        if plan.hinges.through[hinge] == SHEET_EDGE or int(plan.hinges.cut[hinge]) in opening
+    }
+    lengths = {path.cut: path.length for path in plan.paths}
+    short, long = ([lengths[int(plan.hinges.cut[h])] for h in found[f"At {word} cuts"]] for word in ("short", "long"))
+    assert max(short) < min(long) and min(len(short), len(long)) >= len(plan.hinges) // 5
+
+
+def test_that_hovering_tells_number_and_widths(cutting: MainWindow) -> None:
+    page = cutting.stage.cuts
+    hinge = lonely(page, 1)[0]
+    told = page.view._hover(QPointF(place(page, hinge)))
+    assert told == f"Hinge {hinge}: asked for 0.200 mm, finished 0.200 mm"
+
+
+def test_that_hidden_connectors_take_no_clicks(cutting: MainWindow, qtbot: QtBot) -> None:
+    page = cutting.stage.cuts
+    hinge = lonely(page, 1)[0]
+    page.toggles[list(page.toggles)[1]].setChecked(False)
+    qtbot.mouseClick(page.view, LEFT, pos=place(page, hinge))
+    assert page.view.selected == frozenset()

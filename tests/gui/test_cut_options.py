@@ -1,0 +1,120 @@
+"""The folded options: each a document edit that undoes and is saved."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from PySide6.QtCore import Qt
+from PySide6.QtWidgets import QComboBox, QWidget
+from pytestqt.qtbot import QtBot
+
+from kirigami_studio.export.profile import PROFILES
+from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions, CutOrder
+from kirigami_studio.gui.main_window import MainWindow
+from kirigami_studio.gui.panels.more_options import ORDERS, STYLES
+from kirigami_studio.project import store
+from kirigami_studio.project.settings import FabricationSettings
+
+Until = Callable[[Callable[[], bool]], None]
+LEFT = Qt.MouseButton.LeftButton
+
+
+def pick(box: QComboBox, value: object) -> None:
+    """Choose an entry as a person does."""
+    index = next(row for row in range(box.count()) if box.itemData(row) == value)
+    box.setCurrentIndex(index)
+    box.activated.emit(index)
+
+
+@pytest.fixture
+def options(designed: MainWindow, qtbot: QtBot) -> MainWindow:
+    designed.resize(1440, 1000)
+    qtbot.mouseClick(designed.fabrication.options.fold, LEFT)
+    return designed
+
+
+def test_that_the_options_are_folded_until_asked_for(designed: MainWindow, qtbot: QtBot) -> None:
+    designed.resize(1440, 1000)
+    panel = designed.fabrication.options
+    assert panel.fold.isVisible() and not panel.style_.isVisible()
+    qtbot.mouseClick(panel.fold, LEFT)
+    assert panel.style_.isVisible() and panel.profile.isVisible()
+
+
+def test_that_every_style_order_and_profile_is_on_offer(options: MainWindow) -> None:
+    panel = options.fabrication.options
+    assert {row[0] for row in STYLES} == set(ConnectorStyle) and {row[0] for row in ORDERS} == set(CutOrder)
+    assert [panel.profile.itemData(row) for row in range(panel.profile.count())] == list(PROFILES)
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [("style_", ConnectorStyle.TEARDROP), ("order", CutOrder.SPREAD), ("profile", "lightburn"), ("dxf_version", "R12")],
+)
+def test_that_each_choice_is_one_undo_step(options: MainWindow, name: str, value: object) -> None:
+    box = getattr(options.fabrication.options, name)
+    before = options.controller.document.fabrication
+    pick(box, value)
+    after = options.controller.document.fabrication
+    assert value in (after.options.style, after.options.order, after.profile, after.dxf_version)
+    options.actions_["undo"].trigger()
+    assert options.controller.document.fabrication == before and box.currentData() != value
+
+
+def test_that_dragging_the_tabs_is_one_undo_step(options: MainWindow) -> None:
+    panel = options.fabrication.options
+    assert not panel.tab_mm.isEnabled()
+    for count in (1, 2, 4):
+        panel.tabs.setValue(count)
+    assert options.controller.document.fabrication.options.tabs == 4 and panel.tab_mm.isEnabled()
+    options.actions_["undo"].trigger()
+    assert panel.tabs.value() == 0
+
+
+def test_that_the_choices_are_saved_with_the_project(options: MainWindow, until: Until, tmp_path: Path) -> None:
+    pick(options.fabrication.options.style_, ConnectorStyle.ROUND)
+    pick(options.fabrication.options.profile, "lightburn")
+    options.fabrication.options.tabs.setValue(3)
+    options.controller.save(tmp_path / "options.kiri")
+    until(lambda: not options.controller.history.unsaved)
+    kept = store.load(tmp_path / "options.kiri").fabrication
+    assert kept.options == CutOptions(style=ConnectorStyle.ROUND, tabs=3) and kept.profile == "lightburn"
+
+
+def test_that_a_profile_of_a_newer_program_is_shown_by_its_key(options: MainWindow) -> None:
+    panel = options.fabrication.options
+    panel.show_settings(FabricationSettings(profile="waterjet"))
+    assert panel.profile.currentText() == "waterjet"
+
+
+def test_that_every_control_has_a_name_and_a_tooltip(options: MainWindow) -> None:
+    page = options.stage.cuts
+    parts: list[QWidget] = [
+        *options.fabrication.options.content.findChildren(QComboBox),
+        options.fabrication.options.tabs,
+        options.fabrication.options.tab_mm,
+        *page.toggles.values(),
+        page.hinges.rules,
+        page.hinges.width_mm,
+        page.hinges.remove,
+        page.hinges.reset,
+        page.bar.play,
+        page.bar.slider,
+    ]
+    assert len(parts) == 15
+    for part in parts:
+        assert part.accessibleName() and part.toolTip(), part.objectName()
+    for length in (options.fabrication.options.tab_mm, page.hinges.width_mm):
+        assert "mm" in length.toolTip() and "millimetres" in length.accessibleName()
+
+
+def test_that_a_short_window_scrolls_the_options_instead_of_squeezing_them(options: MainWindow, qtbot: QtBot) -> None:
+    options.resize(1280, 720)
+    panel = options.fabrication
+    if panel.folded:
+        qtbot.mouseClick(panel.fold, LEFT)
+    qtbot.waitUntil(lambda: panel.scrolled.verticalScrollBar().maximum() > 0)
+    assert panel.options.style_.height() >= panel.options.style_.sizeHint().height() - 1
+    assert panel.export.isVisible() and options.gallery.view.viewport().height() > 100
