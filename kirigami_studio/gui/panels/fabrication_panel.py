@@ -21,12 +21,12 @@ from kirigami_studio.gui import icons
 from kirigami_studio.gui.panels.card import Card, ScrolledWhenShort, captioned, compact, muted_label, tool_button
 from kirigami_studio.gui.panels.export_row import ExportRow
 from kirigami_studio.gui.panels.more_options import MoreOptions
-from kirigami_studio.gui.readable import UNKNOWN, readable_length, readable_range, readable_size
+from kirigami_studio.gui.readable import UNKNOWN, readable_length, readable_range, readable_size, readable_time
 from kirigami_studio.gui.theme import LIGHT, Palette
 from kirigami_studio.project.settings import FabricationSettings
 
 if TYPE_CHECKING:
-    from kirigami_studio.fabricate.cut_plan import CutPlan
+    from kirigami_studio.fabricate.timing import CutTimes
     from kirigami_studio.gui.jobs.steps import Planned
 
 #: Field, label, lowest, highest, step (mm), decimals, tooltip.
@@ -230,12 +230,13 @@ class FabricationPanel(Card):
             "size": readable_size(*plan.size_mm),
             "slits": f"{len(plan.paths)}",
             "length": readable_length(plan.cut_length_mm),
-            "time": readable_range(*time_range(plan)),
+            "time": readable_range(plan.times.low, plan.times.high),
             "pieces": f"{report.pieces}",
             "ligament": f"{report.min_ligament_mm:.2f} mm",
         }
         for key, text in texts.items():
             self.numbers[key].setText(text)
+        self.numbers["time"].setToolTip(told_times(plan.times))
         self._sum_up(texts, planned.removed_share)
         found = [*(problem.text for problem in report.problems), *plan.notes]
         self._warn("\n".join(found) if found else "The cut check found no problem.", calm=not found)
@@ -292,6 +293,10 @@ class FabricationPanel(Card):
         self._dress_fold()
 
 
-def time_range(plan: CutPlan) -> tuple[float, float]:
-    """Shortest and longest time (s) that the job is expected to take."""
-    return plan.seconds_estimate, plan.seconds_estimate
+def told_times(times: CutTimes) -> str:
+    """What the time consists of."""
+    parts = (("cutting", times.cut), ("travel", times.travel), ("switching", times.extra))
+    split = ", ".join(f"{readable_time(seconds)} {word}" for word, seconds in parts)
+    return (
+        f"About {readable_time(times.total)}: {split}.\nThe range allows for an acceleration twice as small or large."
+    )

@@ -50,11 +50,10 @@ def cut_steps(plan: CutPlan) -> CutSteps:
     """
     material = plan.material
     acceleration = material.acceleration_mm_s2
-    travelled = [path.travelled for path in plan.paths]
-    lengths = [timing.segment_lengths(points) for points in travelled]
-    cutting = [timing.run_seconds(pieces, material.speed_mm_s, acceleration).sum() for pieces in lengths]
-    moving = timing.run_seconds(timing.travel_lengths(travelled), material.travel_mm_s, acceleration)
+    runs = [timing.run_lengths(path, timing.FLOWING_TURN) for path in plan.paths]
+    cutting = [timing.run_seconds(lengths, material.speed_mm_s, acceleration).sum() for lengths in runs]
+    moving = timing.run_seconds(timing.travel_lengths(plan.paths), material.travel_mm_s, acceleration)
     seconds = np.concatenate([[0.0], np.cumsum(np.array(cutting) + moving)])
     if seconds[-1] > 0.0:
         seconds = seconds * (plan.seconds_estimate / seconds[-1])
-    return CutSteps(seconds, np.concatenate([[0.0], np.cumsum([pieces.sum() for pieces in lengths])]))
+    return CutSteps(seconds, np.concatenate([[0.0], np.cumsum([path.length for path in plan.paths])]))
