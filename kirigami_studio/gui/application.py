@@ -6,6 +6,7 @@ import os
 import sys
 from pathlib import Path
 
+import platformdirs
 from PySide6.QtCore import QCoreApplication, QSettings, Qt, QTimer
 from PySide6.QtGui import QFont, QFontDatabase, QGuiApplication
 from PySide6.QtWidgets import QApplication
@@ -16,6 +17,7 @@ from kirigami_studio.gui.main_window import MainWindow
 from kirigami_studio.gui.warm_up import WarmUp
 
 FIRST_TARGET = "heart"
+PREFERENCES = "preferences.toml"
 SMALLEST_FONT = 9.5
 NO_DISPLAY = (
     "There is no display to open the window on; use the commands (kirigami-studio --help), or play a session without "
@@ -100,6 +102,7 @@ def run(argv: list[str]) -> int:
     faults.show_uncaught(window.messages.add)
     state = QSettings()
     window.restore(state)
+    window.controller.use_preferences(platformdirs.user_config_path("kirigami-studio", appauthor=False) / PREFERENCES)
     application.aboutToQuit.connect(lambda: window.remember(state))
     QGuiApplication.styleHints().colorSchemeChanged.connect(lambda _: window.set_theme(theme.system_palette()))
     window.show()

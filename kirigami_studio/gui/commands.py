@@ -8,11 +8,13 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QObject, Qt
+from PySide6.QtCore import QObject, Qt, QUrl
+from PySide6.QtGui import QDesktopServices
 from PySide6.QtWidgets import QAbstractButton, QComboBox
 
 from kirigami_studio.gui.controller import Controller
 from kirigami_studio.gui.dialogs.files import FileChoosers, FileQuestions
+from kirigami_studio.gui.jobs.steps import Exported
 from kirigami_studio.gui.messages import Message, Tone
 from kirigami_studio.gui.shell import Shell
 from kirigami_studio.gui.theme import DARK, LIGHT
@@ -20,6 +22,7 @@ from kirigami_studio.gui.views.layout_view import Overlay
 from kirigami_studio.gui.views.target_view import Tool
 
 if TYPE_CHECKING:
+    from kirigami_studio.gui.dialogs.export_report import ExportReport
     from kirigami_studio.gui.dialogs.guide import GuideWindow
     from kirigami_studio.gui.dialogs.silhouette_picker import SilhouettePicker
 
@@ -40,6 +43,7 @@ class Commands(QObject):
         self.files: FileQuestions = FileChoosers(window)
         self.guide: GuideWindow | None = None
         self.picker: SilhouettePicker | None = None
+        self.report: ExportReport | None = None
         self._closing = False
         self._connect_actions()
 
@@ -120,6 +124,24 @@ class Commands(QObject):
         path = self.files.export(f"{self._name()}{extension}")
         if path is not None:
             self.controller.export(path)
+
+    def show_report(self, exported: Exported) -> None:
+        """Show what two readers found in a written cut file, in the place of an earlier report."""
+        from kirigami_studio.gui.dialogs.export_report import ExportReport
+
+        self.close_report()
+        if exported.verification is None:
+            return
+        self.report = ExportReport(self.window, exported.verification, self.window.palette_)
+        self.report.folder_wanted.connect(show_in_folder)
+        self.report.show()
+
+    def close_report(self) -> None:
+        """Close the report, if there is one."""
+        if self.report is not None:
+            self.report.close()
+            self.report.deleteLater()
+            self.report = None
 
     def show_library(self) -> None:
         """Open the popup with the library's silhouettes."""
@@ -205,3 +227,9 @@ class Commands(QObject):
             return self.controller.path.stem
         target = self.controller.document.target
         return target.name if target is not None else "untitled"
+
+
+def show_in_folder(path: Path) -> None:
+    """Let the desktop show the folder that a written file lies in, or a written folder itself."""
+    folder = path if path.is_dir() else path.parent
+    QDesktopServices.openUrl(QUrl.fromLocalFile(str(folder)))

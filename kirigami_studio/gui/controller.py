@@ -7,6 +7,7 @@ an edit here, or a message.
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Unpack
 
@@ -20,10 +21,12 @@ from kirigami_studio.gui.comparing import Comparing
 from kirigami_studio.gui.cutting import Cutting
 from kirigami_studio.gui.design_run import DesignRun, request_of
 from kirigami_studio.gui.fabricating import Fabricating
+from kirigami_studio.gui.file_kinds import kind_of
 from kirigami_studio.gui.finishing import Finishing
 from kirigami_studio.gui.jobs import steps
 from kirigami_studio.gui.jobs.board import Board, Ears
 from kirigami_studio.gui.messages import Message, Tone
+from kirigami_studio.gui.preferring import Preferring
 from kirigami_studio.gui.reading import Reading
 from kirigami_studio.gui.shelf import Shelf
 from kirigami_studio.gui.showing import Showing
@@ -65,6 +68,7 @@ class Controller(QObject):
         self.tracing = Tracing(self.board, self)
         self.reading = Reading(self.board, self.tracing, self)
         self.storing = Storing(self.board, self)
+        self.preferring = Preferring(self)
         self._connect()
 
     def _connect(self) -> None:
@@ -84,7 +88,7 @@ class Controller(QObject):
         self.tracing.settled.connect(self.end_drag)
         self.storing.saved.connect(self._saved)
         self.storing.opened.connect(self._opened)
-        for message in (self.finishing.message, self.cutting.message):
+        for message in (self.finishing.message, self.cutting.message, self.preferring.message):
             message.connect(self.message)
         for status in (self.finishing.status, self.cutting.status, self.storing.status):
             status.connect(self.status)
@@ -110,6 +114,14 @@ class Controller(QObject):
         """Stop all work; the window is going away."""
         self.cutting.close()
         self.board.close()
+
+    def use_preferences(self, path: Path) -> None:
+        """Start with what was preferred the last time, and remember what is from now on."""
+        untouched = self.document == self.preferring.new_document()
+        self.preferring.load(path)
+        if untouched:
+            self.history.restart(self.preferring.new_document())
+            self._show()
 
     def warm_up(self) -> None:
         """Import in the worker what the first run needs, and learn which generators there are."""
@@ -175,8 +187,8 @@ class Controller(QObject):
         self.status.emit(f"Target: {outline.name}. Press Generate (Ctrl+G) to design a sheet for it.")
 
     def _take_read(self, outline: Outline, first: bool) -> None:
-        if first and self.document == Document():
-            self.history.restart(Document(target=outline))
+        if first and self.document == self.preferring.new_document():
+            self.history.restart(replace(self.document, target=outline))
             self._show()
             self.status.emit(f"Target: {outline.name}. Press Generate (Ctrl+G), or choose another target.")
         else:
@@ -283,6 +295,8 @@ class Controller(QObject):
         if order is None:
             self.message.emit(Message("There is no design to export yet; generate one first.", Tone.HINT))
         else:
+            if kind_of(path.suffix).cuts:
+                self.preferring.remember(self.document)
             self.cutting.export(order, path)
 
     def _plan_soon(self) -> None:
@@ -323,7 +337,7 @@ class Controller(QObject):
         """Forget everything and start empty."""
         self._stop_design()
         self.path = None
-        self.history.restart(Document())
+        self.history.restart(self.preferring.new_document())
         self._show()
         self.status.emit("New project. Choose or draw a target.")
 

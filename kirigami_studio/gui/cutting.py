@@ -21,7 +21,7 @@ class Cutting(QObject):
 
     planned = Signal(object)  #: Planned or None
     refused = Signal(str)
-    exported = Signal(object)  #: Path
+    exported = Signal(object)  #: Exported
     message = Signal(object)  #: Message
     status = Signal(str)
 
@@ -71,8 +71,8 @@ class Cutting(QObject):
         else:
             self.status.emit(f"Exported {path}: {len(made.plan.paths)} cuts, {made.plan.cut_length_mm:.0f} mm.")
             message = told(path, made)
-        self.exported.emit(path)
         self.message.emit(message)
+        self.exported.emit(report)
 
     def _not_written(self, sentence: str, trace: str) -> None:
         self.status.emit("The file was not written.")

@@ -57,6 +57,8 @@ class Palette:
     relief: str
     current_cut: str
     widths: tuple[str, ...]
+    good: str
+    bad: str
 
     @property
     def dark(self) -> bool:
@@ -97,6 +99,8 @@ LIGHT = Palette(
     relief="#008a66",
     current_cut="#ffb000",
     widths=("#4a0d67", "#73308f", "#9a58b3", "#bb85cf", "#d6b0e4"),
+    good="#1a7f4b",
+    bad="#b3261e",
 )
 
 DARK = Palette(
@@ -133,6 +137,8 @@ DARK = Palette(
     relief="#2fc79d",
     current_cut="#ffe14d",
     widths=("#f6dcff", "#dfb2f2", "#c088da", "#9d63ba", "#7a4597"),
+    good="#4fc98f",
+    bad="#ff8d83",
 )
 
 PALETTES = {palette.name: palette for palette in (LIGHT, DARK)}

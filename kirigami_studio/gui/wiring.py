@@ -77,6 +77,7 @@ class Wiring(QObject):
         controller.run.ended.connect(self._end_run)
         controller.cutting.planned.connect(self._show_plan)
         controller.cutting.refused.connect(self._show_refusal)
+        controller.cutting.exported.connect(self.commands.show_report)
         controller.variants_known.connect(window.settings.set_variants)
         controller.message.connect(window.messages.add)
         controller.status.connect(window.says.setText)

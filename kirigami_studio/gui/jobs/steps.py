@@ -26,6 +26,7 @@ from kirigami_studio.project.settings import FabricationSettings
 from kirigami_studio.target.outline import Outline
 
 if TYPE_CHECKING:
+    from kirigami_studio.export.verification import Verification
     from kirigami_studio.fabricate.checks import Report
     from kirigami_studio.fabricate.cut_plan import CutPlan
 
@@ -52,10 +53,20 @@ class Planned:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Exported:
-    """A file that is on disk, with the plan that it holds; pictures hold none."""
+    """A file, or a folder of files, that is on disk.
+
+    Attributes
+    ----------
+    path : Path
+    planned : Planned or None
+        What it holds; pictures hold no plan.
+    verification : Verification or None
+        What two readers found in it; None for kinds of file that are not verified this way.
+    """
 
     path: Path
     planned: Planned | None
+    verification: Verification | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -207,8 +218,19 @@ def exporting(order: Order, path: Path, cancel: Cancel) -> Iterator[Exported]:
     find_exporter(path)  # an unknown kind is refused before anything is planned
     made = planned(order) if kind_of(path.suffix).cuts else None
     target = None if order.target is None else order.target.points
-    export(ExportJob.of(order.candidate, target, None if made is None else made.plan), path)
-    yield Exported(path, made)
+    job = ExportJob.of(order.candidate, target, None if made is None else made.plan)
+    settings = order.settings
+    written = export(replace(job, profile=settings.profile, dxf_version=settings.dxf_version), path)
+    yield Exported(written, made, None if made is None else _verified(made.plan, path, settings))
+
+
+def _verified(plan: CutPlan, path: Path, settings: FabricationSettings) -> Verification | None:
+    """Read a cut file again with two readers, if its kind is among those that are verified."""
+    from kirigami_studio.export.verification import FORMATS, verify_export
+
+    if path.suffix.lower() not in FORMATS:
+        return None
+    return verify_export(plan, path, settings.profile, settings.dxf_version)
 
 
 def saving(document: Document, path: Path, cancel: Cancel) -> Iterator[Path]:

@@ -297,6 +297,4 @@ def told_times(times: CutTimes) -> str:
     """What the time consists of."""
     parts = (("cutting", times.cut), ("travel", times.travel), ("switching", times.extra))
     split = ", ".join(f"{readable_time(seconds)} {word}" for word, seconds in parts)
-    return (
-        f"About {readable_time(times.total)}: {split}.\nThe range allows for an acceleration twice as small or large."
-    )
+    return f"About {readable_time(times.total)}: {split}.\nThe range allows for half and for twice the acceleration."

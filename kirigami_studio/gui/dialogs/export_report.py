@@ -1,0 +1,168 @@
+"""What two readers found in a cut file that was just written, beside the window and never in its way."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QEvent, QSize, Qt, Signal
+from PySide6.QtGui import QGuiApplication
+from PySide6.QtWidgets import (
+    QDialog,
+    QGridLayout,
+    QHBoxLayout,
+    QLabel,
+    QListWidget,
+    QListWidgetItem,
+    QPushButton,
+    QVBoxLayout,
+    QWidget,
+)
+
+from kirigami_studio.gui import icons
+from kirigami_studio.gui.panels.card import ElidedLabel
+from kirigami_studio.gui.readable import UNKNOWN, readable_length, readable_range
+from kirigami_studio.gui.theme import DARK, LIGHT, Palette
+
+if TYPE_CHECKING:
+    from kirigami_studio.export.verification import Finding, Verification
+
+SIZE = QSize(640, 470)
+ICON_EDGE = 30
+
+
+class ExportReport(QDialog):
+    """Says good or bad by symbol, word and colour, then every finding."""
+
+    folder_wanted = Signal(object)  #: Path of what was written
+
+    def __init__(self, parent: QWidget, verification: Verification, palette: Palette) -> None:
+        super().__init__(parent)
+        self.verification = verification
+        self._palette: Palette | None = None
+        self.setObjectName("exportReport")
+        self.setWindowTitle(f"Export report: {verification.path.name}")
+        self.setModal(False)
+        self.resize(SIZE)
+        self.symbol, self.verdict = QLabel(), QLabel(verdict(verification))
+        self.verdict.setObjectName("reportVerdict")
+        self.verdict.setWordWrap(True)
+        self.path = ElidedLabel()
+        self.path.setText(str(verification.path))
+        self.findings = QListWidget()
+        self.findings.setObjectName("reportFindings")
+        self.findings.setAccessibleName("Findings of the export report")
+        self.findings.setWordWrap(True)
+        self.findings.setIconSize(QSize(18, 18))
+        self.findings.setSelectionMode(QListWidget.SelectionMode.NoSelection)
+        self.findings.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+        self.facts = {name: QLabel(text) for name, text in told_facts(verification).items()}
+        for word, icon, text in told_findings(verification):
+            item = QListWidgetItem(f"{word}: {text}")
+            item.setData(Qt.ItemDataRole.UserRole, icon)
+            self.findings.addItem(item)
+        self.folder = QPushButton("Show in &folder")
+        self.copy = QPushButton("&Copy")
+        self.shut = QPushButton("Cl&ose")
+        self.folder.clicked.connect(lambda: self.folder_wanted.emit(verification.path))
+        self.copy.clicked.connect(lambda: QGuiApplication.clipboard().setText(as_text(verification)))
+        self.shut.clicked.connect(self.close)
+        self.shut.setDefault(True)
+        self._lay_out()
+        self.set_palette(palette)
+
+    def _lay_out(self) -> None:
+        head = QHBoxLayout()
+        head.setSpacing(12)
+        head.addWidget(self.symbol, 0, Qt.AlignmentFlag.AlignTop)
+        words = QVBoxLayout()
+        words.setSpacing(2)
+        words.addWidget(self.verdict)
+        words.addWidget(self.path)
+        head.addLayout(words, 1)
+        table = QGridLayout()
+        table.setVerticalSpacing(1)
+        for column, (name, label) in enumerate(self.facts.items()):
+            caption = QLabel(name)
+            caption.setObjectName("muted")
+            label.setObjectName("number")
+            label.setAccessibleName(name)
+            table.addWidget(caption, 0, column)
+            table.addWidget(label, 1, column)
+            table.setColumnStretch(column, 3 if column == 0 else 2)
+        buttons = QHBoxLayout()
+        buttons.addWidget(self.folder)
+        buttons.addWidget(self.copy)
+        buttons.addStretch(1)
+        buttons.addWidget(self.shut)
+        whole = QVBoxLayout(self)
+        whole.setContentsMargins(18, 16, 18, 16)
+        whole.setSpacing(12)
+        whole.addLayout(head)
+        whole.addLayout(table)
+        whole.addWidget(self.findings, 1)
+        whole.addLayout(buttons)
+
+    def changeEvent(self, event: QEvent) -> None:  # noqa: N802 - Qt's name
+        """The window's theme has changed."""
+        super().changeEvent(event)
+        if event.type() == QEvent.Type.PaletteChange:
+            self.set_palette(DARK if self.palette().window().color().lightness() < 128 else LIGHT)
+
+    def set_palette(self, palette: Palette) -> None:
+        """Draw in other colours."""
+        if palette is self._palette:
+            return
+        self._palette = palette
+        good = self.verification.ok
+        colour = palette.good if good else palette.bad
+        ratio = self.devicePixelRatioF()
+        self.symbol.setPixmap(icons.pixmap("check" if good else "fault", colour, ICON_EDGE, ratio))
+        self.verdict.setStyleSheet(f"color: {colour}; font-weight: 600; font-size: 12pt;")
+        tints = {"check": palette.good, "warning": palette.warning, "fault": palette.bad}
+        for row in range(self.findings.count()):
+            item = self.findings.item(row)
+            name = str(item.data(Qt.ItemDataRole.UserRole))
+            item.setIcon(icons.icon(name, palette, tints[name]))
+
+
+def verdict(verification: Verification) -> str:
+    """The report in one sentence."""
+    bad = sum(not finding.ok for finding in verification.findings)
+    notes = sum(finding.ok and finding.warning for finding in verification.findings) + len(verification.warnings)
+    if not verification.ok:
+        return f"Do not cut this file: {bad} finding{'s are' if bad != 1 else ' is'} bad."
+    if notes:
+        return f"Verified. {notes} thing{'s' if notes != 1 else ''} to read before cutting."
+    return "Verified: what is in the file is what was planned."
+
+
+def told_facts(verification: Verification) -> dict[str, str]:
+    """Size, pieces, length and time by what they are called."""
+    width, height = verification.size_mm
+    pieces = UNKNOWN if verification.pieces is None else str(verification.pieces)
+    return {
+        "Size in the file": f"{width:.2f} \N{MULTIPLICATION SIGN} {height:.2f} mm",
+        "Pieces": pieces,
+        "Cut length": readable_length(verification.cut_length_mm),
+        "Time": readable_range(verification.seconds_low, verification.seconds_high),
+    }
+
+
+def told_findings(verification: Verification) -> list[tuple[str, str, str]]:
+    """Word, icon and sentence of each line, the bad ones first."""
+    lines = [_told(finding) for finding in verification.findings]
+    lines += [("Note", "warning", text) for text in verification.warnings]
+    return sorted(lines, key=lambda line: ("Bad", "Note", "Good").index(line[0]))
+
+
+def _told(finding: Finding) -> tuple[str, str, str]:
+    if not finding.ok:
+        return "Bad", "fault", finding.text
+    return ("Note", "warning", finding.text) if finding.warning else ("Good", "check", finding.text)
+
+
+def as_text(verification: Verification) -> str:
+    """The whole report, to be pasted."""
+    facts = [f"{name}: {text}" for name, text in told_facts(verification).items()]
+    lines = [f"{word}: {text}" for word, _, text in told_findings(verification)]
+    return "\n".join([str(verification.path), verdict(verification), *facts, *lines])

@@ -1,0 +1,50 @@
+"""The preferences of the window: read once, and written when a cut file was exported for another machine."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from PySide6.QtCore import QObject, Signal
+
+from kirigami_studio.foundation.errors import KirigamiError
+from kirigami_studio.gui.messages import Message, Tone
+from kirigami_studio.project import preferences
+from kirigami_studio.project.document import Document
+from kirigami_studio.project.preferences import Preferences, preferences_of
+
+
+class Preferring(QObject):
+    """Holds what new projects start with; keeps it in a file once it was told in which."""
+
+    message = Signal(object)  #: Message
+
+    def __init__(self, parent: QObject) -> None:
+        super().__init__(parent)
+        self.present = Preferences()
+        self._path: Path | None = None
+
+    def load(self, path: Path) -> None:
+        """Read the file and keep it up to date from now on; one that cannot be read is left as it is."""
+        try:
+            self.present = preferences.load(path)
+        except KirigamiError as error:
+            self.message.emit(Message(str(error), Tone.WARNING))
+        else:
+            self._path = path
+
+    def remember(self, document: Document) -> None:
+        """A cut file of this document was written."""
+        wanted = preferences_of(document)
+        if wanted == self.present:
+            return
+        self.present = wanted
+        if self._path is None:
+            return
+        try:
+            preferences.save(wanted, self._path)
+        except KirigamiError as error:
+            self.message.emit(Message(str(error), Tone.WARNING))
+
+    def new_document(self) -> Document:
+        """What a new project starts with."""
+        return self.present.new_document()

@@ -1,0 +1,173 @@
+"""After an export: what two readers found, in words and symbols, and the machine that is remembered."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import ezdxf
+import pytest
+from PySide6.QtCore import QObject, Qt, QUrl, Slot
+from PySide6.QtGui import QDesktopServices
+from PySide6.QtWidgets import QApplication
+from pytestqt.qtbot import QtBot
+
+from kirigami_studio.export.verification import Finding, Verification
+from kirigami_studio.foundation.errors import ProjectError
+from kirigami_studio.gui.dialogs.export_report import ExportReport, as_text, told_findings, verdict
+from kirigami_studio.gui.main_window import MainWindow
+from kirigami_studio.gui.messages import Tone
+from kirigami_studio.gui.theme import LIGHT
+from kirigami_studio.project import preferences
+from kirigami_studio.project.document import Document
+from kirigami_studio.project.preferences import Preferences
+
+Until = Callable[[Callable[[], bool]], None]
+LEFT = Qt.MouseButton.LeftButton
+GOOD = Verification(
+    path=Path("sheet.dxf"),
+    ok=True,
+    size_mm=(100.0, 80.0),
+    pieces=1,
+    cut_length_mm=1234.0,
+    seconds_low=20.0,
+    seconds_high=30.0,
+    findings=(Finding("The file's unit is mm.", True), Finding("A ligament is narrow.", True, warning=True)),
+    warnings=(),
+)
+BAD = replace(GOOD, ok=False, findings=(*GOOD.findings, Finding("Two lines are missing.", False)))
+
+
+def export(window: MainWindow, path: Path, until: Until) -> ExportReport:
+    window.controller.export(path)
+    until(lambda: window.commands.report is not None)
+    assert window.commands.report is not None
+    return window.commands.report
+
+
+def test_that_an_export_opens_a_report_that_blocks_nothing(
+    designed: MainWindow, files: object, qtbot: QtBot, until: Until, tmp_path: Path
+) -> None:
+    files.answer = tmp_path / "cut.dxf"  # type: ignore[attr-defined]
+    qtbot.mouseClick(designed.fabrication.export, LEFT)
+    until(lambda: designed.commands.report is not None)
+    report = designed.commands.report
+    assert report is not None and report.isVisible() and not report.isModal()
+    assert report.verification.ok and report.verdict.text().startswith("Verified.")
+    assert report.facts["Pieces"].text() == "1" and report.facts["Size in the file"].text().startswith("100.")
+    qtbot.mouseClick(designed.stage.cuts_switch, LEFT)
+    assert designed.stage.showing_cuts
+    qtbot.mouseClick(report.shut, LEFT)
+    assert not report.isVisible()
+
+
+def test_that_a_second_export_replaces_the_report(designed: MainWindow, until: Until, tmp_path: Path) -> None:
+    first = export(designed, tmp_path / "a.dxf", until)
+    designed.controller.export(tmp_path / "b.svg")
+    until(lambda: designed.commands.report is not first)
+    report = designed.commands.report
+    assert report is not None and report.verification.path.name == "b.svg"
+
+
+def test_that_a_picture_has_no_report(designed: MainWindow, until: Until, tmp_path: Path) -> None:
+    designed.controller.export(tmp_path / "a.png")
+    until(lambda: bool(designed.messages.messages))
+    assert designed.messages.messages[-1].tone is Tone.DONE and designed.commands.report is None
+
+
+@pytest.mark.parametrize(("report", "said"), [(GOOD, "Verified. 1 thing"), (BAD, "Do not cut this file: 1 finding is")])
+def test_that_the_verdict_is_said_in_words(report: Verification, said: str) -> None:
+    assert verdict(report).startswith(said)
+
+
+def test_that_a_bad_finding_comes_first_with_its_own_word_and_symbol(qtbot: QtBot, designed: MainWindow) -> None:
+    assert [line[:2] for line in told_findings(BAD)] == [("Bad", "fault"), ("Note", "warning"), ("Good", "check")]
+    dialog = ExportReport(designed, BAD, LIGHT)
+    assert dialog.findings.item(0).text() == "Bad: Two lines are missing."
+    good = ExportReport(designed, GOOD, LIGHT)
+    assert dialog.symbol.pixmap().toImage() != good.symbol.pixmap().toImage()
+    for one in (dialog, good):
+        one.deleteLater()
+
+
+def test_that_the_copied_report_holds_every_line(designed: MainWindow, qtbot: QtBot) -> None:
+    dialog = ExportReport(designed, BAD, LIGHT)
+    dialog.copy.click()
+    text = QApplication.clipboard().text()
+    assert text == as_text(BAD) and "Time: 20\N{EN DASH}30 s" in text and "Bad: Two lines are missing." in text
+    dialog.deleteLater()
+
+
+class Desktop(QObject):
+    """Stands for the desktop that opens folders."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.opened: list[str] = []
+
+    @Slot(QUrl)
+    def show(self, url: QUrl) -> None:
+        self.opened.append(url.toLocalFile())
+
+
+def test_that_show_in_folder_opens_the_files_folder(
+    designed: MainWindow, qtbot: QtBot, until: Until, tmp_path: Path
+) -> None:
+    report, desktop = export(designed, tmp_path / "cut.dxf", until), Desktop()
+    QDesktopServices.setUrlHandler("file", desktop, "show")
+    try:
+        qtbot.mouseClick(report.folder, LEFT)
+    finally:
+        QDesktopServices.unsetUrlHandler("file")
+    assert desktop.opened == [str(tmp_path)]
+
+
+def test_that_the_chosen_profile_and_version_reach_the_file(designed: MainWindow, until: Until, tmp_path: Path) -> None:
+    designed.controller.change_fabrication(profile="lightburn", dxf_version="R12")
+    export(designed, tmp_path / "cut.dxf", until)
+    drawing = ezdxf.readfile(tmp_path / "cut.dxf")
+    assert drawing.dxfversion == "AC1009"
+    assert len({entity.dxf.color for entity in drawing.modelspace()}) == 3
+
+
+def test_that_one_file_for_each_layer_is_reported_as_its_folder(
+    designed: MainWindow, until: Until, tmp_path: Path
+) -> None:
+    designed.controller.change_fabrication(profile="layers")
+    report = export(designed, tmp_path / "cut.dxf", until)
+    assert report.verification.ok and report.verification.path == tmp_path / "cut"
+    assert len(list((tmp_path / "cut").iterdir())) == 3
+
+
+def test_that_a_new_project_starts_with_the_machine_of_the_last_export(
+    designed: MainWindow, until: Until, tmp_path: Path
+) -> None:
+    kept = tmp_path / "preferences.toml"
+    designed.controller.use_preferences(kept)
+    assert not kept.exists() and designed.controller.document.candidates
+    designed.controller.change_fabrication(profile="lightburn")
+    assert not kept.exists()
+    export(designed, tmp_path / "cut.dxf", until)
+    assert preferences.load(kept) == Preferences("lightburn", "R2010")
+    designed.controller.new_project()
+    assert designed.controller.document.fabrication.profile == "lightburn"
+    assert not designed.controller.history.unsaved
+
+
+def test_that_the_window_starts_with_the_preferences(window: MainWindow, tmp_path: Path) -> None:
+    preferences.save(Preferences("lightburn", "R12"), tmp_path / "preferences.toml")
+    window.controller.use_preferences(tmp_path / "preferences.toml")
+    assert window.controller.document == Preferences("lightburn", "R12").new_document() != Document()
+    assert window.fabrication.options.dxf_version.currentData() == "R12"
+
+
+@pytest.mark.parametrize("content", ["profile = 3", "profile = ", 'colour = "red"'])
+def test_that_damaged_preferences_are_told_and_left_alone(window: MainWindow, tmp_path: Path, content: str) -> None:
+    path = tmp_path / "preferences.toml"
+    path.write_text(content, encoding="utf-8")
+    with pytest.raises(ProjectError):
+        preferences.load(path)
+    window.controller.use_preferences(path)
+    window.controller.preferring.remember(Preferences("lightburn").new_document())
+    assert window.messages.messages[-1].tone is Tone.WARNING and path.read_text(encoding="utf-8") == content
