@@ -74,6 +74,7 @@ COMMANDS = (
         True,
         True,
     ),
+    Command("materials", "&Materials …", "&Design", ("Ctrl+M",), "material", "Copy, change and calibrate materials"),
     Command("next", "&Next design", "&Design", ("Ctrl+Down", "PgDown"), "", "Choose the next design", gap=True),
     Command("previous", "&Previous design", "&Design", ("Ctrl+Up", "PgUp"), "", "Choose the previous design"),
     Command("play", "&Play / pause", "&View", ("Space",), "play", "Play the deployment"),

@@ -22,8 +22,10 @@ from kirigami_studio.gui.views.layout_view import Overlay
 from kirigami_studio.gui.views.target_view import Tool
 
 if TYPE_CHECKING:
+    from kirigami_studio.fabricate.material import Material
     from kirigami_studio.gui.dialogs.export_report import ExportReport
     from kirigami_studio.gui.dialogs.guide import GuideWindow
+    from kirigami_studio.gui.dialogs.material_editor import MaterialEditor
     from kirigami_studio.gui.dialogs.silhouette_picker import SilhouettePicker
 
 OVERLAY_ACTIONS = {
@@ -44,6 +46,7 @@ class Commands(QObject):
         self.guide: GuideWindow | None = None
         self.picker: SilhouettePicker | None = None
         self.report: ExportReport | None = None
+        self.materials: MaterialEditor | None = None
         self._closing = False
         self._connect_actions()
 
@@ -58,6 +61,7 @@ class Commands(QObject):
             "open_target": self.ask_target,
             "library": self.show_library,
             "export": self.export,
+            "materials": self.show_materials,
             "quit": window.close,
             "undo": controller.undo,
             "redo": controller.redo,
@@ -125,6 +129,30 @@ class Commands(QObject):
         if path is not None:
             self.controller.export(path)
 
+    def show_materials(self) -> None:
+        """Open the material editor, or bring it to the front."""
+        from kirigami_studio.gui.dialogs.material_editor import MaterialEditor
+
+        key = self.controller.document.fabrication.material
+        if self.materials is None:
+            self.materials = MaterialEditor(self.window, key)
+            self.materials.library_changed.connect(self._take_materials)
+            self.materials.coupon_wanted.connect(self.export_coupon)
+        self.materials.choose(key)
+        self.materials.show()
+        self.materials.raise_()
+        self.materials.activateWindow()
+
+    def _take_materials(self, key: str) -> None:
+        self.window.fabrication.reload_materials()
+        self.controller.replan()
+
+    def export_coupon(self, material: Material) -> None:
+        """Write the calibration coupon of a material in a place of the user's choice."""
+        path = self.files.export(f"coupon-{material.key}.dxf")
+        if path is not None:
+            self.controller.cutting.export_coupon(material, path, self.controller.document.fabrication)
+
     def show_report(self, exported: Exported) -> None:
         """Show what two readers found in a written cut file, in the place of an earlier report."""
         from kirigami_studio.gui.dialogs.export_report import ExportReport
@@ -142,6 +170,13 @@ class Commands(QObject):
             self.report.close()
             self.report.deleteLater()
             self.report = None
+
+    def close_dialogs(self) -> None:
+        """The window is closing: what stands beside it goes with it."""
+        self.close_report()
+        for dialog in (self.materials, self.guide):
+            if dialog is not None:
+                dialog.close()
 
     def show_library(self) -> None:
         """Open the popup with the library's silhouettes."""

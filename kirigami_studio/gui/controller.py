@@ -299,6 +299,11 @@ class Controller(QObject):
                 self.preferring.remember(self.document)
             self.cutting.export(order, path)
 
+    def replan(self) -> None:
+        """A material has changed on disk."""
+        self.document_changed.emit(self.document)
+        self._plan_soon()
+
     def _plan_soon(self) -> None:
         self.cutting.plan_soon(self._order())
 

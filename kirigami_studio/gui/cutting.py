@@ -7,9 +7,11 @@ from pathlib import Path
 
 from PySide6.QtCore import QObject, QTimer, Signal
 
+from kirigami_studio.fabricate.material import Material
 from kirigami_studio.gui.jobs import steps
 from kirigami_studio.gui.jobs.board import Board, Ears
 from kirigami_studio.gui.messages import Message, Tone
+from kirigami_studio.project.settings import FabricationSettings
 
 #: Changes that follow each other faster than this (ms) lead to one plan.
 PLAN_DELAY_MS = 120
@@ -60,6 +62,12 @@ class Cutting(QObject):
         self.status.emit(f"Writing {path.name} …")
         ears = Ears(self._written, on_failed=self._not_written)
         self._board.start(f"writing {path.name}", partial(steps.exporting, order, path), ears)
+
+    def export_coupon(self, material: Material, path: Path, settings: FabricationSettings) -> None:
+        """Write the calibration coupon of a material."""
+        self.status.emit(f"Writing {path.name} …")
+        work = partial(steps.exporting_coupon, material, path, settings)
+        self._board.start(f"writing {path.name}", work, Ears(self._written, on_failed=self._not_written))
 
     def _written(self, report: object) -> None:
         if not isinstance(report, steps.Exported):

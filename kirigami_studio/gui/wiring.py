@@ -53,6 +53,7 @@ class Wiring(QObject):
         window.fabrication.changed.connect(lambda changes: controller.change_fabrication(**changes))
         window.fabrication.options_changed.connect(lambda changes: controller.fabricating.change_options(**changes))
         window.fabrication.edited.connect(controller.end_drag)
+        window.fabrication.materials_wanted.connect(self.commands.show_materials)
         window.fabrication.export_wanted.connect(self.commands.export)
         window.stage.before_wanted.connect(controller.compare)
         window.stage.trim_wanted.connect(controller.trim)

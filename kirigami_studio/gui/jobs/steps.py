@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from kirigami_studio.export.verification import Verification
     from kirigami_studio.fabricate.checks import Report
     from kirigami_studio.fabricate.cut_plan import CutPlan
+    from kirigami_studio.fabricate.material import Material
 
 #: Extensions of targets that are traced at a threshold.
 PICTURES = (".png", ".jpg", ".jpeg", ".bmp")
@@ -222,6 +223,22 @@ def exporting(order: Order, path: Path, cancel: Cancel) -> Iterator[Exported]:
     settings = order.settings
     written = export(replace(job, profile=settings.profile, dxf_version=settings.dxf_version), path)
     yield Exported(written, made, None if made is None else _verified(made.plan, path, settings))
+
+
+def exporting_coupon(
+    material: Material, path: Path, settings: FabricationSettings, cancel: Cancel
+) -> Iterator[Exported]:
+    """Write the calibration coupon of a material as a cut file, and read it back."""
+    from kirigami_studio.export.dxf import write_dxf
+    from kirigami_studio.export.profile import find_profile
+    from kirigami_studio.fabricate.checks import check_plan
+    from kirigami_studio.fabricate.coupon import plan_coupon
+
+    if path.suffix.lower() != ".dxf":
+        raise UsageError(f"A coupon is written as .dxf here, got {path.name}; the command line knows other kinds.")
+    plan = plan_coupon(material)
+    write_dxf(plan, path, settings.dxf_version, find_profile(settings.profile))
+    yield Exported(path, Planned(plan, check_plan(plan)), _verified(plan, path, settings))
 
 
 def _verified(plan: CutPlan, path: Path, settings: FabricationSettings) -> Verification | None:

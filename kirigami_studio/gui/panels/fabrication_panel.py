@@ -16,7 +16,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from kirigami_studio.fabricate.material import presets
+from kirigami_studio.fabricate.material import library
 from kirigami_studio.gui import icons
 from kirigami_studio.gui.panels.card import Card, ScrolledWhenShort, captioned, compact, muted_label, tool_button
 from kirigami_studio.gui.panels.export_row import ExportRow
@@ -70,6 +70,7 @@ class FabricationPanel(Card):
     changed = Signal(dict)  #: field of FabricationSettings -> value
     options_changed = Signal(dict)  #: field of CutOptions -> value
     edited = Signal()
+    materials_wanted = Signal()
     export_wanted = Signal(str)  #: extension
 
     def __init__(self, parent: QWidget | None = None) -> None:
@@ -78,7 +79,7 @@ class FabricationPanel(Card):
         self._calm = True
         self._folded, self._by_hand = False, False
         self._summaries = ("", "")  # unfolded, folded
-        self._presets = presets()
+        self._presets = library().materials
         self.material = QComboBox()
         self.material.setObjectName("material")
         self.material.setFocusPolicy(Qt.FocusPolicy.TabFocus)
@@ -86,8 +87,9 @@ class FabricationPanel(Card):
         self.material.setMinimumContentsLength(8)
         self.material.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
         self.material.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
-        for key, material in self._presets.items():
-            self.material.addItem(material.name, key)
+        self.edit_materials = tool_button("editMaterials", "Copy, change and calibrate materials (Ctrl+M).")
+        self.edit_materials.clicked.connect(self.materials_wanted)
+        self.reload_materials()
         self.material.activated.connect(self._take_material)
         self.lengths = {row[0]: self._length(*row) for row in LENGTHS}
         self.numbers = {key: QLabel(UNKNOWN) for key, _ in NUMBERS}
@@ -165,7 +167,11 @@ class FabricationPanel(Card):
         rows = QVBoxLayout(self.details)
         rows.setContentsMargins(0, 0, 0, 0)
         rows.setSpacing(8)
-        rows.addLayout(captioned("&Material", self.material, self.material))
+        material = QHBoxLayout()
+        material.setSpacing(4)
+        material.addWidget(self.material, 1)
+        material.addWidget(self.edit_materials)
+        rows.addLayout(captioned("&Material", self.material, material))
         row = QHBoxLayout()
         row.setSpacing(8)
         for field, label, *_ in LENGTHS:
@@ -192,6 +198,14 @@ class FabricationPanel(Card):
         rows.addWidget(self.options)
         self.scrolled = ScrolledWhenShort(self.details, LEAST_DETAILS)
         self.body.addWidget(self.scrolled)
+
+    def reload_materials(self) -> None:
+        """Read the library again; the choice is shown with the next settings."""
+        self._presets = library().materials
+        with QSignalBlocker(self.material):
+            self.material.clear()
+            for key, material in self._presets.items():
+                self.material.addItem(material.name, key)
 
     def _take_material(self, index: int) -> None:
         """A new material brings its own connector and kerf."""
@@ -290,6 +304,7 @@ class FabricationPanel(Card):
         self._palette = palette
         for part in (self.options, self.exports):
             part.set_palette(palette)
+        self.edit_materials.setIcon(icons.icon("material", palette))
         self._dress_fold()
 
 

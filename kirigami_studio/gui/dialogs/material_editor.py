@@ -1,0 +1,217 @@
+"""Own materials: copy a preset, set its numbers, mark it as calibrated, delete it, cut its coupon."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from datetime import date
+from typing import Any
+
+from PySide6.QtCore import QSize, Qt, Signal
+from PySide6.QtWidgets import (
+    QDialog,
+    QHBoxLayout,
+    QLabel,
+    QLineEdit,
+    QListWidget,
+    QListWidgetItem,
+    QPushButton,
+    QScrollArea,
+    QVBoxLayout,
+    QWidget,
+)
+
+from kirigami_studio.fabricate import material_copies
+from kirigami_studio.fabricate.material import Library, Material, library
+from kirigami_studio.foundation.errors import KirigamiError
+from kirigami_studio.gui.dialogs.material_form import TEXTS, MaterialForm
+
+SIZE = QSize(760, 560)
+NEW = "Your own copy of a preset can be changed; presets stay as they are."
+
+
+class MaterialEditor(QDialog):
+    """A list of all materials beside the form of the chosen one; blocks nothing."""
+
+    library_changed = Signal(str)  #: key of the material that was saved, or "" after one was deleted
+    coupon_wanted = Signal(object)  #: Material
+
+    def __init__(self, parent: QWidget, key: str) -> None:
+        super().__init__(parent)
+        self.setObjectName("materialEditor")
+        self.setWindowTitle("Materials")
+        self.setModal(False)
+        self.resize(SIZE)
+        self._library: Library = library()
+        self.list = QListWidget()
+        self.list.setAccessibleName("Materials")
+        self.list.setFixedWidth(250)
+        self.list.setTextElideMode(Qt.TextElideMode.ElideRight)
+        self.form = MaterialForm()
+        self.state, self.says = QLabel(), QLabel(NEW)
+        for label in (self.state, self.says):
+            label.setWordWrap(True)
+        self.says.setObjectName("muted")
+        self.author = QLineEdit()
+        self.author.setAccessibleName("Measured by")
+        self.author.setPlaceholderText("Measured by …")
+        self.author.setToolTip("Who measured the coupon.")
+        self.buttons = {
+            name: _button(name, text, tip)
+            for name, text, tip in (
+                ("copy", "C&opy", "Make a copy of this material that can be changed."),
+                ("delete", "&Delete", "Delete this own material. A preset cannot be deleted."),
+                ("coupon", "Export &coupon …", "Write a small sheet that tells kerf and smallest ligament."),
+                ("save", "&Save", "Save the numbers. A changed number makes the material uncalibrated."),
+                ("calibrate", "&Mark as calibrated", "The numbers were measured today, on a coupon."),
+            )
+        }
+        self._lay_out()
+        self._connect()
+        self._list(key)
+
+    def _lay_out(self) -> None:
+        scrolled = QScrollArea()
+        scrolled.setWidgetResizable(True)
+        scrolled.setFrameShape(QScrollArea.Shape.NoFrame)
+        scrolled.setWidget(self.form)
+        left, right, saving = QVBoxLayout(), QVBoxLayout(), QHBoxLayout()
+        left.addWidget(self.list, 1)
+        pair = QHBoxLayout()
+        pair.addWidget(self.buttons["copy"])
+        pair.addWidget(self.buttons["delete"])
+        left.addLayout(pair)
+        left.addWidget(self.buttons["coupon"])
+        right.addWidget(self.state)
+        right.addWidget(scrolled, 1)
+        right.addWidget(self.says)
+        saving.addWidget(self.buttons["save"])
+        saving.addStretch(1)
+        saving.addWidget(self.author, 2)
+        saving.addWidget(self.buttons["calibrate"])
+        right.addLayout(saving)
+        whole = QHBoxLayout(self)
+        whole.setContentsMargins(14, 14, 14, 14)
+        whole.setSpacing(14)
+        whole.addLayout(left)
+        whole.addLayout(right, 1)
+
+    def _connect(self) -> None:
+        self.list.currentItemChanged.connect(lambda *_: self._show())
+        self.form.changed.connect(self._show_buttons)
+        self.author.textChanged.connect(self._show_buttons)
+        for name, act in (
+            ("copy", self.copy),
+            ("delete", self.delete),
+            ("save", self.save),
+            ("calibrate", self.calibrate),
+        ):
+            self.buttons[name].clicked.connect(lambda _=False, act=act: self._try(act))
+        self.buttons["coupon"].clicked.connect(lambda: self.coupon_wanted.emit(self.chosen))
+
+    @property
+    def chosen(self) -> Material:
+        """The material in the form, as it is saved."""
+        item = self.list.currentItem() or self.list.item(0)
+        return self._library.materials[item.data(Qt.ItemDataRole.UserRole)]
+
+    def choose(self, key: str) -> None:
+        """Show a material by its key."""
+        rows = [row for row in range(self.list.count()) if self.list.item(row).data(Qt.ItemDataRole.UserRole) == key]
+        self.list.setCurrentRow(rows[0] if rows else 0)
+
+    def copy(self) -> None:
+        """Save a copy of the chosen material under a new key."""
+        source = self.chosen
+        made = material_copies.changed_copy(source.key, self._free_key(source.key), {"name": f"{source.name} (copy)"})
+        material_copies.save_copy(made)
+        self._saved(made.key, f"{made.name!r} was saved; change its numbers, then save.")
+        self.form.texts["name"].setFocus()
+
+    def save(self) -> None:
+        """Save the form; new numbers are uncalibrated ones."""
+        made = self._edited()
+        material_copies.save_copy(made)
+        self._saved(made.key, "Saved.")
+
+    def calibrate(self) -> None:
+        """Save the form as measured today."""
+        made = material_copies.mark_calibrated(self._edited(), date.today(), self.author.text())
+        self._saved(made.key, "Saved as calibrated.")
+
+    def delete(self) -> None:
+        """Delete the chosen own material."""
+        key, name = self.chosen.key, self.chosen.name
+        material_copies.delete_copy(key)
+        self._list(key)
+        self.says.setText(f"{name!r} was deleted.")
+        self.library_changed.emit("")
+
+    def _edited(self) -> Material:
+        """The chosen material with what the form says."""
+        material, changes = self.chosen, self.form.changes()
+        words = {field for field, *_ in TEXTS}
+        if changes.keys() <= words:
+            texts: dict[str, Any] = {field: str(entry) for field, entry in changes.items()}
+            return replace(material, **texts)
+        return material_copies.changed_copy(material.key, material.key, changes)
+
+    def _free_key(self, key: str) -> str:
+        numbered = (f"{key[:35]}-{number}" for number in range(2, 1000))
+        return next(one for one in numbered if one not in self._library.materials)
+
+    def _saved(self, key: str, sentence: str) -> None:
+        self._list(key)
+        self.says.setText(sentence)
+        self.library_changed.emit(key)
+
+    def _list(self, key: str) -> None:
+        """Read the library again and show a material."""
+        self._library = library()
+        self.list.clear()
+        for one, material in self._library.materials.items():
+            kind = "own" if one in self._library.own else "preset"
+            item = QListWidgetItem(f"{material.name}  ·  {kind}")
+            item.setData(Qt.ItemDataRole.UserRole, one)
+            item.setToolTip(f"{material.name} ({one})\n{material.machine}\n{_state(material)}")
+            self.list.addItem(item)
+        self.choose(key)
+        self.says.setText("\n".join(self._library.faults) or NEW)
+
+    def _show(self) -> None:
+        if self.list.currentItem() is None:
+            return
+        material = self.chosen
+        self.form.show_material(material, material.key in self._library.own)
+        self.state.setText(_state(material))
+        self._show_buttons()
+
+    def _show_buttons(self) -> None:
+        own = self.chosen.key in self._library.own
+        self.buttons["delete"].setEnabled(own)
+        self.buttons["save"].setEnabled(own and bool(self.form.changes()))
+        self.author.setEnabled(own)
+        self.buttons["calibrate"].setEnabled(own and bool(self.author.text().strip()))
+
+    def _try(self, act: Callable[[], None]) -> None:
+        """Do something with files; say why where it cannot be done."""
+        try:
+            act()
+        except KirigamiError as error:
+            self.says.setText(str(error))
+
+
+def _state(material: Material) -> str:
+    """Whether the numbers were measured, in words."""
+    if not material.calibrated:
+        return "Not calibrated: a starting point. Cut a coupon and measure."
+    by, on = material.measured_by, material.measured_on
+    return "Calibrated" + (f" on {on}" if on else "") + (f" by {by}" if by else "") + "."
+
+
+def _button(name: str, text: str, tip: str) -> QPushButton:
+    button = QPushButton(text)
+    button.setObjectName(f"material_{name}")
+    button.setToolTip(tip)
+    button.setAutoDefault(False)
+    return button

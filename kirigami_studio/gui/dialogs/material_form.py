@@ -1,0 +1,135 @@
+"""The numbers of one material as a form, made from a table."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from PySide6.QtCore import QSignalBlocker, Signal
+from PySide6.QtWidgets import QDoubleSpinBox, QFormLayout, QLabel, QLineEdit, QSpinBox, QWidget
+
+from kirigami_studio.fabricate.material import Material
+
+
+@dataclass(frozen=True, slots=True)
+class Number:
+    """One row of the table: a field of Material that is a length, a speed, a time or a share."""
+
+    field: str
+    label: str
+    unit: str
+    low: float
+    high: float
+    step: float
+    decimals: int
+    tip: str
+    scale: float = 1.0  #: shown = scale * kept
+
+
+NUMBERS = (
+    Number("thickness_mm", "Thickness", "mm", 0.005, 50.0, 0.05, 3, "Thickness of the sheet."),
+    Number("kerf_mm", "Kerf", "mm", 0.0, 5.0, 0.01, 3, "Full width of the cut; 0 for a blade."),
+    Number("connector_mm", "Connector", "mm", 0.02, 20.0, 0.05, 3, "Usual finished width of a connector."),
+    Number("min_ligament_mm", "Smallest ligament", "mm", 0.005, 20.0, 0.01, 3, "Narrower ones are warned about."),
+    Number("min_slit_mm", "Shortest slit", "mm", 0.005, 20.0, 0.05, 3, "Shorter slits are warned about."),
+    Number("relief_radius_mm", "Relief radius", "mm", 0.0, 5.0, 0.05, 3, "Radius of a relief hole at a slit's end."),
+    Number("strain_limit", "Breaks at strain", "%", 0.01, 500.0, 0.5, 2, "Strain at which the material breaks.", 100.0),
+    Number("speed_mm_s", "Cutting speed", "mm/s", 0.01, 10_000.0, 5.0, 2, "Speed with the beam on."),
+    Number("travel_mm_s", "Travel speed", "mm/s", 0.01, 20_000.0, 20.0, 2, "Speed between cuts."),
+    Number("acceleration_mm_s2", "Acceleration", "mm/s²", 0.1, 200_000.0, 100.0, 1, "How fast the head speeds up."),
+    Number("on_delay_s", "Delay before a cut", "ms", 0.0, 10_000.0, 5.0, 1, "Waited before each cut.", 1000.0),
+    Number("off_delay_s", "Delay after a cut", "ms", 0.0, 10_000.0, 5.0, 1, "Waited after each cut.", 1000.0),
+    Number(
+        "join_tolerance_mm", "Joins gaps below", "mm", 0.0, 2.0, 0.01, 3, "Gaps that the machine's program may close."
+    ),
+)
+TEXTS = (
+    ("name", "Name", "What the list of materials shows."),
+    ("machine", "Machine", "The machine that these numbers were found on."),
+    ("note", "Note", "What one should know."),
+)
+
+
+class MaterialForm(QWidget):
+    """Shows one material; an own one can be changed."""
+
+    changed = Signal()
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._shown: Material | None = None
+        self.texts = {field: _text(field, label, tip) for field, label, tip in TEXTS}
+        self.numbers = {number.field: _number(number) for number in NUMBERS}
+        self.passes = QSpinBox()
+        self.passes.setObjectName("passes")
+        self.passes.setRange(1, 100)
+        self.passes.setAccessibleName("Passes")
+        self.passes.setToolTip("How many times the job is cut (1 to 100).")
+        form = QFormLayout(self)
+        form.setContentsMargins(0, 0, 6, 0)
+        form.setVerticalSpacing(5)
+        form.setFieldGrowthPolicy(QFormLayout.FieldGrowthPolicy.AllNonFixedFieldsGrow)
+        for field, label, _ in TEXTS:
+            form.addRow(_caption(label), self.texts[field])
+            self.texts[field].textEdited.connect(self.changed)
+        for number in NUMBERS:
+            form.addRow(_caption(number.label), self.numbers[number.field])
+            self.numbers[number.field].valueChanged.connect(self.changed)
+        form.addRow(_caption("Passes"), self.passes)
+        self.passes.valueChanged.connect(self.changed)
+
+    def show_material(self, material: Material, editable: bool) -> None:
+        """Show another material."""
+        self._shown = material
+        for field, line in self.texts.items():
+            line.setText(getattr(material, field))
+            line.setCursorPosition(0)
+            line.setReadOnly(not editable)
+        for number in NUMBERS:
+            box = self.numbers[number.field]
+            with QSignalBlocker(box):
+                box.setValue(number.scale * getattr(material, number.field))
+            box.setEnabled(editable)
+        with QSignalBlocker(self.passes):
+            self.passes.setValue(material.passes)
+        self.passes.setEnabled(editable)
+
+    def changes(self) -> dict[str, object]:
+        """What differs from the material that is shown, by field."""
+        if self._shown is None:
+            return {}
+        entries: dict[str, object] = {field: line.text().strip() for field, line in self.texts.items()}
+        found = {field: entry for field, entry in entries.items() if entry != getattr(self._shown, field)}
+        for number in NUMBERS:
+            kept, shown = number.scale * getattr(self._shown, number.field), self.numbers[number.field].value()
+            if abs(shown - kept) > 0.6 * 10.0**-number.decimals:
+                found[number.field] = round(shown / number.scale, 9)
+        if self.passes.value() != self._shown.passes:
+            found["passes"] = self.passes.value()
+        return found
+
+
+def _caption(text: str) -> QLabel:
+    caption = QLabel(text)
+    caption.setObjectName("muted")
+    return caption
+
+
+def _text(field: str, label: str, tip: str) -> QLineEdit:
+    line = QLineEdit()
+    line.setObjectName(f"material_{field}")
+    line.setAccessibleName(label)
+    line.setToolTip(tip)
+    return line
+
+
+def _number(number: Number) -> QDoubleSpinBox:
+    box = QDoubleSpinBox()
+    box.setObjectName(f"material_{number.field}")
+    box.setRange(number.low, number.high)
+    box.setSingleStep(number.step)
+    box.setDecimals(number.decimals)
+    box.setSuffix(f" {number.unit}")
+    box.setKeyboardTracking(False)
+    box.setAccessibleName(f"{number.label}, {number.unit}")
+    box.setToolTip(f"{number.tip} Unit: {number.unit} ({number.low:g} to {number.high:g}).")
+    return box
