@@ -45,7 +45,9 @@ class MaterialEditor(QDialog):
         self._library: Library = library()
         self.list = QListWidget()
         self.list.setAccessibleName("Materials")
-        self.list.setFixedWidth(250)
+        self.list.setObjectName("materialList")
+        self.list.setFixedWidth(260)
+        self.list.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
         self.list.setTextElideMode(Qt.TextElideMode.ElideRight)
         self.form = MaterialForm()
         self.state, self.says = QLabel(), QLabel(NEW)
@@ -170,8 +172,7 @@ class MaterialEditor(QDialog):
         self._library = library()
         self.list.clear()
         for one, material in self._library.materials.items():
-            kind = "own" if one in self._library.own else "preset"
-            item = QListWidgetItem(f"{material.name}  ·  {kind}")
+            item = QListWidgetItem(f"Own  ·  {material.name}" if one in self._library.own else material.name)
             item.setData(Qt.ItemDataRole.UserRole, one)
             item.setToolTip(f"{material.name} ({one})\n{material.machine}\n{_state(material)}")
             self.list.addItem(item)
