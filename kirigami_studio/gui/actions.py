@@ -53,7 +53,10 @@ COMMANDS = (
     Command("open_target", "&Open target …", "&File", ("Ctrl+O",), "open", "Open a target silhouette", gap=True),
     Command("library", "Target &library …", "&File", ("Ctrl+L",), "library", "Choose a silhouette of the library"),
     Command(
-        "export", "&Export DXF …", "&File", ("Ctrl+E",), "export", "Write the cut file in mm, or a picture", gap=True
+        "export", "Export &DXF …", "&File", ("Ctrl+E",), "export", "Write the cut file in mm, or a picture", gap=True
+    ),
+    Command(
+        "export_all", "Export &everything …", "&File", ("Ctrl+Shift+E",), "", "Write every kind of file into one folder"
     ),
     Command("quit", "&Quit", "&File", ("Ctrl+Q",), tip="Close Kirigami Studio", gap=True),
     Command("undo", "&Undo", "&Edit", ("Ctrl+Z",), "undo", "Undo", True),

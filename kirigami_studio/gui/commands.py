@@ -61,6 +61,7 @@ class Commands(QObject):
             "open_target": self.ask_target,
             "library": self.show_library,
             "export": self.export,
+            "export_all": self.export_all,
             "materials": self.show_materials,
             "quit": window.close,
             "undo": controller.undo,
@@ -129,6 +130,12 @@ class Commands(QObject):
         if path is not None:
             self.controller.export(path)
 
+    def export_all(self) -> None:
+        """Write everything that there is of the design into a folder of the user's choice."""
+        folder = self.files.folder()
+        if folder is not None:
+            self.controller.export_all(folder, self._name())
+
     def show_materials(self) -> None:
         """Open the material editor, or bring it to the front."""
         from kirigami_studio.gui.dialogs.material_editor import MaterialEditor
@@ -158,9 +165,9 @@ class Commands(QObject):
         from kirigami_studio.gui.dialogs.export_report import ExportReport
 
         self.close_report()
-        if exported.verification is None:
+        if not exported.verifications:
             return
-        self.report = ExportReport(self.window, exported.verification, self.window.palette_)
+        self.report = ExportReport(self.window, exported.verifications, self.window.palette_)
         self.report.folder_wanted.connect(show_in_folder)
         self.report.show()
 

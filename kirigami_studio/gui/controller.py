@@ -6,7 +6,6 @@ an edit here, or a message.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import Unpack
@@ -20,6 +19,7 @@ from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.gui.comparing import Comparing
 from kirigami_studio.gui.cutting import Cutting
 from kirigami_studio.gui.design_run import DesignRun, request_of
+from kirigami_studio.gui.drawing import Drawing
 from kirigami_studio.gui.fabricating import Fabricating
 from kirigami_studio.gui.file_kinds import kind_of
 from kirigami_studio.gui.finishing import Finishing
@@ -65,6 +65,7 @@ class Controller(QObject):
         self.comparing = Comparing(self.board, shelf, self)
         self.fabricating = Fabricating(lambda: self.document, self)
         self.cutting = Cutting(self.board, self)
+        self.drawing = Drawing(self)
         self.tracing = Tracing(self.board, self)
         self.reading = Reading(self.board, self.tracing, self)
         self.storing = Storing(self.board, self)
@@ -81,7 +82,9 @@ class Controller(QObject):
         self.showing.stage_changed.connect(self._forget_stage)
         for part in (self.finishing, self.fabricating):
             part.edited.connect(self._apply)
-        self.fabricating.refused.connect(self._refuse)
+        self.drawing.drawn.connect(self._take_target)
+        for gestures in (self.drawing, self.fabricating):
+            gestures.refused.connect(self._refuse)
         self.reading.read.connect(self._take_read)
         self.tracing.traced.connect(self._take_traced)
         self.tracing.refused.connect(self.status)
@@ -149,16 +152,6 @@ class Controller(QObject):
         if picture is not None:
             self.tracing.retrace(picture, threshold)
 
-    def take_freehand(self, points: FloatArray) -> None:
-        """Smooth a stroke (L, 2), y up, into a target."""
-        from kirigami_studio.target.editing import smooth_freehand
-
-        self._draw(lambda: smooth_freehand(points).renamed("drawing"))
-
-    def take_polygon(self, points: FloatArray) -> None:
-        """Make corners (L, 2), y up, a target."""
-        self._draw(lambda: Outline.from_points(points, name="polygon"))
-
     def clear_target(self) -> None:
         """Start over with an empty target."""
         document = self.document
@@ -167,14 +160,6 @@ class Controller(QObject):
             self._stop_design()
             self._apply(Edit("Clear target", empty))
             self.status.emit("Target cleared. Undo brings it back.")
-
-    def _draw(self, make: Callable[[], Outline]) -> None:
-        try:
-            outline = make()
-        except KirigamiError as error:
-            self._refuse(error)
-            return
-        self._take_target(outline)
 
     def _take_traced(self, outline: Outline) -> None:
         self.run.abandon()
@@ -298,6 +283,12 @@ class Controller(QObject):
             if kind_of(path.suffix).cuts:
                 self.preferring.remember(self.document)
             self.cutting.export(order, path)
+
+    def export_all(self, folder: Path, name: str) -> None:
+        """Write everything that there is of the chosen design into a folder."""
+        order = self._order()
+        if order is not None:
+            self.cutting.export_all(order, folder, name)
 
     def replan(self) -> None:
         """A material has changed on disk."""

@@ -63,6 +63,12 @@ class Cutting(QObject):
         ears = Ears(self._written, on_failed=self._not_written)
         self._board.start(f"writing {path.name}", partial(steps.exporting, order, path), ears)
 
+    def export_all(self, order: steps.Order, folder: Path, name: str) -> None:
+        """Write everything that there is of a design into a folder."""
+        self.status.emit(f"Writing into {folder.name} …")
+        work = partial(steps.exporting_all, order, folder, name)
+        self._board.start(f"writing into {folder.name}", work, Ears(self._written, on_failed=self._not_written))
+
     def export_coupon(self, material: Material, path: Path, settings: FabricationSettings) -> None:
         """Write the calibration coupon of a material."""
         self.status.emit(f"Writing {path.name} …")

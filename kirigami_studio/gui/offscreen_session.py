@@ -51,6 +51,9 @@ class PresetFiles:
     def export(self, proposal: str) -> Path | None:
         return self._out / Path(proposal).with_stem("cut").name
 
+    def folder(self) -> Path | None:
+        return self._out
+
 
 class Session:
     """Plays the steps on one window and takes pictures."""

@@ -39,8 +39,8 @@ class Wiring(QObject):
         window.target.wants_silhouette.connect(self.commands.show_library)
         window.target.clear_wanted.connect(controller.clear_target)
         window.target.view.file_dropped.connect(self.commands.take_file)
-        window.target.view.freehand_drawn.connect(controller.take_freehand)
-        window.target.view.polygon_drawn.connect(controller.take_polygon)
+        window.target.view.freehand_drawn.connect(controller.drawing.take_freehand)
+        window.target.view.polygon_drawn.connect(controller.drawing.take_polygon)
         window.target.view.hint.connect(lambda text: window.says.setText(text) if text else None)
         window.target.threshold.changed.connect(controller.change_threshold)
         window.target.threshold.automatic_wanted.connect(lambda: controller.change_threshold(None))
@@ -55,6 +55,7 @@ class Wiring(QObject):
         window.fabrication.edited.connect(controller.end_drag)
         window.fabrication.materials_wanted.connect(self.commands.show_materials)
         window.fabrication.export_wanted.connect(self.commands.export)
+        window.fabrication.exports.all_wanted.connect(self.commands.export_all)
         window.stage.before_wanted.connect(controller.compare)
         window.stage.trim_wanted.connect(controller.trim)
         window.stage.switches_changed.connect(self._show_switches)
@@ -131,7 +132,8 @@ class Wiring(QObject):
         target = self.controller.document.target
         self.window.stage.show_entry(entry, target, rank)
         view.mark(None if entry is None else entry.candidate)
-        self.window.actions_["export"].setEnabled(entry is not None)
+        for name in ("export", "export_all"):
+            self.window.actions_[name].setEnabled(entry is not None)
         if entry is None:
             self.window.facts.clear()
             return

@@ -59,6 +59,9 @@ class PathAnswers:
         self.proposals.append(proposal)
         return self.answer
 
+    def folder(self) -> Path | None:
+        return self.answer
+
 
 @pytest.fixture
 def files() -> PathAnswers:

@@ -54,7 +54,7 @@ def test_that_an_export_opens_a_report_that_blocks_nothing(
     until(lambda: designed.commands.report is not None)
     report = designed.commands.report
     assert report is not None and report.isVisible() and not report.isModal()
-    assert report.verification.ok and report.verdict.text().startswith("Verified.")
+    assert report.shown.ok and report.verdict.text().startswith("Verified.")
     assert report.facts["Pieces"].text() == "1" and report.facts["Size in the file"].text().startswith("100.")
     qtbot.mouseClick(designed.stage.cuts_switch, LEFT)
     assert designed.stage.showing_cuts
@@ -67,7 +67,7 @@ def test_that_a_second_export_replaces_the_report(designed: MainWindow, until: U
     designed.controller.export(tmp_path / "b.svg")
     until(lambda: designed.commands.report is not first)
     report = designed.commands.report
-    assert report is not None and report.verification.path.name == "b.svg"
+    assert report is not None and report.shown.path.name == "b.svg"
 
 
 def test_that_a_picture_has_no_report(designed: MainWindow, until: Until, tmp_path: Path) -> None:
@@ -83,16 +83,16 @@ def test_that_the_verdict_is_said_in_words(report: Verification, said: str) -> N
 
 def test_that_a_bad_finding_comes_first_with_its_own_word_and_symbol(qtbot: QtBot, designed: MainWindow) -> None:
     assert [line[:2] for line in told_findings(BAD)] == [("Bad", "fault"), ("Note", "warning"), ("Good", "check")]
-    dialog = ExportReport(designed, BAD, LIGHT)
+    dialog = ExportReport(designed, (BAD,), LIGHT)
     assert dialog.findings.item(0).text() == "Bad: Two lines are missing."
-    good = ExportReport(designed, GOOD, LIGHT)
+    good = ExportReport(designed, (GOOD,), LIGHT)
     assert dialog.symbol.pixmap().toImage() != good.symbol.pixmap().toImage()
     for one in (dialog, good):
         one.deleteLater()
 
 
 def test_that_the_copied_report_holds_every_line(designed: MainWindow, qtbot: QtBot) -> None:
-    dialog = ExportReport(designed, BAD, LIGHT)
+    dialog = ExportReport(designed, (BAD,), LIGHT)
     dialog.copy.click()
     text = QApplication.clipboard().text()
     assert text == as_text(BAD) and "Time: 20\N{EN DASH}30 s" in text and "Bad: Two lines are missing." in text
@@ -136,7 +136,7 @@ def test_that_one_file_for_each_layer_is_reported_as_its_folder(
 ) -> None:
     designed.controller.change_fabrication(profile="layers")
     report = export(designed, tmp_path / "cut.dxf", until)
-    assert report.verification.ok and report.verification.path == tmp_path / "cut"
+    assert report.shown.ok and report.shown.path == tmp_path / "cut"
     assert len(list((tmp_path / "cut").iterdir())) == 3
 
 
@@ -171,3 +171,24 @@ def test_that_damaged_preferences_are_told_and_left_alone(window: MainWindow, tm
     window.controller.use_preferences(path)
     window.controller.preferring.remember(Preferences("lightburn").new_document())
     assert window.messages.messages[-1].tone is Tone.WARNING and path.read_text(encoding="utf-8") == content
+
+
+def test_that_everything_goes_into_one_folder_with_a_report_for_each_cut_file(
+    designed: MainWindow, files: object, qtbot: QtBot, until: Until, tmp_path: Path
+) -> None:
+    files.answer = tmp_path / "all"  # type: ignore[attr-defined]
+    designed.fabrication.exports.everything.trigger()
+    until(lambda: designed.commands.report is not None)
+    report = designed.commands.report
+    assert report is not None and report.file.isVisible() and report.file.count() == 3
+    assert all(one.ok for one in report.verifications)
+    assert report.file.itemText(1) == "Verified  \N{MIDDLE DOT}  heart_r12.dxf"
+    report.file.setCurrentIndex(1)
+    assert report.path.text().endswith("heart_r12.dxf") and report.verdict.text().startswith("Verified.")
+    assert {path.suffix for path in (tmp_path / "all").iterdir()} >= {".dxf", ".svg", ".pdf", ".png", ".lbrn2"}
+
+
+def test_that_the_file_that_must_not_be_cut_is_shown_first(designed: MainWindow) -> None:
+    dialog = ExportReport(designed, (GOOD, BAD), LIGHT)
+    assert dialog.shown is BAD and dialog.file.itemText(1).startswith("Do not cut")
+    dialog.deleteLater()

@@ -108,6 +108,6 @@ def test_that_a_drawing_wins_over_a_file_that_is_still_being_read(
     window: MainWindow, picture: Path, until: Until
 ) -> None:
     window.controller.open_target(str(picture))
-    window.controller.take_polygon(np.array([[0.0, 0.0], [3.0, 0.0], [1.0, 2.0]]))
+    window.controller.drawing.take_polygon(np.array([[0.0, 0.0], [3.0, 0.0], [1.0, 2.0]]))
     until(lambda: not window.controller.board.busy)
     assert window.controller.document.target is not None and window.controller.document.target.name == "polygon"

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QEvent, QSize, Qt, Signal
 from PySide6.QtGui import QGuiApplication
 from PySide6.QtWidgets import (
+    QComboBox,
     QDialog,
     QGridLayout,
     QHBoxLayout,
@@ -35,19 +36,20 @@ class ExportReport(QDialog):
 
     folder_wanted = Signal(object)  #: Path of what was written
 
-    def __init__(self, parent: QWidget, verification: Verification, palette: Palette) -> None:
+    def __init__(self, parent: QWidget, verifications: tuple[Verification, ...], palette: Palette) -> None:
         super().__init__(parent)
-        self.verification = verification
-        self._palette: Palette | None = None
+        self.verifications = verifications
+        self._palette: Palette = palette
         self.setObjectName("exportReport")
-        self.setWindowTitle(f"Export report: {verification.path.name}")
+        self.setWindowTitle("Export report")
         self.setModal(False)
         self.resize(SIZE)
-        self.symbol, self.verdict = QLabel(), QLabel(verdict(verification))
-        self.verdict.setObjectName("reportVerdict")
+        self.file = QComboBox()
+        self.file.setAccessibleName("File of the report")
+        self.file.addItems([label(one) for one in verifications])
+        self.file.setVisible(len(verifications) > 1)
+        self.symbol, self.verdict, self.path = QLabel(), QLabel(), ElidedLabel()
         self.verdict.setWordWrap(True)
-        self.path = ElidedLabel()
-        self.path.setText(str(verification.path))
         self.findings = QListWidget()
         self.findings.setObjectName("reportFindings")
         self.findings.setAccessibleName("Findings of the export report")
@@ -55,20 +57,36 @@ class ExportReport(QDialog):
         self.findings.setIconSize(QSize(18, 18))
         self.findings.setSelectionMode(QListWidget.SelectionMode.NoSelection)
         self.findings.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
-        self.facts = {name: QLabel(text) for name, text in told_facts(verification).items()}
-        for word, icon, text in told_findings(verification):
-            item = QListWidgetItem(f"{word}: {text}")
-            item.setData(Qt.ItemDataRole.UserRole, icon)
-            self.findings.addItem(item)
+        self.facts = {name: QLabel() for name in told_facts(verifications[0])}
         self.folder = QPushButton("Show in &folder")
         self.copy = QPushButton("&Copy")
         self.shut = QPushButton("Cl&ose")
-        self.folder.clicked.connect(lambda: self.folder_wanted.emit(verification.path))
-        self.copy.clicked.connect(lambda: QGuiApplication.clipboard().setText(as_text(verification)))
-        self.shut.clicked.connect(self.close)
         self.shut.setDefault(True)
         self._lay_out()
-        self.set_palette(palette)
+        self.folder.clicked.connect(lambda: self.folder_wanted.emit(self.shown.path))
+        self.copy.clicked.connect(lambda: QGuiApplication.clipboard().setText("\n\n".join(map(as_text, verifications))))
+        self.shut.clicked.connect(self.close)
+        self.file.currentIndexChanged.connect(self._show)
+        worst = next((row for row, one in enumerate(verifications) if not one.ok), 0)
+        self.file.setCurrentIndex(worst)
+        self._show()
+
+    @property
+    def shown(self) -> Verification:
+        """The report of the file that is shown."""
+        return self.verifications[max(self.file.currentIndex(), 0)]
+
+    def _show(self) -> None:
+        self.verdict.setText(verdict(self.shown))
+        self.path.setText(str(self.shown.path))
+        for name, text in told_facts(self.shown).items():
+            self.facts[name].setText(text)
+        self.findings.clear()
+        for word, icon, text in told_findings(self.shown):
+            item = QListWidgetItem(f"{word}: {text}")
+            item.setData(Qt.ItemDataRole.UserRole, icon)
+            self.findings.addItem(item)
+        self._dress()
 
     def _lay_out(self) -> None:
         head = QHBoxLayout()
@@ -97,6 +115,7 @@ class ExportReport(QDialog):
         whole = QVBoxLayout(self)
         whole.setContentsMargins(18, 16, 18, 16)
         whole.setSpacing(12)
+        whole.addWidget(self.file)
         whole.addLayout(head)
         whole.addLayout(table)
         whole.addWidget(self.findings, 1)
@@ -110,19 +129,25 @@ class ExportReport(QDialog):
 
     def set_palette(self, palette: Palette) -> None:
         """Draw in other colours."""
-        if palette is self._palette:
-            return
-        self._palette = palette
-        good = self.verification.ok
+        if palette is not self._palette:
+            self._palette = palette
+            self._dress()
+
+    def _dress(self) -> None:
+        palette, good = self._palette, self.shown.ok
         colour = palette.good if good else palette.bad
-        ratio = self.devicePixelRatioF()
-        self.symbol.setPixmap(icons.pixmap("check" if good else "fault", colour, ICON_EDGE, ratio))
+        self.symbol.setPixmap(icons.pixmap("check" if good else "fault", colour, ICON_EDGE, self.devicePixelRatioF()))
         self.verdict.setStyleSheet(f"color: {colour}; font-weight: 600; font-size: 12pt;")
         tints = {"check": palette.good, "warning": palette.warning, "fault": palette.bad}
         for row in range(self.findings.count()):
             item = self.findings.item(row)
             name = str(item.data(Qt.ItemDataRole.UserRole))
             item.setIcon(icons.icon(name, palette, tints[name]))
+
+
+def label(verification: Verification) -> str:
+    """One file in the list of files: its verdict comes first, in a word."""
+    return f"{'Verified' if verification.ok else 'Do not cut'}  ·  {verification.path.name}"
 
 
 def verdict(verification: Verification) -> str:

@@ -28,6 +28,9 @@ class FileQuestions(Protocol):
     def export(self, proposal: str) -> Path | None:
         """A place for an exported file; the proposal's extension is the kind that is offered first."""
 
+    def folder(self) -> Path | None:
+        """A folder for many files."""
+
 
 class FileChoosers:
     """Asks the user with the system's choosers."""
@@ -54,6 +57,10 @@ class FileChoosers:
         dialog.selectNameFilter(kind.filter)
         dialog.filterSelected.connect(lambda text: follow_filter(dialog, text))
         return self._answer(dialog)
+
+    def folder(self) -> Path | None:
+        name = QFileDialog.getExistingDirectory(self._window, "Export everything into a folder", self._folder)
+        return self._remembered(name)
 
     def _saver(self, title: str, proposal: str, filters: list[str]) -> QFileDialog:
         """A chooser that appends the extension itself, so that it asks before it overwrites the right file."""

@@ -26,6 +26,7 @@ from kirigami_studio.project.settings import FabricationSettings
 from kirigami_studio.target.outline import Outline
 
 if TYPE_CHECKING:
+    from kirigami_studio.export.exporter import ExportJob
     from kirigami_studio.export.verification import Verification
     from kirigami_studio.fabricate.checks import Report
     from kirigami_studio.fabricate.cut_plan import CutPlan
@@ -61,13 +62,13 @@ class Exported:
     path : Path
     planned : Planned or None
         What it holds; pictures hold no plan.
-    verification : Verification or None
-        What two readers found in it; None for kinds of file that are not verified this way.
+    verifications : tuple of Verification
+        What two readers found in each cut file; kinds of file that are not verified this way have none.
     """
 
     path: Path
     planned: Planned | None
-    verification: Verification | None = None
+    verifications: tuple[Verification, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -213,16 +214,33 @@ def planned(order: Order) -> Planned:
 
 def exporting(order: Order, path: Path, cancel: Cancel) -> Iterator[Exported]:
     """Write one file of the kind that its extension names; cut files are planned, checked and read back."""
-    from kirigami_studio.export.exporter import ExportJob
     from kirigami_studio.export.registry import export, find_exporter
 
     find_exporter(path)  # an unknown kind is refused before anything is planned
     made = planned(order) if kind_of(path.suffix).cuts else None
+    written = export(_export_job(order, made), path)
+    yield Exported(written, made, () if made is None else _verified(made.plan, path, order.settings))
+
+
+def exporting_all(order: Order, folder: Path, name: str, cancel: Cancel) -> Iterator[Exported]:
+    """Write everything that there is of a design into a folder; the cut files are read back."""
+    from kirigami_studio.export.export_set import export_all
+
+    def stop_if_asked(_: Path) -> None:
+        if cancel():
+            raise Cancelled(f"Writing into {folder} was stopped; what was written before stays.")
+
+    made = planned(order)
+    found = export_all(_export_job(order, made), folder, name, tell=stop_if_asked)
+    yield Exported(folder, made, found.verifications)
+
+
+def _export_job(order: Order, made: Planned | None) -> ExportJob:
+    from kirigami_studio.export.exporter import ExportJob
+
     target = None if order.target is None else order.target.points
     job = ExportJob.of(order.candidate, target, None if made is None else made.plan)
-    settings = order.settings
-    written = export(replace(job, profile=settings.profile, dxf_version=settings.dxf_version), path)
-    yield Exported(written, made, None if made is None else _verified(made.plan, path, settings))
+    return replace(job, profile=order.settings.profile, dxf_version=order.settings.dxf_version)
 
 
 def exporting_coupon(
@@ -241,13 +259,13 @@ def exporting_coupon(
     yield Exported(path, Planned(plan, check_plan(plan)), _verified(plan, path, settings))
 
 
-def _verified(plan: CutPlan, path: Path, settings: FabricationSettings) -> Verification | None:
+def _verified(plan: CutPlan, path: Path, settings: FabricationSettings) -> tuple[Verification, ...]:
     """Read a cut file again with two readers, if its kind is among those that are verified."""
     from kirigami_studio.export.verification import FORMATS, verify_export
 
     if path.suffix.lower() not in FORMATS:
-        return None
-    return verify_export(plan, path, settings.profile, settings.dxf_version)
+        return ()
+    return (verify_export(plan, path, settings.profile, settings.dxf_version),)
 
 
 def saving(document: Document, path: Path, cancel: Cancel) -> Iterator[Path]:

@@ -15,6 +15,7 @@ class ExportRow(QWidget):
     """Reports which kind of file is wanted."""
 
     export_wanted = Signal(str)  #: extension
+    all_wanted = Signal()
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -37,6 +38,10 @@ class ExportRow(QWidget):
             action.setToolTip(kind.tip)
             action.triggered.connect(lambda _=False, kind=kind: self.export_wanted.emit(kind.extension))
             self.kinds[kind.extension] = action
+        self.menu.addSeparator()
+        self.everything = self.menu.addAction("Everything, into a folder …")
+        self.everything.setToolTip("Every kind of cut file, pictures and a record of the job (Ctrl+Shift+E)")
+        self.everything.triggered.connect(lambda: self.all_wanted.emit())
         self.more.setMenu(self.menu)
         row = QHBoxLayout(self)
         row.setContentsMargins(0, 0, 0, 0)
@@ -54,6 +59,7 @@ class ExportRow(QWidget):
         """Offer only what can be written: a picture needs a design, a cut file a plan."""
         self.export.setEnabled(cuts)
         self.more.setEnabled(cuts or pictures)
+        self.everything.setEnabled(cuts)
         for kind in FILE_KINDS:
             self.kinds[kind.extension].setEnabled(cuts if kind.cuts else pictures)
 
