@@ -17,6 +17,7 @@ from PySide6.QtWidgets import QApplication
 from kirigami_studio.gui.messages import Message, Tone
 from kirigami_studio.gui.offscreen_session import DESIGNS, Session, SessionError, click, main
 from kirigami_studio.gui.theme import DARK, LIGHT
+from kirigami_studio.gui.views.cut_view import CutOverlay
 from kirigami_studio.gui.views.target_view import Tool
 
 SIZES = (QSize(1000, 640), QSize(1280, 720), QSize(1440, 900))
@@ -41,6 +42,8 @@ class StateSheet(Session):
         self.all_sizes("designs")
         self.before_and_after()
         self.trimmed()
+        self.cuts()
+        self.exported()
         window.stage.deployment.set_phi(math.radians(100.0))
         self.all_sizes("half-open")
         window.stage.deployment.set_phi(math.pi)
@@ -102,6 +105,50 @@ class StateSheet(Session):
         stage.deployment.set_phi(0.0)
         click(stage.trim)
         self.until(lambda: not self._planned() and self.window.fabrication.export.isEnabled(), "no whole cut plan")
+
+    def cuts(self) -> None:
+        """The cut plan: whole, half cut with its travel, with connectors of their own and a problem, with options."""
+        stage, fabrication = self.window.stage, self.window.fabrication
+        page, history = stage.cuts, self.window.controller.history
+        click(stage.cuts_switch)
+        self.all_sizes("cuts")
+        click(page.toggles[CutOverlay.TRAVEL])
+        page.bar.slider.setValue(page.bar.slider.maximum() // 2)
+        self.all_sizes("cuts-half")
+        click(page.toggles[CutOverlay.TRAVEL])
+        for hinges, width in ((range(30), 0.45), (range(30, 50), 0.05)):
+            page.view.gestures.select(frozenset(hinges))
+            page.hinges.width_mm.setValue(width)
+        self.until(lambda: page.problems.isVisible(), "the narrow connectors were not found")
+        self.all_sizes("cuts-connectors")
+        page.problems.setCurrentRow(0)
+        self.all_sizes("cuts-problem")
+        stage.fit()
+        while history.undo_label is not None and "connectors" in history.undo_label:
+            self.window.actions_["undo"].trigger()
+        self.until(lambda: not page.problems.isVisible(), "undo did not bring the connectors back")
+        page.view.gestures.select(frozenset())
+        click(stage.cuts_switch)
+        fabrication.options.fold.setChecked(True)
+        self.all_sizes("options")
+        fabrication.options.fold.setChecked(False)
+
+    def exported(self) -> None:
+        """The report of a cut file and the material editor, in both themes."""
+        commands = self.window.commands
+        self.window.controller.export(self.out / "cut.dxf")
+        self.until(lambda: commands.report is not None, "no report was shown")
+        commands.show_materials()
+        for palette in (DARK, LIGHT):
+            self.window.set_theme(palette)
+            if commands.report is not None and commands.materials is not None:
+                self.picture(f"report-{palette.name}", commands.report)
+                self.picture(f"materials-{palette.name}", commands.materials)
+        if commands.materials is not None:
+            commands.materials.close()
+        commands.close_report()
+        while self.window.messages.messages:
+            self.window.messages.close_message()
 
     def _planned(self) -> bool:
         return "trimmed" in self.window.fabrication.summary.text()
