@@ -84,7 +84,8 @@ class MaterialForm(QWidget):
         for field, line in self.texts.items():
             line.setText(getattr(material, field))
             line.setCursorPosition(0)
-            line.setReadOnly(not editable)
+            line.setEnabled(editable)
+            line.setToolTip(line.text())
         for number in NUMBERS:
             box = self.numbers[number.field]
             with QSignalBlocker(box):
@@ -119,7 +120,7 @@ def _text(field: str, label: str, tip: str) -> QLineEdit:
     line = QLineEdit()
     line.setObjectName(f"material_{field}")
     line.setAccessibleName(label)
-    line.setToolTip(tip)
+    line.setAccessibleDescription(tip)
     return line
 
 

@@ -82,10 +82,11 @@ class HingeBar(QWidget):
             part.setEnabled(bool(hinges) and plan is not None)
         self.says.set_texts(*_told(hinges))
         self._fit()
-        if plan is not None and hinges:
-            asked = plan.hinges.requested_mm[sorted(hinges)]
+        if plan is not None:
+            asked = plan.hinges.requested_mm[min(hinges)] if hinges else plan.connector_mm
             with QSignalBlocker(self.width_mm):
-                self.width_mm.setValue(float(asked[0]))
+                self.width_mm.setValue(float(asked))
+        if plan is not None and hinges:
             own = {hinge for hinge, _ in plan.options.hinge_mm} | set(plan.options.removed)
             self.reset.setEnabled(bool(own & hinges))
 

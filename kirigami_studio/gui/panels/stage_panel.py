@@ -233,6 +233,7 @@ class StagePanel(Card):
         buttons = [self.cuts_switch, self.trim, *overlays, self.whole]
         used = sum(button.sizeHint().width() + self.header.spacing() for button in buttons) + 14
         room = self.width() - 2 * INSET - used - self.title.sizeHint().width() - GAP
+        self.whole.setVisible(room + GAP >= 0)  # the key and the double-click stay
         fits = self.numbers.fit(room)
         texts = self._texts()
         special = self._drawn is not None or (self._entry is not None and self._entry.candidate.trim is not None)

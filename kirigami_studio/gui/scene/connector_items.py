@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -17,8 +18,9 @@ from kirigami_studio.gui.theme import Palette
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.intp]
 
-#: Radius (pixels) of a marker, and how far from its middle it still takes a click.
-RADIUS, REACH = 3.2, 9.0
+#: Smallest and largest radius (pixels) of a marker, its share of the usual distance between two, and how far from its
+#: middle it still takes a click.
+RADII, SHARE, REACH = (1.6, 3.2), 0.16, 9.0
 #: Widths closer than this (mm) get one colour.
 SAME_MM = 2e-3
 
@@ -60,6 +62,12 @@ class Connectors:
         shade: IntArray = np.minimum((share * count).astype(np.intp), count - 1)
         return shade
 
+    def radius(self, frame: Frame) -> float:
+        """Pixels; smaller where the markers would hide the cuts."""
+        width, height = self.plan.size_mm
+        apart = frame.scale * math.sqrt(width * height / max(len(self), 1))
+        return min(max(SHARE * apart, RADII[0]), RADII[1])
+
     def described(self, hinge: int) -> str:
         """What a person reads about one hinge."""
         hinges = self.plan.hinges
@@ -85,18 +93,18 @@ def paint_connectors(
     painter: QPainter, connectors: Connectors, frame: Frame, palette: Palette, selected: frozenset[int]
 ) -> None:
     """Draw a dot for each connector, a cross where one was removed, and a ring around the selected ones."""
-    pixels = frame.to_pixels(connectors.plan.hinges.position)
+    pixels, radius = frame.to_pixels(connectors.plan.hinges.position), connectors.radius(frame)
     colours = palette.widths
     shade = connectors.shade(len(colours))
     for index, colour in enumerate(colours):
-        _paint_dots(painter, pixels[(shade == index) & ~connectors.removed], colour, 2.0 * RADIUS)
+        _paint_dots(painter, pixels[(shade == index) & ~connectors.removed], colour, 2.0 * radius)
     painter.setPen(QPen(QColor(palette.text), 1.6))
-    painter.drawLines(_crosses(pixels[connectors.removed]))
+    painter.drawLines(_crosses(pixels[connectors.removed], radius + 1.0))
     painter.setBrush(Qt.BrushStyle.NoBrush)
     for colour, width in ((palette.surface, 4.4), (palette.accent, 2.2)):
         painter.setPen(QPen(QColor(colour), width))
         for hinge in sorted(selected):
-            painter.drawEllipse(QPointF(*pixels[hinge].tolist()), RADIUS + 3.5, RADIUS + 3.5)
+            painter.drawEllipse(QPointF(*pixels[hinge].tolist()), radius + 3.5, radius + 3.5)
 
 
 def _paint_dots(painter: QPainter, pixels: FloatArray, colour: str, width: float) -> None:
@@ -106,6 +114,6 @@ def _paint_dots(painter: QPainter, pixels: FloatArray, colour: str, width: float
     painter.drawPoints(QPolygonF([QPointF(x, y) for x, y in pixels.tolist()]))
 
 
-def _crosses(pixels: FloatArray) -> list[QLineF]:
-    arms = ((-RADIUS, -RADIUS), (-RADIUS, RADIUS))
+def _crosses(pixels: FloatArray, arm: float) -> list[QLineF]:
+    arms = ((-arm, -arm), (-arm, arm))
     return [QLineF(x + dx, y + dy, x - dx, y - dy) for x, y in pixels.tolist() for dx, dy in arms]
