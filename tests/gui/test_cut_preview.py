@@ -15,9 +15,9 @@ from pytest_benchmark.fixture import BenchmarkFixture
 from pytestqt.qtbot import QtBot
 
 from kirigami_studio.fabricate.checks import check_plan
-from kirigami_studio.fabricate.cut_plan import CutPlan, Layer, plan_cuts
+from kirigami_studio.fabricate.cut_plan import CutPath, CutPlan, Layer, plan_cuts
 from kirigami_studio.gui.main_window import MainWindow
-from kirigami_studio.gui.scene.cut_items import THINNEST, CutDrawing
+from kirigami_studio.gui.scene.cut_items import SEEN, THINNEST, CutDrawing
 from kirigami_studio.gui.scene.cut_steps import cut_steps
 from kirigami_studio.gui.scene.scale_bar import round_length
 from kirigami_studio.gui.theme import LIGHT
@@ -183,6 +183,21 @@ def test_that_a_parted_outline_still_bounds_one_sheet() -> None:
     parted = replace(plan, paths=(*plan.paths[:-1], *pieces))
     box = CutDrawing(parted).sheet.boundingRect()
     assert (box.width(), box.height()) == pytest.approx(plan.size_mm, abs=0.1)
+
+
+@pytest.mark.parametrize(("width", "bent"), [(700, True), (24, False)])
+def test_that_an_arc_is_drawn_bent_where_it_can_be_seen(qtbot: QtBot, width: int, bent: bool) -> None:
+    plan = plan_of(3, 3, kerf_mm=0.0, connector_mm=1.0)
+    arc = CutPath(np.array([[8.0, 15.0], [9.0, 15.0]]), Layer.SLITS, False, 0, np.array([1.0, 0.0]))
+    alone = replace(plan, paths=(arc, plan.paths[-1]))
+    drawing, view = CutDrawing(alone), show(qtbot, alone, (width, width))
+    assert drawing.largest_arc == pytest.approx(0.5)
+    frame = view.frame()
+    assert frame is not None and (drawing.largest_arc * frame.scale >= SEEN) is bent
+    view.set_overlays(frozenset())
+    if bent:
+        assert burnt(view.grab().toImage(), view, (8.5, 14.5), (1.0, 0.0)) >= 1
+        assert drawing.chords[0].boundingRect().height() == 0.0
 
 
 def test_that_the_scale_bar_has_a_round_length() -> None:

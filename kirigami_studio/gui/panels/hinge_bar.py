@@ -83,7 +83,8 @@ class HingeBar(QWidget):
         self.says.set_texts(*_told(hinges))
         self._fit()
         if plan is not None:
-            asked = plan.hinges.requested_mm[min(hinges)] if hinges else plan.connector_mm
+            there = [hinge for hinge in sorted(hinges) if hinge not in plan.options.removed]
+            asked = plan.hinges.requested_mm[there[0]] if there else plan.connector_mm
             with QSignalBlocker(self.width_mm):
                 self.width_mm.setValue(float(asked))
         if plan is not None and hinges:

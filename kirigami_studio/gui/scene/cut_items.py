@@ -14,7 +14,7 @@ import numpy.typing as npt
 from PySide6.QtCore import QLineF, QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QPainter, QPainterPath, QPen
 
-from kirigami_studio.fabricate.cut_plan import CutPlan, Layer
+from kirigami_studio.fabricate.cut_plan import CutPath, CutPlan, Layer
 from kirigami_studio.gui.scene.frame import Bounds, Frame
 from kirigami_studio.gui.scene.paths import line_path
 from kirigami_studio.gui.theme import Palette
@@ -25,6 +25,8 @@ FloatArray = npt.NDArray[np.float64]
 THINNEST = 1.0
 #: Cuts that are still to come are this opaque while the job is played.
 FAINT = 0.28
+#: An arc that lies less than this (pixels) beside its chord is drawn as its chord.
+SEEN = 0.25
 #: Edge length (pixels) of the mark where the job starts.
 START = 6.0
 
@@ -39,6 +41,16 @@ class CutDrawing:
     def cuts(self) -> tuple[QPainterPath, ...]:
         """Every cut in the order of cutting."""
         return tuple(line_path(path.flattened, path.closed) for path in self.plan.paths)
+
+    @cached_property
+    def chords(self) -> tuple[QPainterPath, ...]:
+        """Every cut with chords for its arcs: what is drawn while the arcs are too small to be seen."""
+        return tuple(line_path(path.points, path.closed) for path in self.plan.paths)
+
+    @cached_property
+    def largest_arc(self) -> float:
+        """How far an arc of the plan lies beside its chord at most, mm."""
+        return max((_sagitta(path) for path in self.plan.paths if path.bulges is not None), default=0.0)
 
     @cached_property
     def boxes(self) -> FloatArray:
@@ -110,13 +122,14 @@ def paint_cuts(painter: QPainter, drawing: CutDrawing, frame: Frame, palette: Pa
     width = drawing.pen_width(frame) / frame.scale
     thin = width * frame.scale * painter.device().devicePixelRatio() <= THINNEST
     done = np.arange(last) < (step if step == last else step - 1)
+    cuts = drawing.chords if drawing.largest_arc * frame.scale < SEEN else drawing.cuts
     with_frame(painter, frame)
     painter.setBrush(Qt.BrushStyle.NoBrush)
     for layer, of_layer in reversed(drawing.on_layer.items()):
         painter.setPen(_pen(layer_colour(layer, palette), width))
         for opacity, which in ((FAINT, seen & of_layer & ~done), (1.0, seen & of_layer & done)):
             painter.setOpacity(opacity)
-            _stroke(painter, [drawing.cuts[index] for index in np.flatnonzero(which)], thin)
+            _stroke(painter, [cuts[index] for index in np.flatnonzero(which)], thin)
     painter.setOpacity(1.0)
     if 0 < step < last:
         painter.setPen(_pen(palette.current_cut, width + 3.0 / frame.scale))
@@ -178,6 +191,14 @@ def _in_view(drawing: CutDrawing, frame: Frame, view: QRectF) -> npt.NDArray[np.
         & (boxes[:, 3] >= bottom - margin)
     )
     return seen
+
+
+def _sagitta(path: CutPath) -> float:
+    """Largest distance (mm) between the arcs of a path and their chords."""
+    bulges = np.zeros(len(path.points)) if path.bulges is None else path.bulges
+    chords = np.linalg.norm(np.roll(path.points, -1, axis=0) - path.points, axis=1)
+    counted = len(bulges) if path.closed else len(bulges) - 1
+    return float((0.5 * np.abs(bulges) * chords)[:counted].max(initial=0.0))
 
 
 def _ring(pieces: list[FloatArray]) -> FloatArray:

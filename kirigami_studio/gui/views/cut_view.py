@@ -199,7 +199,7 @@ class CutView(Canvas):
     def _chips(self) -> list[Chip]:
         if self._drawing is None or self._connectors is None:
             return []
-        layers = self._drawing.plan.layers
+        layers = tuple(self._drawing.on_layer)
         if self.width() < ROOM_FOR_OUTLINE:  # which everyone knows without a label
             layers = tuple(layer for layer in layers if layer is not Layer.OUTLINE)
         chips = [Chip(layer_colour(layer, self.palette_), LAYER_NAMES[layer]) for layer in layers]
