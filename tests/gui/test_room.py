@@ -58,3 +58,14 @@ def test_that_moved_columns_stay_when_the_window_is_resized(designed: MainWindow
     left = designed.columns.sizes()[0]
     resized(designed, 1400, 800)
     assert abs(designed.columns.sizes()[0] - left) <= 2
+
+
+def test_that_the_title_of_a_narrow_stage_is_never_cut_off(designed: MainWindow, qtbot: QtBot) -> None:
+    for width in (1000, 1040, 1280):
+        resized(designed, width, 640)
+        for _ in range(2):
+            qtbot.mouseClick(designed.stage.cuts_switch, Qt.MouseButton.LeftButton)
+            QApplication.processEvents()
+            title = designed.stage.title
+            assert title.width() >= title.sizeHint().width(), (width, designed.stage.showing_cuts)
+    assert designed.stage.whole.isVisible()
