@@ -19,8 +19,8 @@ from kirigami_studio.export.svg import ACI_COLOUR, NAMESPACE
 from kirigami_studio.foundation.errors import ExportError
 
 MM_PER_PX = 25.4 / 96.0
-#: A scale that differs from mm by less than this is mm.
-SAME_SCALE = 1e-6
+#: A scale that differs from mm by less than this is mm; svgelements rounds lengths to six digits.
+SAME_SCALE = 1e-5
 _COLOURS = {"#{:02x}{:02x}{:02x}".format(*colour): index for index, colour in ACI_COLOUR.items()}
 #: Colour of a stroke in none of the profiles' colours.
 UNKNOWN_COLOUR = -1
@@ -42,15 +42,14 @@ def read_with_svgelements(path: Path) -> DrawnFile:
         svg: Any = cast(Any, SVG).parse(path, reify=False)
         box = svg.viewbox
         scale = float(svg.width) / float(box.width) * MM_PER_PX
-        height = float(svg.height) * MM_PER_PX
+        width, height = float(box.width), float(box.height)
         strokes = tuple(
             _stroke(*_segments(path), str(group.id), str(path.stroke.hex), height) for group, path in _grouped(svg)
         )
     except (OSError, ElementTree.ParseError, AttributeError, ValueError, TypeError, ZeroDivisionError) as error:
         raise ExportError(f"{path} is not a readable SVG: {error}. Export it again.") from error
     unit = MILLIMETRES if abs(scale - 1.0) < SAME_SCALE else 0
-    extent = (float(svg.width) * MM_PER_PX, height)
-    return DrawnFile("svgelements", strokes, unit, extent, _layers(strokes))
+    return DrawnFile("svgelements", strokes, unit, (width, height), _layers(strokes))
 
 
 def read_with_xml(path: Path) -> DrawnFile:
