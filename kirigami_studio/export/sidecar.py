@@ -93,7 +93,7 @@ def _expected(plan: CutPlan) -> dict[str, Any]:
         "size_mm": [float(side) for side in plan.size_mm],
         "cut_length_mm": plan.cut_length_mm,
         "travel_mm": plan.travel_mm,
-        "seconds": plan.seconds_estimate,
+        "seconds": {"low": plan.times.low, "estimate": plan.times.total, "high": plan.times.high},
         "paths": {layer.value: len(plan.on_layer(layer)) for layer in plan.layers},
         "min_connector_mm": plan.min_connector_mm,
         "notes": list(plan.notes),

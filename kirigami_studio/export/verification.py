@@ -147,15 +147,14 @@ def _judged(
         *_physics_findings(physics, plan),
     ]
     warnings = [*plan.notes, *_cautions(plan, profile, version, strokes, path)]
-    seconds = plan.seconds_estimate
     return Verification(
         path=path,
         ok=all(finding.ok for finding in findings),
         size_mm=extent(contents[-1].strokes),
         pieces=physics.pieces,
         cut_length_mm=contents[-1].length,
-        seconds_low=seconds,
-        seconds_high=seconds,
+        seconds_low=plan.times.low,
+        seconds_high=plan.times.high,
         findings=tuple(findings),
         warnings=tuple(warnings),
     )
