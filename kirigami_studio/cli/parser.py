@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import argparse
-import math
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from importlib import import_module
 from typing import Any
 
 from kirigami_studio import __version__
-from kirigami_studio.cli.inputs import parse_angle
+from kirigami_studio.cli.option_types import amount, angle, count, number, positive, whole
 from kirigami_studio.fabricate.options import ConnectorStyle, CutOrder
-from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.polish.regularity import PREFERENCES
 
 Option = tuple[tuple[str, ...], dict[str, Any]]
@@ -43,60 +41,6 @@ class Command:
 def option(*names: str, **settings: Any) -> Option:
     """One ``add_argument`` call."""
     return names, settings
-
-
-def angle(text: str) -> float:
-    """``parse_angle`` with argparse's kind of error."""
-    try:
-        return parse_angle(text)
-    except UsageError as error:
-        raise argparse.ArgumentTypeError(str(error)) from error
-
-
-def positive(text: str) -> float:
-    """A finite number above 0."""
-    value = number(text)
-    if value <= 0:
-        raise argparse.ArgumentTypeError(f"must be above 0, got {text}")
-    return value
-
-
-def number(text: str) -> float:
-    """A finite number."""
-    try:
-        value = float(text)
-    except ValueError:
-        raise argparse.ArgumentTypeError(f"must be a number, got '{text}'") from None
-    if not math.isfinite(value):
-        raise argparse.ArgumentTypeError(f"must be finite, got {text}")
-    return value
-
-
-def amount(text: str) -> float:
-    """A finite number, 0 or more."""
-    value = number(text)
-    if value < 0:
-        raise argparse.ArgumentTypeError(f"must be 0 or more, got {text}")
-    return value
-
-
-def whole(text: str) -> int:
-    """A whole number, 0 or more: what a seed is."""
-    try:
-        value = int(text)
-    except ValueError:
-        raise argparse.ArgumentTypeError(f"must be a whole number, got '{text}'") from None
-    if value < 0:
-        raise argparse.ArgumentTypeError(f"must be 0 or more, got {text}")
-    return value
-
-
-def count(text: str) -> int:
-    """A whole number, 1 or more."""
-    value = whole(text)
-    if value < 1:
-        raise argparse.ArgumentTypeError(f"must be 1 or more, got {text}")
-    return value
 
 
 JSON = option("--json", action="store_true", help="print JSON on standard output and nothing else")
