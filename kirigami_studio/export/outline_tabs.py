@@ -27,6 +27,9 @@ def tabbed_outline(content: DxfContent, problems: list[Problem]) -> Polygon | No
         Findings are added to it.
     """
     parts = [drawn for drawn in content.paths if drawn.layer == Layer.OUTLINE.value]
+    if not parts and content.facts["TABS"].isdecimal():
+        # A file with everything on one layer: its outline comes last.
+        parts = content.paths[-int(content.facts["TABS"]) :]
     closed = sum(drawn.closed for drawn in parts)
     if closed or f"{len(parts)}" != content.facts["TABS"]:
         text = (

@@ -7,7 +7,6 @@ notches of the outline.  The contours are where the finished material ends, so t
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 
 import numpy as np
 import shapely
@@ -15,6 +14,7 @@ from shapely.geometry import LineString, Polygon
 
 from kirigami_studio.fabricate.cut_plan import DECIMALS, CutPath, CutPlan, Layer
 from kirigami_studio.fabricate.finished_sheet import DUST_MM2
+from kirigami_studio.fabricate.tabs import joined_ring
 from kirigami_studio.foundation.errors import ExportError
 from kirigami_studio.lattice.ratio_field import FloatArray
 
@@ -46,19 +46,6 @@ def slot_contours(plan: CutPlan) -> list[tuple[Layer, FloatArray]]:
     placed = [_without_repeats(np.round(points - origin, DECIMALS) + 0.0) for points in contours]
     layers = [Layer.SLITS] * (len(placed) - 1) + [Layer.OUTLINE]
     return list(zip(layers, placed, strict=True))
-
-
-def joined_ring(parts: Sequence[FloatArray]) -> FloatArray:
-    """Join the parts (P, 2) of an outline with tabs to one ring (V, 2), each tab a straight line."""
-    rest = list(parts)
-    ring = rest.pop(0)
-    while rest:
-        gaps = [[float(np.linalg.norm(part[end] - ring[-1])) for end in (0, -1)] for part in rest]
-        nearest = int(np.argmin([min(pair) for pair in gaps]))
-        backwards = gaps[nearest][1] < gaps[nearest][0]
-        part = rest.pop(nearest)
-        ring = np.concatenate([ring, part[::-1] if backwards else part])
-    return ring
 
 
 def _finished_sheet(plan: CutPlan) -> Polygon:
