@@ -40,6 +40,8 @@ PARSER_FAULTS = (
     TypeError,
     ValueError,
 )
+#: Ends of a closed curve nearer than this (mm) are the same point.
+ROUNDING_MM = 1e-9
 CURVES = frozenset({"LINE", "LWPOLYLINE", "POLYLINE", "ARC", "CIRCLE", "ELLIPSE", "SPLINE"})
 #: Curves that many machines read wrongly or not at all.
 RISKY_CURVES = frozenset({"ELLIPSE", "SPLINE"})
@@ -196,7 +198,15 @@ def _add_path(content: DxfContent, entity: DXFEntity, factor: float) -> None:
         where = (float(points[0, 0]), float(points[0, 1])) if len(points) else None
         content.problems.append(Problem(f"The {name} has no length; remove it.", Severity.ERROR, where))
         return
-    content.paths.append(DrawnPath(points, layer, _is_closed(entity)))
+    closed = _is_closed(entity)
+    content.paths.append(DrawnPath(_met(points) if closed else points, layer, closed))
+
+
+def _met(points: FloatArray) -> FloatArray:
+    """Points of a closed curve, where flattening arcs may miss the first one by a rounding error at the end."""
+    if np.abs(points[-1] - points[0]).max() > ROUNDING_MM:
+        return points
+    return np.concatenate([points[:-1], points[:1]])
 
 
 def _flattened(entity: DXFEntity, factor: float) -> FloatArray:

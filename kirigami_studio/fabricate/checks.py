@@ -81,7 +81,7 @@ def check_plan(
     phi : float, radians, optional
         Target angle of the deployment; without it nothing is said about how far the connectors bend.
     strain_limit : float, optional
-        Breaking strain of the material; without it the strain is estimated but not judged.
+        Breaking strain; the material's unless given.
     """
     kerf = plan.kerf_mm if kerf_mm is None else kerf_mm
     inner = [path for path in plan.paths if path.layer is not Layer.OUTLINE]
@@ -92,6 +92,7 @@ def check_plan(
     twice = overlap([LineString(path.travelled) for path in plan.paths])
     edge, neck = smallest_edge(plan.panels, kerf), smallest_neck(plan.panels, kerf)
     bent = None if phi is None else flexing(plan, phi)
+    limit = plan.material.strain_limit if strain_limit is None else strain_limit
     problems = [
         *piece_problems(pieces, boundary, kerf, len(plan.options.removed)),
         *tab_problems(plan),
@@ -99,7 +100,7 @@ def check_plan(
         *_overlap_problems(twice),
         *_ligament_problems(plan, kerf, ligament),
         *panel_problems(plan, kerf, edge, neck),
-        *([] if bent is None or strain_limit is None else strain_problems(plan, bent, strain_limit)),
+        *([] if bent is None else strain_problems(plan, bent, limit)),
     ]
     return Report(
         problems=tuple(problems),

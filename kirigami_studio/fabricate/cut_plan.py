@@ -9,13 +9,13 @@ from functools import cached_property
 
 import numpy as np
 import shapely
-from shapely.geometry import Polygon
+from shapely.geometry import LineString, Polygon
 
 from kirigami_studio.fabricate import timing
 from kirigami_studio.fabricate.connectors import Hinges, hinge_widths, shorten
 from kirigami_studio.fabricate.cut_path import CutPath as CutPath
 from kirigami_studio.fabricate.cut_path import Layer as Layer
-from kirigami_studio.fabricate.hinged_cuts import hinged_cuts, relief_radius
+from kirigami_studio.fabricate.hinged_cuts import HingedCuts, hinged_cuts, relief_radius
 from kirigami_studio.fabricate.kerf import OVERCUT_MM, edge_cut_paths, outline_path
 from kirigami_studio.fabricate.lengths import check_length
 from kirigami_studio.fabricate.material import Material, default_material
@@ -24,7 +24,7 @@ from kirigami_studio.fabricate.options import CutOptions
 from kirigami_studio.fabricate.ordering import in_cutting_order
 from kirigami_studio.fabricate.panel_sizes import panels_in_mm
 from kirigami_studio.fabricate.seats import seats
-from kirigami_studio.fabricate.slits import cut_table, sheet_lines
+from kirigami_studio.fabricate.slits import SHEET_EDGE, CutTable, cut_table, sheet_lines
 from kirigami_studio.fabricate.tabs import joined_ring, tabbed
 from kirigami_studio.fabricate.trimmed_sheet import CutPiece, kept_area, trimmed_cuts
 from kirigami_studio.foundation.errors import FabricationError
@@ -93,7 +93,7 @@ class CutPlan:
 
     @property
     def min_connector_mm(self) -> float:
-        """Smallest finished connector, removed ones left out (0 when all are); as asked in a plan without hinges."""
+        """Smallest finished connector, removed ones left out (0 if all are); as asked for in a plan without hinges."""
         if not len(self.hinges):
             return self.connector_mm
         finished = self.hinges.finished_mm[~self.hinges.removed]
@@ -167,14 +167,11 @@ def plan_cuts(
     relief_radius(options.style, material)
     widths = hinge_widths(table.hinge_count, connector, dict(options.hinge_mm), options.removed)
     shortened = shorten(lines, table, size, widths, kerf)
-    parts = () if kept is None else tuple(kept)
-    trimmed = any(part is not None for part in parts)
-    if trimmed:
+    parts = () if kept is None or all(part is None for part in kept) else tuple(kept)
+    if parts:
         outline, pieces = trimmed_cuts(kept_area(deployment, parts, width), shortened, table, kerf, overcut)
     else:
-        outline = Polygon(outline_path(size, kerf))
-        slits, edges = shortened[: table.slit_count], edge_cut_paths(shortened, table, size, kerf, overcut)
-        pieces = [CutPiece(cut, points, cut >= table.slit_count) for cut, points in enumerate([*slits, *edges])]
+        outline, pieces = _plain_cuts(shortened, table, size, kerf, overcut)
     cuts = hinged_cuts(
         pieces,
         shortened[table.hinge_cut, table.hinge_end],
@@ -189,18 +186,12 @@ def plan_cuts(
     ring = shapely.get_coordinates(shapely.orient_polygons(outline).exterior)[:-1]
     origin = np.concatenate([ring, *(piece.points for piece in cuts.pieces)]).min(axis=0)
     cuts, ring = cuts.moved(lambda points: _on_grid(points - origin)), _on_grid(ring - origin)
-    hinges = Hinges(
-        position=np.array([seat.junction for seat in cuts.seats]),
-        cut=table.hinge_cut,
-        end=table.hinge_end,
-        through=table.hinge_through,
-        requested_mm=widths,
-        finished_mm=cuts.widths(table, options.removed, Polygon(ring), kerf),
-        flexure_mm=cuts.flexure_mm,
-    )
+    hinges = _hinges(cuts, table, widths, cuts.widths(table, options.removed, Polygon(ring), kerf))
     return CutPlan(
         paths=in_cutting_order(
-            [*map(_path, cuts.pieces), *_outline_paths(ring, cuts.pieces, options, kerf)], options.order, table
+            _paths(cuts.pieces, ring, hinges.position[hinges.through == SHEET_EDGE], options, kerf),
+            options.order,
+            table,
         ),
         size_mm=size,
         connector_mm=connector,
@@ -208,21 +199,45 @@ def plan_cuts(
         overcut_mm=overcut,
         hinges=hinges,
         material=material,
-        design_hash=_design_hash(deployment, parts if trimmed else ()),
+        design_hash=_design_hash(deployment, parts),
         options=options,
         notes=plan_notes(hinges, material, connector, kerf, options.style, cuts.straight),
         panels=panels_in_mm(deployment, parts, width, origin),
     )
 
 
-def _outline_paths(ring: FloatArray, pieces: Sequence[CutPiece], options: CutOptions, kerf: float) -> list[CutPath]:
-    """The outline as one closed path, or as the open ones between its tabs."""
+def _plain_cuts(
+    shortened: FloatArray, table: CutTable, size: tuple[float, float], kerf: float, overcut: float
+) -> tuple[Polygon, list[CutPiece]]:
+    """Outline and cuts of an untrimmed sheet."""
+    lines = [*shortened[: table.slit_count], *edge_cut_paths(shortened, table, size, kerf, overcut)]
+    pieces = [CutPiece(cut, points, cut >= table.slit_count) for cut, points in enumerate(lines)]
+    return Polygon(outline_path(size, kerf)), pieces
+
+
+def _hinges(cuts: HingedCuts, table: CutTable, requested: FloatArray, finished: FloatArray) -> Hinges:
+    position = np.array([seat.junction for seat in cuts.seats])
+    return Hinges(position, table.hinge_cut, table.hinge_end, table.hinge_through, requested, finished, cuts.flexure_mm)
+
+
+def _paths(
+    pieces: Sequence[CutPiece], ring: FloatArray, on_edge: FloatArray, options: CutOptions, kerf: float
+) -> list[CutPath]:
+    """All cuts on their layers, the outline last: one ring, or the open paths between its tabs.
+
+    Tabs keep clear of connectors ``on_edge`` (E, 2), mm, which would be as wide as the tab is deep, and tear with it.
+    """
+    paths = []
+    for piece in pieces:
+        layer = Layer.RELIEF if piece.closed else Layer.EDGE_SLITS if piece.opens else Layer.SLITS
+        paths.append(CutPath(piece.points, layer, piece.closed, piece.cut, piece.bulges))
     if options.tabs == 0:
-        return [CutPath(ring, Layer.OUTLINE, True)]
+        return [*paths, CutPath(ring, Layer.OUTLINE, True)]
     exterior = Polygon(ring).exterior
-    over = [shapely.intersection(piece.line, exterior) for piece in pieces if piece.opens and not piece.closed]
-    parts = tabbed(ring, options.tabs, options.tab_mm + kerf, shapely.get_coordinates(over))
-    return [CutPath(_on_grid(part), Layer.OUTLINE, False) for part in parts]
+    over = [shapely.intersection(LineString(p.points), exterior) for p in paths if p.layer is Layer.EDGE_SLITS]
+    busy = np.concatenate([shapely.get_coordinates(over), on_edge])
+    parts = tabbed(ring, options.tabs, options.tab_mm + kerf, busy)
+    return [*paths, *(CutPath(_on_grid(part), Layer.OUTLINE, False) for part in parts)]
 
 
 def _on_grid(points: FloatArray) -> FloatArray:
@@ -246,8 +261,3 @@ def _check_size(size: tuple[float, float]) -> None:
             f"A sheet of {size[0]:g} x {size[1]:g} mm cannot be planned; both sides must lie between "
             f"{SMALLEST_SHEET_MM:g} and {LARGEST_SHEET_MM:g} mm, so change the sheet width."
         )
-
-
-def _path(piece: CutPiece) -> CutPath:
-    layer = Layer.RELIEF if piece.closed else Layer.EDGE_SLITS if piece.opens else Layer.SLITS
-    return CutPath(piece.points, layer, piece.closed, piece.cut, piece.bulges)

@@ -86,7 +86,7 @@ def smallest_ligament(
 
     Parameters
     ----------
-    cuts : sequence of LineString or MultiLineString, mm
+    cuts : sequence of LineString (or MultiLineString where none are joined), mm
     outline : geometry, mm, optional
         Centre line of the outline cut; cuts that cross it on purpose (edge cuts) are not measured against it.
     kerf_mm : float
@@ -120,8 +120,10 @@ def _nearest_two(
 ) -> list[tuple[float, BaseGeometry, BaseGeometry]]:
     """The two lines that are nearest to each other, of those that are not joined, and how near; or nothing."""
     group = _groups(len(lines), joined)
-    order = np.argsort(group, kind="stable")
-    united: npt.NDArray[np.object_] = np.asarray(shapely.geometrycollections(lines[order], indices=group[order]))
+    united = lines
+    if joined:
+        order = np.argsort(group, kind="stable")
+        united = np.asarray(shapely.multilinestrings(lines[order], indices=group[order]))
     tree = shapely.STRtree(united)
     (first, second), distance = tree.query_nearest(united, exclusive=True, return_distance=True, all_matches=False)
     worst = int(np.argmin(distance)) if len(distance) else -1

@@ -56,8 +56,10 @@ def hinge_strains(plan: CutPlan, phi: float) -> FloatArray:
     return strain
 
 
-def flexing(plan: CutPlan, phi: float) -> Flexing:
-    """Estimate what opening the sheet to an angle (radians) does to its connectors."""
+def flexing(plan: CutPlan, phi: float) -> Flexing | None:
+    """Estimate what opening the sheet to an angle (radians) does to its connectors; None for a sheet without any."""
+    if np.all(plan.hinges.removed):
+        return None
     strains = hinge_strains(plan, phi)
     worst = int(np.argmax(strains))
     x, y = plan.hinges.position[worst]

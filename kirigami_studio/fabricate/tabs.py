@@ -12,13 +12,13 @@ from kirigami_studio.lattice.ratio_field import FloatArray
 
 #: The outline may turn by this much (degrees) within a tab; anything sharper is a corner.
 CORNER = 10.0
-#: Uncut places stay this far (in tab gaps) from corners, from edge slits and from each other.
+#: Uncut places stay this far (in tab gaps) from corners, edge slits, connectors at the edge and from each other.
 CLEAR_GAPS = 1.0
 #: How often the end of a gap is corrected where the outline bends within it.
 CORRECTIONS = 8
 
 
-def tabbed(ring: FloatArray, count: int, gap_mm: float, crossings: FloatArray) -> list[FloatArray]:
+def tabbed(ring: FloatArray, count: int, gap_mm: float, busy: FloatArray) -> list[FloatArray]:
     """Interrupt the outline.
 
     Parameters
@@ -29,8 +29,8 @@ def tabbed(ring: FloatArray, count: int, gap_mm: float, crossings: FloatArray) -
         Number of tabs.
     gap_mm : float
         Straight distance between the ends of the cut at a tab: finished width and kerf.
-    crossings : (X, 2) float, mm
-        Where edge slits cross the outline.
+    busy : (X, 2) float, mm
+        Where edge slits cross the outline, and connectors rest on it.
 
     Returns
     -------
@@ -43,13 +43,14 @@ def tabbed(ring: FloatArray, count: int, gap_mm: float, crossings: FloatArray) -
         The outline has no room for so many tabs.
     """
     line = _Ring(ring)
-    blocked = np.concatenate([line.corners(), line.places(crossings)])
+    blocked = np.concatenate([line.corners(), line.places(busy)])
     centres = _centres(line.length, blocked, count, gap_mm)
     if centres is None:
         most = next((n for n in range(count - 1, 0, -1) if _centres(line.length, blocked, n, gap_mm) is not None), 0)
         raise FabricationError(
             f"The outline of {line.length:.1f} mm has no room for {count} tabs that need {gap_mm:g} mm each, away from "
-            f"its corners and edge slits; ask for {f'at most {most} tabs' if most else 'none'} or narrower ones."
+            f"its corners, edge slits and connectors; ask for {f'at most {most} tabs' if most else 'none'} or narrower "
+            f"ones."
         )
     gaps = [line.gap(centre, gap_mm) for centre in centres]
     return [line.between(stop, gaps[(index + 1) % count][0]) for index, (_, stop) in enumerate(gaps)]

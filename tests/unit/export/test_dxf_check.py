@@ -72,6 +72,8 @@ def test_that_a_sheet_that_falls_apart_is_reported(tmp_path: Path) -> None:
     document.modelspace().add_line((-1, 35), (41, 35))
     report = checked(document, tmp_path)
     assert report.pieces == 2 and not report.ok and "2 pieces" in sentences(report)
+    place = next(problem.where for problem in report.problems if "pieces" in problem.text)
+    assert place is not None and place[1] > 35.0
     assert checked(foreign(), tmp_path, kerf_mm=12.0).pieces == 3
 
 
@@ -100,6 +102,8 @@ def test_that_partly_overlapping_lines_are_reported_with_the_length(tmp_path: Pa
     document.modelspace().add_line((3, 20), (7.5, 20))
     report = checked(document, tmp_path)
     assert not report.ok and report.overlap_mm == pytest.approx(2.5) and "2.500 mm" in sentences(report)
+    place = next(problem.where for problem in report.problems if "overlap other cuts" in problem.text)
+    assert place == pytest.approx((6.25, 20.0))
 
 
 def test_that_an_open_outline_is_reported_with_its_gap(tmp_path: Path) -> None:
@@ -257,3 +261,12 @@ def test_that_slits_of_our_own_that_run_into_each_other_are_not_ready_to_cut(
     slit.set_points([(ax - dx, ay - dy), (bx + dx, by + dy)], format="xy")
     report = checked(document, tmp_path)
     assert not report.ok and "run into each other" in sentences(report)
+
+
+def test_that_a_hole_whose_arcs_miss_their_first_point_by_rounding_is_a_hole(tmp_path: Path) -> None:
+    document = ezdxf.new("R2010", units=4)
+    modelspace = document.modelspace()
+    modelspace.add_lwpolyline([(100, 0), (200, 0), (200, 100), (100, 100)], close=True)
+    # Its chords end 1e-14 mm beside where they began, so that the ring as it comes crosses itself.
+    modelspace.add_lwpolyline([(137.245, 25.26, 1.0), (137.1659, 25.2721, 1.0)], format="xyb", close=True)
+    assert checked(document, tmp_path, kerf_mm=0.02).pieces == 1

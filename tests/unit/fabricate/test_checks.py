@@ -54,6 +54,8 @@ def test_that_one_cut_made_twice_is_found(make_design: MakeDesign) -> None:
     report = check_plan(doubled)
     assert not report.ok
     assert report.overlap_mm == pytest.approx(plan.paths[0].length)
+    place = next(problem.where for problem in report.problems if "cut twice" in problem.text)
+    assert place == pytest.approx(tuple(plan.paths[0].points.mean(axis=0)))
 
 
 def test_that_a_cut_that_runs_through_a_connector_is_found(make_design: MakeDesign) -> None:
