@@ -240,7 +240,8 @@ def _layer_finding(content: DrawnFile, strokes: Sequence[Stroke]) -> Finding:
 
 
 def _physics_findings(physics: Physics, plan: CutPlan) -> list[Finding]:
-    found = [Finding(f"{physics.overlap_mm:.4f} mm would be cut twice.", physics.overlap_mm <= OVERLAP_TOLERANCE_MM)]
+    once = physics.overlap_mm <= OVERLAP_TOLERANCE_MM
+    found = [Finding("Nothing is cut twice." if once else f"{physics.overlap_mm:.4f} mm would be cut twice.", once)]
     if physics.pieces is not None:
         word = "piece" if physics.pieces == 1 else "pieces"
         text = f"After cutting, the sheet is {physics.pieces} {word} with a kerf of {plan.kerf_mm:g} mm."

@@ -55,7 +55,7 @@ def test_that_an_export_opens_a_report_that_blocks_nothing(
     report = designed.commands.report
     assert report is not None and report.isVisible() and not report.isModal()
     assert report.shown.ok and report.verdict.text().startswith("Verified.")
-    assert report.facts["Pieces"].text() == "1" and report.facts["Size in the file"].text().startswith("100.")
+    assert report.facts["Pieces"].text() == "1" and report.facts["Size with overcuts"].text().startswith("100.")
     qtbot.mouseClick(designed.stage.cuts_switch, LEFT)
     assert designed.stage.showing_cuts
     qtbot.mouseClick(report.shut, LEFT)

@@ -166,7 +166,7 @@ def told_facts(verification: Verification) -> dict[str, str]:
     width, height = verification.size_mm
     pieces = UNKNOWN if verification.pieces is None else str(verification.pieces)
     return {
-        "Size in the file": f"{width:.2f} \N{MULTIPLICATION SIGN} {height:.2f} mm",
+        "Size with overcuts": f"{width:.2f} \N{MULTIPLICATION SIGN} {height:.2f} mm",
         "Pieces": pieces,
         "Cut length": readable_length(verification.cut_length_mm),
         "Time": readable_range(verification.seconds_low, verification.seconds_high),
