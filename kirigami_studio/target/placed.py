@@ -1,0 +1,104 @@
+"""An outline at its place on the drawing board: the frame in which shapes are drawn, added and taken away."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+from shapely.geometry import Polygon
+
+from kirigami_studio.foundation.errors import TargetError
+from kirigami_studio.target.contour import FloatArray, area_and_centroid, as_contour, tidy, unit_frame
+from kirigami_studio.target.crossings import untangled
+from kirigami_studio.target.outline import Outline
+
+#: Longer side (mm) that an outline without a real size is given on the board.
+BOARD_MM = 100.0
+LARGEST_MM = 10_000.0
+
+
+@dataclass(frozen=True, slots=True)
+class Placed:
+    """An outline, its size in mm and where it lies.
+
+    Attributes
+    ----------
+    outline : Outline
+    scale : float, mm
+        Length on the board of one unit of the outline.
+    centre : (x, y) float, mm
+        Where the outline's area centroid lies, y up.
+
+    Raises
+    ------
+    TargetError
+        A scale that is not above 0, or numbers that are not finite.
+    """
+
+    outline: Outline
+    scale: float
+    centre: tuple[float, float] = (0.0, 0.0)
+
+    def __post_init__(self) -> None:
+        numbers = (self.scale, *self.centre)
+        if not all(math.isfinite(number) for number in numbers) or self.scale <= 0:
+            raise TargetError(f"A target needs a size above 0 mm and a place, got {self.scale:g} mm at {self.centre}.")
+
+    @classmethod
+    def on_board(cls, outline: Outline) -> Placed:
+        """In the middle of the board: in its own size if that is known in mm, else 100 mm long."""
+        span = np.ptp(outline.points, axis=0)
+        if outline.size is not None and outline.unit == "mm":
+            scale = outline.size[0] / float(span[0])
+        else:
+            scale = BOARD_MM / float(np.max(span))
+        low, high = outline.points.min(axis=0), outline.points.max(axis=0)
+        x, y = (-0.5 * scale * (low + high)).tolist()
+        return cls(outline, scale, (x, y))
+
+    @classmethod
+    def from_ring(cls, ring: npt.ArrayLike, name: str, notes: Iterable[str] = ()) -> Placed:
+        """Make raw vertices an outline that lies where they do.
+
+        Parameters
+        ----------
+        ring : (L, 2) float, mm, y up
+
+        Raises
+        ------
+        TargetError
+            As :meth:`Outline.from_points`, or larger than 10 m.
+        """
+        contour, origin, span = unit_frame(tidy(as_contour(ring)))
+        clean, repairs = untangled(contour, origin, span)
+        clean = clean * span + origin
+        length = float(np.max(np.ptp(clean, axis=0)))
+        if length > LARGEST_MM:
+            raise TargetError(f"A target may be {LARGEST_MM:g} mm long at most, got {length:.5g} mm; draw it smaller.")
+        area, (x, y) = area_and_centroid(clean)
+        outline = Outline.from_points(clean, name, (*notes, *repairs), "mm")
+        return cls(outline, math.sqrt(abs(area)), (float(x), float(y)))
+
+    @property
+    def ring(self) -> FloatArray:
+        """(L, 2) float, mm: the outline's vertices on the board."""
+        return self.outline.points * self.scale + self.centre
+
+    @property
+    def polygon(self) -> Polygon:
+        """The same as a shapely polygon, mm."""
+        return Polygon(self.ring)
+
+    @property
+    def size(self) -> tuple[float, float]:
+        """Width and height, mm."""
+        width, height = (self.scale * np.ptp(self.outline.points, axis=0)).tolist()
+        return width, height
+
+    def reshaped(self, ring: npt.ArrayLike, notes: Iterable[str] = ()) -> Placed:
+        """The same target with other vertices (L, 2), mm; notes on reading stay, new ones join them."""
+        mine = self.outline.notes
+        return Placed.from_ring(ring, self.outline.name, (*mine, *(note for note in notes if note not in mine)))
