@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.edits import Edit
+from kirigami_studio.target.outline import Outline
 
 #: Steps that are kept; a document of 32 candidates at 10 x 10 is about 40 kB.
 LONGEST_HISTORY = 200
@@ -50,7 +51,7 @@ class History:
     @property
     def unsaved(self) -> bool:
         """Whether the present document differs from the saved one."""
-        return self._document is not self._saved and self._document != self._saved
+        return self._saved is None or not _alike(self._document, self._saved)
 
     @property
     def undo_label(self) -> str | None:
@@ -68,11 +69,11 @@ class History:
         A step of the drag that is under way joins the step before it.  Returns False, and keeps the history as it is,
         when the edit changes nothing.
         """
-        if edit.document == self._document:
+        if _alike(edit.document, self._document):
             return False
         if self._continues_drag(edit):
             before = self._done.pop().before
-            if before == edit.document:  # dragged back to where it began
+            if _alike(before, edit.document):  # dragged back to where it began
                 self._document = before
                 self._drag_open = False
                 return True
@@ -118,3 +119,12 @@ class History:
         return bool(
             self._drag_open and self._done and edit.merge_key and self._done[-1].edit.merge_key == edit.merge_key
         )
+
+
+def _alike(one: Document, other: Document) -> bool:
+    """Whether two documents hold the same; targets of one shape, hence equal, may still differ in size."""
+    return one is other or (one == other and _measure(one.target) == _measure(other.target))
+
+
+def _measure(target: Outline | None) -> tuple[object, ...]:
+    return () if target is None else (target.size, target.unit)

@@ -183,3 +183,14 @@ def test_that_any_walk_undoes_to_its_start_and_redoes_to_its_end(moves: list[str
     while history.redo():
         pass
     assert history.document is end
+
+
+def test_that_another_size_of_the_same_shape_is_a_change() -> None:
+    corners = [[0, 0], [4, 0], [4, 2], [0, 2]]
+    small, same = Outline.from_points(corners, unit="mm"), Outline.from_points(corners, unit="mm")
+    large = Outline(small.points, small.name, (), (8.0, 4.0), "mm")
+    assert small == large
+    history = History(Document(target=small))
+    assert not history.apply(edits.edit_target(history.document, same, "Resize target")) and not history.unsaved
+    assert history.apply(edits.edit_target(history.document, large, "Resize target")) and history.unsaved
+    assert history.undo() and history.document.target is small and not history.unsaved
