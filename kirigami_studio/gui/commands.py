@@ -20,6 +20,7 @@ from kirigami_studio.gui.shell import Shell
 from kirigami_studio.gui.theme import DARK, LIGHT
 from kirigami_studio.gui.views.layout_view import Overlay
 from kirigami_studio.gui.views.target_view import Tool
+from kirigami_studio.target.combining import Combine
 
 if TYPE_CHECKING:
     from kirigami_studio.fabricate.material import Material
@@ -66,8 +67,11 @@ class Commands(QObject):
             "quit": window.close,
             "undo": controller.undo,
             "redo": controller.redo,
-            "freehand": partial(window.target.set_tool, Tool.FREEHAND),
-            "polygon": partial(window.target.set_tool, Tool.POLYGON),
+            "edit_target": window.target.buttons["edit"].click,
+            "mode_new": partial(self._set_mode, Combine.REPLACE),
+            "mode_add": partial(self._set_mode, Combine.ADD),
+            "mode_subtract": partial(self._set_mode, Combine.SUBTRACT),
+            "grid": window.target.strip.grid.click,
             "clear": controller.clear_target,
             "generate": controller.generate,
             "cancel": controller.cancel,
@@ -85,9 +89,24 @@ class Commands(QObject):
         }
         for name, command in commands.items():
             actions[name].triggered.connect(lambda _=False, command=command: command())
+        for tool in set(Tool) - {Tool.LOOK}:
+            actions[tool.value].triggered.connect(partial(self._take_tool, tool))
         for name, overlay in OVERLAY_ACTIONS.items():
             actions[name].setChecked(True)
             actions[name].toggled.connect(window.stage.toggles[overlay].setChecked)
+
+    def _take_tool(self, tool: Tool, _: bool = False) -> None:
+        if self.window.target.strip.buttons[tool].isEnabled():
+            self.window.target.set_tool(tool)
+        else:
+            self.controller.message.emit(
+                Message("There is no target to change yet; draw or open one first.", Tone.HINT)
+            )
+
+    def _set_mode(self, mode: Combine) -> None:
+        if self.window.target.strip.modes[mode].isEnabled():
+            self.window.target.set_editing(True)
+            self.window.target.strip.set_mode(mode)
 
     def ask_target(self) -> None:
         """Open a target file of the user's choice."""

@@ -152,6 +152,12 @@ class Controller(QObject):
         if picture is not None:
             self.tracing.retrace(picture, threshold)
 
+    def reshape(self, edit: Edit) -> None:
+        """Take an edit that the drawing board made of the target."""
+        self._stop_design()
+        self._apply(edit)
+        self.status.emit(f"{edit.label}.")
+
     def clear_target(self) -> None:
         """Start over with an empty target."""
         document = self.document
@@ -377,6 +383,10 @@ class Controller(QObject):
             self.showing.show_chosen(document)
         elif before.fabrication != document.fabrication:
             self._plan_soon()
+
+    def refuse(self, error: KirigamiError) -> None:
+        """Tell why nothing was changed."""
+        self._refuse(error)
 
     def _refuse(self, error: KirigamiError) -> None:
         self.document_changed.emit(self.document)  # so that the control shows the value that holds

@@ -47,6 +47,7 @@ class Shell(QMainWindow):
         super().__init__()
         self.palette_ = palette
         self._laid_out = False
+        self._sizes_before: list[int] = []
         self.setObjectName("studio")
         self.setWindowIcon(QIcon(str(resource("icons", "kirigami-studio.svg"))))
         self.setMinimumSize(SMALLEST)
@@ -108,6 +109,7 @@ class Shell(QMainWindow):
         self.columns.setChildrenCollapsible(False)
         self.columns.setStretchFactor(1, 1)
         self.columns.splitterMoved.connect(self._keep_columns)
+        self.target.editing_changed.connect(self._make_room)
         body = QWidget()
         body.setObjectName("body")
         whole = QVBoxLayout(body)
@@ -147,10 +149,22 @@ class Shell(QMainWindow):
 
     def _share_width(self) -> None:
         """Share the width among the columns, until the user has moved a border between them."""
-        if not self._laid_out:
+        if not self._laid_out and not self.target.editing:
             left = min(max(LEFT_SHARE * self.width(), LEFT_WIDTH[0]), LEFT_WIDTH[1])
             right = min(max(RIGHT_SHARE * self.width(), RIGHT_WIDTH[0]), RIGHT_WIDTH[1])
             self.columns.setSizes([round(left), round(self.width() - left - right), round(right)])
+
+    def _make_room(self, editing: bool) -> None:
+        """The target's editor takes the place of the stage and the settings while it is open."""
+        sizes = self.columns.sizes()
+        if editing:
+            self._sizes_before = sizes
+            self.columns.setSizes([sizes[0] + sizes[1], 0, sizes[2]])
+        self.stage.setVisible(not editing)
+        self.settings.setVisible(not editing)
+        if not editing:
+            self.columns.setSizes(self._sizes_before)
+            self._share_width()
 
     def _keep_columns(self) -> None:
         self._laid_out = True

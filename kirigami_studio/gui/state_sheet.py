@@ -34,7 +34,7 @@ class StateSheet(Session):
         self.all_sizes("empty")
         window.target.set_tool(Tool.POLYGON)
         self.all_sizes("drawing")
-        window.target.set_tool(Tool.LOOK)
+        window.target.set_editing(False)
         self.picture_target()
         self.all_sizes("photo")
         self.choose_heart()

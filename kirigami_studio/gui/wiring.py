@@ -9,6 +9,7 @@ from kirigami_studio.gui.commands import OVERLAY_ACTIONS, Commands
 from kirigami_studio.gui.controller import Controller
 from kirigami_studio.gui.jobs.steps import Planned
 from kirigami_studio.gui.messages import Tone
+from kirigami_studio.gui.reshaping import Reshaping
 from kirigami_studio.gui.shell import Shell
 from kirigami_studio.gui.views.gallery_model import Entry
 from kirigami_studio.gui.views.layout_view import Overlay
@@ -23,6 +24,7 @@ class Wiring(QObject):
         self.window = window
         self.controller = controller
         self.commands = commands
+        self.reshaping = Reshaping(window.target.view.easel, lambda: controller.document, self)
         self._shown = Document()
         self._connect_panels()
         self._connect_controller()
@@ -39,8 +41,7 @@ class Wiring(QObject):
         window.target.wants_silhouette.connect(self.commands.show_library)
         window.target.clear_wanted.connect(controller.clear_target)
         window.target.view.file_dropped.connect(self.commands.take_file)
-        window.target.view.freehand_drawn.connect(controller.drawing.take_freehand)
-        window.target.view.polygon_drawn.connect(controller.drawing.take_polygon)
+        self._connect_editor()
         window.target.view.hint.connect(lambda text: window.says.setText(text) if text else None)
         window.target.threshold.changed.connect(controller.change_threshold)
         window.target.threshold.automatic_wanted.connect(lambda: controller.change_threshold(None))
@@ -65,6 +66,19 @@ class Wiring(QObject):
         cuts.remove_wanted.connect(controller.fabricating.remove_hinges)
         cuts.reset_wanted.connect(controller.fabricating.reset_hinges)
         cuts.edited.connect(controller.end_drag)
+
+    def _connect_editor(self) -> None:
+        window, controller, reshaping = self.window, self.controller, self.reshaping
+        window.target.view.easel.changed.connect(reshaping.take)
+        window.target.strip.mirror_wanted.connect(reshaping.mirror)
+        window.target.refine.previewed.connect(reshaping.preview)
+        window.target.refine.refined.connect(reshaping.refine)
+        window.target.refine.width_wanted.connect(reshaping.resize)
+        reshaping.edited.connect(controller.reshape)
+        reshaping.refused.connect(controller.refuse)
+        reshaping.previewed.connect(window.target.view.show_preview)
+        reshaping.restarted.connect(window.target.refine.restart)
+        controller.run.started.connect(lambda _: window.target.set_editing(False))
 
     def _connect_controller(self) -> None:
         window, controller = self.window, self.controller
@@ -91,6 +105,7 @@ class Wiring(QObject):
         self._shown = document
         if everything or document.target is not before.target:
             window.target.show_target(document.target, self.controller.tracing.picture_of(document.target))
+            self.reshaping.follow()
             has_target = document.target is not None
             window.run.show_ready(has_target)
             window.actions_["generate"].setEnabled(has_target and not self.controller.running)

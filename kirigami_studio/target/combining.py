@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from enum import Enum
 
 import numpy as np
@@ -38,7 +39,7 @@ class Half(Enum):
     BOTTOM = "bottom"
 
 
-def combined(target: Placed | None, ring: npt.ArrayLike, how: Combine, name: str) -> Placed:
+def combined(target: Placed | None, ring: npt.ArrayLike, how: Combine, name: str, notes: Iterable[str] = ()) -> Placed:
     """Join a drawn ring with the target.
 
     Parameters
@@ -49,13 +50,15 @@ def combined(target: Placed | None, ring: npt.ArrayLike, how: Combine, name: str
     how : Combine
     name : str
         Of the new target where the ring replaces the old one; follows "The" in sentences.
+    notes : iterable of str
+        What was changed when the ring was made.
 
     Raises
     ------
     TargetError
         The ring is no shape, touches nothing of the target, leaves nothing of it, changes nothing or would cut a hole.
     """
-    drawn = Placed.from_ring(ring, name)
+    drawn = Placed.from_ring(ring, name, notes)
     if how is Combine.REPLACE or target is None:
         return drawn
     old, new = target.polygon, drawn.polygon
@@ -68,10 +71,10 @@ def combined(target: Placed | None, ring: npt.ArrayLike, how: Combine, name: str
         _refuse_holes(old, new, name)
         if region.area < LEAST_LEFT * old.area:
             raise TargetError(f"The {name} would take away the whole target; draw it smaller, or clear the target.")
-    kept, notes = largest_piece(region)
+    kept, left_out = largest_piece(region)
     if Polygon(kept).symmetric_difference(old).area <= WORTH_SAYING * old.area:
         raise TargetError(f"The {name} changes nothing: it lies inside the target; draw it across the edge.")
-    return target.reshaped(tidy(as_contour(kept)), notes)
+    return target.reshaped(tidy(as_contour(kept)), (*notes, *left_out))
 
 
 def _refuse_holes(old: Polygon, new: Polygon, name: str) -> None:

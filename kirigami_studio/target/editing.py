@@ -77,6 +77,29 @@ def smooth_freehand(points: npt.ArrayLike, name: str = "drawing") -> Outline:
     TargetError
         Too short, without area, or crossing itself so that no single shape is meant.
     """
+    smooth, notes = smoothed_stroke(points)
+    return simplify(Outline.from_points(smooth, name=name, notes=notes), STROKE_ERROR)
+
+
+def smoothed_stroke(points: npt.ArrayLike) -> tuple[FloatArray, tuple[str, ...]]:
+    """Smooth and close a stroke where it was drawn.
+
+    Parameters
+    ----------
+    points : (P, 2) float
+        Positions of the pointer in order, any unit.
+
+    Returns
+    -------
+    ring : (STROKE_SAMPLES, 2) float, same unit
+        At nearly equal steps; it may cross itself.
+    notes : tuple of str
+
+    Raises
+    ------
+    TargetError
+        Fewer than three different points.
+    """
     stroke, notes = _without_overshoot(tidy(as_contour(points)))
     samples = resampled(stroke, STROKE_SAMPLES)
     corners = _corners(samples)
@@ -88,7 +111,7 @@ def smooth_freehand(points: npt.ArrayLike, name: str = "drawing") -> Outline:
         ends = [*(corners - corners[0]).tolist(), STROKE_SAMPLES]
         spans = [_smooth_span(turned[first : last + 1], sigma) for first, last in itertools.pairwise(ends)]
         smooth = np.concatenate([span[:-1] for span in spans])
-    return simplify(Outline.from_points(smooth, name=name, notes=notes), STROKE_ERROR)
+    return smooth, notes
 
 
 def _without_overshoot(stroke: FloatArray) -> tuple[FloatArray, tuple[str, ...]]:

@@ -1,4 +1,7 @@
-"""Letters -> one ring: a sheet is one piece, so each letter is moved until it overlaps the one before."""
+"""Letters -> one ring: a sheet is one piece, so each letter is moved until it overlaps the one before.
+
+The dot of an i and the dots of an umlaut are held by a bridge.
+"""
 
 from __future__ import annotations
 
@@ -34,14 +37,14 @@ def joined_letters(letters: Sequence[Sequence[FloatArray]]) -> tuple[FloatArray,
     -------
     ring : (L, 2) float
     notes : tuple of str
-        Parts such as the dot of an i that had to be left out, and filled counters.
+        Filled counters, such as that of an o.
 
     Raises
     ------
     TargetError
         No letter has an outline, or too many do.
     """
-    shapes = [shape for shape in (_painted(rings) for rings in letters) if shape.area > 0]
+    shapes = [_bridged(shape) for shape in (_painted(rings) for rings in letters) if shape.area > 0]
     if not shapes:
         raise TargetError("The text has no letter that could be a target; type at least one letter or digit.")
     if len(shapes) > MOST_LETTERS:
@@ -61,14 +64,25 @@ def _painted(rings: Sequence[FloatArray]) -> BaseGeometry:
     return shape
 
 
+def _bridged(letter: BaseGeometry) -> BaseGeometry:
+    """Hold the parts of a letter together by bridges between their nearest places."""
+    parts = sorted(shapely.get_parts(letter), key=lambda part: float(part.area), reverse=True)
+    whole: BaseGeometry = parts[0]
+    height = letter.bounds[3] - letter.bounds[1]
+    for part in parts[1:]:
+        # From the middle of the smaller part straight to the larger one, and a little into it.
+        way = shapely.shortest_line(part.centroid, whole)
+        whole = whole.union(part).union(way.buffer(0.5 * JOINT * height, cap_style="square"))
+    return whole
+
+
 def _pushed(word: BaseGeometry, letter: BaseGeometry, height: float) -> BaseGeometry:
     """Move a letter left until it overlaps the word over a joint that holds."""
-    main = max(shapely.get_parts(letter), key=lambda part: float(part.area))
     low, high = letter.bounds[0], word.bounds[2]
     far = letter.bounds[2] - word.bounds[0]
     apart = high - low + 0.05 * height  # as if the letter stood right behind the word
     for shift in np.arange(apart, apart - far, -STEP * height).tolist():
-        common = word.intersection(translate(main, shift))
+        common = word.intersection(translate(letter, shift))
         if common.area > 0 and common.bounds[3] - common.bounds[1] >= JOINT * height:
             return translate(letter, shift)
     return translate(letter, high - low - JOINT * height)

@@ -99,6 +99,5 @@ class Placed:
         return width, height
 
     def reshaped(self, ring: npt.ArrayLike, notes: Iterable[str] = ()) -> Placed:
-        """The same target with other vertices (L, 2), mm; notes on reading stay, new ones join them."""
-        mine = self.outline.notes
-        return Placed.from_ring(ring, self.outline.name, (*mine, *(note for note in notes if note not in mine)))
+        """The same target with other vertices (L, 2), mm; what was said of the old ones no longer holds."""
+        return Placed.from_ring(ring, self.outline.name, notes)

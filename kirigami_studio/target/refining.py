@@ -5,12 +5,14 @@ from __future__ import annotations
 import math
 
 import numpy as np
+import numpy.typing as npt
+import shapely
 from scipy.ndimage import gaussian_filter1d
 from shapely.geometry import Polygon
 
 from kirigami_studio.foundation.errors import TargetError
 from kirigami_studio.target.contour import FloatArray, area_and_centroid
-from kirigami_studio.target.editing import STROKE_ERROR, resampled
+from kirigami_studio.target.editing import STROKE_ERROR, resampled, smoothed_stroke
 from kirigami_studio.target.placed import LARGEST_MM, Placed
 
 #: Error (share of the root of the area) of the strongest simplification.
@@ -21,6 +23,19 @@ SMOOTHEST = 0.06
 SAMPLES = 720
 #: Sides shorter than this (mm) are no target.
 SMALLEST_MM = 0.1
+
+
+def stroked(points: npt.ArrayLike, name: str = "drawing") -> Placed:
+    """Turn a hand-drawn stroke (P, 2), mm, into a target in its place: tremor smoothed, corners kept, ends joined.
+
+    Raises
+    ------
+    TargetError
+        Too short, without area, or crossing itself so that no single shape is meant.
+    """
+    ring, notes = smoothed_stroke(points)
+    drawn = Placed.from_ring(ring, name, notes)
+    return drawn.reshaped(_thinned(drawn.polygon, STROKE_ERROR * drawn.scale), drawn.outline.notes)
 
 
 def simplified(target: Placed, strength: float) -> Placed:
@@ -34,8 +49,7 @@ def simplified(target: Placed, strength: float) -> Placed:
     tolerance = COARSEST * _checked(strength, "simplifying") ** 2 * target.scale
     if tolerance == 0.0:
         return target
-    simpler = target.polygon.simplify(tolerance)
-    ring = np.asarray(simpler.exterior.coords[:-1]) if isinstance(simpler, Polygon) else np.empty((0, 2))
+    ring = _thinned(target.polygon, tolerance)
     return target.reshaped(ring) if 3 <= len(ring) < len(target.outline.points) else target
 
 
@@ -56,9 +70,7 @@ def smoothed(target: Placed, strength: float) -> Placed:
     if area <= 0:
         raise TargetError("Smoothed this much, nothing of the target is left; smooth it less.")
     grown = (calm - centroid) * (target.scale / math.sqrt(area)) + target.centre
-    polygon = Polygon(grown).simplify(STROKE_ERROR * target.scale)
-    ring = np.asarray(polygon.exterior.coords[:-1]) if isinstance(polygon, Polygon) else grown
-    return target.reshaped(ring)
+    return target.reshaped(_thinned(target.reshaped(grown).polygon, STROKE_ERROR * target.scale))
 
 
 def turned(target: Placed, angle: float) -> Placed:
@@ -99,6 +111,11 @@ def stretched(target: Placed, factors: tuple[float, float], fixed: tuple[float, 
         )
     stay = np.array(target.centre if fixed is None else fixed)
     return target.reshaped((target.ring - stay) * factors + stay)
+
+
+def _thinned(polygon: Polygon, tolerance: float) -> FloatArray:
+    """Vertices (L, 2) of a simplified polygon; none when nothing is left of it."""
+    return shapely.get_coordinates(polygon.simplify(tolerance))[:-1]
 
 
 def _checked(strength: float, doing: str) -> float:

@@ -150,11 +150,12 @@ def test_that_a_stroke_of_the_mouse_becomes_a_smooth_target(window: MainWindow, 
     assert target is not None and target.name == "drawing"
     width, height = np.ptp(target.points, axis=0)
     assert width / height == pytest.approx(1 / 0.7, rel=0.08)
-    assert not window.target.buttons["freehand"].isChecked()
+    assert not window.target.buttons["freehand"].isChecked() and window.target.editing
 
 
 def test_that_clicked_corners_become_a_polygon_the_right_way_up(window: MainWindow, qtbot: QtBot) -> None:
     view = window.target.view
+    qtbot.mouseClick(window.target.buttons["edit"], LEFT)
     qtbot.mouseClick(window.target.buttons["polygon"], LEFT)
     corners = [(60, 40), (60, 140), (140, 140), (150, 60)]
     for x, y in corners:

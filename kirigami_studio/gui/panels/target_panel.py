@@ -1,4 +1,4 @@
-"""Where the target comes from: a file, the library, a stroke or a polygon."""
+"""Where the target comes from: a file, the library, or the editor that the panel grows into."""
 
 from __future__ import annotations
 
@@ -8,7 +8,9 @@ from PySide6.QtWidgets import QHBoxLayout, QLabel, QSizePolicy, QWidget
 from kirigami_studio.gui import icons
 from kirigami_studio.gui.jobs.steps import Picture
 from kirigami_studio.gui.panels.card import Card, ElidedLabel, muted_label, tool_button
+from kirigami_studio.gui.panels.refine_bar import RefineBar
 from kirigami_studio.gui.panels.threshold_bar import ThresholdBar
+from kirigami_studio.gui.panels.tool_strip import ToolStrip
 from kirigami_studio.gui.theme import Palette
 from kirigami_studio.gui.views.target_view import TargetView, Tool
 from kirigami_studio.target.outline import Outline
@@ -17,11 +19,9 @@ from kirigami_studio.target.outline import Outline
 BUTTONS = (
     ("openTarget", "open", "Open a target file (Ctrl+O). PNG, JPG, BMP, SVG, DXF or JSON.", False),
     ("library", "library", "Choose a silhouette from the library (Ctrl+L).", False),
-    ("freehand", "draw", "Draw freehand (D). One stroke; it is smoothed and closed.", True),
-    ("polygon", "polygon", "Draw a polygon (P). Click corners, Enter closes.", True),
+    ("edit", "edit", "Draw and edit the target (E). Shapes, points, add and take away.", True),
     ("clearTarget", "clear", "Clear the target. Undo brings it back.", False),
 )
-TOOLS = {"freehand": Tool.FREEHAND, "polygon": Tool.POLYGON}
 
 
 class TargetPanel(Card):
@@ -30,11 +30,16 @@ class TargetPanel(Card):
     open_wanted = Signal()
     wants_silhouette = Signal()
     clear_wanted = Signal()
+    editing_changed = Signal(bool)
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__("Target", parent)
         self.view = TargetView()
-        self.buttons = {}
+        self.editing = False
+        self.strip = ToolStrip(self.view.easel)
+        self.refine = RefineBar()
+        self.header.addWidget(self.strip.options)
+        self.buttons = {tool.value: button for tool, button in self.strip.buttons.items()}
         for name, _, tip, checkable in BUTTONS:
             self.buttons[name] = tool_button(name, tip, checkable)
             self.header.addWidget(self.buttons[name])
@@ -48,31 +53,59 @@ class TargetPanel(Card):
         self.notes.setObjectName("warning")
         self.notes.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
         self.threshold = ThresholdBar()
+        self.body.addWidget(self.strip)
         self.body.addWidget(self.view, 1)
         self.body.addLayout(line)
+        self.body.addWidget(self.refine)
         self.body.addWidget(self.threshold)
         self.body.addWidget(self.notes)
         self.buttons["openTarget"].clicked.connect(self.open_wanted)
         self.buttons["library"].clicked.connect(self.wants_silhouette)
         self.buttons["clearTarget"].clicked.connect(self.clear_wanted)
-        for name, tool in TOOLS.items():
-            self.buttons[name].clicked.connect(lambda down, tool=tool: self.set_tool(tool if down else Tool.LOOK))
+        self.buttons["edit"].clicked.connect(self.set_editing)
+        self.strip.tool_wanted.connect(self.set_tool)
+        self.strip.grid_switched.connect(self.set_snapping)
+        self.strip.done.connect(lambda: self.set_editing(False))
         self.view.tool_left.connect(lambda: self.set_tool(Tool.LOOK))
+        self.view.editing_left.connect(lambda: self.set_editing(False))
+        self.set_editing(False)
         self.show_target(None)
 
     def set_tool(self, tool: Tool) -> None:
-        """Change what clicks on the target do."""
-        for name, own in TOOLS.items():
-            self.buttons[name].setChecked(own is tool)
+        """Change what clicks on the target do; every tool but looking opens the editor."""
+        if tool is not Tool.LOOK:
+            self.set_editing(True)
+        self.strip.show_tool(tool)
         self.view.set_tool(tool)
+
+    def set_editing(self, on: bool) -> None:
+        """Show the tools and the board, or the target alone."""
+        if not on:
+            self.set_tool(Tool.LOOK)
+        self.buttons["edit"].setChecked(on)
+        for part in (self.strip, self.refine):
+            part.setVisible(on)
+        if on != self.editing:
+            self.editing = on
+            self.view.set_editing(on)
+            self.editing_changed.emit(on)
+
+    def set_snapping(self, on: bool) -> None:
+        """Show the grid and snap to it, or neither."""
+        self.view.easel.snapping = on
+        self.strip.grid.setChecked(on)
+        self.view.update()
 
     def show_target(self, outline: Outline | None, picture: Picture | None = None) -> None:
         """Show the document's target, and the threshold when it was traced from a picture."""
         self.threshold.setVisible(picture is not None)
         if picture is not None:
             self.threshold.show_levels(picture.threshold, picture.automatic)
-        self.set_tool(Tool.LOOK)
+        if outline is None or self.view.easel.recall(outline) is None:
+            self.set_tool(Tool.LOOK)  # it came from elsewhere
         self.view.show_outline(outline)
+        self.strip.show_target(outline is not None)
+        self.refine.show_placed(self.view.easel.placed)
         self.buttons["clearTarget"].setEnabled(outline is not None)
         self.facts.setVisible(outline is not None)
         self.size_.setVisible(outline is not None)
@@ -87,6 +120,7 @@ class TargetPanel(Card):
     def set_palette(self, palette: Palette) -> None:
         """Draw in other colours."""
         self.view.set_palette(palette)
+        self.strip.set_palette(palette)
         for name, icon, _, _ in BUTTONS:
             self.buttons[name].setIcon(icons.icon(icon, palette))
 

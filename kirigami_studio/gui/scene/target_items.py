@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import numpy.typing as npt
-from PySide6.QtCore import QPointF, Qt
+from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QPainter, QPen
 
+from kirigami_studio.gui.scene.frame import Frame
 from kirigami_studio.gui.scene.paths import line_path
 from kirigami_studio.gui.theme import Palette
 
@@ -45,6 +48,51 @@ def paint_sketch(painter: QPainter, points: FloatArray, palette: Palette, corner
     for index, (x, y) in enumerate(points.tolist()):
         painter.setBrush(QColor(palette.accent if index == 0 else palette.canvas))
         painter.drawEllipse(QPointF(x, y), 4.0, 4.0)
+
+
+def paint_proposal(painter: QPainter, points: FloatArray, palette: Palette) -> None:
+    """Draw a shape that would come when the button is let go: (L, 2) pixels."""
+    fill = QColor(palette.accent)
+    fill.setAlpha(36)
+    painter.setPen(_line(palette.accent, 2.0))
+    painter.setBrush(fill)
+    painter.drawPath(line_path(points, closed=True))
+
+
+def paint_size(painter: QPainter, pointer: QPointF, size: tuple[float, float], palette: Palette) -> None:
+    """Write width and height (mm) on a label beside the pointer."""
+    paint_label(painter, pointer, f"{size[0]:.4g} \N{MULTIPLICATION SIGN} {size[1]:.4g} mm", palette)
+
+
+def paint_label(painter: QPainter, pointer: QPointF, text: str, palette: Palette) -> None:
+    """Write a short text on a label beside the pointer, on the side that has room."""
+    metrics = painter.fontMetrics()
+    width, height = metrics.horizontalAdvance(text) + 12.0, metrics.height() + 6.0
+    area = painter.viewport()
+    room = area.width() / painter.device().devicePixelRatioF()
+    left = pointer.x() + 14.0 if pointer.x() + 14.0 + width < room else pointer.x() - 14.0 - width
+    box = QRectF(left, max(pointer.y() - height - 8.0, 4.0), width, height)
+    painter.setPen(QPen(QColor(palette.border), 1.0))
+    painter.setBrush(QColor(palette.surface))
+    painter.drawRoundedRect(box, 5.0, 5.0)
+    painter.setPen(QColor(palette.text))
+    painter.drawText(box, int(Qt.AlignmentFlag.AlignCenter), text)
+
+
+def paint_grid(painter: QPainter, frame: Frame, step: float, area: QRectF, palette: Palette) -> None:
+    """Draw the board's grid: a line every ``step`` mm, every fifth one stronger, the axes strongest."""
+    painter.fillRect(area, QColor(palette.canvas))
+    left, bottom = frame.to_world(area.bottomLeft())
+    right, top = frame.to_world(area.topRight())
+    for vertical, low, high in ((True, left, right), (False, bottom, top)):
+        for number in range(math.ceil(low / step), math.floor(high / step) + 1):
+            colour = palette.strong_border if number == 0 else palette.border if number % 5 == 0 else palette.grid
+            painter.setPen(QPen(QColor(colour), 1.0))
+            x, y = frame.to_pixels(np.array([number * step, number * step])).tolist()
+            if vertical:
+                painter.drawLine(QPointF(x, area.top()), QPointF(x, area.bottom()))
+            else:
+                painter.drawLine(QPointF(area.left(), y), QPointF(area.right(), y))
 
 
 def _line(colour: str, width: float) -> QPen:

@@ -1,12 +1,10 @@
-"""The target: shown, and drawn by hand or corner by corner."""
+"""The target: shown, and drawn on with the tools of :mod:`kirigami_studio.gui.sketching`."""
 
 from __future__ import annotations
 
-import math
 from enum import Enum
 
-import numpy as np
-from PySide6.QtCore import QPointF, QSize, Qt, Signal
+from PySide6.QtCore import QMimeData, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import (
     QColor,
     QDragEnterEvent,
@@ -20,40 +18,58 @@ from PySide6.QtGui import (
 from PySide6.QtWidgets import QWidget
 
 from kirigami_studio.gui.scene.frame import Bounds, Frame
-from kirigami_studio.gui.scene.target_items import paint_sketch, paint_target_shape
+from kirigami_studio.gui.scene.target_items import paint_grid, paint_proposal, paint_target_shape
+from kirigami_studio.gui.sketching.boxes import FigureTool, TextTool
+from kirigami_studio.gui.sketching.easel import BOARD, Easel, SketchTool, Spot
+from kirigami_studio.gui.sketching.point_tool import PointTool
+from kirigami_studio.gui.sketching.pose_tool import PoseTool
+from kirigami_studio.gui.sketching.strokes import Corners, Freehand
 from kirigami_studio.gui.views.canvas import Canvas
+from kirigami_studio.target.combining import Combine
+from kirigami_studio.target.figures import Figure
 from kirigami_studio.target.outline import Outline
+from kirigami_studio.target.placed import Placed
 
-#: A click this near (pixels) to the first corner closes the polygon.
-CLOSING_REACH = 10.0
-#: Freehand points nearer than this (pixels) to the last one are dropped: hands and mice jitter.
-SMALLEST_STEP = 2.0
+#: Room around the target on the board while it is edited, as a share of its size.
+ROOM = 0.2
 
 
 class Tool(Enum):
-    """What a click on the target does."""
+    """What the pointer does on the target."""
 
     LOOK = "look"
+    POINTS = "points"
+    POSE = "pose"
     FREEHAND = "freehand"
     POLYGON = "polygon"
+    RECTANGLE = "rectangle"
+    ELLIPSE = "ellipse"
+    REGULAR = "regular"
+    STAR = "star"
+    TEXT = "text"
 
 
 class TargetView(Canvas):
-    """Shows one outline and lets the user draw a new one."""
+    """Shows one outline on a board in mm and lets the user change it."""
 
-    freehand_drawn = Signal(object)  #: (L, 2) float array, y up, pixels
-    polygon_drawn = Signal(object)  #: (L, 2) float array, y up, pixels
     file_dropped = Signal(str)
+    content_dropped = Signal(object)  #: QMimeData with a picture or a text
     tool_left = Signal()
+    editing_left = Signal()
     hint = Signal(str)
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self._outline: Outline | None = None
-        self._tool = Tool.LOOK
-        self._sketch: list[QPointF] = []
-        self._pointer: QPointF | None = None
+        self._preview: Placed | None = None
+        self._editing = False
+        self._board = BOARD
         self._drop_here = False
+        self.easel = Easel(self)
+        self.easel.repaint.connect(self.update)
+        self.easel.tool_done.connect(self.tool_left)
+        self._tool = Tool.LOOK
+        self._tools = _tools(self.easel)
         self.setAcceptDrops(True)
         self.setMouseTracking(True)
         self.setObjectName("targetView")
@@ -68,27 +84,56 @@ class TargetView(Canvas):
     def tool(self) -> Tool:
         return self._tool
 
+    @property
+    def active(self) -> SketchTool:
+        """What follows the pointer now."""
+        return self._tools[self._tool]
+
     def show_outline(self, outline: Outline | None) -> None:
-        """Show another target; an unfinished sketch is dropped."""
-        self._outline = outline
-        self._sketch.clear()
-        self.fit()
+        """Show another target; an unfinished sketch is dropped.
+
+        One that was drawn here stays where it was drawn, with the board as it is seen; another one is fitted.
+        """
+        drawn = None if outline is None else self.easel.recall(outline)
+        self._outline, self._preview = outline, None
+        self.easel.placed = drawn or (None if outline is None else Placed.on_board(outline))
+        if drawn is None or not self._editing:
+            self._choose_board()
+            self.fit()
+        self.active.sync()
+        self.update()
+
+    def show_preview(self, placed: Placed | None) -> None:
+        """Show what the target would become, or stop doing so."""
+        self._preview = placed
+        self.update()
 
     def set_tool(self, tool: Tool) -> None:
-        """Change what clicks do."""
+        """Change what the pointer does."""
+        self.active.drop()
         self._tool = tool
-        self._sketch.clear()
-        self.setCursor(Qt.CursorShape.ArrowCursor if tool is Tool.LOOK else Qt.CursorShape.CrossCursor)
+        self.active.sync()
+        self.setCursor(self.active.cursor)
         if tool is not Tool.LOOK:
             self.setFocus()
-        self.hint.emit(
-            {
-                Tool.LOOK: "",
-                Tool.FREEHAND: "Draw the silhouette in one stroke; it closes itself when you let go.",
-                Tool.POLYGON: "Click the corners; close with Enter or a click on the first one. Backspace takes back.",
-            }[tool]
-        )
+        self.hint.emit(self.active.hint)
         self.update()
+
+    def set_editing(self, on: bool) -> None:
+        """Show the board with its grid around the target, or the target alone."""
+        self._editing = on
+        self._choose_board()
+        self.fit()
+
+    def _choose_board(self) -> None:
+        """Room to draw in: around the target, or the empty board."""
+        placed = self.easel.placed
+        if placed is None:
+            self._board = BOARD
+            return
+        tight = Bounds.of(placed.ring)
+        room = ROOM * max(tight.right - tight.left, tight.top - tight.bottom)
+        self._board = Bounds(tight.left - room, tight.bottom - room, tight.right + room, tight.top + room)
 
     def empty_state(self) -> tuple[str, str, str]:
         return "target", "No target yet", "Drop an image, SVG or DXF here,\nchoose one from the library, or draw."
@@ -98,90 +143,81 @@ class TargetView(Canvas):
         return QSize(180, 56)
 
     def scene_bounds(self) -> Bounds | None:
-        return None if self._outline is None else Bounds.of(self._outline.points)
+        if self._editing:
+            return self._board
+        if self.easel.placed is not None:
+            return Bounds.of(self.easel.placed.ring)
+        return None if self._tool is Tool.LOOK else BOARD
 
     def paint_scene(self, painter: QPainter, frame: Frame) -> None:
-        if self._outline is not None:
-            painter.setOpacity(0.25 if self._tool is not Tool.LOOK else 1.0)
-            paint_target_shape(painter, frame.to_pixels(self._outline.points), self.palette_)
+        self.easel.frame = frame
+        if self._editing and self.easel.snapping:
+            inside = QRectF(self.rect()).adjusted(2, 2, -2, -2)
+            paint_grid(painter, frame, self.easel.step, inside, self.palette_)
+        if self.easel.placed is not None:
+            replacing = self.easel.combine is Combine.REPLACE and self._tool in DRAWING
+            painter.setOpacity(0.25 if replacing else 1.0)
+            paint_target_shape(painter, frame.to_pixels(self.easel.placed.ring), self.palette_)
             painter.setOpacity(1.0)
+        if self._preview is not None:
+            paint_proposal(painter, frame.to_pixels(self._preview.ring), self.palette_)
+        self.active.paint(painter, frame, self.palette_)
 
     def paint_notes(self, painter: QPainter) -> None:
-        if self._sketch:
-            points = [*self._sketch]
-            if self._tool is Tool.POLYGON and self._pointer is not None:
-                points.append(self._pointer)
-            paint_sketch(painter, _pixels(points), self.palette_, corners=self._tool is Tool.POLYGON)
         if self._drop_here:
             painter.setPen(QPen(QColor(self.palette_.accent), 2.0, Qt.PenStyle.DashLine))
             painter.setBrush(Qt.BrushStyle.NoBrush)
             painter.drawRoundedRect(self.rect().adjusted(6, 6, -6, -6), 8, 8)
 
-    # drawing by hand -----------------------------------------------------------------------------------------------
+    # the pointer and the keys --------------------------------------------------------------------------------------
+
+    def _spot(self, event: QMouseEvent) -> Spot:
+        self.easel.frame = self.frame() or self.easel.frame
+        return self.easel.spot(event.position(), event.modifiers())
 
     def mousePressEvent(self, event: QMouseEvent) -> None:  # noqa: N802 - Qt's name
         if self._tool is Tool.LOOK or event.button() is not Qt.MouseButton.LeftButton:
             super().mousePressEvent(event)
-        elif self._tool is Tool.FREEHAND:
-            self._sketch = [event.position()]
-        elif len(self._sketch) >= 3 and _distance(event.position(), self._sketch[0]) <= CLOSING_REACH:
-            self._finish_polygon()
-        elif not self._sketch or _distance(event.position(), self._sketch[-1]) > 0:
-            self._sketch.append(event.position())
-            self.update()
+            return
+        self.active.press(self._spot(event))
+        self.update()
 
     def mouseMoveEvent(self, event: QMouseEvent) -> None:  # noqa: N802 - Qt's name
-        self._pointer = event.position()
-        if self._tool is Tool.LOOK:
+        if self._tool is Tool.LOOK or event.buttons() & Qt.MouseButton.MiddleButton:
             super().mouseMoveEvent(event)
             return
-        drawing = self._tool is Tool.FREEHAND and event.buttons() & Qt.MouseButton.LeftButton
-        if drawing and self._sketch and _distance(event.position(), self._sketch[-1]) >= SMALLEST_STEP:
-            self._sketch.append(event.position())
+        self.active.move(self._spot(event), bool(event.buttons() & Qt.MouseButton.LeftButton))
         self.update()
 
     def mouseReleaseEvent(self, event: QMouseEvent) -> None:  # noqa: N802 - Qt's name
-        if self._tool is Tool.LOOK:
+        if self._tool is Tool.LOOK or event.button() is not Qt.MouseButton.LeftButton:
             super().mouseReleaseEvent(event)
-        elif self._tool is Tool.FREEHAND and event.button() is Qt.MouseButton.LeftButton and self._sketch:
-            stroke = self._take_sketch()
-            if len(stroke) > 1:
-                self.freehand_drawn.emit(stroke)
+            self.setCursor(self.active.cursor)
+            return
+        self.active.release(self._spot(event))
+        self.update()
 
     def mouseDoubleClickEvent(self, event: QMouseEvent) -> None:  # noqa: N802 - Qt's name
         if self._tool is Tool.LOOK:
             super().mouseDoubleClickEvent(event)
-        elif self._tool is Tool.POLYGON:
-            self._finish_polygon()
+            return
+        self.active.double_click(self._spot(event))
+        self.update()
 
     def keyPressEvent(self, event: QKeyEvent) -> None:  # noqa: N802 - Qt's name
-        key = event.key()
-        if self._tool is not Tool.LOOK and key == Qt.Key.Key_Escape:
-            self._sketch.clear()
+        if event.key() == Qt.Key.Key_Escape and self._tool is not Tool.LOOK:
+            self.active.drop()
             self.tool_left.emit()
-        elif self._tool is Tool.POLYGON and key in (Qt.Key.Key_Return, Qt.Key.Key_Enter):
-            self._finish_polygon()
-        elif self._tool is Tool.POLYGON and key == Qt.Key.Key_Backspace and self._sketch:
-            self._sketch.pop()
-            self.update()
-        else:
+        elif event.key() == Qt.Key.Key_Escape and self._editing:
+            self.editing_left.emit()
+        elif not self.active.key(event):
             super().keyPressEvent(event)
-
-    def _finish_polygon(self) -> None:
-        corners = self._take_sketch()
-        if len(corners):
-            self.polygon_drawn.emit(corners)
-
-    def _take_sketch(self) -> np.ndarray[tuple[int, ...], np.dtype[np.float64]]:
-        points = _pixels(self._sketch) * (1.0, -1.0)
-        self._sketch = []
         self.update()
-        return points
 
-    # files dropped from outside ------------------------------------------------------------------------------------
+    # files and pictures dropped from outside -----------------------------------------------------------------------
 
     def dragEnterEvent(self, event: QDragEnterEvent) -> None:  # noqa: N802 - Qt's name
-        if any(url.isLocalFile() for url in event.mimeData().urls()):
+        if can_be_target(event.mimeData()):
             event.acceptProposedAction()
             self._drop_here = True
             self.update()
@@ -197,11 +233,32 @@ class TargetView(Canvas):
         if files:
             event.acceptProposedAction()
             self.file_dropped.emit(files[0])
+        elif can_be_target(event.mimeData()):
+            event.acceptProposedAction()
+            self.content_dropped.emit(event.mimeData())
 
 
-def _pixels(points: list[QPointF]) -> np.ndarray[tuple[int, ...], np.dtype[np.float64]]:
-    return np.array([(point.x(), point.y()) for point in points], dtype=np.float64).reshape(-1, 2)
+#: Tools that make a new shape.
+DRAWING = frozenset(Tool) - {Tool.LOOK, Tool.POINTS, Tool.POSE}
 
 
-def _distance(one: QPointF, other: QPointF) -> float:
-    return math.hypot(one.x() - other.x(), one.y() - other.y())
+def _tools(easel: Easel) -> dict[Tool, SketchTool]:
+    looking = SketchTool(easel)
+    looking.cursor = Qt.CursorShape.ArrowCursor
+    return {
+        Tool.LOOK: looking,
+        Tool.POINTS: PointTool(easel),
+        Tool.POSE: PoseTool(easel),
+        Tool.FREEHAND: Freehand(easel),
+        Tool.POLYGON: Corners(easel),
+        Tool.RECTANGLE: FigureTool(easel, Figure.RECTANGLE),
+        Tool.ELLIPSE: FigureTool(easel, Figure.ELLIPSE),
+        Tool.REGULAR: FigureTool(easel, Figure.REGULAR),
+        Tool.STAR: FigureTool(easel, Figure.STAR),
+        Tool.TEXT: TextTool(easel),
+    }
+
+
+def can_be_target(content: QMimeData) -> bool:
+    """Whether what is dragged or copied holds a local file, a picture or a text."""
+    return any(url.isLocalFile() for url in content.urls()) or content.hasImage() or content.hasText()

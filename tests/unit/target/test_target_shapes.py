@@ -231,9 +231,10 @@ def test_that_separate_letters_become_one_piece() -> None:
     assert np.ptp(ring[:, 1]) == pytest.approx(10) and 4 < np.ptp(ring[:, 0]) < 8
 
 
-def test_that_the_dot_of_a_letter_is_left_out_and_said() -> None:
-    _, notes = joined_letters([[BAR, DOT]])
-    assert "1 smaller piece was left out" in notes[0]
+def test_that_the_dot_of_a_letter_is_held_by_a_bridge() -> None:
+    ring, notes = joined_letters([[BAR, DOT]])
+    assert notes == () and np.ptp(ring[:, 1]) == pytest.approx(14)
+    assert Placed.from_ring(ring, "i").polygon.area == pytest.approx(20 + 4 + 2 * 0.08 * 14, rel=1e-6)
 
 
 def test_that_a_counter_is_a_hole_that_is_filled_and_said() -> None:

@@ -1,0 +1,101 @@
+"""Below the drawing board: simplify, smooth, and the target's real size."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import QSignalBlocker, Qt, Signal
+from PySide6.QtWidgets import QDoubleSpinBox, QHBoxLayout, QLabel, QSlider, QWidget
+
+from kirigami_studio.target.placed import LARGEST_MM, Placed
+
+#: Slider steps from nothing to most.
+STEPS = 100
+#: Name, caption, tooltip.
+SLIDERS = (
+    ("simplify", "S&implify", "Drop points: the further to the right, the fewer corners stay"),
+    ("smooth", "S&mooth", "Round corners and calm edges; the area stays"),
+)
+
+
+class RefineBar(QWidget):
+    """Two sliders with a live preview, two lengths in mm."""
+
+    previewed = Signal(str, float)  #: name of the slider, strength 0..1
+    refined = Signal(str, float)
+    width_wanted = Signal(float)  #: mm
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        row = QHBoxLayout(self)
+        row.setContentsMargins(0, 0, 0, 0)
+        row.setSpacing(8)
+        self._ratio = 1.0
+        self.sliders: dict[str, QSlider] = {}
+        for name, caption, tip in SLIDERS:
+            slider = QSlider(Qt.Orientation.Horizontal)
+            slider.setObjectName("threshold")
+            slider.setRange(0, STEPS)
+            slider.setPageStep(STEPS // 10)
+            slider.setAccessibleName(f"{caption.replace('&', '')} the target")
+            slider.setToolTip(tip)
+            slider.setMinimumWidth(60)
+            slider.valueChanged.connect(lambda value, name=name: self._slide(name, value))
+            slider.sliderReleased.connect(lambda name=name: self._settle(name))
+            self.sliders[name] = slider
+            row.addWidget(_caption(caption, slider))
+            row.addWidget(slider, 1)
+        self.width_ = _length("Width of the target")
+        self.height_ = _length("Height of the target")
+        for caption, field in (("Size", self.width_), ("\N{MULTIPLICATION SIGN}", self.height_)):
+            row.addWidget(_caption(caption, field))
+            row.addWidget(field)
+        self.width_.valueChanged.connect(self.width_wanted)
+        self.height_.valueChanged.connect(lambda value: self.width_wanted.emit(value * self._ratio))
+
+    def show_placed(self, placed: Placed | None) -> None:
+        """Show the target's size on the board."""
+        self.setEnabled(placed is not None)
+        if placed is None:
+            return
+        width, height = placed.size
+        self._ratio = width / height
+        for field, value in ((self.width_, width), (self.height_, height)):
+            with QSignalBlocker(field):
+                field.setValue(value)
+
+    def restart(self) -> None:
+        """The sliders stand for another target: nothing is simplified or smoothed yet."""
+        for slider in self.sliders.values():
+            with QSignalBlocker(slider):
+                slider.setValue(0)
+
+    def _slide(self, name: str, value: int) -> None:
+        for other, slider in self.sliders.items():
+            if other != name:
+                with QSignalBlocker(slider):
+                    slider.setValue(0)
+        if self.sliders[name].isSliderDown():
+            self.previewed.emit(name, value / STEPS)
+        else:
+            self.refined.emit(name, value / STEPS)
+
+    def _settle(self, name: str) -> None:
+        self.refined.emit(name, self.sliders[name].value() / STEPS)
+
+
+def _caption(text: str, buddy: QWidget) -> QLabel:
+    label = QLabel(text)
+    label.setObjectName("muted")
+    label.setBuddy(buddy)
+    return label
+
+
+def _length(name: str) -> QDoubleSpinBox:
+    field = QDoubleSpinBox()
+    field.setRange(0.1, LARGEST_MM)
+    field.setDecimals(1)
+    field.setSuffix(" mm")
+    field.lineEdit().setTextMargins(6, 0, 0, 0)
+    field.setKeyboardTracking(False)
+    field.setAccessibleName(f"{name}; its proportions stay")
+    field.setToolTip(f"{name} in mm; its proportions stay")
+    return field

@@ -1,0 +1,205 @@
+"""The editor's tools in one row, and the numbers of the chosen one."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import Signal
+from PySide6.QtWidgets import (
+    QButtonGroup,
+    QDoubleSpinBox,
+    QFrame,
+    QHBoxLayout,
+    QLabel,
+    QLineEdit,
+    QMenu,
+    QPushButton,
+    QSpinBox,
+    QToolButton,
+    QWidget,
+)
+
+from kirigami_studio.gui import icons
+from kirigami_studio.gui.panels.card import tool_button
+from kirigami_studio.gui.sketching.easel import Easel
+from kirigami_studio.gui.theme import Palette
+from kirigami_studio.gui.views.target_view import DRAWING, Tool
+from kirigami_studio.target.combining import Combine
+from kirigami_studio.target.figures import FEWEST_CORNERS, MOST_CORNERS, NARROWEST_WAIST, WIDEST_WAIST
+
+#: Tool, icon, tooltip; None for a gap.
+TOOLS: tuple[tuple[Tool, str, str] | None, ...] = (
+    (Tool.POINTS, "points", "Move points (N). Drag, double-click, Delete; smooth points carry curves."),
+    (Tool.POSE, "pose", "Resize and rotate (V). Drag the handles around the target."),
+    None,
+    (Tool.FREEHAND, "draw", "Draw freehand (D). One stroke; it is smoothed and closed."),
+    (Tool.POLYGON, "polygon", "Draw a polygon (P). Click corners, Enter closes."),
+    (Tool.RECTANGLE, "rectangle", "Draw a rectangle (R). Shift makes a square."),
+    (Tool.ELLIPSE, "ellipse", "Draw an ellipse (O). Shift makes a circle."),
+    (Tool.REGULAR, "regular", "Draw a regular polygon (G). Shift keeps it regular."),
+    (Tool.STAR, "star", "Draw a star (S). Shift keeps it regular."),
+    (Tool.TEXT, "text", "Draw text (X). Its letters are moved together."),
+)
+#: Mode, icon, tooltip.
+MODES = (
+    (Combine.REPLACE, "replace", "New (=). What is drawn replaces the target."),
+    (Combine.ADD, "add", "Add (+). What is drawn joins the target."),
+    (Combine.SUBTRACT, "subtract", "Take away (-). What is drawn is cut off the target."),
+)
+MIRRORS = (
+    ("left", "Keep &left half"),
+    ("right", "Keep &right half"),
+    ("top", "Keep &top half"),
+    ("bottom", "Keep &bottom half"),
+    ("across", "Flip left and right"),
+    ("over", "Flip top and bottom"),
+)
+
+
+class ToolStrip(QWidget):
+    """Tools, modes, mirror, grid; Done ends editing."""
+
+    tool_wanted = Signal(object)  #: Tool
+    mirror_wanted = Signal(str)
+    grid_switched = Signal(bool)
+    done = Signal()
+
+    def __init__(self, easel: Easel, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._easel = easel
+        self._icons: list[tuple[QToolButton, str]] = []
+        self.buttons: dict[Tool, QToolButton] = {}
+        self.modes: dict[Combine, QToolButton] = {}
+        row = QHBoxLayout(self)
+        row.setContentsMargins(0, 0, 0, 0)
+        row.setSpacing(2)
+        self._add_tools(row)
+        row.addWidget(_rule())
+        self._add_modes(row)
+        row.addWidget(_rule())
+        self.mirror = self._button("mirror", "mirror", "Mirror. Reflect one half of the target, or flip it.")
+        self.mirror.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)
+        menu = QMenu(self)
+        for how, text in MIRRORS:
+            menu.addAction(text).triggered.connect(lambda _=False, how=how: self.mirror_wanted.emit(how))
+        self.mirror.setMenu(menu)
+        self.grid = self._button("grid", "grid", "Snap to the grid (Ctrl+Shift+G). Ctrl held suspends it.", True)
+        self.grid.setChecked(easel.snapping)
+        self.grid.toggled.connect(self.grid_switched)
+        row.addWidget(self.mirror)
+        row.addWidget(self.grid)
+        row.addStretch(1)
+        self.finish = QPushButton("Done")
+        self.finish.setObjectName("small")
+        self.finish.setToolTip("Leave the editor (E, or Esc)")
+        self.finish.clicked.connect(self.done)
+        row.addWidget(self.finish)
+        self.options = ToolOptions(easel)
+
+    def _button(self, name: str, icon: str, tip: str, checkable: bool = False) -> QToolButton:
+        button = tool_button(name, tip, checkable)
+        self._icons.append((button, icon))
+        return button
+
+    def _add_tools(self, row: QHBoxLayout) -> None:
+        for entry in TOOLS:
+            if entry is None:
+                row.addWidget(_rule())
+                continue
+            tool, icon, tip = entry
+            button = self._button(tool.value, icon, tip, True)
+            button.clicked.connect(lambda down, tool=tool: self.tool_wanted.emit(tool if down else Tool.LOOK))
+            self.buttons[tool] = button
+            row.addWidget(button)
+
+    def _add_modes(self, row: QHBoxLayout) -> None:
+        group = QButtonGroup(self)
+        for mode, icon, tip in MODES:
+            button = self._button(mode.value, icon, tip, True)
+            button.clicked.connect(lambda _=False, mode=mode: self.set_mode(mode))
+            group.addButton(button)
+            self.modes[mode] = button
+            row.addWidget(button)
+        self.modes[self._easel.combine].setChecked(True)
+
+    def set_mode(self, mode: Combine) -> None:
+        """What happens with the next shape."""
+        self._easel.combine = mode
+        self.modes[mode].setChecked(True)
+        self._easel.repaint.emit()
+
+    def show_tool(self, tool: Tool) -> None:
+        """Mark the tool in use and show its numbers."""
+        for own, button in self.buttons.items():
+            button.setChecked(own is tool)
+        self.options.show_tool(tool)
+
+    def show_target(self, present: bool) -> None:
+        """Without a target there is nothing to move, mirror or take from."""
+        for button in (self.buttons[Tool.POINTS], self.buttons[Tool.POSE], self.mirror):
+            button.setEnabled(present)
+        for mode in (Combine.ADD, Combine.SUBTRACT):
+            self.modes[mode].setEnabled(present)
+
+    def set_palette(self, palette: Palette) -> None:
+        """Draw in other colours."""
+        for button, icon in self._icons:
+            button.setIcon(icons.icon(icon, palette))
+
+
+class ToolOptions(QWidget):
+    """Corners of a polygon, tips and waist of a star, letters of a text."""
+
+    def __init__(self, easel: Easel) -> None:
+        super().__init__()
+        row = QHBoxLayout(self)
+        row.setContentsMargins(8, 0, 8, 0)
+        row.setSpacing(6)
+        self.corners = QSpinBox()
+        self.corners.setRange(FEWEST_CORNERS, MOST_CORNERS)
+        self.corners.setValue(easel.corners)
+        self.corners.setAccessibleName("Number of corners or tips")
+        self.corners.setToolTip("Corners of the polygon, tips of the star")
+        self.waist = QDoubleSpinBox()
+        self.waist.setRange(100 * NARROWEST_WAIST, 100 * WIDEST_WAIST)
+        self.waist.setDecimals(0)
+        self.waist.setSuffix(" %")
+        self.waist.setValue(100 * easel.waist)
+        self.waist.setAccessibleName("Waist of the star")
+        self.waist.setToolTip("How far its inner corners are from the middle, as a share of its tips")
+        for number in (self.corners, self.waist):
+            number.lineEdit().setTextMargins(6, 0, 0, 0)
+        self.text = QLineEdit(easel.text)
+        self.text.setAccessibleName("Text to draw")
+        self.text.setPlaceholderText("Text")
+        self.text.setMaxLength(24)
+        self.text.setMaximumWidth(180)
+        self._parts: list[tuple[frozenset[Tool], tuple[QWidget, ...]]] = []
+        for tools, caption, field in (
+            (frozenset({Tool.REGULAR, Tool.STAR}), "&Corners", self.corners),
+            (frozenset({Tool.STAR}), "Wai&st", self.waist),
+            (frozenset({Tool.TEXT}), "Te&xt", self.text),
+        ):
+            label = QLabel(caption)
+            label.setObjectName("muted")
+            label.setBuddy(field)
+            row.addWidget(label)
+            row.addWidget(field)
+            self._parts.append((tools, (label, field)))
+        self.corners.valueChanged.connect(lambda value: setattr(easel, "corners", value))
+        self.waist.valueChanged.connect(lambda value: setattr(easel, "waist", value / 100))
+        self.text.textChanged.connect(lambda value: setattr(easel, "text", value))
+        self.show_tool(Tool.LOOK)
+
+    def show_tool(self, tool: Tool) -> None:
+        """Show the numbers that a tool has."""
+        for tools, widgets in self._parts:
+            for widget in widgets:
+                widget.setVisible(tool in tools and tool in DRAWING)
+
+
+def _rule() -> QFrame:
+    """A thin upright line between groups."""
+    line = QFrame()
+    line.setObjectName("upright")
+    line.setFixedWidth(1)
+    line.setFixedHeight(20)
+    return line

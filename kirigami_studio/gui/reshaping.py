@@ -1,0 +1,114 @@
+"""Gestures on the drawing board -> named edits of the target."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+from PySide6.QtCore import QObject, Signal
+
+from kirigami_studio.foundation.errors import KirigamiError
+from kirigami_studio.gui.sketching.easel import Change, Easel
+from kirigami_studio.project.document import Document
+from kirigami_studio.project.edits import Edit
+from kirigami_studio.target.placed import Placed
+
+#: What the sliders do, by their names.
+REFINEMENTS = {"simplify": "Simplify target", "smooth": "Smooth target"}
+
+
+class Reshaping(QObject):
+    """Makes each finished gesture one edit, and keeps what the sliders started from."""
+
+    edited = Signal(object)  #: Edit
+    refused = Signal(object)  #: KirigamiError
+    previewed = Signal(object)  #: Placed, or None
+    restarted = Signal()  #: the sliders stand for another target now
+
+    def __init__(self, easel: Easel, document: Callable[[], Document], parent: QObject) -> None:
+        super().__init__(parent)
+        self._easel = easel
+        self._document = document
+        self._kind = ""
+        self._base: Placed | None = None
+        self._result: Placed | None = None
+
+    def take(self, change: Change) -> None:
+        """Carry out a gesture, or tell why it cannot be."""
+        before = self._easel.placed
+        try:
+            made = change.make()
+        except KirigamiError as error:
+            self.refused.emit(error)
+            return
+        if before is not None:
+            self._easel.remember(before)
+        self._easel.remember(made)
+        self.edited.emit(self._edit(made, change.gesture))
+
+    def _edit(self, made: Placed, gesture: str) -> Edit:
+        document = self._document()
+        if made.outline == document.target:  # another size of the same shape: its designs are still right
+            return Edit(gesture, replace(document, target=made.outline))
+        return Edit(gesture, replace(document, target=made.outline, candidates=(), chosen=None, provenance={}))
+
+    def preview(self, kind: str, strength: float) -> None:
+        """Show what simplifying or smoothing (0..1) would make of the target."""
+        made = self._refined(kind, strength)
+        if made is not None:
+            self.previewed.emit(made)
+
+    def refine(self, kind: str, strength: float) -> None:
+        """Simplify or smooth the target that the slider started from."""
+        made = self._refined(kind, strength)
+        self.previewed.emit(None)
+        if made is not None:
+            self._result = made
+            self.take(Change(REFINEMENTS[kind], lambda: made))
+
+    def _refined(self, kind: str, strength: float) -> Placed | None:
+        from kirigami_studio.target import refining
+
+        placed = self._easel.placed
+        if self._base is None or placed is not self._result or kind != self._kind:
+            self._base, self._result, self._kind = placed, placed, kind
+        if self._base is None:
+            return None
+        try:
+            change = refining.simplified if kind == "simplify" else refining.smoothed
+            return change(self._base, strength)
+        except KirigamiError as error:
+            self.refused.emit(error)
+            return None
+
+    def follow(self) -> None:
+        """The document's target changed: the sliders start anew unless they did it."""
+        if self._easel.placed is not self._result:
+            self._base = self._result = None
+            self.restarted.emit()
+
+    def resize(self, width_mm: float) -> None:
+        """Give the target another real width; its proportions stay."""
+        from kirigami_studio.target.refining import stretched
+
+        placed = self._easel.placed
+        if placed is not None:
+            factor = width_mm / placed.size[0]
+            self.take(Change("Resize target", lambda: stretched(placed, (factor, factor))))
+
+    def mirror(self, how: str) -> None:
+        """Reflect: ``left``, ``right``, ``top`` or ``bottom`` keeps that half; ``across`` and ``over`` turn all."""
+        from kirigami_studio.target.combining import Half, symmetric
+        from kirigami_studio.target.refining import stretched
+
+        placed = self._easel.placed
+        if placed is None:
+            return
+        if how in FLIPS:
+            self.take(Change("Flip target", lambda: stretched(placed, FLIPS[how])))
+        else:
+            self.take(Change(f"Mirror {how} half", lambda: symmetric(placed, Half(how))))
+
+
+#: Factors along x and y of the reflections of the whole target.
+FLIPS = {"across": (-1.0, 1.0), "over": (1.0, -1.0)}

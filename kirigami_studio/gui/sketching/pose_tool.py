@@ -1,0 +1,146 @@
+"""Handles around the target that stretch and turn it."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from PySide6.QtCore import QPointF, QRectF, Qt
+from PySide6.QtGui import QColor, QPainter, QPen
+
+from kirigami_studio.foundation.errors import TargetError
+from kirigami_studio.gui.scene.frame import Frame
+from kirigami_studio.gui.scene.target_items import paint_label, paint_proposal, paint_size
+from kirigami_studio.gui.sketching.easel import Change, Easel, Place, SketchTool, Spot
+from kirigami_studio.gui.theme import Palette
+from kirigami_studio.target.placed import Placed
+
+REACH = 11.0
+HANDLE = 4.5
+#: The knob that turns lies this far above the box, pixels.
+KNOB = 26.0
+#: With Shift, and with snapping, the target is turned in these steps.
+TURN_STEP = math.radians(15.0)
+SNAP_STEP = math.radians(1.0)
+#: Which side of the box a handle moves: x and y, -1 the lower, 1 the upper, 0 neither.
+SIDES = ((-1, -1), (0, -1), (1, -1), (1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0))
+TURN = (0, 2)
+
+
+class PoseTool(SketchTool):
+    """Squares stretch, the round knob turns."""
+
+    hint = "Drag a square to stretch (Shift keeps proportions), the knob to turn (Shift: in steps of 15°)."
+    cursor = Qt.CursorShape.ArrowCursor
+
+    def __init__(self, easel: Easel) -> None:
+        super().__init__(easel)
+        self._grip: tuple[int, int] | None = None
+        self._proposal: Placed | None = None
+        self._angle = 0.0
+
+    def press(self, spot: Spot) -> None:
+        self._grip = self._at(spot.pixel)
+
+    def move(self, spot: Spot, held: bool) -> None:
+        target = self.easel.placed
+        if not held or self._grip is None or target is None:
+            return
+        try:
+            self._proposal = self._turned(target, spot) if self._grip == TURN else self._stretched(target, spot)
+        except TargetError:  # flat for the moment; the last shape that can be stays
+            return
+
+    def release(self, spot: Spot) -> None:
+        made, turning = self._proposal, self._grip == TURN
+        self.drop()
+        if made is not None:
+            self.easel.changed.emit(Change("Rotate target" if turning else "Resize target", lambda: made))
+
+    def drop(self) -> None:
+        self._grip, self._proposal = None, None
+
+    def _turned(self, target: Placed, spot: Spot) -> Placed:
+        from kirigami_studio.target.refining import turned
+
+        start, now = self._knob(target) - np.array(target.centre), np.array(spot.free) - target.centre
+        angle = math.atan2(now[1], now[0]) - math.atan2(start[1], start[0])
+        step = TURN_STEP if spot.shift else SNAP_STEP if spot.place != spot.free else 0.0
+        self._angle = round(angle / step) * step if step else angle
+        return turned(target, self._angle)
+
+    def _stretched(self, target: Placed, spot: Spot) -> Placed:
+        from kirigami_studio.target.refining import stretched
+
+        side_x, side_y = self._grip or (0, 0)
+        low, high = _box(target)
+        fixed = np.where(np.array([side_x, side_y]) > 0, low, high)
+        size = high - low
+        wanted = np.abs(np.array(spot.place) - fixed) / size
+        factors = np.where(np.array([side_x, side_y]) == 0, 1.0, wanted)
+        if spot.shift:
+            factors = np.full(2, float(np.max(factors)) if side_x and side_y else float(wanted[0 if side_x else 1]))
+        return stretched(target, (float(factors[0]), float(factors[1])), (float(fixed[0]), float(fixed[1])))
+
+    def _knob(self, target: Placed) -> np.ndarray[tuple[int, ...], np.dtype[np.float64]]:
+        low, high = _box(target)
+        return np.array([0.5 * (low[0] + high[0]), high[1] + KNOB / self.easel.frame.scale])
+
+    def handles(self) -> dict[tuple[int, int], Place]:
+        """Where each handle lies, mm."""
+        target = self.easel.placed
+        if target is None:
+            return {}
+        low, high = _box(target)
+        middle, reach = 0.5 * (low + high), 0.5 * (high - low)
+        places = {side: tuple((middle + reach * side).tolist()) for side in SIDES}
+        return {**places, TURN: tuple(self._knob(target).tolist())}
+
+    def _at(self, pixel: QPointF) -> tuple[int, int] | None:
+        far = {
+            side: float(np.linalg.norm(self.easel.frame.to_pixels(np.array(place)) - (pixel.x(), pixel.y())))
+            for side, place in self.handles().items()
+        }
+        nearest = min(far, key=lambda side: far[side], default=None)
+        return nearest if nearest is not None and far[nearest] <= REACH else None
+
+    def paint(self, painter: QPainter, frame: Frame, palette: Palette) -> None:
+        target = self.easel.placed
+        if target is None:
+            return
+        if self._proposal is not None:
+            paint_proposal(painter, frame.to_pixels(self._proposal.ring), palette)
+            self._paint_reading(painter, frame, palette)
+            return
+        spots = {side: QPointF(*frame.to_pixels(np.array(place)).tolist()) for side, place in self.handles().items()}
+        painter.setBrush(Qt.BrushStyle.NoBrush)
+        painter.setPen(QPen(QColor(palette.accent), 1.0, Qt.PenStyle.DashLine))
+        painter.drawRect(QRectF(spots[-1, 1], spots[1, -1]))
+        painter.drawLine(spots[0, 1], spots[TURN])
+        painter.setPen(QPen(QColor(palette.accent), 1.6))
+        painter.setBrush(QColor(palette.canvas))
+        for side, spot in spots.items():
+            box = QRectF(spot.x() - HANDLE, spot.y() - HANDLE, 2 * HANDLE, 2 * HANDLE)
+            if side == TURN:
+                painter.drawEllipse(box.adjusted(-1, -1, 1, 1))
+            else:
+                painter.drawRect(box)
+
+    def _paint_reading(self, painter: QPainter, frame: Frame, palette: Palette) -> None:
+        made, grip = self._proposal, self._grip
+        if made is None:
+            return
+        low, high = _box(made)
+        x, y = frame.to_pixels(np.array([high[0], high[1]])).tolist()
+        if grip == TURN:
+            paint_label(painter, QPointF(x, y), f"{math.degrees(self._angle):+.1f}°", palette)
+        else:
+            paint_size(painter, QPointF(x, y), tuple((high - low).tolist()), palette)
+
+
+def _box(
+    target: Placed,
+) -> tuple[np.ndarray[tuple[int, ...], np.dtype[np.float64]], np.ndarray[tuple[int, ...], np.dtype[np.float64]]]:
+    """Lower left and upper right corner of a target, mm."""
+    ring = target.ring
+    return ring.min(axis=0), ring.max(axis=0)

@@ -1,0 +1,383 @@
+"""The drawing board: tools, modes, points, handles, grid, sliders, mirror; each gesture is one named, undoable edit."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from PySide6.QtCore import QEvent, QPointF, Qt
+from PySide6.QtGui import QMouseEvent
+from PySide6.QtWidgets import QApplication, QWidget
+from pytestqt.qtbot import QtBot
+
+from kirigami_studio.gui.main_window import MainWindow
+from kirigami_studio.gui.messages import Tone
+from kirigami_studio.gui.sketching.point_tool import PointTool
+from kirigami_studio.gui.sketching.pose_tool import TURN, PoseTool
+from kirigami_studio.gui.views.target_view import DRAWING, Tool
+from kirigami_studio.target import silhouettes
+from kirigami_studio.target.combining import Combine
+from kirigami_studio.target.placed import Placed
+
+Until = Callable[[Callable[[], bool]], None]
+LEFT, NONE = Qt.MouseButton.LeftButton, Qt.MouseButton.NoButton
+SIDES = ("left", "right", "top", "bottom")
+PLAIN, SHIFT, CTRL = (
+    Qt.KeyboardModifier.NoModifier,
+    Qt.KeyboardModifier.ShiftModifier,
+    Qt.KeyboardModifier.ControlModifier,
+)
+
+
+def send(view: QWidget, kind: QEvent.Type, x: float, y: float, held: Qt.MouseButton, keys: Qt.KeyboardModifier) -> None:
+    place = QPointF(x, y)
+    button = NONE if kind is QEvent.Type.MouseMove else LEFT
+    QApplication.sendEvent(view, QMouseEvent(kind, place, view.mapToGlobal(place), button, held, keys))
+
+
+def drag(
+    window: MainWindow, start: tuple[float, float], end: tuple[float, float], keys: Qt.KeyboardModifier = PLAIN
+) -> None:
+    """Drag between two places of the board, mm."""
+    view = window.target.view
+    (x0, y0), (x1, y1) = (pixel(window, place) for place in (start, end))
+    send(view, QEvent.Type.MouseButtonPress, x0, y0, LEFT, keys)
+    for share in (0.4, 0.8, 1.0):
+        send(view, QEvent.Type.MouseMove, x0 + share * (x1 - x0), y0 + share * (y1 - y0), LEFT, keys)
+    view.grab()  # the proposal is painted
+    send(view, QEvent.Type.MouseButtonRelease, x1, y1, NONE, keys)
+
+
+def double_click(window: MainWindow, place: tuple[float, float]) -> None:
+    x, y = pixel(window, place)
+    send(window.target.view, QEvent.Type.MouseButtonDblClick, x, y, LEFT, PLAIN)
+
+
+def pixel(window: MainWindow, place: tuple[float, float]) -> tuple[float, float]:
+    frame = window.target.view.frame()
+    assert frame is not None
+    x, y = frame.to_pixels(np.array(place)).tolist()
+    return x, y
+
+
+def placed(window: MainWindow) -> Placed:
+    found = window.target.view.easel.placed
+    assert found is not None
+    return found
+
+
+def use(window: MainWindow, tool: Tool, mode: Combine = Combine.REPLACE) -> None:
+    window.target.set_tool(tool)
+    window.target.strip.set_mode(mode)
+    QApplication.processEvents()
+
+
+@pytest.fixture
+def board(window: MainWindow) -> MainWindow:
+    """A studio with the editor open on an empty board."""
+    window.actions_["edit_target"].trigger()
+    QApplication.processEvents()
+    return window
+
+
+@pytest.fixture
+def plate(board: MainWindow) -> MainWindow:
+    """A rectangle of 40 x 20 mm around the origin on the board."""
+    use(board, Tool.RECTANGLE)
+    drag(board, (-20, -10), (20, 10))
+    return board
+
+
+# the room ---------------------------------------------------------------------------------------------------
+
+
+def test_that_the_editor_takes_the_place_of_the_stage_and_gives_it_back(heart: MainWindow) -> None:
+    before = heart.target.view.width()
+    heart.actions_["edit_target"].trigger()
+    QApplication.processEvents()
+    assert heart.target.view.width() > 2 * before and heart.target.strip.isVisible()
+    assert not heart.stage.isVisible() and not heart.settings.isVisible()
+    heart.actions_["edit_target"].trigger()
+    QApplication.processEvents()
+    assert heart.stage.isVisible() and heart.settings.isVisible() and not heart.target.strip.isVisible()
+    assert abs(heart.target.view.width() - before) <= 2
+
+
+def test_that_escape_puts_the_tool_away_and_then_leaves_the_editor(board: MainWindow, qtbot: QtBot) -> None:
+    use(board, Tool.STAR)
+    qtbot.keyClick(board.target.view, Qt.Key.Key_Escape)
+    assert board.target.view.tool is Tool.LOOK and board.target.editing
+    qtbot.keyClick(board.target.view, Qt.Key.Key_Escape)
+    assert not board.target.editing
+
+
+def test_that_every_tool_has_a_key_a_tooltip_and_a_name(board: MainWindow) -> None:
+    assert set(board.target.strip.buttons) == set(Tool) - {Tool.LOOK}
+    for tool, button in board.target.strip.buttons.items():
+        keys = board.actions_[tool.value].shortcut().toString()
+        assert keys and f"({keys})" in button.toolTip()
+        assert button.accessibleName() and not button.icon().isNull()
+    for mode, name in ((Combine.ADD, "mode_add"), (Combine.SUBTRACT, "mode_subtract"), (Combine.REPLACE, "mode_new")):
+        assert f"({board.actions_[name].shortcut().toString()})" in board.target.strip.modes[mode].toolTip()
+
+
+def test_that_no_two_commands_share_a_key(window: MainWindow) -> None:
+    keys = [key.toString() for action in window.actions_.values() for key in action.shortcuts()]
+    assert len(keys) == len(set(keys))
+
+
+def test_that_without_a_target_there_is_nothing_to_move_or_take_from(board: MainWindow) -> None:
+    strip = board.target.strip
+    for button in (strip.buttons[Tool.POINTS], strip.modes[Combine.SUBTRACT], strip.mirror, board.target.refine):
+        assert not button.isEnabled()
+    board.actions_["points"].trigger()
+    assert board.messages.messages[-1].tone is Tone.HINT and board.target.view.tool is Tool.LOOK
+
+
+def test_that_generating_leaves_the_editor(plate: MainWindow, until: Until) -> None:
+    plate.settings.candidates.setValue(1)
+    plate.actions_["generate"].trigger()
+    assert not plate.target.editing and plate.stage.isVisible()
+    plate.actions_["cancel"].trigger()
+    until(lambda: not plate.controller.running)
+
+
+# shapes -----------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("tool", sorted(DRAWING - {Tool.FREEHAND, Tool.POLYGON}, key=lambda tool: tool.value))
+def test_that_a_dragged_box_becomes_a_shape_of_that_size_in_mm(board: MainWindow, tool: Tool) -> None:
+    use(board, tool)
+    board.target.strip.options.text.setText("K")
+    drag(board, (-30, -20), (30, 20))
+    target = board.controller.document.target
+    assert target is not None and target.unit == "mm" and target.size is not None
+    width, height = target.size
+    assert 20 < width <= 60.001 and 30 < height <= 40.001
+    assert board.controller.history.undo_label is not None and board.controller.history.undo_label.startswith("Draw ")
+    assert board.target.view.tool is Tool.LOOK
+    board.actions_["undo"].trigger()
+    assert board.controller.document.target is None
+
+
+def test_that_shift_makes_a_square(board: MainWindow) -> None:
+    use(board, Tool.RECTANGLE)
+    drag(board, (-20, -10), (20, 0), SHIFT)
+    assert placed(board).size == pytest.approx((40, 40))
+
+
+def test_that_the_grid_catches_corners_and_ctrl_suspends_it(board: MainWindow) -> None:
+    step = board.target.view.easel.step
+    use(board, Tool.RECTANGLE)
+    drag(board, (0.2 * step, 0.2 * step), (4.3 * step, 3.2 * step))
+    assert placed(board).size == pytest.approx((4 * step, 3 * step))
+    use(board, Tool.RECTANGLE)
+    drag(board, (0.2 * step, 0.2 * step), (4.3 * step, 3.2 * step), CTRL)
+    assert placed(board).size == pytest.approx((4.1 * step, 3 * step))
+    board.actions_["grid"].trigger()
+    assert not board.target.strip.grid.isChecked()
+    use(board, Tool.RECTANGLE)
+    drag(board, (0.2 * step, 0.2 * step), (4.3 * step, 3.2 * step))
+    assert placed(board).size == pytest.approx((4.1 * step, 3 * step))
+
+
+def test_that_the_numbers_of_a_star_hold(board: MainWindow) -> None:
+    use(board, Tool.STAR)
+    options = board.target.strip.options
+    assert options.corners.isVisible() and options.waist.isVisible() and not options.text.isVisible()
+    options.corners.setValue(7)
+    options.waist.setValue(60)
+    drag(board, (-20, -20), (20, 20))
+    ring = placed(board).ring
+    radii = np.linalg.norm(ring, axis=1)
+    assert len(ring) == 14 and radii.min() / radii.max() == pytest.approx(0.6)
+
+
+def test_that_shapes_are_added_and_taken_away_where_they_are_drawn(plate: MainWindow) -> None:
+    use(plate, Tool.RECTANGLE, Combine.ADD)
+    drag(plate, (10, 0), (40, 30))
+    assert plate.controller.history.undo_label == "Add rectangle"
+    assert placed(plate).polygon.area == pytest.approx(800 + 900 - 100, rel=1e-6)
+    assert plate.target.view.tool is Tool.RECTANGLE
+    plate.target.strip.set_mode(Combine.SUBTRACT)
+    drag(plate, (-30, -20), (0, 20))
+    assert plate.controller.history.undo_label == "Take away rectangle"
+    assert placed(plate).polygon.bounds == pytest.approx((0, -10, 40, 30), abs=1e-4)
+    for bounds in ((-20, -10, 40, 30), (-20, -10, 20, 10)):
+        plate.actions_["undo"].trigger()
+        assert placed(plate).polygon.bounds == pytest.approx(bounds, abs=1e-4)
+
+
+def test_that_a_hole_is_refused_with_a_sentence_and_nothing_changes(plate: MainWindow) -> None:
+    before = plate.controller.document
+    use(plate, Tool.RECTANGLE, Combine.SUBTRACT)
+    drag(plate, (-10, -5), (10, 5))
+    assert plate.controller.document is before
+    assert "hole" in plate.messages.messages[-1].sentence
+
+
+def test_that_the_board_stays_still_while_shapes_are_added(plate: MainWindow) -> None:
+    before = plate.target.view.frame()
+    use(plate, Tool.ELLIPSE, Combine.ADD)
+    drag(plate, (10, 0), (30, 30))
+    assert plate.target.view.frame() == before
+
+
+# points -----------------------------------------------------------------------------------------------------
+
+
+def point_tool(window: MainWindow) -> PointTool:
+    use(window, Tool.POINTS)
+    tool = window.target.view.active
+    assert isinstance(tool, PointTool)
+    return tool
+
+
+def test_that_a_dragged_point_is_one_step_and_the_others_stay(plate: MainWindow) -> None:
+    tool = point_tool(plate)
+    drag(plate, (20, 10), (40, 30))
+    assert plate.controller.history.undo_label == "Move point"
+    corners = {(round(x, 6), round(y, 6)) for x, y in placed(plate).ring.tolist()}
+    assert corners == {(-20, -10), (20, -10), (40, 30), (-20, 10)}
+    assert tool.chosen is not None and plate.target.view.tool is Tool.POINTS
+    plate.actions_["undo"].trigger()
+    assert placed(plate).size == pytest.approx((40, 20))
+
+
+def test_that_a_double_click_sets_a_point_and_delete_takes_it_away(plate: MainWindow, qtbot: QtBot) -> None:
+    tool = point_tool(plate)
+    double_click(plate, (0, 10))
+    assert tool.anchors is not None and len(tool.anchors.places) == 5
+    drag(plate, (0, 10), (0, 30))
+    assert len(placed(plate).ring) == 5
+    qtbot.keyClick(plate.target.view, Qt.Key.Key_Delete)
+    assert len(placed(plate).ring) == 4 and plate.controller.history.undo_label == "Delete point"
+
+
+def test_that_a_double_click_on_a_point_makes_it_smooth_and_a_corner_again(plate: MainWindow) -> None:
+    point_tool(plate)
+    double_click(plate, (20, 10))
+    assert plate.controller.history.undo_label == "Make point smooth" and len(placed(plate).ring) > 20
+    double_click(plate, (20, 10))
+    assert plate.controller.history.undo_label == "Make point a corner" and len(placed(plate).ring) == 4
+
+
+def test_that_keys_walk_and_nudge(plate: MainWindow, qtbot: QtBot) -> None:
+    tool, view = point_tool(plate), plate.target.view
+    qtbot.keyClick(view, Qt.Key.Key_BracketRight)
+    assert tool.chosen == 0 and tool.anchors is not None
+    start = tool.anchors.places[0].copy()
+    qtbot.keyClick(view, Qt.Key.Key_Left)
+    np.testing.assert_allclose(tool.anchors.places[0], start - (0.2 * view.easel.step, 0))
+    qtbot.keyClick(view, Qt.Key.Key_BracketLeft)
+    assert tool.chosen == 3
+
+
+def test_that_the_last_three_points_stay_with_a_sentence(plate: MainWindow, qtbot: QtBot) -> None:
+    tool, view = point_tool(plate), plate.target.view
+    for _ in range(2):
+        qtbot.keyClick(view, Qt.Key.Key_BracketRight)
+        qtbot.keyClick(view, Qt.Key.Key_Delete)
+    assert tool.anchors is not None and len(tool.anchors.places) == 3
+    assert "at least 3 points" in plate.messages.messages[-1].sentence
+
+
+# handles ----------------------------------------------------------------------------------------------------
+
+
+def pose_tool(window: MainWindow) -> PoseTool:
+    use(window, Tool.POSE)
+    tool = window.target.view.active
+    assert isinstance(tool, PoseTool)
+    return tool
+
+
+def test_that_a_corner_handle_stretches_and_shift_keeps_proportions(plate: MainWindow) -> None:
+    tool = pose_tool(plate)
+    drag(plate, tool.handles()[1, 1], (30, 30))
+    assert placed(plate).polygon.bounds == pytest.approx((-20, -10, 30, 30))
+    assert plate.controller.history.undo_label == "Resize target"
+    plate.actions_["undo"].trigger()
+    drag(plate, tool.handles()[1, 1], (60, 10), SHIFT)
+    assert placed(plate).polygon.bounds == pytest.approx((-20, -10, 60, 30))
+
+
+def test_that_a_uniform_enlargement_is_a_step_although_the_shape_is_the_same(plate: MainWindow) -> None:
+    plate.target.refine.width_.setValue(80.0)
+    assert placed(plate).size == pytest.approx((80, 40)) and plate.target.refine.height_.value() == 40
+    assert plate.controller.document.target is not None and plate.controller.document.target.size == (80, 40)
+    plate.actions_["undo"].trigger()
+    assert placed(plate).size == pytest.approx((40, 20)) and plate.target.refine.width_.value() == 40
+
+
+def test_that_the_knob_turns_and_shift_goes_by_15_degrees(plate: MainWindow) -> None:
+    tool = pose_tool(plate)
+    far = 40.0
+    angle = math.radians(90 + 31)
+    drag(plate, tool.handles()[TURN], (far * math.cos(angle), far * math.sin(angle)), SHIFT)
+    assert plate.controller.history.undo_label == "Rotate target"
+    sides = np.diff(placed(plate).ring, axis=0)
+    directions = np.degrees(np.arctan2(sides[:, 1], sides[:, 0])) % 90
+    np.testing.assert_allclose(directions, 30, atol=1e-6)
+
+
+# sliders and mirror -----------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(("name", "label"), [("simplify", "Simplify target"), ("smooth", "Smooth target")])
+def test_that_a_slider_shows_what_comes_and_one_drag_is_one_step(heart: MainWindow, name: str, label: str) -> None:
+    heart.target.set_editing(True)
+    slider, before = heart.target.refine.sliders[name], heart.controller.document
+    slider.setSliderDown(True)
+    for value in range(5, 61, 5):
+        slider.setValue(value)
+    assert heart.controller.document is before
+    heart.target.view.grab()
+    slider.setSliderDown(False)
+    assert heart.controller.history.undo_label == label and heart.controller.document.target != before.target
+    assert slider.value() == 60
+    heart.actions_["undo"].trigger()
+    assert heart.controller.document.target == silhouettes.load("heart") and slider.value() == 0
+    assert heart.controller.history.undo_label != label
+
+
+def test_that_a_slider_goes_back_to_what_it_started_from(heart: MainWindow) -> None:
+    heart.target.set_editing(True)
+    slider = heart.target.refine.sliders["simplify"]
+    for value in (80, 10):
+        slider.setValue(value)
+    coarse_then_fine = len(placed(heart).ring)
+    for _ in range(2):
+        heart.actions_["undo"].trigger()
+    slider.setValue(10)
+    assert len(placed(heart).ring) == coarse_then_fine
+
+
+def test_that_a_half_is_mirrored_and_the_whole_is_flipped(heart: MainWindow, until: Until) -> None:
+    heart.controller.open_target("leaf")
+    until(lambda: heart.controller.document.target == silhouettes.load("leaf"))
+    heart.target.set_editing(True)
+    halves = {}
+    for entry in heart.target.strip.mirror.menu().actions():
+        before = placed(heart)
+        entry.trigger()
+        after, label = placed(heart), heart.controller.history.undo_label
+        axis = (1, -1) if label in ("Mirror top half", "Mirror bottom half") else (-1, 1)
+        middle = 0.5 * (after.ring.min(axis=0) + after.ring.max(axis=0))
+        reflected = Placed.from_ring((after.ring - middle) * axis + middle, "").polygon
+        halves[entry.text()] = (label, reflected.symmetric_difference(after.polygon).area / after.polygon.area)
+        assert after.outline != before.outline
+        heart.actions_["undo"].trigger()
+    assert [label for label, _ in halves.values()][:4] == [f"Mirror {side} half" for side in SIDES]
+    assert [label for label, _ in halves.values()][4:] == ["Flip target", "Flip target"]
+    assert all(unlike < 1e-5 for label, unlike in halves.values() if label != "Flip target")
+
+
+def test_that_the_editor_paints_in_both_themes_and_every_tool(plate: MainWindow) -> None:
+    for _ in range(2):
+        plate.actions_["theme"].trigger()
+        for tool in Tool:
+            use(plate, tool)
+            assert not plate.target.view.grab(plate.target.view.rect()).isNull()
