@@ -9,13 +9,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject, Qt, QUrl
-from PySide6.QtGui import QDesktopServices
+from PySide6.QtGui import QDesktopServices, QGuiApplication
 from PySide6.QtWidgets import QAbstractButton, QComboBox
 
 from kirigami_studio.gui.controller import Controller
 from kirigami_studio.gui.dialogs.files import FileChoosers, FileQuestions
 from kirigami_studio.gui.jobs.steps import Exported
 from kirigami_studio.gui.messages import Message, Tone
+from kirigami_studio.gui.pasting import Pasting
 from kirigami_studio.gui.shell import Shell
 from kirigami_studio.gui.theme import DARK, LIGHT
 from kirigami_studio.gui.views.layout_view import Overlay
@@ -48,6 +49,9 @@ class Commands(QObject):
         self.picker: SilhouettePicker | None = None
         self.report: ExportReport | None = None
         self.materials: MaterialEditor | None = None
+        self.pasting = Pasting(self)
+        self.pasting.file_wanted.connect(self.take_file)
+        self.pasting.message.connect(controller.message)
         self._closing = False
         self._connect_actions()
 
@@ -67,6 +71,7 @@ class Commands(QObject):
             "quit": window.close,
             "undo": controller.undo,
             "redo": controller.redo,
+            "paste": lambda: self.pasting.take(QGuiApplication.clipboard().mimeData()),
             "edit_target": window.target.buttons["edit"].click,
             "mode_new": partial(self._set_mode, Combine.REPLACE),
             "mode_add": partial(self._set_mode, Combine.ADD),

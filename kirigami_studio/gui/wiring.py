@@ -41,6 +41,7 @@ class Wiring(QObject):
         window.target.wants_silhouette.connect(self.commands.show_library)
         window.target.clear_wanted.connect(controller.clear_target)
         window.target.view.file_dropped.connect(self.commands.take_file)
+        window.target.view.content_dropped.connect(self.commands.pasting.take)
         self._connect_editor()
         window.target.view.hint.connect(lambda text: window.says.setText(text) if text else None)
         window.target.threshold.changed.connect(controller.change_threshold)
