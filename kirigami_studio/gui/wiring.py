@@ -104,7 +104,8 @@ class Wiring(QObject):
     def _show_document(self, document: Document, everything: bool = False) -> None:
         window, before = self.window, self._shown
         self._shown = document
-        if everything or document.target is not before.target:
+        moved = everything or document.target is not before.target
+        if moved:
             window.target.show_target(document.target, self.controller.tracing.picture_of(document.target))
             self.reshaping.follow()
             has_target = document.target is not None
@@ -112,6 +113,8 @@ class Wiring(QObject):
             window.actions_["generate"].setEnabled(has_target and not self.controller.running)
             window.actions_["clear"].setEnabled(has_target)
             self._show_hints(has_target)
+        if moved or document.settings.grid != before.settings.grid:
+            window.target.show_reach(document.settings.grid)
         window.settings.show_settings(document.settings)
         window.fabrication.show_settings(document.fabrication)
         if not self.controller.running:

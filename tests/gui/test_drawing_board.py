@@ -381,3 +381,32 @@ def test_that_the_editor_paints_in_both_themes_and_every_tool(plate: MainWindow)
         for tool in Tool:
             use(plate, tool)
             assert not plate.target.view.grab(plate.target.view.rect()).isNull()
+
+
+# the hint -----------------------------------------------------------------------------------------
+
+
+def test_that_a_thin_arm_is_marked_and_said_until_the_grid_shows_it(plate: MainWindow) -> None:
+    assert not plate.target.reach.isVisible()
+    use(plate, Tool.RECTANGLE, Combine.ADD)
+    drag(plate, (10, -2), (45, 2), CTRL)
+    reach = plate.target.view.reach
+    assert reach is not None and len(reach.arms) == 1
+    assert (
+        plate.target.reach.isVisible()
+        and "10 \N{MULTIPLICATION SIGN} 10 voids may lose 1 thin arm" in plate.target.reach.text()
+    )
+    marked = plate.target.view.grab().toImage()
+    plate.controller.change_settings(grid=(30, 30))
+    assert plate.target.view.reach is not None and plate.target.view.reach.clear
+    assert not plate.target.reach.isVisible()
+    assert plate.target.view.grab().toImage() != marked
+
+
+def test_that_the_hint_goes_with_the_target(plate: MainWindow) -> None:
+    use(plate, Tool.RECTANGLE, Combine.ADD)
+    drag(plate, (10, -2), (45, 2), CTRL)
+    plate.actions_["clear"].trigger()
+    assert plate.target.view.reach is None and not plate.target.reach.isVisible()
+    plate.actions_["undo"].trigger()
+    assert plate.target.reach.isVisible()

@@ -14,6 +14,7 @@ from kirigami_studio.gui.panels.tool_strip import ToolStrip
 from kirigami_studio.gui.theme import Palette
 from kirigami_studio.gui.views.target_view import TargetView, Tool
 from kirigami_studio.target.outline import Outline
+from kirigami_studio.target.reach import reach_of, told
 
 #: Tool button name, icon, tooltip, whether it stays down.
 BUTTONS = (
@@ -36,6 +37,7 @@ class TargetPanel(Card):
         super().__init__("Target", parent)
         self.view = TargetView()
         self.editing = False
+        self._said = ("", "")
         self.strip = ToolStrip(self.view.easel)
         self.refine = RefineBar()
         self.header.addWidget(self.strip.options)
@@ -52,10 +54,15 @@ class TargetPanel(Card):
         self.notes = muted_label()
         self.notes.setObjectName("warning")
         self.notes.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
+        self.reach = ElidedLabel()
+        self.reach.setObjectName("warning")
+        self.reach.setAccessibleName("What the grid may not show")
+        self.reach.setVisible(False)
         self.threshold = ThresholdBar()
         self.body.addWidget(self.strip)
         self.body.addWidget(self.view, 1)
         self.body.addLayout(line)
+        self.body.addWidget(self.reach)
         self.body.addWidget(self.refine)
         self.body.addWidget(self.threshold)
         self.body.addWidget(self.notes)
@@ -87,6 +94,7 @@ class TargetPanel(Card):
             part.setVisible(on)
         if on != self.editing:
             self.editing = on
+            self._say_reach()
             self.view.set_editing(on)
             self.editing_changed.emit(on)
 
@@ -116,6 +124,23 @@ class TargetPanel(Card):
         if outline is not None:
             self.facts.setText(outline.name)
             self.size_.setText(measured(outline))
+
+    def show_reach(self, grid: tuple[int, int]) -> None:
+        """Mark on the drawing, and say, what a grid (rows, columns) can hardly show of the target."""
+        placed = self.view.easel.placed
+        reach = None if placed is None else reach_of(placed.outline, grid)
+        self.view.show_reach(reach)
+        known = placed is not None and placed.outline.unit == "mm"
+        self._said = ("", "")
+        if placed is not None and reach is not None:
+            self._said = told(reach, placed.outline, placed.scale if known else None)
+        self._say_reach()
+
+    def _say_reach(self) -> None:
+        whole, brief = self._said
+        self.reach.setText(whole if self.editing else brief)
+        self.reach.setToolTip(whole)
+        self.reach.setVisible(bool(whole))
 
     def set_palette(self, palette: Palette) -> None:
         """Draw in other colours."""

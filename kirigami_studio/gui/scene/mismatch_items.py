@@ -71,12 +71,12 @@ def paint_mismatch(painter: QPainter, areas: Mismatch, frame: Frame, palette: Pa
     ratio = painter.device().devicePixelRatio()
     painter.setPen(Qt.PenStyle.NoPen)
     for area, colour, rising in ((areas.missing, palette.missing, True), (areas.extra, palette.extra, False)):
-        painter.setBrush(QBrush(_stripes(colour, rising, ratio)))
+        painter.setBrush(QBrush(stripes(colour, rising, ratio)))
         painter.drawPath(area_path(area, frame))
 
 
 @lru_cache(maxsize=16)
-def _stripes(colour: str, rising: bool, ratio: float) -> QPixmap:
+def stripes(colour: str, rising: bool, ratio: float) -> QPixmap:
     """One tile of tinted diagonal stripes; Qt's own hatch brushes get finer with the screen's scale."""
     edge = round(STRIPE_STEP * ratio)
     tile = QPixmap(edge, edge)

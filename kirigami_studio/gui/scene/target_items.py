@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 import numpy.typing as npt
 from PySide6.QtCore import QPointF, QRectF, Qt
-from PySide6.QtGui import QColor, QPainter, QPen
+from PySide6.QtGui import QBrush, QColor, QPainter, QPen
 
 from kirigami_studio.gui.scene.frame import Frame
+from kirigami_studio.gui.scene.mismatch_items import stripes
 from kirigami_studio.gui.scene.paths import line_path
 from kirigami_studio.gui.theme import Palette
 
@@ -77,6 +79,16 @@ def paint_label(painter: QPainter, pointer: QPointF, text: str, palette: Palette
     painter.drawRoundedRect(box, 5.0, 5.0)
     painter.setPen(QColor(palette.text))
     painter.drawText(box, int(Qt.AlignmentFlag.AlignCenter), text)
+
+
+def paint_reach(painter: QPainter, arms: Sequence[FloatArray], notches: Sequence[FloatArray], palette: Palette) -> None:
+    """Mark what a grid can hardly show, (L, 2) pixels each: arms hatched one way, notches the other, both framed."""
+    ratio = painter.device().devicePixelRatioF()
+    for rings, colour, rising in ((arms, palette.warning, True), (notches, palette.extra, False)):
+        painter.setPen(_line(colour, 1.2))
+        painter.setBrush(QBrush(stripes(colour, rising, ratio)))
+        for ring in rings:
+            painter.drawPath(line_path(ring, closed=True))
 
 
 def paint_grid(painter: QPainter, frame: Frame, step: float, area: QRectF, palette: Palette) -> None:

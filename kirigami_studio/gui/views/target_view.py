@@ -18,7 +18,7 @@ from PySide6.QtGui import (
 from PySide6.QtWidgets import QWidget
 
 from kirigami_studio.gui.scene.frame import Bounds, Frame
-from kirigami_studio.gui.scene.target_items import paint_grid, paint_proposal, paint_target_shape
+from kirigami_studio.gui.scene.target_items import paint_grid, paint_proposal, paint_reach, paint_target_shape
 from kirigami_studio.gui.sketching.boxes import FigureTool, TextTool
 from kirigami_studio.gui.sketching.easel import BOARD, Easel, SketchTool, Spot
 from kirigami_studio.gui.sketching.point_tool import PointTool
@@ -29,6 +29,7 @@ from kirigami_studio.target.combining import Combine
 from kirigami_studio.target.figures import Figure
 from kirigami_studio.target.outline import Outline
 from kirigami_studio.target.placed import Placed
+from kirigami_studio.target.reach import Reach
 
 #: Room around the target on the board while it is edited, as a share of its size.
 ROOM = 0.2
@@ -62,6 +63,7 @@ class TargetView(Canvas):
         super().__init__(parent)
         self._outline: Outline | None = None
         self._preview: Placed | None = None
+        self.reach: Reach | None = None
         self._editing = False
         self._board = BOARD
         self._drop_here = False
@@ -95,12 +97,17 @@ class TargetView(Canvas):
         One that was drawn here stays where it was drawn, with the board as it is seen; another one is fitted.
         """
         drawn = None if outline is None else self.easel.recall(outline)
-        self._outline, self._preview = outline, None
+        self._outline, self._preview, self.reach = outline, None, None
         self.easel.placed = drawn or (None if outline is None else Placed.on_board(outline))
         if drawn is None or not self._editing:
             self._choose_board()
             self.fit()
         self.active.sync()
+        self.update()
+
+    def show_reach(self, reach: Reach | None) -> None:
+        """Mark what the chosen grid can hardly show of this target."""
+        self.reach = reach
         self.update()
 
     def show_preview(self, placed: Placed | None) -> None:
@@ -158,10 +165,20 @@ class TargetView(Canvas):
             replacing = self.easel.combine is Combine.REPLACE and self._tool in DRAWING
             painter.setOpacity(0.25 if replacing else 1.0)
             paint_target_shape(painter, frame.to_pixels(self.easel.placed.ring), self.palette_)
+            self._paint_reach(painter, frame, self.easel.placed)
             painter.setOpacity(1.0)
         if self._preview is not None:
             paint_proposal(painter, frame.to_pixels(self._preview.ring), self.palette_)
         self.active.paint(painter, frame, self.palette_)
+
+    def _paint_reach(self, painter: QPainter, frame: Frame, placed: Placed) -> None:
+        if self.reach is None or self._preview is not None:
+            return
+        arms, notches = (
+            [frame.to_pixels(ring * placed.scale + placed.centre) for ring in rings]
+            for rings in (self.reach.arms, self.reach.notches)
+        )
+        paint_reach(painter, arms, notches, self.palette_)
 
     def paint_notes(self, painter: QPainter) -> None:
         if self._drop_here:
