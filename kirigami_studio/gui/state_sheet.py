@@ -16,9 +16,13 @@ from PySide6.QtWidgets import QApplication
 
 from kirigami_studio.gui.messages import Message, Tone
 from kirigami_studio.gui.offscreen_session import DESIGNS, Session, SessionError, click, main
+from kirigami_studio.gui.sketching.easel import Change
 from kirigami_studio.gui.theme import DARK, LIGHT
 from kirigami_studio.gui.views.cut_view import CutOverlay
 from kirigami_studio.gui.views.target_view import Tool
+from kirigami_studio.target.combining import Combine, combined
+from kirigami_studio.target.figures import Box, Figure, figure
+from kirigami_studio.target.placed import Placed
 
 SIZES = (QSize(1000, 640), QSize(1280, 720), QSize(1440, 900))
 LONG_NAME = "a scanned drawing with the long name that scanners like to give, page 3 of 12"
@@ -34,9 +38,13 @@ class StateSheet(Session):
         self.all_sizes("empty")
         window.target.set_tool(Tool.POLYGON)
         self.all_sizes("drawing")
+        self.editor()
         window.target.set_editing(False)
         self.picture_target()
         self.all_sizes("photo")
+        window.target.set_editing(True)
+        self.all_sizes("photo-editor")
+        window.target.set_editing(False)
         self.choose_heart()
         self.polishing()
         self.all_sizes("designs")
@@ -64,6 +72,22 @@ class StateSheet(Session):
         window.controller.history.mark_saved()
         window.close()
         return self.files
+
+    def editor(self) -> None:
+        """A shape with a thin arm on the drawing board, its points, its handles, and a shape about to be taken away."""
+        target, reshaping = self.window.target, self.window.wiring.reshaping
+        body = figure(Figure.ELLIPSE, Box(-40.0, -25.0, 20.0, 25.0))
+        reshaping.take(Change("Draw ellipse", lambda: Placed.from_ring(body, "ladle")))
+        arm, now = figure(Figure.RECTANGLE, Box(15.0, -3.0, 60.0, 3.0)), target.view.easel.placed
+        reshaping.take(Change("Add rectangle", lambda: combined(now, arm, Combine.ADD, "rectangle")))
+        for tool in (Tool.POINTS, Tool.POSE, Tool.STAR, Tool.TEXT):
+            target.set_tool(tool)
+            target.strip.set_mode(Combine.ADD)
+            self.all_sizes(f"editor-{tool.value}")
+        target.strip.set_mode(Combine.REPLACE)
+        reshaping.preview("smooth", 0.8)
+        self.all_sizes("editor-smoothing")
+        target.view.show_preview(None)
 
     def polishing(self) -> None:
         """A run whose designs improve, with a search after it."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import OrderedDict
 from dataclasses import replace
 from functools import partial
+from typing import TYPE_CHECKING, cast
 
 from PySide6.QtCore import QObject, Signal
 
@@ -12,6 +13,9 @@ from kirigami_studio.gui.jobs import steps
 from kirigami_studio.gui.jobs.board import Board, Ears
 from kirigami_studio.gui.jobs.steps import Picture
 from kirigami_studio.target.outline import Outline
+
+if TYPE_CHECKING:
+    from kirigami_studio.target.read_image import Traced
 
 #: Outlines whose picture is remembered, so that undo brings its threshold back too.
 CAPACITY = 256
@@ -65,9 +69,11 @@ class Tracing(QObject):
         ears = Ears(partial(self._take, picture), partial(self._go_on, picture), on_failed=partial(self._fail, picture))
         self._job = self._board.start(f"tracing {picture.path.name}", partial(steps.tracing, picture), ears)
 
-    def _take(self, picture: Picture, outline: object) -> None:
+    def _take(self, picture: Picture, report: object) -> None:
+        # By its shape, not by its type: the reader is imported in the worker, which takes a while.
+        outline = getattr(report, "outline", None)
         if isinstance(outline, Outline):
-            self.remember(outline, picture)
+            self.remember(outline, replace(picture, traced=cast("Traced", report)))
             self.traced.emit(outline)
 
     def _fail(self, picture: Picture, sentence: str, trace: str) -> None:

@@ -53,7 +53,32 @@ class Levels(NamedTuple):
     is_alpha: bool
 
 
+class Traced(NamedTuple):
+    """An outline and where it lies in its picture.
+
+    Attributes
+    ----------
+    outline : Outline
+    scale : float, source pixels
+        Length in the picture of one unit of the outline.
+    centre : (x, y) float, source pixels
+        The outline's centroid, from the picture's lower left corner, y up.
+    picture : (width, height) int, source pixels
+        As the picture is looked at, turned upright.
+    """
+
+    outline: Outline
+    scale: float
+    centre: tuple[float, float]
+    picture: tuple[int, int]
+
+
 def read_image(path: str | Path, threshold: float | None = None) -> Outline:
+    """Outline of a picture, see :func:`trace_image`; ``size`` in source pixels."""
+    return trace_image(path, threshold).outline
+
+
+def trace_image(path: str | Path, threshold: float | None = None) -> Traced:
     """Outline of the largest dark shape on light paper, light shape on dark ground, or opaque shape.
 
     Parameters
@@ -65,8 +90,8 @@ def read_image(path: str | Path, threshold: float | None = None) -> Outline:
 
     Returns
     -------
-    Outline
-        ``size`` in source pixels.
+    Traced
+        Its outline's ``size`` is in source pixels.
 
     Raises
     ------
@@ -82,7 +107,17 @@ def read_image(path: str | Path, threshold: float | None = None) -> Outline:
         if not np.any(ink > 0) or np.all(ink > 0):
             raise TargetError(f"At the threshold {level:.2f} the picture is all one colour; try another threshold.")
         ring, notes = trace(ink)
-        return Outline.from_points(ring * levels.reduction, name=path.stem, notes=notes, unit="px")
+        outline = Outline.from_points(ring * levels.reduction, name=path.stem, notes=notes, unit="px")
+        return _in_picture(outline, (ring + 0.5) * levels.reduction, levels)
+
+
+def _in_picture(outline: Outline, ring: FloatArray, levels: Levels) -> Traced:
+    """Where an outline lies: its box is that of the ring (L, 2), source pixels, also where a loop was dropped."""
+    width = outline.size[0] if outline.size is not None else float(np.ptp(ring[:, 0]))
+    scale = width / float(np.ptp(outline.points[:, 0]))
+    x, y = (ring.min(axis=0) - scale * outline.points.min(axis=0)).tolist()
+    rows, columns = levels.grey.shape
+    return Traced(outline, scale, (x, y), (columns * levels.reduction, rows * levels.reduction))
 
 
 def automatic_threshold(path: str | Path) -> float:

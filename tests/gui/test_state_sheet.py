@@ -47,3 +47,10 @@ def test_that_the_message_states_leave_no_message(sheet: StateSheet, tmp_path: P
     sheet.messages()
     assert sheet.window.messages.messages == ()
     assert (tmp_path / "question-1000x640-dark.png").exists()
+
+
+def test_that_the_editor_states_show_tools_and_a_marked_arm(sheet: StateSheet, tmp_path: Path) -> None:
+    sheet.editor()
+    target = sheet.window.target
+    assert target.editing and target.view.reach is not None and len(target.view.reach.arms) == 1
+    assert (tmp_path / "editor-points-1280x720-dark.png").exists()

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from PIL import Image, ImageDraw
 from PySide6.QtCore import Qt
+from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
 from kirigami_studio.gui.main_window import MainWindow
@@ -111,3 +112,40 @@ def test_that_a_drawing_wins_over_a_file_that_is_still_being_read(
     window.controller.drawing.take_polygon(np.array([[0.0, 0.0], [3.0, 0.0], [1.0, 2.0]]))
     until(lambda: not window.controller.board.busy)
     assert window.controller.document.target is not None and window.controller.document.target.name == "polygon"
+
+
+def test_that_the_contour_lies_on_the_picture_and_the_picture_lies_still(
+    traced: MainWindow, picture: Path, until: Until
+) -> None:
+    view, controller = traced.target.view, traced.controller
+    under = view.underlay
+    assert under is not None and under.path == picture and under.size == (120, 100)
+    traced.target.set_editing(True)
+    QApplication.processEvents()
+
+    def box() -> list[float]:
+        """The contour's box in pixels of the picture, y up."""
+        assert view.easel.placed is not None
+        ring = (view.easel.placed.ring - under.corner) / under.pixel
+        return [*ring.min(axis=0).tolist(), *ring.max(axis=0).tolist()]
+
+    # Pillow's ellipses hold both ends: x 40..100 are the pixels from 40.0 to 101.0; rows are counted from the top.
+    # On the left the lighter ear begins, into which the smoothed edge is drawn.
+    assert box()[1:] == pytest.approx([100 - 81, 101, 100 - 20], abs=0.6) and box()[0] == pytest.approx(40, abs=2)
+    before = view.frame()
+    traced.target.threshold.slider.setValue(160)
+    until(lambda: controller.document.target == read_image(picture, 0.8))
+    assert view.underlay is under and view.frame() == before
+    assert box() == pytest.approx([10, 100 - 81, 101, 100 - 20], abs=1)
+
+
+def test_that_the_picture_stays_while_it_is_drawn_over_and_goes_with_another_target(
+    traced: MainWindow, until: Until
+) -> None:
+    traced.target.set_editing(True)
+    traced.target.refine.sliders["smooth"].setValue(30)
+    assert traced.target.view.underlay is not None and not traced.target.threshold.isVisible()
+    shown = traced.target.view.grab().toImage()
+    traced.controller.open_target("heart")
+    until(lambda: traced.controller.document.target is not None and traced.controller.document.target.name == "heart")
+    assert traced.target.view.underlay is None and traced.target.view.grab().toImage() != shown

@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from kirigami_studio.fabricate.checks import Report
     from kirigami_studio.fabricate.cut_plan import CutPlan
     from kirigami_studio.fabricate.material import Material
+    from kirigami_studio.target.read_image import Traced
 
 #: Extensions of targets that are traced at a threshold.
 PICTURES = (".png", ".jpg", ".jpeg", ".bmp")
@@ -99,11 +100,15 @@ class Loaded:
 
 @dataclass(frozen=True, slots=True)
 class Picture:
-    """A picture that a target is traced from; grey levels run from 0 (black) to 1 (white)."""
+    """A picture that a target is traced from; grey levels run from 0 (black) to 1 (white).
+
+    ``traced`` says where the target lies in it.
+    """
 
     path: Path
     automatic: float
     threshold: float
+    traced: Traced | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -182,18 +187,21 @@ def reading_target(source: str, cancel: Cancel) -> Iterator[Picture | Outline]:
 
     path = Path(source)
     if path.suffix.lower() in PICTURES:
-        from kirigami_studio.target.read_image import automatic_threshold
+        from kirigami_studio.target.read_image import automatic_threshold, trace_image
 
         level = automatic_threshold(path)
-        yield Picture(path, level, level)
-    yield read_target(source)
+        traced = trace_image(path)
+        yield Picture(path, level, level, traced)
+        yield traced.outline
+    else:
+        yield read_target(source)
 
 
-def tracing(picture: Picture, cancel: Cancel) -> Iterator[Outline]:
+def tracing(picture: Picture, cancel: Cancel) -> Iterator[Traced]:
     """Trace a picture at its threshold."""
-    from kirigami_studio.target.read_image import read_image
+    from kirigami_studio.target.read_image import trace_image
 
-    yield read_image(picture.path, picture.threshold)
+    yield trace_image(picture.path, picture.threshold)
 
 
 def planning(order: Order, cancel: Cancel) -> Iterator[Planned]:

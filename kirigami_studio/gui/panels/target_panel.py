@@ -111,7 +111,7 @@ class TargetPanel(Card):
             self.threshold.show_levels(picture.threshold, picture.automatic)
         if outline is None or self.view.easel.recall(outline) is None:
             self.set_tool(Tool.LOOK)  # it came from elsewhere
-        self.view.show_outline(outline)
+        self.view.show_outline(outline, picture)
         self.strip.show_target(outline is not None)
         self.refine.show_placed(self.view.easel.placed)
         self.buttons["clearTarget"].setEnabled(outline is not None)

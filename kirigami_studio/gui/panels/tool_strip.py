@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import Signal
+from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import (
     QButtonGroup,
     QDoubleSpinBox,
@@ -89,6 +89,7 @@ class ToolStrip(QWidget):
         row.addStretch(1)
         self.finish = QPushButton("Done")
         self.finish.setObjectName("small")
+        self.finish.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         self.finish.setToolTip("Leave the editor (E, or Esc)")
         self.finish.clicked.connect(self.done)
         row.addWidget(self.finish)

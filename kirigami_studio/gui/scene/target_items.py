@@ -70,9 +70,8 @@ def paint_label(painter: QPainter, pointer: QPointF, text: str, palette: Palette
     """Write a short text on a label beside the pointer, on the side that has room."""
     metrics = painter.fontMetrics()
     width, height = metrics.horizontalAdvance(text) + 12.0, metrics.height() + 6.0
-    area = painter.viewport()
-    room = area.width() / painter.device().devicePixelRatioF()
-    left = pointer.x() + 14.0 if pointer.x() + 14.0 + width < room else pointer.x() - 14.0 - width
+    right = pointer.x() + 14.0
+    left = right if right + width < painter.window().right() else pointer.x() - 14.0 - width
     box = QRectF(left, max(pointer.y() - height - 8.0, 4.0), width, height)
     painter.setPen(QPen(QColor(palette.border), 1.0))
     painter.setBrush(QColor(palette.surface))

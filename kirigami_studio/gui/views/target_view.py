@@ -17,13 +17,21 @@ from PySide6.QtGui import (
 )
 from PySide6.QtWidgets import QWidget
 
+from kirigami_studio.gui.jobs.steps import Picture
 from kirigami_studio.gui.scene.frame import Bounds, Frame
-from kirigami_studio.gui.scene.target_items import paint_grid, paint_proposal, paint_reach, paint_target_shape
+from kirigami_studio.gui.scene.target_items import (
+    paint_grid,
+    paint_proposal,
+    paint_reach,
+    paint_target_line,
+    paint_target_shape,
+)
 from kirigami_studio.gui.sketching.boxes import FigureTool, TextTool
 from kirigami_studio.gui.sketching.easel import BOARD, Easel, SketchTool, Spot
 from kirigami_studio.gui.sketching.point_tool import PointTool
 from kirigami_studio.gui.sketching.pose_tool import PoseTool
 from kirigami_studio.gui.sketching.strokes import Corners, Freehand
+from kirigami_studio.gui.sketching.underlay import Underlay
 from kirigami_studio.gui.views.canvas import Canvas
 from kirigami_studio.target.combining import Combine
 from kirigami_studio.target.figures import Figure
@@ -64,6 +72,7 @@ class TargetView(Canvas):
         self._outline: Outline | None = None
         self._preview: Placed | None = None
         self.reach: Reach | None = None
+        self.underlay: Underlay | None = None
         self._editing = False
         self._board = BOARD
         self._drop_here = False
@@ -91,14 +100,24 @@ class TargetView(Canvas):
         """What follows the pointer now."""
         return self._tools[self._tool]
 
-    def show_outline(self, outline: Outline | None) -> None:
+    def show_outline(self, outline: Outline | None, picture: Picture | None = None) -> None:
         """Show another target; an unfinished sketch is dropped.
 
-        One that was drawn here stays where it was drawn, with the board as it is seen; another one is fitted.
+        One that was drawn here, or traced from the picture that lies here, stays where it is, with the board as it is
+        seen; another one is fitted.
         """
         drawn = None if outline is None else self.easel.recall(outline)
+        traced = None if picture is None else picture.traced
+        under = self.underlay
+        if under is not None and picture is not None and traced is not None and under.path == picture.path:
+            drawn = under.place(traced)
+        elif drawn is None:
+            under = None
         self._outline, self._preview, self.reach = outline, None, None
         self.easel.placed = drawn or (None if outline is None else Placed.on_board(outline))
+        if under is None and picture is not None and traced is not None and self.easel.placed is not None:
+            under = Underlay.under(self.easel.placed, picture.path, traced)
+        self.underlay = under
         if drawn is None or not self._editing:
             self._choose_board()
             self.fit()
@@ -161,10 +180,13 @@ class TargetView(Canvas):
         if self._editing and self.easel.snapping:
             inside = QRectF(self.rect()).adjusted(2, 2, -2, -2)
             paint_grid(painter, frame, self.easel.step, inside, self.palette_)
+        if self.underlay is not None:
+            self.underlay.paint(painter, frame)
         if self.easel.placed is not None:
             replacing = self.easel.combine is Combine.REPLACE and self._tool in DRAWING
             painter.setOpacity(0.25 if replacing else 1.0)
-            paint_target_shape(painter, frame.to_pixels(self.easel.placed.ring), self.palette_)
+            paint = paint_target_shape if self.underlay is None else paint_target_line
+            paint(painter, frame.to_pixels(self.easel.placed.ring), self.palette_)
             self._paint_reach(painter, frame, self.easel.placed)
             painter.setOpacity(1.0)
         if self._preview is not None:

@@ -1,0 +1,80 @@
+"""The picture under the drawing board: it lies still while its contour follows the threshold."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QPointF, QRectF, QSize, Qt
+from PySide6.QtGui import QImage, QImageReader, QPainter
+
+from kirigami_studio.gui.scene.frame import Frame
+from kirigami_studio.target.placed import Placed
+
+if TYPE_CHECKING:
+    from kirigami_studio.target.read_image import Traced
+
+#: Longer side of the picture as it is kept for drawing, pixels.
+LARGEST_SIDE = 1600
+#: How much of the picture shines through.
+OPACITY = 0.5
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Underlay:
+    """A picture at its place on the board.
+
+    Attributes
+    ----------
+    path : Path
+    image : QImage
+        Reduced for drawing.
+    corner : (x, y) float, mm
+        Its lower left corner.
+    pixel : float, mm
+        Side of one source pixel.
+    size : (width, height) int, source pixels
+    """
+
+    path: Path
+    image: QImage
+    corner: tuple[float, float]
+    pixel: float
+    size: tuple[int, int]
+
+    @classmethod
+    def under(cls, placed: Placed, path: Path, traced: Traced) -> Underlay | None:
+        """Lay a picture under the target that was traced from it; None when it cannot be shown any more."""
+        image = _reduced(path)
+        if image is None:
+            return None
+        pixel = placed.scale / traced.scale
+        x, y = (centre - pixel * own for centre, own in zip(placed.centre, traced.centre, strict=True))
+        return cls(path, image, (x, y), pixel, traced.picture)
+
+    def place(self, traced: Traced) -> Placed:
+        """Where another contour of the same picture lies on the board."""
+        x, y = (corner + self.pixel * own for corner, own in zip(self.corner, traced.centre, strict=True))
+        return Placed(traced.outline, self.pixel * traced.scale, (x, y))
+
+    def paint(self, painter: QPainter, frame: Frame) -> None:
+        """Draw the picture, half transparent."""
+        width, height = (self.pixel * count * frame.scale for count in self.size)
+        left = frame.origin[0] + frame.scale * self.corner[0]
+        bottom = frame.origin[1] - frame.scale * self.corner[1]
+        painter.save()
+        painter.setOpacity(OPACITY)
+        painter.setRenderHint(QPainter.RenderHint.SmoothPixmapTransform)
+        painter.drawImage(QRectF(QPointF(left, bottom - height), QPointF(left + width, bottom)), self.image)
+        painter.restore()
+
+
+def _reduced(path: Path) -> QImage | None:
+    reader = QImageReader(str(path))
+    reader.setAutoTransform(True)
+    size = reader.size()
+    if size.isValid() and max(size.width(), size.height()) > LARGEST_SIDE:
+        reader.setScaledSize(size.scaled(QSize(LARGEST_SIDE, LARGEST_SIDE), Qt.AspectRatioMode.KeepAspectRatio))
+    image = reader.read()
+    return None if image.isNull() else image
