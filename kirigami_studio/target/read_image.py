@@ -46,11 +46,14 @@ class Levels(NamedTuple):
         Source pixels along the side of one pixel of ``grey``.
     is_alpha : bool
         ``grey`` is the alpha channel: the shape is where it is high, whatever the border says.
+    size : (width, height) int
+        Of the source, turned upright; pixels at its lower and right edge may share a pixel of ``grey`` with nothing.
     """
 
     grey: FloatArray
     reduction: int
     is_alpha: bool
+    size: tuple[int, int]
 
 
 class Traced(NamedTuple):
@@ -116,8 +119,8 @@ def _in_picture(outline: Outline, ring: FloatArray, levels: Levels) -> Traced:
     width = outline.size[0] if outline.size is not None else float(np.ptp(ring[:, 0]))
     scale = width / float(np.ptp(outline.points[:, 0]))
     x, y = (ring.min(axis=0) - scale * outline.points.min(axis=0)).tolist()
-    rows, columns = levels.grey.shape
-    return Traced(outline, scale, (x, y), (columns * levels.reduction, rows * levels.reduction))
+    below = levels.grey.shape[0] * levels.reduction - levels.size[1]  # the last row of grey may reach out below
+    return Traced(outline, scale, (x, y - below), levels.size)
 
 
 def automatic_threshold(path: str | Path) -> float:
@@ -178,10 +181,10 @@ def _levels(content: bytes) -> Levels:
     reduction = math.ceil(max(width, height) / WORKING_SIDE)
     grey = np.asarray(channel.reduce(reduction) if reduction > 1 else channel, dtype=np.float64)
     if channel.mode == "L":
-        return Levels(grey / 255.0, reduction, is_alpha)
+        return Levels(grey / 255.0, reduction, is_alpha, channel.size)
     # 16- and 32-bit pictures seldom use their whole range: black and white are what they contain.
     lowest, highest = float(np.min(grey)), float(np.max(grey))
-    return Levels((grey - lowest) / max(highest - lowest, 1e-12), reduction, is_alpha)
+    return Levels((grey - lowest) / max(highest - lowest, 1e-12), reduction, is_alpha, channel.size)
 
 
 def _channel(image: Image.Image) -> tuple[Image.Image, bool]:

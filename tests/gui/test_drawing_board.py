@@ -113,6 +113,23 @@ def test_that_escape_puts_the_tool_away_and_then_leaves_the_editor(board: MainWi
     assert not board.target.editing
 
 
+def test_that_leaving_the_editor_says_what_comes_next(plate: MainWindow, qtbot: QtBot) -> None:
+    use(plate, Tool.POSE)
+    assert plate.says.text().startswith("Drag a square")
+    qtbot.mouseClick(plate.target.strip.finish, LEFT)
+    assert not plate.target.editing and plate.says.text().startswith("Press Generate")
+
+
+def test_that_the_text_tool_lets_type_at_once(board: MainWindow, qtbot: QtBot) -> None:
+    qtbot.keyClick(board, Qt.Key.Key_X)
+    field = board.target.strip.options.text
+    assert board.focusWidget() is field and field.selectedText() == field.text()
+    qtbot.keyClicks(field, "AB")
+    drag(board, (-40, -20), (40, 20))
+    target = board.controller.document.target
+    assert target is not None and target.name == "AB"
+
+
 def test_that_every_tool_has_a_key_a_tooltip_and_a_name(board: MainWindow) -> None:
     assert set(board.target.strip.buttons) == set(Tool) - {Tool.LOOK}
     for tool, button in board.target.strip.buttons.items():

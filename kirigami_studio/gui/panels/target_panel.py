@@ -25,6 +25,10 @@ BUTTONS = (
 )
 
 
+#: Said when the editor is left.
+DONE_HINT = "Press Generate (Ctrl+G) to design a sheet for this target."
+
+
 class TargetPanel(Card):
     """The target view with its tools and the reader's notes."""
 
@@ -84,6 +88,9 @@ class TargetPanel(Card):
             self.set_editing(True)
         self.strip.show_tool(tool)
         self.view.set_tool(tool)
+        if tool is Tool.TEXT:  # so that typing comes first, then the box
+            self.strip.options.text.setFocus()
+            self.strip.options.text.selectAll()
 
     def set_editing(self, on: bool) -> None:
         """Show the tools and the board, or the target alone."""
@@ -97,6 +104,8 @@ class TargetPanel(Card):
             self._say_reach()
             self.view.set_editing(on)
             self.editing_changed.emit(on)
+            if not on and self.view.outline is not None:
+                self.view.hint.emit(DONE_HINT)
 
     def set_snapping(self, on: bool) -> None:
         """Show the grid and snap to it, or neither."""

@@ -11,7 +11,7 @@ from PIL import Image
 from kirigami_studio.foundation.errors import TargetError
 from kirigami_studio.target import silhouettes
 from kirigami_studio.target.outline import Outline
-from kirigami_studio.target.read_image import automatic_threshold, outline_of_mask, read_image
+from kirigami_studio.target.read_image import automatic_threshold, outline_of_mask, read_image, trace_image
 
 
 @pytest.mark.parametrize("name", ["heart", "star", "gear", "puzzle", "circle", "letter-l"])
@@ -215,3 +215,28 @@ def test_that_a_text_file_named_png_is_refused_without_the_inner_workings(tmp_pa
     with pytest.raises(TargetError, match="not a picture") as refused:
         read_image(tmp_path / "a.png")
     assert "BytesIO" not in str(refused.value)
+
+
+@pytest.mark.parametrize(("width", "height"), [(160, 120), (3001, 2503)])
+def test_that_an_outline_knows_where_it_lies_in_its_picture(width, height, picture) -> None:
+    grey = np.ones((height, width))
+    left, right, top, bottom = width // 8, width // 2, height // 5, height // 3
+    grey[top:bottom, left:right] = 0
+    traced = trace_image(picture(grey))
+    assert traced.picture == (width, height)
+    ring = traced.outline.points * traced.scale + traced.centre
+    wanted = [left, height - bottom, right, height - top]
+    assert [*ring.min(axis=0), *ring.max(axis=0)] == pytest.approx(wanted, abs=max(1.0, width / 1500))
+
+
+def test_that_a_picture_that_a_camera_turned_is_measured_upright(tmp_path: Path) -> None:
+    page = Image.new("L", (160, 120), 255)
+    page.paste(0, (10, 20, 90, 60))
+    exif = Image.Exif()
+    exif[0x0112] = 6  # turned a quarter: the first row is the right side
+    path = tmp_path / "turned.jpg"
+    page.save(path, exif=exif, quality=95)
+    traced = trace_image(path)
+    ring = traced.outline.points * traced.scale + traced.centre
+    assert traced.picture == (120, 160)
+    assert [*ring.min(axis=0), *ring.max(axis=0)] == pytest.approx([120 - 60, 160 - 90, 120 - 20, 160 - 10], abs=1)
