@@ -10,8 +10,6 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Unpack
 
-import numpy as np
-import numpy.typing as npt
 from PySide6.QtCore import QObject, Signal
 
 from kirigami_studio.evaluate.candidate import Candidate
@@ -19,7 +17,6 @@ from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.gui.comparing import Comparing
 from kirigami_studio.gui.cutting import Cutting
 from kirigami_studio.gui.design_run import DesignRun, request_of
-from kirigami_studio.gui.drawing import Drawing
 from kirigami_studio.gui.fabricating import Fabricating
 from kirigami_studio.gui.file_kinds import kind_of
 from kirigami_studio.gui.finishing import Finishing
@@ -39,8 +36,6 @@ from kirigami_studio.project.document import Document
 from kirigami_studio.project.edits import Edit, FabricationChange, SettingsChange
 from kirigami_studio.project.history import History
 from kirigami_studio.target.outline import Outline
-
-FloatArray = npt.NDArray[np.float64]
 
 
 class Controller(QObject):
@@ -65,7 +60,6 @@ class Controller(QObject):
         self.comparing = Comparing(self.board, shelf, self)
         self.fabricating = Fabricating(lambda: self.document, self)
         self.cutting = Cutting(self.board, self)
-        self.drawing = Drawing(self)
         self.tracing = Tracing(self.board, self)
         self.reading = Reading(self.board, self.tracing, self)
         self.storing = Storing(self.board, self)
@@ -82,9 +76,7 @@ class Controller(QObject):
         self.showing.stage_changed.connect(self._forget_stage)
         for part in (self.finishing, self.fabricating):
             part.edited.connect(self._apply)
-        self.drawing.drawn.connect(self._take_target)
-        for gestures in (self.drawing, self.fabricating):
-            gestures.refused.connect(self._refuse)
+        self.fabricating.refused.connect(self._refuse)
         self.reading.read.connect(self._take_read)
         self.tracing.traced.connect(self._take_traced)
         self.tracing.refused.connect(self.status)

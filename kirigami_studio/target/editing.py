@@ -1,4 +1,4 @@
-"""Changes a person makes to an outline, and the freehand stroke that becomes one."""
+"""Changes a person makes to an outline, and the freehand stroke that becomes a ring."""
 
 from __future__ import annotations
 
@@ -62,23 +62,6 @@ def resampled(shape: Outline | npt.ArrayLike, count: int, start: float = 0.0) ->
     length = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(closed, axis=0), axis=1))])
     wanted = np.mod(start + np.arange(count) / count, 1.0) * length[-1]
     return np.column_stack([np.interp(wanted, length, closed[:, axis]) for axis in (0, 1)])
-
-
-def smooth_freehand(points: npt.ArrayLike, name: str = "drawing") -> Outline:
-    """Turn a hand-drawn stroke into an outline: tremor smoothed, corners kept, ends joined.
-
-    Parameters
-    ----------
-    points : (P, 2) float
-        Positions of the pointer in order, y up, any unit.
-
-    Raises
-    ------
-    TargetError
-        Too short, without area, or crossing itself so that no single shape is meant.
-    """
-    smooth, notes = smoothed_stroke(points)
-    return simplify(Outline.from_points(smooth, name=name, notes=notes), STROKE_ERROR)
 
 
 def smoothed_stroke(points: npt.ArrayLike) -> tuple[FloatArray, tuple[str, ...]]:

@@ -13,6 +13,8 @@ from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
 from kirigami_studio.gui.main_window import MainWindow
+from kirigami_studio.gui.sketching.easel import Change
+from kirigami_studio.target.placed import Placed
 from kirigami_studio.target.read_image import automatic_threshold, read_image
 
 Until = Callable[[Callable[[], bool]], None]
@@ -109,7 +111,8 @@ def test_that_a_drawing_wins_over_a_file_that_is_still_being_read(
     window: MainWindow, picture: Path, until: Until
 ) -> None:
     window.controller.open_target(str(picture))
-    window.controller.drawing.take_polygon(np.array([[0.0, 0.0], [3.0, 0.0], [1.0, 2.0]]))
+    corners = np.array([[0.0, 0.0], [3.0, 0.0], [1.0, 2.0]])
+    window.wiring.reshaping.take(Change("Draw polygon", lambda: Placed.from_ring(corners, "polygon")))
     until(lambda: not window.controller.board.busy)
     assert window.controller.document.target is not None and window.controller.document.target.name == "polygon"
 

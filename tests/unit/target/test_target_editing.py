@@ -9,8 +9,14 @@ import pytest
 
 from kirigami_studio.foundation.errors import TargetError
 from kirigami_studio.target import silhouettes
-from kirigami_studio.target.editing import mirrored, resampled, rotated, simplify, smooth_freehand
+from kirigami_studio.target.editing import mirrored, resampled, rotated, simplify
 from kirigami_studio.target.outline import Outline
+from kirigami_studio.target.refining import stroked
+
+
+def smooth_freehand(points) -> Outline:
+    """The outline that a stroke on the drawing board becomes."""
+    return stroked(points).outline
 
 
 def stroke(name: str, tremor: float = 2.0, overshoot: int = 8) -> np.ndarray:
