@@ -49,7 +49,10 @@ def test_that_the_message_states_leave_no_message(sheet: StateSheet, tmp_path: P
     assert (tmp_path / "question-1000x640-dark.png").exists()
 
 
-def test_that_the_editor_states_show_tools_and_a_marked_arm(sheet: StateSheet, tmp_path: Path) -> None:
+def test_that_the_editor_states_show_tools_and_a_marked_arm(
+    sheet: StateSheet, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("kirigami_studio.gui.state_sheet.SIZES", SIZES[1:2])  # one is enough here, each takes seconds
     sheet.editor()
     target = sheet.window.target
     assert target.editing and target.view.reach is not None and len(target.view.reach.arms) == 1
