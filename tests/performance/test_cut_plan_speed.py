@@ -27,9 +27,9 @@ def test_that_576_voids_are_planned_checked_and_written_in_two_seconds(style: Co
     plan = plan_cuts(design, 240.0, options=options)
     report = check_plan(plan, phi=math.pi / 4)
     assert report.ok and report.pieces == 1
-    planning = fastest(lambda: plan_cuts(design, 240.0, options=options), 2)
-    checking = fastest(lambda: check_plan(plan, phi=math.pi / 4), 2)
-    writing = fastest(lambda: dxf_bytes(plan, "R2010", profile), 2)
+    planning = fastest(lambda: plan_cuts(design, 240.0, options=options), 3)
+    checking = fastest(lambda: check_plan(plan, phi=math.pi / 4), 3)
+    writing = fastest(lambda: dxf_bytes(plan, "R2010", profile), 3)
     print(
         f"\n{style.value}: plan {planning:.2f} s, check {checking:.2f} s, DXF {writing:.2f} s, {len(plan.paths)} paths"
     )
