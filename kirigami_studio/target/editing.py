@@ -1,4 +1,4 @@
-"""Changes a person makes to an outline, and the freehand stroke that becomes a ring."""
+"""A freehand stroke becomes a ring, and any ring becomes points at equal arc length."""
 
 from __future__ import annotations
 
@@ -8,7 +8,6 @@ import math
 import numpy as np
 import numpy.typing as npt
 from scipy.ndimage import gaussian_filter1d
-from shapely.geometry import Polygon
 
 from kirigami_studio.foundation.errors import TargetError
 from kirigami_studio.target.contour import FloatArray, as_contour, tidy
@@ -132,48 +131,3 @@ def _smooth_span(span: FloatArray, sigma: float) -> FloatArray:
     extended = np.concatenate([head, span, tail])
     smooth: FloatArray = gaussian_filter1d(extended, min(sigma, len(span) / 4), axis=0, mode="nearest")
     return smooth[reach : reach + len(span)]
-
-
-def simplify(outline: Outline, tolerance: float) -> Outline:
-    """Drop vertices while the outline moves by at most ``tolerance`` (outline units: area 1).
-
-    Raises
-    ------
-    TargetError
-        ``tolerance`` is negative or not finite.
-    """
-    if not (math.isfinite(tolerance) and tolerance >= 0):
-        raise TargetError(f"The tolerance of simplification must be 0 or more, got {tolerance}.")
-    simpler = outline.polygon.simplify(tolerance)
-    if not isinstance(simpler, Polygon):
-        raise TargetError(f"A tolerance of {tolerance:g} leaves nothing of the outline; use a smaller one.")
-    return _changed(outline, np.asarray(simpler.exterior.coords[:-1], dtype=np.float64))
-
-
-def rotated(outline: Outline, angle: float) -> Outline:
-    """Turn counter-clockwise by ``angle`` radians.
-
-    Raises
-    ------
-    TargetError
-        ``angle`` is not finite.
-    """
-    if not math.isfinite(angle):
-        raise TargetError(f"The angle of rotation must be a finite number, got {angle}.")
-    cos, sin = math.cos(angle), math.sin(angle)
-    return _changed(outline, outline.points @ np.array([[cos, sin], [-sin, cos]]))
-
-
-def mirrored(outline: Outline) -> Outline:
-    """Swap left and right."""
-    return _changed(outline, outline.points * (-1.0, 1.0))
-
-
-def _changed(outline: Outline, points: FloatArray) -> Outline:
-    """The outline with other vertices: name, notes and unit stay, the size follows."""
-    new = Outline.from_points(points, outline.name, outline.notes, outline.unit)
-    if outline.size is None:
-        return Outline(new.points, new.name, new.notes, None, new.unit)
-    scale = outline.size[0] / float(np.ptp(outline.points[:, 0]))
-    width, height = np.ptp(points, axis=0) * scale
-    return Outline(new.points, new.name, new.notes, (float(width), float(height)), new.unit)

@@ -1,4 +1,4 @@
-"""Strokes become outlines, and outlines are turned, mirrored, thinned, resampled."""
+"""Strokes become outlines, and outlines are resampled."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import pytest
 
 from kirigami_studio.foundation.errors import TargetError
 from kirigami_studio.target import silhouettes
-from kirigami_studio.target.editing import mirrored, resampled, rotated, simplify
+from kirigami_studio.target.editing import resampled
 from kirigami_studio.target.outline import Outline
 from kirigami_studio.target.refining import stroked
 
@@ -65,50 +65,6 @@ def test_that_a_figure_of_eight_is_refused_with_its_crossing() -> None:
     t = np.linspace(0, 2 * np.pi, 100, endpoint=False) + 0.3
     with pytest.raises(TargetError, match="crosses itself near"):
         smooth_freehand(np.column_stack([np.sin(t), np.sin(2 * t)]))
-
-
-def test_that_four_quarter_turns_are_no_turn(iou) -> None:
-    leaf = turned = silhouettes.load("leaf")
-    for _ in range(4):
-        turned = rotated(turned, math.pi / 2)
-    np.testing.assert_allclose(turned.points, leaf.points, atol=1e-12)
-    assert iou(rotated(leaf, math.pi / 2), leaf) < 0.8
-
-
-def test_that_a_positive_angle_turns_counter_clockwise() -> None:
-    arrow = rotated(silhouettes.load("arrow"), math.pi / 2)
-    tip = arrow.points[np.argmax(np.linalg.norm(arrow.points, axis=1))]
-    wide = arrow.points[np.argmax(np.abs(arrow.points[:, 0]))]
-    assert np.ptp(arrow.points[:, 1]) > np.ptp(arrow.points[:, 0])
-    assert abs(tip[1]) > abs(tip[0])
-    assert wide[1] > 0
-
-
-def test_that_the_size_turns_with_the_outline() -> None:
-    outline = Outline.from_points([[0, 0], [30, 0], [30, 10], [0, 10]], unit="mm")
-    assert rotated(outline, math.pi / 2).size == pytest.approx((10, 30))
-    assert mirrored(outline).size == pytest.approx((30, 10))
-
-
-def test_that_mirroring_twice_is_nothing_and_stays_counter_clockwise(iou) -> None:
-    leaf = silhouettes.load("leaf")
-    assert mirrored(leaf).polygon.exterior.is_ccw
-    assert iou(mirrored(mirrored(leaf)), leaf) > 1 - 1e-9
-    assert iou(mirrored(leaf), leaf) < 0.9
-
-
-def test_that_simplifying_drops_vertices_within_the_tolerance() -> None:
-    gear = silhouettes.load("gear")
-    simpler = simplify(gear, 0.01)
-    assert len(simpler.points) < len(gear.points) / 2
-    assert simpler.polygon.hausdorff_distance(gear.polygon) < 0.013
-    assert simplify(gear, 0.0).polygon.equals(gear.polygon) or len(simplify(gear, 0.0).points) <= len(gear.points)
-
-
-@pytest.mark.parametrize("tolerance", [-1.0, math.nan, math.inf])
-def test_that_an_impossible_tolerance_is_refused(tolerance) -> None:
-    with pytest.raises(TargetError, match="tolerance"):
-        simplify(silhouettes.load("gear"), tolerance)
 
 
 def test_that_resampling_is_even_along_the_contour() -> None:
