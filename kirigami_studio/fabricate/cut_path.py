@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from enum import Enum
+from functools import cached_property
 
 import numpy as np
 
@@ -20,7 +21,7 @@ class Layer(Enum):
     OUTLINE = "OUTLINE"
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class CutPath:
     """One cut without lifting.
 
@@ -47,18 +48,22 @@ class CutPath:
         if self.bulges is not None:
             self.bulges.setflags(write=False)
 
-    @property
+    @cached_property
     def flattened(self) -> FloatArray:
         """Points (V, 2), mm, with chords for arcs; the first point of a closed path is not repeated."""
-        return self.points if self.bulges is None else flattened(self.points, self.bulges, self.closed)
+        if self.bulges is None:
+            return self.points
+        points = flattened(self.points, self.bulges, self.closed)
+        points.setflags(write=False)
+        return points
 
-    @property
+    @cached_property
     def travelled(self) -> FloatArray:
         """Flattened points as the head visits them; a closed path comes back to its first point."""
         points = self.flattened
         return np.concatenate([points, points[:1]]) if self.closed else points
 
-    @property
+    @cached_property
     def length(self) -> float:
         """Cut length, mm."""
         return float(np.linalg.norm(np.diff(self.travelled, axis=0), axis=1).sum())

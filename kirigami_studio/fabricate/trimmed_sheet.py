@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import product
 
 import numpy as np
@@ -52,7 +53,7 @@ CRUMB_ROUNDS = 4
 LONGEST_NOTCH = 15.0
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class CutPiece:
     """What remains of one cut.
 
@@ -75,7 +76,7 @@ class CutPiece:
     bulges: FloatArray | None = None
     closed: bool = False
 
-    @property
+    @cached_property
     def line(self) -> LineString:
         """Its centre line, with chords for arcs so fine that widths can be measured on it."""
         if self.bulges is None and not self.closed:
