@@ -202,11 +202,20 @@ def _cut_options(saved: CutOptions, given: dict[str, Any]) -> CutOptions:
         changes["style"] = ConnectorStyle(given["style"])
     if "order" in given:
         changes["order"] = CutOrder(given["order"])
-    if "hinge_mm" in given:
-        changes["hinge_mm"] = tuple(sorted(_hinge_width(text) for text in given["hinge_mm"]))
-    if "remove" in given:
-        changes["removed"] = tuple(sorted(given["remove"]))
-    return replace(saved, **changes)
+    return _with_hinges(replace(saved, **changes), given)
+
+
+def _with_hinges(saved: CutOptions, given: dict[str, Any]) -> CutOptions:
+    """The project's own connectors, and the command line's on top of them."""
+    widths = sorted(_hinge_width(text) for text in given.get("hinge_mm", ()))
+    removed = sorted(given.get("remove", ()))
+    CutOptions(hinge_mm=tuple(widths), removed=tuple(removed))  # refuses what contradicts itself
+    named = {hinge for hinge, _ in widths} | set(removed)
+    return replace(
+        saved,
+        hinge_mm=tuple(sorted([*(pair for pair in saved.hinge_mm if pair[0] not in named), *widths])),
+        removed=tuple(sorted([*(hinge for hinge in saved.removed if hinge not in named), *removed])),
+    )
 
 
 def _check_hinges(candidate: Candidate, options: CutOptions) -> None:

@@ -59,8 +59,21 @@ CUTS = (
     option("--order", choices=[order.value for order in CutOrder], default=None, help="order of cutting"),
     option("--tabs", type=whole, default=None, help="uncut places of the outline that hold the sheet"),
     option("--tab-mm", type=positive, default=None, help="finished width of a tab"),
-    option("--hinge-mm", nargs="+", metavar="N=W", default=None, help="widths of single connectors, by their numbers"),
-    option("--remove", nargs="+", type=whole, metavar="N", default=None, help="connectors to leave out, by number"),
+    option(
+        "--hinge-mm",
+        nargs="+",
+        metavar="N=W",
+        default=None,
+        help="widths of single connectors by number, beside the project's own",
+    ),
+    option(
+        "--remove",
+        nargs="+",
+        type=whole,
+        metavar="N",
+        default=None,
+        help="connectors to leave out, by number, beside the project's own",
+    ),
 )
 
 COMMANDS: tuple[Command, ...] = (

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -25,6 +26,8 @@ from kirigami_studio.foundation.errors import ExportError
 TRAP_WORDS = ("CUT", "ENGRAVE")
 #: Ends nearer than this (mm) count as the same point.
 SAME_POINT_MM = 1e-4
+#: Closed cuts that are wider than this (mm) are no slots.
+WIDEST_SLOT_MM = 1.5
 #: An outline whose ends miss each other by less than this (mm) was meant to be closed.
 NEARLY_CLOSED_MM = 0.5
 
@@ -224,6 +227,7 @@ def _physics(
     near_ring = ring.buffer(SAME_POINT_MM)
     inner = [drawn for drawn in content.paths if not LineString(drawn.points).within(near_ring)]
     holes = [Polygon(drawn.points) for drawn in inner if drawn.closed and len(drawn.points) > 3]
+    problems += _loose_discs(inner)
     sheet: BaseGeometry = outline.difference(shapely.union_all([hole for hole in holes if hole.is_valid]))
     cuts, joined = _inner_cuts(inner, content.facts, problems)
     left = remaining_pieces(sheet, cuts, kerf)
@@ -242,6 +246,27 @@ def _physics(
         text = f"Cuts run into each other at x = {x:.2f}, y = {y:.2f}; no connector is left there."
         problems.append(Problem(text, Severity.ERROR if ours else Severity.WARNING, ligament.where))
     return pieces, ligament.width_mm
+
+
+def _loose_discs(inner: Sequence[DrawnPath]) -> list[Problem]:
+    """Closed cuts inside the outline, beside relief holes and slots: what they enclose falls out."""
+    closed = [Polygon(drawn.points) for drawn in inner if drawn.closed and drawn.layer != Layer.RELIEF.value
+              and len(drawn.points) > 3]  # fmt: skip
+    # Twice the area over half the length: about the width of a slot, the radius of a disc.
+    wide = [ring for ring in closed if 4.0 * ring.area > WIDEST_SLOT_MM * 2.0 * ring.length]
+    if not wide:
+        return []
+    largest = max(wide, key=lambda ring: float(ring.area))
+    x, y = largest.centroid.coords[0]
+    size = math.sqrt(4.0 * largest.area / math.pi)
+    return [
+        Problem(
+            f"{len(wide)} closed cuts inside the outline let a part fall out, the largest one, about {size:.1f} mm "
+            f"across, at x = {x:.2f}, y = {y:.2f}; make sure that it is meant.",
+            Severity.WARNING,
+            (float(x), float(y)),
+        )
+    ]
 
 
 def _inner_cuts(

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from kirigami_studio.export.dxf_reference import write_reference
 from kirigami_studio.export.exporter import ExportJob
+from kirigami_studio.export.profile import find_profile
 from kirigami_studio.export.registry import export
 from kirigami_studio.export.sidecar import sidecar_path, write_sidecar
 from kirigami_studio.export.svg import write_layout_svg
@@ -80,7 +81,9 @@ def export_all(
         verified.append(verify_export(plan, path, job.profile, version))
         done(path)
     cut_files = tuple(written)
-    for goal in (home / f"{name}.lbrn2", home / f"{name}.pdf", home / "preview.png"):
+    if not find_profile(job.profile).slots:
+        done(export(job, home / f"{name}.lbrn2"))
+    for goal in (home / f"{name}.pdf", home / "preview.png"):
         done(export(job, goal))
     write_layout_svg(job, home / "layout.svg", plan.size_mm[0])
     done(home / "layout.svg")

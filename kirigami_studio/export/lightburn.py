@@ -43,7 +43,15 @@ class LightBurnExporter:
     name: str = "LightBurn project"
 
     def write(self, job: ExportJob, path: Path) -> None:
-        """Write the job's cut plan; the layers are LightBurn's own, whatever the profile."""
+        """Write the job's cut plan; the layers are LightBurn's own, whatever the profile.
+
+        Raises
+        ------
+        ExportError
+            The profile asks for closed slots, which such a project does not hold; or as :func:`write_lightburn`.
+        """
+        if find_profile(job.profile).slots:
+            raise ExportError("A LightBurn project holds open cuts; write DXF or SVG for a cutting service.")
         write_lightburn(job.required_plan, path)
 
 

@@ -261,6 +261,8 @@ def _cautions(plan: CutPlan, profile: Profile, version: str, strokes: Sequence[S
     if version == "R12" and path.suffix.lower() != ".svg":
         found.append("There is no unit in an R12 file: import it as mm.")
     if profile.slots:
+        if plan.options.tabs:
+            found.append(f"Contours for a service have no gaps: the {plan.options.tabs} tabs are left out.")
         length = sum(stroke.length for stroke in strokes)
         found.append(
             f"As slots the cut is {length:.1f} mm long instead of {plan.cut_length_mm:.1f} mm "

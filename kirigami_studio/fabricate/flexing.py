@@ -15,6 +15,7 @@ import numpy as np
 
 from kirigami_studio.fabricate.cut_plan import CutPlan
 from kirigami_studio.fabricate.findings import Problem, Severity
+from kirigami_studio.fabricate.options import ConnectorStyle
 from kirigami_studio.lattice.ratio_field import FloatArray
 
 
@@ -78,7 +79,7 @@ def strain_problems(plan: CutPlan, found: Flexing, strain_limit: float) -> list[
             f"at x = {x:.2f}, y = {y:.2f} mm bends evenly over {found.flexure_mm:.3f} mm about its softer side of "
             f"{found.softer_mm:g} mm (the assumption of this estimate), it is strained by about "
             f"{100.0 * found.strain:.0f} %; {plan.material.name!r} is taken to break at {100.0 * strain_limit:g} %. "
-            f"Choose arc or double connectors, wider ones, thinner material or a target angle nearer to flat.",
+            f"{_advice(plan)}, thinner material or a target angle nearer to flat.",
             Severity.WARNING,
             found.where,
         )
@@ -88,3 +89,10 @@ def strain_problems(plan: CutPlan, found: Flexing, strain_limit: float) -> list[
 def _lengths(plan: CutPlan) -> FloatArray:
     lengths: FloatArray = np.maximum(plan.hinges.flexure_mm, 1e-9)
     return lengths
+
+
+def _advice(plan: CutPlan) -> str:
+    """What to try first: another style, or room for the ends that this style could not be made at."""
+    if plan.options.style in (ConnectorStyle.ARC, ConnectorStyle.DOUBLE):
+        return "Choose a larger sheet, so that every slit end has room for its style"
+    return "Choose arc or double connectors"

@@ -8,6 +8,7 @@ from PySide6.QtCore import QSignalBlocker, Signal
 from PySide6.QtWidgets import QDoubleSpinBox, QFormLayout, QLabel, QLineEdit, QSpinBox, QWidget
 
 from kirigami_studio.fabricate.material import Material
+from kirigami_studio.gui.panels.number_field import number_field
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,7 +63,7 @@ class MaterialForm(QWidget):
         self.passes = QSpinBox()
         self.passes.setObjectName("passes")
         self.passes.setRange(1, 100)
-        self.passes.lineEdit().setTextMargins(6, 0, 0, 0)
+        number_field(self.passes)
         self.passes.setAccessibleName("Passes")
         self.passes.setToolTip("How many times the job is cut (1 to 100).")
         form = QFormLayout(self)
@@ -131,7 +132,7 @@ def _number(number: Number) -> QDoubleSpinBox:
     box.setSingleStep(number.step)
     box.setDecimals(number.decimals)
     box.setSuffix(f" {number.unit}")
-    box.lineEdit().setTextMargins(6, 0, 0, 0)
+    number_field(box)
     box.setKeyboardTracking(False)
     box.setAccessibleName(f"{number.label}, {number.unit}")
     box.setToolTip(f"{number.tip} Unit: {number.unit} ({number.low:g} to {number.high:g}).")

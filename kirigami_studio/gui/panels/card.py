@@ -17,6 +17,8 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from kirigami_studio.gui.panels.number_field import number_field
+
 TOOL_ICON = QSize(18, 18)
 INSET = 12
 
@@ -128,7 +130,7 @@ class ScrolledWhenShort(QScrollArea):
 def compact(box: QAbstractSpinBox, width: int = 62) -> None:
     """Let a number field be as narrow as its column instead of as wide as its largest number."""
     box.setMinimumWidth(width)
-    box.lineEdit().setTextMargins(6, 0, 0, 0)
+    number_field(box)
     box.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
 
 

@@ -9,6 +9,7 @@ from PySide6.QtWidgets import QDoubleSpinBox, QHBoxLayout, QWidget
 
 from kirigami_studio.gui import icons
 from kirigami_studio.gui.panels.card import tool_button
+from kirigami_studio.gui.panels.number_field import number_field
 from kirigami_studio.gui.theme import LIGHT, Palette
 from kirigami_studio.gui.views.phi_slider import PhiSlider
 
@@ -37,7 +38,7 @@ class DeploymentBar(QWidget):
         self.number.setDecimals(1)
         self.number.setSuffix("°")
         self.number.setFixedWidth(92)
-        self.number.lineEdit().setTextMargins(6, 0, 0, 0)
+        number_field(self.number)
         self.number.setKeyboardTracking(False)
         self.number.setAccessibleName("Deployment angle in degrees")
         self.number.setToolTip("Deployment angle φ in degrees: 180° flat, 0° fully turned")

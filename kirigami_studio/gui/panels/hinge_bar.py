@@ -9,6 +9,7 @@ from PySide6.QtWidgets import QDoubleSpinBox, QHBoxLayout, QMenu, QToolButton, Q
 from kirigami_studio.fabricate.cut_plan import CutPlan
 from kirigami_studio.gui import icons
 from kirigami_studio.gui.panels.card import FittingLabel, tool_button
+from kirigami_studio.gui.panels.number_field import number_field
 from kirigami_studio.gui.scene.hinge_rules import RULES
 from kirigami_studio.gui.theme import Palette
 
@@ -54,7 +55,7 @@ class HingeBar(QWidget):
         self.width_mm.setToolTip(WIDTH_TIP)
         self.width_mm.setAccessibleName("Width of the selected connectors in millimetres")
         self.width_mm.setFixedWidth(108)
-        self.width_mm.lineEdit().setTextMargins(6, 0, 0, 0)
+        number_field(self.width_mm)
         self.remove = tool_button("removeHinges", "Cut through: leave no connector here (Delete).")
         self.reset = tool_button("resetHinges", "Usual width: give the selected connectors the sheet's width again.")
         self._lay_out()

@@ -5,6 +5,7 @@ from __future__ import annotations
 from PySide6.QtCore import QSignalBlocker, Qt, Signal
 from PySide6.QtWidgets import QDoubleSpinBox, QHBoxLayout, QLabel, QSlider, QWidget
 
+from kirigami_studio.gui.panels.number_field import number_field
 from kirigami_studio.target.placed import LARGEST_MM, Placed
 
 #: Slider steps from nothing to most.
@@ -94,7 +95,7 @@ def _length(name: str) -> QDoubleSpinBox:
     field.setRange(0.1, LARGEST_MM)
     field.setDecimals(1)
     field.setSuffix(" mm")
-    field.lineEdit().setTextMargins(6, 0, 0, 0)
+    number_field(field)
     field.setKeyboardTracking(False)
     field.setAccessibleName(f"{name}; its proportions stay")
     field.setToolTip(f"{name} in mm; its proportions stay")

@@ -19,6 +19,7 @@ from PySide6.QtWidgets import (
 
 from kirigami_studio.gui import icons
 from kirigami_studio.gui.panels.card import tool_button
+from kirigami_studio.gui.panels.number_field import number_field
 from kirigami_studio.gui.sketching.easel import Easel
 from kirigami_studio.gui.theme import Palette
 from kirigami_studio.gui.views.target_view import DRAWING, Tool
@@ -167,7 +168,7 @@ class ToolOptions(QWidget):
         self.waist.setAccessibleName("Waist of the star")
         self.waist.setToolTip("How far its inner corners are from the middle, as a share of its tips")
         for number in (self.corners, self.waist):
-            number.lineEdit().setTextMargins(6, 0, 0, 0)
+            number_field(number)
         self.text = QLineEdit(easel.text)
         self.text.setAccessibleName("Text to draw")
         self.text.setPlaceholderText("Text")

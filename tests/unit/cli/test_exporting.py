@@ -95,7 +95,11 @@ def test_that_single_widths_change_the_plan(capsys: pytest.CaptureFixture[str], 
     plain = finished()
     assert finished("--hinge-mm", "5=1.5", "3=1.2") < plain
     record = json.loads((tmp_path / "x.json").read_text())
-    assert record["fabrication"]["options"]["hinge_mm"] == [[3, 1.2], [5, 1.5]]
+    assert record["fabrication"]["options"]["hinge_mm"] == [[1, 0.4], [3, 1.2], [5, 1.5]]
+    finished("--hinge-mm", "3=0.9", "--remove", "1")
+    record = json.loads((tmp_path / "x.json").read_text())
+    assert record["fabrication"]["options"]["hinge_mm"] == [[3, 0.9]]
+    assert record["fabrication"]["options"]["removed"] == [1]
 
 
 @pytest.mark.parametrize(
@@ -109,7 +113,7 @@ def test_that_single_widths_change_the_plan(capsys: pytest.CaptureFixture[str], 
         (["--hinge-mm", "999=1"], "no hinge 999: this sheet has hinges 0 to"),
         (["--hinge-mm", "5=1", "5=2"], "once"),
         (["--remove", "999"], "no hinge 999"),
-        (["--remove", "1"], "both a width and no connector"),
+        (["--hinge-mm", "1=1", "--remove", "1"], "both a width and no connector"),
         (["--tabs", "9999"], "0 to 200 tabs"),
     ],
 )

@@ -270,3 +270,14 @@ def test_that_a_hole_whose_arcs_miss_their_first_point_by_rounding_is_a_hole(tmp
     # Its chords end 1e-14 mm beside where they began, so that the ring as it comes crosses itself.
     modelspace.add_lwpolyline([(137.245, 25.26, 1.0), (137.1659, 25.2721, 1.0)], format="xyb", close=True)
     assert checked(document, tmp_path, kerf_mm=0.02).pieces == 1
+
+
+def test_that_a_closed_cut_that_frees_a_disc_is_told_with_its_place(tmp_path: Path) -> None:
+    document = foreign()
+    document.modelspace().add_circle((30, 30), 4.0)
+    report = checked(document, tmp_path)
+    (problem,) = [problem for problem in report.problems if "fall out" in problem.text]
+    assert report.ok and "8.0 mm" in problem.text and problem.where == pytest.approx((30.0, 30.0), abs=1e-3)
+    slot = foreign()
+    slot.modelspace().add_lwpolyline([(25, 30), (35, 30), (35, 30.3), (25, 30.3)], close=True)
+    assert "fall out" not in sentences(checked(slot, tmp_path))

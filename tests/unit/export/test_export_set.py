@@ -50,7 +50,21 @@ def test_that_the_set_is_complete_and_every_cut_file_verified(profile: str, job:
     assert told == list(found.files)
     names = {"cut.svg", "cut.lbrn2", "cut.pdf", "cut.json", "layout.svg", "preview.png", "reference.dxf"}
     names |= {"cut", "cut_r12"} if profile == "layers" else {"cut.dxf", "cut_r12.dxf"}
+    if profile == "slots":
+        names -= {"cut.lbrn2"}  # a LightBurn project holds open cuts
     assert {path.name for path in (tmp_path / "set").iterdir()} == names == {path.name for path in found.files}
+
+
+def test_that_a_lightburn_project_of_closed_slots_is_refused(job: ExportJob, tmp_path: Path) -> None:
+    with pytest.raises(ExportError, match="holds open cuts"):
+        export(replace(job, profile="slots"), tmp_path / "sheet.lbrn2")
+    assert not list(tmp_path.iterdir())
+
+
+def test_that_tabs_left_out_of_closed_contours_are_told(make_design: MakeDesign, tmp_path: Path) -> None:
+    plan = plan_cuts(make_design(4, 5, seed=1), 90.0, options=CutOptions(tabs=3))
+    path = export(ExportJob(make_design(4, 5, seed=1), plan=plan, profile="slots"), tmp_path / "sheet.dxf")
+    assert any("3 tabs are left out" in warning for warning in verify_export(plan, path, "slots").warnings)
 
 
 def test_that_the_same_job_gives_the_same_set(job: ExportJob, tmp_path: Path) -> None:
