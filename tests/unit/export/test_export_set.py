@@ -23,6 +23,7 @@ from kirigami_studio.export.exporter import ExportJob
 from kirigami_studio.export.profile import PROFILES
 from kirigami_studio.export.registry import export
 from kirigami_studio.export.sidecar import write_sidecar
+from kirigami_studio.export.verification import verify_export
 from kirigami_studio.fabricate.cut_plan import plan_cuts
 from kirigami_studio.fabricate.material import Material
 from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions, CutOrder
