@@ -65,6 +65,9 @@ def export(arguments: argparse.Namespace) -> int:
     written = _written(job, arguments)
     warnings = [*plan.notes, *(problem.text for problem in report.problems)]
     warnings += [text for found in written.verifications for text in found.warnings]
+    if written.older:
+        names = ", ".join(path.name for path in written.older)
+        warnings.append(f"Left in the folder from an earlier export: {names}; delete what you do not want to cut.")
     warnings = list(dict.fromkeys(warnings))
     bad = [finding.text for found in written.verifications for finding in found.findings if not finding.ok]
     if arguments.json:

@@ -28,10 +28,13 @@ class ExportSet:
         In the order of writing; a folder stands for its files.
     verifications : tuple of Verification
         One for each cut file that two readers can read.
+    older : tuple of Path
+        Cut files of the same name that lie beside these from an earlier export.
     """
 
     files: tuple[Path, ...]
     verifications: tuple[Verification, ...]
+    older: tuple[Path, ...] = ()
 
     @property
     def ok(self) -> bool:
@@ -90,4 +93,6 @@ def export_all(
     done(write_reference(plan, home / "reference.dxf"))
     if sidecar:
         done(write_sidecar(job, sidecar_path(cut), cut_files))
-    return ExportSet(tuple(written), tuple(verified))
+    known = (f"{name}{rest}" for rest in ("", ".dxf", ".lbrn2", ".json", f"_{R12.lower()}", f"_{R12.lower()}.dxf"))
+    older = tuple(path for path in map(home.joinpath, known) if path.exists() and path not in written)
+    return ExportSet(tuple(written), tuple(verified), older)

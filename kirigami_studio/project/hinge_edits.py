@@ -16,6 +16,8 @@ DECIMALS = 4
 def set_hinge_width(document: Document, hinges: Collection[int], width_mm: float) -> Edit:
     """Give connectors a finished width of their own; the steps of one drag undo together.
 
+    Removed ones among others stay removed; they come back only where all of these hinges are.
+
     Parameters
     ----------
     document : Document
@@ -28,6 +30,8 @@ def set_hinge_width(document: Document, hinges: Collection[int], width_mm: float
     FabricationError
         The width is not above 0, or a number is negative.
     """
+    gone = set(document.fabrication.options.removed)
+    hinges = [hinge for hinge in hinges if hinge not in gone] or hinges
     options = _without(document.fabrication.options, hinges)
     widths = dict(options.hinge_mm) | dict.fromkeys(hinges, round(float(width_mm), DECIMALS))
     changed = replace(options, hinge_mm=tuple(sorted(widths.items())))

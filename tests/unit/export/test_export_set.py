@@ -68,6 +68,13 @@ def test_that_tabs_left_out_of_closed_contours_are_told(make_design: MakeDesign,
     assert any("3 tabs are left out" in warning for warning in verify_export(plan, path, "slots").warnings)
 
 
+def test_that_cut_files_of_an_earlier_export_are_told(job: ExportJob, tmp_path: Path) -> None:
+    assert export_all(job, tmp_path).older == ()
+    assert export_all(job, tmp_path).older == ()
+    again = export_all(replace(job, profile="layers"), tmp_path)
+    assert [path.name for path in again.older] == ["cut.dxf", "cut_r12.dxf"]
+
+
 def test_that_the_same_job_gives_the_same_set(job: ExportJob, tmp_path: Path) -> None:
     for name in ("one", "two"):
         export_all(job, tmp_path / name)

@@ -51,6 +51,13 @@ def test_that_a_removed_connector_has_no_width_and_a_width_brings_it_back() -> N
     assert options_of(hinge_edits.reset_hinges(back, {2, 5}).document) == CutOptions()
 
 
+def test_that_a_width_for_many_leaves_the_removed_among_them_removed() -> None:
+    removed = hinge_edits.remove_hinges(Document(), {5, 2}).document
+    wide = hinge_edits.set_hinge_width(removed, {2, 3, 4}, 0.6)
+    assert wide.label == "Set 2 connectors to 0.6 mm"
+    assert options_of(wide.document) == CutOptions(removed=(2, 5), hinge_mm=((3, 0.6), (4, 0.6)))
+
+
 def test_that_a_width_of_nothing_is_refused() -> None:
     with pytest.raises(FabricationError, match="hinge 3"):
         hinge_edits.set_hinge_width(Document(), {3}, 0.0)
