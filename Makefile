@@ -47,9 +47,8 @@ run: setup
 	  QT_QPA_PLATFORM=offscreen $(BIN)/python -m kirigami_studio.gui.offscreen_session --out out; \
 	fi
 
-# Two processes of one thread each; see tests/conftest.py for what shares a process.
 test: lint
-	OMP_NUM_THREADS=1 QT_QPA_PLATFORM=offscreen $(BIN)/python -m pytest -n 2 --dist loadgroup
+	QT_QPA_PLATFORM=offscreen $(BIN)/python -m pytest
 
 quick: setup
 	HYPOTHESIS_PROFILE=quick $(BIN)/python -m pytest -p no:pytest-qt -p no:benchmark \

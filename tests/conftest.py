@@ -27,13 +27,6 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--update-goldens", action="store_true", help="write golden files instead of comparing with them")
 
 
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Share the tests among processes file by file; all that watch a clock or a window go to one process, in turn."""
-    for item in items:
-        room = item.path.relative_to(REPOSITORY / "tests").parts[0]
-        item.add_marker(pytest.mark.xdist_group("watched" if room in ("gui", "performance") else str(item.path)))
-
-
 @pytest.fixture(autouse=True)
 def own_materials(tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyPatch) -> Path:
     """An empty folder of own materials, so that no test sees or touches those of whoever runs it."""
