@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from shapely.geometry import LineString
 
 from kirigami_studio.lattice.ratio_field import FloatArray
 
@@ -38,6 +39,12 @@ def flattened(points: FloatArray, bulges: FloatArray, closed: bool, chord_mm: fl
         parts += [_between(start, stop, float(bulge), chord_mm), stop[None]]
     edges = len(points) if closed else len(points) - 1
     return np.concatenate(parts[: 2 * edges] if closed else parts[: 2 * edges + 1])
+
+
+def measured_line(points: FloatArray, bulges: FloatArray | None, closed: bool) -> LineString:
+    """A centre line (mm) with chords for arcs so fine that widths can be measured on it; arguments as above."""
+    line = points if bulges is None else flattened(points, bulges, closed, MEASURED_CHORD_MM)
+    return LineString(np.concatenate([line, line[:1]]) if closed else line)
 
 
 def arc_of(start: FloatArray, stop: FloatArray, bulge: float) -> tuple[FloatArray, float]:

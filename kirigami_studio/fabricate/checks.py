@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from shapely.geometry import LineString, Polygon
 
+from kirigami_studio.fabricate.bulges import measured_line
 from kirigami_studio.fabricate.cut_plan import CutPath, CutPlan, Layer
 from kirigami_studio.fabricate.findings import Problem as Problem
 from kirigami_studio.fabricate.findings import Severity as Severity
@@ -18,7 +19,7 @@ from kirigami_studio.fabricate.finished_sheet import (
     smallest_ligament,
 )
 from kirigami_studio.fabricate.flexing import Flexing, flexing, strain_problems
-from kirigami_studio.fabricate.joints import joined_pairs, measured_line
+from kirigami_studio.fabricate.joints import joined_pairs
 from kirigami_studio.fabricate.panel_sizes import smallest_edge, smallest_neck
 from kirigami_studio.fabricate.sheet_checks import (
     WIDTH_TOLERANCE_MM,
@@ -68,9 +69,7 @@ class Report:
         return not any(problem.severity is Severity.ERROR for problem in self.problems)
 
 
-def check_plan(
-    plan: CutPlan, kerf_mm: float | None = None, phi: float | None = None, strain_limit: float | None = None
-) -> Report:
+def check_plan(plan: CutPlan, kerf_mm: float | None = None, phi: float | None = None) -> Report:
     """Cut the plan in the computer and look at what is left.
 
     Parameters
@@ -80,19 +79,16 @@ def check_plan(
         The kerf the machine really has; the plan's own unless given.
     phi : float, radians, optional
         Target angle of the deployment; without it nothing is said about how far the connectors bend.
-    strain_limit : float, optional
-        Breaking strain; the material's unless given.
     """
     kerf = plan.kerf_mm if kerf_mm is None else kerf_mm
     inner = [path for path in plan.paths if path.layer is not Layer.OUTLINE]
-    lines = [measured_line(path) for path in inner]
+    lines = [measured_line(path.points, path.bulges, path.closed) for path in inner]
     boundary = Polygon(plan.outline)
     pieces = _pieces(inner, boundary, kerf)
     ligament = smallest_ligament(lines, boundary.exterior, kerf, joined_pairs(plan, inner, lines))
     twice = overlap([LineString(path.travelled) for path in plan.paths])
     edge, neck = smallest_edge(plan.panels, kerf), smallest_neck(plan.panels, kerf)
     bent = None if phi is None else flexing(plan, phi)
-    limit = plan.material.strain_limit if strain_limit is None else strain_limit
     problems = [
         *piece_problems(pieces, boundary, kerf, len(plan.options.removed)),
         *tab_problems(plan),
@@ -100,7 +96,7 @@ def check_plan(
         *_overlap_problems(twice),
         *_ligament_problems(plan, kerf, ligament),
         *panel_problems(plan, kerf, edge, neck),
-        *([] if bent is None else strain_problems(plan, bent, limit)),
+        *([] if bent is None else strain_problems(plan, bent, plan.material.strain_limit)),
     ]
     return Report(
         problems=tuple(problems),

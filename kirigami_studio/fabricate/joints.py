@@ -8,7 +8,7 @@ import numpy as np
 import shapely
 from shapely.geometry import LineString
 
-from kirigami_studio.fabricate.bulges import MEASURED_CHORD_MM, flattened
+from kirigami_studio.fabricate.bulges import measured_line
 from kirigami_studio.fabricate.cut_plan import CutPath, CutPlan, Layer
 
 #: Coordinates are rounded to half of this (mm): what is nearer touches.
@@ -16,14 +16,6 @@ TOUCH_MM = 2e-4
 
 #: Numbers of two cuts, the lower one first.
 Pair = tuple[int, int]
-
-
-def measured_line(path: CutPath) -> LineString:
-    """A path's centre line (mm), with chords for arcs so fine that widths can be measured on it."""
-    if path.bulges is None:
-        return LineString(path.travelled)
-    points = flattened(path.points, path.bulges, path.closed, MEASURED_CHORD_MM)
-    return LineString(np.concatenate([points, points[:1]]) if path.closed else points)
 
 
 def joined_pairs(plan: CutPlan, paths: Sequence[CutPath], lines: Sequence[LineString]) -> set[Pair]:
@@ -41,7 +33,7 @@ def joined_pairs(plan: CutPlan, paths: Sequence[CutPath], lines: Sequence[LineSt
 def joint_count(plan: CutPlan) -> int:
     """How many ends of a plan's cuts lie on another cut, the outline left out; all of them are meant."""
     inner = [path for path in plan.paths if path.layer is not Layer.OUTLINE]
-    return len(ending_on_others([measured_line(path) for path in inner]))
+    return len(ending_on_others([measured_line(path.points, path.bulges, path.closed) for path in inner]))
 
 
 def touching(lines: Sequence[LineString]) -> set[Pair]:

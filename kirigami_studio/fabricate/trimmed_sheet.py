@@ -18,7 +18,7 @@ import shapely
 from shapely.geometry import LineString, Point, Polygon
 from shapely.geometry.base import BaseGeometry
 
-from kirigami_studio.fabricate.bulges import MEASURED_CHORD_MM, flattened
+from kirigami_studio.fabricate.bulges import measured_line
 from kirigami_studio.fabricate.finished_sheet import overlap_length, remaining_pieces
 from kirigami_studio.fabricate.slits import CutTable
 from kirigami_studio.foundation.errors import FabricationError
@@ -79,11 +79,7 @@ class CutPiece:
     @cached_property
     def line(self) -> LineString:
         """Its centre line, with chords for arcs so fine that widths can be measured on it."""
-        if self.bulges is None and not self.closed:
-            return LineString(self.points)
-        bulges = np.zeros(len(self.points)) if self.bulges is None else self.bulges
-        points = flattened(self.points, bulges, self.closed, MEASURED_CHORD_MM)
-        return LineString(np.concatenate([points, points[:1]]) if self.closed else points)
+        return measured_line(self.points, self.bulges, self.closed)
 
 
 def kept_area(deployment: Deployment, kept: Sequence[FloatArray | None], width_mm: float) -> Polygon:

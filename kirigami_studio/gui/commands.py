@@ -167,7 +167,7 @@ class Commands(QObject):
         key = self.controller.document.fabrication.material
         if self.materials is None:
             self.materials = MaterialEditor(self.window, key)
-            self.materials.library_changed.connect(self._take_materials)
+            self.materials.stock_changed.connect(self._take_materials)
             self.materials.coupon_wanted.connect(self.export_coupon)
         self.materials.choose(key)
         self.materials.show()

@@ -33,7 +33,7 @@ NEW = "Your own copy of a preset can be changed; presets stay as they are."
 class MaterialEditor(QDialog):
     """A list of all materials beside the form of the chosen one; blocks nothing."""
 
-    library_changed = Signal(str)  #: key of the material that was saved, or "" after one was deleted
+    stock_changed = Signal(str)  #: key of the material that was saved, or "" after one was deleted
     coupon_wanted = Signal(object)  #: Material
 
     def __init__(self, parent: QWidget, key: str) -> None:
@@ -147,7 +147,7 @@ class MaterialEditor(QDialog):
         material_copies.delete_copy(key)
         self._list(key)
         self.says.setText(f"{name!r} was deleted.")
-        self.library_changed.emit("")
+        self.stock_changed.emit("")
 
     def _edited(self) -> Material:
         """The chosen material with what the form says."""
@@ -165,7 +165,7 @@ class MaterialEditor(QDialog):
     def _saved(self, key: str, sentence: str) -> None:
         self._list(key)
         self.says.setText(sentence)
-        self.library_changed.emit(key)
+        self.stock_changed.emit(key)
 
     def _list(self, key: str) -> None:
         """Read the library again and show a material."""

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
+
 import numpy as np
 import numpy.typing as npt
 from PySide6.QtGui import QFont, QFontMetricsF, QPainter, QPainterPath
@@ -24,7 +26,7 @@ LEAST_DRAG = 4.0
 LETTER_SIZE = 400
 
 
-class BoxTool(SketchTool):
+class BoxTool(SketchTool, ABC):
     """Drags a box; subclasses say what fills it."""
 
     def __init__(self, easel: Easel) -> None:
@@ -32,6 +34,7 @@ class BoxTool(SketchTool):
         self._start: Spot | None = None
         self._end: Spot | None = None
 
+    @abstractmethod
     def shape(self, box: Box) -> Placed:
         """What fills a box.
 
@@ -40,12 +43,11 @@ class BoxTool(SketchTool):
         TargetError
             Nothing can.
         """
-        raise NotImplementedError
 
     @property
+    @abstractmethod
     def name(self) -> str:
         """Of the shape, for the document and the name of the change."""
-        raise NotImplementedError
 
     def press(self, spot: Spot) -> None:
         self._start = self._end = spot

@@ -11,6 +11,7 @@ from pathlib import Path
 import ezdxf
 import numpy as np
 import pytest
+from command_line import answer, refusal
 from PIL import Image
 
 from kirigami_studio.cli import main
@@ -25,24 +26,6 @@ def ratios(tmp_path: Path) -> Path:
     path = tmp_path / "ratios.json"
     path.write_text(json.dumps({"ratio": FIELD.tolist()}))
     return path
-
-
-def answer(capsys: pytest.CaptureFixture[str], *argv: object) -> dict:
-    code = main([str(word) for word in argv])
-    captured = capsys.readouterr()
-    assert code == 0, captured.err
-    assert captured.err == ""
-    (line,) = captured.out.splitlines()
-    return json.loads(line)
-
-
-def refusal(capsys: pytest.CaptureFixture[str], *argv: object) -> tuple[int, str]:
-    code = main([str(word) for word in argv])
-    captured = capsys.readouterr()
-    assert captured.out == ""
-    assert "Traceback" not in captured.err
-    assert len(captured.err.splitlines()) == 1
-    return code, captured.err
 
 
 def test_that_decode_answers_with_the_exact_layout(capsys: pytest.CaptureFixture[str], ratios: Path) -> None:

@@ -2,33 +2,15 @@
 
 from __future__ import annotations
 
-import json
 from datetime import date
 from pathlib import Path
 
 import ezdxf
 import pytest
+from command_line import answer, refusal
 
 from kirigami_studio.cli import main
 from kirigami_studio.fabricate.material import find_material, presets
-
-
-def answer(capsys: pytest.CaptureFixture[str], *argv: object) -> dict:
-    code = main([str(word) for word in argv])
-    captured = capsys.readouterr()
-    assert code == 0, captured.err
-    assert captured.err == ""
-    (line,) = captured.out.splitlines()
-    return json.loads(line)
-
-
-def refusal(capsys: pytest.CaptureFixture[str], *argv: object) -> tuple[int, str]:
-    code = main([str(word) for word in argv])
-    captured = capsys.readouterr()
-    assert captured.out == ""
-    assert "Traceback" not in captured.err
-    assert len(captured.err.splitlines()) == 1
-    return code, captured.err
 
 
 def test_that_every_material_is_listed_with_its_owner_and_state(capsys: pytest.CaptureFixture[str]) -> None:
