@@ -3,10 +3,20 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from enum import Enum
 
 from kirigami_studio.evaluate.score import Score
 from kirigami_studio.evaluate.trimming import Trim
 from kirigami_studio.lattice.ratio_field import RatioField
+
+
+class Origin(Enum):
+    """How a design came to be."""
+
+    SAMPLED = "sampled"  #: drawn by the generator for the target
+    SEARCHED = "searched"  #: found by the search that follows the samples
+    RESAMPLED = "resampled"  #: drawn by the generator near another design
+    EDITED = "edited"  #: changed by hand
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,6 +38,9 @@ class Candidate:
         The field as it was sampled, where a fit has improved it.
     trim : Trim or None
         The same design fitted to cover the target and trimmed, where that was asked for; its score is its own.
+    variant : str
+        Generator that drew it, "" where that is not known.
+    origin : Origin
     """
 
     field: RatioField
@@ -37,3 +50,5 @@ class Candidate:
     polished: bool = False
     drawn: RatioField | None = None
     trim: Trim | None = None
+    variant: str = ""
+    origin: Origin = Origin.SAMPLED

@@ -77,7 +77,7 @@ class Commands(QObject):
             "mode_add": partial(self._set_mode, Combine.ADD),
             "mode_subtract": partial(self._set_mode, Combine.SUBTRACT),
             "grid": window.target.strip.grid.click,
-            "clear": controller.clear_target,
+            "clear": controller.targeting.clear,
             "generate": controller.generate,
             "cancel": controller.cancel,
             "trim": window.stage.trim.click,
@@ -117,14 +117,14 @@ class Commands(QObject):
         """Open a target file of the user's choice."""
         path = self.files.target()
         if path is not None:
-            self.controller.open_target(str(path))
+            self.controller.targeting.open(str(path))
 
     def take_file(self, name: str) -> None:
         """Open a dropped file: a project or a target."""
         if Path(name).suffix.lower() == ".kiri":
             self.guard("open another project", lambda: self.controller.open_project(Path(name)))
         else:
-            self.controller.open_target(name)
+            self.controller.targeting.open(name)
 
     def ask_project(self) -> None:
         """Open a project of the user's choice."""
@@ -215,7 +215,7 @@ class Commands(QObject):
 
         self.picker = SilhouettePicker(self.window, self.window.palette_)
         self.picker.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
-        self.picker.chosen.connect(self.controller.open_target)
+        self.picker.chosen.connect(self.controller.targeting.open)
         self.picker.show_below(self.window.target.buttons["library"])
 
     def show_guide(self) -> None:

@@ -6,7 +6,6 @@ an edit here, or a message.
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 from typing import Unpack
 
@@ -24,18 +23,16 @@ from kirigami_studio.gui.jobs import steps
 from kirigami_studio.gui.jobs.board import Board, Ears
 from kirigami_studio.gui.messages import Message, Tone
 from kirigami_studio.gui.preferring import Preferring
-from kirigami_studio.gui.reading import Reading
 from kirigami_studio.gui.shelf import Shelf
 from kirigami_studio.gui.showing import Showing
 from kirigami_studio.gui.storing import Storing
-from kirigami_studio.gui.tracing import Tracing
+from kirigami_studio.gui.targeting import Targeting
 from kirigami_studio.gui.views.gallery_model import Entry
 from kirigami_studio.pipeline.events import Result
 from kirigami_studio.project import edits
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.edits import Edit, FabricationChange, SettingsChange
 from kirigami_studio.project.history import History
-from kirigami_studio.target.outline import Outline
 
 
 class Controller(QObject):
@@ -60,8 +57,7 @@ class Controller(QObject):
         self.comparing = Comparing(self.board, shelf, self)
         self.fabricating = Fabricating(lambda: self.document, self)
         self.cutting = Cutting(self.board, self)
-        self.tracing = Tracing(self.board, self)
-        self.reading = Reading(self.board, self.tracing, self)
+        self.targeting = Targeting(self.board, lambda: self.document, self)
         self.storing = Storing(self.board, self)
         self.preferring = Preferring(self)
         self._connect()
@@ -77,17 +73,17 @@ class Controller(QObject):
         for part in (self.finishing, self.fabricating):
             part.edited.connect(self._apply)
         self.fabricating.refused.connect(self._refuse)
-        self.reading.read.connect(self._take_read)
-        self.tracing.traced.connect(self._take_traced)
-        self.tracing.refused.connect(self.status)
-        self.tracing.settled.connect(self.end_drag)
+        self.targeting.replaced.connect(self._replace)
+        self.targeting.adjusted.connect(self._adjust)
+        self.targeting.begun.connect(self._begin)
+        self.targeting.settled.connect(self.end_drag)
         self.storing.saved.connect(self._saved)
         self.storing.opened.connect(self._opened)
         for message in (self.finishing.message, self.cutting.message, self.preferring.message):
             message.connect(self.message)
-        for status in (self.finishing.status, self.cutting.status, self.storing.status):
+        for status in (self.targeting.status, self.finishing.status, self.cutting.status, self.storing.status):
             status.connect(self.status)
-        parts = (self.showing, self.finishing, self.comparing, self.reading, self.storing)
+        parts = (self.showing, self.finishing, self.comparing, self.targeting, self.storing)
         for failed in (source.failed for source in parts):
             failed.connect(self._tell_failure)
 
@@ -127,55 +123,9 @@ class Controller(QObject):
         if isinstance(report, tuple):
             self.variants_known.emit(report)
 
-    # target --------------------------------------------------------------------------------------------------------
-
-    def open_target(self, source: str, first: bool = False) -> None:
-        """Read a file, or a silhouette of the library by name."""
-        self.status.emit(f"Reading {Path(source).name} …")
-        self.reading.start(source, first)
-
     def start_with(self, source: str) -> None:
         """Read the first target; it is where the history starts, not a change to be undone or saved."""
-        self.open_target(source, first=True)
-
-    def change_threshold(self, threshold: float | None) -> None:
-        """Trace the target's picture again at another grey level, 0..1; None for the automatic one."""
-        picture = self.tracing.picture_of(self.document.target)
-        if picture is not None:
-            self.tracing.retrace(picture, threshold)
-
-    def reshape(self, edit: Edit) -> None:
-        """Take an edit that the drawing board made of the target."""
-        self._stop_design()
-        self._apply(edit)
-        self.status.emit(f"{edit.label}.")
-
-    def clear_target(self) -> None:
-        """Start over with an empty target."""
-        document = self.document
-        if document.target is not None:
-            empty = Document(settings=document.settings, fabrication=document.fabrication)
-            self._stop_design()
-            self._apply(Edit("Clear target", empty))
-            self.status.emit("Target cleared. Undo brings it back.")
-
-    def _take_traced(self, outline: Outline) -> None:
-        self.run.abandon()
-        self._apply(edits.edit_target(self.document, outline, "Change threshold"))
-        self.status.emit(f"{len(outline.points)} points at this threshold.")
-
-    def _take_target(self, outline: Outline) -> None:
-        self._stop_design()
-        self._apply(edits.set_target(self.document, outline))
-        self.status.emit(f"Target: {outline.name}. Press Generate (Ctrl+G) to design a sheet for it.")
-
-    def _take_read(self, outline: Outline, first: bool) -> None:
-        if first and self.document == self.preferring.new_document():
-            self.history.restart(replace(self.document, target=outline))
-            self._show()
-            self.status.emit(f"Target: {outline.name}. Press Generate (Ctrl+G), or choose another target.")
-        else:
-            self._take_target(outline)
+        self.targeting.start_with(source, self.preferring.new_document())
 
     # settings ------------------------------------------------------------------------------------------------------
 
@@ -353,12 +303,23 @@ class Controller(QObject):
 
     def _stop_design(self) -> None:
         """Another document comes: what is still on its way belongs to the old one."""
-        self.reading.stop()
-        self.tracing.stop()
+        self.targeting.stop()
         self.finishing.stop()
         self.run.abandon()
 
     # telling the views ---------------------------------------------------------------------------------------------
+
+    def _begin(self, document: Document) -> None:
+        self.history.restart(document)
+        self._show()
+
+    def _replace(self, edit: Edit) -> None:
+        self._stop_design()
+        self._apply(edit)
+
+    def _adjust(self, edit: Edit) -> None:
+        self.run.abandon()
+        self._apply(edit)
 
     def _apply(self, edit: Edit) -> None:
         before = self.document

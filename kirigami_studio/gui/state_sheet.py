@@ -188,7 +188,7 @@ class StateSheet(Session):
         draw.ellipse((90, 60, 310, 240), fill=60)
         draw.ellipse((40, 110, 150, 190), fill=150)
         page.save(path)
-        self.window.controller.open_target(str(path))
+        self.window.controller.targeting.open(str(path))
         self.until(lambda: self.window.target.threshold.isVisible(), "the picture was not read")
 
     def messages(self) -> None:

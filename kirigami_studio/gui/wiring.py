@@ -39,14 +39,14 @@ class Wiring(QObject):
         window, controller = self.window, self.controller
         window.target.open_wanted.connect(self.commands.ask_target)
         window.target.wants_silhouette.connect(self.commands.show_library)
-        window.target.clear_wanted.connect(controller.clear_target)
+        window.target.clear_wanted.connect(controller.targeting.clear)
         window.target.view.file_dropped.connect(self.commands.take_file)
         window.target.view.content_dropped.connect(self.commands.pasting.take)
         self._connect_editor()
         window.target.view.hint.connect(lambda text: window.says.setText(text) if text else None)
-        window.target.threshold.changed.connect(controller.change_threshold)
-        window.target.threshold.automatic_wanted.connect(lambda: controller.change_threshold(None))
-        window.target.threshold.edited.connect(controller.tracing.end_drag)
+        window.target.threshold.changed.connect(controller.targeting.change_threshold)
+        window.target.threshold.automatic_wanted.connect(lambda: controller.targeting.change_threshold(None))
+        window.target.threshold.edited.connect(controller.targeting.tracing.end_drag)
         window.settings.changed.connect(lambda changes: controller.change_settings(**changes))
         window.settings.edited.connect(controller.end_drag)
         window.run.generate_wanted.connect(controller.generate)
@@ -75,7 +75,7 @@ class Wiring(QObject):
         window.target.refine.previewed.connect(reshaping.preview)
         window.target.refine.refined.connect(reshaping.refine)
         window.target.refine.width_wanted.connect(reshaping.resize)
-        reshaping.edited.connect(controller.reshape)
+        reshaping.edited.connect(controller.targeting.reshape)
         reshaping.refused.connect(controller.refuse)
         reshaping.previewed.connect(window.target.view.show_preview)
         reshaping.restarted.connect(window.target.refine.restart)
@@ -106,7 +106,7 @@ class Wiring(QObject):
         self._shown = document
         moved = everything or document.target is not before.target
         if moved:
-            window.target.show_target(document.target, self.controller.tracing.picture_of(document.target))
+            window.target.show_target(document.target, self.controller.targeting.tracing.picture_of(document.target))
             self.reshaping.follow()
             has_target = document.target is not None
             window.run.show_ready(has_target)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
-from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.evaluate.candidate import Candidate, Origin
 from kirigami_studio.evaluate.score import evaluate_many
 from kirigami_studio.evaluate.trimming import KEEP
 from kirigami_studio.foundation.errors import KirigamiError
@@ -89,7 +89,7 @@ def _polished(request: Request, task: Polish, stopped: Callable[[], bool]) -> An
             stopped,
             least_panel=request.least_panel,
         )
-    (better,) = scored(request, [fit.field], candidate.index, fitted=True)
+    (better,) = scored(request, [fit.field], candidate.index, candidate.origin, fitted=True)
     better = replace(better, drawn=candidate.drawn or candidate.field)
     return Answer(better if rank_key(better) < rank_key(candidate) else None, fit.evaluations + 1)
 
@@ -106,7 +106,7 @@ def _searched(request: Request, task: Search, stopped: Callable[[], bool]) -> An
             PREFERENCES[request.prefer],
             request.least_panel,
         )
-    (found,) = scored(request, [fits[0].field], task.index, fitted=True)
+    (found,) = scored(request, [fits[0].field], task.index, Origin.SEARCHED, fitted=True)
     return Answer(found, fits[0].evaluations + 1)
 
 
@@ -123,11 +123,18 @@ def trimmed(
     return Answer(replace(candidate, trim=cover.trim), cover.fit.evaluations + 1)
 
 
-def scored(request: Request, fields: Sequence[RatioField], first: int, *, fitted: bool = False) -> list[Candidate]:
+def scored(
+    request: Request,
+    fields: Sequence[RatioField],
+    first: int,
+    origin: Origin = Origin.SAMPLED,
+    *,
+    fitted: bool = False,
+) -> list[Candidate]:
     """Decode fields exactly and score them against the request's target; their numbers count up from ``first``."""
     with one_blas_thread():
         scores = evaluate_many([deploy(field) for field in fields], request.target, request.phi)
     return [
-        Candidate(field, score, request.seed, first + place, polished=fitted)
+        Candidate(field, score, request.seed, first + place, polished=fitted, variant=request.variant, origin=origin)
         for place, (field, score) in enumerate(zip(fields, scores, strict=True))
     ]

@@ -7,7 +7,7 @@ import json
 
 import numpy as np
 
-from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.evaluate.candidate import Candidate, Origin
 from kirigami_studio.evaluate.feasibility import Contact
 from kirigami_studio.evaluate.score import Score
 from kirigami_studio.evaluate.similarity import Similarity
@@ -15,9 +15,9 @@ from kirigami_studio.evaluate.trimming import Trim, trim
 from kirigami_studio.foundation.errors import ProjectError
 from kirigami_studio.lattice.deployment import check_phi, deploy
 from kirigami_studio.lattice.ratio_field import FloatArray, RatioField
-from kirigami_studio.project.document import Document
+from kirigami_studio.project.document import Document, Mark, Void
 from kirigami_studio.project.fabrication_record import fabrication_json, fabrication_of
-from kirigami_studio.project.json_record import Record, read_json
+from kirigami_studio.project.json_record import Record, one_of, read_json
 from kirigami_studio.project.migrations import Members
 from kirigami_studio.project.settings import DesignSettings
 from kirigami_studio.target.outline import Outline
@@ -47,6 +47,8 @@ def encode(document: Document) -> dict[str, bytes]:
         "candidates": [_candidate_json(entry) for entry in document.candidates],
         "chosen": document.chosen,
         "provenance": dict(sorted(document.provenance.items())),
+        "marks": [mark.value for mark in document.marks],
+        "locked": [list(void) for void in sorted(document.locked)],
     }
     members = {DESIGN: json.dumps(design, indent=1, allow_nan=False).encode()}
     drawn = [entry.drawn for entry in document.candidates if entry.drawn is not None]
@@ -97,7 +99,16 @@ def decode(members: Members) -> Document:
         chosen=design.whole("chosen") if design.holds("chosen") else None,
         fabrication=fabrication_of(design.record("fabrication")),
         provenance=design.texts("provenance"),
+        marks=tuple(one_of(Mark, name) for name in design.list("marks")),
+        locked=frozenset(_void(entry) for entry in design.list("locked")),
     )
+
+
+def _void(entry: object) -> Void:
+    if not isinstance(entry, list) or len(entry) != 2:
+        raise ProjectError(f"{DESIGN}: {entry!r} is no void")
+    void = Record(dict(zip(("row", "column"), entry, strict=True)), f"{DESIGN}.locked")
+    return void.whole("row"), void.whole("column")
 
 
 def _outline_json(outline: Outline) -> dict[str, object]:
@@ -135,6 +146,8 @@ def _candidate_json(entry: Candidate) -> dict[str, object]:
         "seed": entry.seed,
         "index": entry.index,
         "polished": entry.polished,
+        "variant": entry.variant,
+        "origin": entry.origin.value,
         "drawn": entry.drawn is not None,
         "score": entry.score.to_json(),
         # What was cut off follows from these; it is cut again on reading.
@@ -153,6 +166,8 @@ def _candidate(record: Record, field: RatioField, drawn: RatioField | None, targ
         polished=record.flag("polished"),
         drawn=drawn,
         trim=_trim(record.record("trim"), target) if record.holds("trim") and target is not None else None,
+        variant=record.text("variant"),
+        origin=one_of(Origin, record.text("origin")),
     )
 
 

@@ -4,12 +4,24 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from enum import Enum
 from types import MappingProxyType
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.errors import ProjectError
 from kirigami_studio.project.settings import DesignSettings, FabricationSettings
 from kirigami_studio.target.outline import Outline
+
+#: A void by its row and column.
+Void = tuple[int, int]
+
+
+class Mark(Enum):
+    """What a person thinks of a candidate."""
+
+    NONE = "none"
+    PINNED = "pinned"
+    REJECTED = "rejected"
 
 
 def _nothing_known() -> Mapping[str, str]:
@@ -26,17 +38,22 @@ class Document:
     settings : DesignSettings
         For the next run; the candidates may stem from an earlier one.
     candidates : tuple of Candidate
-        Of one run, all of one grid, best first.
+        Of one run or of several runs for one target, all of one grid, best first.
     chosen : int or None
         Index of the candidate on the stage.
     fabrication : FabricationSettings
     provenance : mapping of str to str, read-only
         Where the candidates come from: version of the program, name and hash of the model.
+    marks : tuple of Mark
+        One for each candidate, pinned, rejected or neither; left out, none of them has any.
+    locked : frozenset of (row, column)
+        Voids whose ratio a change by hand leaves as it is.
 
     Raises
     ------
     ProjectError
-        Candidates without a target or of different grids, or a choice that is not among them.
+        Candidates without a target or of different grids, a choice that is not among them, more or fewer marks than
+        candidates, or a locked void that their grid does not have.
     """
 
     target: Outline | None = None
@@ -45,6 +62,8 @@ class Document:
     chosen: int | None = None
     fabrication: FabricationSettings = field(default_factory=FabricationSettings)
     provenance: Mapping[str, str] = field(default_factory=_nothing_known, hash=False)
+    marks: tuple[Mark, ...] = ()
+    locked: frozenset[Void] = frozenset()
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "candidates", tuple(self.candidates))
@@ -58,6 +77,18 @@ class Document:
         count = len(self.candidates)
         if self.chosen is not None and not (isinstance(self.chosen, int) and 0 <= self.chosen < count):
             raise ProjectError(f"Design number {self.chosen} was chosen, but the project holds {count}.")
+        self._check_marks(count)
+
+    def _check_marks(self, count: int) -> None:
+        marks = tuple(self.marks) or (Mark.NONE,) * count
+        if len(marks) != count:
+            raise ProjectError(f"Every design needs one mark, got {len(marks)} marks for {count} designs.")
+        object.__setattr__(self, "marks", marks)
+        object.__setattr__(self, "locked", frozenset(self.locked))
+        rows, columns = self.candidates[0].field.ratio.shape if self.candidates else (0, 0)
+        outside = sorted(void for void in self.locked if not (0 <= void[0] < rows and 0 <= void[1] < columns))
+        if outside:
+            raise ProjectError(f"Void {outside[0]} is locked, but the designs have {rows} x {columns} voids.")
 
     @property
     def candidate(self) -> Candidate | None:

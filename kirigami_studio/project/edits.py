@@ -92,13 +92,18 @@ _NAMES = {
 
 def set_target(document: Document, target: Outline) -> Edit:
     """Take another target; the designs of the old one go."""
-    changed = replace(document, target=target, candidates=(), chosen=None, provenance={})
+    changed = without_designs(document, target)
     return Edit(f"Set target {target.name}", changed)
+
+
+def without_designs(document: Document, target: Outline | None) -> Document:
+    """The document with another target; the designs of the old one, and what was said of them, go."""
+    return replace(document, target=target, candidates=(), chosen=None, provenance={}, marks=(), locked=frozenset())
 
 
 def edit_target(document: Document, target: Outline, gesture: str) -> Edit:
     """Reshape the target by a gesture such as "Rotate target"; the steps of one drag undo together."""
-    changed = replace(document, target=target, candidates=(), chosen=None, provenance={})
+    changed = without_designs(document, target)
     return Edit(gesture, changed, merge_key=f"target:{gesture}")
 
 
@@ -133,6 +138,8 @@ def set_candidates(
         candidates=found,
         chosen=0 if found else None,
         provenance=provenance,
+        marks=(),
+        locked=frozenset(),
     )
     count = len(found)
     return Edit(f"Generate {count} design{'' if count == 1 else 's'}", changed)

@@ -2,15 +2,10 @@
 
 from __future__ import annotations
 
-from enum import Enum
-from typing import TypeVar
-
 from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions, CutOrder
 from kirigami_studio.foundation.errors import ProjectError
-from kirigami_studio.project.json_record import Record
+from kirigami_studio.project.json_record import Record, one_of
 from kirigami_studio.project.settings import FabricationSettings
-
-Choice = TypeVar("Choice", bound=Enum)
 
 
 def fabrication_json(settings: FabricationSettings) -> dict[str, object]:
@@ -49,8 +44,8 @@ def fabrication_of(record: Record) -> FabricationSettings:
         connector_mm=record.number("connector_mm") if record.holds("connector_mm") else None,
         kerf_mm=record.number("kerf_mm") if record.holds("kerf_mm") else None,
         options=CutOptions(
-            style=_one_of(ConnectorStyle, options.text("style")),
-            order=_one_of(CutOrder, options.text("order")),
+            style=one_of(ConnectorStyle, options.text("style")),
+            order=one_of(CutOrder, options.text("order")),
             tabs=options.whole("tabs"),
             tab_mm=options.number("tab_mm"),
             hinge_mm=tuple(_hinge_width(entry) for entry in options.list("hinge_mm")),
@@ -59,13 +54,6 @@ def fabrication_of(record: Record) -> FabricationSettings:
         profile=record.text("profile"),
         dxf_version=record.text("dxf_version"),
     )
-
-
-def _one_of(kind: type[Choice], name: str) -> Choice:
-    try:
-        return kind(name)
-    except ValueError:
-        raise ProjectError(f"{name!r} is none of {', '.join(str(choice.value) for choice in kind)}") from None
 
 
 def _hinge(entry: object) -> int:

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import json
 import math
-from typing import Any, NoReturn
+from enum import Enum
+from typing import Any, NoReturn, TypeVar
 
 from kirigami_studio.foundation.errors import ProjectError
 
 LARGEST_NUMBER = 1e300
 _NOT_GIVEN = object()
+
+Choice = TypeVar("Choice", bound=Enum)
 
 
 def read_json(content: bytes, place: str) -> object:
@@ -116,3 +119,17 @@ class Record:
 
 def _fits(value: float) -> bool:
     return abs(value) <= LARGEST_NUMBER and not math.isnan(value)
+
+
+def one_of(kind: type[Choice], name: object) -> Choice:
+    """The member of an enumeration that goes by this value.
+
+    Raises
+    ------
+    ProjectError
+        There is none.
+    """
+    try:
+        return kind(name)
+    except ValueError:
+        raise ProjectError(f"{name!r} is none of {', '.join(str(choice.value) for choice in kind)}") from None

@@ -99,7 +99,7 @@ def until(qtbot: QtBot) -> Callable[[Callable[[], bool]], None]:
 @pytest.fixture
 def heart(window: MainWindow, until: Callable[[Callable[[], bool]], None]) -> MainWindow:
     """A studio with the heart as target."""
-    window.controller.open_target("heart")
+    window.controller.targeting.open("heart")
     until(lambda: window.target.view.outline is not None)
     return window
 

@@ -373,7 +373,7 @@ def test_that_a_slider_goes_back_to_what_it_started_from(heart: MainWindow) -> N
 
 
 def test_that_a_half_is_mirrored_and_the_whole_is_flipped(heart: MainWindow, until: Until) -> None:
-    heart.controller.open_target("leaf")
+    heart.controller.targeting.open("leaf")
     until(lambda: heart.controller.document.target == silhouettes.load("leaf"))
     heart.target.set_editing(True)
     halves = {}

@@ -63,7 +63,7 @@ def test_that_another_target_ends_the_run_for_the_old_one(heart: MainWindow, unt
     heart.settings.candidates.setValue(400)
     heart.actions_["generate"].trigger()
     until(lambda: heart.gallery.view.model_.rowCount() > 0)
-    heart.controller.open_target("star")
+    heart.controller.targeting.open("star")
     until(lambda: heart.controller.document.target is not None and heart.controller.document.target.name == "star")
     assert not heart.controller.running
     until(lambda: not heart.controller.board.busy)

@@ -107,7 +107,7 @@ def test_that_a_bad_file_leads_to_a_message_and_changes_nothing(
     path = tmp_path / name
     path.write_bytes(content)
     before = heart.controller.document
-    heart.controller.open_target(str(path))
+    heart.controller.targeting.open(str(path))
     until(lambda: heart.messages.isVisible())
     message = heart.messages.messages[-1]
     assert message.tone is Tone.ERROR and message.sentence.endswith(".") and "Traceback" not in message.sentence
@@ -120,7 +120,7 @@ def test_that_messages_are_kept_until_closed_and_tell_details_on_demand(
 ) -> None:
     for name in ("no such thing", "nor this one"):
         count = len(heart.messages.messages)
-        heart.controller.open_target(name)
+        heart.controller.targeting.open(name)
         until(lambda count=count: len(heart.messages.messages) > count)  # type: ignore[misc]
     bar = heart.messages
     assert "nor this one" in bar.sentence.text() and bar.position.text() == "2 of 2"

@@ -34,7 +34,7 @@ def picture(tmp_path: Path) -> Path:
 
 @pytest.fixture
 def traced(window: MainWindow, picture: Path, until: Until) -> MainWindow:
-    window.controller.open_target(str(picture))
+    window.controller.targeting.open(str(picture))
     until(lambda: window.target.threshold.isVisible())
     return window
 
@@ -100,7 +100,7 @@ def test_that_a_threshold_without_shape_keeps_the_target_and_says_so(traced: Mai
 def test_that_a_new_target_ends_the_tracing_of_the_old_one(traced: MainWindow, until: Until) -> None:
     for value in (120, 140, 160):
         traced.target.threshold.slider.setValue(value)
-    traced.controller.open_target("heart")
+    traced.controller.targeting.open("heart")
     until(lambda: traced.controller.document.target is not None and traced.controller.document.target.name == "heart")
     until(lambda: not traced.controller.board.busy)
     assert traced.controller.document.target is not None and traced.controller.document.target.name == "heart"
@@ -110,7 +110,7 @@ def test_that_a_new_target_ends_the_tracing_of_the_old_one(traced: MainWindow, u
 def test_that_a_drawing_wins_over_a_file_that_is_still_being_read(
     window: MainWindow, picture: Path, until: Until
 ) -> None:
-    window.controller.open_target(str(picture))
+    window.controller.targeting.open(str(picture))
     corners = np.array([[0.0, 0.0], [3.0, 0.0], [1.0, 2.0]])
     window.wiring.reshaping.take(Change("Draw polygon", lambda: Placed.from_ring(corners, "polygon")))
     until(lambda: not window.controller.board.busy)
@@ -149,6 +149,6 @@ def test_that_the_picture_stays_while_it_is_drawn_over_and_goes_with_another_tar
     traced.target.refine.sliders["smooth"].setValue(30)
     assert traced.target.view.underlay is not None and not traced.target.threshold.isVisible()
     shown = traced.target.view.grab().toImage()
-    traced.controller.open_target("heart")
+    traced.controller.targeting.open("heart")
     until(lambda: traced.controller.document.target is not None and traced.controller.document.target.name == "heart")
     assert traced.target.view.underlay is None and traced.target.view.grab().toImage() != shown

@@ -9,11 +9,12 @@ import zipfile
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
-from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.evaluate.candidate import Candidate, Origin
 from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions, CutOrder
 from kirigami_studio.foundation.errors import ExportError, ProjectError
@@ -22,7 +23,7 @@ from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.polish.covering import fit_cover
 from kirigami_studio.polish.levenberg import polish
 from kirigami_studio.project import store
-from kirigami_studio.project.document import Document
+from kirigami_studio.project.document import Document, Mark
 from kirigami_studio.project.migrations import MIGRATIONS, Members, migrate
 from kirigami_studio.project.settings import FabricationSettings
 from kirigami_studio.target.outline import Outline
@@ -86,7 +87,7 @@ def test_that_equal_documents_give_equal_bytes(document: Document, tmp_path: Pat
 
 def test_that_the_manifest_names_format_and_versions(document: Document) -> None:
     manifest = json.loads(members_of(document)["manifest.json"])
-    assert manifest["version"] == 3
+    assert manifest["version"] == 4
     assert manifest["app_version"]
 
 
@@ -116,9 +117,56 @@ def test_that_another_kind_of_file_is_a_sentence(content: bytes, tmp_path: Path)
 
 def test_that_a_newer_project_asks_for_an_update(document: Document, tmp_path: Path) -> None:
     members = members_of(document)
-    members["manifest.json"] = members["manifest.json"].replace(b'"version": 3', b'"version": 4')
-    with pytest.raises(ProjectError, match=r"newer .*format 4.* up to 3.*update the program\.$"):
+    members["manifest.json"] = members["manifest.json"].replace(b'"version": 4', b'"version": 5')
+    with pytest.raises(ProjectError, match=r"newer .*format 5.* up to 4.*update the program\.$"):
         store.load(write_members(tmp_path / "newer.kiri", members))
+
+
+def forget_marks(design: dict[str, Any]) -> None:
+    """Leave out what came with format 4."""
+    del design["marks"], design["locked"]
+    for candidate in design["candidates"]:
+        del candidate["variant"], candidate["origin"]
+
+
+def test_that_marks_locks_and_origins_come_back(document: Document, tmp_path: Path) -> None:
+    origins = zip(document.candidates, (Origin.SAMPLED, Origin.RESAMPLED, Origin.EDITED), strict=True)
+    candidates = tuple(replace(candidate, variant="balanced", origin=origin) for candidate, origin in origins)
+    marks, locked = (Mark.PINNED, Mark.NONE, Mark.REJECTED), frozenset({(0, 4), (3, 0)})
+    marked = replace(document, candidates=candidates, marks=marks, locked=locked)
+    store.save(marked, tmp_path / "marked.kiri")
+    assert store.load(tmp_path / "marked.kiri") == marked
+
+
+def test_that_a_project_of_the_third_format_has_no_marks(document: Document, tmp_path: Path) -> None:
+    members = members_of(replace(document, provenance={**document.provenance, "search": "1"}))
+    design = json.loads(members["design.json"])
+    forget_marks(design)
+    members["design.json"] = json.dumps(design).encode()
+    members["manifest.json"] = members["manifest.json"].replace(b'"version": 4', b'"version": 3')
+    opened = store.load(write_members(tmp_path / "old.kiri", members))
+    assert opened.marks == (Mark.NONE,) * 3 and opened.locked == frozenset()
+    assert [candidate.variant for candidate in opened.candidates] == ["prior"] * 3
+    assert [candidate.origin for candidate in opened.candidates] == [Origin.SAMPLED, Origin.SAMPLED, Origin.SEARCHED]
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "said"),
+    [
+        ("marks", ["none"], "one mark, got 1 marks for 3"),
+        ("marks", ["none", "liked", "none"], "'liked' is none of none, pinned, rejected"),
+        ("locked", [[4, 0]], r"Void \(4, 0\) is locked, but the designs have 4 x 5"),
+        ("locked", [[0.5, 0]], "whole number"),
+        ("locked", [3], "3 is no void"),
+    ],
+)
+def test_that_impossible_marks_are_a_sentence(
+    document: Document, tmp_path: Path, name: str, value: list[object], said: str
+) -> None:
+    members = members_of(document)
+    members["design.json"] = json.dumps({**json.loads(members["design.json"]), name: value}).encode()
+    with pytest.raises(ProjectError, match=said):
+        store.load(write_members(tmp_path / "odd.kiri", members))
 
 
 def test_that_a_project_of_the_first_format_opens_with_the_usual_preferences(
@@ -129,11 +177,12 @@ def test_that_a_project_of_the_first_format_opens_with_the_usual_preferences(
     del design["settings"]["prefer"], design["settings"]["search"]
     for name in ("options", "profile", "dxf_version"):
         del design["fabrication"][name]
+    forget_marks(design)
     for candidate in design["candidates"]:
         del candidate["drawn"], candidate["trim"]
     members["design.json"] = json.dumps(design).encode()
     del members["drawn.npy"]
-    members["manifest.json"] = members["manifest.json"].replace(b'"version": 3', b'"version": 1')
+    members["manifest.json"] = members["manifest.json"].replace(b'"version": 4', b'"version": 1')
     opened = store.load(write_members(tmp_path / "old.kiri", members))
     usual = replace(document.settings, prefer="balanced", search=0)
     bare = tuple(replace(candidate, drawn=None) for candidate in document.candidates)
@@ -146,8 +195,9 @@ def test_that_a_project_of_the_second_format_is_cut_as_before(document: Document
     design = json.loads(members["design.json"])
     for name in ("options", "profile", "dxf_version"):
         del design["fabrication"][name]
+    forget_marks(design)
     members["design.json"] = json.dumps(design).encode()
-    members["manifest.json"] = members["manifest.json"].replace(b'"version": 3', b'"version": 2')
+    members["manifest.json"] = members["manifest.json"].replace(b'"version": 4', b'"version": 2')
     assert store.load(write_members(tmp_path / "old.kiri", members)) == document
 
 
