@@ -19,7 +19,7 @@ DOMAIN = "kirigami_studio"
 FOLDER_VARIABLE = "KIRIGAMI_STUDIO_LOCALE"
 
 
-def tr(text: str, **values: object) -> str:
+def tr(text: str, /, **values: object) -> str:
     """Return a sentence in the user's language.
 
     Parameters
@@ -34,7 +34,7 @@ def tr(text: str, **values: object) -> str:
     return found.format(**values) if values else found
 
 
-def tr_n(one: str, many: str, count: int, **values: object) -> str:
+def tr_n(one: str, many: str, count: int, /, **values: object) -> str:
     """Return a sentence about ``count`` things, which both texts may name as ``{count}``."""
     return _catalogue().ngettext(one, many, count).format(count=count, **values)
 
