@@ -47,8 +47,10 @@ run: setup
 	  QT_QPA_PLATFORM=offscreen $(BIN)/python -m kirigami_studio.gui.offscreen_session --out out; \
 	fi
 
+# File by file in two processes of one thread each; what watches a clock afterwards, alone.
 test: lint
-	QT_QPA_PLATFORM=offscreen $(BIN)/python -m pytest
+	OMP_NUM_THREADS=1 QT_QPA_PLATFORM=offscreen $(BIN)/python -m pytest -n 2 --dist loadfile -m "not clock"
+	QT_QPA_PLATFORM=offscreen $(BIN)/python -m pytest -m clock
 
 quick: setup
 	HYPOTHESIS_PROFILE=quick $(BIN)/python -m pytest -p no:pytest-qt -p no:benchmark \

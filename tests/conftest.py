@@ -27,6 +27,16 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--update-goldens", action="store_true", help="write golden files instead of comparing with them")
 
 
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Mark what times something: ``performance`` but for figures of quality, and whatever asks for a benchmark."""
+    performance = Path(__file__).parent / "performance"
+    for item in items:
+        path = Path(item.path)
+        timed = performance in path.parents and not path.stem.endswith("_quality")
+        if timed or "benchmark" in getattr(item, "fixturenames", ()):
+            item.add_marker(pytest.mark.clock)
+
+
 @pytest.fixture(autouse=True)
 def own_materials(tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyPatch) -> Path:
     """An empty folder of own materials, so that no test sees or touches those of whoever runs it."""

@@ -15,6 +15,7 @@ from kirigami_studio.target.silhouettes import load
 pytestmark = pytest.mark.torch
 
 
+@pytest.mark.clock
 def test_that_loads_pass_the_cache_by_and_scoring_comes_on_top_of_sampling() -> None:
     load_model("prior")
     began = time.perf_counter()

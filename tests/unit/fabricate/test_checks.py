@@ -75,6 +75,7 @@ def test_that_a_connector_below_what_the_material_bears_is_a_warning(make_design
     assert [problem.severity for problem in report.problems] == [Severity.WARNING]
 
 
+@pytest.mark.clock
 def test_that_planning_and_checking_576_voids_takes_below_two_seconds(make_design: MakeDesign) -> None:
     design = make_design(24, 24)
     start = time.process_time()

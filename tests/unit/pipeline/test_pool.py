@@ -122,6 +122,7 @@ def test_that_one_core_is_left_to_one_process(request_for_heart: Request) -> Non
     assert gains(Pool(2), Request(load("heart"), k=32, polish=15))
 
 
+@pytest.mark.clock
 def test_that_leaving_a_batch_stops_its_workers_within_a_step_and_keeps_the_pool(
     pool: Pool, request_for_heart: Request, tasks: list[Task], expected: dict[int, Answer]
 ) -> None:
@@ -143,6 +144,7 @@ def test_that_leaving_a_batch_stops_its_workers_within_a_step_and_keeps_the_pool
     assert answered(pool, request_for_heart, tasks) == expected
 
 
+@pytest.mark.clock
 def test_that_a_budget_brings_the_best_so_far_of_fits_under_way(pool: Pool, request_for_heart: Request) -> None:
     pool.start()
     wait_until_ready(pool)
