@@ -323,9 +323,9 @@ class Controller(QObject):
 
     def _apply(self, edit: Edit) -> None:
         before = self.document
-        if not self.history.apply(edit):
-            return
-        self._show(before)
+        if self.history.apply(edit):
+            self.status.emit(f"{edit.label}.")
+            self._show(before)
 
     def _show(self, before: Document | None = None) -> None:
         document = self.document

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
+from itertools import pairwise
 from pathlib import Path
 
 import ezdxf
 import pytest
+from ezdxf.math import Vec3
+from ezdxf.path import make_path
 from PySide6.QtCore import Qt
 from pytestqt.qtbot import QtBot
 
 from kirigami_studio.gui.main_window import MainWindow
 from kirigami_studio.gui.messages import Tone
+from kirigami_studio.gui.readable import readable_length
 
 Until = Callable[[Callable[[], bool]], None]
 LEFT = Qt.MouseButton.LeftButton
@@ -82,3 +86,24 @@ def test_that_export_without_a_design_says_what_to_do_first(heart: MainWindow) -
     assert not heart.fabrication.export.isEnabled() and not heart.actions_["export"].isEnabled()
     heart.commands.export()
     assert "generate one first" in heart.messages.messages[-1].sentence
+
+
+def test_that_slots_are_summed_up_with_the_length_that_their_file_has(
+    designed: MainWindow, until: Until, tmp_path: Path
+) -> None:
+    panel, said = designed.fabrication, designed.fabrication.numbers["length"]
+    open_cuts = said.text()
+    designed.controller.change_fabrication(profile="slots")
+    until(lambda: said.text() != open_cuts)
+    designed.controller.export(tmp_path / "slots.dxf")
+    until(lambda: designed.commands.report is not None)
+    entities = ezdxf.readfile(tmp_path / "slots.dxf").modelspace()
+    drawn = sum(length(entity.flattening(0.001)) for entity in map(make_path, entities))
+    assert said.text() == readable_length(drawn)
+    assert open_cuts in said.toolTip()
+    assert panel.export.isEnabled()
+
+
+def length(vertices: Iterable[Vec3]) -> float:
+    points = list(vertices)
+    return sum(one.distance(other) for one, other in pairwise(points))

@@ -12,6 +12,7 @@ from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QDoubleSpinBox
 from pytestqt.qtbot import QtBot
 
+from kirigami_studio.fabricate.coupon import kerf_from_gaps
 from kirigami_studio.fabricate.material import library, presets
 from kirigami_studio.gui.dialogs.material_editor import MaterialEditor
 from kirigami_studio.gui.dialogs.material_form import NUMBERS, MaterialForm
@@ -124,3 +125,23 @@ def test_that_every_number_says_its_unit(editor: MaterialEditor) -> None:
         assert (
             box.suffix() == f" {number.unit}" and number.unit in box.toolTip() and number.unit in box.accessibleName()
         )
+
+
+def test_that_a_measured_coupon_sets_the_kerf(editor: MaterialEditor, qtbot: QtBot) -> None:
+    assert not editor.gaps.gaps.isEnabled(), "a preset cannot be changed"
+    press(editor, qtbot, "copy")
+    qtbot.keyClicks(editor.gaps.gaps, "0.29 0,31")
+    qtbot.mouseClick(editor.gaps.button, LEFT)
+    expected = kerf_from_gaps([0.29, 0.31])
+    assert f"{expected.kerf_mm:.3f}" in editor.says.text() and f"{expected.doubt_mm:.3f}" in editor.says.text()
+    press(editor, qtbot, "save")
+    assert library().materials[editor.chosen.key].kerf_mm == pytest.approx(expected.kerf_mm, abs=5e-4)
+
+
+@pytest.mark.parametrize(("typed", "said"), [("wide", "numbers of mm"), ("-1", "gap beside the comb")])
+def test_that_a_gap_that_cannot_be_is_a_sentence(editor: MaterialEditor, qtbot: QtBot, typed: str, said: str) -> None:
+    press(editor, qtbot, "copy")
+    before = editor.form.numbers["kerf_mm"].value()
+    qtbot.keyClicks(editor.gaps.gaps, typed)
+    qtbot.keyClick(editor.gaps.gaps, Qt.Key.Key_Return)
+    assert said in editor.says.text() and editor.form.numbers["kerf_mm"].value() == before

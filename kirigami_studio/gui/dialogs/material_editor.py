@@ -24,6 +24,7 @@ from PySide6.QtWidgets import (
 from kirigami_studio.fabricate import material_copies
 from kirigami_studio.fabricate.material import Library, Material, library
 from kirigami_studio.foundation.errors import KirigamiError
+from kirigami_studio.gui.dialogs.gap_row import GapRow
 from kirigami_studio.gui.dialogs.material_form import TEXTS, MaterialForm
 
 SIZE = QSize(760, 560)
@@ -54,6 +55,7 @@ class MaterialEditor(QDialog):
         for label in (self.state, self.says):
             label.setWordWrap(True)
         self.says.setObjectName("muted")
+        self.gaps = GapRow()
         self.author = QLineEdit()
         self.author.setAccessibleName("Measured by")
         self.author.setPlaceholderText("Measured by …")
@@ -84,6 +86,7 @@ class MaterialEditor(QDialog):
         pair.addWidget(self.buttons["delete"])
         left.addLayout(pair)
         left.addWidget(self.buttons["coupon"])
+        left.addWidget(self.gaps)
         right.addWidget(self.state)
         right.addWidget(scrolled, 1)
         right.addWidget(self.says)
@@ -102,6 +105,8 @@ class MaterialEditor(QDialog):
         self.list.currentItemChanged.connect(lambda *_: self._show())
         self.form.changed.connect(self._show_buttons)
         self.author.textChanged.connect(self._show_buttons)
+        self.gaps.measured.connect(self._take_kerf)
+        self.gaps.refused.connect(self.says.setText)
         for name, act in (
             ("copy", self.copy),
             ("delete", self.delete),
@@ -149,6 +154,11 @@ class MaterialEditor(QDialog):
         self.says.setText(f"{name!r} was deleted.")
         self.stock_changed.emit("")
 
+    def _take_kerf(self, kerf_mm: float, sentence: str) -> None:
+        """A coupon was measured; the form holds its kerf until it is saved."""
+        self.form.numbers["kerf_mm"].setValue(kerf_mm)
+        self.says.setText(sentence)
+
     def _edited(self) -> Material:
         """The chosen material with what the form says."""
         material, changes = self.chosen, self.form.changes()
@@ -192,6 +202,7 @@ class MaterialEditor(QDialog):
         self.buttons["delete"].setEnabled(own)
         self.buttons["save"].setEnabled(own and bool(self.form.changes()))
         self.author.setEnabled(own)
+        self.gaps.allow(own)
         self.buttons["calibrate"].setEnabled(own and bool(self.author.text().strip()))
 
     def _try(self, act: Callable[[], None]) -> None:

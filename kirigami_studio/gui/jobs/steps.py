@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.trimming import KEEP, LARGEST_KEEP
-from kirigami_studio.foundation.errors import Cancelled, UsageError
+from kirigami_studio.foundation.errors import Cancelled, ExportError, UsageError
 from kirigami_studio.gui.file_kinds import kind_of
 from kirigami_studio.gui.jobs.worker import Cancel
 from kirigami_studio.lattice.deployment import Deployment, deploy
@@ -47,11 +47,22 @@ class Decoded:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Planned:
-    """A cut plan and what its check found; ``removed_share`` (0..1) of the sheet was trimmed away."""
+    """A cut plan and what its check found.
+
+    Attributes
+    ----------
+    plan : CutPlan
+    report : Report
+    removed_share : float, 0..1
+        Share of the sheet that was trimmed away.
+    slots_mm : float or None
+        Cut length where the machine profile makes a closed slot of every slit; the plan knows that of open cuts.
+    """
 
     plan: CutPlan
     report: Report
     removed_share: float = 0.0
+    slots_mm: float | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -217,7 +228,22 @@ def planned(order: Order) -> Planned:
     trim = order.candidate.trim
     plan = plan_of(order.candidate, order.settings, order.deployment)
     report = check_plan(plan, phi=target_angle(order.candidate))
-    return Planned(plan, report, 0.0 if trim is None else trim.removed_share)
+    removed = 0.0 if trim is None else trim.removed_share
+    return Planned(plan, report, removed, _slots_length(plan, order.settings.profile))
+
+
+def _slots_length(plan: CutPlan, profile: str) -> float | None:
+    """Length of the file's cuts if it holds slots; None where it does not, or cannot, which exporting then explains."""
+    from kirigami_studio.export.profile import find_profile
+    from kirigami_studio.export.strokes import strokes_of
+
+    found = find_profile(profile)
+    if not found.slots:
+        return None
+    try:
+        return sum(stroke.length for stroke in strokes_of(plan, found))
+    except ExportError:
+        return None
 
 
 def exporting(order: Order, path: Path, cancel: Cancel) -> Iterator[Exported]:

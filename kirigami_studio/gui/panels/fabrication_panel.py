@@ -17,6 +17,7 @@ from PySide6.QtWidgets import (
 )
 
 from kirigami_studio.fabricate.material import library
+from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui import icons
 from kirigami_studio.gui.panels.card import Card, ScrolledWhenShort, captioned, compact, muted_label, tool_button
 from kirigami_studio.gui.panels.export_row import ExportRow
@@ -243,7 +244,7 @@ class FabricationPanel(Card):
         texts = {
             "size": readable_size(*plan.size_mm),
             "slits": f"{len(plan.paths)}",
-            "length": readable_length(plan.cut_length_mm),
+            "length": readable_length(planned.slots_mm or plan.cut_length_mm),
             "time": readable_range(plan.times.low, plan.times.high),
             "pieces": f"{report.pieces}",
             "ligament": f"{report.min_ligament_mm:.2f} mm",
@@ -251,6 +252,7 @@ class FabricationPanel(Card):
         for key, text in texts.items():
             self.numbers[key].setText(text)
         self.numbers["time"].setToolTip(told_times(plan.times))
+        self.numbers["length"].setToolTip(told_slots(planned))
         self._sum_up(texts, planned.removed_share)
         found = [*(problem.text for problem in report.problems), *plan.notes]
         self._warn("\n".join(found) if found else "The cut check found no problem.", calm=not found)
@@ -306,6 +308,18 @@ class FabricationPanel(Card):
             part.set_palette(palette)
         self.edit_materials.setIcon(icons.icon("material", palette))
         self._dress_fold()
+
+
+def told_slots(planned: Planned) -> str:
+    """What slots cost, where the machine profile asks for them."""
+    if planned.slots_mm is None:
+        return ""
+    length, factor = readable_length(planned.plan.cut_length_mm), planned.slots_mm / planned.plan.cut_length_mm
+    return tr(
+        "As closed slots {factor:.2f} times the open cuts of {length}; the time is that of open cuts.",
+        factor=factor,
+        length=length,
+    )
 
 
 def told_times(times: CutTimes) -> str:
