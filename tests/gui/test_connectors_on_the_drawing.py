@@ -15,6 +15,7 @@ from kirigami_studio.fabricate.slits import SHEET_EDGE
 from kirigami_studio.gui.main_window import MainWindow
 from kirigami_studio.gui.panels.cuts_page import CutsPage
 from kirigami_studio.gui.scene.hinge_rules import RULES
+from kirigami_studio.gui.views.hinge_drag import HingeDrag
 from kirigami_studio.project.settings import FabricationSettings
 
 Until = Callable[[Callable[[], bool]], None]
@@ -192,3 +193,59 @@ def test_that_hidden_connectors_take_no_clicks(cutting: MainWindow, qtbot: QtBot
     page.toggles[list(page.toggles)[1]].setChecked(False)
     qtbot.mouseClick(page.view, LEFT, pos=place(page, hinge))
     assert page.view.selected == frozenset()
+
+
+def drag(page: CutsPage, qtbot: QtBot, start: QPoint, way: QPoint, steps: int = 5) -> None:
+    qtbot.mousePress(page.view, LEFT, pos=start)
+    for step in range(1, steps + 1):
+        qtbot.mouseMove(page.view, start + way * step / steps)
+        page.view.gestures.move(QPointF(start + way * step / steps))
+    page.view.grab()
+
+
+def test_that_a_drag_makes_connectors_wider_and_is_one_undo_step(cutting: MainWindow, qtbot: QtBot) -> None:
+    page = cutting.stage.cuts
+    first, second = lonely(page, 2)
+    usual = float(page._plan.hinges.requested_mm[first])  # type: ignore[union-attr]
+    qtbot.mouseClick(page.view, LEFT, pos=place(page, first))
+    qtbot.mouseClick(page.view, LEFT, SHIFT, place(page, second))
+    drag(page, qtbot, place(page, first), QPoint(70, 0))
+    assert page.view.gestures.dragged_mm == pytest.approx(2 * usual, abs=0.01)
+    qtbot.mouseRelease(page.view, LEFT, pos=place(page, first) + QPoint(70, 0))
+    widths = dict(fabrication(cutting).options.hinge_mm)
+    assert widths.keys() == {first, second} and widths[second] == pytest.approx(2 * usual, abs=0.01)
+    assert page.view.gestures.dragged_mm is None and page.view.selected == {first, second}
+    drag(page, qtbot, place(page, second), QPoint(0, 70))
+    qtbot.mouseRelease(page.view, LEFT, pos=place(page, second) + QPoint(0, 70))
+    assert dict(fabrication(cutting).options.hinge_mm)[first] == pytest.approx(usual, abs=0.011)
+    cutting.actions_["undo"].trigger()
+    assert dict(fabrication(cutting).options.hinge_mm) == widths
+    cutting.actions_["undo"].trigger()
+    assert fabrication(cutting).options.hinge_mm == ()
+
+
+def test_that_a_click_on_one_of_many_selects_that_one(cutting: MainWindow, qtbot: QtBot) -> None:
+    page = cutting.stage.cuts
+    first, second = lonely(page, 2)
+    page.view.gestures.select(frozenset({first, second}))
+    qtbot.mouseClick(page.view, LEFT, pos=place(page, second))
+    assert page.view.selected == {second} and fabrication(cutting).options.hinge_mm == ()
+
+
+def test_that_a_double_click_cuts_a_connector_through_and_brings_it_back(
+    cutting: MainWindow, qtbot: QtBot, until: Until
+) -> None:
+    page = cutting.stage.cuts
+    (hinge,) = lonely(page, 1)
+    frame = page.view.frame()
+    for removed in ((hinge,), ()):
+        qtbot.mouseDClick(page.view, LEFT, pos=place(page, hinge))
+        assert fabrication(cutting).options.removed == removed
+        until(lambda removed=removed: page._plan is not None and page._plan.options.removed == removed)  # type: ignore[misc]
+    assert page.view.frame() == frame, "a double click beside all connectors shows everything, one on them does not"
+
+
+@pytest.mark.parametrize(("fine", "way", "width"), [(False, 1e5, 20.0), (False, -1e5, 0.02), (True, 70.0, 0.429)])
+def test_that_a_drag_stays_within_the_widths_that_there_are(fine: bool, way: float, width: float) -> None:
+    held = HingeDrag(0, QPointF(0.0, 0.0), 0.4)
+    assert held.width_at(QPointF(way, 0.0), fine) == pytest.approx(width, abs=1e-9)

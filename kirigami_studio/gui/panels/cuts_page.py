@@ -69,6 +69,9 @@ class CutsPage(QWidget):
         view.selection_changed.connect(lambda chosen: hinges.show_selection(self._plan, chosen))
         view.typed.connect(hinges.type_width)
         view.remove_wanted.connect(lambda: self.remove_wanted.emit(view.selected))
+        view.gestures.width_wanted.connect(lambda width: self.width_wanted.emit(view.selected, width))
+        view.gestures.drag_ended.connect(self.edited)
+        view.gestures.removal_wanted.connect(self._remove_or_bring_back)
         hinges.selected.connect(self._take_rule)
         hinges.width_wanted.connect(lambda width: self.width_wanted.emit(view.selected, width))
         hinges.remove_wanted.connect(lambda: self.remove_wanted.emit(view.selected))
@@ -112,6 +115,9 @@ class CutsPage(QWidget):
     def _take_picked(self, problem: int) -> None:
         self.problems.show_picked(problem)
         self.view.go_to(problem)
+
+    def _remove_or_bring_back(self, remove: bool) -> None:
+        (self.remove_wanted if remove else self.reset_wanted).emit(self.view.selected)
 
     def _take_rule(self, hinges: frozenset[int]) -> None:
         self.toggles[CutOverlay.CONNECTORS].setChecked(True)

@@ -68,6 +68,10 @@ class Connectors:
         apart = frame.scale * math.sqrt(width * height / max(len(self), 1))
         return min(max(SHARE * apart, RADII[0]), RADII[1])
 
+    def asked_mm(self, hinge: int) -> float:
+        """Finished width that is asked for, mm; not a number where the connector was removed."""
+        return math.nan if self.removed[hinge] else float(self.plan.hinges.requested_mm[hinge])
+
     def described(self, hinge: int) -> str:
         """What a person reads about one hinge."""
         hinges = self.plan.hinges
@@ -96,6 +100,8 @@ def paint_connectors(
     pixels, radius = frame.to_pixels(connectors.plan.hinges.position), connectors.radius(frame)
     colours = palette.widths
     shade = connectors.shade(len(colours))
+    # A rim, so that the palest width stands out from the sheet.
+    _paint_dots(painter, pixels[~connectors.removed], palette.muted, 2.0 * radius + 1.6)
     for index, colour in enumerate(colours):
         _paint_dots(painter, pixels[(shade == index) & ~connectors.removed], colour, 2.0 * radius)
     painter.setPen(QPen(QColor(palette.text), 1.6))

@@ -11,6 +11,7 @@ from PySide6.QtWidgets import QToolTip, QWidget
 
 from kirigami_studio.fabricate.checks import Problem
 from kirigami_studio.fabricate.cut_plan import CutPlan, Layer
+from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.gui.scene.chips import Chip, legend_boxes, paint_caption, paint_legend
 from kirigami_studio.gui.scene.connector_items import Connectors, paint_connectors
 from kirigami_studio.gui.scene.cut_items import (
@@ -42,7 +43,7 @@ CLOSE_UP = 6.0
 PROBLEM_REACH = 11.0
 HINT = (
     "Wheel: zoom. Drag: move. Click a connector: select; Shift-click or Shift-drag: select more. "
-    "Type a width, or press Delete to cut through."
+    "Drag it to size (Alt: fine), or type a width; double-click or Delete cuts through, double-click brings back."
 )
 
 
@@ -184,8 +185,12 @@ class CutView(Canvas):
         paint_legend(painter, chips, self._legend_boxes(chips), self.palette_)
         end = QPointF(self.width() - 16.0, self.height() - 18.0)
         paint_scale_bar(painter, frame.scale, end, self.palette_)
-        if self._caption:
-            paint_caption(painter, self._caption, self.width(), self.palette_)
+        caption = self._caption
+        if self.gestures.dragged_mm is not None:
+            named = tr_n("connector", "{count} connectors", len(self.selected))
+            caption = tr("{named}: {width:.3f} mm", named=named, width=self.gestures.dragged_mm)
+        if caption:
+            paint_caption(painter, caption, self.width(), self.palette_)
 
     def scene_box(self) -> QRectF:
         """Above the legend."""
@@ -240,8 +245,14 @@ class CutView(Canvas):
 
     def mouseMoveEvent(self, event: QMouseEvent) -> None:  # noqa: N802 - Qt's name
         held = bool(event.buttons() & Qt.MouseButton.LeftButton)
-        if not (held and self.gestures.move(event.position())):
+        fine = bool(event.modifiers() & Qt.KeyboardModifier.AltModifier)
+        if not (held and self.gestures.move(event.position(), fine)):
             super().mouseMoveEvent(event)
+
+    def mouseDoubleClickEvent(self, event: QMouseEvent) -> None:  # noqa: N802 - Qt's name
+        frame, shown = self.frame(), CutOverlay.CONNECTORS in self._overlays
+        if not (shown and frame is not None and self.gestures.double(event.position(), frame)):
+            super().mouseDoubleClickEvent(event)
 
     def mouseReleaseEvent(self, event: QMouseEvent) -> None:  # noqa: N802 - Qt's name
         frame = self.frame()

@@ -1,11 +1,14 @@
-"""What the mouse and the keyboard do to the connectors of a cut view: pick one, add more, draw a band around many."""
+"""What the mouse and the keyboard do to the connectors of a cut view: pick, band, drag, remove."""
 
 from __future__ import annotations
+
+import math
 
 from PySide6.QtCore import QObject, QPointF, QRectF, Qt, Signal
 
 from kirigami_studio.gui.scene.connector_items import Connectors
 from kirigami_studio.gui.scene.frame import Frame
+from kirigami_studio.gui.views.hinge_drag import HingeDrag
 
 #: A press that moves less than this (pixels) is a click.
 CLICK = 4.0
@@ -14,7 +17,10 @@ CLICK = 4.0
 class HingeGestures(QObject):
     """Holds which connectors are selected, and the band that is being drawn."""
 
-    changed = Signal()  #: selection or band
+    changed = Signal()  #: selection, band or drag
+    width_wanted = Signal(float)  #: mm, for the selection; step by step while one of them is dragged
+    drag_ended = Signal()
+    removal_wanted = Signal(bool)  #: whether to remove the selection, or to bring it back
 
     def __init__(self, parent: QObject) -> None:
         super().__init__(parent)
@@ -23,6 +29,14 @@ class HingeGestures(QObject):
         self._pressed: QPointF | None = None
         self._adding = False
         self._band: QRectF | None = None
+        self._held: HingeDrag | None = None
+        self._width_mm: float | None = None
+        self._told: dict[int, float] = {}  # widths that were asked for since the plan was made
+
+    @property
+    def dragged_mm(self) -> float | None:
+        """The width that the drag has come to, mm; None without a drag."""
+        return self._width_mm
 
     @property
     def selected(self) -> frozenset[int]:
@@ -36,6 +50,7 @@ class HingeGestures(QObject):
     def take(self, connectors: Connectors | None) -> None:
         """Another plan: the selection stays as far as its hinges are still there."""
         self.connectors = connectors
+        self._told.clear()
         there = 0 if connectors is None else len(connectors)
         self.select(frozenset(hinge for hinge in self._selected if hinge < there))
 
@@ -57,20 +72,63 @@ class HingeGestures(QObject):
         hinge = None if self.connectors is None else self.connectors.nearest(place, frame)
         if hinge is None:
             return adding
-        self.select(self._selected ^ {hinge} if adding else frozenset({hinge}))
         self._pressed = None
+        if adding:
+            self.select(self._selected ^ {hinge})
+            return True
+        if hinge not in self._selected:
+            self.select(frozenset({hinge}))
+        if self.connectors is not None:
+            self._held = HingeDrag(hinge, place, self._told.get(hinge, self.connectors.asked_mm(hinge)))
         return True
 
-    def move(self, place: QPointF) -> bool:
-        """The mouse moved with the button down; whether a band is being drawn."""
+    def double(self, place: QPointF, frame: Frame) -> bool:
+        """A double click; on a connector it is cut through, or brought back where it was."""
+        hinge = None if self.connectors is None else self.connectors.nearest(place, frame)
+        if hinge is None or self.connectors is None:
+            return False
+        self._held = None
+        self.select(frozenset({hinge}))
+        self.removal_wanted.emit(not self.connectors.removed[hinge])
+        return True
+
+    def move(self, place: QPointF, fine: bool = False) -> bool:
+        """The mouse moved with the button down; whether a band is being drawn or a connector dragged."""
+        if self._held is not None:
+            self._drag(self._held, place, fine)
+            return True
         if self._pressed is None or not self._adding:
             return False
         self._band = QRectF(self._pressed, place).normalized()
         self.changed.emit()
         return True
 
+    def _drag(self, held: HingeDrag, place: QPointF, fine: bool) -> None:
+        far = (place - held.start).manhattanLength() >= CLICK
+        if math.isnan(held.width_mm) or not (far or self._width_mm is not None):
+            return
+        width = held.width_at(place, fine)
+        if width != self._width_mm:
+            self._width_mm = width
+            self._told.update(dict.fromkeys(self._selected, width))
+            self.width_wanted.emit(width)
+            self.changed.emit()
+
+    def _let_go(self, held: HingeDrag) -> None:
+        """A drag is over; a click on one of many selects that one."""
+        self._held = None
+        if self._width_mm is None:
+            self.select(frozenset({held.hinge}))
+        else:
+            self._width_mm = None
+            self.drag_ended.emit()
+            self.changed.emit()
+
     def release(self, place: QPointF, frame: Frame) -> None:
         """The button came up: the band selects; a click beside all connectors forgets the selection."""
+        if self._held is not None:
+            self._let_go(self._held)
+            return
         pressed, band = self._pressed, self._band
         self._pressed, self._band = None, None
         if band is not None and self.connectors is not None:
