@@ -177,7 +177,10 @@ class Controller(QObject):
         if preview is not None and preview in result.candidates:
             chosen = edits.choose(edit.document, result.candidates.index(preview))
             edit = Edit(edit.label, chosen.document)
+        same = edit.document == self.document
         self._apply(edit)
+        if same:  # the same seed again: nothing to undo, but the stage must settle on the document's choice
+            self.showing.show(self.document)
         score = result.best.score
         self.status.emit(
             f"{len(result.candidates)} designs in {result.seconds:.1f} s. Best: sIoU {100 * score.siou:.1f} %, "

@@ -158,7 +158,8 @@ def style_sheet(palette: Palette) -> str:
 
 def apply(application: QApplication, palette: Palette) -> None:
     """Dress the whole application in one palette."""
-    application.setStyle("Fusion")
+    if application.style().objectName() != "fusion":  # a style sheet wraps it; setting it again costs as much as that
+        application.setStyle("Fusion")
     application.setPalette(_qt_palette(palette))
     application.setStyleSheet(style_sheet(palette))
 

@@ -59,6 +59,21 @@ def test_that_a_cancelled_run_leaves_the_document_unchanged(heart: MainWindow, q
 
 
 @pytest.mark.torch
+def test_that_the_same_designs_again_are_no_undo_step_and_can_still_be_cut(heart: MainWindow, until: Until) -> None:
+    heart.settings.candidates.setValue(1)
+    heart.controller.change_settings(polish=0)
+    heart.actions_["generate"].trigger()
+    until(lambda: heart.fabrication.export.isEnabled() and not heart.controller.running)
+    found = heart.controller.document
+    heart.actions_["generate"].trigger()
+    assert heart.controller.running and not heart.fabrication.export.isEnabled()
+    until(lambda: heart.fabrication.export.isEnabled() and not heart.controller.running)
+    assert heart.controller.document is found
+    heart.actions_["undo"].trigger()
+    assert heart.controller.document.candidates == ()
+
+
+@pytest.mark.torch
 def test_that_another_target_ends_the_run_for_the_old_one(heart: MainWindow, until: Until) -> None:
     heart.settings.candidates.setValue(400)
     heart.actions_["generate"].trigger()

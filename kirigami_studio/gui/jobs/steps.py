@@ -16,6 +16,7 @@ from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.trimming import KEEP, LARGEST_KEEP
 from kirigami_studio.foundation.errors import Cancelled, ExportError, UsageError
 from kirigami_studio.gui.file_kinds import kind_of
+from kirigami_studio.gui.jobs import importing
 from kirigami_studio.gui.jobs.worker import Cancel
 from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.lattice.ratio_field import RatioField
@@ -131,6 +132,7 @@ class ModelFound:
 
 def generating(request: Request, cancel: Cancel) -> Iterator[Event | ModelFound | Decoded]:
     """Run the pipeline; every new or improved candidate is followed by its decoded motion."""
+    importing.import_generator()
     from kirigami_studio.generator.weights import digest_of
     from kirigami_studio.pipeline.run import run
 
@@ -248,6 +250,7 @@ def _slots_length(plan: CutPlan, profile: str) -> float | None:
 
 def exporting(order: Order, path: Path, cancel: Cancel) -> Iterator[Exported]:
     """Write one file of the kind that its extension names; cut files are planned, checked and read back."""
+    importing.import_exporters()
     from kirigami_studio.export.registry import export, find_exporter
 
     find_exporter(path)  # an unknown kind is refused before anything is planned
@@ -258,6 +261,7 @@ def exporting(order: Order, path: Path, cancel: Cancel) -> Iterator[Exported]:
 
 def exporting_all(order: Order, folder: Path, name: str, cancel: Cancel) -> Iterator[Exported]:
     """Write everything that there is of a design into a folder; the cut files are read back."""
+    importing.import_exporters()
     from kirigami_studio.export.export_set import export_all
 
     def stop_if_asked(_: Path) -> None:
@@ -322,15 +326,12 @@ def warming(cancel: Cancel) -> Iterator[Loaded | tuple[str, ...]]:
 
     It reports after every import, so that a file which is opened meanwhile need not wait for all of them.
     """
-    from kirigami_studio.target import read_image as _read_image  # noqa: F401
-
+    importing.import_pictures()
     yield Loaded("pictures")
-    from kirigami_studio.export import registry as _registry  # noqa: F401
-
+    importing.import_exporters()
     yield Loaded("exporters")
-    from kirigami_studio.generator.weights import variants
-
+    importing.import_generator()
     yield Loaded("generator")
-    from kirigami_studio.pipeline import run as _run  # noqa: F401
+    from kirigami_studio.generator.weights import variants
 
     yield variants()

@@ -1,0 +1,52 @@
+"""The window takes events all the time: no turn of its event loop holds it up for 0.1 s.  ``pytest -s`` prints the table."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+pytestmark = [pytest.mark.qt, pytest.mark.torch, pytest.mark.slow]
+
+LIMIT = 0.1
+#: Sessions played until none of the steps was ever held up, the best turn of each counts: a cache that is cold or a
+#: neighbour that takes memory bandwidth is no fault of the program; what it does itself it does every time.
+SESSIONS = 3
+
+Turns = dict[str, tuple[float, float, float]]
+
+
+def played(folder: Path, *arguments: str) -> Turns:
+    """Play one session in a process of its own."""
+    script = Path(__file__).parents[1] / "watched_session.py"
+    environment = os.environ | {"QT_QPA_PLATFORM": "offscreen"}
+    command = [sys.executable, str(script), str(folder), *arguments]
+    done = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=200, check=False)
+    assert done.returncode == 0, done.stderr
+    turns: Turns = json.loads(done.stdout)
+    return turns
+
+
+def test_that_no_step_of_a_session_holds_the_window_up(tmp_path: Path) -> None:
+    best: Turns = {}
+    for _ in range(SESSIONS):
+        for step, turn in played(tmp_path).items():
+            best[step] = min(turn, best.get(step, turn), key=lambda one: one[2])
+        if max(held_up for _, _, held_up in best.values()) < LIMIT:
+            break
+    print(f"\n{'longest turn of the event loop (ms)':40}{'wall':>8}{'own':>8}{'held up':>9}")
+    for step, (wall, own, held_up) in best.items():
+        print(f"{step:40}{1000 * wall:8.0f}{1000 * own:8.0f}{1000 * held_up:9.0f}")
+    assert len(best) >= 18
+    assert {step: turn for step, turn in best.items() if turn[2] >= LIMIT} == {}
+
+
+def test_that_the_watch_sees_a_busy_handler_and_a_thread_that_keeps_the_lock(tmp_path: Path) -> None:
+    turns = played(tmp_path, "--block", "0.4")
+    busy, locked = turns["computing in the handler of a timer"], turns["another thread keeps the lock"]
+    assert busy[2] > LIMIT and busy[1] > LIMIT
+    assert locked[2] > LIMIT and locked[1] < LIMIT

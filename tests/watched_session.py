@@ -1,0 +1,226 @@
+"""One session through the real window in a process of its own, with the user-interface thread watched at every step.
+
+``python tests/watched_session.py FOLDER`` prints one JSON object: step -> [wall, own, held up] in seconds, the longest
+turn of the event loop in it.  ``--block SECONDS`` adds steps that are known to hold the thread up.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+import time
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+from PySide6.QtCore import QEventLoop, Qt, QTimer
+from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QApplication, QWidget
+from thread_watch import ThreadWatch, in_another_thread
+
+from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.evaluate.score import evaluate
+from kirigami_studio.gui.application import create_application, create_window
+from kirigami_studio.gui.main_window import MainWindow
+from kirigami_studio.gui.messages import Tone
+from kirigami_studio.gui.panels.settings_panel import POLISH
+from kirigami_studio.gui.shell import FIRST
+from kirigami_studio.gui.theme import LIGHT
+from kirigami_studio.lattice.deployment import deploy
+from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.project import edits, store
+from kirigami_studio.project.document import Document
+from kirigami_studio.target import silhouettes
+
+PATIENCE = 40.0
+MANY, LARGE = 64, (24, 24)
+FULL_POLISH = max(steps for _, steps, _ in POLISH)
+
+
+class Places:
+    """Answers every question for a file."""
+
+    def __init__(self, folder: Path) -> None:
+        self.project_ = folder / "large.kiri"
+        self.saved, self.cut, self.everything = folder / "saved.kiri", folder / "cut.dxf", folder / "everything"
+
+    def target(self) -> Path | None:
+        return None
+
+    def project(self) -> Path | None:
+        return self.project_
+
+    def save(self, proposal: str) -> Path | None:
+        return self.saved
+
+    def export(self, proposal: str) -> Path | None:
+        return self.cut
+
+    def folder(self) -> Path | None:
+        self.everything.mkdir(exist_ok=True)
+        return self.everything
+
+
+class WatchedSession:
+    """Plays the steps on one window."""
+
+    def __init__(self, folder: Path) -> None:
+        self.places = Places(folder)
+        self.window: MainWindow = create_window(LIGHT)
+        self.window.resize(FIRST)
+        self.window.commands.files = self.places
+        self.watch = ThreadWatch()
+        self.longest: dict[str, tuple[float, float, float]] = {}
+
+    def play(self, block: float) -> None:
+        """Run every step, or with ``block`` only the two that hold the thread up for so many seconds."""
+        window, controller = self.window, self.window.controller
+        window.show()
+        self.until(window.isVisible)
+        if block:
+            self.step("computing in the handler of a timer", lambda: QTimer.singleShot(0, lambda: spin(block)))
+            self.step("another thread keeps the lock", lambda: in_another_thread(block))
+            return
+        self.step("choose a target", lambda: controller.targeting.open("heart"), lambda: window.run.generate.isEnabled())
+        self.set_up(16, 0, search=False)
+        self.step("generate 16, loading the generator", self.generate, self.generated)
+        self.set_up(16, 0, search=False)
+        self.step("generate 16 again", self.generate, self.generated)
+        self.set_up(4, FULL_POLISH, search=False)
+        self.step("generate 4 and polish fully", self.generate, self.generated)
+        self.step("choose another design", lambda: self.press("next"), self.planned)
+        self.step("trim", lambda: self.press("trim"), lambda: not controller.finishing.busy and self.planned())
+        self.step("undo", lambda: [self.press("undo") for _ in range(3)], self.planned)
+        self.step("redo", lambda: [self.press("redo") for _ in range(3)], self.planned)
+        self.step("scrub", self.scrub)
+        self.set_up(2, 5, search=True)
+        self.step("generate 2 and search", self.generate, self.generated)
+        controller.history.mark_saved()
+        self.step("open a large project", lambda: self.press("open_project"), lambda: self.shown(MANY) and self.planned())
+        self.step("choose in the large project", lambda: self.press("next"), self.planned)
+        self.step("look through its gallery", self.look_through)
+        self.step("scrub a large design", self.scrub)
+        self.step("show its cuts", lambda: self.press("cuts"))
+        self.step("save it", lambda: self.press("save_as"), self.places.saved.exists)
+        self.step("export its DXF", lambda: self.press("export"), self.told)
+        self.step("export everything", lambda: self.press("export_all"), self.told)
+        self.step("switch the theme", lambda: self.press("theme"))
+
+    def step(self, name: str, act: Callable[[], object], happened: Callable[[], bool] = bool) -> None:
+        """Do something from inside the event loop, wait until it has happened and note the longest turn."""
+        while self.window.messages.messages:
+            self.window.messages.close_message()
+        self.let_live(0.1)
+        acted: list[bool] = []
+
+        def carry_out() -> None:
+            act()
+            acted.append(True)
+
+        self.watch.begin()
+        QTimer.singleShot(0, self.window, carry_out)
+        self.until(lambda: bool(acted) and (happened is bool or happened()))
+        self.let_live(0.3)
+        turn = self.watch.end()
+        self.longest[name] = (turn.wall, turn.own, turn.held_up)
+
+    def until(self, happened: Callable[[], bool]) -> None:
+        """Let the window live until something has happened."""
+        end = time.monotonic() + PATIENCE
+        while not happened():
+            wrong = [one.sentence for one in self.window.messages.messages if one.tone is Tone.ERROR]
+            if wrong or time.monotonic() > end:
+                done = ", ".join(self.longest)
+                raise SystemExit(f"The session stopped after {done}: {wrong or 'nothing happened'}")
+            QApplication.processEvents(QEventLoop.ProcessEventsFlag.WaitForMoreEvents)
+
+    def let_live(self, seconds: float) -> None:
+        """Let the window live for a while."""
+        end = time.monotonic() + seconds
+        self.until(lambda: time.monotonic() > end)
+
+    def press(self, name: str) -> None:
+        self.window.actions_[name].trigger()
+
+    def set_up(self, designs: int, polish: int, search: bool) -> None:
+        """Ask for so many designs."""
+        settings = self.window.settings
+        settings.candidates.setValue(designs)
+        settings.search.setChecked(search)
+        self.window.controller.change_settings(polish=polish)
+        self.let_live(0.1)
+
+    def generate(self) -> None:
+        QTest.mouseClick(self.window.run.generate, Qt.MouseButton.LeftButton)
+
+    def generated(self) -> bool:
+        controller = self.window.controller
+        return not controller.running and self.planned()
+
+    def planned(self) -> bool:
+        return self.window.fabrication.export.isEnabled() and not self.window.controller.board.busy
+
+    def shown(self, designs: int) -> bool:
+        return self.window.gallery.view.model_.rowCount() == designs
+
+    def told(self) -> bool:
+        """An export has said how it went."""
+        return bool(self.window.messages.messages) and not self.window.controller.board.busy
+
+    def scrub(self) -> None:
+        """Move the slider all the way, one step in each turn."""
+        slider = self.window.stage.deployment.slider
+        for value in range(0, slider.maximum(), slider.maximum() // 20):
+            slider.setValue(value)
+            QApplication.processEvents()
+
+    def look_through(self) -> None:
+        """Turn the pages of the gallery."""
+        bar = self.window.gallery.view.verticalScrollBar()
+        for page in range(4):
+            bar.setValue(page * bar.maximum() // 3)
+            QApplication.processEvents()
+
+
+def spin(seconds: float) -> None:
+    """Compute."""
+    end = time.perf_counter() + seconds
+    while time.perf_counter() < end:
+        pass
+
+
+def write_large_project(path: Path) -> None:
+    """64 designs of 24 x 24 voids; one score serves them all."""
+    target, draw = silhouettes.load("heart"), np.random.default_rng(3)
+    fields = [RatioField.from_log10(0.05 * draw.normal(size=LARGE)) for _ in range(MANY)]
+    first = Candidate(fields[0], evaluate(deploy(fields[0]), target, 0.0), seed=3, index=0)
+    many = tuple(replace(first, field=field, index=index) for index, field in enumerate(fields))
+    start = edits.set_target(Document(), target).document
+    store.save(edits.set_candidates(start, many, {}).document, path)
+
+
+def main() -> int:
+    """Play and print."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("folder", type=Path)
+    parser.add_argument("--block", type=float, default=0.0)
+    chosen = parser.parse_args()
+    if not chosen.block:
+        write_large_project(chosen.folder / "large.kiri")
+    create_application(["kirigami-studio"])
+    session = WatchedSession(chosen.folder)
+    try:
+        session.play(chosen.block)
+    finally:
+        session.watch.close()
+        window: QWidget = session.window
+        session.window.controller.history.mark_saved()
+        window.close()
+    sys.stdout.write(json.dumps(session.longest))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
