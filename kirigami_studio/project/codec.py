@@ -19,6 +19,7 @@ from kirigami_studio.project.document import Document, Mark, Void
 from kirigami_studio.project.fabrication_record import fabrication_json, fabrication_of
 from kirigami_studio.project.json_record import Record, one_of, read_json
 from kirigami_studio.project.migrations import Members
+from kirigami_studio.project.nodes_record import nodes_json, nodes_of
 from kirigami_studio.project.settings import DesignSettings
 from kirigami_studio.target.outline import Outline
 
@@ -118,6 +119,8 @@ def _outline_json(outline: Outline) -> dict[str, object]:
         "size": None if outline.size is None else list(outline.size),
         "unit": outline.unit,
         "points": outline.points.tolist(),
+        "place": None if outline.place is None else list(outline.place),
+        "nodes": None if outline.nodes is None else nodes_json(outline.nodes),
     }
 
 
@@ -129,6 +132,8 @@ def _outline(record: Record) -> Outline:
         notes=tuple(str(note) for note in notes),
         size=record.pair("size") if record.holds("size") else None,
         unit=record.text("unit"),
+        place=record.pair("place") if record.holds("place") else None,
+        nodes=nodes_of(record.record("nodes")) if record.holds("nodes") else None,
     )
 
 

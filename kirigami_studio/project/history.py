@@ -122,9 +122,9 @@ class History:
 
 
 def _alike(one: Document, other: Document) -> bool:
-    """Whether two documents hold the same; targets of one shape, hence equal, may still differ in size."""
+    """Whether two documents hold the same; targets of one shape, hence equal, may differ in size, place or nodes."""
     return one is other or (one == other and _measure(one.target) == _measure(other.target))
 
 
 def _measure(target: Outline | None) -> tuple[object, ...]:
-    return () if target is None else (target.size, target.unit)
+    return () if target is None else (target.size, target.unit, target.place, target.nodes)

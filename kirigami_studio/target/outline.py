@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -19,6 +19,7 @@ from kirigami_studio.target.contour import (
     unit_frame,
 )
 from kirigami_studio.target.crossings import untangled
+from kirigami_studio.target.nodes import Nodes
 
 #: Deviation of area and centroid that construction tolerates: float64 rounding over 10^5 vertices stays below it.
 NORMALISATION_TOLERANCE = 1e-9
@@ -28,7 +29,7 @@ NORMALISATION_TOLERANCE = 1e-9
 class Outline:
     """A target silhouette in its normal frame.
 
-    Two outlines are equal when their vertices are: name and notes do not change what a generator sees.
+    Two outlines are equal when their vertices are: name, notes, place and nodes do not change what a generator sees.
 
     Attributes
     ----------
@@ -43,6 +44,10 @@ class Outline:
         Width and height in ``unit`` before normalising.
     unit : str
         Unit of ``size``: "mm", "px", or "" when the source has none.
+    place : (x, y) float or None, mm
+        Where its area centroid lies on the drawing board, y up; None for one that was not drawn there.
+    nodes : Nodes or None
+        Its points and handles, when it was drawn with them.
 
     Raises
     ------
@@ -55,6 +60,8 @@ class Outline:
     notes: tuple[str, ...] = ()
     size: tuple[float, float] | None = None
     unit: str = ""
+    place: tuple[float, float] | None = None
+    nodes: Nodes | None = None
 
     def __post_init__(self) -> None:
         # Adding 0.0 turns -0.0 into 0.0, so equal outlines also have equal bytes, hence equal hashes.
@@ -67,6 +74,8 @@ class Outline:
             )
         if not Polygon(points).is_valid:
             raise TargetError("An outline must not touch or cross itself; build it with Outline.from_points.")
+        if self.nodes is not None and int(self.nodes.at.max()) >= len(points):
+            raise TargetError(f"An outline of {len(points)} vertices has no vertex {int(self.nodes.at.max())}.")
         points.setflags(write=False)
         object.__setattr__(self, "points", points)
         object.__setattr__(self, "notes", tuple(self.notes))
@@ -103,11 +112,11 @@ class Outline:
 
     def renamed(self, name: str) -> Outline:
         """Return the same shape under another name."""
-        return Outline(self.points, name, self.notes, self.size, self.unit)
+        return replace(self, name=name)
 
     def noted(self, *notes: str) -> Outline:
         """Return the same shape with more notes."""
-        return Outline(self.points, self.name, (*self.notes, *notes), self.size, self.unit)
+        return replace(self, notes=(*self.notes, *notes))
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Outline) and np.array_equal(self.points, other.points)
@@ -117,7 +126,7 @@ class Outline:
 
     def __reduce__(self) -> tuple[type[Outline], tuple[Any, ...]]:
         # Through the constructor: numpy forgets the read-only flag when it unpickles.
-        return Outline, (self.points, self.name, self.notes, self.size, self.unit)
+        return Outline, (self.points, self.name, self.notes, self.size, self.unit, self.place, self.nodes)
 
 
 def _normalised(ring: FloatArray) -> FloatArray:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -13,6 +13,7 @@ from shapely.geometry import Polygon
 from kirigami_studio.foundation.errors import TargetError
 from kirigami_studio.target.contour import FloatArray, area_and_centroid, as_contour, tidy, unit_frame
 from kirigami_studio.target.crossings import untangled
+from kirigami_studio.target.nodes import Nodes
 from kirigami_studio.target.outline import Outline
 
 #: Longer side (mm) that an outline without a real size is given on the board.
@@ -49,12 +50,14 @@ class Placed:
 
     @classmethod
     def on_board(cls, outline: Outline) -> Placed:
-        """In the middle of the board: in its own size if that is known in mm, else 100 mm long."""
+        """Where it was drawn, else in the middle of the board; in its own size if that is known in mm, else 100 mm long."""
         span = np.ptp(outline.points, axis=0)
         if outline.size is not None and outline.unit == "mm":
             scale = outline.size[0] / float(span[0])
         else:
             scale = BOARD_MM / float(np.max(span))
+        if outline.place is not None:
+            return cls(outline, scale, outline.place)
         low, high = outline.points.min(axis=0), outline.points.max(axis=0)
         x, y = (-0.5 * scale * (low + high)).tolist()
         return cls(outline, scale, (x, y))
@@ -78,9 +81,10 @@ class Placed:
         length = float(np.max(np.ptp(clean, axis=0)))
         if length > LARGEST_MM:
             raise TargetError(f"A target may be {LARGEST_MM:g} mm long at most, got {length:.5g} mm; draw it smaller.")
-        area, (x, y) = area_and_centroid(clean)
-        outline = Outline.from_points(clean, name, (*notes, *repairs), "mm")
-        return cls(outline, math.sqrt(abs(area)), (float(x), float(y)))
+        area, centroid = area_and_centroid(clean)
+        place = (float(centroid[0]), float(centroid[1]))
+        outline = replace(Outline.from_points(clean, name, (*notes, *repairs), "mm"), place=place)
+        return cls(outline, math.sqrt(abs(area)), place)
 
     @property
     def ring(self) -> FloatArray:
@@ -101,3 +105,35 @@ class Placed:
     def reshaped(self, ring: npt.ArrayLike, notes: Iterable[str] = ()) -> Placed:
         """The same target with other vertices (L, 2), mm; what was said of the old ones no longer holds."""
         return Placed.from_ring(ring, self.outline.name, notes)
+
+    def mapped(self, matrix: npt.ArrayLike, shift: npt.ArrayLike) -> Placed:
+        """The same target with every point ``p`` (mm) at ``p @ matrix + shift``; its nodes and handles go along.
+
+        Raises
+        ------
+        TargetError
+            As :meth:`from_ring`.
+        """
+        linear = np.asarray(matrix, dtype=np.float64)
+        made = self.reshaped(self.ring @ linear + np.asarray(shift, dtype=np.float64))
+        nodes, count = self.outline.nodes, len(self.outline.points)
+        if nodes is None or len(made.outline.points) != count:
+            return made
+        return made.with_nodes(nodes.mapped(linear * (self.scale / made.scale), count))
+
+    def with_nodes(self, nodes: Nodes | None) -> Placed:
+        """The same target with other nodes."""
+        return replace(self, outline=replace(self.outline, nodes=nodes))
+
+    def moved(self, by: tuple[float, float]) -> Placed:
+        """The same target elsewhere on the board, ``by`` mm: the very same shape, so that its designs stay right.
+
+        Raises
+        ------
+        TargetError
+            A way that is not finite.
+        """
+        place = (self.centre[0] + by[0], self.centre[1] + by[1])
+        width, height = self.size
+        outline = replace(self.outline, place=place, size=(width, height), unit="mm")
+        return Placed(outline, self.scale, place)

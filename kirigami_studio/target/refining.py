@@ -85,7 +85,8 @@ def turned(target: Placed, angle: float) -> Placed:
         raise TargetError(f"The angle of rotation must be a finite number, got {angle}.")
     cos, sin = math.cos(angle), math.sin(angle)
     matrix = np.array([[cos, sin], [-sin, cos]])
-    return target.reshaped((target.ring - target.centre) @ matrix + target.centre)
+    centre = np.array(target.centre)
+    return target.mapped(matrix, centre - centre @ matrix)
 
 
 def stretched(target: Placed, factors: tuple[float, float], fixed: tuple[float, float] | None = None) -> Placed:
@@ -110,7 +111,7 @@ def stretched(target: Placed, factors: tuple[float, float], fixed: tuple[float, 
             f"A target must be {SMALLEST_MM:g} to {LARGEST_MM:g} mm wide and high, got {width:.4g} x {height:.4g} mm."
         )
     stay = np.array(target.centre if fixed is None else fixed)
-    return target.reshaped((target.ring - stay) * factors + stay)
+    return target.mapped(np.diag(factors), stay * (1.0 - np.array(factors)))
 
 
 def _thinned(polygon: Polygon, tolerance: float) -> FloatArray:

@@ -12,6 +12,7 @@ from kirigami_studio.foundation.errors import TargetError
 from kirigami_studio.target import silhouettes
 from kirigami_studio.target.anchors import MOST_ANCHORS, Anchors
 from kirigami_studio.target.figures import Box, Figure, figure
+from kirigami_studio.target.nodes import Kind
 from kirigami_studio.target.placed import Placed
 
 SQUARE = Placed.from_ring(figure(Figure.RECTANGLE, Box(0, 0, 40, 40)), "square")
@@ -62,21 +63,21 @@ def test_that_a_smooth_point_bends_no_kink_into_the_line() -> None:
 
     assert sharpest(circle) < np.radians(20)
     # Control: the same pull at a corner does bend one.
-    assert sharpest(circle.with_kind(0, smooth=False)) > np.radians(25)
+    assert sharpest(circle.with_kind(0, Kind.CORNER)) > np.radians(25)
 
 
 def test_that_a_corner_made_smooth_lets_a_curve_through_and_back_is_straight() -> None:
     square = Anchors.of(SQUARE)
     soft = square
     for index in range(4):
-        soft = soft.with_kind(index, smooth=True)
+        soft = soft.with_kind(index, Kind.AUTO)
     round_ = Placed.from_ring(soft.ring, "round")
     assert SQUARE.polygon.area < round_.polygon.area < 1.6 * SQUARE.polygon.area
     for corner in square.places:
         assert np.min(np.linalg.norm(soft.ring - corner, axis=1)) == 0
     hard = soft
     for index in range(4):
-        hard = hard.with_kind(index, smooth=False)
+        hard = hard.with_kind(index, Kind.CORNER)
     np.testing.assert_array_equal(hard.ring, square.ring)
 
 
