@@ -10,7 +10,7 @@ from PySide6.QtCore import QObject, Signal
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.gui.sketching.easel import Change, Easel
 from kirigami_studio.project.document import Document
-from kirigami_studio.project.edits import Edit
+from kirigami_studio.project.edits import Edit, without_designs
 from kirigami_studio.target.placed import Placed
 
 #: What the sliders do, by their names.
@@ -44,13 +44,13 @@ class Reshaping(QObject):
         if before is not None:
             self._easel.remember(before)
         self._easel.remember(made)
-        self.edited.emit(self._edit(made, change.gesture))
+        self.edited.emit(self._edit(made, change))
 
-    def _edit(self, made: Placed, gesture: str) -> Edit:
+    def _edit(self, made: Placed, change: Change) -> Edit:
         document = self._document()
-        if made.outline == document.target:  # another size of the same shape: its designs are still right
-            return Edit(gesture, replace(document, target=made.outline))
-        return Edit(gesture, replace(document, target=made.outline, candidates=(), chosen=None, provenance={}))
+        same = made.outline == document.target  # of another size or elsewhere: its designs are still right
+        changed = replace(document, target=made.outline) if same else without_designs(document, made.outline)
+        return Edit(change.gesture, changed, change.merge_key)
 
     def preview(self, kind: str, strength: float) -> None:
         """Show what simplifying or smoothing (0..1) would make of the target."""

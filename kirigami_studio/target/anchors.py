@@ -141,7 +141,9 @@ class Anchors:
                 spans.append(span)
         return replace(self, places=self.places + shift, spans=tuple(spans))._settled(ways)
 
-    def with_handle(self, index: int, side: int, offset: FloatArray, apart: bool = False, even: bool = False) -> Anchors:
+    def with_handle(
+        self, index: int, side: int, offset: FloatArray, apart: bool = False, even: bool = False
+    ) -> Anchors:
         """Move the end of a handle; the opposite one follows as the kind of the anchor says.
 
         Parameters

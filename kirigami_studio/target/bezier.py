@@ -29,7 +29,9 @@ def curve(start: FloatArray, out: FloatArray, into: FloatArray, end: FloatArray)
     return point_on(start, out, into, end, t)
 
 
-def point_on(start: FloatArray, out: FloatArray, into: FloatArray, end: FloatArray, t: FloatArray | float) -> FloatArray:
+def point_on(
+    start: FloatArray, out: FloatArray, into: FloatArray, end: FloatArray, t: FloatArray | float
+) -> FloatArray:
     """Place on the curve at ``t``, 0 at its start and 1 at its end (Bernstein's form)."""
     s = 1.0 - t
     place: FloatArray = s**3 * start + 3 * s * s * t * (start + out) + 3 * s * t * t * (end + into) + t**3 * end

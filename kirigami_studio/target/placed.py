@@ -50,7 +50,7 @@ class Placed:
 
     @classmethod
     def on_board(cls, outline: Outline) -> Placed:
-        """Where it was drawn, else in the middle of the board; in its own size if that is known in mm, else 100 mm long."""
+        """Where it was drawn, else in the middle of the board; in its own size if known in mm, else 100 mm long."""
         span = np.ptp(outline.points, axis=0)
         if outline.size is not None and outline.unit == "mm":
             scale = outline.size[0] / float(span[0])

@@ -14,6 +14,7 @@ from kirigami_studio.gui.scene.frame import Frame
 from kirigami_studio.gui.scene.mismatch_items import stripes
 from kirigami_studio.gui.scene.paths import line_path
 from kirigami_studio.gui.theme import Palette
+from kirigami_studio.target.mirroring import Axis, Mirror
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -104,6 +105,18 @@ def paint_grid(painter: QPainter, frame: Frame, step: float, area: QRectF, palet
                 painter.drawLine(QPointF(x, area.top()), QPointF(x, area.bottom()))
             else:
                 painter.drawLine(QPointF(area.left(), y), QPointF(area.right(), y))
+
+
+def paint_axes(painter: QPainter, frame: Frame, mirror: Mirror, area: QRectF, palette: Palette) -> None:
+    """Draw the axes that mirror what is drawn as dashed lines across the board."""
+    x, y = frame.to_pixels(np.array(mirror.at)).tolist()
+    pen = QPen(QColor(palette.accent), 1.4, Qt.PenStyle.CustomDashLine)
+    pen.setDashPattern([9.0, 4.0, 2.0, 4.0])
+    painter.setPen(pen)
+    if mirror.axis in (Axis.UPRIGHT, Axis.BOTH):
+        painter.drawLine(QPointF(x, area.top()), QPointF(x, area.bottom()))
+    if mirror.axis in (Axis.LEVEL, Axis.BOTH):
+        painter.drawLine(QPointF(area.left(), y), QPointF(area.right(), y))
 
 
 def _line(colour: str, width: float) -> QPen:

@@ -74,7 +74,8 @@ class BoxTool(SketchTool, ABC):
             ring = self.shape(box).ring
         except TargetError:  # too flat so far; said when the button is let go
             return
-        paint_proposal(painter, frame.to_pixels(ring), palette)
+        for part in (*self.easel.mirror.all_images(ring), ring):
+            paint_proposal(painter, frame.to_pixels(part), palette)
         paint_size(painter, self._end.pixel, box.size, palette)
 
 
@@ -106,12 +107,13 @@ class TextTool(BoxTool):
 
     def shape(self, box: Box) -> Placed:
         text = self.easel.text.strip()
-        ring, notes = lettered(letters(text), box)
+        easel = self.easel
+        ring, notes = lettered(letters(text, easel.family, easel.bold, easel.italic), box)
         return Placed.from_ring(ring, text or "text", notes)
 
 
-def letters(text: str, family: str = "") -> list[list[FloatArray]]:
-    """Outlines of the letters of a text in a bold face, each where it stands in the line.
+def letters(text: str, family: str = "", bold: bool = True, italic: bool = False) -> list[list[FloatArray]]:
+    """Outlines of the letters of a text, each where it stands in the line; without a family in the window's own.
 
     Returns
     -------
@@ -120,7 +122,8 @@ def letters(text: str, family: str = "") -> list[list[FloatArray]]:
     """
     font = QFont(family) if family else QFont()
     font.setPixelSize(LETTER_SIZE)
-    font.setBold(True)
+    font.setBold(bold)
+    font.setItalic(italic)
     font.setHintingPreference(QFont.HintingPreference.PreferNoHinting)
     metrics = QFontMetricsF(font)
     found = []

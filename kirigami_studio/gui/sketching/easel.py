@@ -13,8 +13,9 @@ from PySide6.QtGui import QKeyEvent, QPainter
 
 from kirigami_studio.gui.scene.frame import Bounds, Frame
 from kirigami_studio.gui.theme import Palette
-from kirigami_studio.target.combining import Combine, combined
+from kirigami_studio.target.combining import Combine
 from kirigami_studio.target.figures import USUAL_WAIST
+from kirigami_studio.target.mirroring import Axis, Mirror, mirrored
 from kirigami_studio.target.outline import Outline
 from kirigami_studio.target.placed import BOARD_MM, Placed
 
@@ -27,6 +28,15 @@ BOARD = Bounds(-0.5 * BOARD_MM, -0.5 * BOARD_MM, 0.5 * BOARD_MM, 0.5 * BOARD_MM)
 CLOSEST_LINES = 14.0
 #: Placed outlines that are remembered, so that undo puts a target back where it was.
 CAPACITY = 256
+SHIFT, ALT = Qt.KeyboardModifier.ShiftModifier, Qt.KeyboardModifier.AltModifier
+#: Arrow keys move by the first, with Shift by the second, with Alt by the third, mm.
+NUDGE_MM, FAR_MM, NEAR_MM = 1.0, 10.0, 0.1
+ARROWS = {
+    Qt.Key.Key_Left: (-1, 0),
+    Qt.Key.Key_Right: (1, 0),
+    Qt.Key.Key_Up: (0, 1),
+    Qt.Key.Key_Down: (0, -1),
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,10 +49,13 @@ class Change:
         As it follows the word Undo: "Add star".
     make : callable
         Returns the target as it shall be; raises a TargetError when that cannot be.
+    merge_key : str or None
+        Changes of one key that follow each other undo together.
     """
 
     gesture: str
     make: Callable[[], Placed]
+    merge_key: str | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,13 +67,18 @@ class Spot:
     pixel : QPointF
     free, place : (x, y) float, mm
         There, and at the nearest crossing of the grid when snapping holds.
-    shift : bool
+    shift, alt : bool
+        Whether these keys are held.
+    snaps : bool
+        Whether snapping holds.
     """
 
     pixel: QPointF
     free: Place
     place: Place
     shift: bool
+    alt: bool = False
+    snaps: bool = False
 
 
 class Easel(QObject):
@@ -69,6 +87,8 @@ class Easel(QObject):
     changed = Signal(object)  #: Change
     repaint = Signal()
     tool_done = Signal()
+    kind_wanted = Signal(object)  #: Kind that the selected points shall have
+    kinds_shown = Signal(object)  #: frozenset of the kinds of the selected points
 
     def __init__(self, parent: QObject | None = None) -> None:
         super().__init__(parent)
@@ -79,11 +99,14 @@ class Easel(QObject):
         self.corners = 5
         self.waist = USUAL_WAIST
         self.text = "K"
-        self._places: dict[tuple[Outline, object], Placed] = {}
+        self.family, self.bold, self.italic = "", True, False
+        self.mirror = Mirror()
+        self._nudges = 0
+        self._places: dict[tuple[object, ...], Placed] = {}
 
     def remember(self, placed: Placed) -> None:
         """Keep where an outline lies on the board."""
-        key = (placed.outline, placed.outline.size)
+        key = _key(placed.outline)
         self._places.pop(key, None)
         self._places[key] = placed
         while len(self._places) > CAPACITY:
@@ -91,7 +114,7 @@ class Easel(QObject):
 
     def recall(self, outline: Outline) -> Placed | None:
         """Where an outline was drawn; None for one that came from elsewhere."""
-        return self._places.get((outline, outline.size))
+        return self._places.get(_key(outline))
 
     @property
     def step(self) -> float:
@@ -105,26 +128,51 @@ class Easel(QObject):
         free = self.frame.to_world(pixel)
         snaps = self.snapping and not modifiers & Qt.KeyboardModifier.ControlModifier
         place = (self.snapped(free[0]), self.snapped(free[1])) if snaps else free
-        return Spot(pixel, free, place, bool(modifiers & Qt.KeyboardModifier.ShiftModifier))
+        shift, alt = (bool(modifiers & key) for key in (SHIFT, ALT))
+        return Spot(pixel, free, place, shift, alt, snaps)
 
     def snapped(self, length: float) -> float:
         """The nearest line of the grid, mm."""
         step = self.step
         return round(length / step) * step
 
+    def set_axis(self, axis: Axis) -> None:
+        """Mirror what is drawn from now on about axes through the middle of the target, or of the empty board."""
+        middle = (0.0, 0.0)
+        if self.placed is not None:
+            ring = self.placed.ring
+            x, y = (0.5 * (ring.min(axis=0) + ring.max(axis=0))).tolist()
+            middle = (x, y)
+        self.mirror = Mirror(axis, middle)
+        self.repaint.emit()
+
+    def nudge(self, event: QKeyEvent) -> tuple[FloatArray, str] | None:
+        """The way (2,), mm, that an arrow key stands for, and the key of its undo step; None for another key.
+
+        A key that is held down is one step.
+        """
+        way = ARROWS.get(Qt.Key(event.key()))
+        if way is None or event.modifiers() & Qt.KeyboardModifier.ControlModifier:
+            return None
+        if not event.isAutoRepeat():
+            self._nudges += 1
+        length = FAR_MM if event.modifiers() & SHIFT else NEAR_MM if event.modifiers() & ALT else NUDGE_MM
+        return np.array(way) * length, f"nudge {self._nudges}"
+
     def draw(self, make: Callable[[], Placed], name: str) -> None:
         """Let a new shape replace the target, join it or be taken from it; a replacing tool is then put away."""
-        how, target = self.combine, self.placed
-        if how is Combine.REPLACE or target is None:
-            self.changed.emit(Change(f"Draw {name}", make))
+        how, target, mirror = self.combine, self.placed, self.mirror
+        replaces = how is Combine.REPLACE or target is None
+        verb = "Draw" if replaces else "Add" if how is Combine.ADD else "Take away"
+        gesture = f"{verb} {name}" if mirror.axis is Axis.NONE else f"{verb} {name} with its mirror image"
+        self.changed.emit(Change(gesture, lambda: mirrored(target, make(), how, name, mirror)))
+        if replaces:
             self.tool_done.emit()
-            return
 
-        def join() -> Placed:
-            drawn = make()
-            return combined(target, drawn.ring, how, name, drawn.outline.notes)
 
-        self.changed.emit(Change(f"{'Add' if how is Combine.ADD else 'Take away'} {name}", join))
+def _key(outline: Outline) -> tuple[object, ...]:
+    """What tells drawn outlines apart, equal ones too."""
+    return outline, outline.size, outline.place, outline.nodes
 
 
 class SketchTool:

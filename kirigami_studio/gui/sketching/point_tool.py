@@ -1,150 +1,307 @@
-"""Dragging the points of the target; smooth points carry curves."""
+"""Dragging the points of the target, one or many, and the handles that bend the lines between them."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import dataclass
+from enum import Enum
+
 import numpy as np
-from PySide6.QtCore import QPointF, QRectF, Qt
-from PySide6.QtGui import QColor, QKeyEvent, QPainter, QPen
+from PySide6.QtCore import QPointF, Qt
+from PySide6.QtGui import QKeyEvent, QPainter
 
 from kirigami_studio.foundation.errors import TargetError
+from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.gui.scene.frame import Frame
-from kirigami_studio.gui.scene.target_items import paint_label, paint_proposal
-from kirigami_studio.gui.sketching.easel import Change, Easel, Place, SketchTool, Spot
+from kirigami_studio.gui.sketching.easel import Change, Easel, SketchTool, Spot
+from kirigami_studio.gui.sketching.point_marks import Marks, paint_marks
+from kirigami_studio.gui.sketching.strokes import distance
 from kirigami_studio.gui.theme import Palette
-from kirigami_studio.target.anchors import Anchors
+from kirigami_studio.target.anchors import INTO, OUT, Anchors, with_anchors
+from kirigami_studio.target.contour import FloatArray
+from kirigami_studio.target.nodes import Kind
 from kirigami_studio.target.placed import Placed
 
-#: A click this near (pixels) takes a point, or sets one on the line.
+#: A click this near (pixels) takes a point or a handle, or sets a point on the line.
 REACH = 9.0
-HANDLE = 4.5
-#: Arrow keys move the chosen point by this share of the grid, with Shift by ten times as much.
-NUDGE = 0.2
-ARROWS = {
-    Qt.Key.Key_Left: (-1, 0),
-    Qt.Key.Key_Right: (1, 0),
-    Qt.Key.Key_Up: (0, 1),
-    Qt.Key.Key_Down: (0, -1),
+#: The pointer moves this far (pixels) before a press becomes a drag: a click must not pull a point to the grid.
+LEAST_DRAG = 3.0
+#: A point is the mirror image of another within this share of the root of the target's area.
+IMAGE_REACH = 0.01
+#: Keys that, with Shift, change the kind of the selected points.
+KINDS = {
+    Qt.Key.Key_C: Kind.CORNER,
+    Qt.Key.Key_S: Kind.SMOOTH,
+    Qt.Key.Key_Y: Kind.SYMMETRIC,
+    Qt.Key.Key_A: Kind.AUTO,
 }
 
 
-class PointTool(SketchTool):
-    """Round handles are smooth points, square ones corners."""
+class Grip(Enum):
+    """What the pressed button holds."""
 
-    hint = (
-        "Drag a point. Double-click: on the line sets one, on a point makes it smooth or a corner. "
-        "Delete removes, arrow keys nudge, [ and ] walk."
-    )
+    NOTHING = "nothing"
+    POINTS = "points"
+    HANDLE = "handle"
+    FIELD = "field"
+
+
+@dataclass(frozen=True, slots=True)
+class Handle:
+    """One end of an anchor's handles: ``side`` is INTO or OUT."""
+
+    anchor: int
+    side: int
+
+
+class PointTool(SketchTool):
+    """Round marks are smooth points, square ones corners; selected ones are filled and show their handles."""
+
     cursor = Qt.CursorShape.ArrowCursor
 
     def __init__(self, easel: Easel) -> None:
         super().__init__(easel)
+        self.hint = tr(
+            "Drag points or handles; Shift+click or a dragged field selects more. Double-click sets a point or rounds "
+            "it. Arrow keys nudge, Delete removes, [ and ] walk."
+        )
         self._anchors: Anchors | None = None
         self._shown: Placed | None = None
         self._made: Placed | None = None
         self._dragged: Anchors | None = None
+        self._grip = Grip.NOTHING
+        self._handle: Handle | None = None
+        self._start: Spot | None = None
+        self._field: tuple[Spot, Spot] | None = None
+        self._toggled = False
         self.chosen: int | None = None
+        self.selected: frozenset[int] = frozenset()
+        easel.kind_wanted.connect(self.set_kind)
 
     @property
     def anchors(self) -> Anchors | None:
-        """Points of the target; while one is dragged, as they would be."""
+        """Points of the target; while they are dragged, as they would be."""
         return self._dragged or self._anchors
 
     def sync(self) -> None:
         placed = self.easel.placed
         self._dragged = None
         if placed is self._shown and self._anchors is not None:
+            self._tell()
             return
         if placed is None or placed is not self._made:
             self._anchors = None if placed is None else Anchors.of(placed)
-            self.chosen = None
+            self.select(())
         self._shown = placed
+        self._tell()
+
+    # selecting -----------------------------------------------------------------------------------------------------
+
+    def select(self, indices: object, chosen: int | None = None) -> None:
+        """Select points; ``chosen`` is the one that walks and snaps."""
+        self.selected = frozenset(indices)  # type: ignore[call-overload]
+        self.chosen = chosen if chosen in self.selected else next(iter(sorted(self.selected)), None)
+        self._tell()
+
+    def _tell(self) -> None:
+        anchors = self._anchors
+        kinds = frozenset() if anchors is None else frozenset(anchors.kinds[index] for index in self.selected)
+        self.easel.kinds_shown.emit(kinds)
 
     def press(self, spot: Spot) -> None:
-        self.chosen = self._at(spot.pixel)
+        self._start, self._toggled = spot, False
+        index = self._at(spot.pixel)
+        self._handle = None if index is not None and not spot.alt else self._handle_at(spot.pixel)
+        if self._handle is not None:
+            self._grip = Grip.HANDLE
+        elif index is not None:
+            self._grip = Grip.POINTS
+            self._press_point(index, spot.shift)
+        else:
+            self._grip, self._field = Grip.FIELD, (spot, spot)
+            if not spot.shift:
+                self.select(())
+
+    def _press_point(self, index: int, more: bool) -> None:
+        if more and index in self.selected:
+            self._toggled = True
+        elif more or index in self.selected:
+            self.select(self.selected | {index}, index)
+        else:
+            self.select({index}, index)
 
     def move(self, spot: Spot, held: bool) -> None:
-        if held and self.chosen is not None and self._anchors is not None:
-            self._dragged = self._anchors.moved(self.chosen, spot.place)
+        anchors, start = self._anchors, self._start
+        if not held or start is None or anchors is None:
+            return
+        if self._grip is Grip.FIELD:
+            self._field = (start, spot)
+        elif self._dragged is None and distance(start.pixel, spot.pixel) < LEAST_DRAG:
+            return
+        elif self._grip is Grip.HANDLE and self._handle is not None:
+            self._dragged = self._with_handle(anchors, self._handle, spot)
+        elif self._grip is Grip.POINTS and self.chosen is not None:
+            self._dragged = self._shifted(anchors, np.array(spot.place) - anchors.places[self.chosen])
 
     def release(self, spot: Spot) -> None:
-        dragged, self._dragged = self._dragged, None
-        if dragged is not None:
-            self._commit(dragged, "Move point")
+        dragged, grip, field, chosen = self._dragged, self._grip, self._field, self.chosen
+        start = self._start
+        self.drop()
+        if grip is Grip.FIELD and field is not None:
+            self._take_field(field[0], spot)
+        elif dragged is not None:
+            points = tr_n("Move point", "Move points", len(self.selected))
+            self._commit(dragged, tr("Move handle") if grip is Grip.HANDLE else points)
+        elif grip is Grip.POINTS and start is not None and chosen is not None:
+            index = self._at(start.pixel)
+            if self._toggled and index is not None:
+                self.select(self.selected - {index})
+            elif not start.shift:
+                self.select({chosen}, chosen)
+
+    def _take_field(self, start: Spot, end: Spot) -> None:
+        anchors = self._anchors
+        if anchors is None or distance(start.pixel, end.pixel) < LEAST_DRAG:
+            return
+        low, high = np.minimum(start.free, end.free), np.maximum(start.free, end.free)
+        inside = np.flatnonzero(np.all((anchors.places >= low) & (anchors.places <= high), axis=1))
+        self.select({*inside.tolist(), *(self.selected if start.shift else ())})
 
     def double_click(self, spot: Spot) -> None:
         if self._anchors is None:
             return
-        self.chosen = self._at(spot.pixel)
-        if self.chosen is not None:
-            smooth = not self._anchors.smooth[self.chosen]
-            kind = "Make point smooth" if smooth else "Make point a corner"
-            self._commit(self._anchors.with_kind(self.chosen, smooth), kind)
+        self._grip, self._start = Grip.NOTHING, None
+        index = self._at(spot.pixel)
+        if index is not None:
+            self.select({index}, index)
+            self.set_kind(Kind.AUTO if self._anchors.kinds[index] is Kind.CORNER else Kind.CORNER)
             return
         more, index = self._anchors.inserted(spot.free)
         if self._far(more.places[index], spot.pixel) <= REACH:
             # Another point on the same line is no change of the target: nothing to undo, ready to be dragged.
-            self._anchors, self.chosen = more, index
+            self._anchors = more
+            self.select({index}, index)
+
+    # changing ------------------------------------------------------------------------------------------------------
+
+    def set_kind(self, kind: Kind) -> None:
+        """Make the selected points, and their mirror images, of one kind."""
+        anchors = self._anchors
+        if anchors is None or not self.selected or self.easel.placed is not self._shown:
+            return
+        for index in sorted(self.selected | self._images(anchors).keys()):
+            anchors = anchors.with_kind(index, kind)
+        if anchors is not self._anchors:
+            self._commit(anchors, _told(kind, len(self.selected)))
 
     def key(self, event: QKeyEvent) -> bool:
-        if self._anchors is None:
+        anchors = self._anchors
+        if anchors is None:
             return False
-        count, key = len(self._anchors.places), event.key()
+        key, keys = event.key(), event.modifiers()
+        nudge = self.easel.nudge(event)
         if key in (Qt.Key.Key_BracketLeft, Qt.Key.Key_BracketRight):
-            step = 1 if key == Qt.Key.Key_BracketRight else -1
-            self.chosen = ((-1 if step > 0 else 0) if self.chosen is None else self.chosen) + step
-            self.chosen %= count
-        elif self.chosen is None:
+            self._walk(1 if key == Qt.Key.Key_BracketRight else -1, len(anchors.places))
+        elif key == Qt.Key.Key_A and keys & Qt.KeyboardModifier.ControlModifier:
+            self.select(range(len(anchors.places)), self.chosen)
+        elif not self.selected:
             return False
         elif key in (Qt.Key.Key_Delete, Qt.Key.Key_Backspace):
-            self._remove()
-        elif key in ARROWS:
-            self._nudge(Qt.Key(key), bool(event.modifiers() & Qt.KeyboardModifier.ShiftModifier))
+            self._remove(anchors)
+        elif nudge is not None:
+            gesture = tr_n("Move point", "Move points", len(self.selected))
+            self._commit(self._shifted(anchors, nudge[0]), gesture, nudge[1])
+        elif key in KINDS and keys == Qt.KeyboardModifier.ShiftModifier:
+            self.set_kind(KINDS[Qt.Key(key)])
         else:
             return False
         return True
 
-    def _remove(self) -> None:
-        anchors, chosen = self._anchors, self.chosen
-        if anchors is None or chosen is None:
-            return
+    def _walk(self, step: int, count: int) -> None:
+        start = (-1 if step > 0 else 0) if self.chosen is None else self.chosen
+        self.select({(start + step) % count}, (start + step) % count)
+
+    def _remove(self, anchors: Anchors) -> None:
+        gone = self.selected | self._images(anchors).keys()
+        gesture = tr_n("Delete point", "Delete points", len(self.selected))
         try:
-            fewer = anchors.without(chosen)
+            fewer = anchors.without(*gone)
         except TargetError as error:
-            refusal = error  # carried out of the handler: Python forgets the name at its end
-
-            def refuse() -> Placed:
-                raise refusal
-
-            self.easel.changed.emit(Change("Delete point", refuse))
+            self.easel.changed.emit(Change(gesture, _refusal(error)))
             return
-        self.chosen = None
-        self._commit(fewer, "Delete point")
+        before = self.selected, self.chosen
+        self.select(())
+        if not self._commit(fewer, gesture):
+            self.select(*before)
 
-    def _nudge(self, key: Qt.Key, far: bool) -> None:
-        if self._anchors is None or self.chosen is None:
-            return
-        length = self.easel.step * NUDGE * (10 if far else 1)
-        x, y = self._anchors.places[self.chosen] + np.array(ARROWS[key]) * length
-        self._commit(self._anchors.moved(self.chosen, (float(x), float(y))), "Move point")
+    def _shifted(self, anchors: Anchors, way: FloatArray) -> Anchors:
+        """Move the selected points; with a mirror their images go the mirrored way, points on an axis stay on it."""
+        ways: dict[int, FloatArray] = {}
+        images = self._images(anchors)
+        for index in sorted(self.selected, key=lambda index: index != self.chosen):
+            own = [factors for factors in self.easel.mirror.images if images.get(index) == factors]
+            ways.setdefault(index, way)
+            for factors in own:
+                ways[index] = 0.5 * (ways[index] + ways[index] * factors)
+        for index, factors in images.items():
+            ways.setdefault(index, way * factors)
+        return anchors.displaced(ways)
+
+    def _images(self, anchors: Anchors) -> dict[int, tuple[int, int]]:
+        """The mirror images of the selected points, and by which factors they are that."""
+        found: dict[int, tuple[int, int]] = {}
+        placed = self.easel.placed
+        for factors in self.easel.mirror.images if placed is not None else ():
+            for index in self.selected:
+                image = self.easel.mirror.image(anchors.places[index], factors)
+                far = np.linalg.norm(anchors.places - image, axis=1)
+                nearest = int(np.argmin(far))
+                if placed is not None and far[nearest] <= IMAGE_REACH * placed.scale:
+                    found.setdefault(nearest, factors)
+        return found
+
+    def _with_handle(self, anchors: Anchors, handle: Handle, spot: Spot) -> Anchors:
+        offset = np.array(spot.place) - anchors.places[handle.anchor]
+        bent = anchors.with_handle(handle.anchor, handle.side, offset, spot.alt, spot.shift)
+        placed = self.easel.placed
+        for factors in self.easel.mirror.images if placed is not None else ():
+            image = self.easel.mirror.image(anchors.places[handle.anchor], factors)
+            far = np.linalg.norm(anchors.places - image, axis=1)
+            nearest = int(np.argmin(far))
+            if placed is None or far[nearest] > IMAGE_REACH * placed.scale or nearest == handle.anchor:
+                continue
+            turned = factors[0] * factors[1] < 0  # a reflection turns the order of the points round
+            side = (INTO + OUT - handle.side) if turned else handle.side
+            bent = bent.with_handle(nearest, side, offset * factors, spot.alt, spot.shift)
+        return bent
 
     def drop(self) -> None:
-        self._dragged = None
+        self._dragged, self._field, self._handle, self._start = None, None, None, None
+        self._grip = Grip.NOTHING
 
-    def _commit(self, anchors: Anchors, gesture: str) -> None:
-        """Hand over the target with these points; they stay as they are when it becomes the document's."""
+    def _commit(self, anchors: Anchors, gesture: str, merge_key: str | None = None) -> bool:
+        """Hand over the target with these points; whether it was taken.  They stay selected."""
         placed = self.easel.placed
         if placed is None:
-            return
-        before, chosen = self._anchors, self.chosen
+            return False
+        before = self._anchors
 
         def make() -> Placed:
-            made = placed.reshaped(anchors.ring)
-            self._made, self._anchors = made, anchors
+            made = with_anchors(placed, anchors)
+            self._made = made
+            self._anchors = anchors if made.outline.nodes is not None else Anchors.of(made)
             return made
 
-        self.easel.changed.emit(Change(gesture, make))
+        self.easel.changed.emit(Change(gesture, make, merge_key))
         if self.easel.placed is placed:  # refused
-            self._anchors, self.chosen = before, chosen
+            self._anchors = before
+            return False
+        if self._anchors is not None and len(self._anchors.places) != len(anchors.places):
+            self.select(())
+        self._tell()
+        return True
+
+    # finding and painting ------------------------------------------------------------------------------------------
 
     def _at(self, pixel: QPointF) -> int | None:
         if self._anchors is None:
@@ -153,26 +310,45 @@ class PointTool(SketchTool):
         nearest = int(np.argmin(far))
         return nearest if far[nearest] <= REACH else None
 
-    def _far(self, place: np.ndarray[tuple[int, ...], np.dtype[np.float64]], pixel: QPointF) -> float:
+    def _handle_at(self, pixel: QPointF) -> Handle | None:
+        anchors = self._anchors
+        if anchors is None:
+            return None
+        shown = [Handle(index, side) for index in self.selected for side in (INTO, OUT)]
+        far = {
+            handle: self._far(anchors.places[handle.anchor] + anchors.handles[handle.anchor, handle.side], pixel)
+            for handle in shown
+            if np.any(anchors.handles[handle.anchor, handle.side])
+        }
+        nearest = min(far, key=lambda handle: far[handle], default=None)
+        return nearest if nearest is not None and far[nearest] <= REACH else None
+
+    def _far(self, place: FloatArray, pixel: QPointF) -> float:
         return float(np.linalg.norm(self.easel.frame.to_pixels(place) - (pixel.x(), pixel.y())))
 
     def paint(self, painter: QPainter, frame: Frame, palette: Palette) -> None:
         anchors = self.anchors
         if anchors is None:
             return
-        if self._dragged is not None:
-            paint_proposal(painter, frame.to_pixels(anchors.ring), palette)
-        painter.setPen(QPen(QColor(palette.accent), 1.6))
-        for index, (x, y) in enumerate(frame.to_pixels(anchors.places).tolist()):
-            painter.setBrush(QColor(palette.accent if index == self.chosen else palette.canvas))
-            box = QRectF(x - HANDLE, y - HANDLE, 2 * HANDLE, 2 * HANDLE)
-            if anchors.smooth[index]:
-                painter.drawEllipse(box)
-            else:
-                painter.drawRect(box)
-        if self._dragged is not None and self.chosen is not None:
-            self._paint_place(painter, frame, anchors.places[self.chosen].tolist(), palette)
+        field = None if self._field is None else (self._field[0].pixel, self._field[1].pixel)
+        images = frozenset(self._images(anchors)) - self.selected
+        shown = self.chosen if self._dragged is not None and self._grip is Grip.POINTS else None
+        marks = Marks(anchors, self.selected, images, self._dragged is not None, shown, field)
+        paint_marks(painter, frame, palette, marks)
 
-    def _paint_place(self, painter: QPainter, frame: Frame, place: Place, palette: Palette) -> None:
-        x, y = frame.to_pixels(np.array(place)).tolist()
-        paint_label(painter, QPointF(x, y), f"{place[0]:.4g}, {place[1]:.4g} mm", palette)
+
+def _refusal(error: TargetError) -> Callable[[], Placed]:
+    def refuse() -> Placed:
+        raise error
+
+    return refuse
+
+
+def _told(kind: Kind, count: int) -> str:
+    """The change as it follows the word Undo."""
+    return {
+        Kind.CORNER: tr_n("Make point a corner", "Make points corners", count),
+        Kind.SMOOTH: tr_n("Make point smooth", "Make points smooth", count),
+        Kind.SYMMETRIC: tr_n("Make point symmetric", "Make points symmetric", count),
+        Kind.AUTO: tr_n("Make point smooth", "Make points smooth", count),
+    }[kind]

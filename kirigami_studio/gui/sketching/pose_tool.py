@@ -1,17 +1,20 @@
-"""Handles around the target that stretch and turn it."""
+"""Moving the target on the board, and handles around it that stretch and turn it."""
 
 from __future__ import annotations
 
 import math
 
 import numpy as np
+import shapely
 from PySide6.QtCore import QPointF, QRectF, Qt
-from PySide6.QtGui import QColor, QPainter, QPen
+from PySide6.QtGui import QColor, QKeyEvent, QPainter, QPen
 
 from kirigami_studio.foundation.errors import TargetError
+from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.scene.frame import Frame
 from kirigami_studio.gui.scene.target_items import paint_label, paint_proposal, paint_size
 from kirigami_studio.gui.sketching.easel import Change, Easel, Place, SketchTool, Spot
+from kirigami_studio.gui.sketching.strokes import distance
 from kirigami_studio.gui.theme import Palette
 from kirigami_studio.target.placed import Placed
 
@@ -25,40 +28,77 @@ SNAP_STEP = math.radians(1.0)
 #: Which side of the box a handle moves: x and y, -1 the lower, 1 the upper, 0 neither.
 SIDES = ((-1, -1), (0, -1), (1, -1), (1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0))
 TURN = (0, 2)
+#: The grip of a target that is dragged as a whole.
+WHOLE = (0, 0)
+#: A drag of the whole is one from this many pixels on.
+LEAST_DRAG = 3.0
 
 
 class PoseTool(SketchTool):
-    """Squares stretch, the round knob turns."""
+    """The shape moves, squares stretch, the round knob turns."""
 
-    hint = "Drag a square to stretch (Shift keeps proportions), the knob to turn (Shift: in steps of 15°)."
     cursor = Qt.CursorShape.ArrowCursor
 
     def __init__(self, easel: Easel) -> None:
         super().__init__(easel)
+        self.hint = tr(
+            "Drag a square to stretch (Shift keeps proportions), the knob to turn (Shift: in steps of 15°), the shape "
+            "to move it; arrow keys nudge by 1 mm (Shift 10, Alt 0.1)."
+        )
+        self._start: Spot | None = None
         self._grip: tuple[int, int] | None = None
         self._proposal: Placed | None = None
         self._angle = 0.0
 
     def press(self, spot: Spot) -> None:
-        self._grip = self._at(spot.pixel)
+        target = self.easel.placed
+        self._grip, self._start = self._at(spot.pixel), spot
+        if self._grip is None and target is not None and shapely.contains_xy(target.polygon, *spot.free):
+            self._grip = WHOLE
 
     def move(self, spot: Spot, held: bool) -> None:
         target = self.easel.placed
         if not held or self._grip is None or target is None:
             return
         try:
-            self._proposal = self._turned(target, spot) if self._grip == TURN else self._stretched(target, spot)
+            if self._grip == TURN:
+                self._proposal = self._turned(target, spot)
+            elif self._grip == WHOLE:
+                self._proposal = self._moved(target, spot)
+            else:
+                self._proposal = self._stretched(target, spot)
         except TargetError:  # flat for the moment; the last shape that can be stays
             return
 
     def release(self, spot: Spot) -> None:
-        made, turning = self._proposal, self._grip == TURN
+        made, grip = self._proposal, self._grip
         self.drop()
         if made is not None:
-            self.easel.changed.emit(Change("Rotate target" if turning else "Resize target", lambda: made))
+            gesture = {TURN: tr("Rotate target"), WHOLE: tr("Move target")}.get(grip or WHOLE, tr("Resize target"))
+            self.easel.changed.emit(Change(gesture, lambda: made))
+
+    def key(self, event: QKeyEvent) -> bool:
+        target, nudge = self.easel.placed, self.easel.nudge(event)
+        if target is None or nudge is None:
+            return False
+        x, y = nudge[0].tolist()
+        self.easel.changed.emit(Change(tr("Move target"), lambda: target.moved((x, y)), nudge[1]))
+        return True
 
     def drop(self) -> None:
-        self._grip, self._proposal = None, None
+        self._grip, self._proposal, self._start = None, None, None
+
+    def _moved(self, target: Placed, spot: Spot) -> Placed | None:
+        """The target moved with the pointer; its box's lower left corner snaps to the grid."""
+        start = self._start
+        if start is None or (self._proposal is None and distance(start.pixel, spot.pixel) < LEAST_DRAG):
+            return None
+        low = _box(target)[0]
+        there = low + np.array(spot.free) - start.free
+        if spot.snaps:
+            there = np.array([self.easel.snapped(length) for length in there.tolist()])
+        x, y = (there - low).tolist()
+        return target.moved((x, y))
 
     def _turned(self, target: Placed, spot: Spot) -> Placed:
         from kirigami_studio.target.refining import turned
@@ -132,7 +172,10 @@ class PoseTool(SketchTool):
             return
         low, high = _box(made)
         x, y = frame.to_pixels(np.array([high[0], high[1]])).tolist()
-        if grip == TURN:
+        if grip == WHOLE:
+            middle = 0.5 * (low + high)
+            paint_label(painter, QPointF(x, y), f"{middle[0]:.4g}, {middle[1]:.4g} mm", palette)
+        elif grip == TURN:
             paint_label(painter, QPointF(x, y), f"{math.degrees(self._angle):+.1f}°", palette)
         else:
             paint_size(painter, QPointF(x, y), tuple((high - low).tolist()), palette)

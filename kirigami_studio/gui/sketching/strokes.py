@@ -12,12 +12,15 @@ from kirigami_studio.gui.scene.frame import Frame
 from kirigami_studio.gui.scene.target_items import paint_sketch
 from kirigami_studio.gui.sketching.easel import Easel, SketchTool, Spot
 from kirigami_studio.gui.theme import Palette
+from kirigami_studio.target.mirroring import Mirror
 from kirigami_studio.target.placed import Placed
 
 #: A click this near (pixels) to the first corner closes the polygon.
 CLOSING_REACH = 10.0
 #: Freehand points nearer than this (pixels) to the last one are dropped: hands and mice jitter.
 SMALLEST_STEP = 2.0
+#: No mirror.
+PLAIN = Mirror()
 
 
 class Freehand(SketchTool):
@@ -37,10 +40,10 @@ class Freehand(SketchTool):
             self._spots.append(spot)
 
     def release(self, spot: Spot) -> None:
-        points = np.array([spot.free for spot in self._spots])
+        points, mirror = np.array([spot.free for spot in self._spots]), self.easel.mirror
         self.drop()
         if len(points) > 1:
-            self.easel.draw(lambda: stroke_of(points), "drawing")
+            self.easel.draw(lambda: stroke_of(points, mirror), "drawing")
 
     def drop(self) -> None:
         self._spots = []
@@ -49,13 +52,18 @@ class Freehand(SketchTool):
         if self._spots:
             points = frame.to_pixels(np.array([spot.free for spot in self._spots]))
             paint_sketch(painter, points, palette, corners=False)
+            _paint_images(painter, frame, palette, self.easel, self._spots)
 
 
-def stroke_of(points: np.ndarray[tuple[int, ...], np.dtype[np.float64]]) -> Placed:
-    """Smooth a stroke (P, 2), mm; SciPy is loaded at the first one, not when the window opens."""
+def stroke_of(points: np.ndarray[tuple[int, ...], np.dtype[np.float64]], mirror: Mirror = PLAIN) -> Placed:
+    """Smooth a stroke (P, 2), mm, from axis to axis together with its images.
+
+    SciPy is loaded at the first one, not when the window opens.
+    """
     from kirigami_studio.target.refining import stroked
 
-    return stroked(points)
+    whole = mirror.completed(points)
+    return stroked(points) if whole is None else mirror.evened(stroked(whole))
 
 
 class Corners(SketchTool):
@@ -94,9 +102,11 @@ class Corners(SketchTool):
 
     def _finish(self) -> None:
         corners = np.array([spot.place for spot in self._spots])
+        whole = self.easel.mirror.completed(corners) if len(corners) else None
+        ring = corners if whole is None else whole
         self.drop()
         if len(corners):
-            self.easel.draw(lambda: Placed.from_ring(corners, "polygon"), "polygon")
+            self.easel.draw(lambda: Placed.from_ring(ring, "polygon"), "polygon")
 
     def paint(self, painter: QPainter, frame: Frame, palette: Palette) -> None:
         if not self._spots:
@@ -105,6 +115,13 @@ class Corners(SketchTool):
         if self._pointer is not None:
             places.append(self._pointer.place)
         paint_sketch(painter, frame.to_pixels(np.array(places)), palette, corners=True)
+        _paint_images(painter, frame, palette, self.easel, self._spots)
+
+
+def _paint_images(painter: QPainter, frame: Frame, palette: Palette, easel: Easel, spots: list[Spot]) -> None:
+    """Draw what the mirror makes of an unfinished line."""
+    for image in easel.mirror.all_images(np.array([spot.place for spot in spots])):
+        paint_sketch(painter, frame.to_pixels(image), palette, corners=False)
 
 
 def distance(one: QPointF, other: QPointF) -> float:

@@ -20,6 +20,7 @@ from PySide6.QtWidgets import QWidget
 from kirigami_studio.gui.jobs.steps import Picture
 from kirigami_studio.gui.scene.frame import Bounds, Frame
 from kirigami_studio.gui.scene.target_items import (
+    paint_axes,
     paint_grid,
     paint_proposal,
     paint_reach,
@@ -191,6 +192,8 @@ class TargetView(Canvas):
             painter.setOpacity(1.0)
         if self._preview is not None:
             paint_proposal(painter, frame.to_pixels(self._preview.ring), self.palette_)
+        if self._editing:
+            paint_axes(painter, frame, self.easel.mirror, QRectF(self.rect()), self.palette_)
         self.active.paint(painter, frame, self.palette_)
 
     def _paint_reach(self, painter: QPainter, frame: Frame, placed: Placed) -> None:
