@@ -65,7 +65,7 @@ COMMANDS = (
     Command("clear", "&Clear target", "&Edit", (), "clear", "Remove the target"),
     Command("edit_target", "&Edit target", "D&raw", ("E",), "edit", "Open or leave the drawing board"),
     Command("points", "Move &points", "D&raw", ("N",), "points", "Drag the points of the target", gap=True),
-    Command("pose", "&Resize and rotate", "D&raw", ("V",), "pose", "Stretch and turn the target by handles"),
+    Command("pose", "&Move, resize and rotate", "D&raw", ("V",), "pose", "Move, stretch and turn the target"),
     Command("freehand", "&Freehand", "D&raw", ("D",), "draw", "Draw the target in one stroke", gap=True),
     Command("polygon", "P&olygon", "D&raw", ("P",), "polygon", "Draw the target corner by corner"),
     Command("rectangle", "Rec&tangle", "D&raw", ("R",), "rectangle", "Draw a rectangle"),
@@ -76,7 +76,10 @@ COMMANDS = (
     Command("mode_new", "&New shape", "D&raw", ("=",), "replace", "The next shape replaces the target", gap=True),
     Command("mode_add", "&Add shape", "D&raw", ("+",), "add", "The next shape joins the target"),
     Command("mode_subtract", "Ta&ke away", "D&raw", ("-",), "subtract", "The next shape is cut off the target"),
-    Command("grid", "Snap to &grid", "D&raw", ("Ctrl+Shift+G",), "grid", "Show the grid and snap to it", gap=True),
+    Command(
+        "axis", "M&irror while drawing", "D&raw", ("Shift+M",), "axis-upright", "Next choice of mirror axes", gap=True
+    ),
+    Command("grid", "Snap to &grid", "D&raw", ("Ctrl+Shift+G",), "grid", "Show the grid and snap to it"),
     Command("generate", "&Generate", "&Design", ("Ctrl+G", "Ctrl+Return"), "generate", "Design sheets for the target"),
     Command("cancel", "&Cancel", "&Design", ("Esc",), "stop", "Stop generating"),
     Command(

@@ -76,6 +76,7 @@ class Commands(QObject):
             "mode_new": partial(self._set_mode, Combine.REPLACE),
             "mode_add": partial(self._set_mode, Combine.ADD),
             "mode_subtract": partial(self._set_mode, Combine.SUBTRACT),
+            "axis": self._cycle_axis,
             "grid": window.target.strip.grid.click,
             "clear": controller.targeting.clear,
             "generate": controller.generate,
@@ -112,6 +113,10 @@ class Commands(QObject):
         if self.window.target.strip.modes[mode].isEnabled():
             self.window.target.set_editing(True)
             self.window.target.strip.set_mode(mode)
+
+    def _cycle_axis(self) -> None:
+        self.window.target.set_editing(True)
+        self.window.target.strip.axis.cycle()
 
     def ask_target(self) -> None:
         """Open a target file of the user's choice."""

@@ -62,7 +62,8 @@ class Reshaping(QObject):
         """Simplify or smooth the target that the slider started from."""
         made = self._refined(kind, strength)
         self.previewed.emit(None)
-        if made is not None:
+        placed = self._easel.placed
+        if made is not None and (placed is None or made.outline != placed.outline):
             self._result = made
             self.take(Change(REFINEMENTS[kind], lambda: made))
 
@@ -87,14 +88,17 @@ class Reshaping(QObject):
             self._base = self._result = None
             self.restarted.emit()
 
-    def resize(self, width_mm: float) -> None:
-        """Give the target another real width; its proportions stay."""
+    def resize(self, width_mm: float, height_mm: float) -> None:
+        """Give the target another real size; its middle stays."""
         from kirigami_studio.target.refining import stretched
 
         placed = self._easel.placed
         if placed is not None:
-            factor = width_mm / placed.size[0]
-            self.take(Change("Resize target", lambda: stretched(placed, (factor, factor))))
+            width, height = placed.size
+            ring = placed.ring
+            x, y = (0.5 * (ring.min(axis=0) + ring.max(axis=0))).tolist()
+            factors = (width_mm / width, height_mm / height)
+            self.take(Change("Resize target", lambda: stretched(placed, factors, (x, y))))
 
     def mirror(self, how: str) -> None:
         """Reflect: ``left``, ``right``, ``top`` or ``bottom`` keeps that half; ``across`` and ``over`` turn all."""

@@ -8,6 +8,7 @@ from PySide6.QtGui import QAction
 from kirigami_studio.gui.commands import OVERLAY_ACTIONS, Commands
 from kirigami_studio.gui.controller import Controller
 from kirigami_studio.gui.jobs.steps import Planned
+from kirigami_studio.gui.lost_designs import LostDesigns
 from kirigami_studio.gui.messages import Tone
 from kirigami_studio.gui.reshaping import Reshaping
 from kirigami_studio.gui.shell import Shell
@@ -25,6 +26,7 @@ class Wiring(QObject):
         self.controller = controller
         self.commands = commands
         self.reshaping = Reshaping(window.target.view.easel, lambda: controller.document, self)
+        self.lost = LostDesigns(controller.history, self)
         self._shown = Document()
         self._connect_panels()
         self._connect_controller()
@@ -74,10 +76,14 @@ class Wiring(QObject):
         window.target.strip.mirror_wanted.connect(reshaping.mirror)
         window.target.refine.previewed.connect(reshaping.preview)
         window.target.refine.refined.connect(reshaping.refine)
-        window.target.refine.width_wanted.connect(reshaping.resize)
+        window.target.refine.size_wanted.connect(reshaping.resize)
         reshaping.edited.connect(controller.targeting.reshape)
         reshaping.refused.connect(controller.refuse)
         reshaping.previewed.connect(window.target.view.show_preview)
+        controller.document_changed.connect(self.lost.follow)
+        self.lost.message.connect(window.messages.add)
+        self.lost.found.connect(window.messages.drop)
+        self.lost.undo_wanted.connect(controller.undo)
         reshaping.restarted.connect(window.target.refine.restart)
         controller.run.started.connect(lambda _: window.target.set_editing(False))
 

@@ -133,7 +133,19 @@ class Placed:
         TargetError
             A way that is not finite.
         """
-        place = (self.centre[0] + by[0], self.centre[1] + by[1])
-        width, height = self.size
-        outline = replace(self.outline, place=place, size=(width, height), unit="mm")
-        return Placed(outline, self.scale, place)
+        return self._put(self.scale, (self.centre[0] + by[0], self.centre[1] + by[1]))
+
+    def enlarged(self, factor: float, fixed: tuple[float, float]) -> Placed:
+        """The very same shape ``factor`` times as large; the place ``fixed``, mm, stays.
+
+        Raises
+        ------
+        TargetError
+            A factor that is not above 0, or not finite.
+        """
+        x, y = (stay + factor * (own - stay) for own, stay in zip(self.centre, fixed, strict=True))
+        return self._put(factor * self.scale, (x, y))
+
+    def _put(self, scale: float, centre: tuple[float, float]) -> Placed:
+        there = Placed(self.outline, scale, centre)
+        return Placed(replace(self.outline, place=centre, size=there.size, unit="mm"), scale, centre)

@@ -110,6 +110,8 @@ def stretched(target: Placed, factors: tuple[float, float], fixed: tuple[float, 
         raise TargetError(
             f"A target must be {SMALLEST_MM:g} to {LARGEST_MM:g} mm wide and high, got {width:.4g} x {height:.4g} mm."
         )
+    if factors[0] > 0 and math.isclose(*factors, rel_tol=1e-9):
+        return target.enlarged(factors[0], target.centre if fixed is None else fixed)
     stay = np.array(target.centre if fixed is None else fixed)
     return target.mapped(np.diag(factors), stay * (1.0 - np.array(factors)))
 

@@ -104,6 +104,12 @@ class MessageBar(QFrame):
         self._messages = [one for one in self._messages if one.tone not in tones]
         self._go(len(self._messages) - 1)
 
+    def drop(self, message: Message) -> None:
+        """Close one message, wherever it stands; one that is closed already stays so."""
+        if message in self._messages:
+            self._messages.remove(message)
+            self._go(len(self._messages) - 1)
+
     def set_palette(self, palette: Palette) -> None:
         """Draw in other colours."""
         self._palette = palette

@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import QSignalBlocker, Qt, Signal
+from PySide6.QtCore import QSignalBlocker, Signal
 from PySide6.QtWidgets import QDoubleSpinBox, QHBoxLayout, QLabel, QSlider, QWidget
 
+from kirigami_studio.foundation.words import tr
+from kirigami_studio.gui import icons
+from kirigami_studio.gui.panels.card import tool_button
+from kirigami_studio.gui.panels.groove_slider import GrooveSlider
 from kirigami_studio.gui.panels.number_field import number_field
+from kirigami_studio.gui.theme import Palette
 from kirigami_studio.target.placed import LARGEST_MM, Placed
 
 #: Slider steps from nothing to most.
@@ -22,7 +27,7 @@ class RefineBar(QWidget):
 
     previewed = Signal(str, float)  #: name of the slider, strength 0..1
     refined = Signal(str, float)
-    width_wanted = Signal(float)  #: mm
+    size_wanted = Signal(float, float)  #: width and height, mm
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -30,9 +35,10 @@ class RefineBar(QWidget):
         row.setContentsMargins(0, 0, 0, 0)
         row.setSpacing(8)
         self._ratio = 1.0
+        self._size = (0.0, 0.0)
         self.sliders: dict[str, QSlider] = {}
         for name, caption, tip in SLIDERS:
-            slider = QSlider(Qt.Orientation.Horizontal)
+            slider = GrooveSlider()
             slider.setObjectName("threshold")
             slider.setRange(0, STEPS)
             slider.setPageStep(STEPS // 10)
@@ -49,15 +55,28 @@ class RefineBar(QWidget):
         for caption, field in (("Size", self.width_), ("\N{MULTIPLICATION SIGN}", self.height_)):
             row.addWidget(_caption(caption, field))
             row.addWidget(field)
-        self.width_.valueChanged.connect(self.width_wanted)
-        self.height_.valueChanged.connect(lambda value: self.width_wanted.emit(value * self._ratio))
+        self.proportions = tool_button("keepProportions", tr("Keep proportions. Off: width or height alone."), True)
+        self.proportions.setChecked(True)
+        row.addWidget(self.proportions)
+        self.width_.valueChanged.connect(self._take_width)
+        self.height_.valueChanged.connect(self._take_height)
+
+    def _take_width(self, width: float) -> None:
+        self.size_wanted.emit(width, width / self._ratio if self.proportions.isChecked() else self._size[1])
+
+    def _take_height(self, height: float) -> None:
+        self.size_wanted.emit(height * self._ratio if self.proportions.isChecked() else self._size[0], height)
+
+    def set_palette(self, palette: Palette) -> None:
+        """Draw in other colours."""
+        self.proportions.setIcon(icons.icon("chain", palette))
 
     def show_placed(self, placed: Placed | None) -> None:
         """Show the target's size on the board."""
         self.setEnabled(placed is not None)
         if placed is None:
             return
-        width, height = placed.size
+        width, height = self._size = placed.size
         self._ratio = width / height
         for field, value in ((self.width_, width), (self.height_, height)):
             with QSignalBlocker(field):
@@ -97,6 +116,6 @@ def _length(name: str) -> QDoubleSpinBox:
     field.setSuffix(" mm")
     number_field(field)
     field.setKeyboardTracking(False)
-    field.setAccessibleName(f"{name}; its proportions stay")
-    field.setToolTip(f"{name} in mm; its proportions stay")
+    field.setAccessibleName(name)
+    field.setToolTip(f"{name} in mm; the chain beside it keeps the proportions")
     return field

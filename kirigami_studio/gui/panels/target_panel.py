@@ -123,6 +123,7 @@ class TargetPanel(Card):
         self.view.show_outline(outline, picture)
         self.strip.show_target(outline is not None)
         self.refine.show_placed(self.view.easel.placed)
+        self.strip.options.pose.show_placed(self.view.easel.placed)
         self.buttons["clearTarget"].setEnabled(outline is not None)
         self.facts.setVisible(outline is not None)
         self.size_.setVisible(outline is not None)
@@ -155,6 +156,7 @@ class TargetPanel(Card):
         """Draw in other colours."""
         self.view.set_palette(palette)
         self.strip.set_palette(palette)
+        self.refine.set_palette(palette)
         for name, icon, _, _ in BUTTONS:
             self.buttons[name].setIcon(icons.icon(icon, palette))
 

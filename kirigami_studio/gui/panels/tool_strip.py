@@ -18,18 +18,22 @@ from PySide6.QtWidgets import (
 )
 
 from kirigami_studio.gui import icons
+from kirigami_studio.gui.panels.axis_button import AxisButton
 from kirigami_studio.gui.panels.card import tool_button
+from kirigami_studio.gui.panels.font_options import FontOptions
+from kirigami_studio.gui.panels.node_options import NodeOptions
 from kirigami_studio.gui.panels.number_field import number_field
+from kirigami_studio.gui.panels.pose_options import PoseOptions
 from kirigami_studio.gui.sketching.easel import Easel
 from kirigami_studio.gui.theme import Palette
-from kirigami_studio.gui.views.target_view import DRAWING, Tool
+from kirigami_studio.gui.views.target_view import Tool
 from kirigami_studio.target.combining import Combine
 from kirigami_studio.target.figures import FEWEST_CORNERS, MOST_CORNERS, NARROWEST_WAIST, WIDEST_WAIST
 
 #: Tool, icon, tooltip; None for a gap.
 TOOLS: tuple[tuple[Tool, str, str] | None, ...] = (
-    (Tool.POINTS, "points", "Move points (N). Drag, double-click, Delete; smooth points carry curves."),
-    (Tool.POSE, "pose", "Resize and rotate (V). Drag the handles around the target."),
+    (Tool.POINTS, "points", "Move points (N). Select, drag, Delete; handles bend the lines."),
+    (Tool.POSE, "pose", "Move, resize and rotate (V). Drag the target or the handles around it."),
     None,
     (Tool.FREEHAND, "draw", "Draw freehand (D). One stroke; it is smoothed and closed."),
     (Tool.POLYGON, "polygon", "Draw a polygon (P). Click corners, Enter closes."),
@@ -85,7 +89,10 @@ class ToolStrip(QWidget):
         self.grid = self._button("grid", "grid", "Snap to the grid (Ctrl+Shift+G). Ctrl held suspends it.", True)
         self.grid.setChecked(easel.snapping)
         self.grid.toggled.connect(self.grid_switched)
+        self.axis = AxisButton(easel)
+        self.axis.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         row.addWidget(self.mirror)
+        row.addWidget(self.axis)
         row.addWidget(self.grid)
         row.addStretch(1)
         self.finish = QPushButton("Done")
@@ -145,10 +152,12 @@ class ToolStrip(QWidget):
         """Draw in other colours."""
         for button, icon in self._icons:
             button.setIcon(icons.icon(icon, palette))
+        self.axis.set_palette(palette)
+        self.options.set_palette(palette)
 
 
 class ToolOptions(QWidget):
-    """Corners of a polygon, tips and waist of a star, letters of a text."""
+    """Corners of a polygon, tips and waist of a star, letters of a text, kinds of points, place of the target."""
 
     def __init__(self, easel: Easel) -> None:
         super().__init__()
@@ -173,7 +182,8 @@ class ToolOptions(QWidget):
         self.text.setAccessibleName("Text to draw")
         self.text.setPlaceholderText("Text")
         self.text.setMaxLength(24)
-        self.text.setMaximumWidth(180)
+        self.text.setMaximumWidth(150)
+        self.nodes, self.pose, self.font_ = NodeOptions(easel), PoseOptions(easel), FontOptions(easel)
         self._parts: list[tuple[frozenset[Tool], tuple[QWidget, ...]]] = []
         for tools, caption, field in (
             (frozenset({Tool.REGULAR, Tool.STAR}), "&Corners", self.corners),
@@ -186,6 +196,9 @@ class ToolOptions(QWidget):
             row.addWidget(label)
             row.addWidget(field)
             self._parts.append((tools, (label, field)))
+        for tool, options in ((Tool.POINTS, self.nodes), (Tool.POSE, self.pose), (Tool.TEXT, self.font_)):
+            row.addWidget(options)
+            self._parts.append((frozenset({tool}), (options,)))
         self.corners.valueChanged.connect(lambda value: setattr(easel, "corners", value))
         self.waist.valueChanged.connect(lambda value: setattr(easel, "waist", value / 100))
         self.text.textChanged.connect(lambda value: setattr(easel, "text", value))
@@ -193,9 +206,16 @@ class ToolOptions(QWidget):
 
     def show_tool(self, tool: Tool) -> None:
         """Show the numbers that a tool has."""
+        if tool is Tool.TEXT:
+            self.font_.fill()
         for tools, widgets in self._parts:
             for widget in widgets:
-                widget.setVisible(tool in tools and tool in DRAWING)
+                widget.setVisible(tool in tools)
+
+    def set_palette(self, palette: Palette) -> None:
+        """Draw in other colours."""
+        self.nodes.set_palette(palette)
+        self.font_.set_palette(palette)
 
 
 def _rule() -> QFrame:
