@@ -18,6 +18,7 @@ from kirigami_studio.gui.warm_up import WarmUp
 
 FIRST_TARGET = "heart"
 PREFERENCES = "preferences.toml"
+RECOVERY = "recovery"
 SMALLEST_FONT = 9.5
 NO_DISPLAY = (
     "There is no display to open the window on; use the commands (kirigami-studio --help), or play a session without "
@@ -103,6 +104,7 @@ def run(argv: list[str]) -> int:
     state = QSettings()
     window.restore(state)
     window.controller.use_preferences(platformdirs.user_config_path("kirigami-studio", appauthor=False) / PREFERENCES)
+    window.controller.recovering.use(platformdirs.user_state_path("kirigami-studio", appauthor=False) / RECOVERY)
     application.aboutToQuit.connect(lambda: window.remember(state))
     QGuiApplication.styleHints().colorSchemeChanged.connect(lambda _: window.set_theme(theme.system_palette()))
     window.show()

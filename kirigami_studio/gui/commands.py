@@ -52,6 +52,9 @@ class Commands(QObject):
         self.pasting = Pasting(self)
         self.pasting.file_wanted.connect(self.take_file)
         self.pasting.message.connect(controller.message)
+        controller.recovering.recover_wanted.connect(
+            lambda leftover: self.guard("recover another", partial(controller.recovering.recover, leftover))
+        )
         self._closing = False
         self._connect_actions()
 

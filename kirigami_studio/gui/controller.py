@@ -23,6 +23,7 @@ from kirigami_studio.gui.jobs import steps
 from kirigami_studio.gui.jobs.board import Board, Ears
 from kirigami_studio.gui.messages import Message, Tone
 from kirigami_studio.gui.preferring import Preferring
+from kirigami_studio.gui.recovering import Recovering, Work
 from kirigami_studio.gui.shelf import Shelf
 from kirigami_studio.gui.showing import Showing
 from kirigami_studio.gui.storing import Storing
@@ -60,6 +61,7 @@ class Controller(QObject):
         self.targeting = Targeting(self.board, lambda: self.document, self)
         self.storing = Storing(self.board, self)
         self.preferring = Preferring(self)
+        self.recovering = Recovering(self.board, lambda: Work(self.document, self.path, self.history.unsaved), self)
         self._connect()
 
     def _connect(self) -> None:
@@ -79,11 +81,15 @@ class Controller(QObject):
         self.targeting.settled.connect(self.end_drag)
         self.storing.saved.connect(self._saved)
         self.storing.opened.connect(self._opened)
+        self.recovering.recovered.connect(self._recovered)
+        self.document_changed.connect(lambda _: self.recovering.notice())
         for message in (self.finishing.message, self.cutting.message, self.preferring.message):
             message.connect(self.message)
+        self.recovering.message.connect(self.message)
         for status in (self.targeting.status, self.finishing.status, self.cutting.status, self.storing.status):
             status.connect(self.status)
-        parts = (self.showing, self.finishing, self.comparing, self.targeting, self.storing)
+        self.recovering.status.connect(self.status)
+        parts = (self.showing, self.finishing, self.comparing, self.targeting, self.storing, self.recovering)
         for failed in (source.failed for source in parts):
             failed.connect(self._tell_failure)
 
@@ -105,6 +111,7 @@ class Controller(QObject):
         """Stop all work; the window is going away."""
         self.cutting.close()
         self.board.close()
+        self.recovering.close()
 
     def use_preferences(self, path: Path) -> None:
         """Start with what was preferred the last time, and remember what is from now on."""
@@ -261,9 +268,9 @@ class Controller(QObject):
         """Write the project file."""
         self.storing.save(self.document, path)
 
-    def _saved(self, path: Path) -> None:
+    def _saved(self, path: Path, document: Document) -> None:
         self.path = path
-        self.history.mark_saved()
+        self.history.mark_saved(document)
         self.saved.emit(path)
         self.document_changed.emit(self.document)
         self.status.emit(f"Saved {path}.")
@@ -279,6 +286,12 @@ class Controller(QObject):
         self.opened.emit(path)
         self._show()
         self.status.emit(f"Opened {path}.")
+
+    def _recovered(self, document: Document, path: Path | None) -> None:
+        self._stop_design()
+        self.path = path
+        self.history.restart(document, saved=False)
+        self._show()
 
     def new_project(self) -> None:
         """Forget everything and start empty."""

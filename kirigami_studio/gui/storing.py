@@ -15,7 +15,7 @@ from kirigami_studio.project.document import Document
 class Storing(QObject):
     """Saves and opens projects."""
 
-    saved = Signal(object)  #: Path
+    saved = Signal(object, object)  #: Path, Document that it holds
     opened = Signal(object, object)  #: Path, Document
     failed = Signal(str, str)  #: sentence, trace
     status = Signal(str)
@@ -27,7 +27,7 @@ class Storing(QObject):
     def save(self, document: Document, path: Path) -> None:
         """Write a project file."""
         self.status.emit(f"Saving {path.name} …")
-        ears = Ears(self._saved, on_failed=self.failed.emit)
+        ears = Ears(partial(self._saved, document), on_failed=self.failed.emit)
         self._board.start(f"saving {path.name}", partial(steps.saving, document, path), ears)
 
     def open(self, path: Path) -> None:
@@ -36,9 +36,9 @@ class Storing(QObject):
         ears = Ears(partial(self._opened, path), on_failed=self.failed.emit)
         self._board.start(f"opening {path.name}", partial(steps.loading, path), ears)
 
-    def _saved(self, path: object) -> None:
+    def _saved(self, document: Document, path: object) -> None:
         if isinstance(path, Path):
-            self.saved.emit(path)
+            self.saved.emit(path, document)
 
     def _opened(self, path: Path, document: object) -> None:
         if isinstance(document, Document):

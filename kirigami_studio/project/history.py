@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from kirigami_studio.foundation.errors import ProjectError
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.edits import Edit
 from kirigami_studio.target.outline import Outline
@@ -86,6 +87,33 @@ class History:
         self._drag_open = edit.merge_key is not None
         return True
 
+    @property
+    def steps(self) -> tuple[str, ...]:
+        """Labels of all steps, the oldest first: those that are done, then those that were undone."""
+        return tuple(step.edit.label for step in (*self._done, *reversed(self._undone)))
+
+    @property
+    def position(self) -> int:
+        """How many of the steps are done."""
+        return len(self._done)
+
+    def go_to(self, position: int) -> bool:
+        """Undo or redo until ``position`` steps are done; False when there is nothing to do.
+
+        Raises
+        ------
+        ProjectError
+            There are not so many steps.
+        """
+        if not 0 <= position <= len(self.steps):
+            raise ProjectError(f"The history has {len(self.steps)} steps, there is no step {position}.")
+        moved = False
+        while position < len(self._done):
+            moved = self.undo()
+        while position > len(self._done):
+            moved = self.redo()
+        return moved
+
     def end_drag(self) -> None:
         """The mouse was released: the next edit is a step of its own."""
         self._drag_open = False
@@ -110,9 +138,9 @@ class History:
         self._document = step.edit.document
         return True
 
-    def mark_saved(self) -> None:
-        """The present document is on disk now."""
-        self._saved = self._document
+    def mark_saved(self, document: Document | None = None) -> None:
+        """The present document is on disk now, or this one: it may have changed while an earlier one was written."""
+        self._saved = self._document if document is None else document
         self._drag_open = False
 
     def _continues_drag(self, edit: Edit) -> bool:

@@ -1,0 +1,95 @@
+"""What survives a crash: a project file with a note of its own about where the work belongs.
+
+The file is a whole project, so that it can also be opened by hand; the note is one more member of it, so that file and
+note appear together or not at all.
+"""
+
+from __future__ import annotations
+
+import io
+import json
+import zipfile
+from dataclasses import asdict, dataclass
+from datetime import UTC, datetime
+from pathlib import Path
+
+from kirigami_studio.foundation.errors import KirigamiError, ProjectError
+from kirigami_studio.foundation.files import write_atomically
+from kirigami_studio.project import store
+from kirigami_studio.project.document import Document
+from kirigami_studio.project.json_record import Record, read_json
+
+NOTE = "recovery.json"
+#: A note is a few hundred bytes; whatever is longer is none.
+LONGEST_NOTE = 64 * 2**10
+
+
+@dataclass(frozen=True, slots=True)
+class Note:
+    """Whose work it is.
+
+    Attributes
+    ----------
+    name : str
+        What a person calls the project: its file's name, or what the target is called.
+    path : str
+        Where the project was saved last, absolute; "" if it never was.
+    changed : str
+        When the kept change was made, ISO 8601 with the offset of its time zone.
+    pid : int
+        Process that kept it.
+    """
+
+    name: str
+    path: str
+    changed: str
+    pid: int
+
+    @property
+    def when(self) -> datetime:
+        """The time of the change."""
+        return datetime.fromisoformat(self.changed)
+
+
+def now() -> str:
+    """The present time as a note has it."""
+    return datetime.now(UTC).astimezone().isoformat(timespec="seconds")
+
+
+def keep(document: Document, note: Note, path: Path) -> None:
+    """Write document and note in one go; an older file at ``path`` survives any failure.
+
+    Raises
+    ------
+    ExportError
+        The file cannot be written.
+    """
+    stream = io.BytesIO(store.pack(document))
+    with zipfile.ZipFile(stream, "a", zipfile.ZIP_DEFLATED) as archive:
+        archive.writestr(NOTE, json.dumps(asdict(note), indent=1))
+    write_atomically(path, stream.getvalue())
+
+
+def read_note(path: Path) -> Note:
+    """Read whose work a file keeps, without reading the work.
+
+    Raises
+    ------
+    ProjectError
+        Unreadable, damaged, or no kept work.
+    """
+    try:
+        with zipfile.ZipFile(path) as archive, archive.open(NOTE) as stream:
+            content = stream.read(LONGEST_NOTE)
+    except OSError as error:
+        raise ProjectError(f"The kept work {path} cannot be read: {error.strerror or error}.") from error
+    except (KeyError, ValueError, RuntimeError, zipfile.BadZipFile, NotImplementedError) as error:
+        raise ProjectError(f"The kept work {path} is damaged ({str(error)[:80]}).") from error
+    try:
+        record = Record(read_json(content, NOTE), NOTE)
+        note = Note(record.text("name"), record.text("path"), record.text("changed"), record.whole("pid"))
+        if note.when.tzinfo is None:
+            raise ProjectError(f"{NOTE} does not say in which time zone it was written")
+    except (KirigamiError, ValueError) as error:
+        raise ProjectError(f"The kept work {path} is damaged ({str(error)[:80]}).") from error
+    return note

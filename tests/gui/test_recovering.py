@@ -1,0 +1,236 @@
+"""Unsaved work survives the death of the program, and nobody else's work is touched."""
+
+from __future__ import annotations
+
+import signal
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from PySide6.QtCore import QTimer
+from pytestqt.qtbot import QtBot
+
+from kirigami_studio.foundation.errors import ProjectError
+from kirigami_studio.gui.controller import Controller
+from kirigami_studio.gui.main_window import MainWindow
+from kirigami_studio.gui.messages import Message, Tone
+from kirigami_studio.project import edits, recovery, store
+from kirigami_studio.project.document import Document
+from kirigami_studio.project.recovery import Note
+
+Until = Callable[[Callable[[], bool]], None]
+
+#: A studio that opens a project, changes it, and says so once the change is kept; it never ends by itself.
+VICTIM = """
+import sys
+from pathlib import Path
+from kirigami_studio.gui.application import create_application, create_window
+
+application = create_application(["studio"])
+window = create_window()
+recovering = window.controller.recovering
+recovering.quiet_ms = 20
+recovering.use(Path(sys.argv[1]))
+def change(path):
+    window.controller.change_fabrication(width_mm=123.0)
+def tell(document):
+    print(document.fabrication.width_mm, flush=True)
+window.controller.opened.connect(change)
+recovering.kept.connect(tell)
+window.controller.open_project(Path(sys.argv[2]))
+application.exec()
+"""
+
+
+def kill_a_studio(folder: Path, project: Path) -> None:
+    """Let a real studio change a project, then kill it without a warning."""
+    victim = subprocess.Popen(
+        [sys.executable, "-c", VICTIM, str(folder), str(project)], stdout=subprocess.PIPE, text=True
+    )
+    try:
+        assert victim.stdout is not None
+        assert victim.stdout.readline().strip() == "123.0"
+    finally:
+        victim.send_signal(signal.SIGKILL)
+        victim.communicate(timeout=30)
+    assert victim.returncode == -signal.SIGKILL
+
+
+def asked(window: MainWindow) -> list[Message]:
+    return [one for one in window.messages.messages if "ended unexpectedly" in one.sentence]
+
+
+def kept_files(folder: Path) -> list[Path]:
+    return sorted(folder.glob("*.kiri"))
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    return tmp_path / "state" / "recovery"
+
+
+def test_that_a_killed_studio_loses_nothing(
+    window: MainWindow, project_file: Path, folder: Path, designs: Document, until: Until
+) -> None:
+    kill_a_studio(folder, project_file)
+    (left,) = kept_files(folder)
+    assert recovery.read_note(left).path == str(project_file)
+
+    window.controller.recovering.use(folder)
+    until(lambda: bool(asked(window)))
+    (message,) = asked(window)
+    assert "heart.kiri" in message.sentence and [label for label, _ in message.actions] == [
+        "Recover",
+        "Discard",
+        "Keep for later",
+    ]
+    dict(message.actions)["Recover"]()
+    until(lambda: window.controller.stage is not None)
+    controller = window.controller
+    assert controller.document.fabrication.width_mm == 123.0 and controller.document.candidates == designs.candidates
+    assert controller.path == project_file and controller.history.unsaved and window.isWindowModified()
+    assert store.load(project_file).fabrication.width_mm == 100.0, "the project itself is only written by Save"
+    # The old file goes once this session keeps the work itself, so that a second crash loses nothing either.
+    until(lambda: not left.exists())
+    own = controller.recovering.file
+    assert own is not None and kept_files(folder) == [own] and store.load(own) == controller.document
+    window.actions_["save"].trigger()
+    until(lambda: not controller.history.unsaved)
+    assert kept_files(folder) == [] and store.load(project_file).fabrication.width_mm == 123.0
+
+
+def test_that_two_studios_do_not_recover_each_others_work(designed: MainWindow, folder: Path, until: Until) -> None:
+    designed.controller.recovering.quiet_ms = 0
+    designed.controller.recovering.use(folder)
+    designed.controller.change_fabrication(width_mm=88.0)
+    until(lambda: len(kept_files(folder)) == 1)
+    other = Controller()
+    told: list[Message] = []
+    other.message.connect(told.append)
+    other.recovering.use(folder)
+    assert not other.board.busy, "there is nothing to look at: the only file belongs to a living session"
+    other.close()
+    assert told == [] and len(kept_files(folder)) == 1
+    designed.controller.undo()
+    assert kept_files(folder) == [], "what is as it was saved needs no recovery"
+
+
+def test_that_closing_as_usual_leaves_nothing_to_recover(qtbot: QtBot, folder: Path) -> None:
+    controller = Controller()
+    controller.recovering.quiet_ms = 0
+    controller.recovering.use(folder)
+    with qtbot.waitSignal(controller.recovering.kept):
+        controller.change_fabrication(width_mm=88.0)
+    assert len(kept_files(folder)) == 1
+    controller.change_fabrication(width_mm=89.0)
+    controller.close()
+    assert list(folder.iterdir()) == []
+    assert [timer for timer in controller.findChildren(QTimer) if timer.isActive()] == []
+
+
+def test_that_steady_changes_do_not_put_the_keeping_off_for_ever(qtbot: QtBot, folder: Path) -> None:
+    controller = Controller()
+    recovering = controller.recovering
+    recovering.quiet_ms, recovering.longest_ms = 60_000, 200
+    recovering.use(folder)
+    steady = QTimer()
+    widths = iter(range(50, 5000))
+    steady.timeout.connect(lambda: controller.change_fabrication(width_mm=float(next(widths))))
+    with qtbot.waitSignal(recovering.kept, timeout=10_000):
+        steady.start(10)
+    steady.stop()
+    controller.close()
+
+
+def test_that_discarded_work_is_gone_and_work_kept_for_later_is_asked_about_again(
+    window: MainWindow, designs: Document, folder: Path, until: Until
+) -> None:
+    for name in ("one", "two"):
+        recovery.keep(designs, Note(name, "", recovery.now(), 1), folder / f"{name}.kiri")
+    recovering = window.controller.recovering
+    recovering.use(folder)
+    until(lambda: len(asked(window)) == 2)
+    first, second = (next(one for one in asked(window) if f"Recover {name}" in one.sentence) for name in ("one", "two"))
+    dict(first.actions)["Discard"]()
+    dict(second.actions)["Keep for later"]()
+    assert [file.name for file in kept_files(folder)] == ["two.kiri"]
+    while window.messages.messages:
+        window.messages.close_message()
+    recovering.look_back()
+    until(lambda: len(asked(window)) == 1)
+    assert "Recover two" in asked(window)[0].sentence
+
+
+def test_that_recovering_asks_before_it_takes_the_place_of_unsaved_work(
+    designed: MainWindow, designs: Document, folder: Path, until: Until
+) -> None:
+    recovery.keep(edits.choose(designs, 2).document, Note("other", "", recovery.now(), 1), folder / "other.kiri")
+    designed.controller.change_fabrication(width_mm=88.0)
+    before = designed.controller.document
+    designed.controller.recovering.use(folder)
+    until(lambda: len(asked(designed)) == 1)
+    dict(asked(designed)[0].actions)["Recover"]()
+    assert designed.controller.document is before
+    question = next(one for one in designed.messages.messages if "unsaved changes" in one.sentence)
+    dict(question.actions)["Recover another without saving"]()
+    until(lambda: designed.controller.document.chosen == 2)
+    assert designed.controller.path is None and designed.controller.history.unsaved
+
+
+@pytest.mark.parametrize("obstacle", ["folder", "file"])
+def test_that_a_place_that_cannot_be_written_is_told_once_and_the_work_goes_on(
+    obstacle: str, heart: MainWindow, folder: Path, until: Until
+) -> None:
+    recovering = heart.controller.recovering
+    recovering.quiet_ms = 0
+    if obstacle == "folder":  # a file stands where the folder should be
+        folder.parent.mkdir()
+        folder.write_text("no folder")
+    recovering.use(folder)
+    assert recovering.file is not None
+    if obstacle == "file":  # a folder stands where the file should be
+        recovering.file.mkdir(parents=True)
+    for width in (88.0, 89.0, 90.0):
+        heart.controller.change_fabrication(width_mm=width)
+        heart.controller.end_drag()
+        until(lambda: not heart.controller.board.busy and not recovering.waiting)
+    told = [one for one in heart.messages.messages if "cannot be kept" in one.sentence]
+    assert len(told) == 1 and told[0].tone is Tone.WARNING
+    assert heart.controller.document.fabrication.width_mm == 90.0
+    if obstacle == "file":
+        recovering.file.rmdir()
+
+
+def test_that_damaged_work_is_named_and_can_be_discarded(window: MainWindow, folder: Path, until: Until) -> None:
+    folder.mkdir(parents=True)
+    (folder / "torn.kiri").write_bytes(b"PK\x03\x04 torn")
+    window.controller.recovering.use(folder)
+    until(lambda: len(asked(window)) == 1)
+    (message,) = asked(window)
+    assert [label for label, _ in message.actions] == ["Discard", "Keep for later"] and "damaged" in message.details
+    dict(message.actions)["Discard"]()
+    assert kept_files(folder) == []
+
+
+def test_that_kept_work_is_a_whole_project(designs: Document, tmp_path: Path) -> None:
+    note = Note("heart.kiri", "/somewhere/heart.kiri", recovery.now(), 42)
+    recovery.keep(designs, note, tmp_path / "kept.kiri")
+    assert store.load(tmp_path / "kept.kiri") == designs
+    assert recovery.read_note(tmp_path / "kept.kiri") == note
+    store.save(designs, tmp_path / "project.kiri")
+    with pytest.raises(ProjectError, match="damaged"):
+        recovery.read_note(tmp_path / "project.kiri")
+
+
+def test_that_saving_counts_for_what_was_written_not_for_what_came_after(designed: MainWindow, until: Until) -> None:
+    controller = designed.controller
+    controller.change_fabrication(width_mm=88.0)
+    path = controller.path
+    assert path is not None
+    controller.save(path)
+    controller.end_drag()
+    controller.change_fabrication(width_mm=99.0)  # before the worker has written
+    until(lambda: not controller.board.busy)
+    assert controller.history.unsaved and store.load(path).fabrication.width_mm == 88.0
