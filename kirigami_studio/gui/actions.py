@@ -61,6 +61,7 @@ COMMANDS = (
     Command("quit", "&Quit", "&File", ("Ctrl+Q",), tip="Close Kirigami Studio", gap=True),
     Command("undo", "&Undo", "&Edit", ("Ctrl+Z",), "undo", "Undo", True),
     Command("redo", "&Redo", "&Edit", ("Ctrl+Y", "Ctrl+Shift+Z"), "redo", "Redo", True),
+    Command("history", "&History …", "&Edit", ("Ctrl+Shift+H",), tip="List all steps and go to one"),
     Command("paste", "&Paste target", "&Edit", ("Ctrl+V",), "", "Take a picture, SVG or path as target", gap=True),
     Command("clear", "&Clear target", "&Edit", (), "clear", "Remove the target"),
     Command("edit_target", "&Edit target", "D&raw", ("E",), "edit", "Open or leave the drawing board"),
@@ -133,6 +134,17 @@ def build(window: QMainWindow) -> tuple[dict[str, QAction], list[QMenu]]:
         window.addAction(action)
         actions[command.name] = action
     return actions, list(menus.values())
+
+
+def insert_menu(window: QMainWindow, before: str, menu: QMenu) -> None:
+    """Put a menu of menus before the command of this name."""
+    for action in window.menuBar().actions():
+        parent = action.menu()
+        if not isinstance(parent, QMenu):
+            continue
+        place = next((entry for entry in parent.actions() if entry.objectName() == before), None)
+        if place is not None:
+            parent.insertMenu(place, menu)
 
 
 def with_shortcut(tip: str, shortcuts: tuple[str, ...]) -> str:

@@ -18,6 +18,7 @@ from kirigami_studio.gui.warm_up import WarmUp
 
 FIRST_TARGET = "heart"
 PREFERENCES = "preferences.toml"
+RECENT = "recent.toml"
 RECOVERY = "recovery"
 SMALLEST_FONT = 9.5
 NO_DISPLAY = (
@@ -103,7 +104,9 @@ def run(argv: list[str]) -> int:
     faults.show_uncaught(window.messages.add)
     state = QSettings()
     window.restore(state)
-    window.controller.use_preferences(platformdirs.user_config_path("kirigami-studio", appauthor=False) / PREFERENCES)
+    config = platformdirs.user_config_path("kirigami-studio", appauthor=False)
+    window.controller.use_preferences(config / PREFERENCES)
+    window.controller.recent.load(config / RECENT)
     window.controller.recovering.use(platformdirs.user_state_path("kirigami-studio", appauthor=False) / RECOVERY)
     application.aboutToQuit.connect(lambda: window.remember(state))
     QGuiApplication.styleHints().colorSchemeChanged.connect(lambda _: window.set_theme(theme.system_palette()))

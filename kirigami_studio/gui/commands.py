@@ -12,10 +12,12 @@ from PySide6.QtCore import QObject, Qt, QUrl
 from PySide6.QtGui import QDesktopServices, QGuiApplication
 from PySide6.QtWidgets import QAbstractButton, QComboBox
 
+from kirigami_studio.gui.actions import insert_menu
 from kirigami_studio.gui.controller import Controller
 from kirigami_studio.gui.dialogs.files import FileChoosers, FileQuestions
 from kirigami_studio.gui.jobs.steps import Exported
 from kirigami_studio.gui.messages import Message, Tone
+from kirigami_studio.gui.panels.recent_menu import RecentMenu
 from kirigami_studio.gui.pasting import Pasting
 from kirigami_studio.gui.shell import Shell
 from kirigami_studio.gui.theme import DARK, LIGHT
@@ -29,6 +31,7 @@ if TYPE_CHECKING:
     from kirigami_studio.gui.dialogs.guide import GuideWindow
     from kirigami_studio.gui.dialogs.material_editor import MaterialEditor
     from kirigami_studio.gui.dialogs.silhouette_picker import SilhouettePicker
+    from kirigami_studio.gui.panels.history_list import HistoryList
 
 OVERLAY_ACTIONS = {
     "show_target": Overlay.TARGET,
@@ -49,6 +52,9 @@ class Commands(QObject):
         self.picker: SilhouettePicker | None = None
         self.report: ExportReport | None = None
         self.materials: MaterialEditor | None = None
+        self.history: HistoryList | None = None
+        self.recent = RecentMenu(window, controller.recent, self.take_file)
+        insert_menu(window, "save", self.recent)
         self.pasting = Pasting(self)
         self.pasting.file_wanted.connect(self.take_file)
         self.pasting.message.connect(controller.message)
@@ -74,6 +80,7 @@ class Commands(QObject):
             "quit": window.close,
             "undo": controller.undo,
             "redo": controller.redo,
+            "history": self.show_history,
             "paste": lambda: self.pasting.take(QGuiApplication.clipboard().mimeData()),
             "edit_target": window.target.buttons["edit"].click,
             "mode_new": partial(self._set_mode, Combine.REPLACE),
@@ -213,9 +220,26 @@ class Commands(QObject):
     def close_dialogs(self) -> None:
         """The window is closing: what stands beside it goes with it."""
         self.close_report()
-        for dialog in (self.materials, self.guide):
+        for dialog in (self.materials, self.guide, self.history):
             if dialog is not None:
                 dialog.close()
+
+    def show_history(self) -> None:
+        """Open the list of all steps, or bring it to the front."""
+        from kirigami_studio.gui.panels.history_list import HistoryList
+
+        if self.history is None:
+            self.history = HistoryList(self.window)
+            self.history.step_wanted.connect(self.controller.go_to)
+            self.controller.document_changed.connect(self._update_history)
+        self.history.show()
+        self._update_history()
+        self.history.raise_()
+        self.history.activateWindow()
+
+    def _update_history(self) -> None:
+        if self.history is not None and self.history.isVisible():
+            self.history.show_history(self.controller.history)
 
     def show_library(self) -> None:
         """Open the popup with the library's silhouettes."""

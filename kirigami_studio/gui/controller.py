@@ -23,6 +23,7 @@ from kirigami_studio.gui.jobs import steps
 from kirigami_studio.gui.jobs.board import Board, Ears
 from kirigami_studio.gui.messages import Message, Tone
 from kirigami_studio.gui.preferring import Preferring
+from kirigami_studio.gui.recent_files import RecentFiles
 from kirigami_studio.gui.recovering import Recovering, Work
 from kirigami_studio.gui.shelf import Shelf
 from kirigami_studio.gui.showing import Showing
@@ -62,6 +63,7 @@ class Controller(QObject):
         self.storing = Storing(self.board, self)
         self.preferring = Preferring(self)
         self.recovering = Recovering(self.board, lambda: Work(self.document, self.path, self.history.unsaved), self)
+        self.recent = RecentFiles(self.board, self)
         self._connect()
 
     def _connect(self) -> None:
@@ -81,11 +83,15 @@ class Controller(QObject):
         self.targeting.settled.connect(self.end_drag)
         self.storing.saved.connect(self._saved)
         self.storing.opened.connect(self._opened)
+        self.targeting.source_read.connect(self.recent.take_target)
+        for path_known in (self.saved, self.opened):
+            path_known.connect(self.recent.take_project)
         self.recovering.recovered.connect(self._recovered)
         self.document_changed.connect(lambda _: self.recovering.notice())
         for message in (self.finishing.message, self.cutting.message, self.preferring.message):
             message.connect(self.message)
-        self.recovering.message.connect(self.message)
+        for part_with_word in (self.recovering, self.recent):
+            part_with_word.message.connect(self.message)
         for status in (self.targeting.status, self.finishing.status, self.cutting.status, self.storing.status):
             status.connect(self.status)
         self.recovering.status.connect(self.status)
@@ -316,6 +322,14 @@ class Controller(QObject):
             self._stop_design()
             self._show()
             self.status.emit(f"Redone: {label}.")
+
+    def go_to(self, position: int) -> None:
+        """Undo or redo until so many steps of the history are done."""
+        if self.history.go_to(position):
+            self._stop_design()
+            self._show()
+            label = self.history.undo_label
+            self.status.emit("Back at the start." if label is None else f"At the step: {label}.")
 
     def _stop_design(self) -> None:
         """Another document comes: what is still on its way belongs to the old one."""

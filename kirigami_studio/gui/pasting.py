@@ -15,6 +15,8 @@ from kirigami_studio.gui.messages import Message, Tone
 
 #: How SVG path data begins: a move to a number.
 PATH_BEGINS = re.compile(r"[Mm]\s*[-+.\d]")
+#: How the names of the folders with pasted content begin.
+PASTED = "kirigami-pasted-"
 NOTHING = "The clipboard holds no picture, no file, no SVG and no path; copy one of them and paste again."
 
 
@@ -26,7 +28,7 @@ class Pasting(QObject):
 
     def __init__(self, parent: QObject) -> None:
         super().__init__(parent)
-        self._folder = tempfile.TemporaryDirectory(prefix="kirigami-pasted-")
+        self._folder = tempfile.TemporaryDirectory(prefix=PASTED)
         self._count = 0
         self.destroyed.connect(self._folder.cleanup)
 

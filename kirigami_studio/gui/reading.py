@@ -24,12 +24,13 @@ class Reading(QObject):
         self._board = board
         self._tracing = tracing
         self._job: int | None = None
+        self.source = ""  #: of the target that was read last
         self._picture: steps.Picture | None = None
 
     def start(self, source: str, first: bool) -> None:
         """Read a file, or a silhouette of the library by name."""
         self.stop()
-        ears = Ears(partial(self._take, first), self._end, on_failed=self._fail)
+        ears = Ears(partial(self._take, source, first), self._end, on_failed=self._fail)
         self._job = self._board.start(f"reading {Path(source).name}", partial(steps.reading_target, source), ears)
 
     def stop(self) -> None:
@@ -39,12 +40,13 @@ class Reading(QObject):
             self._board.abandon(self._job)
             self._job = None
 
-    def _take(self, first: bool, report: object) -> None:
+    def _take(self, source: str, first: bool, report: object) -> None:
         if isinstance(report, steps.Picture):
             self._picture = report
         elif isinstance(report, Outline):
             if self._picture is not None:
                 self._tracing.remember(report, self._picture)
+            self.source = source
             self.read.emit(report, first)
 
     def _end(self) -> None:

@@ -25,6 +25,7 @@ class Targeting(QObject):
     adjusted = Signal(object)  #: Edit by a step of a threshold's drag
     begun = Signal(object)  #: Document that the history is to start from
     settled = Signal()  #: the drag is over
+    source_read = Signal(str)  #: where a target was read from
     status = Signal(str)
     failed = Signal(str, str)  #: sentence, trace
 
@@ -85,4 +86,5 @@ class Targeting(QObject):
         else:
             self.replaced.emit(edits.set_target(document, outline))
             said = tr("Target: {name}. Press Generate (Ctrl+G) to design a sheet for it.", name=outline.name)
+        self.source_read.emit(self.reading.source)
         self.status.emit(said)

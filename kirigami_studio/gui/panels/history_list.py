@@ -1,0 +1,65 @@
+"""Edit > History: every step by its name; a click goes there."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import Qt, Signal
+from PySide6.QtGui import QKeyEvent
+from PySide6.QtWidgets import QLabel, QListWidget, QListWidgetItem, QVBoxLayout, QWidget
+
+from kirigami_studio.foundation.words import tr, tr_n
+from kirigami_studio.project.history import History
+
+
+class HistoryList(QWidget):
+    """A small window beside the work; the present step is chosen, undone ones are pale."""
+
+    step_wanted = Signal(int)  #: how many steps shall be done
+
+    def __init__(self, parent: QWidget) -> None:
+        super().__init__(parent, Qt.WindowType.Tool)
+        self.setWindowTitle(tr("History"))
+        self.setObjectName("historyList")
+        self.steps = QListWidget()
+        self.steps.setAccessibleName(tr("Steps of the history"))
+        self.steps.setToolTip(tr("Click a step, or press Enter on it, to go there; later steps can be done again."))
+        self.steps.setUniformItemSizes(True)
+        self.steps.itemClicked.connect(self._go)
+        self.steps.itemActivated.connect(self._go)
+        self.counted = QLabel()
+        self.counted.setObjectName("muted")
+        column = QVBoxLayout(self)
+        column.setContentsMargins(8, 8, 8, 8)
+        column.setSpacing(6)
+        column.addWidget(self.steps, 1)
+        column.addWidget(self.counted)
+        self.resize(300, 380)
+
+    def show_history(self, history: History) -> None:
+        """List the steps of a history."""
+        names = (tr("Start"), *history.steps)
+        if [self.steps.item(row).text() for row in range(self.steps.count())] != list(names):
+            self.steps.clear()
+            self.steps.addItems(names)
+        self.steps.setCurrentRow(history.position)
+        for row in range(self.steps.count()):
+            item = self.steps.item(row)
+            font = item.font()
+            font.setBold(row == history.position)
+            font.setItalic(row > history.position)
+            item.setFont(font)
+            colour = self.palette().placeholderText() if row > history.position else self.palette().text()
+            item.setForeground(colour)
+            item.setToolTip(tr("Undone; a click does it again.") if row > history.position else "")
+        self.steps.scrollToItem(self.steps.item(history.position))
+        undone = len(history.steps) - history.position
+        done = tr_n("{count} step", "{count} steps", history.position)
+        self.counted.setText(done if not undone else f"{done}, {tr_n('{count} undone', '{count} undone', undone)}")
+
+    def keyPressEvent(self, event: QKeyEvent) -> None:  # noqa: N802 - Qt's name
+        if event.key() == Qt.Key.Key_Escape:
+            self.close()
+        else:
+            super().keyPressEvent(event)
+
+    def _go(self, item: QListWidgetItem) -> None:
+        self.step_wanted.emit(self.steps.row(item))

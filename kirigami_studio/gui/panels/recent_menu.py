@@ -1,0 +1,65 @@
+"""File > Open recent: projects, then targets, each by its name; missing ones are grey."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+
+from PySide6.QtGui import QAction
+from PySide6.QtWidgets import QMenu, QWidget
+
+from kirigami_studio.foundation.words import tr
+from kirigami_studio.gui.recent_files import RecentFiles
+from kirigami_studio.project.recent import Recent
+
+
+class RecentMenu(QMenu):
+    """Lists what was used last, and opens it."""
+
+    def __init__(self, parent: QWidget, files: RecentFiles, take: Callable[[str], None]) -> None:
+        super().__init__(tr("Open &recent"), parent)
+        self._files = files
+        self._take = take
+        self.entries: dict[str, QAction] = {}
+        self.setToolTipsVisible(True)
+        self.menuAction().setStatusTip(tr("Projects and targets that were used last"))
+        self.aboutToShow.connect(files.look)
+        files.changed.connect(self.show_recent)
+        files.missing.connect(self.show_missing)
+        self.show_recent(files.present)
+
+    def show_recent(self, recent: Recent) -> None:
+        """List these files."""
+        self.clear()
+        self.entries.clear()
+        for title, paths in ((tr("Projects"), recent.projects), (tr("Targets"), recent.targets)):
+            if paths:
+                self.addSection(title)
+            for number, path in enumerate(paths, start=1):
+                self._add(path, number, paths)
+        self.addSeparator()
+        forget = self.addAction(tr("&Clear list"))
+        forget.setObjectName("clearRecent")
+        forget.triggered.connect(lambda _=False: self._files.clear())
+        self.menuAction().setEnabled(bool(self.entries))
+
+    def show_missing(self, missing: frozenset[str]) -> None:
+        """Offer what is there, in grey what is not."""
+        for path, action in self.entries.items():
+            action.setEnabled(path not in missing)
+            action.setToolTip(tr("{path} is not there any more.", path=path) if path in missing else path)
+
+    def _add(self, path: str, number: int, paths: tuple[str, ...]) -> None:
+        name = Path(path).name
+        if sum(Path(other).name == name for other in paths) > 1:
+            name = tr("{name} in {folder}", name=name, folder=Path(path).parent.name)
+        shown = name.replace("&", "&&")
+        action = self.addAction(f"&{number % 10}  {shown}")
+        action.setToolTip(path)
+        action.setStatusTip(path)
+        action.triggered.connect(partial(self._open, path))
+        self.entries[path] = action
+
+    def _open(self, path: str, _: bool = False) -> None:
+        self._take(path)

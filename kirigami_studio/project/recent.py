@@ -1,0 +1,84 @@
+"""Projects and targets that were used last, as a small TOML file beside the preferences."""
+
+from __future__ import annotations
+
+import tomllib
+from dataclasses import asdict, dataclass, replace
+from pathlib import Path
+
+import tomli_w
+
+from kirigami_studio.foundation.errors import ProjectError
+from kirigami_studio.foundation.files import write_atomically
+
+#: Files of each kind that are remembered.
+MOST = 10
+
+
+@dataclass(frozen=True, slots=True)
+class Recent:
+    """What was used last, the newest first.
+
+    Attributes
+    ----------
+    projects, targets : tuple of str
+        Absolute paths.
+
+    Raises
+    ------
+    ProjectError
+        Something else than a list of paths.
+    """
+
+    projects: tuple[str, ...] = ()
+    targets: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        for name in ("projects", "targets"):
+            entries = getattr(self, name)
+            if not isinstance(entries, tuple | list) or not all(isinstance(entry, str) and entry for entry in entries):
+                raise ProjectError(f"The list of recent {name} must hold paths, got {str(entries)[:60]!r}.")
+            object.__setattr__(self, name, tuple(entries)[:MOST])
+
+    def with_project(self, path: Path) -> Recent:
+        """The same with this project first."""
+        return replace(self, projects=_first(path, self.projects))
+
+    def with_target(self, path: Path) -> Recent:
+        """The same with this target first."""
+        return replace(self, targets=_first(path, self.targets))
+
+
+def _first(path: Path, known: tuple[str, ...]) -> tuple[str, ...]:
+    name = str(path.absolute())
+    return (name, *(entry for entry in known if entry != name))
+
+
+def load(path: Path) -> Recent:
+    """Read the file; without one nothing was used.
+
+    Raises
+    ------
+    ProjectError
+        Unreadable, not TOML, or with other entries.
+    """
+    try:
+        entries = tomllib.loads(path.read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        return Recent()
+    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+        raise ProjectError(f"The list of recent files {path} cannot be read: {error}. Delete the file.") from error
+    if unknown := entries.keys() - {"projects", "targets"}:
+        raise ProjectError(f"The list of recent files {path} has unknown entries {', '.join(sorted(unknown))}.")
+    return Recent(**entries)
+
+
+def save(recent: Recent, path: Path) -> None:
+    """Write the file.
+
+    Raises
+    ------
+    ExportError
+        It cannot be written.
+    """
+    write_atomically(path, tomli_w.dumps({name: list(paths) for name, paths in asdict(recent).items()}).encode("utf-8"))

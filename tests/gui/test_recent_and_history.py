@@ -1,0 +1,155 @@
+"""What was used last is a click away, and so is every step of the history."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from PySide6.QtCore import Qt
+from PySide6.QtGui import QGuiApplication, QImage
+from PySide6.QtWidgets import QMenu
+from pytestqt.qtbot import QtBot
+
+from kirigami_studio.foundation.errors import ProjectError
+from kirigami_studio.gui.main_window import MainWindow
+from kirigami_studio.gui.panels.history_list import HistoryList
+from kirigami_studio.project import edits, recent
+from kirigami_studio.project.document import Document
+from kirigami_studio.project.history import History
+from kirigami_studio.project.recent import Recent
+
+Until = Callable[[Callable[[], bool]], None]
+
+
+def file_menu(window: MainWindow) -> QMenu:
+    menu = window.menuBar().actions()[0].menu()
+    assert isinstance(menu, QMenu)
+    return menu
+
+
+def test_that_what_was_opened_stands_first_and_survives_the_session(
+    window: MainWindow, project_file: Path, tmp_path: Path, until: Until
+) -> None:
+    kept, controller = tmp_path / "recent.toml", window.controller
+    controller.recent.load(kept)
+    assert not window.commands.recent.menuAction().isEnabled()
+    target = tmp_path / "triangle.json"
+    target.write_text("[[0, 0], [50, 0], [25, 40]]")
+    controller.targeting.open("heart")  # of the library: no file of the user's
+    until(lambda: controller.document.target is not None)
+    controller.targeting.open(str(target))
+    until(lambda: controller.document.target is not None and controller.document.target.name == "triangle")
+    controller.open_project(project_file)
+    until(lambda: controller.stage is not None)
+    controller.save(tmp_path / "second.kiri")
+    until(lambda: len(recent.load(kept).projects) == 2)
+    assert recent.load(kept) == Recent((str(tmp_path / "second.kiri"), str(project_file)), (str(target),))
+    menu = window.commands.recent
+    assert menu.menuAction() in file_menu(window).actions()
+    assert [action.text() for action in menu.entries.values()] == [
+        "&1  second.kiri",
+        "&2  heart.kiri",
+        "&1  triangle.json",
+    ]
+
+
+def test_that_a_missing_file_is_grey_and_a_present_one_opens(
+    window: MainWindow, project_file: Path, tmp_path: Path, until: Until, designs: Document
+) -> None:
+    gone, kept = tmp_path / "gone.kiri", tmp_path / "recent.toml"
+    recent.save(Recent((str(gone), str(project_file))), kept)
+    window.controller.recent.load(kept)
+    menu = window.commands.recent
+    menu.aboutToShow.emit()
+    until(lambda: not menu.entries[str(gone)].isEnabled())
+    assert menu.entries[str(project_file)].isEnabled() and "not there" in menu.entries[str(gone)].toolTip()
+    menu.entries[str(project_file)].trigger()
+    until(lambda: window.controller.document.candidates == designs.candidates)
+    next(action for action in menu.actions() if action.objectName() == "clearRecent").trigger()
+    assert recent.load(kept) == Recent() and menu.entries == {}
+
+
+def test_that_pasted_pictures_are_not_remembered_as_files(window: MainWindow, until: Until) -> None:
+    image = QImage(120, 120, QImage.Format.Format_RGB32)
+    image.fill(Qt.GlobalColor.white)
+    for x in range(30, 90):
+        for y in range(30, 90):
+            image.setPixelColor(x, y, Qt.GlobalColor.black)
+    QGuiApplication.clipboard().setImage(image)
+    window.actions_["paste"].trigger()
+    until(lambda: window.controller.document.target is not None)
+    assert window.controller.recent.present == Recent()
+
+
+def test_that_a_list_of_recent_files_holds_ten_of_each_kind_and_none_twice() -> None:
+    known = Recent()
+    for number in [*range(14), 9]:
+        known = known.with_target(Path(f"/drawings/{number}.svg"))
+    assert [Path(path).stem for path in known.targets] == ["9", "13", "12", "11", "10", "8", "7", "6", "5", "4"]
+
+
+@pytest.mark.parametrize("text", ["projects = 3", "projects = [3]", "nonsense = []", "projects = ["])
+def test_that_a_spoilt_list_is_told_and_left_as_it_is(text: str, tmp_path: Path, window: MainWindow) -> None:
+    kept = tmp_path / "recent.toml"
+    kept.write_text(text)
+    with pytest.raises(ProjectError, match="list of recent"):
+        recent.load(kept)
+    window.controller.recent.load(kept)
+    assert "list of recent" in window.messages.messages[-1].sentence
+    window.controller.recent.take_project(tmp_path / "new.kiri")
+    assert kept.read_text() == text
+
+
+@pytest.fixture
+def steps(designed: MainWindow, qtbot: QtBot) -> HistoryList:
+    """The list of the history, over a project with three steps."""
+    designed.actions_["next"].trigger()
+    for width in (88.0, 99.0):
+        designed.controller.change_fabrication(width_mm=width)
+        designed.controller.end_drag()
+    qtbot.keyClick(designed, Qt.Key.Key_H, Qt.KeyboardModifier.ControlModifier | Qt.KeyboardModifier.ShiftModifier)
+    shown = designed.commands.history
+    assert shown is not None and shown.isVisible() and not shown.isModal()
+    return shown
+
+
+def test_that_the_history_names_every_step_and_a_click_goes_there(
+    steps: HistoryList, designed: MainWindow, designs: Document, qtbot: QtBot
+) -> None:
+    rows, width = steps.steps, "Change the sheet's width"
+    assert [rows.item(row).text() for row in range(4)] == ["Start", "Choose design 2", width, width]
+    assert rows.currentRow() == 3 and "3 steps" in steps.counted.text()
+    place = rows.visualItemRect(rows.item(1)).center()
+    qtbot.mouseClick(rows.viewport(), Qt.MouseButton.LeftButton, pos=place)
+    document = designed.controller.document
+    assert document.chosen == 1 and document.fabrication.width_mm == 100.0
+    assert rows.currentRow() == 1 and rows.count() == 4 and "2 undone" in steps.counted.text()
+    assert rows.item(3).font().italic() and not rows.item(1).font().italic()
+    rows.setCurrentRow(3)
+    qtbot.keyClick(rows, Qt.Key.Key_Return)
+    assert designed.controller.document.fabrication.width_mm == 99.0
+    rows.setCurrentRow(0)
+    qtbot.keyClick(rows, Qt.Key.Key_Return)
+    assert designed.controller.document == designs and not designed.isWindowModified()
+
+
+def test_that_the_history_follows_the_work(steps: HistoryList, designed: MainWindow) -> None:
+    designed.actions_["undo"].trigger()
+    assert steps.steps.currentRow() == 2
+    designed.actions_["next"].trigger()
+    assert [steps.steps.item(row).text() for row in range(steps.steps.count())][3:] == ["Choose design 3"]
+
+
+def test_that_going_to_a_step_undoes_as_often_as_it_takes(designs: Document) -> None:
+
+    history, seen = History(designs), [designs]
+    for chosen in (1, 2, 0):
+        history.apply(edits.choose(history.document, chosen))
+        seen.append(history.document)
+    for goal in (1, 3, 0, 2, 2):
+        before = history.position
+        assert history.go_to(goal) == (goal != before)
+        assert history.document is seen[goal] and history.position == goal and len(history.steps) == 3
+    with pytest.raises(ProjectError, match="no step 4"):
+        history.go_to(4)
