@@ -60,21 +60,22 @@ def panels_in_mm(
     return placed
 
 
-def smallest_edge(panels: Sequence[FloatArray], kerf_mm: float) -> SmallPlace | None:
-    """The shortest finished edge of all untrimmed panels; None without any."""
-    corners = _whole(panels)
-    if not len(corners):
-        return None
-    following = np.roll(corners, -1, axis=1)
-    length = np.linalg.norm(following - corners, axis=2)
-    return _smallest(length, 0.5 * (corners + following), kerf_mm)
+@dataclass(frozen=True, slots=True, eq=False)
+class PanelSizes:
+    """Sizes (K, S) of panels between the centre lines of their cuts, and the lines (K, S, 2, 2) that have them."""
+
+    sizes: FloatArray
+    lines: FloatArray
 
 
-def smallest_neck(panels: Sequence[FloatArray], kerf_mm: float) -> SmallPlace | None:
-    """The narrowest finished neck of all untrimmed panels; None without any."""
-    corners = _whole(panels)
-    if not len(corners):
-        return None
+def edges_of(corners: FloatArray) -> PanelSizes:
+    """The four edges of panels (K, 4, 2), in any unit."""
+    lines = np.stack([corners, np.roll(corners, -1, axis=1)], axis=2)
+    return PanelSizes(np.linalg.norm(lines[:, :, 1] - lines[:, :, 0], axis=-1), lines)
+
+
+def necks_of(corners: FloatArray) -> PanelSizes:
+    """The eight necks of panels (K, 4, 2), in any unit: from each corner to the nearest place of both far edges."""
     corner = np.concatenate([corners, corners], axis=1)
     start = np.concatenate([np.roll(corners, -1, axis=1), np.roll(corners, -2, axis=1)], axis=1)
     stop = np.concatenate([np.roll(corners, -2, axis=1), np.roll(corners, -3, axis=1)], axis=1)
@@ -82,7 +83,19 @@ def smallest_neck(panels: Sequence[FloatArray], kerf_mm: float) -> SmallPlace | 
     squared = np.maximum(np.sum(run * run, axis=2), 1e-24)
     share = np.clip(np.sum((corner - start) * run, axis=2) / squared, 0.0, 1.0)
     foot = start + share[..., None] * run
-    return _smallest(np.linalg.norm(corner - foot, axis=2), 0.5 * (corner + foot), kerf_mm)
+    return PanelSizes(np.linalg.norm(corner - foot, axis=2), np.stack([corner, foot], axis=2))
+
+
+def smallest_edge(panels: Sequence[FloatArray], kerf_mm: float) -> SmallPlace | None:
+    """The shortest finished edge of all untrimmed panels; None without any."""
+    corners = _whole(panels)
+    return _smallest(edges_of(corners), kerf_mm) if len(corners) else None
+
+
+def smallest_neck(panels: Sequence[FloatArray], kerf_mm: float) -> SmallPlace | None:
+    """The narrowest finished neck of all untrimmed panels; None without any."""
+    corners = _whole(panels)
+    return _smallest(necks_of(corners), kerf_mm) if len(corners) else None
 
 
 def trimmed_neck_below(panels: Sequence[FloatArray], kerf_mm: float, least_mm: float) -> tuple[float, float] | None:
@@ -104,7 +117,7 @@ def _whole(panels: Sequence[FloatArray]) -> FloatArray:
     return np.array([panel for panel in panels if len(panel) == 4]).reshape(-1, 4, 2)
 
 
-def _smallest(sizes: FloatArray, places: FloatArray, kerf_mm: float) -> SmallPlace:
-    worst = np.unravel_index(int(np.argmin(sizes)), sizes.shape)
-    x, y = places[worst]
-    return SmallPlace(float(sizes[worst]) - kerf_mm, (float(x), float(y)))
+def _smallest(found: PanelSizes, kerf_mm: float) -> SmallPlace:
+    worst = np.unravel_index(int(np.argmin(found.sizes)), found.sizes.shape)
+    x, y = found.lines[worst].mean(axis=0)
+    return SmallPlace(float(found.sizes[worst]) - kerf_mm, (float(x), float(y)))

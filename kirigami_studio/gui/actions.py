@@ -98,6 +98,13 @@ COMMANDS = (
     Command("next", "&Next design", "&Design", ("Ctrl+Down", "PgDown"), "", "Choose the next design", gap=True),
     Command("previous", "&Previous design", "&Design", ("Ctrl+Up", "PgUp"), "", "Choose the previous design"),
     Command("play", "&Play / pause", "&View", ("Space",), "play", "Play the deployment"),
+    Command(
+        "slower", "S&lower", "&View", ("[",), tip="Play the deployment slower, down to a quarter of the usual speed"
+    ),
+    Command("faster", "Fa&ster", "&View", ("]",), tip="Play the deployment faster, up to four times the usual speed"),
+    Command(
+        "play_mode", "Play to and fro, in a loop or &once", "&View", ("Shift+P",), tip="Change how playing goes on"
+    ),
     Command("to_flat", "&Flat sheet (180°)", "&View", ("Ctrl+Left",), "", "Show the compact sheet"),
     Command("to_target", "&Target angle", "&View", ("Ctrl+Right",), "", "Show the target angle"),
     Command(
@@ -105,10 +112,36 @@ COMMANDS = (
     ),
     Command("show_mismatch", "&Mismatch", "&View", ("M",), "mismatch", "Show missing and extra area", False, True),
     Command("show_faults", "F&aults", "&View", ("F",), "fault", "Mark places that are not physical", False, True),
+    Command("show_ratios", "&Ratio heat map", "&View", ("H",), "heat", "Colour voids by their side ratio", False, True),
+    Command(
+        "show_openings",
+        "&Void opening",
+        "&View",
+        ("Shift+O",),
+        "opening",
+        "Colour voids by their area at this angle, mm²",
+        False,
+        True,
+    ),
+    Command(
+        "show_small_parts",
+        "&Smallest features",
+        "&View",
+        ("Shift+S",),
+        "small",
+        "Mark the shortest panel edges and narrowest necks, mm between the centre lines of the cuts",
+        False,
+        True,
+    ),
+    Command("show_panel_numbers", "Panel &numbers", "&View", ("Shift+I",), "numbers", "Row, column", False, True),
+    Command("show_void_numbers", "Vo&id numbers", "&View", ("Shift+N",), "numbers", "Row, column", False, True),
+    Command("next_fault", "Ne&xt fault", "&View", ("F3",), tip="Bring the next fault to the middle, enlarged"),
+    Command("previous_fault", "Previo&us fault", "&View", ("Shift+F3",), tip="Bring the fault before to the middle"),
     Command(
         "before", "&Before polish", "&View", ("B",), "before", "Show the design as it was drawn", False, True, True
     ),
     Command("cuts", "&Cuts", "&View", ("C",), "cuts", "Show the cut plan as it will burn", False, True),
+    Command("plots", "P&lots", "&View", ("L",), "plots", "Show match, size and gaps at every angle", False, True),
     Command("fit", "Show &everything", "&View", ("0",), "fit", "Fit the layout into the view", gap=True),
     Command("theme", "&Dark theme", "&View", ("Ctrl+D",), "moon", "Switch between light and dark", True, gap=True),
     Command("guide", "&Guide", "&Help", ("F1",), "guide", "Open the user guide", True),

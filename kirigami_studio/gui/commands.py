@@ -21,7 +21,7 @@ from kirigami_studio.gui.panels.recent_menu import RecentMenu
 from kirigami_studio.gui.pasting import Pasting
 from kirigami_studio.gui.shell import Shell
 from kirigami_studio.gui.theme import DARK, LIGHT
-from kirigami_studio.gui.views.layout_view import Overlay
+from kirigami_studio.gui.views.layout_view import USUAL, Overlay
 from kirigami_studio.gui.views.target_view import Tool
 from kirigami_studio.target.combining import Combine
 
@@ -37,6 +37,11 @@ OVERLAY_ACTIONS = {
     "show_target": Overlay.TARGET,
     "show_mismatch": Overlay.MISMATCH,
     "show_faults": Overlay.FAULTS,
+    "show_ratios": Overlay.RATIOS,
+    "show_openings": Overlay.OPENINGS,
+    "show_small_parts": Overlay.SMALL_PARTS,
+    "show_panel_numbers": Overlay.PANEL_NUMBERS,
+    "show_void_numbers": Overlay.VOID_NUMBERS,
 }
 
 
@@ -96,6 +101,11 @@ class Commands(QObject):
             "next": partial(self._walk, 1),
             "previous": partial(self._walk, -1),
             "play": self._play,
+            "slower": partial(bar.options.change_speed, -1),
+            "faster": partial(bar.options.change_speed, 1),
+            "play_mode": bar.options.next_mode,
+            "next_fault": partial(window.stage.tour.step, 1),
+            "previous_fault": partial(window.stage.tour.step, -1),
             "to_flat": partial(bar.set_phi, math.pi),
             "to_target": self._to_target,
             "cuts": window.stage.cuts_switch.click,
@@ -108,8 +118,9 @@ class Commands(QObject):
         for tool in set(Tool) - {Tool.LOOK}:
             actions[tool.value].triggered.connect(partial(self._take_tool, tool))
         for name, overlay in OVERLAY_ACTIONS.items():
-            actions[name].setChecked(True)
-            actions[name].toggled.connect(window.stage.toggles[overlay].setChecked)
+            actions[name].setChecked(overlay in USUAL)
+            actions[name].toggled.connect(partial(window.stage.set_overlay, overlay))
+            window.stage.overlay_menu.addAction(actions[name])
 
     def _take_tool(self, tool: Tool, _: bool = False) -> None:
         if self.window.target.strip.buttons[tool].isEnabled():

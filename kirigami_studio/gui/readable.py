@@ -28,3 +28,8 @@ def readable_range(low: float, high: float) -> str:
 def readable_size(width_mm: float, height_mm: float) -> str:
     """A sheet's two sides."""
     return f"{width_mm:.0f} {TIMES} {height_mm:.0f} mm"
+
+
+def readable_area(mm2: float) -> str:
+    """Three digits, all of them before the point where there are more."""
+    return f"{mm2:.0f} mm²" if mm2 >= 100.0 else f"{mm2:.3g} mm²"

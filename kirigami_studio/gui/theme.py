@@ -3,6 +3,7 @@
 Blue is the sheet, orange the target: the pair that people with any colour vision tell apart.  Faults are black on
 yellow and carry a shape of their own, so that no meaning rests on colour alone.  Cuts are blue, orange, green-blue and
 black (the colours of Okabe and Ito), connectors five shades of purple from narrow to wide.
+Side ratios run from blue to orange through the colour of the ground, areas from faint to strong green-blue.
 """
 
 from __future__ import annotations
@@ -57,6 +58,8 @@ class Palette:
     relief: str
     current_cut: str
     widths: tuple[str, ...]
+    diverging: tuple[str, ...]
+    sequential: tuple[str, ...]
     good: str
     bad: str
 
@@ -99,6 +102,8 @@ LIGHT = Palette(
     relief="#008a66",
     current_cut="#ffb000",
     widths=("#4a0d67", "#73308f", "#9a58b3", "#bb85cf", "#d6b0e4"),
+    diverging=("#08407e", "#5a9bd5", "#f3f1ec", "#eb9a4a", "#a34300"),
+    sequential=("#f1f7f5", "#8fcbb8", "#1f8a6d", "#00463a"),
     good="#1a7f4b",
     bad="#b3261e",
 )
@@ -137,6 +142,8 @@ DARK = Palette(
     relief="#2fc79d",
     current_cut="#ffe14d",
     widths=("#f6dcff", "#dfb2f2", "#c088da", "#9d63ba", "#7a4597"),
+    diverging=("#8fcbff", "#2f7fc4", "#262a30", "#c46a16", "#ffbe78"),
+    sequential=("#16211f", "#1f6b58", "#35b793", "#b5f3df"),
     good="#4fc98f",
     bad="#ff8d83",
 )

@@ -63,6 +63,7 @@ class Wiring(QObject):
         window.stage.before_wanted.connect(controller.compare)
         window.stage.trim_wanted.connect(controller.trim)
         window.stage.switches_changed.connect(self._show_switches)
+        window.stage.says.connect(window.says.setText)
         window.stage.overlays_changed.connect(self._show_overlay_actions)
         cuts = window.stage.cuts
         cuts.width_wanted.connect(controller.fabricating.set_hinge_width)
@@ -123,6 +124,7 @@ class Wiring(QObject):
             window.target.show_reach(document.settings.grid)
         window.settings.show_settings(document.settings)
         window.fabrication.show_settings(document.fabrication)
+        window.stage.view.set_sheet_width(document.fabrication.width_mm)
         if not self.controller.running:
             window.gallery.view.mark(document.candidate)
         self._show_history()

@@ -13,7 +13,7 @@ from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
 from kirigami_studio.gui.main_window import MainWindow
-from kirigami_studio.gui.panels.deployment_bar import phase_of, phi_at
+from kirigami_studio.gui.playing import phase_of, phi_at
 from kirigami_studio.gui.theme import DARK, LIGHT
 from kirigami_studio.gui.views.layout_view import Overlay
 

@@ -4,17 +4,19 @@ from __future__ import annotations
 
 from PySide6.QtCore import QSignalBlocker, Signal
 from PySide6.QtGui import QResizeEvent
-from PySide6.QtWidgets import QStackedWidget, QToolButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QMenu, QStackedWidget, QToolButton, QVBoxLayout, QWidget
 
 from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui import icons
 from kirigami_studio.gui.panels.card import INSET, Card, FittingLabel, tool_button
 from kirigami_studio.gui.panels.cut_bar import CutBar
 from kirigami_studio.gui.panels.cuts_page import CutsPage
 from kirigami_studio.gui.panels.deployment_bar import DeploymentBar
 from kirigami_studio.gui.theme import Palette
+from kirigami_studio.gui.views.fault_tour import FaultTour
 from kirigami_studio.gui.views.gallery_model import Entry, described
-from kirigami_studio.gui.views.layout_view import LayoutView, Overlay
+from kirigami_studio.gui.views.layout_view import USUAL, LayoutView, Overlay
 from kirigami_studio.target.outline import Outline
 
 OVERLAYS = (
@@ -43,6 +45,7 @@ class StagePanel(Card):
     overlays_changed = Signal(object)
     before_wanted = Signal(bool)  #: whether the drawn state is to be shown
     trim_wanted = Signal(bool)
+    says = Signal(str)
     switches_changed = Signal()  #: the state of :attr:`before`, :attr:`trim` or :attr:`cuts_switch`
 
     def __init__(self, parent: QWidget | None = None) -> None:
@@ -53,6 +56,7 @@ class StagePanel(Card):
         self._rank = 0
         self._trimmable, self._trimming = True, False
         self.view = LayoutView()
+        self.tour = FaultTour(self.view)
         self.deployment = DeploymentBar()
         self.cuts = CutsPage()
         self.numbers = FittingLabel()
@@ -70,6 +74,8 @@ class StagePanel(Card):
         self._add_overlays()
         self._add_pages()
         self.deployment.phi_changed.connect(self.view.set_phi)
+        self.tour.phi_wanted.connect(self.deployment.set_phi)
+        self.tour.said.connect(self.says)
 
     def _add_overlays(self) -> None:
         """The switches at the right of the header: what is drawn over the layout, or over the cuts."""
@@ -80,6 +86,13 @@ class StagePanel(Card):
             button.toggled.connect(self._tell_overlays)
             self.toggles[overlay] = button
             self.header.addWidget(button)
+        self._other_overlays: frozenset[Overlay] = USUAL - self.toggles.keys()
+        self.overlays_button = tool_button("overlays", tr("Overlays: what is drawn over the layout."))
+        self.overlays_button.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)
+        self.overlay_menu = QMenu(self.overlays_button)
+        self.overlay_menu.setToolTipsVisible(True)
+        self.overlays_button.setMenu(self.overlay_menu)
+        self.header.addWidget(self.overlays_button)
         for button in self.cuts.toggles.values():
             self.header.addWidget(button)
             button.hide()
@@ -122,7 +135,7 @@ class StagePanel(Card):
         for bar in (self.deployment, self.cuts.bar):
             bar.play.setChecked(False)
         self.pages.setCurrentIndex(1 if on else 0)
-        for button in (self.before, *self.toggles.values()):
+        for button in (self.before, self.overlays_button, *self.toggles.values()):
             button.setVisible(not on)
         for button in self.cuts.toggles.values():
             button.setVisible(on)
@@ -139,6 +152,7 @@ class StagePanel(Card):
         """Show another design; the angle stays, or starts at the target angle for the first one."""
         first = entry is not None and self.view.scene_bounds() is None
         self._entry, self._target, self._rank, self._drawn = entry, target, rank, None
+        self.tour.forget()
         self.deployment.set_ready(entry is not None)
         self._set_switches()
         self._show()
@@ -229,11 +243,14 @@ class StagePanel(Card):
 
     def _fit_numbers(self) -> None:
         """Put the longest text that fits into the header; none fits beside many buttons in a narrow stage."""
-        overlays = self.cuts.toggles.values() if self.showing_cuts else (self.before, *self.toggles.values())
-        buttons = [self.cuts_switch, self.trim, *overlays, self.whole]
+        giving_way = [] if self.showing_cuts else [self.toggles[overlay] for overlay, _, _ in reversed(OVERLAYS)]
+        switches = self.cuts.toggles.values() if self.showing_cuts else (self.before, self.overlays_button)
+        buttons = [self.cuts_switch, self.trim, *switches, *giving_way, self.whole]
         used = sum(button.sizeHint().width() + self.header.spacing() for button in buttons) + 14
         room = self.width() - 2 * INSET - used - self.title.sizeHint().width() - GAP
-        self.whole.setVisible(room + GAP >= 0)  # the key and the double-click stay
+        for button in (self.whole, *giving_way):  # keys, menus and the double-click stay
+            button.setVisible(room + GAP >= 0)
+            room += 0 if room + GAP >= 0 else button.sizeHint().width() + self.header.spacing()
         fits = self.numbers.fit(room)
         texts = self._texts()
         special = self._drawn is not None or (self._entry is not None and self._entry.candidate.trim is not None)
@@ -254,11 +271,21 @@ class StagePanel(Card):
             (self.cuts_switch, "cuts"),
             (self.before, "before"),
             (self.trim, "trim"),
+            (self.overlays_button, "overlays"),
             (self.whole, "fit"),
         ):
             button.setIcon(icons.icon(icon, palette))
 
+    def set_overlay(self, overlay: Overlay, on: bool) -> None:
+        """Draw something over the layout, or no longer."""
+        if overlay in self.toggles:
+            self.toggles[overlay].setChecked(on)
+        elif on != (overlay in self._other_overlays):
+            self._other_overlays ^= {overlay}
+            self._tell_overlays()
+
     def _tell_overlays(self) -> None:
         chosen = frozenset(overlay for overlay, button in self.toggles.items() if button.isChecked())
+        chosen |= self._other_overlays
         self.view.set_overlays(chosen)
         self.overlays_changed.emit(chosen)

@@ -25,14 +25,19 @@ class FaultKind(Enum):
 
     INVERTED = "inverted or collapsed panel"
     CONTACT = "first contact while deploying"
+    CROSSING = "the sheet overlaps itself here"
 
 
 @dataclass(frozen=True, slots=True)
 class Fault:
-    """One place, in world units; ``where`` belongs to the angle it was asked for."""
+    """One place, in world units; ``where`` belongs to the angle it was asked for.
+
+    ``phi`` (radians) is the angle at which the fault can be seen, None where it can be seen at every angle.
+    """
 
     kind: FaultKind
     where: tuple[float, float]
+    phi: float | None = None
 
 
 def inverted_panels(panels: FloatArray) -> npt.NDArray[np.bool_]:
@@ -67,12 +72,21 @@ def contact_place(design: PosedDesign, score: Score) -> FloatArray | None:
     return None if contact is None else design.to_world(contact.where, contact.phi)
 
 
+def crossing_place(design: PosedDesign, phi: float) -> FloatArray | None:
+    """Where the outline crosses itself most deeply at an angle (radians), (2,) world; None when it does not."""
+    from kirigami_studio.evaluate.boundary import as_plane
+    from kirigami_studio.evaluate.crossing import deepest_crossing
+
+    place = deepest_crossing(as_plane(design.deployment.outline(phi)))
+    return None if place is None else design.to_world((place.real, place.imag), phi)
+
+
 def paint_fault(painter: QPainter, where: FloatArray, kind: FaultKind, palette: Palette, size: float = 9.0) -> None:
-    """Draw one marker at ``where`` (2,) pixels: a diamond for a bad panel, a ring with a cross for a contact."""
+    """Draw one marker at ``where`` (2,) pixels: a diamond for a bad panel, a disc for a contact."""
     middle = QPointF(float(where[0]), float(where[1]))
     painter.setPen(QPen(QColor(palette.fault_line), 1.8))
     painter.setBrush(QColor(palette.fault))
-    if kind is FaultKind.CONTACT:
+    if kind is not FaultKind.INVERTED:
         painter.drawEllipse(middle, size, size)
     else:
         painter.drawPath(_diamond(middle, size * 1.15))

@@ -12,6 +12,10 @@ import numpy.typing as npt
 from PySide6.QtCore import QPointF, Qt
 from PySide6.QtGui import QBrush, QColor, QPainter, QPen, QPixmap
 
+from kirigami_studio.foundation.words import tr
+from kirigami_studio.gui.readable import readable_area
+from kirigami_studio.gui.scene.boundary_gap import BoundaryGap, boundary_gap
+from kirigami_studio.gui.scene.chips import Chip
 from kirigami_studio.gui.scene.frame import Frame
 from kirigami_studio.gui.scene.paths import area_path
 from kirigami_studio.gui.theme import Palette
@@ -38,12 +42,17 @@ class Mismatch:
         Target without sheet, and sheet without target.
     missing_share, extra_share : float
         Their areas as parts of the target's area.
+    target_area : float, world
+    gap : BoundaryGap
+        How far the boundaries of target and sheet are from each other.
     """
 
     missing: BaseGeometry
     extra: BaseGeometry
     missing_share: float
     extra_share: float
+    target_area: float
+    gap: BoundaryGap
 
 
 def mismatch(target: FloatArray, sheet: FloatArray, removed: Sequence[FloatArray] = ()) -> Mismatch:
@@ -63,7 +72,25 @@ def mismatch(target: FloatArray, sheet: FloatArray, removed: Sequence[FloatArray
         areas = shapely.union_all(parts[shapely.area(parts) > 0.0], grid_size=GRID)
         covered = shapely.difference(areas, off, grid_size=GRID)
     missing, extra = wanted.difference(covered), covered.difference(wanted)
-    return Mismatch(missing, extra, missing.area / wanted.area, extra.area / wanted.area)
+    gap = boundary_gap(wanted, covered)
+    return Mismatch(missing, extra, missing.area / wanted.area, extra.area / wanted.area, wanted.area, gap)
+
+
+def difference_chips(areas: Mismatch, mm_per_unit: float, palette: Palette, short: bool = False) -> list[Chip]:
+    """What the legend says: both areas, and the distance of the boundaries on average and at most."""
+    mm2 = areas.target_area * mm_per_unit**2
+    missing, extra = readable_area(mm2 * areas.missing_share), readable_area(mm2 * areas.extra_share)
+    off = tr("off {mean:.2f} mm, at most {most:.2f} mm",
+             mean=areas.gap.mean * mm_per_unit, most=areas.gap.greatest * mm_per_unit)  # fmt: skip
+    if short:
+        texts = tr("missing {area}", area=missing), tr("extra {area}", area=extra)
+    else:
+        shares = 100 * areas.missing_share, 100 * areas.extra_share
+        texts = (
+            tr("missing {share:.1f} %, {area}", share=shares[0], area=missing),
+            tr("extra {share:.1f} %, {area}", share=shares[1], area=extra),
+        )
+    return [Chip(palette.missing, texts[0]), Chip(palette.extra, texts[1]), Chip(palette.text, off)]
 
 
 def paint_mismatch(painter: QPainter, areas: Mismatch, frame: Frame, palette: Palette) -> None:

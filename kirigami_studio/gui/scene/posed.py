@@ -53,6 +53,14 @@ class PosedDesign:
         """Panel corners (K, 4, 2) out of :meth:`nodes`."""
         return nodes[self.deployment.topology.panel_nodes].reshape(-1, 4, 2)
 
+    def voids(self, nodes: FloatArray) -> FloatArray:
+        """Void corners p0 to p3 (m, n, 4, 2) out of :meth:`nodes`."""
+        return nodes[self.deployment.topology.void_nodes]
+
+    def mm_per_world(self, width_mm: float) -> float:
+        """Millimetres of one world unit, where the flat sheet is ``width_mm`` wide."""
+        return width_mm / (float(np.ptp(self.deployment.compact[:, 0])) * self.pose.scale)
+
     def kept(self, nodes: FloatArray, phi: float) -> dict[int, FloatArray]:
         """What stays of the trimmed panels, (P, 2) each by its row in :meth:`panels`, out of :meth:`nodes`."""
         if self.trim is None:

@@ -3,21 +3,43 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from enum import Enum
 
 import numpy as np
 import numpy.typing as npt
+from PySide6.QtCore import QPointF, QRectF
 from PySide6.QtGui import QPainter
 from PySide6.QtWidgets import QWidget
 
 from kirigami_studio.evaluate.score import Score
+from kirigami_studio.foundation.words import tr_n
 from kirigami_studio.gui.scene.chips import Chip, legend_boxes, paint_caption, paint_legend
-from kirigami_studio.gui.scene.fault_items import Fault, contact_place, faults, inverted_panels, paint_fault
+from kirigami_studio.gui.scene.colour_scale import ColourScale, opening_scale, paint_colour_bars, ratio_scale
+from kirigami_studio.gui.scene.fault_items import (
+    Fault,
+    FaultKind,
+    contact_place,
+    crossing_place,
+    faults,
+    inverted_panels,
+    paint_fault,
+)
 from kirigami_studio.gui.scene.frame import Bounds, Frame
 from kirigami_studio.gui.scene.layout_items import paint_panels, turning_left
-from kirigami_studio.gui.scene.mismatch_items import Mismatch, mismatch, paint_mismatch
+from kirigami_studio.gui.scene.mismatch_items import Mismatch, difference_chips, mismatch, paint_mismatch
 from kirigami_studio.gui.scene.posed import PosedDesign
+from kirigami_studio.gui.scene.small_parts import SmallPart, smallest_parts
 from kirigami_studio.gui.scene.target_items import paint_target_line
+from kirigami_studio.gui.scene.void_items import (
+    heat_tiles,
+    paint_dimension,
+    paint_heat,
+    paint_numbers,
+    paint_shaded,
+    quad_areas,
+    room_in,
+)
 from kirigami_studio.gui.views.canvas import Canvas
 from kirigami_studio.target.outline import Outline
 
@@ -33,6 +55,27 @@ class Overlay(Enum):
     TARGET = "target"
     MISMATCH = "mismatch"
     FAULTS = "faults"
+    RATIOS = "ratios"
+    OPENINGS = "openings"
+    PANEL_NUMBERS = "panel_numbers"
+    VOID_NUMBERS = "void_numbers"
+    SMALL_PARTS = "small_parts"
+
+
+#: What is shown until something else is asked for.
+USUAL = frozenset({Overlay.TARGET, Overlay.MISMATCH, Overlay.FAULTS})
+#: Width (mm) of the flat sheet until it is known.
+USUAL_WIDTH_MM = 100.0
+#: Pixels around a fault's middle that belong to its sign.
+FAULT_REACH = 12.0
+#: Radians past the first contact from which the place of the overlap at that angle is marked as well.
+NEAR_CONTACT = math.radians(0.5)
+#: The greatest distance between sheet and target is marked from this length (pixels) on.
+SHORTEST_GAP = 6.0
+#: Narrower than this (pixels) the legend says less.
+NARROW = 440
+#: Pixels from the top that the caption takes.
+CAPTION_HEIGHT = 44.0
 
 
 class LayoutView(Canvas):
@@ -43,10 +86,15 @@ class LayoutView(Canvas):
         self._design: PosedDesign | None = None
         self._inverted: npt.NDArray[np.bool_] = np.zeros(0, dtype=np.bool_)
         self._contact: npt.NDArray[np.float64] | None = None
+        self._contact_phi: float | None = None
         self._target: Outline | None = None
         self._bounds: Bounds | None = None
         self._phi = math.pi
-        self._overlays: frozenset[Overlay] = frozenset(Overlay)
+        self._overlays: frozenset[Overlay] = USUAL
+        self._width_mm = USUAL_WIDTH_MM
+        self._small: list[SmallPart] = []
+        self._largest_opening = 0.0
+        self._scales: list[ColourScale] = []
         self._areas: Mismatch | None = None
         self._faults: tuple[Fault, ...] = ()
         self._hint = ("generate", "No design yet", "Choose a target on the left, then press Generate (Ctrl+G).")
@@ -84,9 +132,19 @@ class LayoutView(Canvas):
             self._bounds = design.bounds()
             self._inverted = inverted_panels(design.panels(design.nodes(design.phi_target)))
             self._contact = None if score is None else contact_place(design, score)
+            self._contact_phi = None if score is None or score.contact is None else score.contact.phi
+            self._measure(design)
             if target is not None:
                 self._bounds = self._bounds.united(Bounds.of(target.points))
         self.update()
+
+    def _measure(self, design: PosedDesign) -> None:
+        """Find what is the same at every angle: the smallest parts, and how wide the voids open."""
+        panels = design.panels(design.nodes(design.phi_target))
+        trim = design.trim
+        trimmed = () if trim is None else (row for row, part in enumerate(trim.kept) if part is not None)
+        self._small = smallest_parts(panels, frozenset(trimmed))
+        self._largest_opening = float(quad_areas(design.voids(design.nodes(0.5 * math.pi))).max())
 
     def set_phi(self, phi: float) -> None:
         """Show another angle, radians."""
@@ -97,6 +155,51 @@ class LayoutView(Canvas):
         """Choose what is drawn over the panels."""
         self._overlays = overlays
         self.update()
+
+    def set_sheet_width(self, width_mm: float) -> None:
+        """Tell how wide the flat sheet is, mm: all lengths on the drawing follow from it."""
+        self._width_mm = width_mm
+        self.update()
+
+    @property
+    def mm_per_unit(self) -> float:
+        """Millimetres of one world unit; 0 while there is no design."""
+        return 0.0 if self._design is None else self._design.mm_per_world(self._width_mm)
+
+    @property
+    def scales(self) -> list[ColourScale]:
+        """Colour bars of the last painted picture."""
+        return self._scales
+
+    @property
+    def small_parts(self) -> list[SmallPart]:
+        """The smallest edges and necks, in world units, smallest first."""
+        return self._small
+
+    def find_faults(self) -> tuple[Fault, ...]:
+        """All faults of the design at the angle that is shown, whether they are marked or not."""
+        design = self._design
+        if design is None:
+            return ()
+        found = list(faults(design.panels(design.nodes(self._phi)), self._inverted, self._contact))
+        found = [replace(one, phi=self._contact_phi) if one.kind is FaultKind.CONTACT else one for one in found]
+        beyond = self._contact_phi if self._contact_phi is not None else design.phi_target
+        if self._phi < beyond - NEAR_CONTACT:  # the way there is known to be free
+            place = crossing_place(design, self._phi)
+            if place is not None:
+                found.append(Fault(FaultKind.CROSSING, (float(place[0]), float(place[1]))))
+        return tuple(found)
+
+    def fault_at(self, pixel: QPointF) -> Fault | None:
+        """The marked fault under a pixel, if any."""
+        frame = self.frame()
+        if frame is None:
+            return None
+        for fault in self._faults:
+            x, y = frame.to_pixels(np.array(fault.where)).tolist()
+            if math.hypot(x - pixel.x(), y - pixel.y()) <= FAULT_REACH:
+                return fault
+        return None
 
     def set_hint(self, icon: str, headline: str, hint: str) -> None:
         """Say in the empty view what to do next."""
@@ -127,10 +230,56 @@ class LayoutView(Canvas):
         field = self._design.deployment.field
         panels = frame.to_pixels(self._design.panels(nodes))
         kept = {row: frame.to_pixels(part) for row, part in self._design.kept(nodes, self._phi).items()}
-        paint_panels(painter, panels, turning_left(field.rows, field.columns), self.palette_, kept)
+        palette = self.palette_
+        if Overlay.RATIOS in self._overlays:  # blue means a ratio there, not a panel
+            palette = replace(palette, panel_even=palette.border, panel_odd=palette.grid, panel_line=palette.muted)
+        paint_panels(painter, panels, turning_left(field.rows, field.columns), palette, kept)
+        self._paint_voids(painter, frame, nodes)
         if self._target is not None:
             self._paint_comparison(painter, frame, nodes)
-        self._paint_faults(painter, frame, self._design.panels(nodes))
+        self._paint_labels(painter, frame, nodes)
+        self._paint_faults(painter, frame)
+
+    def _paint_voids(self, painter: QPainter, frame: Frame, nodes: npt.NDArray[np.float64]) -> None:
+        """Colours of voids: by their ratio, by their area."""
+        self._scales = []
+        design = self._design
+        if design is None:
+            return
+        field = design.deployment.field
+        if Overlay.RATIOS in self._overlays:
+            tiles = heat_tiles(frame.to_pixels(design.panels(nodes)), field.rows, field.columns)
+            self._scales.append(ratio_scale(field.ratio, self.palette_))
+            paint_heat(painter, tiles, field.ratio, self._scales[-1])
+        if Overlay.OPENINGS in self._overlays:
+            voids, mm2 = design.voids(nodes), self.mm_per_unit**2
+            self._scales.append(opening_scale(self._largest_opening * mm2, self.palette_))
+            areas = quad_areas(voids).ravel() * mm2
+            paint_shaded(painter, frame.to_pixels(voids).reshape(-1, 4, 2), areas, self._scales[-1])
+
+    def _paint_labels(self, painter: QPainter, frame: Frame, nodes: npt.NDArray[np.float64]) -> None:
+        """Numbers of panels and voids where they fit, and sizes of the smallest parts."""
+        design = self._design
+        if design is None:
+            return
+        field, panels, voids = design.deployment.field, design.panels(nodes), design.voids(nodes)
+        rows, columns = field.rows, field.columns
+        if Overlay.PANEL_NUMBERS in self._overlays:
+            grid = frame.to_pixels(panels).reshape(rows + 1, columns + 1, 4, 2)
+            paint_numbers(painter, grid.mean(axis=2), room_in(grid), self.palette_, framed=False)
+        if Overlay.VOID_NUMBERS in self._overlays:
+            tiles = frame.to_pixels(heat_tiles(panels, rows, columns))
+            paint_numbers(painter, frame.to_pixels(voids).mean(axis=2), room_in(tiles), self.palette_, framed=True)
+        lengths: list[tuple[float, npt.NDArray[np.float64]]] = []
+        if self._areas is not None:
+            gap = frame.to_pixels(self._areas.gap.ends)
+            if np.linalg.norm(gap[1] - gap[0]) >= SHORTEST_GAP:
+                lengths.append((self._areas.gap.greatest, gap))
+        if Overlay.SMALL_PARTS in self._overlays:
+            lengths += [(part.size, frame.to_pixels(part.ends(panels))) for part in self._small]
+        taken: list[QRectF] = []
+        for length, ends in lengths:
+            paint_dimension(painter, ends, f"{length * self.mm_per_unit:.2f} mm", self.palette_, taken)
 
     def _paint_comparison(self, painter: QPainter, frame: Frame, nodes: npt.NDArray[np.float64]) -> None:
         self._areas = None
@@ -148,11 +297,11 @@ class LayoutView(Canvas):
             paint_target_line(painter, frame.to_pixels(self._target.points), self.palette_)
             painter.setOpacity(1.0)
 
-    def _paint_faults(self, painter: QPainter, frame: Frame, panels: npt.NDArray[np.float64]) -> None:
+    def _paint_faults(self, painter: QPainter, frame: Frame) -> None:
         self._faults = ()
         if Overlay.FAULTS not in self._overlays:
             return
-        self._faults = faults(panels, self._inverted, self._contact)
+        self._faults = self.find_faults()
         for fault in self._faults:
             paint_fault(painter, frame.to_pixels(np.array(fault.where)), fault.kind, self.palette_)
 
@@ -161,12 +310,13 @@ class LayoutView(Canvas):
             return
         chips = []
         if self._areas is not None:
-            chips.append(Chip(self.palette_.missing, f"missing {100 * self._areas.missing_share:.1f} %"))
-            chips.append(Chip(self.palette_.extra, f"extra {100 * self._areas.extra_share:.1f} %"))
+            chips += difference_chips(self._areas, self.mm_per_unit, self.palette_, self.width() < NARROW)
         if self._faults:
             count = len(self._faults)
-            chips.append(Chip(self.palette_.fault, "1 fault" if count == 1 else f"{count} faults"))
+            chips.append(Chip(self.palette_.fault, tr_n("{count} fault", "{count} faults", count)))
         boxes = legend_boxes(chips, painter.fontMetrics(), self.width(), self.height())
         paint_legend(painter, chips, boxes, self.palette_)
         if self._caption:
             paint_caption(painter, self._caption, self.width(), self.palette_)
+        top = CAPTION_HEIGHT if self._caption else 10.0
+        paint_colour_bars(painter, self._scales, self.width() - 10.0, top, self.palette_)

@@ -1,0 +1,127 @@
+"""How the deployment is played: once, in a loop or to and fro, how fast, and how far."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import QSettings, Qt, Signal
+from PySide6.QtGui import QAction, QActionGroup
+from PySide6.QtWidgets import QMenu, QToolButton, QWidget
+
+from kirigami_studio.foundation.words import tr
+from kirigami_studio.gui import icons
+from kirigami_studio.gui.panels.card import TOOL_ICON
+from kirigami_studio.gui.playing import SPEEDS, PlayMode
+from kirigami_studio.gui.theme import LIGHT, Palette
+
+MODE_ICONS = {PlayMode.SWING: "swing", PlayMode.LOOP: "loop", PlayMode.ONCE: "once"}
+TIMES = "\N{MULTIPLICATION SIGN}"
+
+
+class PlayOptions(QToolButton):
+    """A button with a menu; it shows the mode, and the speed when that is not the usual one."""
+
+    changed = Signal()
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._palette: Palette = LIGHT
+        self.setObjectName("playOptions")
+        self.setIconSize(TOOL_ICON)
+        self.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+        self.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)
+        self.setAccessibleName(tr("How the deployment is played"))
+        menu = QMenu(self)
+        menu.setToolTipsVisible(True)
+        self.modes: dict[PlayMode, QAction] = {}
+        self.speeds: dict[float, QAction] = {}
+        self._add_modes(menu)
+        menu.addSeparator()
+        self._add_speeds(menu)
+        menu.addSeparator()
+        self.to_target = menu.addAction(tr("&Only as far as the target angle"))
+        self.to_target.setCheckable(True)
+        self.to_target.toggled.connect(self._tell)
+        self.setMenu(menu)
+        self._tell()
+
+    def _add_modes(self, menu: QMenu) -> None:
+        words = {
+            PlayMode.SWING: (tr("&To and fro"), tr("Open and close again and again")),
+            PlayMode.LOOP: (tr("&Loop"), tr("Open again and again from the flat sheet")),
+            PlayMode.ONCE: (tr("O&nce"), tr("Open once and stop")),
+        }
+        group = QActionGroup(self)
+        for mode, (text, tip) in words.items():
+            action = menu.addAction(text)
+            action.setToolTip(tip)
+            action.setCheckable(True)
+            action.setActionGroup(group)
+            action.setChecked(mode is PlayMode.SWING)
+            action.toggled.connect(self._tell)
+            self.modes[mode] = action
+
+    def _add_speeds(self, menu: QMenu) -> None:
+        group = QActionGroup(self)
+        for speed in SPEEDS:
+            action = menu.addAction(f"{speed:g}{TIMES}")
+            action.setToolTip(tr("{speed:g} times the usual speed", speed=speed))
+            action.setCheckable(True)
+            action.setActionGroup(group)
+            action.setChecked(speed == 1.0)
+            action.toggled.connect(self._tell)
+            self.speeds[speed] = action
+
+    @property
+    def mode(self) -> PlayMode:
+        return next(mode for mode, action in self.modes.items() if action.isChecked())
+
+    @property
+    def speed(self) -> float:
+        """Times the usual speed."""
+        return next(speed for speed, action in self.speeds.items() if action.isChecked())
+
+    def next_mode(self) -> None:
+        """Go to the next mode, after the last one to the first."""
+        modes = list(self.modes)
+        self.modes[modes[(modes.index(self.mode) + 1) % len(modes)]].setChecked(True)
+
+    def change_speed(self, step: int) -> None:
+        """Play ``step`` speeds faster, or slower when it is negative."""
+        place = min(max(SPEEDS.index(self.speed) + step, 0), len(SPEEDS) - 1)
+        self.speeds[SPEEDS[place]].setChecked(True)
+
+    def set_palette(self, palette: Palette) -> None:
+        """Draw in other colours."""
+        self._palette = palette
+        for mode, action in self.modes.items():
+            action.setIcon(icons.icon(MODE_ICONS[mode], palette))
+        self._tell()
+
+    def restore(self, settings: QSettings) -> None:
+        """Play as the last time."""
+        for mode, action in self.modes.items():
+            if settings.value("playMode") == mode.value:
+                action.setChecked(True)
+        for speed, action in self.speeds.items():
+            if settings.value("playSpeed") == f"{speed:g}":
+                action.setChecked(True)
+        self.to_target.setChecked(settings.value("playToTarget") == "yes")
+
+    def remember(self, settings: QSettings) -> None:
+        """Keep the choice for the next time."""
+        settings.setValue("playMode", self.mode.value)
+        settings.setValue("playSpeed", f"{self.speed:g}")
+        settings.setValue("playToTarget", "yes" if self.to_target.isChecked() else "no")
+
+    def _tell(self, on: bool = True) -> None:
+        if not on and self.sender() is not self.to_target:
+            return  # of two choices that trade places only the new one counts
+        usual = self.speed == 1.0
+        self.setText("" if usual else f"{self.speed:g}{TIMES}")
+        beside, only = Qt.ToolButtonStyle.ToolButtonTextBesideIcon, Qt.ToolButtonStyle.ToolButtonIconOnly
+        self.setToolButtonStyle(only if usual else beside)
+        self.setIcon(icons.icon(MODE_ICONS[self.mode], self._palette))
+        words = self.modes[self.mode].text().replace("&", "").lower()
+        tip = tr("Playing {mode} at {speed:g} times the usual speed. Speed: [ and ], mode: Shift+P.",
+                 mode=words, speed=self.speed)  # fmt: skip
+        self.setToolTip(tip)
+        self.changed.emit()
