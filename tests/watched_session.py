@@ -83,7 +83,9 @@ class WatchedSession:
             self.step("computing in the handler of a timer", lambda: QTimer.singleShot(0, lambda: spin(block)))
             self.step("another thread keeps the lock", lambda: in_another_thread(block))
             return
-        self.step("choose a target", lambda: controller.targeting.open("heart"), lambda: window.run.generate.isEnabled())
+        self.step(
+            "choose a target", lambda: controller.targeting.open("heart"), lambda: window.run.generate.isEnabled()
+        )
         self.set_up(16, 0, search=False)
         self.step("generate 16, loading the generator", self.generate, self.generated)
         self.set_up(16, 0, search=False)
@@ -98,7 +100,9 @@ class WatchedSession:
         self.set_up(2, 5, search=True)
         self.step("generate 2 and search", self.generate, self.generated)
         controller.history.mark_saved()
-        self.step("open a large project", lambda: self.press("open_project"), lambda: self.shown(MANY) and self.planned())
+        self.step(
+            "open a large project", lambda: self.press("open_project"), lambda: self.shown(MANY) and self.planned()
+        )
         self.step("choose in the large project", lambda: self.press("next"), self.planned)
         self.step("look through its gallery", self.look_through)
         self.step("scrub a large design", self.scrub)

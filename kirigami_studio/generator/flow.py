@@ -6,6 +6,8 @@ correctors bring the finished design's exact outline nearer to the target's.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 from torch import Tensor, full
 
 from kirigami_studio.generator.velocity import Code, Velocity
@@ -14,36 +16,58 @@ from kirigami_studio.generator.velocity import Code, Velocity
 Z_LIMIT = 1.0
 
 
-def integrate(network: Velocity, noise: Tensor, code: Code, steps: int) -> Tensor:
+@dataclass(frozen=True, slots=True)
+class Head:
+    """Where the flow starts when it does not start from noise alone (as SDEdit does, Meng et al. 2021, 2108.01073).
+
+    Attributes
+    ----------
+    time : float, in [0, 1)
+        When it starts: the state is then the straight path's, (1 - time) noise + time design.
+    beyond : (1, m * n) tensor
+        What the sheet's design has and the network's own grid cannot hold, taken ``time`` times: the flow carries it
+        along unchanged.
+    """
+
+    time: float
+    beyond: Tensor
+
+
+def integrate(network: Velocity, start: Tensor, code: Code, steps: int, head: Head | None = None) -> Tensor:
     """Follow the velocity field from t = 0 to t = 1.
 
     Parameters
     ----------
     network : Velocity
-    noise : (B, m * n) tensor
-        z at t = 0.
+    start : (B, m * n) tensor
+        z at t = 0, or at the time of ``head``.
     code : Code of B targets, the network's own
     steps : int
         Evaluations of the network.  Where it has a corrector, half of them, rounded down, are corrections; the others
         are equal Euler steps.
+    head : Head, optional
+        Starts later than at t = 0.
 
     Returns
     -------
     z : (B, m * n) tensor at t = 1
         Fields of the sheet that the code is for.
     """
-    return trail(network, noise, code, steps)[-1]
+    return trail(network, start, code, steps, head)[-1]
 
 
-def trail(network: Velocity, noise: Tensor, code: Code, steps: int) -> list[Tensor]:
+def trail(network: Velocity, start: Tensor, code: Code, steps: int, head: Head | None = None) -> list[Tensor]:
     """Like :func:`integrate`, but every finished field: after the Euler steps and after each correction."""
     corrections = steps // 2 if network.corrects else 0
     euler = steps - corrections
-    z = noise
+    begin = 0.0 if head is None else head.time
+    z = start
     for step in range(euler):
-        t = full((z.shape[0],), step / euler, dtype=z.dtype, device=z.device)
-        z = z + network(z, t, code) / euler
+        t = full((z.shape[0],), begin + (1.0 - begin) * step / euler, dtype=z.dtype, device=z.device)
+        z = z + (1.0 - begin) * network(z, t, code) / euler
     z = code.on_sheet(z)
+    if head is not None:
+        z = z + head.beyond
     finished = [z]
     for _ in range(corrections):
         z = z.clamp(-Z_LIMIT, Z_LIMIT)

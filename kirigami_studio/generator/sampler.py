@@ -4,18 +4,21 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 import torch
 from torch import Tensor
 
 from kirigami_studio.generator.conditioning import normalised, turned
-from kirigami_studio.generator.flow import Z_LIMIT, integrate
+from kirigami_studio.generator.flow import Z_LIMIT, Head, integrate
 from kirigami_studio.generator.pose import square_pose
 from kirigami_studio.generator.sheet import Sheet
 from kirigami_studio.generator.threads import one_torch_thread
+from kirigami_studio.generator.velocity import Code
 from kirigami_studio.generator.weights import Model
 from kirigami_studio.lattice.ratio_field import FloatArray, RatioField
+from kirigami_studio.lattice.resize import resize_fields
 from kirigami_studio.target.outline import Outline
 
 #: Candidates drawn together, always this many: rounding in matrix products depends on the batch size, and nearest-point
@@ -37,6 +40,24 @@ def one_pose(index: int) -> float:
     return 0.0
 
 
+@dataclass(frozen=True, slots=True)
+class Near:
+    """A design that samples are to be like.
+
+    Attributes
+    ----------
+    field : RatioField
+    angle : float, radians
+        Rotation that brings the target into the pose in which the design shows it; all samples see it so.
+    nearness : float, in [0, 1)
+        Time of the flow at which samples start from the design.
+    """
+
+    field: RatioField
+    angle: float
+    nearness: float
+
+
 def draw_fields(
     model: Model,
     target: Outline,
@@ -46,6 +67,7 @@ def draw_fields(
     steps: int,
     phi: float = 0.0,
     poses: Callable[[int], float] = pose_angle,
+    near: Near | None = None,
 ) -> tuple[RatioField, ...]:
     """Sample ``k`` ratio fields for ``target``.
 
@@ -63,6 +85,8 @@ def draw_fields(
     phi : float, radians, in [0, pi)
     poses : callable
         Candidate's number -> rotation of the target, radians; ``one_pose`` shows it to all of them in one pose.
+    near : Near, optional
+        Draws designs like this one, in its pose.
     """
     shape = model.network.shape
     whole = -(-k // BATCH) * BATCH
@@ -71,12 +95,32 @@ def draw_fields(
     drawn: list[Tensor] = []
     with torch.inference_mode(), one_torch_thread():
         for start in range(0, whole, BATCH):
-            code = model.code(posed(target, range(start, start + BATCH), poses), sheet)
+            batch = range(start, start + BATCH)
+            seen = posed(target, batch, poses) if near is None else lying(target, len(batch), near.angle)
+            code = model.code(seen, sheet)
             rows = torch.tensor(noise[start : start + BATCH], dtype=torch.float32)
-            drawn.append(integrate(model.network, rows, code, steps))
+            head = None
+            if near is not None:
+                rows, head = _near_start(near, rows, (shape.rows, shape.columns), code)
+            drawn.append(integrate(model.network, rows, code, steps, head))
     z = torch.cat(drawn)[:k].double().numpy()
     fields: FloatArray = np.clip(z.reshape(k, *grid), -Z_LIMIT, Z_LIMIT)
     return tuple(RatioField.from_log10(np.round(field, 6)) for field in fields)
+
+
+def _near_start(near: Near, noise: Tensor, own: tuple[int, int], code: Code) -> tuple[Tensor, Head]:
+    """State of the flow between noise (B, cells) and a design, on the network's own grid, and what that cannot hold."""
+    z = near.field.log10[np.newaxis]
+    design = torch.tensor(resize_fields(z, *own).reshape(1, -1), dtype=torch.float32)
+    on_sheet = torch.tensor(z.reshape(1, -1), dtype=torch.float32)
+    beyond = near.nearness * (on_sheet - code.on_sheet(design))
+    return (1.0 - near.nearness) * noise + near.nearness * design, Head(near.nearness, beyond)
+
+
+def lying(target: Outline, count: int, angle: float) -> Tensor:
+    """The target's polygon turned by one angle (radians) for every candidate: (count, L, 2)."""
+    polygon = normalised(torch.tensor(target.points, dtype=torch.float32)[None])
+    return turned(polygon.expand(count, -1, -1), torch.full((count,), angle))
 
 
 def posed(target: Outline, candidates: range, poses: Callable[[int], float] = pose_angle) -> Tensor:

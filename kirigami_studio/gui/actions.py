@@ -97,6 +97,14 @@ COMMANDS = (
     Command("materials", "&Materials …", "&Design", ("Ctrl+M",), "material", "Copy, change and calibrate materials"),
     Command("next", "&Next design", "&Design", ("Ctrl+Down", "PgDown"), "", "Choose the next design", gap=True),
     Command("previous", "&Previous design", "&Design", ("Ctrl+Up", "PgUp"), "", "Choose the previous design"),
+    Command(
+        "again", "&More designs", "&Design", ("Ctrl+R",), "again", "Add designs drawn from the next seed", gap=True
+    ),
+    Command(
+        "more_like", "More &like this", "&Design", ("Ctrl+Shift+R",), "alike", "Add designs drawn near the chosen one"
+    ),
+    Command("pin", "&Pin design", "&Design", ("I",), "pin", "Pin the chosen design, or unpin it", gap=True),
+    Command("reject", "Re&ject design", "&Design", (), "reject", "Reject the chosen design (Del in the gallery)"),
     Command("play", "&Play / pause", "&View", ("Space",), "play", "Play the deployment"),
     Command(
         "slower", "S&lower", "&View", ("[",), tip="Play the deployment slower, down to a quarter of the usual speed"

@@ -6,6 +6,7 @@ an edit here, or a message.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Unpack
 
@@ -13,14 +14,16 @@ from PySide6.QtCore import QObject, Signal
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.errors import KirigamiError
+from kirigami_studio.gui.collecting import Collecting, Plan
 from kirigami_studio.gui.comparing import Comparing
 from kirigami_studio.gui.cutting import Cutting
-from kirigami_studio.gui.design_run import DesignRun, request_of
+from kirigami_studio.gui.design_run import DesignRun
 from kirigami_studio.gui.fabricating import Fabricating
 from kirigami_studio.gui.file_kinds import kind_of
 from kirigami_studio.gui.finishing import Finishing
 from kirigami_studio.gui.jobs import steps
 from kirigami_studio.gui.jobs.board import Board, Ears
+from kirigami_studio.gui.marking import Marking
 from kirigami_studio.gui.messages import Message, Tone
 from kirigami_studio.gui.preferring import Preferring
 from kirigami_studio.gui.recent_files import RecentFiles
@@ -35,6 +38,7 @@ from kirigami_studio.project import edits
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.edits import Edit, FabricationChange, SettingsChange
 from kirigami_studio.project.history import History
+from kirigami_studio.target.outline import Outline
 
 
 class Controller(QObject):
@@ -64,6 +68,8 @@ class Controller(QObject):
         self.preferring = Preferring(self)
         self.recovering = Recovering(self.board, lambda: Work(self.document, self.path, self.history.unsaved), self)
         self.recent = RecentFiles(self.board, self)
+        self.collecting = Collecting(lambda: self.document, self)
+        self.marking = Marking(lambda: self.document, self)
         self._connect()
 
     def _connect(self) -> None:
@@ -74,30 +80,33 @@ class Controller(QObject):
         self.run.failed.connect(self._run_failed)
         self.showing.settled.connect(self._plan_soon)
         self.showing.stage_changed.connect(self._forget_stage)
-        for part in (self.finishing, self.fabricating):
-            part.edited.connect(self._apply)
         self.fabricating.refused.connect(self._refuse)
         self.targeting.replaced.connect(self._replace)
         self.targeting.adjusted.connect(self._adjust)
         self.targeting.begun.connect(self._begin)
         self.targeting.settled.connect(self.end_drag)
+        self.targeting.source_read.connect(self.recent.take_target)
         self.storing.saved.connect(self._saved)
         self.storing.opened.connect(self._opened)
-        self.targeting.source_read.connect(self.recent.take_target)
         for path_known in (self.saved, self.opened):
             path_known.connect(self.recent.take_project)
         self.recovering.recovered.connect(self._recovered)
         self.document_changed.connect(lambda _: self.recovering.notice())
-        for message in (self.finishing.message, self.cutting.message, self.preferring.message):
-            message.connect(self.message)
-        for part_with_word in (self.recovering, self.recent):
-            part_with_word.message.connect(self.message)
-        for status in (self.targeting.status, self.finishing.status, self.cutting.status, self.storing.status):
-            status.connect(self.status)
-        self.recovering.status.connect(self.status)
-        parts = (self.showing, self.finishing, self.comparing, self.targeting, self.storing, self.recovering)
-        for failed in (source.failed for source in parts):
-            failed.connect(self._tell_failure)
+        for part in self._parts():
+            self._hear(part)
+
+    def _parts(self) -> tuple[QObject, ...]:
+        making = (self.targeting, self.collecting, self.marking, self.finishing, self.fabricating, self.cutting)
+        keeping = (self.storing, self.preferring, self.recovering, self.recent)
+        return (self.showing, self.comparing, *making, *keeping)
+
+    def _hear(self, part: QObject) -> None:
+        """Take what a part proposes and says; not every part has all four signals."""
+        takers = {"edited": self._apply, "message": self.message, "status": self.status, "failed": self._tell_failure}
+        for name, take in takers.items():
+            signal = getattr(part, name, None)
+            if signal is not None:
+                signal.connect(take)
 
     @property
     def document(self) -> Document:
@@ -160,21 +169,32 @@ class Controller(QObject):
     # generate ------------------------------------------------------------------------------------------------------
 
     def generate(self) -> None:
-        """Start a run for the present target and settings."""
+        """Start a run for the present target and settings; pinned designs stay where they fit."""
+        self._start(self.collecting.anew)
+
+    def again(self) -> None:
+        """Draw more designs, from the next seed, beside those there are."""
+        self._start(self.collecting.more)
+
+    def more_like(self, nearness: float) -> None:
+        """Draw more designs near the chosen one, beside those there are."""
+        self._start(lambda target: self.collecting.alike(target, nearness))
+
+    def _start(self, planned: Callable[[Outline], Plan]) -> None:
         if self.running:
             return
         if self.document.target is None:
             self.message.emit(Message("Choose or draw a target first, then press Generate.", Tone.HINT))
             return
         try:
-            request = request_of(self.document.target, self.document.settings)
+            plan = planned(self.document.target)
         except KirigamiError as error:
             self._refuse(error)
             return
         self.finishing.stop()
-        self.showing.begin_run()
-        self.run.start(request)
-        self.status.emit(f"Generating {request.k} designs for {request.target.name} …")
+        self.showing.begin_run(plan.kept, plan.joins)
+        self.run.start(plan.request)
+        self.status.emit(plan.says)
 
     def cancel(self) -> None:
         """Ask the run, or the trimming of a design, to stop; the document stays as it is."""
@@ -185,20 +205,11 @@ class Controller(QObject):
             self.finishing.cancel()
 
     def _take_result(self, result: Result, provenance: dict[str, str]) -> None:
-        edit = edits.set_candidates(self.document, result.candidates, provenance, result.request.target)
-        preview = self.showing.preview
-        if preview is not None and preview in result.candidates:
-            chosen = edits.choose(edit.document, result.candidates.index(preview))
-            edit = Edit(edit.label, chosen.document)
-        same = edit.document == self.document
-        self._apply(edit)
-        if same:  # the same seed again: nothing to undo, but the stage must settle on the document's choice
-            self.showing.show(self.document)
-        score = result.best.score
-        self.status.emit(
-            f"{len(result.candidates)} designs in {result.seconds:.1f} s. Best: sIoU {100 * score.siou:.1f} %, "
-            f"{100 * score.siou_gain:+.1f} over the uniform sheet."
-        )
+        before = self.document
+        self._apply(self.collecting.edit_for(result, provenance, self.showing.preview))
+        if self.document is before:  # all of it was there already
+            self.showing.show(before)
+        self.status.emit(self.collecting.told(result, before))
 
     def _run_cancelled(self) -> None:
         self.showing.show(self.document)

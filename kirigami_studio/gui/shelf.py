@@ -7,6 +7,7 @@ from collections import OrderedDict
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.gui.jobs.steps import finished_field
 from kirigami_studio.gui.scene.posed import PosedDesign
+from kirigami_studio.gui.selecting import least_panel
 from kirigami_studio.gui.views.gallery_model import Entry
 from kirigami_studio.lattice.deployment import Deployment, deploy
 
@@ -25,6 +26,7 @@ class Shelf:
         """Keep a motion that someone has decoded."""
         self._motions[candidate] = deployment
         self._motions.move_to_end(candidate)
+        least_panel(deployment)  # measured now, one by one, so that sorting by it does not wait
         while len(self._motions) > CAPACITY:
             dropped, _ = self._motions.popitem(last=False)
             self._entries.pop(dropped, None)

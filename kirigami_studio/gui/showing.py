@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import partial
 
 from PySide6.QtCore import QObject, Signal
@@ -45,10 +46,10 @@ class Showing(QObject):
 
     # during a run --------------------------------------------------------------------------------------------------
 
-    def begin_run(self) -> None:
-        """Make room for new designs."""
-        self._preview, self._best_of_run = None, None
-        self.gallery_reset.emit(())
+    def begin_run(self, kept: tuple[Candidate, ...] = (), stays: bool = False) -> None:
+        """Make room for new designs beside those that are kept; ``stays`` leaves the chosen one on the stage."""
+        self._preview, self._best_of_run = self._document.candidate if stays else None, None
+        self.gallery_reset.emit(tuple(replace(self._shelf.entry(candidate), kept=True) for candidate in kept))
 
     def look_at(self, candidate: Candidate) -> None:
         """Put a candidate of the run on the stage."""
@@ -58,7 +59,8 @@ class Showing(QObject):
     def take_found(self, entry: Entry) -> None:
         """A new or improved candidate; the best one takes the stage unless the user looks at another."""
         self.candidate_found.emit(entry)
-        if self._preview is not None and same_sample(self._preview, entry.candidate):
+        looked_at = self._preview if self._preview not in self._document.candidates else None
+        if looked_at is not None and same_sample(looked_at, entry.candidate):
             self._preview = entry.candidate
             self._put_on_stage(entry)
         best = self._best_of_run

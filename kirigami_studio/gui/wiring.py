@@ -7,6 +7,7 @@ from PySide6.QtGui import QAction
 
 from kirigami_studio.gui.commands import OVERLAY_ACTIONS, Commands
 from kirigami_studio.gui.controller import Controller
+from kirigami_studio.gui.gallery_wiring import GalleryWiring
 from kirigami_studio.gui.jobs.steps import Planned
 from kirigami_studio.gui.lost_designs import LostDesigns
 from kirigami_studio.gui.messages import Tone
@@ -27,6 +28,7 @@ class Wiring(QObject):
         self.commands = commands
         self.reshaping = Reshaping(window.target.view.easel, lambda: controller.document, self)
         self.lost = LostDesigns(controller.history, self)
+        self.gallery = GalleryWiring(window, controller, self)
         self._shown = Document()
         self._connect_panels()
         self._connect_controller()
@@ -155,7 +157,7 @@ class Wiring(QObject):
 
     def _show_stage(self, entry: Entry | None) -> None:
         view = self.window.gallery.view
-        rank = -1 if entry is None else view.model_.row_of(entry.candidate) + 1
+        rank = -1 if entry is None else view.model_.number_of(entry.candidate)
         target = self.controller.document.target
         self.window.stage.show_entry(entry, target, rank)
         view.mark(None if entry is None else entry.candidate)
@@ -203,7 +205,7 @@ class Wiring(QObject):
         view.add(entry)
         stage = self.controller.stage
         if stage is not None:
-            self.window.stage.set_rank(view.model_.row_of(stage.candidate) + 1)
+            self.window.stage.set_rank(view.model_.number_of(stage.candidate))
 
     def _show_run(self, total: int) -> None:
         self.window.run.show_running(total)

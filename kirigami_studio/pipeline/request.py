@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from kirigami_studio.evaluate.trimming import KEEP, check_keep
 from kirigami_studio.foundation.errors import AngleError, UsageError
-from kirigami_studio.lattice.ratio_field import check_grid
+from kirigami_studio.lattice.ratio_field import RatioField, check_grid
 from kirigami_studio.polish.panel_size import check_least
 from kirigami_studio.polish.regularity import PREFERENCES
 from kirigami_studio.target.outline import Outline
@@ -53,6 +53,11 @@ class Request:
         Depth of the material that trimming leaves at every hinge.
     budget_seconds : float, > 0, optional
         Wall time after which the best so far are returned; the first batch is always scored.
+    near : RatioField, optional
+        A design of the same grid that the samples are to be like.
+    nearness : float, 0..1 without 1
+        How near they are to lie: the time of the flow at which they start from that design.  0 draws from noise alone,
+        in that design's pose.
     """
 
     target: Outline
@@ -69,6 +74,8 @@ class Request:
     trim: bool = False
     keep: float = KEEP
     budget_seconds: float | None = None
+    near: RatioField | None = None
+    nearness: float = 0.0
 
     def __post_init__(self) -> None:
         check_grid(*self.grid)
@@ -87,8 +94,20 @@ class Request:
             raise UsageError(f"A fit can prefer {', '.join(PREFERENCES)}, not {self.prefer!r}.")
         check_least(self.least_panel)
         check_keep(self.keep)
+        self._check_near()
         budget = self.budget_seconds
         if budget is None:
             return
         if isinstance(budget, bool) or not isinstance(budget, int | float) or not 0.0 < budget < math.inf:
             raise UsageError(f"The time budget must be a finite number of seconds above 0, got {budget!r}.")
+
+    def _check_near(self) -> None:
+        nearness = self.nearness
+        if isinstance(nearness, bool) or not isinstance(nearness, int | float) or not 0.0 <= nearness < 1.0:
+            raise UsageError(f"The nearness must be a number from 0 to less than 1, got {nearness!r}.")
+        if self.near is None:
+            if nearness:
+                raise UsageError("A nearness needs the design that the samples are to be near.")
+        elif self.near.ratio.shape != tuple(self.grid):
+            near, wanted = (" x ".join(map(str, grid)) for grid in (self.near.ratio.shape, self.grid))
+            raise UsageError(f"Samples near a design have its grid of {near} voids, not {wanted}.")

@@ -7,7 +7,9 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import closing
 
 from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.foundation.errors import Cancelled
+from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.pipeline.dispatch import answers, gains
 from kirigami_studio.pipeline.events import (
@@ -25,6 +27,7 @@ from kirigami_studio.pipeline.request import Request
 from kirigami_studio.pipeline.tasks import Answer, Finish, Polish, Search, Task, scored
 from kirigami_studio.pipeline.variety import worth_a_fit
 from kirigami_studio.pipeline.watch import Watch
+from kirigami_studio.target.outline import Outline
 
 #: Candidates scored in one batch.
 SCORED_TOGETHER = 32
@@ -95,11 +98,20 @@ def run(request: Request, cancel: Callable[[], bool] = never, pool: Pool | None 
 
 def sample(request: Request) -> tuple[RatioField, ...]:
     """Draw the request's fields; torch is imported here, on the first run, and not when the program starts."""
-    from kirigami_studio.generator.sampler import draw_fields
+    from kirigami_studio.generator.sampler import Near, draw_fields
     from kirigami_studio.generator.weights import load_model
 
     model = load_model(request.variant)
-    return draw_fields(model, request.target, request.grid, request.k, request.seed, request.steps, request.phi)
+    drawn = model, request.target, request.grid, request.k, request.seed, request.steps, request.phi
+    if request.near is None:
+        return draw_fields(*drawn)
+    near = Near(request.near, lying(request.near, request.target, request.phi), request.nearness)
+    return draw_fields(*drawn, near=near)
+
+
+def lying(field: RatioField, target: Outline, phi: float) -> float:
+    """Rotation, radians, that brings the target into the pose in which a design shows it."""
+    return -evaluate(deploy(field), target, phi).transform.angle
 
 
 def decodings(request: Request) -> int:

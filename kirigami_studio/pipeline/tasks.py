@@ -127,11 +127,16 @@ def scored(
     request: Request,
     fields: Sequence[RatioField],
     first: int,
-    origin: Origin = Origin.SAMPLED,
+    origin: Origin | None = None,
     *,
     fitted: bool = False,
 ) -> list[Candidate]:
-    """Decode fields exactly and score them against the request's target; their numbers count up from ``first``."""
+    """Decode fields exactly and score them against the request's target; their numbers count up from ``first``.
+
+    Unless told otherwise they are samples, drawn near another design where the request names one.
+    """
+    if origin is None:
+        origin = Origin.SAMPLED if request.near is None else Origin.RESAMPLED
     with one_blas_thread():
         scores = evaluate_many([deploy(field) for field in fields], request.target, request.phi)
     return [

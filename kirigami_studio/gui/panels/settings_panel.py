@@ -17,6 +17,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui import icons
 from kirigami_studio.gui.panels.card import Card, captioned, compact, tool_button
 from kirigami_studio.gui.theme import Palette
@@ -55,6 +56,9 @@ SEARCH = (
     "Look beyond the samples, by way of easier shapes, for one more design. Costs a few seconds; helps with thin arms "
     "and notches."
 )
+KEEP_SEED = tr(
+    "Keep this seed. On: Generate draws the same designs again. Off: every run takes the next seed and shows it here."
+)
 
 
 class SettingsPanel(Card):
@@ -62,6 +66,7 @@ class SettingsPanel(Card):
 
     changed = Signal(dict)  #: field of DesignSettings -> value
     edited = Signal()  #: a field was left
+    keep_changed = Signal(bool)  #: whether Generate draws from the seed that is shown
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__("Design", parent)
@@ -87,6 +92,10 @@ class SettingsPanel(Card):
         self.angle.setToolTip("Deployment angle (degrees) at which the sheet shows the target; 0° is fully turned.")
         self.dice = tool_button("newSeed", "New random seed.")
         self.dice.setFixedSize(29, 29)
+        self.keep = tool_button("keepSeed", KEEP_SEED, checkable=True)
+        self.keep.setChecked(True)
+        self.keep.setFixedSize(29, 29)
+        self.keep.toggled.connect(self.keep_changed)
         self.variant = _choice("variant", "Generator variant")
         self.polish = _choice("polish", "Polish")
         for title, steps, about in POLISH:
@@ -108,7 +117,7 @@ class SettingsPanel(Card):
 
     def _lay_out(self) -> None:
         grid = _side_by_side(self.rows, QLabel("\N{MULTIPLICATION SIGN}"), self.columns)
-        seed = _side_by_side(self.seed, self.dice)
+        seed = _side_by_side(self.seed, self.dice, self.keep)
         first, second, third = QHBoxLayout(), QHBoxLayout(), QHBoxLayout()
         for row in (first, second, third):
             row.setSpacing(10)
@@ -205,6 +214,7 @@ class SettingsPanel(Card):
     def set_palette(self, palette: Palette) -> None:
         """Draw in other colours."""
         self.dice.setIcon(icons.icon("dice", palette))
+        self.keep.setIcon(icons.icon("keep", palette))
 
 
 def _choice(name: str, told: str) -> QComboBox:

@@ -4,17 +4,24 @@ from __future__ import annotations
 
 import bisect
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 
-from PySide6.QtCore import QAbstractListModel, QModelIndex, QObject, QPersistentModelIndex, Qt
+from PySide6.QtCore import QAbstractListModel, QModelIndex, QObject, QPersistentModelIndex, Qt, Signal
 
-from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.evaluate.candidate import Candidate, Origin
+from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.scene.posed import PosedDesign
+from kirigami_studio.gui.selecting import Selection, Shown, arranged, least_panel, told_value
 from kirigami_studio.pipeline.rank import rank_key
+from kirigami_studio.project.document import Mark
 
 CANDIDATE_ROLE = Qt.ItemDataRole.UserRole + 1
 DESIGN_ROLE = Qt.ItemDataRole.UserRole + 2
 RISE_ROLE = Qt.ItemDataRole.UserRole + 3
+NUMBER_ROLE = Qt.ItemDataRole.UserRole + 4
+MARK_ROLE = Qt.ItemDataRole.UserRole + 5
+VALUE_ROLE = Qt.ItemDataRole.UserRole + 6  #: words for the number that is sorted by
 
 Index = QModelIndex | QPersistentModelIndex
 
@@ -30,81 +37,207 @@ class Entry:
         As it is finished: trimmed if the candidate is.
     rise : float
         What polishing has added to its sIoU in the run that goes on.
+    kept : bool
+        Whether it was there before the run that goes on.
     """
 
     candidate: Candidate
     design: PosedDesign
     rise: float = 0.0
+    kept: bool = False
 
 
 class GalleryModel(QAbstractListModel):
-    """Entries in the order of the document; while a run goes on in that of its ranking."""
+    """The designs in the order of the document, or of the ranking while a run goes on; rows are those that are shown.
+
+    Which ones are shown, and in which order, is a :class:`~kirigami_studio.gui.selecting.Selection`; the number of a
+    design is its place among all of them, whatever is shown.
+    """
+
+    arranged = Signal()  #: what is shown, or its order, has changed
 
     def __init__(self, parent: QObject | None = None) -> None:
         super().__init__(parent)
-        self._entries: list[Entry] = []
+        self._all: list[Entry] = []
+        self._shown: list[Entry] = []
+        self._marks: dict[Candidate, Mark] = {}
+        self._selection = Selection()
+        self._width_mm = 100.0
 
     @property
     def entries(self) -> tuple[Entry, ...]:
-        return tuple(self._entries)
+        """Those that are shown, row by row."""
+        return tuple(self._shown)
+
+    @property
+    def all_entries(self) -> tuple[Entry, ...]:
+        """All of them by their numbers, shown or not."""
+        return tuple(self._all)
+
+    @property
+    def selection(self) -> Selection:
+        return self._selection
 
     def rowCount(self, parent: Index = QModelIndex()) -> int:  # noqa: N802, B008 - Qt's name and signature
-        return 0 if parent.isValid() else len(self._entries)
+        return 0 if parent.isValid() else len(self._shown)
 
     def data(self, index: Index, role: int = Qt.ItemDataRole.DisplayRole) -> object:
-        if not index.isValid() or not 0 <= index.row() < len(self._entries):
+        if not index.isValid() or not 0 <= index.row() < len(self._shown):
             return None
-        entry = self._entries[index.row()]
-        if role == CANDIDATE_ROLE:
-            return entry.candidate
-        if role == DESIGN_ROLE:
-            return entry.design
-        if role == RISE_ROLE:
-            return entry.rise
-        if role in (Qt.ItemDataRole.AccessibleTextRole, Qt.ItemDataRole.ToolTipRole):
-            risen = f"\nPolishing has raised sIoU by {100 * entry.rise:.2f} points so far" if entry.rise > 0 else ""
-            return described(entry.candidate, index.row() + 1) + risen
-        return None
+        entry = self._shown[index.row()]
+        if role == Qt.ItemDataRole.ToolTipRole:
+            return f"{self._described(entry)}\n{self._size(entry)}"
+        if role == Qt.ItemDataRole.AccessibleTextRole:
+            return self._described(entry)
+        if role == Qt.ItemDataRole.AccessibleDescriptionRole:
+            return self._size(entry)
+        if role == VALUE_ROLE:
+            return told_value(self._as_shown(entry, 0), self._selection, self._width_mm)
+        simple = {CANDIDATE_ROLE: entry.candidate, DESIGN_ROLE: entry.design, RISE_ROLE: entry.rise}
+        if role == NUMBER_ROLE:
+            return self.number_of(entry.candidate)
+        if role == MARK_ROLE:
+            return self.mark_of(entry.candidate)
+        return simple.get(role)
+
+    def _described(self, entry: Entry) -> str:
+        lines = [described(entry.candidate, self.number_of(entry.candidate))]
+        if entry.rise > 0:
+            lines.append(f"Polishing has raised sIoU by {100 * entry.rise:.2f} points so far")
+        mark = self.mark_of(entry.candidate)
+        if mark is not Mark.NONE:
+            lines.append(tr("Pinned") if mark is Mark.PINNED else tr("Rejected"))
+        return "\n".join(lines)
+
+    def _size(self, entry: Entry) -> str:
+        size = self._width_mm * least_panel(entry.design.deployment)
+        return tr("Smallest panel: {size:.2f} mm on a sheet {width:g} mm wide", size=size, width=self._width_mm)
 
     def replace(self, entries: list[Entry]) -> None:
         """Show other candidates, best first; those that are the same samples as before keep their cards."""
-        before, self._entries = self._entries, list(entries)
-        kept = len(before) == len(entries) and all(
-            same_sample(old.candidate, new.candidate) for old, new in zip(before, entries, strict=True)
+        before = self._shown
+        self._all = list(entries)
+        after = self._arranged()
+        kept = len(before) == len(after) and all(
+            same_sample(old.candidate, new.candidate) for old, new in zip(before, after, strict=True)
         )
-        if kept and entries:
-            self.dataChanged.emit(self.index(0, 0), self.index(len(entries) - 1, 0))
-            return
-        self._entries = before
-        self.beginResetModel()
-        self._entries = list(entries)
-        self.endResetModel()
+        if kept and after:
+            self._shown = after
+            self.dataChanged.emit(self.index(0, 0), self.index(len(after) - 1, 0))
+        else:
+            self._reset(after)
+        self.arranged.emit()
 
     def insert(self, entry: Entry) -> int:
-        """Add one candidate at its rank, in the place of an earlier state of the same sample; return its row."""
-        for old, shown in enumerate(self._entries):
-            if same_sample(shown.candidate, entry.candidate):
-                self.beginRemoveRows(QModelIndex(), old, old)
-                del self._entries[old]
-                self.endRemoveRows()
+        """Add one candidate at its rank, in the place of an earlier state of the same sample; return its row.
+
+        -1 when the selection leaves it out.  A design that was there before the run keeps its card, whatever its seed
+        and number: it is no earlier state of what the run finds.
+        """
+        for old, known in enumerate(self._all):
+            if not known.kept and same_sample(known.candidate, entry.candidate):
+                self._remove(old)
                 break
-        row = bisect.bisect_right(self._entries, rank_key(entry.candidate), key=lambda one: rank_key(one.candidate))
-        self.beginInsertRows(QModelIndex(), row, row)
-        self._entries.insert(row, entry)
-        self.endInsertRows()
+        place = bisect.bisect_right(self._all, rank_key(entry.candidate), key=lambda one: rank_key(one.candidate))
+        self._all.insert(place, entry)
+        after = self._arranged()
+        row = next((row for row, one in enumerate(after) if one is entry), -1)
+        if row >= 0:
+            self.beginInsertRows(QModelIndex(), row, row)
+            self._shown = after
+            self.endInsertRows()
+        self.arranged.emit()
         return row
+
+    def _remove(self, place: int) -> None:
+        entry = self._all[place]
+        row = next((row for row, one in enumerate(self._shown) if one is entry), -1)
+        if row >= 0:
+            self.beginRemoveRows(QModelIndex(), row, row)
+            del self._shown[row]
+        del self._all[place]
+        if row >= 0:
+            self.endRemoveRows()
+
+    def select(self, selection: Selection) -> None:
+        """Show another part, or in another order."""
+        if selection != self._selection:
+            self._selection = selection
+            self._rearrange()
+
+    def set_marks(self, marks: Mapping[Candidate, Mark]) -> None:
+        """Tell which designs are pinned or rejected; the others are neither."""
+        wanted: dict[Candidate, Mark] = {candidate: mark for candidate, mark in marks.items() if mark is not Mark.NONE}
+        if wanted != self._marks:
+            self._marks = wanted
+            self._rearrange()
+
+    def set_width_mm(self, width_mm: float) -> None:
+        """Tell how wide the sheet is, for sizes of panels."""
+        if width_mm != self._width_mm:
+            self._width_mm = width_mm
+            if self._shown:
+                self.dataChanged.emit(self.index(0, 0), self.index(len(self._shown) - 1, 0))
+
+    def mark_of(self, candidate: Candidate) -> Mark:
+        return self._marks.get(candidate, Mark.NONE)
+
+    def number_of(self, candidate: Candidate | None) -> int:
+        """The number of a design among all, from 1; 0 when there is no such design."""
+        return 1 + _place_of(self._all, candidate)
 
     def row_of(self, candidate: Candidate | None) -> int:
         """Row of a candidate, -1 when it is not shown."""
-        for row, entry in enumerate(self._entries):
-            if entry.candidate is candidate or entry.candidate == candidate:
-                return row
+        return _place_of(self._shown, candidate)
+
+    def _arranged(self) -> list[Entry]:
+        designs = [self._as_shown(entry, place) for place, entry in enumerate(self._all)]
+        return [self._all[place] for place in arranged(designs, self._selection)]
+
+    def _as_shown(self, entry: Entry, place: int) -> Shown:
+        return Shown(place, entry.candidate, self.mark_of(entry.candidate), entry.design.deployment)
+
+    def _rearrange(self) -> None:
+        after = self._arranged()
+        stay = {id(one) for one in after}
+        if [id(one) for one in self._shown if id(one) in stay] == [id(one) for one in after]:
+            self._leave_out(stay)
+        else:
+            self._reset(after)
+        self.arranged.emit()
+
+    def _leave_out(self, stay: set[int]) -> None:
+        """Remove rows one by one, so that the others keep their places on the screen."""
+        for row in reversed(range(len(self._shown))):
+            if id(self._shown[row]) not in stay:
+                self.beginRemoveRows(QModelIndex(), row, row)
+                del self._shown[row]
+                self.endRemoveRows()
+        if self._shown:
+            self.dataChanged.emit(self.index(0, 0), self.index(len(self._shown) - 1, 0))
+
+    def _reset(self, entries: list[Entry]) -> None:
+        self.beginResetModel()
+        self._shown = entries
+        self.endResetModel()
+
+
+def _place_of(entries: list[Entry], candidate: Candidate | None) -> int:
+    if candidate is None:
         return -1
+    for place, entry in enumerate(entries):
+        if entry.candidate is candidate:
+            return place
+    return next((place for place, entry in enumerate(entries) if entry.candidate == candidate), -1)
 
 
 def same_sample(one: Candidate, other: Candidate) -> bool:
-    """Whether two candidates of a run are one sample, before and after polishing."""
-    return (one.seed, one.index) == (other.seed, other.index)
+    """Whether two candidates are one sample of one generator, before and after polishing."""
+    return _sample(one) == _sample(other)
+
+
+def _sample(candidate: Candidate) -> tuple[str, int, int, Origin]:
+    return candidate.variant, candidate.seed, candidate.index, candidate.origin
 
 
 def described(candidate: Candidate, rank: int) -> str:
@@ -116,9 +249,23 @@ def described(candidate: Candidate, rank: int) -> str:
         f"Total variation (TV) of the ratios: {score.tv:.3f}",
         *trimming(candidate),
         motion(candidate),
-        f"Seed {candidate.seed}, sample {candidate.index}{', polished' if candidate.polished else ''}",
+        *came_from(candidate),
     ]
     return "\n".join([*lines, *problems(candidate)])
+
+
+def came_from(candidate: Candidate) -> list[str]:
+    """Tell which generator drew a design, from which seed, and how."""
+    told = {
+        Origin.SAMPLED: tr("Seed {seed}, sample {index}", seed=candidate.seed, index=candidate.index),
+        Origin.SEARCHED: tr("Seed {seed}, found by the search", seed=candidate.seed),
+        Origin.RESAMPLED: tr("Seed {seed}, drawn near another design", seed=candidate.seed),
+        Origin.EDITED: tr("Seed {seed}, sample {index}, changed by hand", seed=candidate.seed, index=candidate.index),
+    }[candidate.origin]
+    parts = [told, tr("polished")] if candidate.polished else [told]
+    if candidate.variant:
+        parts.append(tr("model {name}", name=candidate.variant))
+    return [", ".join(parts)]
 
 
 def trimming(candidate: Candidate) -> list[str]:

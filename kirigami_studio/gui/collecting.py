@@ -1,0 +1,187 @@
+"""Runs and the collection: which run is next, and what becomes of the designs that it brings."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+from PySide6.QtCore import QObject, Signal
+
+from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.foundation.errors import UsageError
+from kirigami_studio.foundation.words import tr, tr_n
+from kirigami_studio.gui.design_run import request_of
+from kirigami_studio.gui.messages import Message, Tone
+from kirigami_studio.pipeline.events import Result
+from kirigami_studio.pipeline.rank import rank_key, ranked
+from kirigami_studio.pipeline.request import Request
+from kirigami_studio.pipeline.variety import distinct
+from kirigami_studio.project import candidate_edits
+from kirigami_studio.project.candidate_edits import Brought
+from kirigami_studio.project.document import Document, Mark
+from kirigami_studio.project.edits import Edit
+from kirigami_studio.target.outline import Outline
+
+#: Angles closer than this (radians) are one.
+SAME_ANGLE = 1e-9
+
+
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """A run that is to start.
+
+    Attributes
+    ----------
+    request : Request
+    kept : tuple of Candidate
+        Designs of the document that stay in sight, best first.
+    joins : bool
+        Whether what it brings joins those there are, and the choice stays.
+    seed : int or None
+        Seed that the settings show afterwards.
+    says : str
+    """
+
+    request: Request
+    kept: tuple[Candidate, ...]
+    joins: bool
+    seed: int | None
+    says: str
+
+
+class Collecting(QObject):
+    """Plans runs for the present document and turns their results into edits."""
+
+    message = Signal(object)  #: Message
+
+    def __init__(self, document: Callable[[], Document], parent: QObject) -> None:
+        super().__init__(parent)
+        self._document = document
+        self._plan: Plan | None = None
+        self.keeps_seed = True  #: whether Generate draws from the seed that is shown
+
+    @property
+    def plan(self) -> Plan | None:
+        """The run that was planned last."""
+        return self._plan
+
+    def anew(self, target: Outline) -> Plan:
+        """New designs in the place of all but the pinned ones.
+
+        Raises
+        ------
+        KirigamiError
+            The settings do not go together.
+        """
+        document = self._document()
+        settings = document.settings
+        seed = settings.seed if self.keeps_seed else next_seed(document)
+        request = request_of(target, replace(settings, seed=seed))
+        says = f"Generating {request.k} designs for {target.name} …"
+        return self._planned(Plan(request, ranked(_staying(document, request)), False, seed, says))
+
+    def more(self, target: Outline) -> Plan:
+        """More designs for the same grid and angle, from the next seed.
+
+        Raises
+        ------
+        KirigamiError
+            There are no designs to add to.
+        """
+        request = self._joining(target)
+        says = tr("Drawing {count} more designs from seed {seed} …", count=request.k, seed=request.seed)
+        return self._joined(request, says)
+
+    def alike(self, target: Outline, nearness: float) -> Plan:
+        """More designs, drawn near the chosen one.
+
+        Raises
+        ------
+        KirigamiError
+            No design is chosen, or it cannot be drawn near.
+        """
+        chosen = self._document().candidate
+        if chosen is None:
+            raise UsageError(tr("Choose the design that others should be like first."))
+        request = replace(self._joining(target), near=chosen.field, nearness=nearness, search=0)
+        number = (self._document().chosen or 0) + 1
+        says = tr("Drawing {count} designs like design {number} …", count=request.k, number=number)
+        return self._joined(request, says)
+
+    def _joining(self, target: Outline) -> Request:
+        document = self._document()
+        if not document.candidates:
+            raise UsageError(tr("There is no design to add to yet; press Generate first."))
+        first = document.candidates[0]
+        same = replace(document.settings, grid=first.field.ratio.shape, phi=first.score.phi, seed=next_seed(document))
+        return request_of(target, same)
+
+    def _joined(self, request: Request, says: str) -> Plan:
+        seed = None if self.keeps_seed else request.seed
+        return self._planned(Plan(request, ranked(self._document().candidates), True, seed, says))
+
+    def _planned(self, plan: Plan) -> Plan:
+        self._plan = plan
+        return plan
+
+    def edit_for(self, result: Result, provenance: dict[str, str], preview: Candidate | None) -> Edit:
+        """What a finished run leads to; ``preview`` is the design that the user looked at meanwhile."""
+        document, plan = self._document(), self._plan
+        seed = None if plan is None else plan.seed
+        if plan is not None and plan.joins:
+            found = distinct(ranked(result.candidates), document.candidates)
+            edit = candidate_edits.add_candidates(document, Brought(found, provenance, seed), rank_key)
+            return _choosing(edit, preview)
+        staying = _staying(document, result.request)
+        if not staying and Mark.PINNED in document.marks:
+            sentence = tr(
+                "The pinned designs are for another grid or angle and were left behind; Undo brings them back."
+            )
+            self.message.emit(Message(sentence, Tone.HINT))
+            document = replace(document, marks=())
+        brought = Brought(result.candidates, provenance, seed, result.request.target)
+        chosen = preview if preview is not None and preview in (*staying, *result.candidates) else None
+        return candidate_edits.renew_candidates(document, brought, rank_key, chosen)
+
+    def told(self, result: Result, before: Document) -> str:
+        """What the status line says of a finished run."""
+        score = result.best.score
+        plan, document = self._plan, self._document()
+        if plan is None or not plan.joins:
+            return (
+                f"{len(result.candidates)} designs in {result.seconds:.1f} s. Best: sIoU {100 * score.siou:.1f} %, "
+                f"{100 * score.siou_gain:+.1f} over the uniform sheet."
+            )
+        added = len(set(document.candidates) - set(before.candidates))
+        if not added:
+            return tr("Nothing new: all {count} designs were there already.", count=len(result.candidates))
+        best = tr("best of them sIoU {siou:.1f} %", siou=100 * score.siou)
+        return tr_n("{count} design added", "{count} designs added", added) + f", {best}."
+
+
+def next_seed(document: Document) -> int:
+    """The first seed from the settings' own on that no design of the document was drawn from."""
+    used = {candidate.seed for candidate in document.candidates}
+    seed = document.settings.seed
+    while seed in used:
+        seed += 1
+    return seed
+
+
+def _staying(document: Document, request: Request) -> tuple[Candidate, ...]:
+    """Pinned designs that share target, grid and angle with a run for the present target."""
+    return tuple(
+        one
+        for one, mark in zip(document.candidates, document.marks, strict=True)
+        if mark is Mark.PINNED
+        and one.field.ratio.shape == request.grid
+        and abs(one.score.phi - request.phi) < SAME_ANGLE
+    )
+
+
+def _choosing(edit: Edit, preview: Candidate | None) -> Edit:
+    """The edit with the design that was looked at on the stage."""
+    candidates = edit.document.candidates
+    if preview is None or preview not in candidates:
+        return edit
+    return Edit(edit.label, replace(edit.document, chosen=candidates.index(preview)))

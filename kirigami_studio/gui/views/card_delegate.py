@@ -1,0 +1,200 @@
+"""One card of the gallery: picture, numbers, what is thought of the design, and its buttons under the mouse."""
+
+from __future__ import annotations
+
+from enum import Enum
+
+from PySide6.QtCore import QModelIndex, QPersistentModelIndex, QPoint, QRect, QRectF, QSize, Qt
+from PySide6.QtGui import QColor, QFont, QPainter, QPen, QPixmap
+from PySide6.QtWidgets import QStyle, QStyledItemDelegate, QStyleOptionViewItem, QWidget
+
+from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.gui import icons
+from kirigami_studio.gui.scene.posed import PosedDesign
+from kirigami_studio.gui.scene.thumbnail import candidate_pixmap
+from kirigami_studio.gui.theme import LIGHT, Palette
+from kirigami_studio.gui.views.gallery_model import (
+    CANDIDATE_ROLE,
+    DESIGN_ROLE,
+    MARK_ROLE,
+    NUMBER_ROLE,
+    RISE_ROLE,
+    VALUE_ROLE,
+)
+from kirigami_studio.project.document import Mark
+from kirigami_studio.target.outline import Outline
+
+SMALLEST_CARD = 132
+TEXT_HEIGHT = 58
+GAP = 8
+#: What polishing must have added to sIoU at least for a card to say so.
+SMALLEST_RISE = 5e-4
+#: Edge of the buttons under the mouse, pixels.
+BUTTON = 24
+#: Opacity of a rejected design's picture.
+DIMMED = 0.3
+Index = QModelIndex | QPersistentModelIndex
+
+
+class CardButton(Enum):
+    """What can be done to a design on its card; the value is the icon."""
+
+    PIN = "pin"
+    REJECT = "reject"
+
+
+class CardDelegate(QStyledItemDelegate):
+    """Paints one candidate: picture, number, sIoU, gain, what it is sorted by, whether it is feasible, its mark."""
+
+    def __init__(self, parent: QWidget) -> None:
+        super().__init__(parent)
+        self.palette_: Palette = LIGHT
+        self.target: Outline | None = None
+        self.card = QSize(SMALLEST_CARD, SMALLEST_CARD + TEXT_HEIGHT - 26)
+        self.hovered: CardButton | None = None  #: the button under the mouse
+        self.compared: Candidate | None = None  #: the design that is compared with the chosen one
+        self._pictures: dict[tuple[PosedDesign, int, float, str], QPixmap] = {}
+
+    def forget_pictures(self) -> None:
+        """Drop all thumbnails; they are painted again when needed."""
+        self._pictures.clear()
+
+    def sizeHint(self, option: QStyleOptionViewItem, index: Index) -> QSize:  # noqa: N802 - Qt's name
+        return self.card + QSize(GAP, GAP)
+
+    def paint(self, painter: QPainter, option: QStyleOptionViewItem, index: Index) -> None:
+        candidate: Candidate = index.data(CANDIDATE_ROLE)
+        design: PosedDesign = index.data(DESIGN_ROLE)
+        mark: Mark = index.data(MARK_ROLE)
+        rect: QRect = option.rect
+        state: QStyle.StateFlag = option.state
+        card = card_of(rect)
+        painter.save()
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        self._paint_back(painter, card, state)
+        picture = picture_of(card)
+        painter.setOpacity(DIMMED if mark is Mark.REJECTED else 1.0)
+        painter.drawPixmap(
+            picture.topLeft(), self._picture(design, picture.size(), painter.device().devicePixelRatio())
+        )
+        painter.setOpacity(1.0)
+        self._paint_number(painter, card, index.data(NUMBER_ROLE), mark)
+        rise: float = index.data(RISE_ROLE)
+        if candidate == self.compared:
+            self._paint_chip(painter, card, "", "compare")
+        elif candidate.trim is not None:
+            self._paint_chip(painter, card, f"{100 * candidate.trim.iou:.1f} %", "trim")
+        elif rise >= SMALLEST_RISE:
+            self._paint_chip(painter, card, f"{100 * rise:+.1f}")
+        self._paint_numbers(painter, card, candidate, index.data(VALUE_ROLE))
+        if state & QStyle.StateFlag.State_MouseOver:
+            self._paint_buttons(painter, rect, mark)
+        painter.restore()
+
+    def _paint_back(self, painter: QPainter, card: QRect, state: QStyle.StateFlag) -> None:
+        chosen = bool(state & QStyle.StateFlag.State_Selected)
+        over = bool(state & QStyle.StateFlag.State_MouseOver)
+        colour = self.palette_.accent_soft if chosen else self.palette_.raised if over else self.palette_.surface
+        edge = self.palette_.accent if chosen else self.palette_.strong_border if over else self.palette_.border
+        painter.setBrush(QColor(colour))
+        painter.setPen(QPen(QColor(edge), 2.0 if chosen else 1.0))
+        painter.drawRoundedRect(QRectF(card).adjusted(1, 1, -1, -1), 8, 8)
+
+    def _picture(self, design: PosedDesign, size: QSize, ratio: float) -> QPixmap:
+        key = (design, size.width(), ratio, self.palette_.name)
+        if key not in self._pictures:
+            self._pictures[key] = candidate_pixmap(design, self.target, size, ratio, self.palette_)
+        return self._pictures[key]
+
+    def _paint_number(self, painter: QPainter, card: QRect, number: int, mark: Mark) -> None:
+        """The design's number, and beside it a pin, or a cross where it is rejected."""
+        painter.setPen(QColor(self.palette_.muted))
+        text, place = f"{number}", card.adjusted(10, 8, -10, 0)
+        painter.drawText(place, int(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignTop), text)
+        if mark is Mark.NONE:
+            return
+        name, colour = ("pinned", self.palette_.accent) if mark is Mark.PINNED else ("reject", self.palette_.muted)
+        metrics = painter.fontMetrics()
+        left = place.left() + metrics.horizontalAdvance(text) + 5
+        edge = metrics.height()
+        painter.drawPixmap(left, place.top(), icons.pixmap(name, colour, edge, painter.device().devicePixelRatio()))
+
+    def _paint_buttons(self, painter: QPainter, rect: QRect, mark: Mark) -> None:
+        ratio = painter.device().devicePixelRatio()
+        for button, box in button_boxes(rect).items():
+            over = button is self.hovered
+            on = mark is (Mark.PINNED if button is CardButton.PIN else Mark.REJECTED)
+            painter.setPen(QPen(QColor(self.palette_.accent if over or on else self.palette_.strong_border), 1.0))
+            painter.setBrush(QColor(self.palette_.accent_soft if over or on else self.palette_.surface))
+            painter.drawRoundedRect(QRectF(box).adjusted(0.5, 0.5, -0.5, -0.5), 6, 6)
+            icon = icons.pixmap(button.value, self.palette_.text, BUTTON - 8, ratio)
+            painter.drawPixmap(box.topLeft() + QPoint(4, 4), icon)
+
+    def _paint_chip(self, painter: QPainter, card: QRect, text: str, icon: str = "") -> None:
+        """A small mark in the upper right corner of the picture."""
+        metrics = painter.fontMetrics()
+        edge = metrics.ascent() + 2 if icon else 0
+        width = metrics.horizontalAdvance(text) + 10 + (edge + (3 if text else 0) if icon else 0)
+        chip = QRectF(card.right() - 7 - width, card.top() + 7, width, metrics.height() + 3)
+        painter.setPen(QPen(QColor(self.palette_.accent), 1.0))
+        painter.setBrush(QColor(self.palette_.accent_soft))
+        painter.drawRoundedRect(chip, 5, 5)
+        if icon:
+            drawn = icons.pixmap(icon, self.palette_.accent, edge, painter.device().devicePixelRatio())
+            painter.drawPixmap(round(chip.left()) + 5, round(chip.center().y() - 0.5 * edge), drawn)
+        painter.setPen(QColor(self.palette_.text))
+        painter.drawText(
+            chip.adjusted(0, 0, -5, 0), int(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter), text
+        )
+
+    def _paint_numbers(self, painter: QPainter, card: QRect, candidate: Candidate, value: str) -> None:
+        score = candidate.score
+        text = card.adjusted(11, card.height() - TEXT_HEIGHT + 4, -11, -8)
+        left, right = int(Qt.AlignmentFlag.AlignLeft), int(Qt.AlignmentFlag.AlignRight)
+        top, bottom = int(Qt.AlignmentFlag.AlignTop), int(Qt.AlignmentFlag.AlignBottom)
+        plain = QFont(painter.font())
+        bold = QFont(plain)
+        bold.setPointSizeF(plain.pointSizeF() * 1.2)
+        bold.setWeight(QFont.Weight.DemiBold)
+        painter.setFont(bold)
+        painter.setPen(QColor(self.palette_.text))
+        painter.drawText(text, left | top, f"{100 * score.siou:.1f} %")
+        painter.setFont(plain)
+        gain = self.palette_.accent if score.siou_gain >= 0 else self.palette_.warning
+        painter.setPen(QColor(gain))
+        painter.drawText(text.adjusted(0, 2, 0, 0), right | top, f"{100 * score.siou_gain:+.1f}")
+        painter.setPen(QColor(self.palette_.muted))
+        painter.drawText(text, left | bottom, value)
+        self._paint_badge(painter, text, score.feasible)
+
+    def _paint_badge(self, painter: QPainter, text: QRect, feasible: bool) -> None:
+        name, colour = ("check", self.palette_.accent) if feasible else ("warning", self.palette_.warning)
+        edge = 16
+        ratio = painter.device().devicePixelRatio()
+        painter.drawPixmap(text.right() - edge + 1, text.bottom() - edge + 1, icons.pixmap(name, colour, edge, ratio))
+
+
+def card_of(rect: QRect) -> QRect:
+    """The card inside the cell that the list gives it."""
+    return rect.adjusted(GAP // 2, GAP // 2, -GAP // 2, -GAP // 2)
+
+
+def picture_of(card: QRect) -> QRect:
+    """The part of a card that shows the design."""
+    return QRect(card.left() + 4, card.top() + 4, card.width() - 8, card.height() - TEXT_HEIGHT)
+
+
+def button_boxes(rect: QRect) -> dict[CardButton, QRect]:
+    """Places of the buttons in a cell of the list: at the lower right corner of the picture."""
+    picture = picture_of(card_of(rect))
+    top = picture.bottom() - BUTTON - 1
+    right = picture.right() - 3
+    return {
+        CardButton.PIN: QRect(right - 2 * BUTTON - 4, top, BUTTON, BUTTON),
+        CardButton.REJECT: QRect(right - BUTTON, top, BUTTON, BUTTON),
+    }
+
+
+def button_at(rect: QRect, place: QPoint) -> CardButton | None:
+    """The button at a place of the view, in the cell ``rect``."""
+    return next((button for button, box in button_boxes(rect).items() if box.contains(place)), None)

@@ -1,0 +1,149 @@
+"""The named changes to the collection of designs: what is thought of one, and what another run adds."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.foundation.errors import ProjectError
+from kirigami_studio.foundation.words import tr, tr_n
+from kirigami_studio.project.document import Document, Mark
+from kirigami_studio.project.edits import Edit, set_candidates
+from kirigami_studio.target.outline import Outline
+
+#: Designs that a project collects at most; one run may bring as many.
+LARGEST_COLLECTION = 1024
+#: Between what is known of several runs.
+BETWEEN_RUNS = "; "
+
+#: Sorting key of a candidate; smaller is better.
+RankKey = Callable[[Candidate], Any]
+
+
+def set_mark(document: Document, index: int, mark: Mark, chosen: int | None = None) -> Edit:
+    """Pin or reject candidate ``index``, or take that back.
+
+    ``chosen`` goes to the stage in the same step, as when the design that is rejected was there.
+
+    Raises
+    ------
+    ProjectError
+        There is no such candidate.
+    """
+    if not 0 <= index < len(document.candidates):
+        raise ProjectError(f"Design number {index} was to be marked, but the project holds {len(document.candidates)}.")
+    marks = list(document.marks)
+    before, marks[index] = marks[index], mark
+    labels = {
+        Mark.PINNED: tr("Pin design {number}", number=index + 1),
+        Mark.REJECTED: tr("Reject design {number}", number=index + 1),
+        Mark.NONE: tr("Unpin design {number}", number=index + 1)
+        if before is Mark.PINNED
+        else tr("Take design {number} back", number=index + 1),
+    }
+    return Edit(
+        labels[mark], replace(document, marks=tuple(marks), chosen=document.chosen if chosen is None else chosen)
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class Brought:
+    """What a finished run adds to a project.
+
+    Attributes
+    ----------
+    candidates : tuple of Candidate
+    provenance : mapping of str to str
+    seed : int or None
+        Seed that the settings show from now on; None leaves them as they are.
+    target : Outline or None
+        What the run was made for, if the document should return to it.
+    """
+
+    candidates: tuple[Candidate, ...]
+    provenance: Mapping[str, str]
+    seed: int | None = None
+    target: Outline | None = None
+
+
+def add_candidates(document: Document, brought: Brought, rank: RankKey, limit: int = LARGEST_COLLECTION) -> Edit:
+    """Join the designs of another run for the same target, grid and angle to those there are.
+
+    All are ranked together; marks stay with their designs, and the same design stays chosen.  A field that is there
+    already is not added.  Where more than ``limit`` would come together, the worst rejected designs go first, then the
+    worst unmarked ones; pinned designs and the chosen one stay.
+    """
+    marked = dict(zip(document.candidates, document.marks, strict=True))
+    fields = {candidate.field for candidate in document.candidates}
+    added = _without_repeats(brought.candidates, fields)
+    kept = _within([*document.candidates, *added], marked, document.candidate, rank, limit)
+    changed = _collected(document, kept, marked, document.candidate)
+    changed = replace(changed, provenance=joined_provenance(document.provenance, brought.provenance))
+    if brought.seed is not None:
+        changed = replace(changed, settings=replace(document.settings, seed=brought.seed))
+    if not added:
+        changed = replace(document, settings=changed.settings)
+    return Edit(tr_n("Add {count} design", "Add {count} designs", len(added)), changed)
+
+
+def renew_candidates(document: Document, brought: Brought, rank: RankKey, chosen: Candidate | None = None) -> Edit:
+    """Take the designs of a new run in the place of all but the pinned ones, and choose one, the best unless told.
+
+    Pinned designs stay only where they share target, grid and angle with the new ones, which the caller has checked.
+    """
+    pinned = [one for one, mark in zip(document.candidates, document.marks, strict=True) if mark is Mark.PINNED]
+    fields = {candidate.field for candidate in pinned}
+    found = sorted([*pinned, *_without_repeats(brought.candidates, fields)], key=rank)
+    known = joined_provenance(document.provenance, brought.provenance) if pinned else brought.provenance
+    edit = set_candidates(document, found, known, brought.target)
+    label = tr_n("Generate {count} design", "Generate {count} designs", len(brought.candidates))
+    changed = _collected(edit.document, found, dict.fromkeys(pinned, Mark.PINNED), chosen or found[0])
+    if brought.seed is not None:
+        changed = replace(changed, settings=replace(document.settings, seed=brought.seed))
+    return Edit(label, changed)
+
+
+def joined_provenance(before: Mapping[str, str], after: Mapping[str, str]) -> dict[str, str]:
+    """What is known of several runs together: where they differ, each value once, in the order of the runs."""
+    known = dict(before)
+    for name, value in after.items():
+        values = [part for part in known.get(name, "").split(BETWEEN_RUNS) if part]
+        known[name] = BETWEEN_RUNS.join(dict.fromkeys([*values, *value.split(BETWEEN_RUNS)]))
+    return known
+
+
+def _without_repeats(found: Iterable[Candidate], fields: Iterable[object]) -> list[Candidate]:
+    """Those whose field is neither among ``fields`` nor that of an earlier one."""
+    seen, fresh = set(fields), []
+    for candidate in found:
+        if candidate.field not in seen:
+            seen.add(candidate.field)
+            fresh.append(candidate)
+    return fresh
+
+
+def _within(
+    candidates: list[Candidate], marked: dict[Candidate, Mark], chosen: Candidate | None, rank: RankKey, limit: int
+) -> list[Candidate]:
+    """At most ``limit`` of the candidates, best first."""
+    ordered = sorted(candidates, key=rank)
+    for mark in (Mark.REJECTED, Mark.NONE):
+        spare = [one for one in ordered if marked.get(one, Mark.NONE) is mark and one != chosen]
+        surplus = min(max(len(ordered) - limit, 0), len(spare))
+        dropped = set(spare[len(spare) - surplus :])
+        ordered = [one for one in ordered if one not in dropped]
+    return ordered
+
+
+def _collected(
+    document: Document, candidates: list[Candidate], marked: dict[Candidate, Mark], chosen: Candidate | None
+) -> Document:
+    """The document with other candidates, marked as they were."""
+    return replace(
+        document,
+        candidates=tuple(candidates),
+        marks=tuple(marked.get(one, Mark.NONE) for one in candidates),
+        chosen=candidates.index(chosen) if chosen in candidates else None,
+    )
