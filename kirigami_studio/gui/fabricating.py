@@ -8,6 +8,7 @@ from typing import Unpack
 from PySide6.QtCore import QObject, Signal
 
 from kirigami_studio.foundation.errors import KirigamiError
+from kirigami_studio.foundation.words import tr
 from kirigami_studio.project import edits, hinge_edits
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.edits import Edit, FabricationChange, OptionsChange
@@ -26,6 +27,14 @@ class Fabricating(QObject):
     def change(self, **changes: Unpack[FabricationChange]) -> None:
         """Change sheet, material, widths or what files are written for."""
         self._propose(lambda document: edits.set_fabrication(document, **changes))
+
+    def cut_at_drawn_size(self, width_mm: float) -> None:
+        """Let the flat sheet be as wide as opens to the size that the target was drawn with."""
+        self._propose(
+            lambda document: Edit(
+                tr("Cut at the drawn size"), edits.set_fabrication(document, width_mm=width_mm).document
+            )
+        )
 
     def change_options(self, **changes: Unpack[OptionsChange]) -> None:
         """Change connector style, order or tabs."""

@@ -13,6 +13,7 @@ from kirigami_studio.gui.lost_designs import LostDesigns
 from kirigami_studio.gui.messages import Tone
 from kirigami_studio.gui.reshaping import Reshaping
 from kirigami_studio.gui.shell import Shell
+from kirigami_studio.gui.sizing import Sizing
 from kirigami_studio.gui.views.gallery_model import Entry
 from kirigami_studio.gui.views.layout_view import Overlay
 from kirigami_studio.project.document import Document
@@ -29,6 +30,10 @@ class Wiring(QObject):
         self.reshaping = Reshaping(window.target.view.easel, lambda: controller.document, self)
         self.lost = LostDesigns(controller.history, self)
         self.gallery = GalleryWiring(window, controller, self)
+        self.sizing = Sizing(self)
+        self.sizing.known.connect(window.fabrication.opened.show_size)
+        self.sizing.width_wanted.connect(controller.fabricating.cut_at_drawn_size)
+        window.fabrication.opened.link_wanted.connect(self.sizing.link)
         self._shown = Document()
         self._connect_panels()
         self._connect_controller()
@@ -127,6 +132,7 @@ class Wiring(QObject):
         window.settings.show_settings(document.settings)
         window.fabrication.show_settings(document.fabrication)
         window.stage.view.set_sheet_width(document.fabrication.width_mm)
+        self.sizing.follow(self.controller.stage, document)
         if not self.controller.running:
             window.gallery.view.mark(document.candidate)
         self._show_history()
@@ -160,6 +166,7 @@ class Wiring(QObject):
         rank = -1 if entry is None else view.model_.number_of(entry.candidate)
         target = self.controller.document.target
         self.window.stage.show_entry(entry, target, rank)
+        self.sizing.follow(entry, self.controller.document)
         view.mark(None if entry is None else entry.candidate)
         for name in ("export", "export_all"):
             self.window.actions_[name].setEnabled(entry is not None)

@@ -24,6 +24,8 @@ from kirigami_studio.target.placed import Placed
 #: Anchors of a target are the corners of its simplification by this share of the root of its area.
 ANCHOR_ERROR = 0.03
 MOST_ANCHORS = 60
+#: With those that a mirror sets.
+MOST_NODES = 4 * MOST_ANCHORS
 #: A turn below this is smooth.
 SMOOTH_TURN = math.radians(40.0)
 #: Anchors are found again among the vertices of a target within this share of the root of its area.
@@ -223,6 +225,17 @@ class Anchors:
         if self.kept[best]:
             return more._with_found_handles([best, best + 1]), best + 1
         return more._redrawn([best, best + 1]), best + 1
+
+    def evened(self, images: Iterable[FloatArray], reach: float) -> Anchors:
+        """Set anchors on the line within ``reach`` (mm) of places (P, 2) that have none: those of a mirror image."""
+        more = self
+        for place in np.concatenate([*images, np.empty((0, 2))]):
+            if float(np.min(np.linalg.norm(more.places - place, axis=1))) <= reach or len(more.places) >= MOST_NODES:
+                continue
+            fuller, index = more.inserted((float(place[0]), float(place[1])))
+            if float(np.linalg.norm(fuller.places[index] - place)) <= reach:
+                more = fuller
+        return more
 
     def without(self, *chosen: int) -> Anchors:
         """Take anchors away; one line joins the neighbours of each.

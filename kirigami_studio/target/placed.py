@@ -133,7 +133,7 @@ class Placed:
         TargetError
             A way that is not finite.
         """
-        return self._put(self.scale, (self.centre[0] + by[0], self.centre[1] + by[1]))
+        return self._put(1.0, (self.centre[0] + by[0], self.centre[1] + by[1]))
 
     def enlarged(self, factor: float, fixed: tuple[float, float]) -> Placed:
         """The very same shape ``factor`` times as large; the place ``fixed``, mm, stays.
@@ -144,8 +144,10 @@ class Placed:
             A factor that is not above 0, or not finite.
         """
         x, y = (stay + factor * (own - stay) for own, stay in zip(self.centre, fixed, strict=True))
-        return self._put(factor * self.scale, (x, y))
+        return self._put(factor, (x, y))
 
-    def _put(self, scale: float, centre: tuple[float, float]) -> Placed:
-        there = Placed(self.outline, scale, centre)
-        return Placed(replace(self.outline, place=centre, size=there.size, unit="mm"), scale, centre)
+    def _put(self, factor: float, centre: tuple[float, float]) -> Placed:
+        there = Placed(self.outline, factor * self.scale, centre)
+        known = self.outline.size if self.outline.unit == "mm" else None
+        size = there.size if known is None else (factor * known[0], factor * known[1])
+        return replace(there, outline=replace(self.outline, place=centre, size=size, unit="mm"))

@@ -22,6 +22,7 @@ from kirigami_studio.gui import icons
 from kirigami_studio.gui.panels.card import Card, ScrolledWhenShort, captioned, compact, muted_label, tool_button
 from kirigami_studio.gui.panels.export_row import ExportRow
 from kirigami_studio.gui.panels.more_options import MoreOptions
+from kirigami_studio.gui.panels.opened_row import OpenedRow
 from kirigami_studio.gui.readable import UNKNOWN, readable_length, readable_range, readable_size, readable_time
 from kirigami_studio.gui.theme import LIGHT, Palette
 from kirigami_studio.project.settings import FabricationSettings
@@ -105,6 +106,7 @@ class FabricationPanel(Card):
         self.exports = ExportRow()
         self.exports.export_wanted.connect(self.export_wanted)
         self.export, self.more, self.kinds = self.exports.export, self.exports.more, self.exports.kinds
+        self.opened = OpenedRow()
         self._build_fold()
         self._lay_out()
         self.body.addWidget(self.warnings)
@@ -178,6 +180,7 @@ class FabricationPanel(Card):
         for field, label, *_ in LENGTHS:
             row.addLayout(captioned(label, self.lengths[field], self.lengths[field]), 1)
         rows.addLayout(row)
+        rows.addWidget(self.opened)
         table = QGridLayout()
         table.setHorizontalSpacing(8)
         table.setVerticalSpacing(1)
@@ -304,7 +307,7 @@ class FabricationPanel(Card):
     def set_palette(self, palette: Palette) -> None:
         """Draw in other colours."""
         self._palette = palette
-        for part in (self.options, self.exports):
+        for part in (self.options, self.exports, self.opened):
             part.set_palette(palette)
         self.edit_materials.setIcon(icons.icon("material", palette))
         self._dress_fold()

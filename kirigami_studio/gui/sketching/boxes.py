@@ -14,7 +14,8 @@ from kirigami_studio.gui.scene.target_items import paint_proposal, paint_size
 from kirigami_studio.gui.sketching.easel import Easel, SketchTool, Spot
 from kirigami_studio.gui.sketching.strokes import distance
 from kirigami_studio.gui.theme import Palette
-from kirigami_studio.target.figures import Box, Figure, figure
+from kirigami_studio.target.figure_nodes import placed_figure
+from kirigami_studio.target.figures import Box, Figure
 from kirigami_studio.target.lettering import lettered
 from kirigami_studio.target.placed import Placed
 
@@ -92,8 +93,7 @@ class FigureTool(BoxTool):
         return self._kind.value
 
     def shape(self, box: Box) -> Placed:
-        ring = figure(self._kind, box, self.easel.corners, self.easel.waist)
-        return Placed.from_ring(ring, self._kind.value)
+        return placed_figure(self._kind, box, self.easel.corners, self.easel.waist)
 
 
 class TextTool(BoxTool):

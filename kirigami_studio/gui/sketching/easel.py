@@ -87,6 +87,7 @@ class Easel(QObject):
     changed = Signal(object)  #: Change
     repaint = Signal()
     tool_done = Signal()
+    mirror_changed = Signal()
     kind_wanted = Signal(object)  #: Kind that the selected points shall have
     kinds_shown = Signal(object)  #: frozenset of the kinds of the selected points
 
@@ -144,6 +145,7 @@ class Easel(QObject):
             x, y = (0.5 * (ring.min(axis=0) + ring.max(axis=0))).tolist()
             middle = (x, y)
         self.mirror = Mirror(axis, middle)
+        self.mirror_changed.emit()
         self.repaint.emit()
 
     def nudge(self, event: QKeyEvent) -> tuple[FloatArray, str] | None:

@@ -77,6 +77,7 @@ class PointTool(SketchTool):
         self.chosen: int | None = None
         self.selected: frozenset[int] = frozenset()
         easel.kind_wanted.connect(self.set_kind)
+        easel.mirror_changed.connect(self._start_anew)
 
     @property
     def anchors(self) -> Anchors | None:
@@ -87,12 +88,30 @@ class PointTool(SketchTool):
         placed = self.easel.placed
         self._dragged = None
         if placed is self._shown and self._anchors is not None:
-            self._tell()
+            self._even()
             return
         if placed is None or placed is not self._made:
             self._anchors = None if placed is None else Anchors.of(placed)
             self.select(())
         self._shown = placed
+        self._even()
+
+    def _start_anew(self) -> None:
+        """Other axes hold: points that were set for the old ones only are gone."""
+        if self.easel.placed is not None and self.easel.placed is self._shown:
+            self._anchors = Anchors.of(self.easel.placed)
+            self.select(())
+            self._even()
+
+    def _even(self) -> None:
+        """With a mirror every point of the target has its image: set those that are missing on the line."""
+        placed, anchors = self.easel.placed, self._anchors
+        if placed is not None and anchors is not None and placed is self._shown:
+            images = [self.easel.mirror.image(anchors.places, factors) for factors in self.easel.mirror.images]
+            more = anchors.evened(images, IMAGE_REACH * placed.scale)
+            if more is not anchors:
+                self._anchors = more
+                self.select(())
         self._tell()
 
     # selecting -----------------------------------------------------------------------------------------------------

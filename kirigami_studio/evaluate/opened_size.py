@@ -1,0 +1,68 @@
+"""How large a sheet of some width shows its target, and how wide it must be to show it as drawn."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from kirigami_studio.evaluate.similarity import Similarity
+from kirigami_studio.foundation.errors import UsageError
+from kirigami_studio.lattice.deployment import Deployment
+from kirigami_studio.target.outline import Outline
+
+#: Sizes this near (relative) are one size: a hundredth of a millimetre in 100.
+SAME_SIZE = 1e-4
+
+
+@dataclass(frozen=True, slots=True)
+class OpenedSize:
+    """The target as an opened sheet shows it, and as it was drawn.
+
+    Attributes
+    ----------
+    opened : (width, height) float, mm
+        Of the target in its own orientation, at the scale at which the opened sheet fits it best.
+    drawn : (width, height) float or None, mm
+        Its real size; None when its source has none in mm.
+    fitting_width_mm : float or None
+        Width of the flat sheet that shows the target in its real size.
+    """
+
+    opened: tuple[float, float]
+    drawn: tuple[float, float] | None
+    fitting_width_mm: float | None
+
+    @property
+    def agrees(self) -> bool:
+        """Whether the opened sheet has the drawn size."""
+        return self.drawn is not None and abs(self.opened[0] / self.drawn[0] - 1.0) <= SAME_SIZE
+
+
+def opened_size(deployment: Deployment, pose: Similarity, target: Outline, width_mm: float) -> OpenedSize:
+    """Compare the opened sheet with the target as drawn.
+
+    Parameters
+    ----------
+    deployment : Deployment
+    pose : Similarity
+        Layout frame at the target angle (unit cells) -> target frame (area 1), as a score or a trim has it.
+    target : Outline
+    width_mm : float
+        Width of the flat sheet.
+
+    Raises
+    ------
+    UsageError
+        A width that is not above 0.
+    """
+    if not width_mm > 0:
+        raise UsageError(f"The sheet's width must be above 0 mm, got {width_mm:g}.")
+    # Panels are rigid: a cell of the flat sheet has the same length in the opened one.
+    flat = float(np.ptp(deployment.compact[:, 0])) * pose.scale
+    width, height = np.ptp(target.points, axis=0).tolist()
+    unit = width_mm / flat
+    if target.size is None or target.unit != "mm":
+        return OpenedSize((unit * width, unit * height), None, None)
+    drawn = target.size[0] / width
+    return OpenedSize((unit * width, unit * height), target.size, flat * drawn)

@@ -1,0 +1,206 @@
+"""The target on the board: moved, typed, sized; the designs it loses come back; the sheet cut at the drawn size."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from PySide6.QtCore import QEvent, QPoint, Qt
+from PySide6.QtWidgets import QApplication
+from pytestqt.qtbot import QtBot
+
+from kirigami_studio.gui.main_window import MainWindow
+from kirigami_studio.gui.messages import Message
+from kirigami_studio.gui.sketching.easel import Change
+from kirigami_studio.gui.views.target_view import Tool
+from kirigami_studio.target.combining import Combine
+from kirigami_studio.target.figure_nodes import placed_figure
+from kirigami_studio.target.figures import Box, Figure
+from tests.gui.test_board_points import ALT, CTRL, LEFT, NONE, PLAIN, SHIFT, drag, placed, send, undo_label
+
+Until = Callable[[Callable[[], bool]], None]
+
+
+@pytest.fixture
+def plate(window: MainWindow) -> MainWindow:
+    """A rectangle of 40 x 20 mm around the origin, ready to be moved."""
+    made = placed_figure(Figure.RECTANGLE, Box(-20, -10, 20, 10))
+    window.wiring.reshaping.take(Change("Draw rectangle", lambda: made))
+    window.target.set_tool(Tool.POSE)
+    QApplication.processEvents()
+    return window
+
+
+def bounds(window: MainWindow) -> tuple[float, float, float, float]:
+    found: tuple[float, float, float, float] = placed(window).polygon.bounds
+    return found
+
+
+# moving -----------------------------------------------------------------------------------------------------
+
+
+def test_that_a_drag_inside_moves_the_target_by_the_grid_and_ctrl_frees_it(plate: MainWindow) -> None:
+    step = plate.target.view.easel.step
+    drag(plate, (5, 5), (5 + 2.2 * step, 5 - 0.9 * step))
+    assert undo_label(plate) == "Move target"
+    assert bounds(plate) == pytest.approx((-20 + 2 * step, -10 - step, 20 + 2 * step, 10 - step))
+    plate.actions_["undo"].trigger()
+    assert bounds(plate) == pytest.approx((-20, -10, 20, 10))
+    drag(plate, (5, 5), (8.3, 6.1), CTRL)
+    assert bounds(plate) == pytest.approx((-16.7, -8.9, 23.3, 11.1), abs=1e-6)
+
+
+def test_that_a_press_inside_that_does_not_move_changes_nothing(plate: MainWindow) -> None:
+    before = plate.controller.document
+    for place in ((5.3, 5.1), (0.2, 0.3)):
+        send(plate, QEvent.Type.MouseButtonPress, place, LEFT, PLAIN)
+        send(plate, QEvent.Type.MouseButtonRelease, place, NONE, PLAIN)
+    assert plate.controller.document is before
+
+
+def test_that_arrow_keys_nudge_in_mm(plate: MainWindow, qtbot: QtBot) -> None:
+    view, total = plate.target.view, np.zeros(2)
+    for key, keys, way in (
+        (Qt.Key.Key_Up, PLAIN, (0, 1)),
+        (Qt.Key.Key_Left, SHIFT, (-10, 0)),
+        (Qt.Key.Key_Down, ALT, (0, -0.1)),
+    ):
+        qtbot.keyClick(view, key, keys)
+        total += way
+        assert bounds(plate)[:2] == pytest.approx((total[0] - 20, total[1] - 10))
+    for _ in range(3):
+        plate.actions_["undo"].trigger()
+    assert bounds(plate) == pytest.approx((-20, -10, 20, 10))
+
+
+def test_that_typed_numbers_place_turn_and_size_the_target(plate: MainWindow, qtbot: QtBot) -> None:
+    pose, refine = plate.target.strip.options.pose, plate.target.refine
+    assert pose.isVisible()
+    for field, text in ((pose.x_, "30"), (pose.y_, "-5")):
+        field.selectAll()
+        qtbot.keyClicks(field, text)
+        qtbot.keyClick(field, Qt.Key.Key_Return)
+    assert bounds(plate) == pytest.approx((10, -15, 50, 5)) and undo_label(plate) == "Move target"
+    pose.turn.setValue(90.0)
+    assert bounds(plate) == pytest.approx((20, -25, 40, 15)) and undo_label(plate) == "Rotate target"
+    assert pose.turn.value() == 0.0
+    refine.proportions.click()
+    refine.width_.setValue(60.0)
+    assert placed(plate).size == pytest.approx((60, 40))
+    refine.proportions.click()
+    refine.width_.setValue(30.0)
+    assert placed(plate).size == pytest.approx((30, 20))
+
+
+def test_that_a_moved_target_combines_where_it_lies_now(plate: MainWindow) -> None:
+    drag(plate, (0, 0), (20, 0))
+    plate.target.set_tool(Tool.RECTANGLE)
+    plate.target.strip.set_mode(Combine.ADD)
+    drag(plate, (30, -20), (50, 20))
+    assert bounds(plate) == pytest.approx((0, -20, 50, 20), abs=1e-4)
+
+
+# designs ----------------------------------------------------------------------------------------------------
+
+
+def lost(window: MainWindow) -> list[Message]:
+    return [message for message in window.messages.messages if "old target" in message.sentence]
+
+
+def test_that_designs_stay_with_a_moved_and_enlarged_target(designed: MainWindow, qtbot: QtBot) -> None:
+    designed.target.set_tool(Tool.POSE)
+    count = len(designed.controller.document.candidates)
+    qtbot.keyClick(designed.target.view, Qt.Key.Key_Up)
+    assert undo_label(designed) == "Move target"
+    designed.target.refine.width_.setValue(83.7)
+    assert undo_label(designed) == "Resize target"
+    assert len(designed.controller.document.candidates) == count > 0 and not lost(designed)
+
+
+def test_that_lost_designs_are_told_and_brought_back_over_several_changes(designed: MainWindow, qtbot: QtBot) -> None:
+    before = designed.controller.document
+    designed.target.set_tool(Tool.POSE)
+    pose = designed.target.strip.options.pose
+    pose.turn.setValue(15.0)
+    assert not designed.controller.document.candidates and len(lost(designed)) == 1
+    pose.turn.setValue(5.0)
+    designed.controller.end_drag()
+    designed.target.refine.sliders["smooth"].setValue(50)
+    assert len(lost(designed)) == 1
+    label, act = lost(designed)[0].actions[0]
+    assert label == "Bring back"
+    act()
+    assert designed.controller.document is before
+    assert not lost(designed)
+    designed.actions_["redo"].trigger()
+    assert lost(designed)
+    designed.actions_["undo"].trigger()
+    assert not lost(designed)
+
+
+def test_that_a_press_on_the_groove_only_shows_until_it_is_let_go(designed: MainWindow, qtbot: QtBot) -> None:
+    designed.target.set_editing(True)
+    QApplication.processEvents()
+    slider, before = designed.target.refine.sliders["simplify"], designed.controller.document
+    spot = QPoint(round(0.7 * slider.width()), slider.height() // 2)
+    qtbot.mousePress(slider, LEFT, pos=spot)
+    assert slider.value() == pytest.approx(70, abs=8)
+    assert designed.controller.document is before
+    there = QPoint(round(0.5 * slider.width()), slider.height() // 2)
+    qtbot.mouseMove(slider, there)
+    qtbot.mouseRelease(slider, LEFT, pos=there)
+    assert undo_label(designed) == "Simplify target" and len(lost(designed)) == 1
+    designed.actions_["undo"].trigger()
+    assert designed.controller.document is before
+
+
+# the drawn size ---------------------------------------------------------------------------------------------
+
+
+def test_that_the_sheet_is_cut_at_the_drawn_size_in_one_step(designed: MainWindow, qtbot: QtBot) -> None:
+    row = designed.fabrication.opened
+    assert not row.link.isEnabled() and "drawn" not in row.text.text()  # the library's heart has no size in mm
+    designed.target.set_tool(Tool.POSE)
+    designed.target.refine.width_.setValue(140.0)
+    designed.target.set_editing(False)
+    assert row.link.isEnabled() and "drawn 140.0" in row.text.text()
+    entry = designed.controller.stage
+    assert entry is not None
+    qtbot.mouseClick(row.link, LEFT)
+    assert undo_label(designed) == "Cut at the drawn size" and "as drawn" in row.text.text()
+    width = designed.controller.document.fabrication.width_mm
+    design, target = entry.design, designed.controller.document.target
+    assert target is not None and not row.link.isEnabled()
+    # The opened sheet in mm, turned as the target lies, has the target's scale.
+    sheet = design.deployment.nodes(design.phi_target) * (width / np.ptp(design.deployment.compact[:, 0]))
+    posed = design.pose.apply(design.deployment.nodes(design.phi_target)) * (140.0 / np.ptp(target.points[:, 0]))
+    assert math.dist(sheet[0], sheet[-1]) == pytest.approx(math.dist(posed[0], posed[-1]), rel=1e-9)
+    designed.actions_["undo"].trigger()
+    assert designed.controller.document.fabrication.width_mm == 100.0 and row.link.isEnabled()
+
+
+# letters ----------------------------------------------------------------------------------------------------
+
+
+def test_that_family_weight_and_slant_change_the_letters(window: MainWindow, qtbot: QtBot) -> None:
+    window.target.set_tool(Tool.TEXT)
+    options = window.target.strip.options
+    family = options.font_.family
+    assert family is not None and family.isVisible() and family.count() > 0
+    options.text.setText("Hi")
+    shapes = []
+    for bold, italic in ((True, False), (False, False), (True, True)):
+        options.font_.bold.setChecked(bold)
+        options.font_.italic.setChecked(italic)
+        window.target.set_tool(Tool.TEXT)
+        drag(window, (-40, -20), (40, 20))
+        shapes.append(placed(window).outline)
+    assert len(set(shapes)) == 3
+    other = next(
+        (name for row in range(family.count()) if (name := family.itemText(row)) != family.currentFont().family()), None
+    )
+    if other is not None:
+        family.setCurrentText(other)
+        assert window.target.view.easel.family == family.currentFont().family()
