@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import json
 import math
+from dataclasses import replace
 from pathlib import Path
 
 from kirigami_studio.cli.batches import for_each
@@ -27,6 +28,7 @@ from kirigami_studio.pipeline.events import Finished, Progress, Result
 from kirigami_studio.pipeline.provenance import provenance
 from kirigami_studio.pipeline.request import POLISH_STEPS, Request
 from kirigami_studio.pipeline.run import run
+from kirigami_studio.project.design_facts import design_facts
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.settings import DesignSettings, FabricationSettings
 from kirigami_studio.project.store import save
@@ -115,7 +117,8 @@ def write_files(result: Result, fabrication: FabricationSettings, folder: Path) 
     """
     request, best = result.request, result.best
     plan, _ = checked_plan(best, fabrication)
-    job = ExportJob.of(best, request.target.points, plan)
+    document = document_of(result, fabrication)
+    job = replace(ExportJob.of(best, request.target.points, plan), provenance=design_facts(document, best))
     paths = {
         "project": folder / "design.kiri",
         "cut": folder / "cut.dxf",
@@ -123,7 +126,7 @@ def write_files(result: Result, fabrication: FabricationSettings, folder: Path) 
         "preview": folder / "preview.png",
         "candidates": folder / "candidates.json",
     }
-    save(document_of(result, fabrication), paths["project"])
+    save(document, paths["project"])
     export(job, paths["cut"])
     write_layout_svg(job, paths["layout"])
     write_png(job, paths["preview"])

@@ -25,6 +25,7 @@ from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions, CutOrd
 from kirigami_studio.fabricate.slits import cut_table
 from kirigami_studio.foundation.errors import ExportError, FabricationError, ProjectError, UsageError
 from kirigami_studio.project.cutting import plan_of, target_angle
+from kirigami_studio.project.design_facts import design_facts
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.settings import FabricationSettings
 from kirigami_studio.project.store import load
@@ -172,8 +173,9 @@ def _chosen(document: Document) -> Candidate:
 
 
 def _job(document: Document) -> ExportJob:
-    job = ExportJob.of(_chosen(document), None if document.target is None else document.target.points)
-    return replace(job, provenance=document.provenance)
+    chosen = _chosen(document)
+    job = ExportJob.of(chosen, None if document.target is None else document.target.points)
+    return replace(job, provenance=design_facts(document, chosen))
 
 
 def _overridden(saved: FabricationSettings, arguments: argparse.Namespace) -> FabricationSettings:

@@ -11,6 +11,7 @@ import numpy as np
 from PIL import Image
 
 from kirigami_studio.export.exporter import ExportJob
+from kirigami_studio.export.facts import origin_facts
 from kirigami_studio.export.picture import Frame, draw_polygons
 from kirigami_studio.export.verified import write_verified
 from kirigami_studio.foundation.errors import ExportError
@@ -59,8 +60,16 @@ def write_animation(job: ExportJob, path: str | Path, frames: int = FRAMES, long
     pictures = _pictures(job, frames, longest)
     durations = [HOLD_MS] + [FRAME_MS] * (frames - 2) + [HOLD_MS]
     stream = BytesIO()
+    facts = "; ".join(f"{name} {text}" for name, text in origin_facts(job.provenance).items())
     pictures[0].save(
-        stream, format="GIF", save_all=True, append_images=pictures[1:], duration=durations, loop=0, optimize=False
+        stream,
+        format="GIF",
+        save_all=True,
+        append_images=pictures[1:],
+        duration=durations,
+        loop=0,
+        optimize=False,
+        **({"comment": facts.encode("utf-8")} if facts else {}),
     )
 
     def verify(written: Path) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from types import MappingProxyType
 from typing import Protocol
@@ -42,7 +42,8 @@ class ExportJob:
     paper : str
         Key of the paper that a PDF is spread over; "none" for one page as large as the sheet.
     provenance : mapping of str to str
-        Where the design comes from: version of the program, name and hash of the model.
+        Where the design comes from: version of the program, name and hash of the model, seed, settings; every file
+        repeats it.
     trim : Trim or None
         What was cut off the edge panels; pictures show what stays.
     """
@@ -68,7 +69,7 @@ class ExportJob:
 
     @property
     def required_plan(self) -> CutPlan:
-        """The plan, or a refusal.
+        """The plan, which says where its design comes from, or a refusal.
 
         Raises
         ------
@@ -77,7 +78,7 @@ class ExportJob:
         """
         if self.plan is None:
             raise ExportError("A cut file needs a cut plan: choose a material and a sheet width first.")
-        return self.plan
+        return replace(self.plan, origin=self.provenance) if self.provenance else self.plan
 
     def placed(self, nodes: FloatArray) -> FloatArray:
         """Move points (..., 2) from the layout's frame at ``phi`` to the target's frame."""

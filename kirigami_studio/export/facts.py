@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from kirigami_studio import __version__
 from kirigami_studio.export.profile import Profile
 from kirigami_studio.fabricate.cut_plan import CutPlan
@@ -21,7 +23,13 @@ def facts_of(plan: CutPlan, profile: Profile) -> dict[str, str]:
         "MATERIAL": plan.material.key,
         "PATHS": "edges of the finished part: apply the kerf offset of the machine" if profile.slots else paths,
         **({} if profile.slots else _deliberate(plan)),
+        **origin_facts(plan.origin),
     }
+
+
+def origin_facts(origin: Mapping[str, str]) -> dict[str, str]:
+    """Where a design comes from, under names that no fact about the cutting has."""
+    return {f"FROM_{name.upper()}": " ".join(text.split()) for name, text in sorted(origin.items())}
 
 
 def _deliberate(plan: CutPlan) -> dict[str, str]:

@@ -18,11 +18,14 @@ from reportlab.lib.units import mm
 from reportlab.pdfgen.canvas import Canvas
 from shapely.geometry import LineString
 
+from kirigami_studio import __version__
 from kirigami_studio.export import palette
 from kirigami_studio.export.exporter import ExportJob
+from kirigami_studio.export.facts import facts_of
 from kirigami_studio.export.palette import Colour
 from kirigami_studio.export.paper import FOOTER_MM, MARGIN_MM, NO_PAPER, Box, Tile, Tiling, find_paper, tile
 from kirigami_studio.export.pdf_reading import Page, read_pages
+from kirigami_studio.export.profile import find_profile
 from kirigami_studio.export.verified import write_verified
 from kirigami_studio.fabricate.cut_plan import CutPlan
 from kirigami_studio.foundation.errors import ExportError
@@ -93,7 +96,8 @@ def _pdf_bytes(plan: CutPlan, lines: Sequence[Line], tiling: Tiling) -> bytes:
     make_canvas: Any = Canvas
     canvas = make_canvas(stream, pagesize=tuple(side * mm for side in tiling.page), invariant=1, pageCompression=0)
     canvas.setTitle(f"Kirigami cut plan {plan.design_hash}")
-    canvas.setCreator("Kirigami Studio")
+    canvas.setCreator(f"Kirigami Studio {__version__}")
+    canvas.setSubject("; ".join(f"{name} {text}" for name, text in facts_of(plan, find_profile("any")).items()))
     canvas.setLineCap(1)
     count = len(tiling.tiles)
     if count > 1:

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from io import BytesIO
 from pathlib import Path
 
 from PIL import Image
+from PIL.PngImagePlugin import PngInfo
 
 from kirigami_studio.export.exporter import ExportJob
+from kirigami_studio.export.facts import origin_facts
 from kirigami_studio.export.picture import Frame, draw_polygons
 from kirigami_studio.export.verified import write_verified
 from kirigami_studio.foundation.errors import ExportError
@@ -38,7 +41,7 @@ def write_png(job: ExportJob, path: str | Path, longest: int = LONGEST_SIDE) -> 
     """
     image = preview(job, longest)
     stream = BytesIO()
-    image.save(stream, format="PNG", optimize=True)
+    image.save(stream, format="PNG", optimize=True, pnginfo=text_chunks(origin_facts(job.provenance)))
 
     def verify(written: Path) -> None:
         with Image.open(written) as read:
@@ -47,6 +50,14 @@ def write_png(job: ExportJob, path: str | Path, longest: int = LONGEST_SIDE) -> 
                 raise ExportError(f"The PNG did not read back: {read.size} instead of {image.size} pixels.")
 
     write_verified(Path(path), stream.getvalue(), verify)
+
+
+def text_chunks(facts: Mapping[str, str]) -> PngInfo:
+    """Facts as a PNG keeps them, each under its name."""
+    texts = PngInfo()
+    for name, text in facts.items():
+        texts.add_itxt(name, text)
+    return texts
 
 
 def preview(job: ExportJob, longest: int = LONGEST_SIDE) -> Image.Image:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import groupby
 from pathlib import Path
@@ -11,7 +12,7 @@ import numpy as np
 
 from kirigami_studio.export import palette
 from kirigami_studio.export.exporter import ExportJob
-from kirigami_studio.export.facts import facts_of
+from kirigami_studio.export.facts import facts_of, origin_facts
 from kirigami_studio.export.palette import hexadecimal
 from kirigami_studio.export.profile import BLUE, GREEN, MAGENTA, RED, WHITE, Profile, find_profile
 from kirigami_studio.export.strokes import Stroke, extent, strokes_of
@@ -48,11 +49,29 @@ def write_cut_svg(plan: CutPlan, path: str | Path, profile: Profile) -> None:
     ExportError
         The place cannot be written, or the file did not read back.
     """
+    root, count, size = _cut_drawing(plan, profile)
+    _write(root, Path(path), count, size)
+
+
+def cut_svg_bytes(job: ExportJob) -> bytes:
+    """Return the cut file's bytes as they are written for a job.
+
+    Raises
+    ------
+    ExportError
+        The job has no plan, or names an unknown profile.
+    """
+    root, _, _ = _cut_drawing(job.required_plan, find_profile(job.profile))
+    return _content(root)
+
+
+def _cut_drawing(plan: CutPlan, profile: Profile) -> tuple[ElementTree.Element, int, tuple[float, float]]:
+    """The drawing, the number of its paths and its size (mm)."""
     strokes = strokes_of(plan, profile)
     width, height = extent(strokes)
     root = _root(width, height, f"Kirigami cut plan, sheet {plan.size_mm[0]:g} x {plan.size_mm[1]:g} mm")
     facts = facts_of(plan, profile)
-    ElementTree.SubElement(root, "desc").text = "; ".join(f"{key} {value}" for key, value in facts.items())
+    _describe(root, facts)
     for number, ((name, colour), run) in enumerate(groupby(strokes, lambda stroke: (stroke.layer, stroke.colour))):
         # A layer that comes back later in the cutting order needs a name of its own.
         again = any(element.get("id") == name for element in root)
@@ -61,7 +80,7 @@ def write_cut_svg(plan: CutPlan, path: str | Path, profile: Profile) -> None:
         group = ElementTree.SubElement(root, "g", attributes)
         for stroke in run:
             ElementTree.SubElement(group, "path", {"d": _stroke_data(stroke, height)})
-    _write(root, Path(path), len(strokes), (width, height))
+    return root, len(strokes), (width, height)
 
 
 def _stroke_data(stroke: Stroke, height: float) -> str:
@@ -102,6 +121,7 @@ def write_layout_svg(job: ExportJob, path: str | Path, width_mm: float = 100.0) 
     low = everything.min(axis=0) - LAYOUT_MARGIN_MM
     width, height = (float(side) for side in everything.max(axis=0) + LAYOUT_MARGIN_MM - low)
     root = _root(width, height, f"Kirigami layout at {np.degrees(job.phi):g} degrees")
+    _describe(root, origin_facts(job.provenance))
     groups: list[tuple[str, dict[str, str], list[FloatArray]]] = [
         ("TARGET_AREA", {"fill": hexadecimal(palette.TARGET_FILL)}, [] if target is None else [target]),
         ("VOIDS", {"fill": hexadecimal(palette.VOID)}, list(nodes[tables.void_nodes].reshape(-1, 4, 2))),
@@ -128,6 +148,12 @@ def _root(width: float, height: float, title: str) -> ElementTree.Element:
     return root
 
 
+def _describe(root: ElementTree.Element, facts: Mapping[str, str]) -> None:
+    """Say how the drawing was made, where viewers and drawing programs show it."""
+    if facts:
+        ElementTree.SubElement(root, "desc").text = "; ".join(f"{key} {value}" for key, value in facts.items())
+
+
 def _number(value: float) -> str:
     """Shortest text with four decimals at most."""
     return f"{value + 0.0:.4f}".rstrip("0").rstrip(".")
@@ -140,8 +166,7 @@ def _path_data(points: FloatArray, height: float, closed: bool) -> str:
 
 
 def _write(root: ElementTree.Element, path: Path, paths: int, size: tuple[float, float]) -> None:
-    ElementTree.indent(root)
-    content = ElementTree.tostring(root, encoding="utf-8", xml_declaration=True)
+    content = _content(root)
 
     def verify(written: Path) -> None:
         read = ElementTree.parse(written).getroot()
@@ -150,3 +175,9 @@ def _write(root: ElementTree.Element, path: Path, paths: int, size: tuple[float,
             raise ExportError(f"The SVG did not read back: {found} paths instead of {paths}. Nothing was written.")
 
     write_verified(path, content, verify)
+
+
+def _content(root: ElementTree.Element) -> bytes:
+    ElementTree.indent(root)
+    content: bytes = ElementTree.tostring(root, encoding="utf-8", xml_declaration=True)
+    return content

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from types import MappingProxyType
 
 import numpy as np
 import shapely
@@ -59,6 +60,8 @@ class CutPlan:
         Sentences that a person should read before cutting.
     panels : tuple of (P, 2) float, mm
         Panels between the centre lines of the cuts, row by row; four corners each unless trimmed.
+    origin : mapping of str to str
+        Where the design comes from, told in every file of the plan; decides nothing.
     """
 
     paths: tuple[CutPath, ...]
@@ -72,6 +75,7 @@ class CutPlan:
     options: CutOptions = field(default_factory=CutOptions)
     notes: tuple[str, ...] = ()
     panels: tuple[FloatArray, ...] = ()
+    origin: Mapping[str, str] = field(default_factory=lambda: MappingProxyType({}))
 
     @cached_property
     def cut_length_mm(self) -> float:

@@ -58,11 +58,14 @@ COMMANDS = (
     Command(
         "export_all", "Export &everything …", "&File", ("Ctrl+Shift+E",), "", "Write every kind of file into one folder"
     ),
+    Command("animation", "Export a&nimation …", "&File", (), "", "Write the deployment as a looping GIF"),
     Command("quit", "&Quit", "&File", ("Ctrl+Q",), tip="Close Kirigami Studio", gap=True),
     Command("undo", "&Undo", "&Edit", ("Ctrl+Z",), "undo", "Undo", True),
     Command("redo", "&Redo", "&Edit", ("Ctrl+Y", "Ctrl+Shift+Z"), "redo", "Redo", True),
     Command("history", "&History …", "&Edit", ("Ctrl+Shift+H",), tip="List all steps and go to one"),
     Command("paste", "&Paste target", "&Edit", ("Ctrl+V",), "", "Take a picture, SVG or path as target", gap=True),
+    Command("copy_picture", "&Copy picture", "&Edit", ("Ctrl+Shift+C",), "", "Copy a picture of the view in use"),
+    Command("copy_cuts", "Copy cuts as S&VG", "&Edit", ("Ctrl+Alt+C",), "", "Copy the cut plan as SVG in mm"),
     Command("clear", "&Clear target", "&Edit", (), "clear", "Remove the target"),
     Command("edit_target", "&Edit target", "D&raw", ("E",), "edit", "Open or leave the drawing board"),
     Command("points", "Move &points", "D&raw", ("N",), "points", "Drag the points of the target", gap=True),

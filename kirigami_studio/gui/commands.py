@@ -17,8 +17,10 @@ from kirigami_studio.gui.controller import Controller
 from kirigami_studio.gui.dialogs.files import FileChoosers, FileQuestions
 from kirigami_studio.gui.jobs.steps import Exported
 from kirigami_studio.gui.messages import Message, Tone
+from kirigami_studio.gui.panels.picture_menu import PictureMenu
 from kirigami_studio.gui.panels.recent_menu import RecentMenu
 from kirigami_studio.gui.pasting import Pasting
+from kirigami_studio.gui.picturing import Picturing
 from kirigami_studio.gui.shell import Shell
 from kirigami_studio.gui.theme import DARK, LIGHT
 from kirigami_studio.gui.views.layout_view import USUAL, Overlay
@@ -66,6 +68,10 @@ class Commands(QObject):
         controller.recovering.recover_wanted.connect(
             lambda leftover: self.guard("recover another", partial(controller.recovering.recover, leftover))
         )
+        self.picturing = Picturing(window, controller.board, lambda: controller.order)
+        self.pictures = PictureMenu(window, self.picturing, lambda proposal: self.files.picture(proposal))
+        insert_menu(window, "animation", self.pictures)
+        controller.hear(self.picturing)
         self._closing = False
         self._connect_actions()
 
@@ -82,6 +88,9 @@ class Commands(QObject):
             "export": self.export,
             "export_all": self.export_all,
             "materials": self.show_materials,
+            "animation": partial(self.export, ".gif"),
+            "copy_picture": lambda: self.picturing.copy(self.picturing.view_at_work()),
+            "copy_cuts": self.picturing.copy_cuts,
             "quit": window.close,
             "undo": controller.undo,
             "redo": controller.redo,

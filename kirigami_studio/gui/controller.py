@@ -25,6 +25,7 @@ from kirigami_studio.gui.jobs import steps
 from kirigami_studio.gui.jobs.board import Board, Ears
 from kirigami_studio.gui.marking import Marking
 from kirigami_studio.gui.messages import Message, Tone
+from kirigami_studio.gui.picturing import Picturing
 from kirigami_studio.gui.preferring import Preferring
 from kirigami_studio.gui.recent_files import RecentFiles
 from kirigami_studio.gui.recovering import Recovering, Work
@@ -35,6 +36,7 @@ from kirigami_studio.gui.targeting import Targeting
 from kirigami_studio.gui.views.gallery_model import Entry
 from kirigami_studio.pipeline.events import Result
 from kirigami_studio.project import edits
+from kirigami_studio.project.design_facts import design_facts
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.edits import Edit, FabricationChange, SettingsChange
 from kirigami_studio.project.history import History
@@ -121,6 +123,12 @@ class Controller(QObject):
     def running(self) -> bool:
         """Whether candidates are being generated."""
         return self.run.running
+
+    def hear(self, part: Picturing) -> None:
+        """Pass on what a part of the window has to say."""
+        part.message.connect(self.message)
+        part.status.connect(self.status)
+        part.failed.connect(self._tell_failure)
 
     def close(self) -> None:
         """Stop all work; the window is going away."""
@@ -273,11 +281,17 @@ class Controller(QObject):
     def _plan_soon(self) -> None:
         self.cutting.plan_soon(self._order())
 
+    @property
+    def order(self) -> steps.Order | None:
+        """The design on the stage and how it is to be cut."""
+        return self._order()
+
     def _order(self) -> steps.Order | None:
         stage, document = self.stage, self.document
         if stage is None:
             return None
-        return steps.Order(stage.candidate, stage.design.deployment, document.target, document.fabrication)
+        facts = design_facts(document, stage.candidate)
+        return steps.Order(stage.candidate, stage.design.deployment, document.target, document.fabrication, facts)
 
     # project -------------------------------------------------------------------------------------------------------
 

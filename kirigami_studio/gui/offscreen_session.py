@@ -51,6 +51,9 @@ class PresetFiles:
     def export(self, proposal: str) -> Path | None:
         return self._out / Path(proposal).with_stem("cut").name
 
+    def picture(self, proposal: str) -> Path | None:
+        return self._out / Path(proposal).name
+
     def folder(self) -> Path | None:
         return self._out
 

@@ -17,6 +17,8 @@ def provenance(request: Request, digest: str) -> dict[str, str]:
         "application": f"kirigami-studio {__version__}",
         "model": request.variant,
         "model_sha256": digest,
+        "k": str(request.k),
+        "steps": str(request.steps),
         "polish": str(request.polish),
     }
     if request.polish or request.search:

@@ -59,6 +59,10 @@ class PathAnswers:
         self.proposals.append(proposal)
         return self.answer
 
+    def picture(self, proposal: str) -> Path | None:
+        self.proposals.append(proposal)
+        return self.answer
+
     def folder(self) -> Path | None:
         return self.answer
 

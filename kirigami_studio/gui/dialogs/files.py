@@ -10,6 +10,7 @@ from PySide6.QtWidgets import QFileDialog, QWidget
 from kirigami_studio.gui.file_kinds import FILE_KINDS, kind_of
 
 TARGET_FILTER = "Targets (*.png *.jpg *.jpeg *.bmp *.svg *.dxf *.json);;All files (*)"
+PICTURE_KINDS = (("PNG picture", ".png"), ("SVG drawing", ".svg"))
 PROJECT_FILTER = "Kirigami Studio projects (*.kiri)"
 
 
@@ -27,6 +28,9 @@ class FileQuestions(Protocol):
 
     def export(self, proposal: str) -> Path | None:
         """A place for an exported file; the proposal's extension is the kind that is offered first."""
+
+    def picture(self, proposal: str) -> Path | None:
+        """A place for the picture of a view, PNG or SVG."""
 
     def folder(self) -> Path | None:
         """A folder for many files."""
@@ -58,6 +62,12 @@ class FileChoosers:
         dialog.filterSelected.connect(lambda text: follow_filter(dialog, text))
         return self._answer(dialog)
 
+    def picture(self, proposal: str) -> Path | None:
+        dialog = self._saver("Export picture", proposal, [f"{kind} (*{end})" for kind, end in PICTURE_KINDS])
+        kinds = {f"{kind} (*{end})": end for kind, end in PICTURE_KINDS}
+        dialog.filterSelected.connect(lambda text: take_extension(dialog, kinds.get(text, "")))
+        return self._answer(dialog)
+
     def folder(self) -> Path | None:
         name = QFileDialog.getExistingDirectory(self._window, "Export everything into a folder", self._folder)
         return self._remembered(name)
@@ -87,7 +97,11 @@ class FileChoosers:
 
 def follow_filter(dialog: QFileDialog, text: str) -> None:
     """Give the proposed name the extension of the file type that was picked."""
-    extension = next((kind.extension for kind in FILE_KINDS if kind.filter == text), "")
+    take_extension(dialog, next((kind.extension for kind in FILE_KINDS if kind.filter == text), ""))
+
+
+def take_extension(dialog: QFileDialog, extension: str) -> None:
+    """Give the proposed name another extension, unless that is empty."""
     if extension:
         dialog.setDefaultSuffix(extension)
         names = dialog.selectedFiles()

@@ -7,8 +7,8 @@ import then happens in the worker, after the window is shown.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -95,12 +95,15 @@ class Order:
         Of the finished field: that of the trim, if the candidate is trimmed.
     target : Outline or None
     settings : FabricationSettings
+    facts : mapping of str to str
+        Where the design comes from.
     """
 
     candidate: Candidate
     deployment: Deployment
     target: Outline | None
     settings: FabricationSettings
+    facts: Mapping[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)
@@ -255,7 +258,7 @@ def exporting(order: Order, path: Path, cancel: Cancel) -> Iterator[Exported]:
 
     find_exporter(path)  # an unknown kind is refused before anything is planned
     made = planned(order) if kind_of(path.suffix).cuts else None
-    written = export(_export_job(order, made), path)
+    written = export(export_job(order, made), path)
     yield Exported(written, made, () if made is None else _verified(made.plan, path, order.settings))
 
 
@@ -269,16 +272,17 @@ def exporting_all(order: Order, folder: Path, name: str, cancel: Cancel) -> Iter
             raise Cancelled(f"Writing into {folder} was stopped; what was written before stays.")
 
     made = planned(order)
-    found = export_all(_export_job(order, made), folder, name, tell=stop_if_asked)
+    found = export_all(export_job(order, made), folder, name, tell=stop_if_asked)
     yield Exported(folder, made, found.verifications)
 
 
-def _export_job(order: Order, made: Planned | None) -> ExportJob:
+def export_job(order: Order, made: Planned | None) -> ExportJob:
+    """What the exporters get about a design."""
     from kirigami_studio.export.exporter import ExportJob
 
     target = None if order.target is None else order.target.points
     job = ExportJob.of(order.candidate, target, None if made is None else made.plan)
-    return replace(job, profile=order.settings.profile, dxf_version=order.settings.dxf_version)
+    return replace(job, profile=order.settings.profile, dxf_version=order.settings.dxf_version, provenance=order.facts)
 
 
 def exporting_coupon(

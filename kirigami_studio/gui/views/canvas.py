@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
+from contextlib import contextmanager
+from enum import Enum
 
 import numpy as np
 from PySide6.QtCore import QPointF, QRectF, QSize, Qt, Signal
@@ -35,6 +38,8 @@ class Canvas(QWidget):
         self._zoom = 1.0
         self._shift = QPointF(0.0, 0.0)
         self._grip: QPointF | None = None
+        self._overlays: frozenset[Enum] = frozenset()
+        self.picturing = False  #: whether it is being drawn into something else than the screen
         self._background: tuple[tuple[int, int, float, str], QPixmap] | None = None
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
         self.setFocusPolicy(Qt.FocusPolicy.ClickFocus)
@@ -102,6 +107,31 @@ class Canvas(QWidget):
             self._shift += self.scene_box().center() - QPointF(x, y)
             self.update()
 
+    def render_to(self, painter: QPainter, size: QSize) -> None:
+        """Draw what is seen into anything that can be drawn into, as large as ``size`` allows, on a plain ground."""
+        factor = min(size.width() / max(self.width(), 1), size.height() / max(self.height(), 1))
+        self.picturing = True
+        painter.save()
+        painter.scale(factor, factor)
+        painter.setClipRect(self.rect())
+        painter.setFont(self.font())
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        painter.fillRect(self.rect(), QColor(self.palette_.canvas))
+        try:
+            self._paint_content(painter)
+        finally:
+            painter.restore()
+            self.picturing = False
+
+    @contextmanager
+    def plain(self) -> Iterator[None]:
+        """While this lasts, nothing is drawn over the scene."""
+        before, self._overlays = self._overlays, frozenset()
+        try:
+            yield
+        finally:
+            self._overlays = before
+
     # events --------------------------------------------------------------------------------------------------------
 
     def minimumSizeHint(self) -> QSize:  # noqa: N802 - Qt's name
@@ -141,15 +171,18 @@ class Canvas(QWidget):
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         self._paint_background(painter)
+        self._paint_content(painter)
+        painter.end()
+
+    # drawing -------------------------------------------------------------------------------------------------------
+
+    def _paint_content(self, painter: QPainter) -> None:
         frame = self.frame()
         if frame is None:
             self._paint_empty(painter)
         else:
             self.paint_scene(painter, frame)
         self.paint_notes(painter)
-        painter.end()
-
-    # drawing -------------------------------------------------------------------------------------------------------
 
     def _paint_background(self, painter: QPainter) -> None:
         key = (self.width(), self.height(), self.devicePixelRatioF(), self.palette_.name)

@@ -70,7 +70,7 @@ class CutView(Canvas):
         self._problems: tuple[Problem, ...] = ()
         self._problem = -1
         self._step = 0
-        self._overlays = frozenset({CutOverlay.CONNECTORS, CutOverlay.PROBLEMS})
+        self._overlays: frozenset[CutOverlay] = frozenset({CutOverlay.CONNECTORS, CutOverlay.PROBLEMS})
         self._caption = ""
         self._markers: tuple[tuple[object, ...], QPixmap] | None = None
         self.frames_painted = 0
@@ -146,7 +146,9 @@ class CutView(Canvas):
         paint_cuts(painter, self._drawing, frame, self.palette_, self._step, QRectF(self.rect()))
         if CutOverlay.TRAVEL in self._overlays:
             paint_travel(painter, self._drawing, frame, self.palette_, self._step)
-        if CutOverlay.CONNECTORS in self._overlays:
+        if CutOverlay.CONNECTORS in self._overlays and self.picturing:
+            paint_connectors(painter, self._connectors, frame, self.palette_, self.selected)
+        elif CutOverlay.CONNECTORS in self._overlays:
             painter.drawPixmap(0, 0, self._connector_picture(self._connectors, frame))
         paint_start(painter, self._drawing, frame, self.palette_)
         if CutOverlay.PROBLEMS in self._overlays:

@@ -1,0 +1,87 @@
+"""What the worker does about pictures of views: draw them large, write them, draw the cuts for the clipboard.
+
+A view is recorded in the window's thread, which takes a few milliseconds; the recording is played back here, where it
+may take as long as a large picture takes.  Qt allows painting into pictures in any thread.
+"""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from PySide6.QtCore import QSize
+from PySide6.QtGui import QColor, QImage, QPainter, QPicture
+
+from kirigami_studio.gui.jobs.steps import Order, export_job, planned
+from kirigami_studio.gui.jobs.worker import Cancel
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Recording:
+    """How a view was painted.
+
+    Attributes
+    ----------
+    strokes : QPicture
+    size : QSize
+        Of the view, pixels.
+    ground : QColor
+    facts : mapping of str to str
+        Where the design that is shown comes from.
+    """
+
+    strokes: QPicture
+    size: QSize
+    ground: QColor
+    facts: Mapping[str, str] = field(default_factory=dict)
+
+    def image(self, scale: int) -> QImage:
+        """The view in pixels, ``scale`` of them for one that was seen."""
+        image = QImage(self.size * scale, QImage.Format.Format_RGB32)
+        image.fill(self.ground)
+        painter = QPainter(image)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        painter.scale(scale, scale)
+        painter.drawPicture(0, 0, self.strokes)
+        painter.end()
+        return image
+
+
+def drawing(recording: Recording, scale: int, cancel: Cancel) -> Iterator[QImage]:
+    """Draw a view, for the clipboard."""
+    yield recording.image(scale)
+
+
+def writing_png(recording: Recording, scale: int, path: Path, cancel: Cancel) -> Iterator[Path]:
+    """Draw a view and write it as PNG; every fact becomes a text chunk."""
+    from PIL import Image
+
+    from kirigami_studio.export.facts import origin_facts
+    from kirigami_studio.export.png import text_chunks
+    from kirigami_studio.foundation.files import write_atomically
+
+    image = recording.image(scale)
+    size = (image.width(), image.height())
+    content = bytes(image.constBits())
+    pixels = Image.frombytes("RGB", size, content, "raw", "BGRX", image.bytesPerLine(), 1)
+    stream = io.BytesIO()
+    pixels.save(stream, format="PNG", pnginfo=text_chunks(origin_facts(recording.facts)))
+    write_atomically(path, stream.getvalue())
+    yield path
+
+
+def writing_svg(content: bytes, path: Path, cancel: Cancel) -> Iterator[Path]:
+    """Write a drawing that is SVG already."""
+    from kirigami_studio.foundation.files import write_atomically
+
+    write_atomically(path, content)
+    yield path
+
+
+def drawing_cuts(order: Order, cancel: Cancel) -> Iterator[bytes]:
+    """Plan the cuts and yield them as SVG in mm, the very bytes of an exported file."""
+    from kirigami_studio.export.svg import cut_svg_bytes
+
+    yield cut_svg_bytes(export_job(order, planned(order)))

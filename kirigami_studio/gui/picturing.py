@@ -1,0 +1,153 @@
+"""Pictures of any view: as a file, PNG or SVG, or on the clipboard, as large as wanted and as it is seen."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from contextlib import nullcontext
+from functools import partial
+from pathlib import Path
+
+from PySide6.QtCore import QBuffer, QIODevice, QMimeData, QObject, QPoint, QRect, Signal
+from PySide6.QtGui import QGuiApplication, QImage, QPainter, QPicture
+from PySide6.QtWidgets import QGraphicsView, QListView, QWidget
+
+from kirigami_studio.foundation.words import tr
+from kirigami_studio.gui.jobs import picture_steps
+from kirigami_studio.gui.jobs.board import Board, Ears
+from kirigami_studio.gui.jobs.picture_steps import Recording
+from kirigami_studio.gui.jobs.steps import Order
+from kirigami_studio.gui.messages import Message, Tone
+from kirigami_studio.gui.views.canvas import Canvas
+
+#: Pixels of the picture for each pixel of the view.
+SCALES = (1, 2, 4)
+#: Lists that answer questions or hold text are no views.
+VIEWS = (Canvas, QGraphicsView, QListView)
+SVG_TYPE = "image/svg+xml"
+
+
+class Picturing(QObject):
+    """Draws views anew in any size; what takes long, encoding and writing, is the worker's."""
+
+    written = Signal(object)  #: Path
+    copied = Signal()
+    message = Signal(object)  #: Message
+    failed = Signal(str, str)  #: sentence, trace
+    status = Signal(str)
+
+    def __init__(
+        self,
+        window: QWidget,
+        board: Board,
+        order: Callable[[], Order | None],
+    ) -> None:
+        super().__init__(window)
+        self._window, self._board = window, board
+        self._order = order
+        self.scale = 2
+        self.overlays = True
+
+    def views(self) -> dict[str, QWidget]:
+        """All views in sight by the name that a screen reader says; the whole window comes last."""
+        found = [each for each in self._window.findChildren(QWidget) if isinstance(each, VIEWS) and each.isVisible()]
+        named = {each.accessibleName(): each for each in found if each.accessibleName()}
+        return {**named, tr("Whole window"): self._window}
+
+    def view_at_work(self) -> QWidget:
+        """The view that has the keyboard, else the largest one in sight."""
+        focused: QWidget | None = self._window.focusWidget()
+        while focused is not None and focused is not self._window:
+            if isinstance(focused, VIEWS) and focused.isVisible():
+                return focused
+            focused = focused.parentWidget()
+        views = [view for view in self.views().values() if view is not self._window]
+        return max(views, key=lambda view: view.width() * view.height(), default=self._window)
+
+    def write(self, view: QWidget, path: Path) -> None:
+        """Write a picture of a view; ``.svg`` is drawn in lines, everything else in pixels."""
+        self.status.emit(tr("Writing {name} …", name=path.name))
+        if path.suffix.lower() == ".svg":
+            steps = partial(picture_steps.writing_svg, self.svg(view), path)
+        else:
+            steps = partial(picture_steps.writing_png, self.record(view), self.scale, path)
+        ears = Ears(self._told_written, on_failed=self.failed.emit)
+        self._board.start(f"writing {path.name}", steps, ears)
+
+    def copy(self, view: QWidget) -> None:
+        """Put a picture of a view on the clipboard."""
+        steps = partial(picture_steps.drawing, self.record(view), self.scale)
+        self._board.start("copying a picture", steps, Ears(self._take_image, on_failed=self.failed.emit))
+
+    def copy_cuts(self) -> None:
+        """Put the cut plan on the clipboard as SVG in mm, for a drawing program or a laser program."""
+        order = self._order()
+        if order is None:
+            self.message.emit(Message(tr("There is no design to copy yet; generate one first."), Tone.HINT))
+            return
+        self.status.emit(tr("Planning the cuts to copy …"))
+        ears = Ears(self._take_cuts, on_failed=self.failed.emit)
+        self._board.start("copying the cuts", partial(picture_steps.drawing_cuts, order), ears)
+
+    # drawing -------------------------------------------------------------------------------------------------------
+
+    def record(self, view: QWidget) -> Recording:
+        """How a view is painted, for the worker to paint it again."""
+        strokes = QPicture()
+        painter = QPainter(strokes)
+        self._paint(painter, view)
+        painter.end()
+        return Recording(strokes, view.size(), view.palette().window().color(), self._facts())
+
+    def svg(self, view: QWidget) -> bytes:
+        """A view in lines; what is kept as a picture in it stays one."""
+        from PySide6.QtSvg import QSvgGenerator
+
+        buffer = QBuffer()
+        buffer.open(QIODevice.OpenModeFlag.WriteOnly)
+        generator = QSvgGenerator()
+        generator.setOutputDevice(buffer)
+        generator.setResolution(view.logicalDpiX())
+        generator.setSize(view.size())
+        generator.setViewBox(QRect(QPoint(0, 0), view.size()))
+        generator.setTitle(view.accessibleName() or view.windowTitle())
+        generator.setDescription("; ".join(f"{name} {text}" for name, text in self._facts().items()))
+        painter = QPainter(generator)
+        self._paint(painter, view)
+        painter.end()
+        return bytes(buffer.data().data())
+
+    def _paint(self, painter: QPainter, view: QWidget) -> None:
+        if isinstance(view, Canvas):
+            with nullcontext() if self.overlays else view.plain():
+                view.render_to(painter, view.size())
+        else:
+            view.render(painter, QPoint(0, 0))
+
+    def _facts(self) -> Mapping[str, str]:
+        """Where the design on the stage comes from."""
+        order = self._order()
+        return {} if order is None else order.facts
+
+    # news ----------------------------------------------------------------------------------------------------------
+
+    def _told_written(self, path: object) -> None:
+        if isinstance(path, Path):
+            self.status.emit(tr("Wrote the picture {path}.", path=path))
+            self.written.emit(path)
+
+    def _take_image(self, image: object) -> None:
+        if isinstance(image, QImage):
+            QGuiApplication.clipboard().setImage(image)
+            self.status.emit(
+                tr("Copied a picture of {width} x {height} pixels.", width=image.width(), height=image.height())
+            )
+            self.copied.emit()
+
+    def _take_cuts(self, content: object) -> None:
+        if isinstance(content, bytes):
+            data = QMimeData()
+            data.setData(SVG_TYPE, content)
+            data.setText(content.decode("utf-8"))
+            QGuiApplication.clipboard().setMimeData(data)
+            self.status.emit(tr("Copied the cuts as SVG in mm."))
+            self.copied.emit()

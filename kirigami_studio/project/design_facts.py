@@ -1,0 +1,44 @@
+"""Where one design comes from, as every export of it says: its own variant, seed and origin, and the run's settings."""
+
+from __future__ import annotations
+
+import math
+import re
+
+from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.project.document import Document
+
+#: What stands between the values of several runs in one project.
+BETWEEN = re.compile(r"[,;]\s*")
+
+
+def design_facts(document: Document, candidate: Candidate) -> dict[str, str]:
+    """Name to text, all that is needed to make the design again.
+
+    What the project knows of its run or runs is repeated, except that the model and its hash are those that this
+    candidate was drawn with; a hash that the project does not know is left out rather than taken from another model.
+    """
+    facts = dict(document.provenance)
+    models, digests = (_parts(facts.pop(name, "")) for name in ("model", "model_sha256"))
+    variant = candidate.variant or (models[0] if len(models) == 1 else "")
+    by_model = dict(zip(models, digests, strict=True)) if len(models) == len(digests) else {}
+    if variant:
+        facts["model"] = variant
+    if variant in by_model:
+        facts["model_sha256"] = by_model[variant]
+    rows, columns = candidate.field.rows, candidate.field.columns
+    trim = candidate.trim
+    return facts | {
+        "seed": str(candidate.seed),
+        "sample": str(candidate.index),
+        "origin": candidate.origin.value,
+        "polished": "yes" if candidate.polished else "no",
+        "trimmed": "no" if trim is None else "yes",
+        "grid": f"{rows} x {columns}",
+        "phi_degrees": f"{math.degrees(candidate.score.phi):g}",
+        **({} if document.target is None else {"target": document.target.name}),
+    }
+
+
+def _parts(text: str) -> list[str]:
+    return [part for part in BETWEEN.split(text) if part]
