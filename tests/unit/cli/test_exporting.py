@@ -55,7 +55,17 @@ def test_that_all_writes_and_verifies_the_whole_set(
     assert {Path(path).name for path in report["files"]} == {path.name for path in (tmp_path / "set").iterdir()}
     assert [found["ok"] for found in report["verified"]] == [True] * 3
     record = json.loads((tmp_path / "set" / "cut.json").read_text())
-    assert record["provenance"] == {"model": "balanced"}
+    assert record["provenance"] == {
+        "model": "balanced",
+        "seed": "0",
+        "sample": "0",
+        "origin": "sampled",
+        "polished": "no",
+        "trimmed": "no",
+        "grid": "4 x 5",
+        "phi_degrees": "0",
+        "target": "own",
+    }
     assert record["fabrication"]["profile"] == "k40"
     assert record["fabrication"]["options"]["hinge_mm"] == [[1, 0.4]]
     code, out, _ = run(capsys, "export", project, "--out", tmp_path / "bare", "--all", "--no-sidecar")
