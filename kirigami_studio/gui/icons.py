@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from functools import cache
+from functools import cache, lru_cache
 
-from PySide6.QtCore import QByteArray, QRectF, QSize, Qt
-from PySide6.QtGui import QIcon, QPainter, QPixmap
+from PySide6.QtCore import QByteArray, QRectF
+from PySide6.QtGui import QIcon, QImage, QPainter, QPixmap
 from PySide6.QtSvg import QSvgRenderer
 
 from kirigami_studio.foundation.resources import resource
@@ -30,13 +30,7 @@ def pixmap(name: str, colour: str, size: int, ratio: float = 1.0) -> QPixmap:
     ratio : float
         Device pixels per logical pixel.
     """
-    renderer = QSvgRenderer(QByteArray(source(name).replace("currentColor", colour).encode()))
-    edge = max(1, round(size * ratio))
-    result = QPixmap(QSize(edge, edge))
-    result.fill(Qt.GlobalColor.transparent)
-    painter = QPainter(result)
-    renderer.render(painter, QRectF(0, 0, edge, edge))
-    painter.end()
+    result = QPixmap.fromImage(_image(name, colour, max(1, round(size * ratio))))
     result.setDevicePixelRatio(ratio)
     return result
 
@@ -48,3 +42,20 @@ def icon(name: str, palette: Palette, colour: str | None = None) -> QIcon:
         result.addPixmap(pixmap(name, colour or palette.text, size), QIcon.Mode.Normal)
         result.addPixmap(pixmap(name, palette.disabled, size), QIcon.Mode.Disabled)
     return result
+
+
+@cache
+def _image(name: str, colour: str, edge: int) -> QImage:
+    """One icon, drawn once: a theme has hundreds of them, and switching back to it should cost nothing."""
+    result = QImage(edge, edge, QImage.Format.Format_ARGB32_Premultiplied)
+    result.fill(0)
+    painter = QPainter(result)
+    _drawing(name, colour).render(painter, QRectF(0, 0, edge, edge))
+    painter.end()
+    return result
+
+
+@lru_cache(maxsize=4)
+def _drawing(name: str, colour: str) -> QSvgRenderer:
+    """The parsed icon, kept while its sizes are drawn."""
+    return QSvgRenderer(QByteArray(source(name).replace("currentColor", colour).encode()))

@@ -13,6 +13,8 @@ import pytest
 pytestmark = [pytest.mark.qt, pytest.mark.torch, pytest.mark.slow]
 
 LIMIT = 0.1
+#: Dressing every widget anew is one call of Qt's: asked for rarely, while nothing else is going on.
+THEME, THEME_LIMIT = "switch the theme", 0.3
 #: Sessions played until none of the steps was ever held up, the best turn of each counts: a cache that is cold or a
 #: neighbour that takes memory bandwidth is no fault of the program; what it does itself it does every time.
 SESSIONS = 3
@@ -31,18 +33,23 @@ def played(folder: Path, *arguments: str) -> Turns:
     return turns
 
 
+def too_long(turns: Turns) -> Turns:
+    """The steps that held the window up."""
+    return {step: turn for step, turn in turns.items() if turn[2] >= (THEME_LIMIT if step == THEME else LIMIT)}
+
+
 def test_that_no_step_of_a_session_holds_the_window_up(tmp_path: Path) -> None:
     best: Turns = {}
     for _ in range(SESSIONS):
         for step, turn in played(tmp_path).items():
             best[step] = min(turn, best.get(step, turn), key=lambda one: one[2])
-        if max(held_up for _, _, held_up in best.values()) < LIMIT:
+        if not too_long(best):
             break
     print(f"\n{'longest turn of the event loop (ms)':40}{'wall':>8}{'own':>8}{'held up':>9}")
     for step, (wall, own, held_up) in best.items():
         print(f"{step:40}{1000 * wall:8.0f}{1000 * own:8.0f}{1000 * held_up:9.0f}")
     assert len(best) >= 18
-    assert {step: turn for step, turn in best.items() if turn[2] >= LIMIT} == {}
+    assert too_long(best) == {}
 
 
 def test_that_the_watch_sees_a_busy_handler_and_a_thread_that_keeps_the_lock(tmp_path: Path) -> None:
