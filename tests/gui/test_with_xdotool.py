@@ -1,0 +1,196 @@
+"""The installed program on a display of its own, used from outside as a person does: a pointer, a keyboard, files.
+
+Nothing here reaches into the program: xdotool moves the pointer and types, and what is judged is on disk.  Where a control
+lies is asked of a window of the same size in this process.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import math
+import os
+import shutil
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import ezdxf
+import pytest
+from PySide6.QtCore import QPoint
+from PySide6.QtWidgets import QApplication, QWidget
+
+from kirigami_studio.foundation.errors import KirigamiError
+from kirigami_studio.gui.main_window import MainWindow
+from kirigami_studio.project import store
+from kirigami_studio.project.document import Document
+
+TOOLS = ("Xvfb", "xdotool")
+MISSING = [tool for tool in TOOLS if shutil.which(tool) is None]
+PATIENCE = 90.0
+SIZE = (1440, 900)
+
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.torch,
+    pytest.mark.skipif(bool(MISSING), reason=f"needs {' and '.join(MISSING)} (Debian: apt install xvfb xdotool)"),
+]
+
+
+class Person:
+    """Hands on the mouse and keyboard of one display, eyes on the names of its windows and on the disk."""
+
+    def __init__(self, display: str, environment: dict[str, str]) -> None:
+        self.display, self.environment = display, environment | {"DISPLAY": display}
+
+    def do(self, *command: object) -> str:
+        """One xdotool command."""
+        words = ["xdotool", *map(str, command)]
+        done = subprocess.run(words, env=self.environment, capture_output=True, text=True, timeout=30, check=False)
+        return done.stdout.strip()
+
+    def waits(self, happened: Callable[[], bool], what: str) -> None:
+        end = time.monotonic() + PATIENCE
+        while not happened():
+            assert time.monotonic() < end, f"gave up waiting: {what}"
+            time.sleep(0.1)
+
+    def sees(self, name: str) -> str:
+        """The newest visible window of that name, or nothing."""
+        return (self.do("search", "--onlyvisible", "--name", name).split() or [""])[-1]
+
+    def looks_at(self, name: str) -> None:
+        """Wait for a window and give it the keyboard, as a window manager would."""
+        self.waits(lambda: bool(self.sees(name)), f"a window named {name}")
+        window = self.sees(name)
+        self.do("windowraise", window)
+        self.do("windowfocus", "--sync", window)
+
+    def presses(self, *keys: str) -> None:
+        self.do("key", "--delay", 60, *keys)
+
+    def answers(self, dialog: str, path: Path) -> None:
+        """Type a path into a file chooser."""
+        self.looks_at(dialog)
+        self.presses("ctrl+a")
+        self.do("type", "--delay", 8, str(path))
+        self.presses("Return")
+        self.waits(lambda: not self.sees(dialog), f"{dialog} closed")
+
+    def clicks(self, place: QPoint) -> None:
+        self.do("mousemove", place.x(), place.y(), "click", 1)
+
+    def drags(self, places: list[QPoint]) -> None:
+        self.do("mousemove", places[0].x(), places[0].y(), "mousedown", 1)
+        for place in places[1:]:
+            self.do("mousemove", place.x(), place.y())
+        self.do("mouseup", 1)
+
+
+@pytest.fixture
+def person(tmp_path: Path) -> Iterator[Person]:
+    """Someone at an empty display, with an empty home."""
+    home = tmp_path / "home"
+    kept = {name: value for name, value in os.environ.items() if not name.startswith(("QT_", "XDG_", "WAYLAND_"))}
+    environment = kept | {"HOME": str(home), "LC_ALL": "C.UTF-8", "OMP_NUM_THREADS": "1"}
+    for name in ("XDG_CONFIG_HOME", "XDG_DATA_HOME", "XDG_CACHE_HOME", "XDG_STATE_HOME", "XDG_RUNTIME_DIR"):
+        folder = home / name.lower()
+        folder.mkdir(parents=True, mode=0o700)
+        environment[name] = str(folder)
+    reading, writing = os.pipe()
+    screen = "x".join(map(str, (*SIZE, 24)))
+    command = ["Xvfb", "-displayfd", str(writing), "-screen", "0", screen, "-nolisten", "tcp"]
+    server = subprocess.Popen(command, pass_fds=(writing,), stderr=subprocess.DEVNULL)
+    os.close(writing)
+    try:
+        with os.fdopen(reading) as told:
+            yield Person(f":{told.readline().strip()}", environment)
+    finally:
+        server.terminate()
+        server.wait(10)
+
+
+@contextlib.contextmanager
+def started(person: Person, log: Path) -> Iterator[subprocess.Popen[bytes]]:
+    """The program, ended whatever happens."""
+    with log.open("wb") as stream:
+        program = subprocess.Popen(
+            [sys.executable, "-m", "kirigami_studio"], env=person.environment, stdout=stream, stderr=stream
+        )
+        try:
+            yield program
+        finally:
+            if program.poll() is None:
+                program.kill()
+            program.wait(10)
+
+
+def middle(widget: QWidget, window: QWidget, along: float = 0.5) -> QPoint:
+    """A place in a widget, ``along`` its width."""
+    return widget.mapTo(window, QPoint(round(along * widget.width()), widget.height() // 2))
+
+
+def saved(path: Path) -> Document | None:
+    """What the project file holds by now."""
+    try:
+        return store.load(path)
+    except KirigamiError:
+        return None
+
+
+def test_that_a_person_draws_designs_chooses_exports_and_saves(
+    person: Person, designed: MainWindow, tmp_path: Path
+) -> None:
+    designed.resize(*SIZE)
+    QApplication.processEvents()
+    view = designed.gallery.view
+    second_card = view.viewport().mapTo(designed, view.visualRect(view.model_.index(1, 0)).center())
+    slider = [middle(designed.stage.deployment.slider, designed, along) for along in (0.95, 0.7, 0.4, 0.3)]
+    generate = middle(designed.run.generate, designed)
+    cut, project = tmp_path / "drawn.dxf", tmp_path / "drawn.kiri"
+    with started(person, tmp_path / "log.txt") as program:
+        person.looks_at("Kirigami Studio")
+        person.do("windowsize", "--sync", person.sees("Kirigami Studio"), *SIZE)
+        person.presses("Escape", "d")
+        middle_ = QPoint(SIZE[0] // 3, SIZE[1] // 2)
+        turn = [2 * math.pi * step / 24 for step in range(24)]
+        person.drags([middle_ + QPoint(round(150 * math.cos(a)), round(100 * math.sin(a))) for a in turn])
+        person.presses("e", "ctrl+shift+s")
+        person.answers("Save project", project)
+        person.waits(lambda: saved(project) is not None, "the project file")
+        drawn = saved(project)
+        assert drawn is not None and drawn.target is not None and drawn.target.name == "drawing"
+        person.looks_at("drawn.kiri")
+        person.clicks(generate)
+
+        def designs() -> int:
+            person.presses("ctrl+s")
+            document = saved(project)
+            return 0 if document is None else len(document.candidates)
+
+        person.waits(lambda: designs() > 0, "designs in the saved project")
+        person.clicks(second_card)
+        person.drags(slider)
+        person.presses("ctrl+e")
+        person.answers("Export DXF", cut)
+        person.waits(cut.exists, "the cut file")
+        person.looks_at("read back|Export report|report")
+        person.presses("Escape")
+        person.looks_at("drawn.kiri")
+        person.presses("ctrl+s")
+
+        def chose_second() -> bool:
+            document = saved(project)
+            return document is not None and document.chosen == 1
+
+        person.waits(chose_second, "the second design as the chosen one")
+        person.presses("ctrl+z", "ctrl+s")
+        person.waits(lambda: not chose_second(), "undo of the choice")
+        person.presses("ctrl+q")
+        assert program.wait(PATIENCE) == 0
+    drawing = ezdxf.readfile(cut)
+    assert drawing.header["$INSUNITS"] == 4 and len(drawing.modelspace()) > 100
+    document = store.load(project)
+    assert document.target is not None and document.provenance["model_sha256"]
+    assert "Traceback" not in (tmp_path / "log.txt").read_text(encoding="utf-8")
