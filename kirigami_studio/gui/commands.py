@@ -118,6 +118,7 @@ class Commands(QObject):
             "to_flat": partial(bar.set_phi, math.pi),
             "to_target": self._to_target,
             "cuts": window.stage.cuts_switch.click,
+            "plots": window.stage.plots_switch.click,
             "fit": window.stage.fit,
             "theme": lambda: window.set_theme(LIGHT if window.palette_.dark else DARK),
             "guide": self.show_guide,

@@ -26,6 +26,7 @@ from kirigami_studio.gui.jobs.board import Board, Ears
 from kirigami_studio.gui.marking import Marking
 from kirigami_studio.gui.messages import Message, Tone
 from kirigami_studio.gui.picturing import Picturing
+from kirigami_studio.gui.plotting import Plotting
 from kirigami_studio.gui.preferring import Preferring
 from kirigami_studio.gui.recent_files import RecentFiles
 from kirigami_studio.gui.recovering import Recovering, Work
@@ -72,6 +73,7 @@ class Controller(QObject):
         self.recent = RecentFiles(self.board, self)
         self.collecting = Collecting(lambda: self.document, self)
         self.marking = Marking(lambda: self.document, self)
+        self.plotting = Plotting(self.board, self)
         self._connect()
 
     def _connect(self) -> None:
@@ -100,7 +102,7 @@ class Controller(QObject):
     def _parts(self) -> tuple[QObject, ...]:
         making = (self.targeting, self.collecting, self.marking, self.finishing, self.fabricating, self.cutting)
         keeping = (self.storing, self.preferring, self.recovering, self.recent)
-        return (self.showing, self.comparing, *making, *keeping)
+        return (self.showing, self.comparing, self.plotting, *making, *keeping)
 
     def _hear(self, part: QObject) -> None:
         """Take what a part proposes and says; not every part has all four signals."""

@@ -186,11 +186,11 @@ class Shell(QMainWindow):
             if isinstance(value, QByteArray) and take(value) and key == "columns":
                 self._laid_out = True
 
-        self.stage.deployment.restore(settings)
+        self.stage.restore(settings)
 
     def remember(self, settings: QSettings) -> None:
         """Keep size and columns for the next time."""
         settings.setValue("geometry", self.saveGeometry())
         if self._laid_out:
             settings.setValue("columns", self.columns.saveState())
-        self.stage.deployment.remember(settings)
+        self.stage.remember(settings)

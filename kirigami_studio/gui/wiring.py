@@ -70,6 +70,7 @@ class Wiring(QObject):
         window.stage.before_wanted.connect(controller.compare)
         window.stage.trim_wanted.connect(controller.trim)
         window.stage.switches_changed.connect(self._show_switches)
+        window.stage.plots_wanted.connect(controller.plotting.want)
         window.stage.says.connect(window.says.setText)
         window.stage.overlays_changed.connect(self._show_overlay_actions)
         cuts = window.stage.cuts
@@ -109,6 +110,7 @@ class Wiring(QObject):
         controller.cutting.planned.connect(self._show_plan)
         controller.cutting.refused.connect(self._show_refusal)
         controller.cutting.exported.connect(self.commands.show_report)
+        controller.plotting.grown.connect(window.stage.plots.show_curves)
         controller.variants_known.connect(window.settings.set_variants)
         controller.message.connect(window.messages.add)
         controller.status.connect(window.says.setText)
@@ -131,8 +133,8 @@ class Wiring(QObject):
             window.target.show_reach(document.settings.grid)
         window.settings.show_settings(document.settings)
         window.fabrication.show_settings(document.fabrication)
-        window.stage.view.set_sheet_width(document.fabrication.width_mm)
         self.sizing.follow(self.controller.stage, document)
+        window.stage.set_sheet_width(document.fabrication.width_mm)
         if not self.controller.running:
             window.gallery.view.mark(document.candidate)
         self._show_history()
@@ -167,6 +169,7 @@ class Wiring(QObject):
         target = self.controller.document.target
         self.window.stage.show_entry(entry, target, rank)
         self.sizing.follow(entry, self.controller.document)
+        self.controller.plotting.show(None if entry is None else entry.design, target)
         view.mark(None if entry is None else entry.candidate)
         for name in ("export", "export_all"):
             self.window.actions_[name].setEnabled(entry is not None)
@@ -197,7 +200,12 @@ class Wiring(QObject):
     def _show_switches(self) -> None:
         """The header's switches have their actions in the menu, which show the same."""
         stage = self.window.stage
-        for name, button in (("before", stage.before), ("trim", stage.trim), ("cuts", stage.cuts_switch)):
+        for name, button in (
+            ("before", stage.before),
+            ("trim", stage.trim),
+            ("cuts", stage.cuts_switch),
+            ("plots", stage.plots_switch),
+        ):
             action: QAction = self.window.actions_[name]
             action.setEnabled(button.isEnabled())
             action.setChecked(button.isChecked())

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import QSignalBlocker, Signal
+from PySide6.QtCore import QByteArray, QSettings, QSignalBlocker, Qt, Signal
 from PySide6.QtGui import QResizeEvent
-from PySide6.QtWidgets import QMenu, QStackedWidget, QToolButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QMenu, QSplitter, QStackedWidget, QToolButton, QVBoxLayout, QWidget
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.words import tr
@@ -13,6 +13,7 @@ from kirigami_studio.gui.panels.card import INSET, Card, FittingLabel, tool_butt
 from kirigami_studio.gui.panels.cut_bar import CutBar
 from kirigami_studio.gui.panels.cuts_page import CutsPage
 from kirigami_studio.gui.panels.deployment_bar import DeploymentBar
+from kirigami_studio.gui.panels.plots_panel import PlotsPanel
 from kirigami_studio.gui.theme import Palette
 from kirigami_studio.gui.views.fault_tour import FaultTour
 from kirigami_studio.gui.views.gallery_model import Entry, described
@@ -35,6 +36,9 @@ TRIM = "Trim to target (Ctrl+T). Cuts the edge panels along the target; every hi
 UNTRIM = "Trim to target (Ctrl+T). Press again to bring back what was cut off."
 TRIMMING = "Trim to target: at work. Press again, or Esc, to stop."
 CUTS = "Cuts: show the cut plan as it will burn (C)."
+PLOTS = "Plots: match, area, size and gaps at every angle (L)."
+#: A stage at least this wide (pixels) has its plots at the side, a narrower one below.
+WIDE = 640
 #: Pixels between the title and the numbers at least.
 GAP = 12
 
@@ -45,8 +49,9 @@ class StagePanel(Card):
     overlays_changed = Signal(object)
     before_wanted = Signal(bool)  #: whether the drawn state is to be shown
     trim_wanted = Signal(bool)
+    plots_wanted = Signal(bool)
     says = Signal(str)
-    switches_changed = Signal()  #: the state of :attr:`before`, :attr:`trim` or :attr:`cuts_switch`
+    switches_changed = Signal()  #: the state of :attr:`before`, :attr:`trim`, :attr:`cuts_switch` or the plots
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__("Layout", parent)
@@ -59,6 +64,7 @@ class StagePanel(Card):
         self.tour = FaultTour(self.view)
         self.deployment = DeploymentBar()
         self.cuts = CutsPage()
+        self.plots = PlotsPanel()
         self.numbers = FittingLabel()
         self.header.addWidget(self.numbers)
         self.header.addSpacing(8)
@@ -74,6 +80,8 @@ class StagePanel(Card):
         self._add_overlays()
         self._add_pages()
         self.deployment.phi_changed.connect(self.view.set_phi)
+        self.deployment.phi_changed.connect(self.plots.set_phi)
+        self.plots.phi_wanted.connect(self.deployment.set_phi)
         self.tour.phi_wanted.connect(self.deployment.set_phi)
         self.tour.said.connect(self.says)
 
@@ -96,6 +104,9 @@ class StagePanel(Card):
         for button in self.cuts.toggles.values():
             self.header.addWidget(button)
             button.hide()
+        self.plots_switch = tool_button("plots", PLOTS, checkable=True)
+        self.plots_switch.toggled.connect(self._toggle_plots)
+        self.header.addWidget(self.plots_switch)
         self.whole = tool_button("fit", "Show everything (0).")
         self.whole.clicked.connect(self.fit)
         self.header.addWidget(self.whole)
@@ -106,7 +117,13 @@ class StagePanel(Card):
         column = QVBoxLayout(layout)
         column.setContentsMargins(0, 0, 0, 0)
         column.setSpacing(8)
-        column.addWidget(self.view, 1)
+        self.split = QSplitter(Qt.Orientation.Vertical)
+        self.split.setChildrenCollapsible(False)
+        self.split.addWidget(self.view)
+        self.split.addWidget(self.plots)
+        self.split.setStretchFactor(0, 1)
+        self.plots.hide()
+        column.addWidget(self.split, 1)
         column.addWidget(self.deployment)
         self.pages = QStackedWidget()
         self.pages.addWidget(layout)
@@ -135,7 +152,7 @@ class StagePanel(Card):
         for bar in (self.deployment, self.cuts.bar):
             bar.play.setChecked(False)
         self.pages.setCurrentIndex(1 if on else 0)
-        for button in (self.before, self.overlays_button, *self.toggles.values()):
+        for button in (self.before, self.overlays_button, self.plots_switch, *self.toggles.values()):
             button.setVisible(not on)
         for button in self.cuts.toggles.values():
             button.setVisible(on)
@@ -244,7 +261,9 @@ class StagePanel(Card):
     def _fit_numbers(self) -> None:
         """Put the longest text that fits into the header; none fits beside many buttons in a narrow stage."""
         giving_way = [] if self.showing_cuts else [self.toggles[overlay] for overlay, _, _ in reversed(OVERLAYS)]
-        switches = self.cuts.toggles.values() if self.showing_cuts else (self.before, self.overlays_button)
+        switches = (
+            self.cuts.toggles.values() if self.showing_cuts else (self.before, self.overlays_button, self.plots_switch)
+        )
         buttons = [self.cuts_switch, self.trim, *switches, *giving_way, self.whole]
         used = sum(button.sizeHint().width() + self.header.spacing() for button in buttons) + 14
         room = self.width() - 2 * INSET - used - self.title.sizeHint().width() - GAP
@@ -256,14 +275,50 @@ class StagePanel(Card):
         special = self._drawn is not None or (self._entry is not None and self._entry.candidate.trim is not None)
         self.view.set_caption(texts[0] if special and texts and not fits else "")
 
+    def set_sheet_width(self, width_mm: float) -> None:
+        """Tell how wide the flat sheet is, mm."""
+        self.view.set_sheet_width(width_mm)
+        self.plots.set_sheet_width(width_mm)
+
+    def _toggle_plots(self, on: bool) -> None:
+        self.plots.setVisible(on)
+        self._place_plots()
+        self.plots_wanted.emit(on)
+        self.switches_changed.emit()
+
+    def _place_plots(self) -> None:
+        """At the side of the layout in a wide stage, below it in a narrow one."""
+        side = Qt.Orientation.Horizontal if self.width() >= WIDE else Qt.Orientation.Vertical
+        if self.split.orientation() is not side:
+            self.split.setOrientation(side)
+            size = self.split.size()
+            length, share = (size.width(), 0.42) if side is Qt.Orientation.Horizontal else (size.height(), 0.4)
+            self.split.setSizes([round((1.0 - share) * length), round(share * length)])
+
+    def restore(self, settings: QSettings) -> None:
+        """Play, and show plots, as the last time."""
+        self.deployment.restore(settings)
+        sizes = settings.value("plotsSplit")
+        if isinstance(sizes, QByteArray):
+            self.split.restoreState(sizes)
+        self.plots_switch.setChecked(settings.value("plots") == "yes")
+
+    def remember(self, settings: QSettings) -> None:
+        """Keep how it is played and whether plots are shown for the next time."""
+        self.deployment.remember(settings)
+        settings.setValue("plots", "yes" if self.plots_switch.isChecked() else "no")
+        settings.setValue("plotsSplit", self.split.saveState())
+
     def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802 - Qt's name
         self._fit_numbers()
         super().resizeEvent(event)
+        self._place_plots()
 
     def set_palette(self, palette: Palette) -> None:
         """Draw in other colours."""
         self.view.set_palette(palette)
         self.deployment.set_palette(palette)
+        self.plots.set_palette(palette)
         self.cuts.set_palette(palette)
         for overlay, icon, _ in OVERLAYS:
             self.toggles[overlay].setIcon(icons.icon(icon, palette))
@@ -272,6 +327,7 @@ class StagePanel(Card):
             (self.before, "before"),
             (self.trim, "trim"),
             (self.overlays_button, "overlays"),
+            (self.plots_switch, "plots"),
             (self.whole, "fit"),
         ):
             button.setIcon(icons.icon(icon, palette))

@@ -1,0 +1,187 @@
+"""Curves of one design over the deployment angle: match, area, size and gaps, with a line to scrub by."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from PySide6.QtCore import Qt, Signal
+from PySide6.QtGui import QResizeEvent
+from PySide6.QtWidgets import QButtonGroup, QHBoxLayout, QLabel, QSizePolicy, QToolButton, QVBoxLayout, QWidget
+
+from kirigami_studio.foundation.words import tr
+from kirigami_studio.gui.jobs.plot_steps import ANGLES, Reading
+from kirigami_studio.gui.plotting import Curves
+from kirigami_studio.gui.theme import LIGHT, Palette
+
+if TYPE_CHECKING:
+    from kirigami_studio.gui.views.chart import Chart
+
+#: A chart needs this height (pixels); with less for all of them one is shown at a time.
+CHART_HEIGHT = 132
+
+
+@dataclass(frozen=True, slots=True)
+class _Row:
+    """One chart: its button's text, its tooltip, its unit, and what it draws of a reading and the mm of a cell."""
+
+    text: str
+    tip: str
+    unit: str
+    series: tuple[tuple[str, Callable[[Reading, float], float]], ...]
+
+
+def _rows() -> tuple[_Row, ...]:
+    return (
+        _Row(tr("Match"), tr("Agreement of the whole sheet with the target at each angle, in its best pose, %"), "%", (
+            ("sIoU", lambda reading, mm: 100.0 * reading.siou),
+            (tr("exact IoU"), lambda reading, mm: 100.0 * reading.iou),
+        )),
+        _Row(tr("Area"), tr("Area inside the sheet's outline, voids included, mm²"), "mm²", (
+            (tr("area"), lambda reading, mm: reading.area * mm * mm),
+        )),
+        _Row(tr("Size"), tr("Width and height of the sheet as it lies on the screen, mm"), "mm", (
+            (tr("width"), lambda reading, mm: reading.width * mm),
+            (tr("height"), lambda reading, mm: reading.height * mm),
+        )),
+        _Row(tr("Gap"), tr("Narrowest bottleneck of air between parts of the outline, mm; 0 is contact"), "mm", (
+            (tr("gap"), lambda reading, mm: reading.gap * mm),
+        )),
+    )  # fmt: skip
+
+
+class PlotsPanel(QWidget):
+    """Charts below each other where there is room, else one of them; nothing is drawn before the first curve comes."""
+
+    phi_wanted = Signal(float)  #: radians
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._palette: Palette = LIGHT
+        self._curves: Curves | None = None
+        self._width_mm = 100.0
+        self._phi, self._pointed = math.pi, -1.0
+        self._rows = _rows()
+        self.charts: list[Chart] = []
+        self.setObjectName("plain")
+        self.setAccessibleName(tr("Plots over the deployment angle"))
+        self.says = QLabel()
+        self.says.setObjectName("muted")
+        self.says.setWordWrap(True)
+        self.says.setAlignment(Qt.AlignmentFlag.AlignCenter)
+        self._column = QVBoxLayout(self)
+        self._column.setContentsMargins(0, 0, 0, 0)
+        self._column.setSpacing(2)
+        self._add_choice()
+        self._column.addWidget(self.says, 1)
+        self.setMinimumSize(200, CHART_HEIGHT + 34)
+        self.show_curves(None)
+
+    def _add_choice(self) -> None:
+        self.choice = QWidget()
+        self.choice.setObjectName("plain")
+        row = QHBoxLayout(self.choice)
+        row.setContentsMargins(0, 0, 0, 0)
+        row.setSpacing(2)
+        self.buttons = QButtonGroup(self)
+        for number, line in enumerate(self._rows):
+            button = QToolButton()
+            button.setText(line.text)
+            button.setToolTip(line.tip)
+            button.setAccessibleName(line.tip)
+            button.setCheckable(True)
+            button.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+            button.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
+            self.buttons.addButton(button, number)
+            row.addWidget(button)
+        self.buttons.button(0).setChecked(True)
+        self.buttons.idToggled.connect(lambda _number, _on: self._share_room())
+        self._column.addWidget(self.choice)
+
+    @property
+    def complete(self) -> bool:
+        """Whether every angle has been read."""
+        return self._curves is not None and self._curves.complete
+
+    def show_curves(self, curves: Curves | None) -> None:
+        """Draw what is known so far; None when nothing is."""
+        self._curves = curves
+        known = 0 if curves is None else len(curves.readings)
+        if known and not self.charts:
+            self._build()
+        waiting = tr("Reading the design at {count} angles …", count=ANGLES)
+        self.says.setText("" if known else waiting if curves is not None else tr("No design yet."))
+        self.says.setVisible(not known)
+        self._draw()
+        self._share_room()
+
+    def set_sheet_width(self, width_mm: float) -> None:
+        """Tell how wide the flat sheet is, mm."""
+        if width_mm != self._width_mm:
+            self._width_mm = width_mm
+            self._draw()
+
+    def set_phi(self, phi: float) -> None:
+        """Another angle is shown, radians."""
+        self._phi = phi
+        for chart in self.charts:
+            chart.set_phi(phi)
+        self._read_out()
+
+    def set_palette(self, palette: Palette) -> None:
+        """Draw in other colours."""
+        self._palette = palette
+        for chart in self.charts:
+            chart.set_palette(palette)
+
+    def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802 - Qt's name
+        super().resizeEvent(event)
+        self._share_room()
+
+    def _build(self) -> None:
+        from kirigami_studio.gui.views.chart import Chart  # the worker has imported what it draws with
+
+        for row in self._rows:
+            chart = Chart(row.text, row.unit, tuple(name for name, _ in row.series))
+            chart.setToolTip(tr("{what}. Drag the line or click to go to an angle.", what=row.tip))
+            chart.set_palette(self._palette)
+            chart.phi_wanted.connect(self.phi_wanted)
+            chart.pointed.connect(self._point)
+            chart.set_phi(self._phi)
+            self._column.addWidget(chart, 1)
+            self.charts.append(chart)
+
+    def _share_room(self) -> None:
+        """All charts where they fit; one of them, and the choice, where they do not."""
+        everything = self.height() >= len(self._rows) * CHART_HEIGHT
+        self.choice.setVisible(not everything)
+        known = self._curves is not None and bool(self._curves.readings)
+        last = len(self.charts) - 1
+        for number, chart in enumerate(self.charts):
+            chart.setVisible(known and (everything or number == self.buttons.checkedId()))
+            chart.show_angles(not everything or number == last)
+
+    def _draw(self) -> None:
+        if self._curves is None or not self.charts:
+            return
+        from kirigami_studio.gui.views.chart import Series
+
+        readings, mm = self._curves.readings, self._curves.cell_share * self._width_mm
+        degrees = np.degrees([reading.phi for reading in readings])
+        for chart, row in zip(self.charts, self._rows, strict=True):
+            values = [np.array([take(reading, mm) for reading in readings]) for _, take in row.series]
+            chart.set_series(Series(degrees, tuple(values)))
+        self._read_out()
+
+    def _point(self, phi: float) -> None:
+        self._pointed = phi
+        self._read_out()
+
+    def _read_out(self) -> None:
+        """Say the numbers where the mouse points, or where the sheet is, at the nearest angle that was read."""
+        phi = self._pointed if self._pointed >= 0.0 else self._phi
+        for chart in self.charts:
+            chart.read_out(phi)

@@ -1,0 +1,104 @@
+"""The curves of the design on the stage, read in the worker while the plots are open."""
+
+from __future__ import annotations
+
+from collections import OrderedDict
+from dataclasses import dataclass, replace
+from functools import partial
+
+from PySide6.QtCore import QObject, Signal
+
+from kirigami_studio.gui.jobs.board import Board, Ears
+from kirigami_studio.gui.jobs.plot_steps import Reading, plotting
+from kirigami_studio.gui.scene.posed import PosedDesign
+from kirigami_studio.target.outline import Outline
+
+#: Curves that are kept.
+CAPACITY = 64
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Curves:
+    """What is known of one design so far, from the flat sheet on.
+
+    ``cell_share`` is the width of a unit cell as a part of the flat sheet's width; ``complete`` says that no angle is
+    missing.
+    """
+
+    readings: tuple[Reading, ...]
+    cell_share: float
+    complete: bool = False
+
+
+class Plotting(QObject):
+    """Reads at most one design at a time; another design on the stage takes its place."""
+
+    grown = Signal(object)  #: Curves of the design on the stage, or None
+    failed = Signal(str, str)  #: sentence, trace
+
+    def __init__(self, board: Board, parent: QObject) -> None:
+        super().__init__(parent)
+        self._board = board
+        self._design: PosedDesign | None = None
+        self._target: Outline | None = None
+        self._wanted = False
+        self._job: int | None = None
+        self._known: OrderedDict[tuple[PosedDesign, Outline | None], Curves] = OrderedDict()
+
+    @property
+    def busy(self) -> bool:
+        """Whether a design is being read."""
+        return self._job is not None
+
+    def show(self, design: PosedDesign | None, target: Outline | None) -> None:
+        """Another design, or none, is on the stage."""
+        if design is not self._design or target is not self._target:
+            self._design, self._target = design, target
+            self._begin()
+
+    def want(self, wanted: bool) -> None:
+        """Whether anybody looks at the curves."""
+        self._wanted = wanted
+        self._begin()
+
+    def _begin(self) -> None:
+        self.stop()
+        design = self._design
+        if not self._wanted or design is None:
+            self.grown.emit(None)
+            return
+        known = self._known.get((design, self._target))
+        self.grown.emit(known)
+        if known is not None and known.complete:
+            return
+        self._known[design, self._target] = Curves((), 1.0 / (design.deployment.field.columns + 1))
+        while len(self._known) > CAPACITY:
+            self._known.popitem(last=False)
+        ears = Ears(self._take, self._end, on_failed=self._fail)
+        self._job = self._board.start("reading the curves", partial(plotting, design, self._target), ears)
+
+    def stop(self) -> None:
+        """Read no further."""
+        if self._job is not None:
+            self._board.abandon(self._job)
+            self._job = None
+
+    def _take(self, report: object) -> None:
+        if isinstance(report, tuple):
+            self._grow(report, complete=False)
+
+    def _end(self) -> None:
+        self._job = None
+        self._grow((), complete=True)
+
+    def _grow(self, more: tuple[Reading, ...], complete: bool) -> None:
+        if self._design is None:
+            return
+        key = (self._design, self._target)
+        together = sorted(self._known[key].readings + more, key=lambda reading: -reading.phi)
+        self._known[key] = replace(self._known[key], readings=tuple(together), complete=complete)
+        self.grown.emit(self._known[key])
+
+    def _fail(self, sentence: str, trace: str) -> None:
+        self._job = None
+        self.failed.emit(sentence, trace)
