@@ -153,6 +153,8 @@ COMMANDS = (
     ),
     Command("cuts", "&Cuts", "&View", ("C",), "cuts", "Show the cut plan as it will burn", False, True),
     Command("plots", "P&lots", "&View", ("L",), "plots", "Show match, size and gaps at every angle", False, True),
+    Command("compare", "Side by &side", "&View", ("K",), "compare", "Compare two designs side by side", False, True),
+    Command("swap", "S&wap compared designs", "&View", ("Shift+K",), "swap", "Choose the design that is compared"),
     Command("fit", "Show &everything", "&View", ("0",), "fit", "Fit the layout into the view", gap=True),
     Command("theme", "&Dark theme", "&View", ("Ctrl+D",), "moon", "Switch between light and dark", True, gap=True),
     Command("guide", "&Guide", "&Help", ("F1",), "guide", "Open the user guide", True),

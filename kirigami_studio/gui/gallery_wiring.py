@@ -11,6 +11,7 @@ from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui import icons
 from kirigami_studio.gui.controller import Controller
 from kirigami_studio.gui.shell import Shell
+from kirigami_studio.gui.side_by_side import SideBySide
 from kirigami_studio.gui.views.gallery_model import Entry
 from kirigami_studio.project.document import Document, Mark
 
@@ -23,6 +24,7 @@ class GalleryWiring(QObject):
         self.window = window
         self.controller = controller
         self.menu: QMenu | None = None
+        self.side_by_side = SideBySide(window, controller, self)
         view, bar = window.gallery.view, window.gallery.bar
         view.pin_wanted.connect(controller.marking.pin)
         view.reject_wanted.connect(self.reject)
@@ -64,6 +66,7 @@ class GalleryWiring(QObject):
             ("pin", tr("Unpin") if mark is Mark.PINNED else tr("Pin"), lambda: self.controller.marking.pin(candidate)),
             ("reject", tr("Take back") if mark is Mark.REJECTED else tr("Reject"), lambda: self.reject(candidate)),
             ("alike", tr("More like this"), lambda: self._more_like(candidate)),
+            ("compare", tr("Compare with chosen"), lambda: self.side_by_side.compare_with(candidate)),
             ("dice", tr("Use its seed {seed}", seed=candidate.seed), lambda: self._use_seed(candidate)),
         ):
             action = QAction(icons.icon(name, self.window.palette_), text, menu)

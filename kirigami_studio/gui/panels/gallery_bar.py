@@ -48,10 +48,12 @@ class GalleryBar(QWidget):
         self.filter = tool_button("filterGallery", tr("Filter: choose which designs are shown."), checkable=True)
         self.again = tool_button("again", tr("More designs (Ctrl+R)."))
         self.alike = tool_button("moreLike", tr("More like the chosen design (Ctrl+Shift+R)."), checkable=True)
+        tip = tr("Compare two designs side by side (K). Ctrl+click a card to say with which.")
+        self.compare = tool_button("compare", tip, checkable=True)
         row = QHBoxLayout()
         row.setSpacing(4)
         row.addWidget(self.order, 1)
-        for button in (self.filter, self.again, self.alike):
+        for button in (self.filter, self.compare, self.again, self.alike):
             row.addWidget(button)
         column = QVBoxLayout(self)
         column.setContentsMargins(0, 0, 8, 0)
@@ -183,7 +185,8 @@ class GalleryBar(QWidget):
 
     def set_palette(self, palette: Palette) -> None:
         """Draw in other colours."""
-        for button, icon in ((self.filter, "filter"), (self.again, "again"), (self.alike, "alike")):
+        buttons = (self.filter, "filter"), (self.compare, "compare"), (self.again, "again"), (self.alike, "alike")
+        for button, icon in buttons:
             button.setIcon(icons.icon(icon, palette))
 
     def _choose_order(self) -> None:

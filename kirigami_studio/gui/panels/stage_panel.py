@@ -10,6 +10,7 @@ from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui import icons
 from kirigami_studio.gui.panels.card import INSET, Card, FittingLabel, tool_button
+from kirigami_studio.gui.panels.compare_page import ComparePage
 from kirigami_studio.gui.panels.cut_bar import CutBar
 from kirigami_studio.gui.panels.cuts_page import CutsPage
 from kirigami_studio.gui.panels.deployment_bar import DeploymentBar
@@ -52,6 +53,7 @@ class StagePanel(Card):
     plots_wanted = Signal(bool)
     says = Signal(str)
     switches_changed = Signal()  #: the state of :attr:`before`, :attr:`trim`, :attr:`cuts_switch` or the plots
+    comparing_changed = Signal(bool)  #: whether two designs are shown side by side
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__("Layout", parent)
@@ -65,6 +67,7 @@ class StagePanel(Card):
         self.deployment = DeploymentBar()
         self.cuts = CutsPage()
         self.plots = PlotsPanel()
+        self.compare = ComparePage()
         self.numbers = FittingLabel()
         self.header.addWidget(self.numbers)
         self.header.addSpacing(8)
@@ -84,6 +87,9 @@ class StagePanel(Card):
         self.plots.phi_wanted.connect(self.deployment.set_phi)
         self.tour.phi_wanted.connect(self.deployment.set_phi)
         self.tour.said.connect(self.says)
+        self.deployment.phi_changed.connect(self.compare.set_phi)
+        self.compare.phi_changed.connect(self.deployment.set_phi)
+        self.overlays_changed.connect(self.compare.set_overlays)
 
     def _add_overlays(self) -> None:
         """The switches at the right of the header: what is drawn over the layout, or over the cuts."""
@@ -112,7 +118,7 @@ class StagePanel(Card):
         self.header.addWidget(self.whole)
 
     def _add_pages(self) -> None:
-        layout = QWidget()
+        self._layout_page = layout = QWidget()
         layout.setObjectName("plain")
         column = QVBoxLayout(layout)
         column.setContentsMargins(0, 0, 0, 0)
@@ -128,6 +134,7 @@ class StagePanel(Card):
         self.pages = QStackedWidget()
         self.pages.addWidget(layout)
         self.pages.addWidget(self.cuts)
+        self.pages.addWidget(self.compare)
         self.body.addWidget(self.pages, 1)
 
     @property
@@ -136,29 +143,49 @@ class StagePanel(Card):
         return self.cuts_switch.isChecked()
 
     @property
+    def comparing(self) -> bool:
+        """Whether two designs are shown side by side."""
+        return self.pages.currentWidget() is self.compare
+
+    @property
     def player(self) -> DeploymentBar | CutBar:
         """What Space plays now."""
-        return self.cuts.bar if self.showing_cuts else self.deployment
+        return self.compare.bar if self.comparing else self.cuts.bar if self.showing_cuts else self.deployment
 
     def fit(self) -> None:
         """Show everything of what is in sight."""
-        (self.cuts.view if self.showing_cuts else self.view).fit()
+        (self.compare if self.comparing else self.cuts.view if self.showing_cuts else self.view).fit()
+
+    def set_comparing(self, on: bool) -> None:
+        """Show two designs side by side, or one alone."""
+        if on != self.comparing:
+            self.cuts_switch.setChecked(False)
+            self._turn_to(self.compare if on else self._layout_page)
 
     def refresh_header(self) -> None:
         """The cut plan has changed."""
         self._show_title()
 
     def _toggle_cuts(self, on: bool) -> None:
-        for bar in (self.deployment, self.cuts.bar):
+        self._turn_to(self.cuts if on else self._layout_page)
+
+    def _turn_to(self, page: QWidget) -> None:
+        compared = self.comparing
+        for bar in (self.deployment, self.cuts.bar, self.compare.bar):
             bar.play.setChecked(False)
-        self.pages.setCurrentIndex(1 if on else 0)
-        for button in (self.before, self.overlays_button, self.plots_switch, *self.toggles.values()):
-            button.setVisible(not on)
+        self.pages.setCurrentWidget(page)
+        cuts = page is self.cuts
+        for button in (self.before, self.plots_switch):
+            button.setVisible(page is self._layout_page)
+        for button in (self.overlays_button, *self.toggles.values()):
+            button.setVisible(not cuts)
         for button in self.cuts.toggles.values():
-            button.setVisible(on)
-        (self.cuts.view if on else self.view).setFocus()
+            button.setVisible(cuts)
+        (self.cuts.view if cuts else self.compare.left.view if self.comparing else self.view).setFocus()
         self._show_title()
         self.switches_changed.emit()
+        if compared != self.comparing:
+            self.comparing_changed.emit(self.comparing)
 
     @property
     def showing_before(self) -> bool:
@@ -246,6 +273,8 @@ class StagePanel(Card):
         """What the header says, longest first."""
         if self.showing_cuts:
             return self.cuts.summary
+        if self.comparing:
+            return self.compare.summary
         if self._entry is None:
             return ()
         score, trim = self._entry.candidate.score, self._entry.candidate.trim
@@ -320,6 +349,7 @@ class StagePanel(Card):
         self.deployment.set_palette(palette)
         self.plots.set_palette(palette)
         self.cuts.set_palette(palette)
+        self.compare.set_palette(palette)
         for overlay, icon, _ in OVERLAYS:
             self.toggles[overlay].setIcon(icons.icon(icon, palette))
         for button, icon in (

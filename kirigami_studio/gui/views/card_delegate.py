@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from enum import Enum
 
-from PySide6.QtCore import QModelIndex, QPersistentModelIndex, QPoint, QRect, QRectF, QSize, Qt
-from PySide6.QtGui import QColor, QFont, QPainter, QPen, QPixmap
-from PySide6.QtWidgets import QStyle, QStyledItemDelegate, QStyleOptionViewItem, QWidget
+from PySide6.QtCore import QModelIndex, QPersistentModelIndex, QPoint, QPointF, QRect, QRectF, QSize, Qt
+from PySide6.QtGui import QColor, QFont, QHelpEvent, QPainter, QPen, QPixmap
+from PySide6.QtWidgets import QAbstractItemView, QStyle, QStyledItemDelegate, QStyleOptionViewItem, QToolTip, QWidget
 
 from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui import icons
 from kirigami_studio.gui.scene.posed import PosedDesign
 from kirigami_studio.gui.scene.thumbnail import candidate_pixmap
@@ -51,13 +52,25 @@ class CardDelegate(QStyledItemDelegate):
         self.palette_: Palette = LIGHT
         self.target: Outline | None = None
         self.card = QSize(SMALLEST_CARD, SMALLEST_CARD + TEXT_HEIGHT - 26)
-        self.hovered: CardButton | None = None  #: the button under the mouse
+        self.under: Candidate | None = None  #: the design under the mouse
+        self.hovered: CardButton | None = None  #: the button there
         self.compared: Candidate | None = None  #: the design that is compared with the chosen one
         self._pictures: dict[tuple[PosedDesign, int, float, str], QPixmap] = {}
 
     def forget_pictures(self) -> None:
         """Drop all thumbnails; they are painted again when needed."""
         self._pictures.clear()
+
+    def helpEvent(  # noqa: N802 - Qt's name
+        self, event: QHelpEvent, view: QAbstractItemView, option: QStyleOptionViewItem, index: Index
+    ) -> bool:
+        """Over a button its own tooltip, elsewhere the design's numbers."""
+        button = button_at(view.visualRect(index), event.pos()) if index.isValid() else None
+        if button is None:
+            return super().helpEvent(event, view, option, index)
+        mark: Mark = index.data(MARK_ROLE)
+        QToolTip.showText(event.globalPos(), button_tip(button, mark), view)
+        return True
 
     def sizeHint(self, option: QStyleOptionViewItem, index: Index) -> QSize:  # noqa: N802 - Qt's name
         return self.card + QSize(GAP, GAP)
@@ -87,7 +100,7 @@ class CardDelegate(QStyledItemDelegate):
         elif rise >= SMALLEST_RISE:
             self._paint_chip(painter, card, f"{100 * rise:+.1f}")
         self._paint_numbers(painter, card, candidate, index.data(VALUE_ROLE))
-        if state & QStyle.StateFlag.State_MouseOver:
+        if candidate is self.under:
             self._paint_buttons(painter, rect, mark)
         painter.restore()
 
@@ -116,8 +129,12 @@ class CardDelegate(QStyledItemDelegate):
         name, colour = ("pinned", self.palette_.accent) if mark is Mark.PINNED else ("reject", self.palette_.muted)
         metrics = painter.fontMetrics()
         left = place.left() + metrics.horizontalAdvance(text) + 5
-        edge = metrics.height()
-        painter.drawPixmap(left, place.top(), icons.pixmap(name, colour, edge, painter.device().devicePixelRatio()))
+        box = QRectF(left, place.top() - 2, metrics.height() + 4, metrics.height() + 4)
+        painter.setPen(QPen(QColor(colour), 1.0))
+        painter.setBrush(QColor(self.palette_.surface))
+        painter.drawRoundedRect(box, 5, 5)
+        icon = icons.pixmap(name, colour, metrics.height() - 2, painter.device().devicePixelRatio())
+        painter.drawPixmap(box.topLeft() + QPointF(3, 3), icon)
 
     def _paint_buttons(self, painter: QPainter, rect: QRect, mark: Mark) -> None:
         ratio = painter.device().devicePixelRatio()
@@ -172,6 +189,13 @@ class CardDelegate(QStyledItemDelegate):
         edge = 16
         ratio = painter.device().devicePixelRatio()
         painter.drawPixmap(text.right() - edge + 1, text.bottom() - edge + 1, icons.pixmap(name, colour, edge, ratio))
+
+
+def button_tip(button: CardButton, mark: Mark) -> str:
+    """What a button of a card does."""
+    if button is CardButton.PIN:
+        return tr("Unpin this design") if mark is Mark.PINNED else tr("Pin: keep this design when others are generated")
+    return tr("Take this design back") if mark is Mark.REJECTED else tr("Reject: hide this design")
 
 
 def card_of(rect: QRect) -> QRect:

@@ -89,12 +89,13 @@ class GalleryView(QListView):
 
     def select(self, selection: Selection) -> None:
         """Show another part of the candidates, or in another order."""
+        sorted_anew = selection.order is not self.model_.selection.order
         self._telling = False
         self.model_.select(selection)
         self._telling = True
         self.mark(self._marked)
-        if self.currentIndex().isValid():
-            self.scrollTo(self.currentIndex())
+        if sorted_anew:
+            self.scrollToTop()
 
     def show_marks(self, marks: Mapping[Candidate, Mark]) -> None:
         """Show which candidates are pinned or rejected."""
@@ -152,16 +153,19 @@ class GalleryView(QListView):
             super().mousePressEvent(event)
 
     def mouseMoveEvent(self, event: QMouseEvent) -> None:  # noqa: N802 - Qt's name
-        _, button = self._candidate_at(event.position().toPoint())
-        if button is not self.cards.hovered:
-            self.cards.hovered = button
-            self.viewport().update()
+        self._hover(*self._candidate_at(event.position().toPoint()))
         if event.buttons() == Qt.MouseButton.NoButton:  # a drag over the cards chooses nothing
             super().mouseMoveEvent(event)
 
     def leaveEvent(self, event: QEvent) -> None:  # noqa: N802 - Qt's name
-        self.cards.hovered = None
+        self._hover(None, None)
         super().leaveEvent(event)
+
+    def _hover(self, candidate: Candidate | None, button: CardButton | None) -> None:
+        """Show the buttons of the card under the mouse, and which of them is meant."""
+        if (candidate, button) != (self.cards.under, self.cards.hovered):
+            self.cards.under, self.cards.hovered = candidate, button
+            self.viewport().update()
 
     def keyPressEvent(self, event: QKeyEvent) -> None:  # noqa: N802 - Qt's name
         candidate = self.currentIndex().data(CANDIDATE_ROLE) if self.currentIndex().isValid() else None

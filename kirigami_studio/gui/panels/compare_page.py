@@ -1,0 +1,240 @@
+"""The third page of the stage: two designs side by side, moved together, with what tells them apart."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from PySide6.QtCore import QPointF, QSize, Qt, Signal
+from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QLabel, QSizePolicy, QToolButton, QVBoxLayout, QWidget
+
+from kirigami_studio.foundation.words import tr
+from kirigami_studio.gui import icons
+from kirigami_studio.gui.panels.card import tool_button
+from kirigami_studio.gui.panels.deployment_bar import DeploymentBar
+from kirigami_studio.gui.scene.frame import Bounds
+from kirigami_studio.gui.selecting import differences, least_panel
+from kirigami_studio.gui.theme import Palette
+from kirigami_studio.gui.views.gallery_model import Entry
+from kirigami_studio.gui.views.layout_view import LayoutView, Overlay
+from kirigami_studio.target.outline import Outline
+
+#: Figures after the point of the numbers that can be subtracted, row by row.
+DIGITS = (1, 1, 2, 2)
+
+
+class ComparedView(LayoutView):
+    """A layout that is fitted together with another one, so that both have one scale."""
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._shared: Bounds | None = None
+
+    def share(self, bounds: Bounds | None) -> None:
+        """Fit this part of the world instead of the design's own."""
+        self._shared = bounds
+        self.update()
+
+    def own_bounds(self) -> Bounds | None:
+        """Box of this design alone."""
+        return super().scene_bounds()
+
+    def scene_bounds(self) -> Bounds | None:
+        own = super().scene_bounds()
+        return own if own is None else self._shared or own
+
+    def minimumSizeHint(self) -> QSize:  # noqa: N802 - Qt's name
+        return QSize(120, 140)
+
+
+class Side(QWidget):
+    """One of the two designs: its name, its layout, its numbers and by how much they differ."""
+
+    def __init__(self, name: str, told: str, button: QToolButton) -> None:
+        super().__init__()
+        self.title = QLabel()
+        self.title.setObjectName("number")
+        self.title.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
+        self.view = ComparedView()
+        self.view.setObjectName(name)
+        self.view.setAccessibleName(told)
+        self._grid = QGridLayout()
+        self._grid.setVerticalSpacing(0)
+        self._grid.setHorizontalSpacing(4)
+        self._grid.setColumnStretch(1, 1)
+        self.values: list[QLabel] = []
+        self.gaps: list[QLabel] = []
+        for row, (text, tip) in enumerate(_rows()):
+            caption, value, gap = QLabel(text), QLabel(), QLabel()
+            for label in (caption, gap):
+                label.setObjectName("muted")
+            for label in (value, gap):
+                label.setAlignment(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
+            gap.setMinimumWidth(gap.fontMetrics().horizontalAdvance("+0.0"))
+            for column, label in enumerate((caption, value, gap)):
+                label.setToolTip(tip)
+                self._grid.addWidget(label, row, column)
+            self.values.append(value)
+            self.gaps.append(gap)
+        head = QHBoxLayout()
+        head.addWidget(self.title, 1)
+        head.addWidget(button)
+        column_ = QVBoxLayout(self)
+        column_.setContentsMargins(0, 0, 0, 0)
+        column_.setSpacing(4)
+        column_.addLayout(head)
+        column_.addWidget(self.view, 1)
+        column_.addLayout(self._grid)
+
+    def tell(self, values: Sequence[str], gaps: Sequence[str]) -> None:
+        """Show the numbers of this design, and by how much they are above or below the other's."""
+        for labels, texts in ((self.values, values), (self.gaps, gaps)):
+            for label, text in zip(labels, texts, strict=True):
+                label.setText(text)
+
+
+class ComparePage(QWidget):
+    """Shows the chosen design on the left and another one on the right, at one angle, zoom and place."""
+
+    swap_wanted = Signal()
+    leave_wanted = Signal()
+    phi_changed = Signal(float)  #: radians
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._entries: tuple[Entry | None, Entry | None] = (None, None)
+        self.swap = tool_button("swap", tr("Swap: choose the other design (Shift+K)."))
+        self.swap.clicked.connect(self.swap_wanted)
+        self.leave = tool_button("leaveCompare", tr("Leave: show the chosen design alone (K)."))
+        self.leave.clicked.connect(self.leave_wanted)
+        self.left = Side("comparedLeft", tr("Layout of the chosen design"), self.swap)
+        self.right = Side("comparedRight", tr("Layout of the design it is compared with"), self.leave)
+        self.bar = DeploymentBar()
+        sides = QHBoxLayout()
+        sides.setSpacing(8)
+        sides.addWidget(self.left, 1)
+        sides.addWidget(self.right, 1)
+        column = QVBoxLayout(self)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.setSpacing(8)
+        column.addLayout(sides, 1)
+        column.addWidget(self.bar)
+        for side, other in ((self.left, self.right), (self.right, self.left)):
+            side.view.looked.connect(other.view.look)
+            self.bar.phi_changed.connect(side.view.set_phi)
+        self.bar.phi_changed.connect(self.phi_changed)
+
+    @property
+    def sides(self) -> tuple[Side, Side]:
+        return self.left, self.right
+
+    @property
+    def summary(self) -> tuple[str, ...]:
+        """What the stage's header says, longest first."""
+        one, other = self._entries
+        if one is None or other is None:
+            return ()
+        apart = differences([one.candidate], other.candidate.field)[0]
+        return tr("the sheets differ by {apart:.2f}", apart=apart), tr("differ by {apart:.2f}", apart=apart)
+
+    @property
+    def entries(self) -> tuple[Entry | None, Entry | None]:
+        """The chosen design and the one it is compared with."""
+        return self._entries
+
+    def show_pair(
+        self, chosen: tuple[Entry, int] | None, other: tuple[Entry, int] | None, target: Outline | None, width_mm: float
+    ) -> None:
+        """Show two designs, each with its number; zoom and place stay."""
+        pair = (chosen, other)
+        self._entries = None if chosen is None else chosen[0], None if other is None else other[0]
+        for side, one in zip(self.sides, pair, strict=True):
+            self._show_side(side, one, target)
+        bounds = [side.view.own_bounds() for side in self.sides]
+        shared = None
+        if bounds[0] is not None and bounds[1] is not None:
+            shared = bounds[0].united(bounds[1])
+        for number, side in enumerate(self.sides):
+            side.view.share(shared)
+            side.tell(*numbers_told(self._entries[number], self._entries[1 - number], width_mm))
+        self.bar.set_ready(chosen is not None)
+        if chosen is not None:
+            contacts = [one[0].candidate.score.contact for one in pair if one is not None]
+            first = max((contact.phi for contact in contacts if contact is not None), default=None)
+            self.bar.set_marks(chosen[0].design.phi_target, first)
+
+    def _show_side(self, side: Side, one: tuple[Entry, int] | None, target: Outline | None) -> None:
+        if one is None:
+            side.title.setText("")
+            side.view.set_hint("compare", tr("Nothing to compare with"), tr("Ctrl+click a card of the gallery."))
+            side.view.show_design(None, None, None)
+            return
+        entry, number = one
+        chosen = side is self.left
+        side.title.setText(tr("Design {number}, chosen", number=number) if chosen else f"Design {number}")
+        candidate = entry.candidate
+        # Contacts are known of the field that was scored; the one fitted for trimming is free of them.
+        scored = candidate.trim is None or candidate.trim.field == candidate.field
+        side.view.show_design(entry.design, candidate.score if scored else None, target)
+
+    def set_phi(self, phi: float) -> None:
+        """Show both at another angle, radians."""
+        self.bar.set_phi(phi)
+
+    def set_overlays(self, overlays: frozenset[Overlay]) -> None:
+        """Choose what is drawn over both."""
+        for side in self.sides:
+            side.view.set_overlays(overlays)
+
+    def fit(self) -> None:
+        """Show everything of both."""
+        self.left.view.fit()
+
+    def look(self, zoom: float, shift: QPointF) -> None:
+        """Show one part of both."""
+        for side in self.sides:
+            side.view.look(zoom, shift)
+
+    def set_palette(self, palette: Palette) -> None:
+        """Draw in other colours."""
+        for side in self.sides:
+            side.view.set_palette(palette)
+        self.bar.set_palette(palette)
+        self.swap.setIcon(icons.icon("swap", palette))
+        self.leave.setIcon(icons.icon("close", palette))
+
+
+def _rows() -> tuple[tuple[str, str], ...]:
+    return (
+        (tr("sIoU"), tr("Match with the target, %; beside it the difference from the other design, points.")),
+        (tr("Gain"), tr("Gain over the uniform sheet, points; beside it the difference from the other design.")),
+        (tr("TV"), tr("Total variation of the ratios, lower is calmer; beside it the difference.")),
+        (tr("Panel, mm"), tr("Smallest panel edge or neck, mm; beside it the difference from the other design, mm.")),
+        (tr("Feasible"), tr("Whether the sheet can be built and opens without touching itself.")),
+    )
+
+
+def numbers_told(one: Entry | None, other: Entry | None, width_mm: float) -> tuple[list[str], list[str]]:
+    """What is said below one design, and by how much it is above or below another; one text for every row."""
+    rows = len(_rows())
+    if one is None:
+        return [""] * rows, [""] * rows
+    mine = _numbers(one, width_mm)
+    values = [
+        tr("{siou:.1f} %", siou=mine[0]),
+        tr("{gain:+.1f}", gain=mine[1]),
+        tr("{tv:.2f}", tv=mine[2]),
+        tr("{size:.2f}", size=mine[3]),
+        tr("yes") if one.candidate.score.feasible else tr("no"),
+    ]
+    if other is None:
+        return values, [""] * rows
+    gaps = [here - there for here, there in zip(mine, _numbers(other, width_mm), strict=True)]
+    told = [
+        f"{gap:+.{digits}f}" if abs(gap) >= 0.5 * 0.1**digits else "=" for gap, digits in zip(gaps, DIGITS, strict=True)
+    ]
+    return values, [*told, ""]
+
+
+def _numbers(entry: Entry, width_mm: float) -> tuple[float, float, float, float]:
+    score = entry.candidate.score
+    return 100.0 * score.siou, 100.0 * score.siou_gain, score.tv, width_mm * least_panel(entry.design.deployment)
