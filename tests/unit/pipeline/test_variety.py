@@ -13,7 +13,7 @@ from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.score import evaluate, exact_iou
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
-from kirigami_studio.pipeline.variety import ALIKE, DUPLICATE, distances, turns, worth_a_fit
+from kirigami_studio.pipeline.variety import ALIKE, DUPLICATE, distances, distinct, turns, worth_a_fit
 from kirigami_studio.target.outline import Outline
 from kirigami_studio.target.silhouettes import load
 
@@ -65,3 +65,22 @@ def test_that_a_design_like_a_better_one_waits_for_the_others(candidate: Callabl
     alike = RatioField.from_log10(field.log10 + 0.5 * ALIKE)
     best, second, third = candidate(field, 0.9, 0), candidate(alike, 0.8, 1), candidate(random_field(2), 0.7, 2)
     assert worth_a_fit([third, second, best]) == (best, third, second)
+
+
+@pytest.mark.parametrize("grid", [(6, 6), (6, 8), (5, 6)])
+def test_that_distinct_designs_are_those_that_one_by_one_comparison_finds(
+    candidate: Callable[[RatioField, float, int], Candidate], grid: tuple[int, int]
+) -> None:
+    old = [random_field(seed, *grid) for seed in range(3)]
+    new = [random_field(seed, *grid) for seed in range(10, 14)]
+    moved = [RatioField.from_log10(field.log10 + shift) for field in (old[1], new[0]) for shift in (0.019, 0.021)]
+    turned = [RatioField.from_log10(turns(field)[-1] + 0.001) for field in (old[2], new[1])]
+    others = [candidate(field, 0.9, number) for number, field in enumerate(old)]
+    found = [candidate(field, 0.8, number) for number, field in enumerate([*new, *moved, *turned, *old])]
+    expected: list[Candidate] = []
+    for one in found:
+        if distances(one.field, [other.field for other in (*others, *expected)]).min() >= DUPLICATE:
+            expected.append(one)
+    assert distinct(found, others) == tuple(expected)
+    assert len(expected) == 6 and distinct([], others) == ()
+    assert distinct(found[:4], []) == tuple(found[:4])
