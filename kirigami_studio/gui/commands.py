@@ -322,6 +322,8 @@ class Commands(QObject):
 
     def may_close(self) -> bool:
         """Whether the window may close now; asks in the message bar when work would be lost."""
+        if self.controller.hand.postpones(self.window.close):
+            return False
         if self._closing or not self.controller.history.unsaved:
             return True
         self.controller.message.emit(

@@ -21,6 +21,7 @@ from kirigami_studio.gui.design_run import DesignRun
 from kirigami_studio.gui.fabricating import Fabricating
 from kirigami_studio.gui.file_kinds import kind_of
 from kirigami_studio.gui.finishing import Finishing
+from kirigami_studio.gui.hand_editing import HandEditing
 from kirigami_studio.gui.jobs import steps
 from kirigami_studio.gui.jobs.board import Board, Ears
 from kirigami_studio.gui.marking import Marking
@@ -30,15 +31,16 @@ from kirigami_studio.gui.plotting import Plotting
 from kirigami_studio.gui.preferring import Preferring
 from kirigami_studio.gui.recent_files import RecentFiles
 from kirigami_studio.gui.recovering import Recovering, Work
+from kirigami_studio.gui.refitting import Refitting
 from kirigami_studio.gui.shelf import Shelf
 from kirigami_studio.gui.showing import Showing
 from kirigami_studio.gui.storing import Storing
 from kirigami_studio.gui.targeting import Targeting
 from kirigami_studio.gui.views.gallery_model import Entry
 from kirigami_studio.pipeline.events import Result
-from kirigami_studio.project import edits
+from kirigami_studio.project import edits, hand_edits
 from kirigami_studio.project.design_facts import design_facts
-from kirigami_studio.project.document import Document
+from kirigami_studio.project.document import Document, Void
 from kirigami_studio.project.edits import Edit, FabricationChange, SettingsChange
 from kirigami_studio.project.history import History
 from kirigami_studio.target.outline import Outline
@@ -63,6 +65,8 @@ class Controller(QObject):
         self.showing = Showing(self.board, shelf, self)
         self.run = DesignRun(self.board, shelf, self)
         self.finishing = Finishing(self.board, shelf, lambda: self.document, self)
+        self.hand = HandEditing(self.board, shelf, lambda: self.document, self)
+        self.refitting = Refitting(self.board, shelf, lambda: self.document, self)
         self.comparing = Comparing(self.board, shelf, self)
         self.fabricating = Fabricating(lambda: self.document, self)
         self.cutting = Cutting(self.board, self)
@@ -96,13 +100,15 @@ class Controller(QObject):
             path_known.connect(self.recent.take_project)
         self.recovering.recovered.connect(self._recovered)
         self.document_changed.connect(lambda _: self.recovering.notice())
+        self.hand.drafted.connect(self._stop_finish)
         for part in self._parts():
             self._hear(part)
 
     def _parts(self) -> tuple[QObject, ...]:
         making = (self.targeting, self.collecting, self.marking, self.finishing, self.fabricating, self.cutting)
+        changing = (self.hand, self.refitting)
         keeping = (self.storing, self.preferring, self.recovering, self.recent)
-        return (self.showing, self.comparing, self.plotting, *making, *keeping)
+        return (self.showing, self.comparing, self.plotting, *making, *changing, *keeping)
 
     def _hear(self, part: QObject) -> None:
         """Take what a part proposes and says; not every part has all four signals."""
@@ -180,15 +186,18 @@ class Controller(QObject):
 
     def generate(self) -> None:
         """Start a run for the present target and settings; pinned designs stay where they fit."""
-        self._start(self.collecting.anew)
+        if not self.hand.postpones(self.generate):
+            self._start(self.collecting.anew)
 
     def again(self) -> None:
         """Draw more designs, from the next seed, beside those there are."""
-        self._start(self.collecting.more)
+        if not self.hand.postpones(self.again):
+            self._start(self.collecting.more)
 
     def more_like(self, nearness: float) -> None:
         """Draw more designs near the chosen one, beside those there are."""
-        self._start(lambda target: self.collecting.alike(target, nearness))
+        if not self.hand.postpones(lambda: self.more_like(nearness)):
+            self._start(lambda target: self.collecting.alike(target, nearness))
 
     def _start(self, planned: Callable[[Outline], Plan]) -> None:
         if self.running:
@@ -201,7 +210,7 @@ class Controller(QObject):
         except KirigamiError as error:
             self._refuse(error)
             return
-        self.finishing.stop()
+        self._stop_finish()
         self.showing.begin_run(plan.kept, plan.joins)
         self.run.start(plan.request)
         self.status.emit(plan.says)
@@ -213,6 +222,8 @@ class Controller(QObject):
             self.status.emit("Stopping …")
         elif self.finishing.busy:
             self.finishing.cancel()
+        elif self.refitting.busy:
+            self.refitting.cancel()
 
     def _take_result(self, result: Result, provenance: dict[str, str]) -> None:
         before = self.document
@@ -233,6 +244,8 @@ class Controller(QObject):
 
     def choose(self, candidate: Candidate) -> None:
         """Put a candidate on the stage; during a run it is only looked at."""
+        if self.hand.postpones(lambda: self.choose(candidate)):
+            return
         if self.running:
             self.showing.look_at(candidate)
         elif candidate in self.document.candidates:
@@ -248,19 +261,46 @@ class Controller(QObject):
 
     def trim(self, on: bool) -> None:
         """Trim the chosen design to the target, or take its trim off."""
+        if self.hand.postpones(lambda: self.trim(on)):
+            return
         if self.running:
             self.message.emit(Message("Wait until the designs are done, then trim the one you choose.", Tone.HINT))
         else:
             self.finishing.switch(on)
 
+    def refit(self) -> None:
+        """Fit the chosen design again, from where it is."""
+        if not self.running and not self.hand.postpones(self.refit):
+            self.finishing.stop()
+            self.refitting.start()
+
+    def lock_voids(self, voids: frozenset[Void], on: bool) -> None:
+        """Lock voids against changes by hand, or unlock them."""
+        if not self.hand.postpones(lambda: self.lock_voids(voids, on)):
+            self._apply(hand_edits.lock_voids(self.document, voids, on))
+
+    def lock_all(self, on: bool) -> None:
+        """Lock every void, or none."""
+        if not self.hand.postpones(lambda: self.lock_all(on)):
+            self._apply(hand_edits.lock_all(self.document, on))
+
     def _forget_stage(self, entry: Entry | None) -> None:
         """Another design is on the stage: what was asked for the one before is no longer wanted."""
-        self.finishing.stop_unless(None if entry is None else entry.candidate)
+        candidate = None if entry is None else entry.candidate
+        self.finishing.stop_unless(candidate)
+        self.refitting.stop_unless(candidate)
+
+    def _stop_finish(self) -> None:
+        """The design is about to change: what was being made of it belongs to the old one."""
+        self.finishing.stop()
+        self.refitting.stop()
 
     # cut -----------------------------------------------------------------------------------------------------------
 
     def export(self, path: Path) -> None:
         """Write the chosen design's cut file or picture; the extension says which."""
+        if self.hand.postpones(lambda: self.export(path)):
+            return
         order = self._order()
         if order is None:
             self.message.emit(Message("There is no design to export yet; generate one first.", Tone.HINT))
@@ -271,6 +311,8 @@ class Controller(QObject):
 
     def export_all(self, folder: Path, name: str) -> None:
         """Write everything that there is of the chosen design into a folder."""
+        if self.hand.postpones(lambda: self.export_all(folder, name)):
+            return
         order = self._order()
         if order is not None:
             self.cutting.export_all(order, folder, name)
@@ -299,7 +341,8 @@ class Controller(QObject):
 
     def save(self, path: Path) -> None:
         """Write the project file."""
-        self.storing.save(self.document, path)
+        if not self.hand.postpones(lambda: self.save(path)):
+            self.storing.save(self.document, path)
 
     def _saved(self, path: Path, document: Document) -> None:
         self.path = path
@@ -336,6 +379,8 @@ class Controller(QObject):
 
     def undo(self) -> None:
         """Go one step back."""
+        if self.hand.postpones(self.undo):
+            return
         label = self.history.undo_label
         if self.history.undo():
             self._stop_design()
@@ -344,6 +389,8 @@ class Controller(QObject):
 
     def redo(self) -> None:
         """Go one undone step forth."""
+        if self.hand.postpones(self.redo):
+            return
         label = self.history.redo_label
         if self.history.redo():
             self._stop_design()
@@ -361,7 +408,8 @@ class Controller(QObject):
     def _stop_design(self) -> None:
         """Another document comes: what is still on its way belongs to the old one."""
         self.targeting.stop()
-        self.finishing.stop()
+        self.hand.stop()
+        self._stop_finish()
         self.run.abandon()
 
     # telling the views ---------------------------------------------------------------------------------------------

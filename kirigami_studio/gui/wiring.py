@@ -8,6 +8,7 @@ from PySide6.QtGui import QAction
 from kirigami_studio.gui.commands import OVERLAY_ACTIONS, Commands
 from kirigami_studio.gui.controller import Controller
 from kirigami_studio.gui.gallery_wiring import GalleryWiring
+from kirigami_studio.gui.hand_wiring import HandWiring
 from kirigami_studio.gui.jobs.steps import Planned
 from kirigami_studio.gui.lost_designs import LostDesigns
 from kirigami_studio.gui.messages import Tone
@@ -37,6 +38,7 @@ class Wiring(QObject):
         self._shown = Document()
         self._connect_panels()
         self._connect_controller()
+        self.by_hand = HandWiring(window, controller, self)
         self._show_document(controller.document, everything=True)
         self._show_stage(None)
         self._end_run(completed=False)

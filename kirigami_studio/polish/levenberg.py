@@ -21,6 +21,7 @@ from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.foundation.errors import AngleError, UsageError
 from kirigami_studio.lattice.deployment import check_phi, deploy
 from kirigami_studio.lattice.ratio_field import FloatArray, RatioField
+from kirigami_studio.lattice.topology import BoolArray
 from kirigami_studio.polish.boundary_target import BoundaryTarget
 from kirigami_studio.polish.objective import POSE, TRUST, Look, Objective, Quadratic
 from kirigami_studio.polish.panel_size import check_least
@@ -81,6 +82,7 @@ def polish(
     least_panel: float = 0.0,
     symmetry: Symmetry | None = None,
     excess: float = 1.0,
+    held: BoolArray | None = None,
 ) -> Fit:
     """Fit ``field`` to ``target`` by at most ``steps`` accepted steps.
 
@@ -104,28 +106,34 @@ def polish(
         The field keeps this symmetry of the lattice; the pose should lay the target's own upon it.
     excess : float, 0..1
         Weight of what sticks out of the target, relative to what is missed; below 1 for a layout that will be trimmed.
+    held : (m, n) bool, optional
+        Voids whose ratio stays exactly as it is, even outside [0.1, 10].
 
     Raises
     ------
     AngleError
         ``phi`` is not in [0, pi): the closed sheet is a rectangle whatever the ratios.
     UsageError
-        ``steps``, ``trust``, ``least_panel`` or ``excess`` is not a number that a fit can have.
+        ``steps``, ``trust``, ``least_panel`` or ``excess`` is not a number that a fit can have, ``held`` is not a
+        table of the field's shape, or both voids are held and a symmetry is asked for.
     """
     phi = check_fit(phi, steps, trust)
+    kept = check_held(held, field)
+    if symmetry is not None and kept.any():
+        raise UsageError("Held voids and a symmetry of the field cannot be kept at once; choose one of them.")
     model = OutlineModel(field.rows, field.columns, phi)
-    allowed = _allowed(symmetry, field.rows, field.columns)
+    allowed = _allowed(symmetry, field, kept)
     start = allowed(field.log10.ravel())
     pose = pose or align(model.outline(start), target.points)
     terms = RegularTerms(regularity or Regularity(), start, field.rows, field.columns)
     objective = Objective(model, BoundaryTarget.of(target, SAMPLES), terms, trust, check_least(least_panel), excess)
     state = np.concatenate([start, [math.log(pose.scale), pose.angle, *pose.shift]])
-    descent = _Descent(objective, state, allowed)
+    descent = _Descent(objective, state, allowed, kept.ravel())
     while descent.steps < steps and not cancel() and descent.advance():
         pass
     last = descent.here.state[-POSE:]
     return Fit(
-        _field_of(descent.here.state, model),
+        _with_held(_field_of(descent.here.state, model), field, kept),
         Similarity(math.exp(last[0]), last[1], (last[2], last[3])),
         descent.here.cost,
         descent.steps,
@@ -138,14 +146,36 @@ def _field_of(state: FloatArray, model: OutlineModel) -> RatioField:
     return RatioField.from_log10(np.round(state[:-POSE], 9).reshape(model.rows, model.columns))
 
 
-def _allowed(symmetry: Symmetry | None, rows: int, columns: int) -> Callable[[FloatArray], FloatArray]:
-    """The map from any z (m * n,) to one within the bounds and of the symmetry."""
+def _with_held(found: RatioField, field: RatioField, kept: BoolArray) -> RatioField:
+    """The ratios found, and every digit of those that were held."""
+    return RatioField(np.where(kept, field.ratio, found.ratio)) if kept.any() else found
+
+
+def _allowed(symmetry: Symmetry | None, field: RatioField, kept: BoolArray) -> Callable[[FloatArray], FloatArray]:
+    """The map from any z (m * n,) to one within the bounds and of the symmetry; held voids stay where they are."""
+    start, held = field.log10.ravel(), kept.ravel()
 
     def allowed(z: FloatArray) -> FloatArray:
-        balanced = z if symmetry is None else symmetry.symmetric(z.reshape(rows, columns)).ravel()
-        return np.clip(balanced, -Z_LIMIT, Z_LIMIT)
+        balanced = z if symmetry is None else symmetry.symmetric(z.reshape(field.rows, field.columns)).ravel()
+        return np.where(held, start, np.clip(balanced, -Z_LIMIT, Z_LIMIT))
 
     return allowed
+
+
+def check_held(held: BoolArray | None, field: RatioField) -> BoolArray:
+    """A table of the field's shape that says which voids stay as they are; none of them unless told.
+
+    Raises
+    ------
+    UsageError
+        It has another shape, or holds something else than truth values.
+    """
+    if held is None:
+        return np.zeros(field.ratio.shape, dtype=np.bool_)
+    table = np.asarray(held)
+    if table.shape != field.ratio.shape or table.dtype != np.bool_:
+        raise UsageError(f"Held voids must be truth values in a table of shape {field.ratio.shape}, got {table.shape}.")
+    return table
 
 
 def check_fit(phi: float, steps: int, trust: float) -> float:
@@ -163,8 +193,11 @@ def check_fit(phi: float, steps: int, trust: float) -> float:
 class _Descent:
     """The moving state of one fit."""
 
-    def __init__(self, objective: Objective, state: FloatArray, allowed: Callable[[FloatArray], FloatArray]) -> None:
+    def __init__(
+        self, objective: Objective, state: FloatArray, allowed: Callable[[FloatArray], FloatArray], kept: BoolArray
+    ) -> None:
         self.objective, self._allowed = objective, allowed
+        self._kept = np.concatenate([kept, np.zeros(POSE, dtype=np.bool_)])
         self.here = objective.look(state)
         # A start that touches itself is free to move until it no longer does.
         self._guarded = self._is_clear(self.here)
@@ -219,7 +252,7 @@ class _Descent:
         bounds = np.full(look.state.size, np.inf)
         bounds[:-POSE] = Z_LIMIT
         held = ((look.state >= bounds) & (model.gradient < 0)) | ((look.state <= -bounds) & (model.gradient > 0))
-        free = np.flatnonzero(~held)
+        free = np.flatnonzero(~(held | self._kept))
         matrix = model.hessian[np.ix_(free, free)]
         diagonal = np.diagonal(matrix).copy()
         matrix[np.diag_indices_from(matrix)] += self.damping * (diagonal + 1e-3 * diagonal.mean())

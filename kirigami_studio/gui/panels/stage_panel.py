@@ -15,6 +15,7 @@ from kirigami_studio.gui.panels.cut_bar import CutBar
 from kirigami_studio.gui.panels.cuts_page import CutsPage
 from kirigami_studio.gui.panels.deployment_bar import DeploymentBar
 from kirigami_studio.gui.panels.plots_panel import PlotsPanel
+from kirigami_studio.gui.panels.void_bar import VoidBar
 from kirigami_studio.gui.theme import Palette
 from kirigami_studio.gui.views.fault_tour import FaultTour
 from kirigami_studio.gui.views.gallery_model import Entry, described
@@ -77,7 +78,13 @@ class StagePanel(Card):
         self.before.toggled.connect(self._toggle_before)
         self.trim = tool_button("trim", TRIM, checkable=True)
         self.trim.clicked.connect(self.trim_wanted)
-        for switch in (self.cuts_switch, self.before, self.trim):
+        tip = tr(
+            "Edit by hand (H). Wheel on a void: its ratio, with Shift in fine steps. Pull a void or a corner of the "
+            "outline. Alt-click or L: lock. Arrows: walk, + and -: ratio."
+        )
+        self.hand = tool_button("hand", tip, checkable=True)
+        self.hand.toggled.connect(self._toggle_hand)
+        for switch in (self.cuts_switch, self.before, self.trim, self.hand):
             self.header.addWidget(switch)
         self.header.addSpacing(6)
         self._add_overlays()
@@ -130,6 +137,9 @@ class StagePanel(Card):
         self.split.setStretchFactor(0, 1)
         self.plots.hide()
         column.addWidget(self.split, 1)
+        self.voids = VoidBar()
+        self.voids.hide()
+        column.addWidget(self.voids)
         column.addWidget(self.deployment)
         self.pages = QStackedWidget()
         self.pages.addWidget(layout)
@@ -175,7 +185,7 @@ class StagePanel(Card):
             bar.play.setChecked(False)
         self.pages.setCurrentWidget(page)
         cuts = page is self.cuts
-        for button in (self.before, self.plots_switch):
+        for button in (self.before, self.hand, self.plots_switch):
             button.setVisible(page is self._layout_page)
         for button in (self.overlays_button, *self.toggles.values()):
             button.setVisible(not cuts)
@@ -186,6 +196,16 @@ class StagePanel(Card):
         self.switches_changed.emit()
         if compared != self.comparing:
             self.comparing_changed.emit(self.comparing)
+
+    def _toggle_hand(self, on: bool) -> None:
+        self.voids.setVisible(on)
+        self.view.voids.switch(on)
+        self.view.setFocus()
+        self.switches_changed.emit()
+
+    def set_editable(self, editable: bool) -> None:
+        """Whether there is a design that may be changed by hand now."""
+        self.hand.setEnabled(editable and not self.showing_cuts)
 
     @property
     def showing_before(self) -> bool:
@@ -291,7 +311,9 @@ class StagePanel(Card):
         """Put the longest text that fits into the header; none fits beside many buttons in a narrow stage."""
         giving_way = [] if self.showing_cuts else [self.toggles[overlay] for overlay, _, _ in reversed(OVERLAYS)]
         switches = (
-            self.cuts.toggles.values() if self.showing_cuts else (self.before, self.overlays_button, self.plots_switch)
+            self.cuts.toggles.values()
+            if self.showing_cuts
+            else (self.before, self.hand, self.overlays_button, self.plots_switch)
         )
         buttons = [self.cuts_switch, self.trim, *switches, *giving_way, self.whole]
         used = sum(button.sizeHint().width() + self.header.spacing() for button in buttons) + 14
@@ -350,6 +372,7 @@ class StagePanel(Card):
         self.plots.set_palette(palette)
         self.cuts.set_palette(palette)
         self.compare.set_palette(palette)
+        self.voids.set_palette(palette)
         for overlay, icon, _ in OVERLAYS:
             self.toggles[overlay].setIcon(icons.icon(icon, palette))
         for button, icon in (
@@ -358,6 +381,7 @@ class StagePanel(Card):
             (self.trim, "trim"),
             (self.overlays_button, "overlays"),
             (self.plots_switch, "plots"),
+            (self.hand, "hand"),
             (self.whole, "fit"),
         ):
             button.setIcon(icons.icon(icon, palette))

@@ -85,6 +85,12 @@ class PosedDesign:
         moved: FloatArray = self.pose.apply(np.asarray(place)) + (self._middle() - placed)
         return moved
 
+    def to_layout(self, place: tuple[float, float], phi: float) -> FloatArray:
+        """Map one place of the world to the layout frame at ``phi``: (2,), the way back of :meth:`to_world`."""
+        placed = self.pose.apply(self.deployment.nodes(phi)).mean(axis=0)
+        back: FloatArray = self.pose.inverse().apply(np.asarray(place) - (self._middle() - placed))
+        return back
+
     def bounds(self) -> Bounds:
         """Box around the whole motion from pi to 0."""
         angles = np.linspace(math.pi, 0.0, EXTENT_SAMPLES)

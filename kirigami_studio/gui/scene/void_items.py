@@ -1,138 +1,112 @@
-"""Paint what belongs to voids: ratios as a heat map, openings by their area, numbers of voids and panels."""
+"""Paint what the hand may take hold of: voids, the vertices of the outline, locks, and a label at the pointer."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import numpy as np
-import numpy.typing as npt
-from PySide6.QtCore import QPointF, QRectF, Qt
-from PySide6.QtGui import QColor, QFont, QFontMetricsF, QPainter, QPen
+from PySide6.QtCore import QPointF, QRectF, QSizeF, Qt
+from PySide6.QtGui import QBrush, QColor, QPainter, QPen
 
-from kirigami_studio.gui.scene.colour_scale import ColourScale
-from kirigami_studio.gui.scene.paths import quad_paths
+from kirigami_studio.gui.scene.chips import paint_chip
+from kirigami_studio.gui.scene.mismatch_items import stripes
+from kirigami_studio.gui.scene.paths import line_path
+from kirigami_studio.gui.scene.void_shapes import VoidShapes
 from kirigami_studio.gui.theme import Palette
+from kirigami_studio.project.document import Void
 
-FloatArray = npt.NDArray[np.float64]
-
-#: Opacity of the heat map: the panels' edges shine through.
-HEAT_OPACITY = 0.82
-#: Numbers are this much smaller than other text.
-SMALL_PRINT = 0.82
-#: Pixels around a number that belong to it.
-AROUND = 3.0
-
-
-def heat_tiles(panels: FloatArray, rows: int, columns: int) -> FloatArray:
-    """One quadrilateral around each void: the middles of its four panels, so that closed voids have a place too.
-
-    Parameters
-    ----------
-    panels : ((rows + 1)(columns + 1), 4, 2) float
-        Any frame.
-
-    Returns
-    -------
-    tiles : (rows, columns, 4, 2) float
-    """
-    middle = panels.mean(axis=1).reshape(rows + 1, columns + 1, 2)
-    return np.stack([middle[:-1, :-1], middle[1:, :-1], middle[1:, 1:], middle[:-1, 1:]], axis=2)
+#: Edge length (pixels) of a handle on a vertex, and of the one that is meant.
+HANDLE, HELD = 5.0, 9.0
+#: Handles closer together than this (pixels) would hide the outline: they get smaller.
+CROWDED = 14.0
+#: A lock's sign is drawn where a void's longer diagonal has at least this many pixels.
+ROOM_FOR_SIGN = 15.0
+#: Pixels between the pointer and its label.
+BESIDE = QPointF(16.0, 18.0)
 
 
-def quad_areas(quads: FloatArray) -> FloatArray:
-    """Area of quadrilaterals (..., 4, 2), without sign."""
-    first, second = quads[..., 2, :] - quads[..., 0, :], quads[..., 3, :] - quads[..., 1, :]
-    return np.asarray(0.5 * np.abs(first[..., 0] * second[..., 1] - first[..., 1] * second[..., 0]))
-
-
-def paint_shaded(painter: QPainter, quads: FloatArray, values: FloatArray, scale: ColourScale) -> None:
-    """Fill quadrilaterals (K, 4, 2), pixels, with the colours of their values (K,)."""
-    for path, colour in zip(quad_paths(quads), scale.shades(values), strict=True):
-        painter.setPen(QPen(colour, 0.6))  # in the fill's colour: no hairlines between neighbours
-        painter.setBrush(colour)
+def paint_marked(painter: QPainter, shapes: VoidShapes, voids: Iterable[Void], palette: Palette, width: float) -> None:
+    """Outline voids in the accent's colour over a rim that sets it off from the panels."""
+    for void in voids:
+        path = line_path(shapes.corners[void], closed=True)
+        tint = QColor(palette.accent)
+        tint.setAlpha(60)
+        painter.setBrush(tint)
+        painter.setPen(_pen(palette.canvas, width + 2.5))
+        painter.drawPath(path)
+        painter.setBrush(Qt.BrushStyle.NoBrush)
+        painter.setPen(_pen(palette.accent, width))
         painter.drawPath(path)
 
 
-def paint_heat(painter: QPainter, tiles: FloatArray, ratio: FloatArray, scale: ColourScale) -> None:
-    """Fill the tiles (m, n, 4, 2), pixels, with the colours of the ratios (m, n)."""
-    painter.setOpacity(HEAT_OPACITY)
-    paint_shaded(painter, tiles.reshape(-1, 4, 2), np.log10(ratio).ravel(), scale)
-    painter.setOpacity(1.0)
+def paint_locks(painter: QPainter, shapes: VoidShapes, voids: Iterable[Void], palette: Palette) -> None:
+    """Hatch locked voids, and put a small padlock on those that have room for it."""
+    ratio = painter.device().devicePixelRatio()
+    for void in voids:
+        corners = shapes.corners[void]
+        painter.setPen(_pen(palette.text, 1.6))
+        painter.setBrush(QBrush(stripes(palette.text, True, ratio)))
+        painter.drawPath(line_path(corners, closed=True))
+        room = max(float(np.hypot(*(corners[2] - corners[0]))), float(np.hypot(*(corners[3] - corners[1]))))
+        if room >= ROOM_FOR_SIGN:
+            x, y = corners.mean(axis=0).tolist()
+            _paint_padlock(painter, QPointF(x, y), palette)
 
 
-def paint_numbers(
-    painter: QPainter, places: FloatArray, room: FloatArray, palette: Palette, framed: bool
-) -> list[QRectF]:
-    """Write ``row, column`` at places (m, n, 2), pixels, where there is ``room`` (m, n) pixels across.
-
-    Parameters
-    ----------
-    framed : bool
-        With a box around each, to tell voids from panels.
-
-    Returns
-    -------
-    boxes : list of QRectF
-        Where something was written.
-    """
-    painter.save()
-    font = QFont(painter.font())
-    font.setPointSizeF(font.pointSizeF() * SMALL_PRINT)
-    painter.setFont(font)
-    metrics = QFontMetricsF(font)
-    seen = QRectF(painter.window())
-    rows, columns = places.shape[:2]
-    height = metrics.height()
-    widest = metrics.horizontalAdvance(f"{rows - 1},{columns - 1}") + 2 * AROUND
-    boxes = []
-    back = QColor(palette.surface)
-    back.setAlpha(215)
-    for row, column in np.argwhere(room >= max(widest, height)).tolist():
-        x, y = places[row, column].tolist()
-        box = QRectF(x - 0.5 * widest, y - 0.5 * height, widest, height)
-        if not seen.intersects(box):
-            continue
-        if framed:
-            painter.setPen(QPen(QColor(palette.accent), 1.0))
-            painter.setBrush(back)
-            painter.drawRoundedRect(box, 0.5 * height, 0.5 * height)
-        painter.setPen(QColor(palette.text))
-        painter.drawText(box, int(Qt.AlignmentFlag.AlignCenter), f"{row},{column}")
-        boxes.append(box)
-    painter.restore()
-    return boxes
+def _paint_padlock(painter: QPainter, middle: QPointF, palette: Palette) -> None:
+    body = QRectF(middle.x() - 4.5, middle.y() - 1.5, 9.0, 7.0)
+    arch = QRectF(middle.x() - 2.8, middle.y() - 6.0, 5.6, 8.0)
+    painter.setBrush(Qt.BrushStyle.NoBrush)
+    for colour, width in ((palette.surface, 4.0), (palette.text, 1.6)):
+        painter.setPen(_pen(colour, width))
+        painter.drawArc(arch, 0, 180 * 16)
+        painter.drawRoundedRect(body, 1.5, 1.5)
+    painter.setPen(Qt.PenStyle.NoPen)
+    painter.setBrush(QColor(palette.text))
+    painter.drawRoundedRect(body, 1.5, 1.5)
 
 
-def room_in(quads: FloatArray) -> FloatArray:
-    """The shorter of the two middle lines of quadrilaterals (..., 4, 2)."""
-    middles = 0.5 * (quads + np.roll(quads, -1, axis=-2))
-    across = np.linalg.norm(middles[..., 2, :] - middles[..., 0, :], axis=-1)
-    along = np.linalg.norm(middles[..., 3, :] - middles[..., 1, :], axis=-1)
-    shorter: FloatArray = np.minimum(across, along)
-    return shorter
+def paint_handles(painter: QPainter, shapes: VoidShapes, meant: int | None, palette: Palette) -> None:
+    """Small squares on the outline's vertices, and a large one on the vertex that is meant."""
+    steps = np.hypot(*(np.roll(shapes.vertices, -1, axis=0) - shapes.vertices).T)
+    size = HANDLE if float(np.median(steps)) >= CROWDED else 0.6 * HANDLE
+    painter.setPen(QPen(QColor(palette.accent), 1.2))
+    painter.setBrush(QColor(palette.surface))
+    for x, y in shapes.vertices.tolist():
+        painter.drawRect(QRectF(QPointF(x, y) - QPointF(size, size) / 2, QSizeF(size, size)))
+    if meant is not None and meant < len(shapes.vertices):
+        x, y = shapes.vertices[meant].tolist()
+        painter.setBrush(QColor(palette.accent))
+        painter.setPen(QPen(QColor(palette.canvas), 1.5))
+        painter.drawRect(QRectF(QPointF(x, y) - QPointF(HELD, HELD) / 2, QSizeF(HELD, HELD)))
 
 
-def paint_dimension(
-    painter: QPainter, ends: FloatArray, text: str, palette: Palette, taken: list[QRectF]
-) -> QRectF | None:
-    """Mark a short length by a line between ``ends`` (2, 2), pixels, and write its size beside it.
+def paint_label(painter: QPainter, lines: tuple[str, ...], pointer: QPointF, area: QRectF, palette: Palette) -> None:
+    """A label of a few lines beside the pointer, moved so that it stays inside ``area`` (pixels)."""
+    metrics = painter.fontMetrics()
+    width = max(metrics.horizontalAdvance(line) for line in lines) + 18.0
+    height = len(lines) * metrics.height() + 10.0
+    place = pointer + BESIDE
+    if place.x() + width > area.right() - 4.0:
+        place.setX(pointer.x() - BESIDE.x() - width)
+    if place.y() + height > area.bottom() - 4.0:
+        place.setY(pointer.y() - BESIDE.y() - height)
+    box = QRectF(max(place.x(), area.left() + 4.0), max(place.y(), area.top() + 4.0), width, height)
+    paint_chip(painter, box, palette)
+    painter.setPen(QColor(palette.text))
+    inner = box.adjusted(9.0, 5.0, -9.0, -5.0)
+    painter.drawText(inner, int(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignTop), "\n".join(lines))
 
-    The text takes the first free place around the line; None when there is none, then the line stands alone.
-    """
-    (ax, ay), (bx, by) = ends.tolist()
-    start, stop = QPointF(ax, ay), QPointF(bx, by)
-    for colour, width in ((palette.canvas, 6.0), (palette.text, 2.6)):
-        painter.setPen(QPen(QColor(colour), width, Qt.PenStyle.SolidLine, Qt.PenCapStyle.RoundCap))
-        painter.drawLine(start, stop)
-    metrics = QFontMetricsF(painter.font())
-    width, height = metrics.horizontalAdvance(text) + 10.0, metrics.height() + 2.0
-    middle = QPointF(0.5 * (ax + bx), 0.5 * (ay + by))
-    for dx, dy in ((1, -1), (1, 1), (-1, -1), (-1, 1), (1, -3), (-1, 3)):
-        left = middle.x() + (8.0 if dx > 0 else -8.0 - width)
-        box = QRectF(left, middle.y() + 0.5 * dy * height + (4.0 * dy) - 0.5 * height, width, height)
-        if not any(box.intersects(other) for other in taken) and QRectF(painter.window()).contains(box):
-            painter.setPen(QPen(QColor(palette.text), 1.0))
-            painter.setBrush(QColor(palette.surface))
-            painter.drawRoundedRect(box, 4.0, 4.0)
-            painter.drawText(box, int(Qt.AlignmentFlag.AlignCenter), text)
-            taken.append(box)
-            return box
-    return None
+
+def paint_band(painter: QPainter, band: QRectF, palette: Palette) -> None:
+    """The band that is drawn around many voids."""
+    painter.setPen(QPen(QColor(palette.accent), 1.2, Qt.PenStyle.DashLine))
+    painter.setBrush(Qt.BrushStyle.NoBrush)
+    painter.drawRect(band)
+
+
+def _pen(colour: str, width: float) -> QPen:
+    pen = QPen(QColor(colour), width)
+    pen.setJoinStyle(Qt.PenJoinStyle.RoundJoin)
+    pen.setCapStyle(Qt.PenCapStyle.RoundCap)
+    return pen

@@ -135,6 +135,7 @@ class Canvas(QWidget):
             yield
         finally:
             self._overlays = before
+
     def look(self, zoom: float, shift: QPointF) -> None:
         """Show the part that another canvas of the same size and scene shows; tells nobody."""
         self._zoom, self._shift = zoom, QPointF(shift)

@@ -31,7 +31,7 @@ from kirigami_studio.gui.scene.mismatch_items import Mismatch, difference_chips,
 from kirigami_studio.gui.scene.posed import PosedDesign
 from kirigami_studio.gui.scene.small_parts import SmallPart, smallest_parts
 from kirigami_studio.gui.scene.target_items import paint_target_line
-from kirigami_studio.gui.scene.void_items import (
+from kirigami_studio.gui.scene.void_numbers import (
     heat_tiles,
     paint_dimension,
     paint_heat,
@@ -40,7 +40,9 @@ from kirigami_studio.gui.scene.void_items import (
     quad_areas,
     room_in,
 )
+from kirigami_studio.gui.scene.void_shapes import VoidShapes, steady
 from kirigami_studio.gui.views.canvas import Canvas
+from kirigami_studio.gui.views.void_gestures import VoidGestures
 from kirigami_studio.target.outline import Outline
 
 #: Radians around the target angle within which sheet and target are compared; elsewhere a difference means nothing.
@@ -100,6 +102,7 @@ class LayoutView(Canvas):
         self._hint = ("generate", "No design yet", "Choose a target on the left, then press Generate (Ctrl+G).")
         self._caption = ""
         self.frames_painted = 0
+        self.voids = VoidGestures(self, self._void_shapes)
         self.setObjectName("layoutView")
         self.setAccessibleName("Layout of the chosen design")
         self.setToolTip("Wheel: zoom. Drag: move. Double-click: show everything.")
@@ -108,6 +111,11 @@ class LayoutView(Canvas):
     def phi(self) -> float:
         """Angle that is shown, radians."""
         return self._phi
+
+    @property
+    def design(self) -> PosedDesign | None:
+        """The design that is drawn."""
+        return self._design
 
     @property
     def areas(self) -> Mismatch | None:
@@ -127,7 +135,7 @@ class LayoutView(Canvas):
         """Show another design; None shows the empty state."""
         self._design, self._target = design, target
         self._areas, self._faults = None, ()
-        self._bounds = None
+        before, self._bounds = self._bounds, None
         if design is not None:
             self._bounds = design.bounds()
             self._inverted = inverted_panels(design.panels(design.nodes(design.phi_target)))
@@ -136,6 +144,9 @@ class LayoutView(Canvas):
             self._measure(design)
             if target is not None:
                 self._bounds = self._bounds.united(Bounds.of(target.points))
+            if self.voids.on and before is not None:
+                self._bounds = steady(before, self._bounds)
+        self.voids.follow()
         self.update()
 
     def _measure(self, design: PosedDesign) -> None:
@@ -146,9 +157,22 @@ class LayoutView(Canvas):
         self._small = smallest_parts(panels, frozenset(trimmed))
         self._largest_opening = float(quad_areas(design.voids(design.nodes(0.5 * math.pi))).max())
 
+    def show_draft(self, design: PosedDesign) -> None:
+        """Show what a hand is making of the design; the picture stays where it is."""
+        self._design = design
+        self._areas, self._faults, self._contact = None, (), None
+        self._inverted = inverted_panels(design.panels(design.nodes(design.phi_target)))
+        self._measure(design)
+        self.update()
+
+    def _void_shapes(self) -> VoidShapes | None:
+        frame = self.frame()
+        return None if self._design is None or frame is None else VoidShapes.of(self._design, self._phi, frame)
+
     def set_phi(self, phi: float) -> None:
         """Show another angle, radians."""
         self._phi = phi
+        self.voids.follow()
         self.update()
 
     def set_overlays(self, overlays: frozenset[Overlay]) -> None:
@@ -239,6 +263,7 @@ class LayoutView(Canvas):
             self._paint_comparison(painter, frame, nodes)
         self._paint_labels(painter, frame, nodes)
         self._paint_faults(painter, frame)
+        self.voids.paint(painter, self.palette_)
 
     def _paint_voids(self, painter: QPainter, frame: Frame, nodes: npt.NDArray[np.float64]) -> None:
         """Colours of voids: by their ratio, by their area."""
@@ -320,3 +345,4 @@ class LayoutView(Canvas):
             paint_caption(painter, self._caption, self.width(), self.palette_)
         top = CAPTION_HEIGHT if self._caption else 10.0
         paint_colour_bars(painter, self._scales, self.width() - 10.0, top, self.palette_)
+        self.voids.paint_label(painter, self.palette_)

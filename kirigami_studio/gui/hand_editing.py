@@ -1,0 +1,313 @@
+"""Changing the chosen design by hand: what is seen follows the hand at once, the document takes each gesture scored.
+
+A gesture makes a draft: another ratio field, decoded exactly in the window's thread and shown in the place of the
+design.  When the gesture ends, the worker scores the draft; with the score comes one named edit.  Gestures that follow
+meanwhile go on from the draft and wait for their turn, so that each becomes a step of its own.  Undo, save and the like
+wait for the last score.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+from typing import TYPE_CHECKING
+
+import numpy as np
+from PySide6.QtCore import QObject, QTimer, Signal
+
+from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.foundation.words import tr
+from kirigami_studio.gui.hand_pull import LARGEST, SMALLEST, Pull
+from kirigami_studio.gui.jobs import hand_steps
+from kirigami_studio.gui.jobs.board import Board, Ears
+from kirigami_studio.gui.jobs.steps import Decoded
+from kirigami_studio.gui.scene.posed import PosedDesign
+from kirigami_studio.gui.shelf import Shelf
+from kirigami_studio.lattice.deployment import deploy
+from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.project import hand_edits
+from kirigami_studio.project.document import Document, Void
+
+if TYPE_CHECKING:
+    from kirigami_studio.polish.vertex_drag import VertexDrag
+
+#: Milliseconds after the last notch of the wheel, or the last press of a key, that end the gesture.
+PAUSE_MS = 250
+#: Steps that one place of the mouse gets, one at a time so that a newer place comes first.
+MOST_STEPS = 4
+
+
+@dataclass(frozen=True, slots=True)
+class _Gesture:
+    """A draft that waits for its score."""
+
+    field: RatioField
+    label: str
+
+
+class HandEditing(QObject):
+    """Owns the draft of one design, and hands over an edit for each gesture."""
+
+    drafted = Signal(object)  #: PosedDesign to be shown in the design's place
+    edited = Signal(object)  #: Edit
+    settled = Signal()  #: every gesture has become an edit
+    failed = Signal(str, str)  #: sentence, trace
+    status = Signal(str)
+
+    def __init__(self, board: Board, shelf: Shelf, document: Callable[[], Document], parent: QObject) -> None:
+        super().__init__(parent)
+        self._board, self._shelf, self._document = board, shelf, document
+        self._base: Candidate | None = None  # as the document holds it
+        self._field: RatioField | None = None  # as it is seen
+        self._last: RatioField | None = None  # as the last complete gesture left it
+        self._open: str | None = None  # label of the gesture under way
+        self._waiting: deque[_Gesture] = deque()
+        self._job: int | None = None
+        self._wishes: list[Callable[[], object]] = []
+        self._pull: Pull | None = None
+        self._drag: VertexDrag | None = None
+        self._goal: tuple[float, float] | None = None
+        self._phi, self._steps = 0.0, 0
+        self._pause = QTimer(self, singleShot=True, interval=PAUSE_MS)
+        self._pause.timeout.connect(self.commit)
+        self._next = QTimer(self, singleShot=True, interval=0)
+        self._next.timeout.connect(self._follow_vertex)
+
+    # what is there -------------------------------------------------------------------------------------------------
+
+    @property
+    def busy(self) -> bool:
+        """Whether a gesture is under way or waits for its score."""
+        return self._base is not None
+
+    @property
+    def field(self) -> RatioField | None:
+        """The ratios as they are seen."""
+        candidate = self._document().candidate
+        return self._field if self._field is not None else None if candidate is None else candidate.field
+
+    def postpones(self, wish: Callable[[], object]) -> bool:
+        """Whether a wish must wait until all gestures are in the document; it is then carried out by itself."""
+        if not self.busy:
+            return False
+        self._wishes.append(wish)
+        self.commit()
+        return True
+
+    def stop(self) -> None:
+        """Another document comes: forget what belongs to the old one."""
+        if self._job is not None:
+            self._board.abandon(self._job)
+        self._next.stop()
+        self._waiting.clear()
+        self._wishes.clear()
+        self._pull, self._drag, self._goal = None, None, None
+        self._over()
+
+    # ratios --------------------------------------------------------------------------------------------------------
+
+    def nudge(self, void: Void, step: float) -> None:
+        """Change the log10 of a ratio by ``step``."""
+        if self._may_change(void) and self.field is not None:
+            self._change_ratio(void, float(self.field.ratio[void]) * math.pow(10.0, step))
+            self._pause.start()
+
+    def set_ratio(self, void: Void, ratio: float) -> None:
+        """Give a void a ratio, as typed."""
+        if self._may_change(void):
+            self._change_ratio(void, ratio)
+            self._pause.start()
+
+    def begin_pull(self, void: Void, place: tuple[float, float], phi: float) -> None:
+        """Take hold of a void at a place in the world."""
+        self._begin_drag()
+        design = self._design()
+        if self._may_change(void) and design is not None:
+            self._pull = Pull.of(design, void, place, phi)
+
+    def pull(self, place: tuple[float, float]) -> None:
+        """The hand has moved to a place in the world; the void follows."""
+        if self._pull is not None:
+            self._change_ratio(self._pull.void, self._pull.ratio_at(place))
+
+    def _may_change(self, void: Void) -> bool:
+        document = self._document()
+        if document.candidate is None:
+            return False
+        if void in document.locked:
+            row, column = void
+            told = tr("Void ({row}, {column}) is locked. Unlock it (L) to change its ratio.", row=row, column=column)
+            self.status.emit(told)
+            return False
+        return True
+
+    def _change_ratio(self, void: Void, ratio: float) -> None:
+        field = self.field
+        if field is None:
+            return
+        table = field.ratio.copy()
+        table[void] = min(max(ratio, min(SMALLEST, table[void])), max(LARGEST, table[void]))
+        row, column = void
+        label = tr("Change ratio of void ({row}, {column})", row=row, column=column)
+        self._draft(RatioField(table), label)
+        told = tr("Void ({row}, {column}): ratio x {ratio:.3f}", row=row, column=column, ratio=float(table[void]))
+        self.status.emit(told)
+
+    # the outline ---------------------------------------------------------------------------------------------------
+
+    def begin_vertex(self, vertex: int, phi: float) -> None:
+        """Take hold of a vertex of the outline at the angle that is shown."""
+        from kirigami_studio.polish.vertex_drag import VertexDrag
+
+        self._begin_drag()
+        field, document = self.field, self._document()
+        if field is None or phi >= math.pi:
+            self.status.emit(tr("The flat sheet is a rectangle whatever the ratios; open it to move its outline."))
+            return
+        held = np.zeros(field.ratio.shape, dtype=np.bool_)
+        for void in document.locked:
+            held[void] = True
+        self._drag, self._phi = VertexDrag(field, phi, vertex, held), phi
+
+    def move_vertex(self, place: tuple[float, float]) -> None:
+        """The hand has moved to a place in the world; the newest place wins."""
+        if self._drag is not None:
+            self._goal, self._steps = place, 0
+            if not self._next.isActive():
+                self._next.start()
+
+    def _follow_vertex(self) -> None:
+        """One step towards the newest place; more follow while they bring the vertex nearer."""
+        from kirigami_studio.polish.vertex_drag import ARRIVED
+
+        drag, goal, design = self._drag, self._goal, self._design()
+        if drag is None or goal is None or design is None:
+            return
+        place = design.to_layout(goal, self._phi)
+        before = drag.field
+        self._draft(drag.move(place, steps=1), tr("Move outline"))
+        self._steps += 1
+        if drag.gap(place) <= ARRIVED:
+            self.status.emit(tr("The outline follows the hand."))
+        elif self._steps < MOST_STEPS:
+            self._next.start()
+        elif drag.field is before:
+            self.status.emit(tr("The outline does not reach that far: ratios, locks or matter stand in the way."))
+
+    def _begin_drag(self) -> None:
+        self.commit()
+        self._pull, self._drag, self._goal = None, None, None
+
+    def let_go(self) -> None:
+        """The hand has let go: the gesture is complete."""
+        if self._next.isActive():
+            self._next.stop()
+            self._follow_vertex()
+            self._next.stop()
+        self.commit()
+
+    # drafts and edits ----------------------------------------------------------------------------------------------
+
+    def _draft(self, field: RatioField, label: str) -> None:
+        candidate = self._document().candidate
+        if candidate is None or field == self.field:
+            return
+        if self._open is not None and self._open != label:
+            self.commit()
+        if self._base is None:
+            self._base, self._last = candidate, candidate.field
+        self._field, self._open = field, label
+        self._show_draft()
+
+    def _design(self) -> PosedDesign | None:
+        """The design as it is seen: at the pose that it was scored in, until it is scored anew."""
+        candidate = self._base or self._document().candidate
+        if candidate is None or self.field is None:
+            return None
+        if self._field is None and candidate.trim is None:
+            return self._shelf.entry(candidate).design
+        return PosedDesign(deploy(self.field), candidate.score.transform, candidate.score.phi)
+
+    def _show_draft(self) -> None:
+        design = self._design()
+        if design is not None and self._document().candidate == self._base:
+            self.drafted.emit(design)
+
+    def commit(self) -> None:
+        """The gesture is complete; what follows is another one."""
+        self._pause.stop()
+        self._next.stop()
+        self._pull, self._drag, self._goal = None, None, None
+        if self._open is None or self._field is None:
+            return
+        gesture, self._open = _Gesture(self._field, self._open), None
+        if gesture.field != self._last:
+            self._last = gesture.field
+            self._waiting.append(gesture)
+            self._score_next()
+        elif self._job is None:  # back where it began
+            self._restore()
+
+    def _score_next(self) -> None:
+        target = self._document().target
+        if self._job is not None or not self._waiting or self._base is None or target is None:
+            return
+        gesture = self._waiting.popleft()
+        work = partial(hand_steps.scoring, self._base, gesture.field, target)
+        ears = Ears(partial(self._take, gesture), on_cancelled=self.stop, on_failed=self._fail)
+        self._job = self._board.start("scoring the change", work, ears)
+
+    def _take(self, gesture: _Gesture, report: object) -> None:
+        self._job = None
+        before = self._base
+        if not isinstance(report, Decoded) or before is None:
+            return
+        edit = hand_edits.take_changed(self._document(), before, report.candidate, gesture.label)
+        if edit is None:
+            self._restore()
+            return
+        self._shelf.put(report.candidate, report.deployment)
+        self._base = report.candidate
+        self.edited.emit(edit)
+        self._tell_score(gesture, before, report.candidate)
+        if self._waiting or self._open is not None:
+            self._show_draft()
+            self._score_next()
+        else:
+            self._over()
+
+    def _tell_score(self, gesture: _Gesture, before: Candidate, after: Candidate) -> None:
+        gain = 100.0 * (after.score.siou - before.score.siou)
+        told = tr(
+            "{gesture}: sIoU {siou:.1f} % ({gain:+.2f}).", gesture=gesture.label, siou=100 * after.score.siou, gain=gain
+        )
+        if not after.score.feasible:
+            told = tr("{told} The design is not feasible now.", told=told)
+        self.status.emit(told)
+
+    def _fail(self, sentence: str, trace: str) -> None:
+        self._restore()
+        self.failed.emit(sentence, trace)
+
+    def _restore(self) -> None:
+        """Drop the draft and show the design as the document has it."""
+        wishes = self._wishes
+        self._wishes = []
+        self.stop()
+        candidate = self._document().candidate
+        if candidate is not None:
+            self.drafted.emit(self._shelf.entry(candidate).design)
+        for wish in wishes:
+            wish()
+
+    def _over(self) -> None:
+        """Nothing is under way any more; wishes that waited for this are carried out."""
+        self._pause.stop()
+        self._base = self._field = self._last = self._open = self._job = None
+        wishes, self._wishes = self._wishes, []
+        self.settled.emit()
+        for wish in wishes:
+            wish()

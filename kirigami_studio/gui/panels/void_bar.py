@@ -1,0 +1,138 @@
+"""The row under the layout while it is edited by hand: a void, its ratio, its lock, and what holds for all."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import QSignalBlocker, Qt, Signal
+from PySide6.QtGui import QKeyEvent, QResizeEvent
+from PySide6.QtWidgets import QDoubleSpinBox, QHBoxLayout, QMenu, QToolButton, QWidget
+
+from kirigami_studio.foundation.words import tr, tr_n
+from kirigami_studio.gui import icons
+from kirigami_studio.gui.hand_pull import LARGEST, SMALLEST
+from kirigami_studio.gui.panels.card import FittingLabel, tool_button
+from kirigami_studio.gui.panels.number_field import number_field
+from kirigami_studio.gui.theme import Palette
+from kirigami_studio.project.document import Void
+
+
+class VoidBar(QWidget):
+    """Shows the selected voids and reports what is wanted of them."""
+
+    ratio_wanted = Signal(object, float)  #: frozenset of Void, ratio
+    lock_wanted = Signal(object, bool)  #: frozenset of Void, whether they are to be locked
+    all_wanted = Signal(bool)  #: whether every void is to be locked
+    refit_wanted = Signal(bool)  #: begin, or stop
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._voids: frozenset[Void] = frozenset()
+        self._fitting = False
+        self.says = FittingLabel()
+        self.ratio = QDoubleSpinBox()
+        self.ratio.setObjectName("voidRatio")
+        self.ratio.setRange(SMALLEST, LARGEST)
+        self.ratio.setDecimals(4)
+        self.ratio.setSingleStep(0.02)
+        self.ratio.setPrefix("x ")
+        self.ratio.setKeyboardTracking(False)
+        self.ratio.setAccessibleName(tr("Ratio of the selected void"))
+        self.ratio.setToolTip(
+            tr("Ratio x of the selected void, without unit, 0.1 to 10: left lower edge by left upper.")
+        )
+        self.ratio.setFixedWidth(104)
+        number_field(self.ratio)
+        self.lock = tool_button(
+            "lockVoid",
+            tr("Lock (L). The ratio stays as it is in changes by hand and in Fit again; Generate makes new designs."),
+            checkable=True,
+        )
+        self.all = QToolButton()
+        self.all.setObjectName("lockMany")
+        self.all.setText(tr("All \N{BLACK DOWN-POINTING SMALL TRIANGLE}"))
+        self.all.setToolTip(tr("Lock or unlock every void."))
+        self.all.setAccessibleName(tr("Lock or unlock every void"))
+        self.all.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+        self.all.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)
+        menu = QMenu(self.all)
+        self.lock_all = menu.addAction(tr("Lock all voids"))
+        self.unlock_all = menu.addAction(tr("Unlock all voids"))
+        self.all.setMenu(menu)
+        self.refit = tool_button(
+            "refit",
+            tr("Fit again. Improve the match from here; locked voids stay as they are (Ctrl+R)."),
+            checkable=True,
+        )
+        self._lay_out()
+        self._connect()
+        self.show_voids(frozenset(), None, frozenset())
+
+    def _lay_out(self) -> None:
+        row = QHBoxLayout(self)
+        row.setContentsMargins(0, 0, 0, 0)
+        row.setSpacing(6)
+        row.addWidget(self.says)
+        row.addStretch(1)
+        for part in (self.ratio, self.lock, self.all, self.refit):
+            row.addWidget(part)
+
+    def _connect(self) -> None:
+        self.ratio.valueChanged.connect(lambda ratio: self.ratio_wanted.emit(self._voids, ratio))
+        self.lock.clicked.connect(lambda on: self.lock_wanted.emit(self._voids, on))
+        self.lock_all.triggered.connect(lambda: self.all_wanted.emit(True))
+        self.unlock_all.triggered.connect(lambda: self.all_wanted.emit(False))
+        self.refit.clicked.connect(self.refit_wanted)
+
+    def show_voids(self, voids: frozenset[Void], ratio: float | None, locked: frozenset[Void]) -> None:
+        """Show what is selected; ``ratio`` is that of the first one, None where there is no design."""
+        self._voids = voids
+        ready = bool(voids) and ratio is not None
+        fixed = bool(voids) and voids <= locked
+        self.ratio.setEnabled(ready and not fixed)
+        self.lock.setEnabled(ready)
+        self.lock.setChecked(fixed)
+        self.all.setEnabled(ratio is not None)
+        self.refit.setEnabled(ratio is not None)
+        if ready and ratio is not None:
+            with QSignalBlocker(self.ratio):
+                self.ratio.setValue(ratio)
+        self.says.set_texts(*_told(voids, len(locked)))
+        self._fit()
+
+    def show_fitting(self, busy: bool) -> None:
+        """A fit is at work, or no longer."""
+        self.refit.setChecked(busy)
+
+    def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802 - Qt's name
+        super().resizeEvent(event)
+        self._fit()
+
+    def _fit(self) -> None:
+        others = (self.ratio, self.lock, self.all, self.refit)
+        self.says.fit(self.width() - sum(part.sizeHint().width() + 6 for part in others) - 24)
+
+    def set_palette(self, palette: Palette) -> None:
+        """Draw in other colours."""
+        self.lock.setIcon(icons.icon("lock", palette))
+        self.refit.setIcon(icons.icon("refit", palette))
+
+    def keyPressEvent(self, event: QKeyEvent) -> None:  # noqa: N802 - Qt's name
+        """Enter in the number field is for the number, not for the window."""
+        if event.key() in (Qt.Key.Key_Return, Qt.Key.Key_Enter):
+            event.accept()
+        else:
+            super().keyPressEvent(event)
+
+
+def _told(voids: frozenset[Void], locked: int) -> tuple[str, ...]:
+    """What the row says, longest first."""
+    if len(voids) == 1:
+        ((row, column),) = voids
+        short = tr("Void ({row}, {column})", row=row, column=column)
+        return tr("{void}: pull it, turn the wheel, or press + and -", void=short), short
+    if voids:
+        return (tr_n("{count} void", "{count} voids", len(voids)),)
+    hint = tr("Pull a void or a corner of the outline; the wheel changes a ratio")
+    if locked:
+        count = tr_n("{count} void locked", "{count} voids locked", locked)
+        return tr("{hint}  ·  {count}", hint=hint, count=count), count
+    return hint, tr("Pull a void or the outline")

@@ -1,0 +1,138 @@
+"""Paint what belongs to voids: ratios as a heat map, openings by their area, numbers of voids and panels."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+from PySide6.QtCore import QPointF, QRectF, Qt
+from PySide6.QtGui import QColor, QFont, QFontMetricsF, QPainter, QPen
+
+from kirigami_studio.gui.scene.colour_scale import ColourScale
+from kirigami_studio.gui.scene.paths import quad_paths
+from kirigami_studio.gui.theme import Palette
+
+FloatArray = npt.NDArray[np.float64]
+
+#: Opacity of the heat map: the panels' edges shine through.
+HEAT_OPACITY = 0.82
+#: Numbers are this much smaller than other text.
+SMALL_PRINT = 0.82
+#: Pixels around a number that belong to it.
+AROUND = 3.0
+
+
+def heat_tiles(panels: FloatArray, rows: int, columns: int) -> FloatArray:
+    """One quadrilateral around each void: the middles of its four panels, so that closed voids have a place too.
+
+    Parameters
+    ----------
+    panels : ((rows + 1)(columns + 1), 4, 2) float
+        Any frame.
+
+    Returns
+    -------
+    tiles : (rows, columns, 4, 2) float
+    """
+    middle = panels.mean(axis=1).reshape(rows + 1, columns + 1, 2)
+    return np.stack([middle[:-1, :-1], middle[1:, :-1], middle[1:, 1:], middle[:-1, 1:]], axis=2)
+
+
+def quad_areas(quads: FloatArray) -> FloatArray:
+    """Area of quadrilaterals (..., 4, 2), without sign."""
+    first, second = quads[..., 2, :] - quads[..., 0, :], quads[..., 3, :] - quads[..., 1, :]
+    return np.asarray(0.5 * np.abs(first[..., 0] * second[..., 1] - first[..., 1] * second[..., 0]))
+
+
+def paint_shaded(painter: QPainter, quads: FloatArray, values: FloatArray, scale: ColourScale) -> None:
+    """Fill quadrilaterals (K, 4, 2), pixels, with the colours of their values (K,)."""
+    for path, colour in zip(quad_paths(quads), scale.shades(values), strict=True):
+        painter.setPen(QPen(colour, 0.6))  # in the fill's colour: no hairlines between neighbours
+        painter.setBrush(colour)
+        painter.drawPath(path)
+
+
+def paint_heat(painter: QPainter, tiles: FloatArray, ratio: FloatArray, scale: ColourScale) -> None:
+    """Fill the tiles (m, n, 4, 2), pixels, with the colours of the ratios (m, n)."""
+    painter.setOpacity(HEAT_OPACITY)
+    paint_shaded(painter, tiles.reshape(-1, 4, 2), np.log10(ratio).ravel(), scale)
+    painter.setOpacity(1.0)
+
+
+def paint_numbers(
+    painter: QPainter, places: FloatArray, room: FloatArray, palette: Palette, framed: bool
+) -> list[QRectF]:
+    """Write ``row, column`` at places (m, n, 2), pixels, where there is ``room`` (m, n) pixels across.
+
+    Parameters
+    ----------
+    framed : bool
+        With a box around each, to tell voids from panels.
+
+    Returns
+    -------
+    boxes : list of QRectF
+        Where something was written.
+    """
+    painter.save()
+    font = QFont(painter.font())
+    font.setPointSizeF(font.pointSizeF() * SMALL_PRINT)
+    painter.setFont(font)
+    metrics = QFontMetricsF(font)
+    seen = QRectF(painter.window())
+    rows, columns = places.shape[:2]
+    height = metrics.height()
+    widest = metrics.horizontalAdvance(f"{rows - 1},{columns - 1}") + 2 * AROUND
+    boxes = []
+    back = QColor(palette.surface)
+    back.setAlpha(215)
+    for row, column in np.argwhere(room >= max(widest, height)).tolist():
+        x, y = places[row, column].tolist()
+        box = QRectF(x - 0.5 * widest, y - 0.5 * height, widest, height)
+        if not seen.intersects(box):
+            continue
+        if framed:
+            painter.setPen(QPen(QColor(palette.accent), 1.0))
+            painter.setBrush(back)
+            painter.drawRoundedRect(box, 0.5 * height, 0.5 * height)
+        painter.setPen(QColor(palette.text))
+        painter.drawText(box, int(Qt.AlignmentFlag.AlignCenter), f"{row},{column}")
+        boxes.append(box)
+    painter.restore()
+    return boxes
+
+
+def room_in(quads: FloatArray) -> FloatArray:
+    """The shorter of the two middle lines of quadrilaterals (..., 4, 2)."""
+    middles = 0.5 * (quads + np.roll(quads, -1, axis=-2))
+    across = np.linalg.norm(middles[..., 2, :] - middles[..., 0, :], axis=-1)
+    along = np.linalg.norm(middles[..., 3, :] - middles[..., 1, :], axis=-1)
+    shorter: FloatArray = np.minimum(across, along)
+    return shorter
+
+
+def paint_dimension(
+    painter: QPainter, ends: FloatArray, text: str, palette: Palette, taken: list[QRectF]
+) -> QRectF | None:
+    """Mark a short length by a line between ``ends`` (2, 2), pixels, and write its size beside it.
+
+    The text takes the first free place around the line; None when there is none, then the line stands alone.
+    """
+    (ax, ay), (bx, by) = ends.tolist()
+    start, stop = QPointF(ax, ay), QPointF(bx, by)
+    for colour, width in ((palette.canvas, 6.0), (palette.text, 2.6)):
+        painter.setPen(QPen(QColor(colour), width, Qt.PenStyle.SolidLine, Qt.PenCapStyle.RoundCap))
+        painter.drawLine(start, stop)
+    metrics = QFontMetricsF(painter.font())
+    width, height = metrics.horizontalAdvance(text) + 10.0, metrics.height() + 2.0
+    middle = QPointF(0.5 * (ax + bx), 0.5 * (ay + by))
+    for dx, dy in ((1, -1), (1, 1), (-1, -1), (-1, 1), (1, -3), (-1, 3)):
+        left = middle.x() + (8.0 if dx > 0 else -8.0 - width)
+        box = QRectF(left, middle.y() + 0.5 * dy * height + (4.0 * dy) - 0.5 * height, width, height)
+        if not any(box.intersects(other) for other in taken) and QRectF(painter.window()).contains(box):
+            painter.setPen(QPen(QColor(palette.text), 1.0))
+            painter.setBrush(QColor(palette.surface))
+            painter.drawRoundedRect(box, 4.0, 4.0)
+            painter.drawText(box, int(Qt.AlignmentFlag.AlignCenter), text)
+            taken.append(box)
+            return box
+    return None

@@ -1,0 +1,179 @@
+"""Move one vertex of the outline to a place by the least change of the ratios.
+
+Damped Gauss-Newton steps on z = log10 x, on the exact outline o(z) with its exact derivative, for
+
+    |o_v - place|^2  +  HOLD * mean |o_k - o_k(start)|^2  +  CHANGE * mean (z - start)^2,
+
+where k runs over the other vertices: they hold on softly, so that the outline gives way around the vertex and stays as
+it is elsewhere.  Every state that is kept is physical if the start was.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import scipy.linalg
+
+from kirigami_studio.evaluate.feasibility import invalid_quads, path_contact
+from kirigami_studio.foundation.errors import UsageError
+from kirigami_studio.lattice.deployment import deploy
+from kirigami_studio.lattice.ratio_field import FloatArray, RatioField
+from kirigami_studio.lattice.topology import BoolArray
+from kirigami_studio.polish.levenberg import Z_LIMIT, check_fit, check_held
+from kirigami_studio.polish.sensitivity import OutlineModel
+
+#: Weight of the other vertices and of the change of z, relative to the vertex that is moved.
+HOLD, CHANGE = 2e-2, 1e-3
+#: No step changes any z by more than this: the derivative says little about what lies further away.
+LONGEST_STEP = 0.25
+#: Halvings of a step that does not lower the cost or would not be physical.
+HALVINGS = 6
+#: Distance (unit cells) from its place at which the vertex counts as arrived.
+ARRIVED = 3e-3
+#: A derivative is used again as long as a step leaves no more than this share of the distance.
+KEPT_GAP = 0.5
+#: Decimals of z that are kept, as in the fit: files repeat such ratios exactly.
+DECIMALS = 9
+
+
+class VertexDrag:
+    """One vertex in the hand, from where it was taken hold of until it is let go.
+
+    Parameters
+    ----------
+    field : RatioField
+        Where the drag begins.
+    phi : float, radians, in [0, pi)
+        Angle at which the outline is seen.
+    vertex : int
+        Number in ``Deployment.outline(phi)``.
+    held : (m, n) bool, optional
+        Voids whose ratio stays exactly as it is.
+
+    Raises
+    ------
+    UsageError
+        There is no such vertex, or ``held`` is not a table of the field's shape.
+    AngleError
+        ``phi`` is not in [0, pi): the closed sheet is a rectangle whatever the ratios.
+    """
+
+    def __init__(self, field: RatioField, phi: float, vertex: int, held: BoolArray | None = None) -> None:
+        phi = check_fit(phi, 0, 1.0)
+        self._field, self._model = field, OutlineModel(field.rows, field.columns, phi)
+        self._given = field.ratio
+        self._start: FloatArray = field.log10.ravel()
+        self._outline = self._model.outline(self._start)
+        if not 0 <= vertex < len(self._outline):
+            raise UsageError(f"The outline has vertices 0 to {len(self._outline) - 1}, got {vertex}.")
+        self._vertex = vertex
+        self._free = np.flatnonzero(~check_held(held, field).ravel())
+        self._low, self._high = np.minimum(self._start, -Z_LIMIT), np.maximum(self._start, Z_LIMIT)
+        self._weight = np.full(len(self._outline), HOLD / len(self._outline))
+        self._weight[vertex] = 1.0
+        self._change = CHANGE / self._start.size
+        self._z = self._start
+        self._slopes: FloatArray | None = None
+        self._guarded = self._is_physical(field)
+
+    @property
+    def field(self) -> RatioField:
+        """The field as it is now."""
+        return self._field
+
+    @property
+    def place(self) -> FloatArray:
+        """Where the vertex is now: (2,), unit cells."""
+        where: FloatArray = self._model.outline(self._z)[self._vertex]
+        return where
+
+    def gap(self, place: FloatArray) -> float:
+        """Distance (unit cells) that the vertex is from ``place``; at most :data:`ARRIVED` once it has arrived."""
+        return float(np.hypot(*(self.place - place)))
+
+    def cost(self, z: FloatArray, place: FloatArray) -> float:
+        """What is minimised, at z (m * n,) for a wanted place (2,), unit cells."""
+        change = z - self._start
+        gaps = np.square(self._gaps(z, place)).sum(axis=1)
+        return float(self._weight @ gaps) + self._change * float(change @ change)
+
+    def gradient(self, z: FloatArray, place: FloatArray, slopes: FloatArray) -> FloatArray:
+        """Derivative (m * n,) of the cost, from the outline's derivative (L, 2, m * n)."""
+        weighted = self._weight[:, None] * self._gaps(z, place)
+        gradient: FloatArray = 2.0 * (np.tensordot(weighted, slopes, axes=2) + self._change * (z - self._start))
+        return gradient
+
+    def move(self, place: FloatArray, steps: int = 3) -> RatioField:
+        """Bring the vertex to ``place`` (2,), unit cells, or as far as ratios and matter allow.
+
+        Parameters
+        ----------
+        place : (2,) float, unit cells
+            In the frame of ``Deployment.outline(phi)``.
+        steps : int
+            At most so many steps are taken; a later call goes on from here.
+        """
+        fresh = False
+        for _ in range(steps):
+            if self._slopes is None:
+                self._slopes, fresh = self._model.linearised(self._z)[1], True
+            before = self.gap(place)
+            moved = self._advance(place, self._slopes)
+            after = self.gap(place)
+            if moved and after <= ARRIVED:
+                break
+            if not moved or after > KEPT_GAP * before:  # the derivative has served, or this is as far as it goes
+                if fresh and not moved:
+                    break
+                self._slopes, fresh = None, False
+        return self._field
+
+    def _advance(self, place: FloatArray, slopes: FloatArray) -> bool:
+        """Take one step, if a physical one is found that lowers the cost; whether it was."""
+        before, step = self.cost(self._z, place), self._step(place, slopes)
+        for _ in range(HALVINGS):
+            z = self._moved(step)
+            if self.cost(z, place) < before:
+                field = self._field_of(z)
+                physical = self._is_physical(field)
+                if physical or not self._guarded:
+                    self._z, self._field, self._guarded = z, field, physical
+                    return True
+            step = 0.5 * step
+        return False
+
+    def _moved(self, step: FloatArray) -> FloatArray:
+        """The state after a step (m * n,): within the bounds, rounded where it has changed."""
+        z: FloatArray = np.clip(self._z + step, self._low, self._high)
+        moved: FloatArray = np.where(step == 0.0, self._z, np.round(z, DECIMALS))
+        return moved
+
+    def _step(self, place: FloatArray, slopes: FloatArray) -> FloatArray:
+        """The Gauss-Newton step (m * n,): held voids stay, and those at a bound that would be pushed beyond it."""
+        gradient = self.gradient(self._z, place, slopes)
+        inward = ~((self._z >= self._high) & (gradient < 0.0)) & ~((self._z <= self._low) & (gradient > 0.0))
+        free = self._free[inward[self._free]]
+        step = np.zeros_like(self._z)
+        if not free.size:
+            return step
+        rows = (np.sqrt(self._weight)[:, None, None] * slopes[..., free]).reshape(-1, free.size)
+        matrix = rows.T @ rows
+        matrix[np.diag_indices_from(matrix)] += self._change
+        step[free] = scipy.linalg.solve(matrix, -0.5 * gradient[free], assume_a="pos", check_finite=False)
+        longest = float(np.abs(step).max())
+        return step * min(1.0, LONGEST_STEP / longest) if longest else step
+
+    def _gaps(self, z: FloatArray, place: FloatArray) -> FloatArray:
+        """How far every vertex is from where it should be: (L, 2)."""
+        gaps = self._model.outline(z) - self._outline
+        gaps[self._vertex] += self._outline[self._vertex] - place
+        return gaps
+
+    def _field_of(self, z: FloatArray) -> RatioField:
+        """The ratios of a state; those that were not touched keep every digit."""
+        table, start = z.reshape(self._field.ratio.shape), self._start.reshape(self._field.ratio.shape)
+        return RatioField(np.where(table == start, self._given, np.power(10.0, table)))
+
+    def _is_physical(self, field: RatioField) -> bool:
+        """Whether no quad is invalid at the angle, and the sheet opens that far without touching itself."""
+        deployment = deploy(field)
+        return not invalid_quads(deployment, self._model.phi) and path_contact(deployment, self._model.phi) is None

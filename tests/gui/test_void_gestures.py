@@ -1,0 +1,257 @@
+"""What the hand does to voids and outline of the layout, with real events, and what becomes of it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from PySide6.QtCore import QPoint, QPointF, Qt
+from PySide6.QtGui import QWheelEvent
+from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QApplication
+from pytestqt.qtbot import QtBot
+
+from kirigami_studio.evaluate.candidate import Candidate, Origin
+from kirigami_studio.evaluate.score import evaluate
+from kirigami_studio.gui.main_window import MainWindow
+from kirigami_studio.gui.scene.void_shapes import VoidShapes
+from kirigami_studio.gui.views.layout_view import LayoutView
+from kirigami_studio.lattice.deployment import deploy
+from kirigami_studio.project.document import Void
+
+Until = Callable[[Callable[[], bool]], None]
+LEFT, NONE = Qt.MouseButton.LeftButton, Qt.KeyboardModifier.NoModifier
+SHIFT, ALT = Qt.KeyboardModifier.ShiftModifier, Qt.KeyboardModifier.AltModifier
+OPEN = math.radians(100.0)
+
+
+@pytest.fixture
+def by_hand(designed: MainWindow) -> MainWindow:
+    """The three designs, half open, in the mode."""
+    designed.stage.deployment.set_phi(OPEN)
+    designed.actions_["hand"].trigger()
+    assert designed.stage.hand.isChecked() and designed.stage.voids.isVisible()
+    return designed
+
+
+def shapes_of(view: LayoutView) -> VoidShapes:
+    frame = view.frame()
+    assert view.design is not None and frame is not None
+    return VoidShapes.of(view.design, view.phi, frame)
+
+
+def middle_of(view: LayoutView, void: Void) -> QPoint:
+    x, y = shapes_of(view).corners[void].mean(axis=0)
+    return QPoint(round(x), round(y))
+
+
+def vertex_at(view: LayoutView, vertex: int) -> QPoint:
+    x, y = shapes_of(view).vertices[vertex]
+    return QPoint(round(x), round(y))
+
+
+def turn(view: LayoutView, place: QPoint, notches: int, modifiers: Qt.KeyboardModifier = NONE) -> None:
+    at = QPointF(place)
+    event = QWheelEvent(
+        at, QPointF(view.mapToGlobal(place)), QPoint(), QPoint(0, 120 * notches), Qt.MouseButton.NoButton, modifiers,
+        Qt.ScrollPhase.NoScrollPhase, False,
+    )  # fmt: skip
+    QApplication.sendEvent(view, event)
+
+
+def drag(
+    view: LayoutView, start: QPoint, end: QPoint, modifiers: Qt.KeyboardModifier = NONE, let_go: bool = True
+) -> None:
+    QTest.mouseMove(view, start)
+    QTest.mousePress(view, LEFT, modifiers, start)
+    for step in range(1, 6):
+        QTest.mouseMove(view, start + (end - start) * (step / 5))
+        QApplication.processEvents()
+    if let_go:
+        QTest.mouseRelease(view, LEFT, modifiers, end)
+
+
+def chosen(window: MainWindow) -> Candidate:
+    candidate = window.controller.document.candidate
+    assert candidate is not None
+    return candidate
+
+
+def ratio(window: MainWindow, void: Void) -> float:
+    return float(chosen(window).field.ratio[void])
+
+
+def settle(window: MainWindow, until: Until) -> None:
+    until(lambda: not window.controller.hand.busy)
+
+
+def test_that_pointing_at_a_void_tells_its_facts_even_outside_the_mode(designed: MainWindow) -> None:
+    view = designed.stage.view
+    designed.stage.deployment.set_phi(OPEN)
+    before = designed.says.text()
+    QTest.mouseMove(view, middle_of(view, (1, 2)))
+    x = ratio(designed, (1, 2))
+    width = designed.controller.document.fabrication.width_mm
+    corners = deploy(chosen(designed).field).voids(OPEN)[1, 2] * width / 6
+    edge = np.hypot(*(corners[1] - corners[0]))
+    assert designed.says.text().startswith(f"Void (1, 2): ratio x {x:.3f}, angle 80.0° at its left corner")
+    assert f"{edge:.2f}" in designed.says.text() and "locked" not in designed.says.text()
+    assert view.voids.lines[0] == f"Void (1, 2)   x {x:.3f}"
+    QTest.mouseMove(view, QPoint(3, 3))
+    assert view.voids.void is None and designed.says.text() == before
+
+
+def test_that_the_nearest_slit_is_meant_on_the_flat_sheet(designed: MainWindow) -> None:
+    designed.stage.deployment.set_phi(math.pi)
+    view = designed.stage.view
+    for void in [(0, 0), (2, 3), (3, 1)]:
+        corners = shapes_of(view).corners[void]
+        end, lip = (corners[3], corners[0]) if sum(void) % 2 == 0 else (corners[0], corners[3])
+        x, y = 0.5 * (end + lip)  # the middle of a slit is where its neighbours end
+        assert shapes_of(view).void_at(x + 2.0, y + 2.0) == void
+        assert shapes_of(view).void_at(x - 2.0, y - 2.0) == void
+
+
+def test_that_the_wheel_over_a_void_changes_its_ratio_in_one_undo_step(by_hand: MainWindow, until: Until) -> None:
+    view, history = by_hand.stage.view, by_hand.controller.history
+    before, place = chosen(by_hand), middle_of(by_hand.stage.view, (1, 2))
+    turn(view, place, 1)
+    turn(view, place, 2)
+    assert view.design is not None
+    seen = float(view.design.deployment.field.ratio[1, 2])
+    assert seen == pytest.approx(1.05**3 * before.field.ratio[1, 2], rel=2e-3)
+    assert chosen(by_hand) == before  # the document waits for the score
+    settle(by_hand, until)
+    after = chosen(by_hand)
+    assert history.undo_label == "Change ratio of void (1, 2)"
+    assert after.field.ratio[1, 2] == seen and after.origin is Origin.EDITED and not after.polished
+    others = np.ones((4, 5), dtype=bool)
+    others[1, 2] = False
+    assert np.array_equal(after.field.ratio[others], before.field.ratio[others])
+    target = by_hand.controller.document.target
+    assert target is not None and after.score == evaluate(deploy(after.field), target, 0.0)
+    by_hand.actions_["undo"].trigger()
+    assert chosen(by_hand) == before
+    by_hand.actions_["redo"].trigger()
+    assert chosen(by_hand) == after
+
+
+def test_that_shift_makes_the_wheel_fine_and_the_bounds_hold(by_hand: MainWindow, until: Until) -> None:
+    view, before = by_hand.stage.view, ratio(by_hand, (2, 2))
+    turn(view, middle_of(view, (2, 2)), 1, SHIFT)
+    settle(by_hand, until)
+    assert ratio(by_hand, (2, 2)) == pytest.approx(1.005 * before, rel=1e-4)
+    turn(view, middle_of(view, (2, 2)), 500)
+    settle(by_hand, until)
+    assert ratio(by_hand, (2, 2)) == pytest.approx(10.0)
+
+
+def test_that_the_wheel_still_zooms_beside_the_voids_and_outside_the_mode(by_hand: MainWindow, qtbot: QtBot) -> None:
+    view = by_hand.stage.view
+    with qtbot.waitSignal(view.zoom_changed):
+        turn(view, QPoint(4, 4), 1)
+    view.fit()
+    by_hand.actions_["hand"].trigger()
+    with qtbot.waitSignal(view.zoom_changed):
+        turn(view, middle_of(view, (1, 2)), 1)
+    assert not by_hand.controller.hand.busy
+
+
+@pytest.mark.parametrize("phi", [OPEN, 0.0, math.pi])
+def test_that_a_pulled_void_follows_the_mouse(by_hand: MainWindow, until: Until, phi: float) -> None:
+    view = by_hand.stage.view
+    by_hand.stage.deployment.set_phi(phi)
+    start = middle_of(view, (1, 2))
+    before = shapes_of(view).corners[1, 2].copy()
+    kept_up = []
+    drag(view, start, start + QPoint(5, 5), let_go=False)
+    for degrees in range(0, 180, 15):
+        way = np.array((math.cos(math.radians(degrees)), math.sin(math.radians(degrees))))
+        QTest.mouseMove(view, start + QPoint(*np.round(10.0 * way).astype(int).tolist()))
+        kept_up.append(float(((shapes_of(view).corners[1, 2] - before) @ way).max()))
+    # Along its slit the held corner keeps up with the mouse; across it nothing can.
+    assert 8.5 < max(kept_up) < 12.0
+    QTest.mouseRelease(view, LEFT, NONE, start)
+    settle(by_hand, until)
+
+
+def test_that_one_drag_is_one_undo_step_and_the_picture_keeps_its_place(by_hand: MainWindow, until: Until) -> None:
+    view, before = by_hand.stage.view, chosen(by_hand)
+    frame, start = view.frame(), middle_of(view, (1, 2))
+    drag(view, start, start + QPoint(6, 6), let_go=False)
+    assert view.frame() == frame and view.design is not None
+    assert view.design.deployment.field != before.field
+    QTest.mouseRelease(view, LEFT, NONE, start + QPoint(6, 6))
+    settle(by_hand, until)
+    assert view.frame() == frame
+    by_hand.actions_["undo"].trigger()
+    assert chosen(by_hand) == before and by_hand.controller.history.undo_label is None
+
+
+def test_that_a_pulled_vertex_of_the_outline_arrives_at_the_mouse(by_hand: MainWindow, until: Until) -> None:
+    view, before = by_hand.stage.view, chosen(by_hand)
+    vertex = int(shapes_of(view).vertices[:, 1].argmin())
+    start = vertex_at(view, vertex)
+    drag(view, start, start + QPoint(0, -10), let_go=False)
+    until(lambda: (vertex_at(view, vertex) - start - QPoint(0, -10)).manhattanLength() <= 2)
+    QTest.mouseRelease(view, LEFT, NONE, start + QPoint(0, -10))
+    settle(by_hand, until)
+    assert by_hand.controller.history.undo_label == "Move outline"
+    assert chosen(by_hand).field != before.field
+    by_hand.actions_["undo"].trigger()
+    assert chosen(by_hand) == before
+
+
+def test_that_gestures_in_quick_succession_all_arrive_in_order(by_hand: MainWindow, until: Until) -> None:
+    view, history, first = by_hand.stage.view, by_hand.controller.history, chosen(by_hand)
+    labels = []
+    for void in [(0, 1), (1, 2), (3, 3)]:
+        turn(view, middle_of(view, void), 2)
+        labels.append(f"Change ratio of void {void}")
+    settle(by_hand, until)
+    for void in [(0, 1), (1, 2), (3, 3)]:
+        assert ratio(by_hand, void) > first.field.ratio[void]
+    for label in reversed(labels):
+        assert history.undo_label == label
+        by_hand.actions_["undo"].trigger()
+    assert chosen(by_hand) == first
+
+
+def test_that_undo_during_a_gesture_takes_back_that_gesture_and_redo_brings_it(
+    by_hand: MainWindow, until: Until
+) -> None:
+    view, before = by_hand.stage.view, chosen(by_hand)
+    turn(view, middle_of(view, (1, 2)), 3)
+    by_hand.controller.undo()  # before it has been scored
+    settle(by_hand, until)
+    assert chosen(by_hand) == before and by_hand.controller.history.redo_label == "Change ratio of void (1, 2)"
+    by_hand.controller.redo()
+    assert ratio(by_hand, (1, 2)) > before.field.ratio[1, 2]
+    assert view.design is not None and view.design.deployment.field == chosen(by_hand).field
+
+
+def test_that_a_draft_that_returns_to_its_beginning_is_no_step(by_hand: MainWindow, until: Until) -> None:
+    bar, before = by_hand.stage.voids, chosen(by_hand)
+    by_hand.stage.view.voids.select(frozenset({(1, 1)}))
+    by_hand.controller.hand.set_ratio((1, 1), 3.0)
+    by_hand.controller.hand.set_ratio((1, 1), float(before.field.ratio[1, 1]))
+    settle(by_hand, until)
+    assert by_hand.controller.history.undo_label is None and chosen(by_hand) == before
+    assert bar.ratio.value() == pytest.approx(before.field.ratio[1, 1], abs=1e-4)
+
+
+def test_that_the_other_designs_and_the_choice_stay_when_the_second_design_is_changed(
+    by_hand: MainWindow, until: Until
+) -> None:
+    document = by_hand.controller.document
+    by_hand.controller.choose(document.candidates[1])
+    turn(by_hand.stage.view, middle_of(by_hand.stage.view, (1, 2)), 2)
+    by_hand.controller.choose(document.candidates[2])  # waits until the change is in
+    settle(by_hand, until)
+    after = by_hand.controller.document
+    assert after.chosen == 2 and after.candidates[1].origin is Origin.EDITED
+    assert (after.candidates[0], after.candidates[2]) == (document.candidates[0], document.candidates[2])
+    row = by_hand.gallery.view.model_.row_of(after.candidates[1])
+    assert row >= 0
