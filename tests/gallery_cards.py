@@ -1,0 +1,13 @@
+"""Cards for tests of the gallery."""
+
+from __future__ import annotations
+
+from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.gui.scene.posed import PosedDesign
+from kirigami_studio.gui.views.gallery_model import Entry
+from kirigami_studio.lattice.deployment import deploy
+
+
+def decoded(candidate: Candidate) -> Entry:
+    """The card of a candidate at its own angle."""
+    return Entry(candidate, PosedDesign(deploy(candidate.field), candidate.score.transform, candidate.score.phi))

@@ -1,0 +1,164 @@
+"""Further runs: more from the next seed, more like one, and what Generate keeps."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import pytest
+from PySide6.QtCore import Qt
+from pytestqt.qtbot import QtBot
+
+from kirigami_studio.evaluate.candidate import Candidate, Origin
+from kirigami_studio.gui.collecting import next_seed
+from kirigami_studio.gui.main_window import MainWindow
+from kirigami_studio.gui.messages import Tone
+from kirigami_studio.pipeline.rank import ranked
+from kirigami_studio.pipeline.variety import distances
+from kirigami_studio.project.document import Document, Mark
+
+Until = Callable[[Callable[[], bool]], None]
+LEFT = Qt.MouseButton.LeftButton
+CONTROL, SHIFT = Qt.KeyboardModifier.ControlModifier, Qt.KeyboardModifier.ShiftModifier
+
+
+def small(window: MainWindow) -> MainWindow:
+    """Three unpolished designs of 6 x 6 voids at a time."""
+    window.controller.change_settings(grid=(6, 6))
+    window.controller.change_settings(k=3)
+    window.controller.change_settings(polish=0)
+    return window
+
+
+@pytest.fixture
+def drawn(heart: MainWindow, until: Until) -> MainWindow:
+    """A studio with three designs drawn from seed 0."""
+    small(heart).actions_["generate"].trigger()
+    until(lambda: not heart.controller.running and len(heart.controller.document.candidates) == 3)
+    return heart
+
+
+def shown(window: MainWindow) -> list[Candidate]:
+    return [entry.candidate for entry in window.gallery.view.model_.entries]
+
+
+@pytest.mark.torch
+def test_that_again_adds_designs_of_the_next_seed_and_keeps_choice_and_marks(
+    drawn: MainWindow, qtbot: QtBot, until: Until
+) -> None:
+    controller = drawn.controller
+    controller.choose(controller.document.candidates[2])
+    controller.marking.pin(controller.document.candidates[1])
+    before = controller.document
+    qtbot.mouseClick(drawn.gallery.bar.again, LEFT)
+    assert controller.running and len(shown(drawn)) == 3
+    assert controller.stage is not None and controller.stage.candidate == before.candidate
+    until(lambda: not controller.running)
+    after = controller.document
+    assert len(after.candidates) == 6 and after.candidates == ranked(after.candidates) == tuple(shown(drawn))
+    assert {one.seed for one in after.candidates} == {0, 1} and set(before.candidates) < set(after.candidates)
+    assert after.candidate == before.candidate and controller.stage.candidate == before.candidate
+    assert dict(zip(after.candidates, after.marks, strict=True))[before.candidates[1]] is Mark.PINNED
+    assert after.marks.count(Mark.PINNED) == 1 and after.settings.seed == 0
+    assert controller.history.undo_label == "Add 3 designs" and "3 designs added" in drawn.says.text()
+    assert drawn.stage.title.text() == f"Design {after.candidates.index(before.candidate) + 1}"
+    drawn.actions_["undo"].trigger()
+    assert controller.document == before
+    until(lambda: tuple(shown(drawn)) == before.candidates)
+
+
+@pytest.mark.torch
+def test_that_again_draws_on_the_designs_own_grid_with_the_chosen_model(drawn: MainWindow, until: Until) -> None:
+    drawn.controller.change_settings(grid=(8, 8))
+    drawn.controller.change_settings(variant="prior")
+    drawn.actions_["again"].trigger()
+    until(lambda: not drawn.controller.running)
+    after = drawn.controller.document
+    assert len(after.candidates) == 6 and {one.variant for one in after.candidates} == {"balanced", "prior"}
+    assert {one.field.ratio.shape for one in after.candidates} == {(6, 6)}
+    assert after.provenance["model"] == "balanced; prior"
+    tips = [str(drawn.gallery.view.model_.index(row, 0).data(Qt.ItemDataRole.ToolTipRole)) for row in range(6)]
+    assert sum("model prior" in tip for tip in tips) == 3
+
+
+@pytest.mark.torch
+def test_that_a_stopped_further_run_leaves_what_was_there(drawn: MainWindow, qtbot: QtBot, until: Until) -> None:
+    drawn.controller.change_settings(k=400)
+    before = drawn.controller.document
+    qtbot.keyClick(drawn, Qt.Key.Key_R, CONTROL)
+    until(lambda: drawn.gallery.view.model_.rowCount() > 5)
+    qtbot.keyClick(drawn, Qt.Key.Key_Escape)
+    until(lambda: not drawn.controller.running)
+    assert drawn.controller.document is before and tuple(shown(drawn)) == before.candidates
+    assert drawn.controller.stage is not None and drawn.controller.stage.candidate == before.candidate
+
+
+@pytest.mark.torch
+def test_that_more_like_this_adds_designs_near_the_chosen_one(drawn: MainWindow, qtbot: QtBot, until: Until) -> None:
+    bar, controller = drawn.gallery.bar, drawn.controller
+    chosen = controller.document.candidates[1]
+    controller.choose(chosen)
+    assert not bar.draw.isVisible()
+    qtbot.mouseClick(bar.alike, LEFT)
+    assert bar.draw.isVisible()
+    qtbot.keyClick(bar.nearness, Qt.Key.Key_Home)
+    qtbot.mouseClick(bar.draw, LEFT)
+    until(lambda: not controller.running)
+    near = [one for one in controller.document.candidates if one.origin is Origin.RESAMPLED]
+    assert controller.document.candidate == chosen and 1 <= len(near) <= 3
+    others = [one.field for one in controller.document.candidates if one.origin is Origin.SAMPLED and one != chosen]
+    assert distances(chosen.field, [one.field for one in near]).max() < distances(chosen.field, others).min()
+    assert controller.document.provenance["nearness"] == "0.9"
+    assert {one.seed for one in near} == {1}
+    tips = [str(drawn.gallery.view.model_.index(row, 0).data(Qt.ItemDataRole.ToolTipRole)) for row in range(4)]
+    assert any("drawn near another design" in tip for tip in tips)
+
+
+@pytest.mark.torch
+def test_that_generate_keeps_pinned_designs_of_the_same_grid_only(drawn: MainWindow, until: Until) -> None:
+    controller = drawn.controller
+    pinned = controller.document.candidates[2]
+    controller.marking.pin(pinned)
+    controller.marking.reject(controller.document.candidates[1], None)
+    controller.change_settings(seed=5)
+    drawn.actions_["generate"].trigger()
+    assert shown(drawn) == [pinned]
+    until(lambda: not controller.running)
+    after = controller.document
+    assert len(after.candidates) == 4 and after.chosen == 0
+    assert [one for one, mark in zip(after.candidates, after.marks, strict=True) if mark is not Mark.NONE] == [pinned]
+    controller.change_settings(grid=(7, 7))
+    drawn.actions_["generate"].trigger()
+    assert shown(drawn) == []
+    until(lambda: not controller.running)
+    assert len(controller.document.candidates) == 3 and set(controller.document.marks) == {Mark.NONE}
+    assert "left behind" in drawn.messages.messages[-1].sentence
+
+
+@pytest.mark.torch
+def test_that_a_seed_that_is_not_kept_moves_on_with_every_run(drawn: MainWindow, qtbot: QtBot, until: Until) -> None:
+    qtbot.mouseClick(drawn.settings.keep, LEFT)
+    for action, seed, count in (("generate", 1, 3), ("again", 2, 6)):
+        drawn.actions_[action].trigger()
+        until(lambda: not drawn.controller.running)
+        document = drawn.controller.document
+        assert document.settings.seed == seed == drawn.settings.seed.value() and len(document.candidates) == count
+        assert seed in {one.seed for one in document.candidates} and 0 not in {one.seed for one in document.candidates}
+    drawn.actions_["undo"].trigger()
+    assert drawn.settings.seed.value() == 1
+
+
+def test_that_there_must_be_designs_to_add_to(heart: MainWindow) -> None:
+    assert not heart.gallery.bar.again.isEnabled() and not heart.actions_["more_like"].isEnabled()
+    for wish in (heart.controller.again, lambda: heart.controller.more_like(0.5)):
+        wish()
+        message = heart.messages.messages[-1]
+        assert (
+            message.tone is Tone.ERROR and "Generate first" in message.sentence
+        ) or "Choose the design" in message.sentence
+        assert not heart.controller.running
+
+
+def test_that_the_next_seed_is_the_first_that_no_design_has(designs: Document) -> None:
+    assert next_seed(designs) == 0
+    assert next_seed(replace(designs, settings=replace(designs.settings, seed=7))) == 8

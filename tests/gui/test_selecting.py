@@ -1,0 +1,175 @@
+"""Sorting and filtering the gallery: what is in sight, never what is in the document."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from gallery_cards import decoded
+from PySide6.QtCore import Qt
+from pytestqt.modeltest import ModelTester
+from pytestqt.qtbot import QtBot
+
+from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.gui.main_window import MainWindow
+from kirigami_studio.gui.selecting import Order, Selection, least_panel
+from kirigami_studio.gui.views.gallery_model import NUMBER_ROLE, VALUE_ROLE, Entry, GalleryModel
+from kirigami_studio.lattice.deployment import deploy
+from kirigami_studio.pipeline.variety import distances
+from kirigami_studio.project.document import Document, Mark
+
+LEFT = Qt.MouseButton.LeftButton
+
+
+def shown(window: MainWindow) -> list[Candidate]:
+    return [entry.candidate for entry in window.gallery.view.model_.entries]
+
+
+def sort_by(window: MainWindow, order: Order) -> None:
+    box = window.gallery.bar.order
+    box.setCurrentIndex(box.findData(order))
+    box.activated.emit(box.currentIndex())
+
+
+def test_that_cards_are_sorted_by_what_was_asked(designed: MainWindow, designs: Document) -> None:
+    for order in Order:
+        check_order(designed, designs, order)
+
+
+def check_order(designed: MainWindow, designs: Document, order: Order) -> None:
+    before = designed.controller.document
+    sort_by(designed, order)
+    chosen = designs.candidates[0].field
+    values = {
+        Order.RANK: lambda one: designs.candidates.index(one),
+        Order.SIOU: lambda one: -one.score.siou,
+        Order.GAIN: lambda one: -one.score.siou_gain,
+        Order.TV: lambda one: one.score.tv,
+        Order.PANEL: lambda one: -least_panel(deploy(one.field)),
+        Order.UNLIKE: lambda one: -float(distances(chosen, [one.field])[0]),
+    }[order]
+    assert shown(designed) == sorted(designs.candidates, key=values)
+    assert designed.controller.document is before and not designed.controller.history.unsaved
+    model = designed.gallery.view.model_
+    numbers = [model.data(model.index(row, 0), NUMBER_ROLE) for row in range(3)]
+    assert numbers == [designs.candidates.index(one) + 1 for one in shown(designed)]
+    assert designed.gallery.view.currentIndex().row() == shown(designed).index(designs.candidates[0])
+
+
+def test_that_the_smallest_panel_is_the_shortest_edge_or_neck_found_one_by_one(designs: Document) -> None:
+    for candidate in designs.candidates:
+        sheet = deploy(candidate.field)
+        corners = sheet.compact[sheet.topology.panel_nodes.reshape(-1, 4)]
+        sizes = []
+        for panel in corners:
+            for here in range(4):
+                for edge in range(4):
+                    start, end = panel[edge], panel[(edge + 1) % 4]
+                    if here in (edge, (edge + 1) % 4):
+                        continue
+                    along = np.linspace(0.0, 1.0, 2001)[:, None]
+                    sizes.append(np.linalg.norm(panel[here] - (start + along * (end - start)), axis=1).min())
+            sizes.extend(np.linalg.norm(panel - np.roll(panel, 1, axis=0), axis=1))
+        assert least_panel(sheet) == pytest.approx(min(sizes) / np.ptp(sheet.compact[:, 0]), rel=1e-5)
+
+
+def test_that_cards_tell_the_number_they_are_sorted_by_at_the_sheets_width(
+    designed: MainWindow, designs: Document
+) -> None:
+    model = designed.gallery.view.model_
+    assert model.data(model.index(0, 0), VALUE_ROLE) == f"TV {designs.candidates[0].score.tv:.2f}"
+    sort_by(designed, Order.PANEL)
+    designed.controller.change_fabrication(width_mm=250.0)
+    sizes = [250.0 * least_panel(deploy(one.field)) for one in shown(designed)]
+    told = [model.data(model.index(row, 0), VALUE_ROLE) for row in range(3)]
+    assert told == [f"panel {size:.1f} mm" for size in sizes]
+    tip = str(model.data(model.index(0, 0), Qt.ItemDataRole.ToolTipRole))
+    assert f"{sizes[0]:.2f} mm on a sheet 250 mm wide" in tip
+
+
+def test_that_unlike_stays_with_its_design_until_it_is_asked_for_again(designed: MainWindow, designs: Document) -> None:
+    sort_by(designed, Order.UNLIKE)
+    first = shown(designed)
+    assert first[-1] == designs.candidates[0] and "design 1" in designed.gallery.bar.order.currentText()
+    designed.controller.choose(designs.candidates[2])
+    assert shown(designed) == first
+    sort_by(designed, Order.UNLIKE)
+    assert shown(designed)[-1] == designs.candidates[2] and "design 3" in designed.gallery.bar.order.currentText()
+
+
+def test_that_filters_leave_designs_out_and_the_head_counts_them(
+    designed: MainWindow, designs: Document, qtbot: QtBot
+) -> None:
+    bar, best = designed.gallery.bar, designs.candidates[0]
+    assert not bar.least.isVisible()
+    qtbot.mouseClick(bar.filter, LEFT)
+    assert bar.least.isVisible()
+    bar.least.setValue(100 * designs.candidates[1].score.siou - 0.05)
+    assert shown(designed) == list(designs.candidates[:2])
+    feasible = sum(one.score.feasible for one in designs.candidates[:2])
+    assert designed.gallery.count.text() == f"2 of 3 shown · {feasible} feasible"
+    designed.controller.marking.pin(best)
+    bar.pinned.setChecked(True)
+    assert shown(designed) == [best]
+    qtbot.mouseClick(bar.filter, LEFT)
+    assert shown(designed) == [best] and not bar.least.isVisible()
+
+
+def test_that_an_empty_gallery_offers_to_take_the_filter_off(designed: MainWindow, qtbot: QtBot) -> None:
+    view, bar = designed.gallery.view, designed.gallery.bar
+    bar.pinned.setChecked(True)
+    assert shown(designed) == [] and view.hint[0] == "No design passes the filter"
+    assert designed.controller.stage is not None and designed.controller.document.chosen == 0
+    qtbot.mouseClick(view.viewport(), LEFT, pos=view.viewport().rect().center())
+    assert len(shown(designed)) == 3 and not bar.pinned.isChecked()
+    assert view.currentIndex().row() == 0
+
+
+def test_that_infeasible_designs_can_be_left_out(qtbot: QtBot, qtmodeltester: ModelTester, designs: Document) -> None:
+    model = GalleryModel()
+    qtmodeltester.check(model)
+    bad = replace(designs.candidates[1], score=replace(designs.candidates[1].score, feasible=False))
+    good = [
+        replace(one, score=replace(one.score, feasible=True, contact=None))
+        for one in (designs.candidates[0], designs.candidates[2])
+    ]
+    model.select(Selection(feasible_only=True))
+    model.replace([decoded(one) for one in (good[0], good[1], bad)])
+    assert [entry.candidate for entry in model.entries] == good
+    assert len(model.all_entries) == 3 and model.number_of(bad) == 3 and model.row_of(bad) == -1
+    model.select(Selection())
+    assert model.rowCount() == 3
+
+
+@pytest.mark.parametrize("order", list(Order))
+def test_that_designs_that_arrive_one_by_one_lie_as_if_sorted_at_once(
+    qtbot: QtBot, qtmodeltester: ModelTester, designs: Document, order: Order
+) -> None:
+    grown, whole = GalleryModel(), GalleryModel()
+    qtmodeltester.check(grown)
+    selection = Selection(order=order, unlike=designs.candidates[1].field, pinned_first=True)
+    marks = {designs.candidates[2]: Mark.PINNED}
+    for model in (grown, whole):
+        model.set_marks(marks)
+        model.select(selection)
+    entries = [decoded(one) for one in designs.candidates]
+    rows = [grown.insert(entry) for entry in (entries[1], entries[2], entries[0])]
+    whole.replace(entries)
+    assert [one.candidate for one in grown.entries] == [one.candidate for one in whole.entries]
+    assert grown.entries[0].candidate == designs.candidates[2] and rows[1] == 0
+
+
+def test_that_a_design_of_an_earlier_run_is_no_state_of_a_new_sample(qtbot: QtBot, designs: Document) -> None:
+    model = GalleryModel()
+    before = [replace(decoded(one), kept=True) for one in designs.candidates]
+    model.replace(before)
+    twin = designs.candidates[2]  # the same seed and number, another field
+    found = Entry(replace(twin, field=designs.candidates[0].field), before[0].design)
+    model.insert(found)
+    assert model.rowCount() == 4
+    model.insert(Entry(replace(found.candidate, polished=True), before[0].design))
+    assert model.rowCount() == 4 and twin in [entry.candidate for entry in model.entries]
+    for other in (replace(twin, variant="prior"), replace(twin, seed=8)):
+        model.insert(Entry(other, before[0].design))
+    assert model.rowCount() == 6

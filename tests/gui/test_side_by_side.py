@@ -1,0 +1,156 @@
+"""Two designs side by side: picked, linked, swapped, left."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import pytest
+from PySide6.QtCore import QPoint, QPointF, Qt
+from PySide6.QtGui import QWheelEvent
+from PySide6.QtWidgets import QApplication
+from pytestqt.qtbot import QtBot
+
+from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.gui.main_window import MainWindow
+from kirigami_studio.gui.selecting import least_panel
+from kirigami_studio.gui.views.layout_view import Overlay
+from kirigami_studio.lattice.deployment import deploy
+from kirigami_studio.project.document import Document
+
+Until = Callable[[Callable[[], bool]], None]
+LEFT = Qt.MouseButton.LeftButton
+
+
+def pair(window: MainWindow) -> tuple[Candidate, Candidate]:
+    left, right = window.stage.compare.entries
+    assert left is not None and right is not None
+    return left.candidate, right.candidate
+
+
+def compare(window: MainWindow, qtbot: QtBot, row: int) -> None:
+    view = window.gallery.view
+    place = view.visualRect(view.model_.index(row, 0)).center() - QPoint(0, 30)
+    qtbot.mouseClick(view.viewport(), LEFT, Qt.KeyboardModifier.ControlModifier, place)
+
+
+def test_that_ctrl_click_compares_a_card_with_the_chosen_design(
+    designed: MainWindow, designs: Document, qtbot: QtBot
+) -> None:
+    compare(designed, qtbot, 2)
+    assert designed.stage.comparing and designed.controller.document.chosen == 0
+    assert pair(designed) == (designs.candidates[0], designs.candidates[2])
+    page, before = designed.stage.compare, designed.controller.history.undo_label
+    assert page.left.title.text() == "Design 1, chosen" and page.right.title.text() == "Design 3"
+    assert designed.gallery.bar.compare.isChecked() and designed.actions_["compare"].isChecked()
+    assert before is None and not designed.controller.history.unsaved
+
+
+def test_that_the_numbers_below_are_those_of_the_designs_and_their_differences(
+    designed: MainWindow, designs: Document, qtbot: QtBot
+) -> None:
+    compare(designed, qtbot, 1)
+    one, other = pair(designed)
+    page = designed.stage.compare
+    width = designed.controller.document.fabrication.width_mm
+    for side, mine, theirs in ((page.left, one, other), (page.right, other, one)):
+        sizes = [width * least_panel(deploy(each.field)) for each in (mine, theirs)]
+        values = [label.text() for label in side.values]
+        assert values[:4] == [
+            f"{100 * mine.score.siou:.1f} %", f"{100 * mine.score.siou_gain:+.1f}", f"{mine.score.tv:.2f}",
+            f"{sizes[0]:.2f}",
+        ]  # fmt: skip
+        assert side.gaps[0].text() == f"{100 * (mine.score.siou - theirs.score.siou):+.1f}"
+        assert side.gaps[2].text() == f"{mine.score.tv - theirs.score.tv:+.2f}"
+        assert side.gaps[3].text() == f"{sizes[0] - sizes[1]:+.2f}"
+    designed.controller.change_fabrication(width_mm=2 * width)
+    assert page.left.values[3].text() == f"{2 * width * least_panel(deploy(one.field)):.2f}"
+
+
+def test_that_zoom_and_place_of_one_view_are_those_of_the_other(designed: MainWindow, qtbot: QtBot) -> None:
+    compare(designed, qtbot, 1)
+    left, right = (side.view for side in designed.stage.compare.sides)
+    QApplication.processEvents()
+    assert left.size() == right.size() and left.frame() == right.frame()
+    place = QPointF(40.0, 60.0)
+    still, none = Qt.MouseButton.NoButton, Qt.KeyboardModifier.NoModifier
+    wheel = QWheelEvent(
+        place, right.mapToGlobal(place), QPoint(), QPoint(0, 240), still, none, Qt.ScrollPhase.NoScrollPhase, False
+    )
+    before = left.frame()
+    QApplication.sendEvent(right, wheel)
+    assert left.frame() == right.frame() != before
+    before = left.frame()
+    qtbot.mousePress(left, LEFT, pos=QPoint(50, 50))
+    qtbot.mouseMove(left, QPoint(75, 42))
+    qtbot.mouseRelease(left, LEFT, pos=QPoint(75, 42))
+    assert left.frame() == right.frame() != before
+    qtbot.keyClick(designed, Qt.Key.Key_0)
+    assert left.frame() == right.frame()
+
+
+def test_that_one_slider_moves_both_and_playing_goes_on(designed: MainWindow, qtbot: QtBot, until: Until) -> None:
+    designed.stage.deployment.set_phi(1.0)
+    compare(designed, qtbot, 1)
+    page = designed.stage.compare
+    assert page.left.view.phi == page.right.view.phi == pytest.approx(1.0, abs=2e-3)
+    page.bar.slider.setFocus()
+    qtbot.keyClick(page.bar.slider, Qt.Key.Key_Home)
+    assert page.left.view.phi == page.right.view.phi == pytest.approx(math.pi)
+    assert designed.stage.deployment.slider.phi == pytest.approx(math.pi)
+    qtbot.keyClick(designed, Qt.Key.Key_Space)
+    until(lambda: page.right.view.phi < 3.0)
+    assert page.bar.playing and not designed.stage.deployment.playing
+    assert page.left.view.phi == page.right.view.phi
+    qtbot.keyClick(designed, Qt.Key.Key_K)
+    assert not page.bar.playing and not designed.stage.comparing
+    assert designed.stage.view.phi == page.left.view.phi
+
+
+def test_that_swapping_chooses_the_other_design_and_undo_swaps_back(
+    designed: MainWindow, designs: Document, qtbot: QtBot
+) -> None:
+    one, other, third = designs.candidates
+    compare(designed, qtbot, 1)
+    qtbot.mouseClick(designed.stage.compare.swap, LEFT)
+    assert pair(designed) == (other, one) and designed.controller.document.chosen == 1
+    qtbot.keyClick(designed, Qt.Key.Key_K, Qt.KeyboardModifier.ShiftModifier)
+    assert pair(designed) == (one, other)
+    designed.actions_["undo"].trigger()
+    assert pair(designed) == (other, one)
+    designed.controller.choose(third)
+    assert pair(designed) == (third, one)
+
+
+def test_that_the_key_compares_with_the_next_card_and_leaves_again(
+    designed: MainWindow, designs: Document, qtbot: QtBot
+) -> None:
+    qtbot.keyClick(designed, Qt.Key.Key_K)
+    assert pair(designed) == designs.candidates[:2] and designed.stage.compare.isVisible()
+    qtbot.keyClick(designed, Qt.Key.Key_C)
+    assert designed.stage.showing_cuts and not designed.stage.comparing and not designed.gallery.bar.compare.isChecked()
+    qtbot.mouseClick(designed.gallery.bar.compare, LEFT)
+    assert designed.stage.comparing and not designed.stage.showing_cuts and not designed.stage.cuts_switch.isChecked()
+    qtbot.mouseClick(designed.stage.compare.leave, LEFT)
+    assert designed.stage.view.isVisible() and not designed.actions_["compare"].isChecked()
+
+
+def test_that_overlays_belong_to_both(designed: MainWindow, qtbot: QtBot) -> None:
+    compare(designed, qtbot, 1)
+    qtbot.mouseClick(designed.stage.toggles[Overlay.TARGET], LEFT)
+    for side in designed.stage.compare.sides:
+        assert Overlay.TARGET not in side.view.overlays and Overlay.MISMATCH in side.view.overlays
+
+
+def test_that_the_comparison_ends_with_its_design(designed: MainWindow, qtbot: QtBot, until: Until) -> None:
+    compare(designed, qtbot, 1)
+    designed.controller.new_project()
+    until(lambda: not designed.stage.comparing)
+    qtbot.keyClick(designed, Qt.Key.Key_K)
+    assert not designed.stage.comparing and not designed.actions_["compare"].isChecked()
+    assert "takes two designs" in designed.messages.messages[-1].sentence
+
+
+def test_that_the_chosen_card_is_not_compared_with_itself(designed: MainWindow, qtbot: QtBot) -> None:
+    compare(designed, qtbot, 0)
+    assert not designed.stage.comparing and "itself" in designed.messages.messages[-1].sentence
