@@ -257,7 +257,7 @@ class HandEditing(QObject):
             return
         gesture = self._waiting.popleft()
         work = partial(hand_steps.scoring, self._base, gesture.field, target)
-        ears = Ears(partial(self._take, gesture), on_cancelled=self.stop, on_failed=self._fail)
+        ears = Ears(partial(self._take, gesture), on_failed=self._fail)
         self._job = self._board.start("scoring the change", work, ears)
 
     def _take(self, gesture: _Gesture, report: object) -> None:

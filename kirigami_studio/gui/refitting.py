@@ -49,7 +49,8 @@ class Refitting(QObject):
             return
         self.stop()
         work = partial(hand_steps.refitting, candidate, target, document.settings.prefer, document.locked)
-        ears = Ears(self._take, self._over, self._over, self._fail)
+        # The report is the end: what the worker says afterwards may come when the next fit has begun.
+        ears = Ears(self._take, on_failed=self._fail)
         self._candidate = candidate
         self._job = self._board.start("fitting the design", work, ears)
         self.busy_changed.emit(True)

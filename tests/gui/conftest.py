@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
@@ -133,3 +134,12 @@ def designed(window: MainWindow, project_file: Path, until: Callable[[Callable[[
     window.controller.open_project(project_file)
     until(lambda: window.controller.stage is not None and window.fabrication.export.isEnabled())
     return window
+
+
+@pytest.fixture
+def by_hand(designed: MainWindow) -> MainWindow:
+    """The three designs, half open, in the mode."""
+    designed.stage.deployment.set_phi(math.radians(100.0))
+    designed.actions_["hand"].trigger()
+    assert designed.stage.hand.isChecked() and designed.stage.voids.isVisible()
+    return designed

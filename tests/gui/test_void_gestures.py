@@ -3,88 +3,32 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 
 import numpy as np
 import pytest
-from PySide6.QtCore import QPoint, QPointF, Qt
-from PySide6.QtGui import QWheelEvent
+from hand_gestures import (
+    LEFT,
+    NONE,
+    OPEN,
+    SHIFT,
+    Until,
+    chosen,
+    drag,
+    middle_of,
+    ratio,
+    settle,
+    shapes_of,
+    turn,
+    vertex_at,
+)
+from PySide6.QtCore import QPoint
 from PySide6.QtTest import QTest
-from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
-from kirigami_studio.evaluate.candidate import Candidate, Origin
+from kirigami_studio.evaluate.candidate import Origin
 from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.gui.main_window import MainWindow
-from kirigami_studio.gui.scene.void_shapes import VoidShapes
-from kirigami_studio.gui.views.layout_view import LayoutView
 from kirigami_studio.lattice.deployment import deploy
-from kirigami_studio.project.document import Void
-
-Until = Callable[[Callable[[], bool]], None]
-LEFT, NONE = Qt.MouseButton.LeftButton, Qt.KeyboardModifier.NoModifier
-SHIFT, ALT = Qt.KeyboardModifier.ShiftModifier, Qt.KeyboardModifier.AltModifier
-OPEN = math.radians(100.0)
-
-
-@pytest.fixture
-def by_hand(designed: MainWindow) -> MainWindow:
-    """The three designs, half open, in the mode."""
-    designed.stage.deployment.set_phi(OPEN)
-    designed.actions_["hand"].trigger()
-    assert designed.stage.hand.isChecked() and designed.stage.voids.isVisible()
-    return designed
-
-
-def shapes_of(view: LayoutView) -> VoidShapes:
-    frame = view.frame()
-    assert view.design is not None and frame is not None
-    return VoidShapes.of(view.design, view.phi, frame)
-
-
-def middle_of(view: LayoutView, void: Void) -> QPoint:
-    x, y = shapes_of(view).corners[void].mean(axis=0)
-    return QPoint(round(x), round(y))
-
-
-def vertex_at(view: LayoutView, vertex: int) -> QPoint:
-    x, y = shapes_of(view).vertices[vertex]
-    return QPoint(round(x), round(y))
-
-
-def turn(view: LayoutView, place: QPoint, notches: int, modifiers: Qt.KeyboardModifier = NONE) -> None:
-    at = QPointF(place)
-    event = QWheelEvent(
-        at, QPointF(view.mapToGlobal(place)), QPoint(), QPoint(0, 120 * notches), Qt.MouseButton.NoButton, modifiers,
-        Qt.ScrollPhase.NoScrollPhase, False,
-    )  # fmt: skip
-    QApplication.sendEvent(view, event)
-
-
-def drag(
-    view: LayoutView, start: QPoint, end: QPoint, modifiers: Qt.KeyboardModifier = NONE, let_go: bool = True
-) -> None:
-    QTest.mouseMove(view, start)
-    QTest.mousePress(view, LEFT, modifiers, start)
-    for step in range(1, 6):
-        QTest.mouseMove(view, start + (end - start) * (step / 5))
-        QApplication.processEvents()
-    if let_go:
-        QTest.mouseRelease(view, LEFT, modifiers, end)
-
-
-def chosen(window: MainWindow) -> Candidate:
-    candidate = window.controller.document.candidate
-    assert candidate is not None
-    return candidate
-
-
-def ratio(window: MainWindow, void: Void) -> float:
-    return float(chosen(window).field.ratio[void])
-
-
-def settle(window: MainWindow, until: Until) -> None:
-    until(lambda: not window.controller.hand.busy)
 
 
 def test_that_pointing_at_a_void_tells_its_facts_even_outside_the_mode(designed: MainWindow) -> None:
@@ -255,3 +199,41 @@ def test_that_the_other_designs_and_the_choice_stay_when_the_second_design_is_ch
     assert (after.candidates[0], after.candidates[2]) == (document.candidates[0], document.candidates[2])
     row = by_hand.gallery.view.model_.row_of(after.candidates[1])
     assert row >= 0
+
+
+def test_that_undo_in_the_middle_of_a_drag_ends_it_and_takes_it_back(by_hand: MainWindow, until: Until) -> None:
+    view, before = by_hand.stage.view, chosen(by_hand)
+    start = middle_of(view, (1, 2))
+    drag(view, start, start + QPoint(6, 6), let_go=False)
+    by_hand.controller.undo()
+    settle(by_hand, until)
+    QTest.mouseMove(view, start + QPoint(9, 9))
+    QTest.mouseRelease(view, LEFT, NONE, start + QPoint(9, 9))
+    settle(by_hand, until)
+    assert chosen(by_hand) == before
+    assert view.design is not None and view.design.deployment.field == before.field
+
+
+def test_that_a_trim_goes_with_the_first_change_and_comes_back_with_undo(by_hand: MainWindow, until: Until) -> None:
+    by_hand.controller.trim(True)
+    until(lambda: chosen(by_hand).trim is not None)
+    trimmed = chosen(by_hand)
+    turn(by_hand.stage.view, middle_of(by_hand.stage.view, (1, 2)), 1)
+    settle(by_hand, until)
+    assert chosen(by_hand).trim is None
+    by_hand.actions_["undo"].trigger()
+    assert chosen(by_hand) == trimmed
+
+
+def test_that_the_drawing_is_planned_anew_after_a_change(by_hand: MainWindow, until: Until, qtbot: QtBot) -> None:
+    with qtbot.waitSignal(by_hand.controller.cutting.planned, timeout=20_000):
+        turn(by_hand.stage.view, middle_of(by_hand.stage.view, (1, 2)), 1)
+    settle(by_hand, until)
+    until(by_hand.fabrication.export.isEnabled)
+
+
+def test_that_closing_the_window_first_finishes_what_the_hand_has_begun(by_hand: MainWindow, until: Until) -> None:
+    turn(by_hand.stage.view, middle_of(by_hand.stage.view, (1, 2)), 1)
+    assert not by_hand.close()
+    settle(by_hand, until)
+    assert chosen(by_hand).origin is Origin.EDITED and by_hand.isVisible()

@@ -18,6 +18,7 @@ from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.polish.levenberg import Fit, polish
 from kirigami_studio.polish.regularity import Regularity
+from kirigami_studio.polish.symmetry import Symmetry
 from kirigami_studio.target.outline import Outline
 from kirigami_studio.target.silhouettes import load
 
@@ -147,3 +148,37 @@ def test_that_a_fit_is_a_frozen_value() -> None:
     fit = polish(RatioField.uniform(3, 3), load("circle"), steps=1)
     with pytest.raises(dataclasses.FrozenInstanceError):
         fit.cost = 0.0  # type: ignore[misc]
+
+
+def test_that_held_voids_keep_every_digit_while_the_others_improve_the_match() -> None:
+    target, field = load("heart"), smooth_field(6, 6, 2)
+    ratio = field.ratio.copy()
+    ratio[1, 1] = 14.0  # even outside the bounds of the fit
+    field = RatioField(ratio)
+    held = np.zeros((6, 6), dtype=bool)
+    held[1, 1] = held[4, 2] = held[0, 0] = True
+    fit = polish(field, target, steps=8, held=held)
+    assert np.array_equal(fit.field.ratio[held], field.ratio[held])
+    assert not np.any(fit.field.ratio[~held] == field.ratio[~held])
+    assert iou(fit, target) > iou(polish(field, target, steps=0, held=held), target) + 0.02
+
+
+def test_that_holding_nothing_is_the_same_fit_bit_for_bit() -> None:
+    target, field = load("star"), smooth_field(5, 6, 1)
+    plain, none = polish(field, target, steps=5), polish(field, target, steps=5, held=np.zeros((5, 6), dtype=bool))
+    assert plain == none
+
+
+def test_that_holding_everything_leaves_the_pose_alone_to_be_fitted() -> None:
+    target, field = load("heart"), smooth_field(4, 4, 3)
+    fit = polish(field, target, steps=5, held=np.ones((4, 4), dtype=bool))
+    assert fit.field == field
+    assert fit.cost <= polish(field, target, steps=0).cost
+
+
+def test_that_held_voids_must_fit_the_field_and_go_with_no_symmetry() -> None:
+    field = smooth_field(4, 4)
+    with pytest.raises(UsageError, match=r"shape \(4, 4\), got \(3, 3\)"):
+        polish(field, load("heart"), held=np.zeros((3, 3), dtype=bool))
+    with pytest.raises(UsageError, match="symmetry"):
+        polish(field, load("heart"), held=np.ones((4, 4), dtype=bool), symmetry=Symmetry.HALF_TURN)

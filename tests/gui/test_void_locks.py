@@ -1,0 +1,177 @@
+"""Locks, the row under the layout, the keyboard, Fit again, and what a file keeps of all that."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hand_gestures import ALT, LEFT, SHIFT, Until, chosen, drag, middle_of, ratio, settle, shapes_of, turn, vertex_at
+from PySide6.QtCore import QPoint, Qt
+from PySide6.QtTest import QTest
+
+from kirigami_studio.evaluate.candidate import Origin
+from kirigami_studio.gui.main_window import MainWindow
+
+
+def lock(window: MainWindow, *voids: tuple[int, int]) -> None:
+    window.stage.view.voids.select(frozenset(voids))
+    window.actions_["lock"].trigger()
+
+
+def test_that_alt_click_locks_and_unlocks_a_void_undoably(by_hand: MainWindow) -> None:
+    view, controller = by_hand.stage.view, by_hand.controller
+    place = middle_of(view, (2, 1))
+    QTest.mouseMove(view, place)
+    QTest.mouseClick(view, LEFT, ALT, place)
+    assert controller.document.locked == {(2, 1)} and controller.history.undo_label == "Lock void (2, 1)"
+    assert by_hand.says.text().endswith("locked.") and view.voids.lines[0].endswith("locked")
+    QTest.mouseClick(view, LEFT, ALT, place)
+    assert controller.document.locked == frozenset() and controller.history.undo_label == "Unlock void (2, 1)"
+    by_hand.actions_["undo"].trigger()
+    by_hand.actions_["undo"].trigger()
+    assert controller.history.undo_label is None
+    by_hand.actions_["redo"].trigger()
+    assert controller.document.locked == {(2, 1)}
+
+
+def test_that_a_band_selects_voids_that_one_key_locks(by_hand: MainWindow) -> None:
+    view, controller = by_hand.stage.view, by_hand.controller
+    places = shapes_of(view).corners[1:3, 1:3].mean(axis=2).reshape(-1, 2)
+    (left, top), (right, bottom) = places.min(axis=0) - 12.0, places.max(axis=0) + 12.0
+    expected = shapes_of(view).voids_within(left, top, right, bottom)
+    assert {(1, 1), (1, 2), (2, 1), (2, 2)} <= expected
+    drag(view, QPoint(round(left), round(top)), QPoint(round(right), round(bottom)), SHIFT)
+    assert view.voids.selected == expected
+    by_hand.actions_["lock"].trigger()
+    assert controller.document.locked == expected
+    assert controller.history.undo_label == f"Lock {len(expected)} voids"
+    assert by_hand.stage.voids.lock.isChecked() and not by_hand.stage.voids.ratio.isEnabled()
+
+
+def test_that_all_voids_are_locked_and_unlocked_at_once(by_hand: MainWindow) -> None:
+    controller = by_hand.controller
+    by_hand.stage.voids.lock_all.trigger()
+    assert len(controller.document.locked) == 20 and controller.history.undo_label == "Lock all voids"
+    by_hand.actions_["unlock_all"].trigger()
+    assert not controller.document.locked and controller.history.undo_label == "Unlock all voids"
+
+
+def test_that_a_locked_void_is_moved_by_nothing(by_hand: MainWindow, until: Until) -> None:
+    view, before = by_hand.stage.view, chosen(by_hand)
+    locked = frozenset((row, column) for row in range(2) for column in range(5))
+    by_hand.controller.lock_voids(locked, True)
+    turn(view, middle_of(view, (1, 2)), 2)
+    drag(view, middle_of(view, (1, 1)), middle_of(view, (1, 1)) + QPoint(8, 8))
+    by_hand.controller.hand.set_ratio((0, 0), 2.0)
+    assert not by_hand.controller.hand.busy and chosen(by_hand) == before
+    vertices = shapes_of(view).vertices
+    way = vertices[10] - vertices.mean(axis=0)  # at the sheet's lower edge, beside voids that are free
+    start = vertex_at(view, 10)
+    drag(view, start, start + QPoint(*np.round(9.0 * way / np.hypot(*way)).astype(int).tolist()))
+    settle(by_hand, until)
+    after = chosen(by_hand).field.ratio
+    assert np.array_equal(after[:2], before.field.ratio[:2]) and not np.array_equal(after[2:], before.field.ratio[2:])
+
+
+def test_that_the_keyboard_walks_changes_and_locks(by_hand: MainWindow, until: Until) -> None:
+    view, controller = by_hand.stage.view, by_hand.controller
+    view.setFocus()
+    for key in (Qt.Key.Key_Down, Qt.Key.Key_Down, Qt.Key.Key_Right, Qt.Key.Key_Right, Qt.Key.Key_Left):
+        QTest.keyClick(view, key)
+    assert view.voids.selected == {(1, 1)}
+    before = ratio(by_hand, (1, 1))
+    QTest.keyClick(view, Qt.Key.Key_Plus)
+    QTest.keyClick(view, Qt.Key.Key_Plus)
+    QTest.keyClick(view, Qt.Key.Key_Minus)
+    settle(by_hand, until)
+    assert ratio(by_hand, (1, 1)) == pytest.approx(1.05 * before, rel=1e-3)
+    assert controller.history.undo_label == "Change ratio of void (1, 1)"
+    QTest.keyClick(by_hand, Qt.Key.Key_L)
+    assert controller.document.locked == {(1, 1)}
+
+
+def test_that_a_typed_ratio_is_one_step(by_hand: MainWindow, until: Until) -> None:
+    bar = by_hand.stage.voids
+    by_hand.stage.view.voids.select(frozenset({(3, 2)}))
+    assert bar.ratio.value() == pytest.approx(ratio(by_hand, (3, 2)), abs=1e-4)
+    bar.ratio.setFocus()
+    bar.ratio.lineEdit().selectAll()
+    QTest.keyClicks(bar.ratio, "1.75")
+    QTest.keyClick(bar.ratio, Qt.Key.Key_Return)
+    settle(by_hand, until)
+    assert ratio(by_hand, (3, 2)) == 1.75
+    assert by_hand.controller.history.undo_label == "Change ratio of void (3, 2)"
+
+
+def test_that_fit_again_improves_the_design_and_holds_what_is_locked(
+    by_hand: MainWindow,
+    until: Until,
+) -> None:
+    controller, before = by_hand.controller, chosen(by_hand)
+    lock(by_hand, (0, 0), (2, 2))
+    by_hand.actions_["refit"].trigger()
+    assert by_hand.stage.voids.refit.isChecked() and by_hand.actions_["cancel"].isEnabled()
+    until(lambda: not controller.refitting.busy)
+    after = chosen(by_hand)
+    assert after.score.siou > before.score.siou and after.polished and after.drawn == before.field
+    for void in ((0, 0), (2, 2)):
+        assert after.field.ratio[void] == before.field.ratio[void]
+    assert controller.history.undo_label == "Fit design 1" and not by_hand.stage.voids.refit.isChecked()
+    by_hand.actions_["undo"].trigger()
+    assert chosen(by_hand) == before
+
+
+def test_that_a_fit_that_finds_nothing_better_is_taken_only_when_asked(
+    by_hand: MainWindow,
+    until: Until,
+) -> None:
+    controller = by_hand.controller
+    controller.lock_all(True)
+    controller.lock_voids(frozenset({(1, 1)}), False)  # a single ratio is soon as good as it gets
+    for _ in range(12):
+        held = chosen(by_hand)
+        controller.refit()
+        until(lambda: not controller.refitting.busy)
+        if chosen(by_hand) == held:
+            break
+    assert chosen(by_hand) == held
+    message = by_hand.messages.messages[-1]
+    assert message.sentence.startswith("The fit found nothing better")
+    message.actions[0][1]()
+    assert chosen(by_hand).polished and controller.history.undo_label == "Fit design 1"
+
+
+def test_that_a_stopped_fit_changes_nothing(by_hand: MainWindow) -> None:
+    before = by_hand.controller.document
+    by_hand.actions_["refit"].trigger()
+    by_hand.actions_["cancel"].trigger()
+    assert not by_hand.controller.refitting.busy and by_hand.controller.document == before
+    assert by_hand.says.text() == "Fitting stopped; nothing was changed."
+
+
+def test_that_locks_and_changed_designs_are_saved_and_reopened(
+    by_hand: MainWindow,
+    until: Until,
+    tmp_path: Path,
+) -> None:
+    controller, path = by_hand.controller, tmp_path / "by-hand.kiri"
+    lock(by_hand, (0, 0), (3, 4))
+    turn(by_hand.stage.view, middle_of(by_hand.stage.view, (1, 2)), 2)
+    controller.save(path)  # waits for the score
+    until(lambda: controller.path == path)
+    saved = controller.document
+    assert not controller.history.unsaved and chosen(by_hand).origin is Origin.EDITED
+    controller.new_project()
+    controller.open_project(path)
+    until(lambda: controller.document.candidate is not None)
+    assert controller.document.locked == {(0, 0), (3, 4)}
+    assert controller.document.candidates == saved.candidates
+    until(lambda: by_hand.stage.view.voids.locked == {(0, 0), (3, 4)})
+
+
+def test_that_there_is_nothing_to_edit_without_a_design_or_before_its_polish(heart: MainWindow) -> None:
+    assert not heart.stage.hand.isEnabled() and not heart.actions_["hand"].isEnabled()
+    heart.actions_["refit"].trigger()
+    heart.controller.refit()
+    assert "Choose a finished design first" in heart.messages.messages[-1].sentence

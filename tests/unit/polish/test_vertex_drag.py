@@ -1,0 +1,130 @@
+"""What a vertex in the hand promises: it arrives, little else moves, held ratios stay, and the sheet stays physical."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from kirigami_studio.evaluate.feasibility import invalid_quads, path_contact
+from kirigami_studio.foundation.errors import AngleError, UsageError
+from kirigami_studio.lattice.deployment import deploy
+from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.polish.sensitivity import OutlineModel
+from kirigami_studio.polish.vertex_drag import ARRIVED, VertexDrag
+
+GRIDS = st.tuples(st.integers(2, 7), st.integers(2, 7))
+
+
+def calm_field(rows: int, columns: int, seed: int, spread: float = 0.08) -> RatioField:
+    return RatioField.from_log10(spread * np.random.default_rng(seed).normal(size=(rows, columns)))
+
+
+def outward(outline: np.ndarray, vertex: int) -> np.ndarray:
+    way: np.ndarray = outline[vertex] - outline.mean(axis=0)
+    return way / np.hypot(*way)
+
+
+@pytest.mark.parametrize("phi", [0.0, 0.7])
+def test_that_the_gradient_is_the_one_of_finite_differences(phi: float) -> None:
+    field = calm_field(4, 5, 3)
+    drag = VertexDrag(field, phi, 6)
+    z = field.log10.ravel() + 0.05 * np.random.default_rng(1).normal(size=20)
+    place = deploy(field).outline(phi)[6] + (0.2, -0.1)
+    slopes = OutlineModel(4, 5, phi).linearised(z)[1]
+    step = 1e-6
+    numeric = [
+        (drag.cost(z + step * unit, place) - drag.cost(z - step * unit, place)) / (2 * step) for unit in np.eye(20)
+    ]
+    assert drag.gradient(z, place, slopes) == pytest.approx(np.array(numeric), rel=1e-5, abs=1e-9)
+
+
+@settings(max_examples=25, deadline=None)
+@given(GRIDS, st.integers(0, 1000), st.sampled_from([0.0, 0.5, 1.5]), st.floats(-0.1, 0.1))
+def test_that_a_vertex_arrives_where_it_can_be(grid: tuple[int, int], seed: int, phi: float, far: float) -> None:
+    # Where another field of the neighbourhood has the vertex, it can be brought to.
+    field = calm_field(*grid, seed)
+    there = RatioField.from_log10(field.log10 + far * np.random.default_rng(seed + 1).normal(size=grid))
+    vertex = seed % len(deploy(field).outline(phi))
+    place = deploy(there).outline(phi)[vertex]
+    drag = VertexDrag(field, phi, vertex)
+    for share in np.linspace(0.1, 1.0, 10):
+        drag.move((1.0 - share) * deploy(field).outline(phi)[vertex] + share * place)
+    for _ in range(5):
+        drag.move(place)
+    assert drag.gap(place) <= 2 * ARRIVED
+    assert deploy(drag.field).outline(phi)[vertex] == pytest.approx(drag.place, abs=1e-7)
+
+
+@settings(max_examples=25, deadline=None)
+@given(GRIDS, st.integers(0, 1000), st.sampled_from([0.0, 0.6]), st.floats(-4.0, 4.0))
+def test_that_no_drag_however_wild_leaves_the_physical(
+    grid: tuple[int, int], seed: int, phi: float, far: float
+) -> None:
+    field = calm_field(*grid, seed)
+    sound = not invalid_quads(deploy(field), phi) and path_contact(deploy(field), phi) is None
+    outline = deploy(field).outline(phi)
+    vertex = seed % len(outline)
+    drag = VertexDrag(field, phi, vertex)
+    for share in (0.25, 0.5, 1.0):
+        found = drag.move(outline[vertex] + share * far * outward(outline, vertex))
+    assert np.all((found.ratio >= 0.1 - 1e-9) & (found.ratio <= 10.0 + 1e-9))
+    if sound:
+        assert not invalid_quads(deploy(found), phi) and path_contact(deploy(found), phi) is None
+
+
+@settings(max_examples=20, deadline=None)
+@given(GRIDS, st.integers(0, 1000))
+def test_that_held_voids_keep_every_digit(grid: tuple[int, int], seed: int) -> None:
+    field, draw = calm_field(*grid, seed), np.random.default_rng(seed)
+    held = draw.random(grid) < 0.5
+    outline = deploy(field).outline(0.0)
+    vertex = int(draw.integers(len(outline)))
+    found = VertexDrag(field, 0.0, vertex, held).move(outline[vertex] + 0.3 * outward(outline, vertex))
+    assert np.array_equal(found.ratio[held], field.ratio[held])
+
+
+def test_that_nothing_moves_when_everything_is_held() -> None:
+    field = calm_field(4, 4, 1)
+    place = deploy(field).outline(0.0)[3] + (0.5, 0.5)
+    assert VertexDrag(field, 0.0, 3, np.ones((4, 4), dtype=bool)).move(place) == field
+
+
+def test_that_the_outline_far_from_the_vertex_hardly_moves() -> None:
+    field = calm_field(10, 10, 2)
+    before = deploy(field).outline(0.0)
+    vertex = 8
+    place = before[vertex] + 0.3 * outward(before, vertex)
+    drag = VertexDrag(field, 0.0, vertex)
+    for _ in range(4):
+        drag.move(place)
+    moved = np.hypot(*(deploy(drag.field).outline(0.0) - before).T)
+    assert moved[vertex] == pytest.approx(0.3, abs=0.01)
+    assert float(np.median(moved)) < 0.03
+
+
+def test_that_small_steps_of_the_hand_end_where_one_large_one_does() -> None:
+    field = calm_field(6, 6, 4)
+    outline = deploy(field).outline(0.0)
+    place = outline[5] + 0.25 * outward(outline, 5)
+    small, large = VertexDrag(field, 0.0, 5), VertexDrag(field, 0.0, 5)
+    for share in np.linspace(0.02, 1.0, 50):
+        small.move((1.0 - share) * outline[5] + share * place)
+    for drag in (small, large):
+        for _ in range(20):
+            drag.move(place)
+    far = np.abs(small.field.log10 - large.field.log10).max()
+    assert far < 0.03
+
+
+def test_that_senseless_drags_are_refused() -> None:
+    field = calm_field(3, 3, 0)
+    with pytest.raises(AngleError):
+        VertexDrag(field, math.pi, 0)
+    with pytest.raises(UsageError, match="vertices 0 to 15, got 16"):
+        VertexDrag(field, 0.0, 16)
+    with pytest.raises(UsageError, match="shape"):
+        VertexDrag(field, 0.0, 0, np.zeros((2, 2), dtype=bool))
