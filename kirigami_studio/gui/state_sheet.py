@@ -8,20 +8,25 @@ from __future__ import annotations
 
 import math
 import sys
+from functools import partial
 from pathlib import Path
 
+import numpy as np
 from PIL import Image, ImageDraw
-from PySide6.QtCore import QSize
+from PySide6.QtCore import QPointF, QSize
 from PySide6.QtWidgets import QApplication
 
 from kirigami_studio.gui.messages import Message, Tone
 from kirigami_studio.gui.offscreen_session import DESIGNS, Session, SessionError, click, main
-from kirigami_studio.gui.sketching.easel import Change
+from kirigami_studio.gui.sketching.easel import Change, Spot
+from kirigami_studio.gui.sketching.point_tool import PointTool
 from kirigami_studio.gui.theme import DARK, LIGHT
 from kirigami_studio.gui.views.cut_view import CutOverlay
 from kirigami_studio.gui.views.target_view import Tool
 from kirigami_studio.target.combining import Combine, combined
+from kirigami_studio.target.figure_nodes import placed_figure
 from kirigami_studio.target.figures import Box, Figure, figure
+from kirigami_studio.target.mirroring import Axis
 from kirigami_studio.target.placed import Placed
 
 SIZES = (QSize(1000, 640), QSize(1280, 720), QSize(1440, 900))
@@ -39,6 +44,7 @@ class StateSheet(Session):
         window.target.set_tool(Tool.POLYGON)
         self.all_sizes("drawing")
         self.editor()
+        self.points_and_mirror()
         window.target.set_editing(False)
         self.picture_target()
         self.all_sizes("photo")
@@ -48,6 +54,7 @@ class StateSheet(Session):
         self.choose_heart()
         self.polishing()
         self.all_sizes("designs")
+        self.lost_designs()
         self.before_and_after()
         self.trimmed()
         self.cuts()
@@ -88,6 +95,42 @@ class StateSheet(Session):
         reshaping.preview("smooth", 0.8)
         self.all_sizes("editor-smoothing")
         target.view.show_preview(None)
+
+    def points_and_mirror(self) -> None:
+        """Selected points with their handles, a field that selects, and a shape that is mirrored as it is drawn."""
+        target, reshaping = self.window.target, self.window.wiring.reshaping
+        disc = placed_figure(Figure.ELLIPSE, Box(-30.0, -25.0, 30.0, 25.0))
+        reshaping.take(Change("Draw ellipse", lambda: disc))
+        target.set_tool(Tool.POINTS)
+        target.strip.axis.set_axis(Axis.UPRIGHT)
+        tool = target.view.active
+        if not isinstance(tool, PointTool):
+            raise SessionError("The points tool is not in use.")
+        tool.select({0, 1}, 0)
+        target.view.update()
+        self.all_sizes("editor-handles")
+        target.strip.axis.set_axis(Axis.BOTH)
+        target.set_tool(Tool.ELLIPSE)
+        target.strip.set_mode(Combine.ADD)
+        for place in ((10.0, 10.0), (45.0, 30.0)):
+            spot = Spot(QPointF(*target.view.easel.frame.to_pixels(np.array(place)).tolist()), place, place, False)
+            (target.view.active.press if place[0] < 20 else partial(target.view.active.move, held=True))(spot)
+        self.all_sizes("editor-mirror")
+        target.view.active.drop()
+        target.strip.set_mode(Combine.REPLACE)
+        target.strip.axis.set_axis(Axis.NONE)
+
+    def lost_designs(self) -> None:
+        """A turned target whose designs wait to be brought back."""
+        target, controller = self.window.target, self.window.controller
+        target.set_tool(Tool.POSE)
+        target.strip.options.pose.turn.setValue(20.0)
+        self.all_sizes("lost-designs")
+        self.window.wiring.lost.bring_back()
+        target.set_editing(False)
+        if not controller.document.candidates:
+            raise SessionError("The designs did not come back.")
+        self.until(self.window.fabrication.export.isEnabled, "the designs came back without a plan")
 
     def polishing(self) -> None:
         """A run whose designs improve, with a search after it."""

@@ -30,6 +30,8 @@ MOST_NODES = 4 * MOST_ANCHORS
 SMOOTH_TURN = math.radians(40.0)
 #: Anchors are found again among the vertices of a target within this share of the root of its area.
 SAME_PLACE = 1e-6
+#: A kept line whose end is pulled by more than this share of its chord follows its handles instead.
+LARGEST_PULL = 0.5
 #: The two handles of an anchor.
 INTO, OUT = 0, 1
 
@@ -130,9 +132,10 @@ class Anchors:
         shift = np.zeros((count, 2))
         for index, way in ways.items():
             shift[index] = way
-        spans = []
+        spans, kept = [], self.kept.copy()
         for index, span in enumerate(self.spans):
             one, other = shift[index], shift[(index + 1) % count]
+            kept[index] &= not _torn(self.line(index), one - other)
             if len(span) and (np.any(one) or np.any(other)):
                 line, soft = self.line(index), self.smooth
                 towards = _weights(line[::-1], bool(soft[index]))[::-1, None]
@@ -141,7 +144,7 @@ class Anchors:
                 spans.append(moved)
             else:
                 spans.append(span)
-        return replace(self, places=self.places + shift, spans=tuple(spans))._settled(ways)
+        return replace(self, places=self.places + shift, spans=tuple(spans), kept=kept)._settled(ways)
 
     def with_handle(
         self, index: int, side: int, offset: FloatArray, apart: bool = False, even: bool = False
@@ -369,6 +372,11 @@ def _weights(line: FloatArray, smooth: bool) -> FloatArray:
     along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(line, axis=0), axis=1))])
     share = along[1:-1] / max(float(along[-1]), 1e-300)
     return share * share * (3.0 - 2.0 * share) if smooth else share
+
+
+def _torn(line: FloatArray, by: FloatArray) -> bool:
+    """Whether a line is pulled so far at one end that following would leave nothing of how it ran."""
+    return float(np.linalg.norm(by)) > LARGEST_PULL * float(np.linalg.norm(line[-1] - line[0]))
 
 
 def _nearest(line: FloatArray, place: tuple[float, float]) -> tuple[float, int, FloatArray]:

@@ -14,6 +14,7 @@ from pytestqt.qtbot import QtBot
 
 from kirigami_studio.gui.main_window import MainWindow
 from kirigami_studio.gui.sketching.easel import Change
+from kirigami_studio.gui.views.target_view import Tool
 from kirigami_studio.target.placed import Placed
 from kirigami_studio.target.read_image import automatic_threshold, read_image
 
@@ -152,3 +153,28 @@ def test_that_the_picture_stays_while_it_is_drawn_over_and_goes_with_another_tar
     traced.controller.targeting.open("heart")
     until(lambda: traced.controller.document.target is not None and traced.controller.document.target.name == "heart")
     assert traced.target.view.underlay is None and traced.target.view.grab().toImage() != shown
+
+
+def test_that_a_picture_goes_along_when_its_contour_is_moved_and_enlarged(
+    traced: MainWindow, until: Until, qtbot: QtBot
+) -> None:
+    view = traced.target.view
+    traced.target.set_tool(Tool.POSE)
+    assert view.underlay is not None and view.easel.placed is not None
+    corner, start, pixel = view.underlay.corner, view.easel.placed.centre, view.underlay.pixel
+    qtbot.keyClick(view, Qt.Key.Key_Up, Qt.KeyboardModifier.ShiftModifier)
+    assert view.easel.placed.centre == pytest.approx((start[0], start[1] + 10))
+    assert view.underlay.corner == pytest.approx((corner[0], corner[1] + 10))
+    width, height = view.easel.placed.size
+    traced.target.refine.width_.setValue(50.0)
+    assert view.underlay.pixel == pytest.approx(pixel * 50.0 / width)
+    before = traced.controller.document.target
+    traced.target.threshold.slider.setValue(140)
+    until(lambda: traced.controller.document.target is not before)
+    # The new contour of the picture lies where the picture lies now.
+    assert view.easel.placed.scale == pytest.approx(
+        view.underlay.pixel * traced.controller.targeting.tracing.picture_of(view.outline).traced.scale  # type: ignore
+    )
+    for _ in range(3):
+        traced.actions_["undo"].trigger()
+    assert view.underlay.corner == pytest.approx(corner) and view.easel.placed.size == pytest.approx((width, height))

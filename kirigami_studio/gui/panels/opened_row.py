@@ -61,4 +61,5 @@ class OpenedRow(QWidget):
 
 
 def _sides(size: tuple[float, float]) -> str:
-    return f"{size[0]:.1f} {TIMES} {size[1]:.1f}"
+    width, height = (f"{side:.0f}" if side >= 100 else f"{side:.1f}" for side in size)
+    return f"{width} {TIMES} {height}"

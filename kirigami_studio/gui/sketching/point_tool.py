@@ -27,7 +27,7 @@ REACH = 9.0
 #: The pointer moves this far (pixels) before a press becomes a drag: a click must not pull a point to the grid.
 LEAST_DRAG = 3.0
 #: A point is the mirror image of another within this share of the root of the target's area.
-IMAGE_REACH = 0.01
+IMAGE_REACH = 0.03
 #: Keys that, with Shift, change the kind of the selected points.
 KINDS = {
     Qt.Key.Key_C: Kind.CORNER,

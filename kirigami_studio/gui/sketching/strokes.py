@@ -10,7 +10,7 @@ from PySide6.QtGui import QKeyEvent, QPainter
 
 from kirigami_studio.gui.scene.frame import Frame
 from kirigami_studio.gui.scene.target_items import paint_sketch
-from kirigami_studio.gui.sketching.easel import Easel, SketchTool, Spot
+from kirigami_studio.gui.sketching.easel import Easel, Place, SketchTool, Spot
 from kirigami_studio.gui.theme import Palette
 from kirigami_studio.target.mirroring import Mirror
 from kirigami_studio.target.placed import Placed
@@ -19,6 +19,8 @@ from kirigami_studio.target.placed import Placed
 CLOSING_REACH = 10.0
 #: Freehand points nearer than this (pixels) to the last one are dropped: hands and mice jitter.
 SMALLEST_STEP = 2.0
+#: A mirrored stroke ends this near to its start, as a share of its last piece.
+CLOSING_SHARE = 0.01
 #: No mirror.
 PLAIN = Mirror()
 
@@ -52,7 +54,7 @@ class Freehand(SketchTool):
         if self._spots:
             points = frame.to_pixels(np.array([spot.free for spot in self._spots]))
             paint_sketch(painter, points, palette, corners=False)
-            _paint_images(painter, frame, palette, self.easel, self._spots)
+            _paint_images(painter, frame, palette, self.easel, [spot.free for spot in self._spots])
 
 
 def stroke_of(points: np.ndarray[tuple[int, ...], np.dtype[np.float64]], mirror: Mirror = PLAIN) -> Placed:
@@ -63,7 +65,10 @@ def stroke_of(points: np.ndarray[tuple[int, ...], np.dtype[np.float64]], mirror:
     from kirigami_studio.target.refining import stroked
 
     whole = mirror.completed(points)
-    return stroked(points) if whole is None else mirror.evened(stroked(whole))
+    if whole is None:
+        return stroked(points)
+    closing = whole[:1] + CLOSING_SHARE * (whole[-1:] - whole[:1])  # almost there: no gap that would be told
+    return mirror.evened(stroked(np.concatenate([whole, closing])))
 
 
 class Corners(SketchTool):
@@ -115,12 +120,12 @@ class Corners(SketchTool):
         if self._pointer is not None:
             places.append(self._pointer.place)
         paint_sketch(painter, frame.to_pixels(np.array(places)), palette, corners=True)
-        _paint_images(painter, frame, palette, self.easel, self._spots)
+        _paint_images(painter, frame, palette, self.easel, places)
 
 
-def _paint_images(painter: QPainter, frame: Frame, palette: Palette, easel: Easel, spots: list[Spot]) -> None:
+def _paint_images(painter: QPainter, frame: Frame, palette: Palette, easel: Easel, places: list[Place]) -> None:
     """Draw what the mirror makes of an unfinished line."""
-    for image in easel.mirror.all_images(np.array([spot.place for spot in spots])):
+    for image in easel.mirror.all_images(np.array(places)):
         paint_sketch(painter, frame.to_pixels(image), palette, corners=False)
 
 

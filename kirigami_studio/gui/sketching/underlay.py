@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -49,9 +49,13 @@ class Underlay:
         image = _reduced(path)
         if image is None:
             return None
+        return cls(path, image, (0.0, 0.0), 1.0, traced.picture).laid_under(placed, traced)
+
+    def laid_under(self, placed: Placed, traced: Traced) -> Underlay:
+        """The same picture where its contour lies as the target does."""
         pixel = placed.scale / traced.scale
         x, y = (centre - pixel * own for centre, own in zip(placed.centre, traced.centre, strict=True))
-        return cls(path, image, (x, y), pixel, traced.picture)
+        return replace(self, corner=(x, y), pixel=pixel)
 
     def place(self, traced: Traced) -> Placed:
         """Where another contour of the same picture lies on the board."""

@@ -111,7 +111,10 @@ class TargetView(Canvas):
         traced = None if picture is None else picture.traced
         under = self.underlay
         if under is not None and picture is not None and traced is not None and under.path == picture.path:
-            drawn = under.place(traced)
+            if drawn is not None:  # it was moved or enlarged, and the picture with it
+                under = under.laid_under(drawn, traced)
+            else:
+                drawn = under.place(traced)
         elif drawn is None:
             under = None
         self._outline, self._preview, self.reach = outline, None, None
