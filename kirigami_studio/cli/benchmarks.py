@@ -20,6 +20,8 @@ from kirigami_studio.target.silhouettes import load, names
 
 #: Samples and targets of a family where ``--k`` and ``--count`` do not say.
 SPREAD_K, SPREAD_TARGETS, ROBUSTNESS_TARGETS = 32, 50, 100
+#: Designs that are drawn near each other where ``--k`` does not say.
+NEARNESS_K = 8
 #: Designs that are planned and checked where ``--count`` does not say.
 FABRICATED_DESIGNS = 200
 
@@ -162,6 +164,25 @@ def _spread_suite(arguments: argparse.Namespace, line: ProgressLine) -> dict[str
     }
 
 
+def _nearness_suite(arguments: argparse.Namespace, line: ProgressLine) -> dict[str, object]:
+    """How near samples lie to a design that they were asked to be like."""
+    from kirigami_studio.benchmark.nearness_suite import measure_nearness
+
+    return {
+        family: measure_nearness(
+            outlines,
+            arguments.variant,
+            k=arguments.k or NEARNESS_K,
+            steps=arguments.steps,
+            polish=arguments.polish,
+            grid=parse_grid(arguments.grid),
+            seed=arguments.seeds[0],
+            report=lambda done, total, family=family: line.show(f"{family}: {done} of {total}"),  # type: ignore[misc]
+        )
+        for family, outlines in _target_sets(arguments, SPREAD_TARGETS).items()
+    }
+
+
 def _robustness_suite(arguments: argparse.Namespace, line: ProgressLine) -> dict[str, object]:
     """What turned, shaky, coarse and fine drawings cost, variant by variant."""
     from kirigami_studio.benchmark.robustness_suite import measure_robustness
@@ -275,6 +296,7 @@ SUITES: dict[str, Callable[[argparse.Namespace, ProgressLine], dict[str, object]
     "generator": _generator_suite,
     "variants": _variants_suite,
     "spread": _spread_suite,
+    "nearness": _nearness_suite,
     "robustness": _robustness_suite,
     "generation-speed": _generation_speed_suite,
     "polish": _polish_suite,

@@ -276,7 +276,7 @@ COMMANDS: tuple[Command, ...] = (
         "kirigami-studio train grpo --reward balanced --start runs/prior/prior.safetensors --out runs/both")),
     Command("benchmark", "measure the generator, the polish, the lattice or cut plans", "benchmarks:benchmark", (
         option("suite", choices=(
-            "generator", "variants", "spread", "robustness", "generation-speed",
+            "generator", "variants", "spread", "nearness", "robustness", "generation-speed",
             "polish", "designs", "regularity", "speed", "lattice", "fabrication",
         ), help="what to measure"),
         option("--targets", nargs="+", default=None, help="'library', files or folders (default: the test splits)"),
@@ -297,8 +297,9 @@ COMMANDS: tuple[Command, ...] = (
         option("--variants", default=None, metavar="NAMES",
                help="variants, spread, robustness, generation-speed: by commas (default: all that are bundled)"),
         option("--count", type=count, default=None,
-               help="targets of each family (default 500; spread: 50, robustness: 100); fabrication: designs (200)"),
-        option("--k", type=count, default=None, help="samples a target (default 1; spread: 32)"),
+               help="targets of each family (default 500; spread and nearness: 50, robustness: 100); fabrication: "
+               "designs (200)"),
+        option("--k", type=count, default=None, help="samples a target (default 1; spread: 32, nearness: 8)"),
         option("--steps", type=count, default=4, help="sampling steps (default 4)"),
         option("--seeds", type=whole, nargs="+", default=[0, 1, 2], help="sampling seeds (default 0 1 2)"),
         option("--data-seed", type=whole, default=0, help="seed of the splits (default 0)"),

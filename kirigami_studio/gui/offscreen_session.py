@@ -180,6 +180,13 @@ def click(widget: QWidget) -> None:
         send(widget, QMouseEvent(kind, place, where, left, held, Qt.KeyboardModifier.NoModifier))
 
 
+def hover(widget: QWidget, place: QPoint) -> None:
+    """Move the mouse over a place of a widget, no button pressed."""
+    none = Qt.MouseButton.NoButton
+    where, nothing = widget.mapToGlobal(QPointF(place)), Qt.KeyboardModifier.NoModifier
+    send(widget, QMouseEvent(QEvent.Type.MouseMove, QPointF(place), where, none, none, nothing))
+
+
 def press(widget: QWidget, text: str) -> None:
     """Type a text."""
     for letter in text:

@@ -85,6 +85,8 @@ class Showing(QObject):
         """Show another choice among the same candidates."""
         self._document = document
         candidate = document.candidate
+        if self._preview is not None:  # chosen while a run goes on: it stays chosen when the run is done
+            self._preview = candidate
         self._put_on_stage(None if candidate is None else self._shelf.entry(candidate))
         self.settled.emit()
 

@@ -13,16 +13,19 @@ from pathlib import Path
 
 import numpy as np
 from PIL import Image, ImageDraw
-from PySide6.QtCore import QPointF, QSize
+from PySide6.QtCore import QPoint, QPointF, QSize
 from PySide6.QtWidgets import QApplication
 
 from kirigami_studio.gui.messages import Message, Tone
-from kirigami_studio.gui.offscreen_session import DESIGNS, Session, SessionError, click, main
+from kirigami_studio.gui.offscreen_session import DESIGNS, Session, SessionError, click, hover, main
+from kirigami_studio.gui.selecting import Order
 from kirigami_studio.gui.sketching.easel import Change, Spot
 from kirigami_studio.gui.sketching.point_tool import PointTool
 from kirigami_studio.gui.theme import DARK, LIGHT
+from kirigami_studio.gui.views.card_delegate import CardButton, button_boxes
 from kirigami_studio.gui.views.cut_view import CutOverlay
 from kirigami_studio.gui.views.target_view import Tool
+from kirigami_studio.project.document import Mark
 from kirigami_studio.target.combining import Combine, combined
 from kirigami_studio.target.figure_nodes import placed_figure
 from kirigami_studio.target.figures import Box, Figure, figure
@@ -55,6 +58,7 @@ class StateSheet(Session):
         self.polishing()
         self.all_sizes("designs")
         self.lost_designs()
+        self.collection()
         self.before_and_after()
         self.trimmed()
         self.cuts()
@@ -142,6 +146,55 @@ class StateSheet(Session):
         self.all_sizes("polishing")
         self.until(lambda: not window.controller.running, "the run did not end")
         self.until(window.fabrication.export.isEnabled, "no cut plan was made")
+
+    def collection(self) -> None:
+        """Marks, filters, more designs like one, two side by side; then everything as it was."""
+        window, controller = self.window, self.window.controller
+        view, bar, before = window.gallery.view, window.gallery.bar, len(controller.document.candidates)
+        for row in (1, 2):
+            controller.marking.pin(controller.document.candidates[row])
+        controller.marking.reject(controller.document.candidates[3], None)
+        click(bar.filter)
+        for box in (bar.feasible, bar.rejected):
+            box.setChecked(True)
+        bar.order.setCurrentIndex(bar.order.findData(Order.PANEL))
+        bar.order.activated.emit(bar.order.currentIndex())
+        hover(view.viewport(), button_boxes(view.visualRect(view.model_.index(0, 0)))[CardButton.PIN].center())
+        self.all_sizes("gallery-sorted")
+        bar.least.setValue(100.0)
+        self.all_sizes("gallery-nothing")
+        view.clear_wanted.emit()
+        bar.rejected.setChecked(False)
+        bar.order.setCurrentIndex(0)
+        bar.order.activated.emit(0)
+        click(bar.alike)
+        self.all_sizes("gallery-alike")
+        click(bar.draw)
+        self.until(lambda: not controller.running, "the run near a design did not end")
+        self.until(window.fabrication.export.isEnabled, "no cut plan was made")
+        self.all_sizes("gallery-more")
+        click(bar.alike)
+        self.side_by_side()
+        while len(controller.document.candidates) > before or set(controller.document.marks) != {Mark.NONE}:
+            window.actions_["undo"].trigger()
+        self.until(lambda: view.model_.rowCount() == before, "undo did not bring the first designs back")
+        self.until(window.fabrication.export.isEnabled, "no cut plan was made")
+
+    def side_by_side(self) -> None:
+        """Two designs at the target and half open, zoomed; the menu of a card."""
+        window = self.window
+        click(window.gallery.bar.compare)
+        self.all_sizes("compare")
+        window.stage.deployment.set_phi(math.radians(100.0))
+        window.stage.compare.left.view.zoom(2.0)
+        self.all_sizes("compare-half-open")
+        window.stage.deployment.set_phi(0.0)
+        click(window.stage.compare.leave)
+        window.wiring.gallery.show_menu(window.controller.document.candidates[0], QPoint(100, 100))
+        menu = window.wiring.gallery.menu
+        if menu is not None:
+            self.picture("card-menu", menu)
+            menu.close()
 
     def before_and_after(self) -> None:
         """The first design that polishing has changed, as it was drawn."""

@@ -1,0 +1,49 @@
+"""The states of the collection on the sheet of screenshots show what they are named after."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from PySide6.QtWidgets import QApplication
+from pytestqt.qtbot import QtBot
+
+from kirigami_studio.gui.offscreen_session import click
+from kirigami_studio.gui.state_sheet import StateSheet
+from kirigami_studio.project.document import Mark
+
+
+class OneOfEach(StateSheet):
+    """Takes every picture once, in the size and theme there is."""
+
+    def all_sizes(self, name: str) -> None:
+        self.picture(name)
+
+
+@pytest.fixture
+def sheet(qtbot: QtBot, tmp_path: Path) -> Iterator[StateSheet]:
+    made = OneOfEach(tmp_path)
+    with qtbot.waitExposed(made.window):
+        made.window.show()
+    yield made
+    made.window.controller.history.mark_saved()
+    assert made.window.close()
+    made.window.deleteLater()
+    QApplication.processEvents()
+
+
+@pytest.mark.torch
+def test_that_the_collections_states_are_pictured_and_taken_back(sheet: StateSheet) -> None:
+    window = sheet.window
+    for change in ({"grid": (6, 6)}, {"k": 5}, {"polish": 0}):
+        window.controller.change_settings(**change)  # type: ignore[arg-type]
+    sheet.choose_heart()
+    click(window.run.generate)
+    sheet.until(lambda: not window.controller.running and window.fabrication.export.isEnabled(), "no designs")
+    before = window.controller.document
+    sheet.collection()
+    assert window.controller.document.candidates == before.candidates
+    assert set(window.controller.document.marks) == {Mark.NONE} and not window.stage.comparing
+    names = {path.stem for path in sheet.files}
+    assert {"gallery-sorted", "gallery-nothing", "gallery-alike", "gallery-more", "compare", "card-menu"} <= names
