@@ -58,6 +58,7 @@ class Collecting(QObject):
         super().__init__(parent)
         self._document = document
         self._plan: Plan | None = None
+        self.added: frozenset[Candidate] = frozenset()  #: what the last run has added to designs that were there
         self.keeps_seed = True  #: whether Generate draws from the seed that is shown
 
     @property
@@ -130,8 +131,10 @@ class Collecting(QObject):
         seed = None if plan is None else plan.seed
         if plan is not None and plan.joins:
             found = distinct(ranked(result.candidates), document.candidates)
+            self.added = frozenset(found)
             edit = candidate_edits.add_candidates(document, Brought(found, provenance, seed), rank_key)
             return _choosing(edit, preview)
+        self.added = frozenset()
         staying = _staying(document, result.request)
         if not staying and Mark.PINNED in document.marks:
             sentence = tr(

@@ -97,7 +97,8 @@ class GalleryWiring(QObject):
     def _show_document(self, document: Document) -> None:
         gallery = self.window.gallery
         gallery.view.model_.set_width_mm(document.fabrication.width_mm)
-        gallery.view.show_marks(dict(zip(document.candidates, document.marks, strict=True)))
+        marks = dict(zip(document.candidates, document.marks, strict=True))
+        gallery.view.show_marks(marks, self.controller.collecting.added)
         gallery.bar.show_count(document.settings.k)
         self._show_ready()
         self._show_chosen()

@@ -26,6 +26,7 @@ class Order(Enum):
     GAIN = "gain"
     TV = "tv"
     PANEL = "panel"
+    NEWEST = "newest"
     UNLIKE = "unlike"
 
 
@@ -75,12 +76,13 @@ class Selection:
 
 @dataclass(frozen=True, slots=True)
 class Shown:
-    """One design as the selection sees it: its place in the document counts from 0."""
+    """One design as the selection sees it: its place in the document counts from 0; fresh are the last run's."""
 
     place: int
     candidate: Candidate
     mark: Mark
     deployment: Deployment = field(repr=False)
+    fresh: bool = False
 
 
 def arranged(designs: Sequence[Shown], selection: Selection) -> list[int]:
@@ -105,6 +107,8 @@ def sorting_values(designs: Sequence[Shown], selection: Selection) -> list[float
         return [one.candidate.score.tv for one in designs]
     if order is Order.PANEL:
         return [-least_panel(one.deployment) for one in designs]
+    if order is Order.NEWEST:
+        return [0.0 if one.fresh else 1.0 for one in designs]
     if order is Order.UNLIKE:
         return [-value for value in differences([one.candidate for one in designs], selection.unlike)]
     return [0.0] * len(designs)

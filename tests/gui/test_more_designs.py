@@ -13,6 +13,8 @@ from kirigami_studio.evaluate.candidate import Candidate, Origin
 from kirigami_studio.gui.collecting import next_seed
 from kirigami_studio.gui.main_window import MainWindow
 from kirigami_studio.gui.messages import Tone
+from kirigami_studio.gui.selecting import Order
+from kirigami_studio.gui.views.gallery_model import FRESH_ROLE
 from kirigami_studio.pipeline.rank import ranked
 from kirigami_studio.pipeline.variety import distances
 from kirigami_studio.project.document import Document, Mark
@@ -62,6 +64,15 @@ def test_that_again_adds_designs_of_the_next_seed_and_keeps_choice_and_marks(
     assert after.marks.count(Mark.PINNED) == 1 and after.settings.seed == 0
     assert controller.history.undo_label == "Add 3 designs" and "3 designs added" in drawn.says.text()
     assert drawn.stage.title.text() == f"Design {after.candidates.index(before.candidate) + 1}"
+    model = drawn.gallery.view.model_
+    assert [model.index(row, 0).data(FRESH_ROLE) for row in range(6)] == [one.seed == 1 for one in after.candidates]
+    box = drawn.gallery.bar.order
+    box.setCurrentIndex(box.findData(Order.NEWEST))
+    box.activated.emit(box.currentIndex())
+    assert [one.seed for one in shown(drawn)] == [1, 1, 1, 0, 0, 0]
+    assert shown(drawn)[:3] == [one for one in after.candidates if one.seed == 1]
+    box.setCurrentIndex(0)
+    box.activated.emit(0)
     drawn.actions_["undo"].trigger()
     assert controller.document == before
     until(lambda: tuple(shown(drawn)) == before.candidates)

@@ -47,6 +47,7 @@ def check_order(designed: MainWindow, designs: Document, order: Order) -> None:
         Order.GAIN: lambda one: -one.score.siou_gain,
         Order.TV: lambda one: one.score.tv,
         Order.PANEL: lambda one: -least_panel(deploy(one.field)),
+        Order.NEWEST: lambda one: designs.candidates.index(one),
         Order.UNLIKE: lambda one: -float(distances(chosen, [one.field])[0]),
     }[order]
     assert shown(designed) == sorted(designs.candidates, key=values)

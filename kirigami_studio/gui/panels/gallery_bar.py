@@ -234,6 +234,7 @@ def _orders() -> tuple[tuple[Order, str, str], ...]:
             tr("By smallest panel"),
             tr("The sheet whose smallest panel edge or neck is largest first, in mm at the sheet's width."),
         ),
+        (Order.NEWEST, tr("By newest"), tr("Designs that the last run has added first; they carry a dot.")),
         (
             Order.UNLIKE,
             tr("Unlike the chosen"),

@@ -17,6 +17,7 @@ from kirigami_studio.gui.theme import LIGHT, Palette
 from kirigami_studio.gui.views.gallery_model import (
     CANDIDATE_ROLE,
     DESIGN_ROLE,
+    FRESH_ROLE,
     MARK_ROLE,
     NUMBER_ROLE,
     RISE_ROLE,
@@ -32,6 +33,8 @@ GAP = 8
 SMALLEST_RISE = 5e-4
 #: Edge of the buttons under the mouse, pixels.
 BUTTON = 24
+#: Edge of the dot on new designs, pixels.
+DOT = 7
 #: Opacity of a rejected design's picture.
 DIMMED = 0.3
 Index = QModelIndex | QPersistentModelIndex
@@ -91,7 +94,7 @@ class CardDelegate(QStyledItemDelegate):
             picture.topLeft(), self._picture(design, picture.size(), painter.device().devicePixelRatio())
         )
         painter.setOpacity(1.0)
-        self._paint_number(painter, card, index.data(NUMBER_ROLE), mark)
+        self._paint_number(painter, card, index.data(NUMBER_ROLE), mark, index.data(FRESH_ROLE))
         rise: float = index.data(RISE_ROLE)
         if candidate == self.compared:
             self._paint_chip(painter, card, "", "compare")
@@ -119,16 +122,21 @@ class CardDelegate(QStyledItemDelegate):
             self._pictures[key] = candidate_pixmap(design, self.target, size, ratio, self.palette_)
         return self._pictures[key]
 
-    def _paint_number(self, painter: QPainter, card: QRect, number: int, mark: Mark) -> None:
-        """The design's number, and beside it a pin, or a cross where it is rejected."""
+    def _paint_number(self, painter: QPainter, card: QRect, number: int, mark: Mark, fresh: bool) -> None:
+        """The design's number, a dot where it is new, and a pin, or a sign where it is rejected."""
         painter.setPen(QColor(self.palette_.muted))
         text, place = f"{number}", card.adjusted(10, 8, -10, 0)
         painter.drawText(place, int(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignTop), text)
+        metrics = painter.fontMetrics()
+        left = place.left() + metrics.horizontalAdvance(text) + 5
+        if fresh:
+            painter.setPen(Qt.PenStyle.NoPen)
+            painter.setBrush(QColor(self.palette_.accent))
+            painter.drawEllipse(QRectF(left, place.top() + 0.5 * metrics.height() - 0.5 * DOT, DOT, DOT))
+            left += DOT + 5
         if mark is Mark.NONE:
             return
         name, colour = ("pinned", self.palette_.accent) if mark is Mark.PINNED else ("reject", self.palette_.muted)
-        metrics = painter.fontMetrics()
-        left = place.left() + metrics.horizontalAdvance(text) + 5
         box = QRectF(left, place.top() - 2, metrics.height() + 4, metrics.height() + 4)
         painter.setPen(QPen(QColor(colour), 1.0))
         painter.setBrush(QColor(self.palette_.surface))

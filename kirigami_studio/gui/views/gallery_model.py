@@ -21,6 +21,7 @@ DESIGN_ROLE = Qt.ItemDataRole.UserRole + 2
 RISE_ROLE = Qt.ItemDataRole.UserRole + 3
 NUMBER_ROLE = Qt.ItemDataRole.UserRole + 4
 MARK_ROLE = Qt.ItemDataRole.UserRole + 5
+FRESH_ROLE = Qt.ItemDataRole.UserRole + 7  #: whether the last further run has added it
 VALUE_ROLE = Qt.ItemDataRole.UserRole + 6  #: words for the number that is sorted by
 
 Index = QModelIndex | QPersistentModelIndex
@@ -61,6 +62,7 @@ class GalleryModel(QAbstractListModel):
         self._all: list[Entry] = []
         self._shown: list[Entry] = []
         self._marks: dict[Candidate, Mark] = {}
+        self._fresh: frozenset[Candidate] = frozenset()
         self._selection = Selection()
         self._width_mm = 100.0
 
@@ -98,6 +100,8 @@ class GalleryModel(QAbstractListModel):
             return self.number_of(entry.candidate)
         if role == MARK_ROLE:
             return self.mark_of(entry.candidate)
+        if role == FRESH_ROLE:
+            return entry.candidate in self._fresh
         return simple.get(role)
 
     def _described(self, entry: Entry) -> str:
@@ -107,6 +111,8 @@ class GalleryModel(QAbstractListModel):
         mark = self.mark_of(entry.candidate)
         if mark is not Mark.NONE:
             lines.append(tr("Pinned") if mark is Mark.PINNED else tr("Rejected"))
+        if entry.candidate in self._fresh:
+            lines.append(tr("Added by the last run"))
         return "\n".join(lines)
 
     def _size(self, entry: Entry) -> str:
@@ -172,6 +178,12 @@ class GalleryModel(QAbstractListModel):
             self._marks = wanted
             self._rearrange()
 
+    def set_fresh(self, fresh: frozenset[Candidate]) -> None:
+        """Tell which designs the last further run has added."""
+        if fresh != self._fresh:
+            self._fresh = fresh
+            self._rearrange()
+
     def set_width_mm(self, width_mm: float) -> None:
         """Tell how wide the sheet is, for sizes of panels."""
         if width_mm != self._width_mm:
@@ -195,7 +207,8 @@ class GalleryModel(QAbstractListModel):
         return [self._all[place] for place in arranged(designs, self._selection)]
 
     def _as_shown(self, entry: Entry, place: int) -> Shown:
-        return Shown(place, entry.candidate, self.mark_of(entry.candidate), entry.design.deployment)
+        mark, fresh = self.mark_of(entry.candidate), entry.candidate in self._fresh
+        return Shown(place, entry.candidate, mark, entry.design.deployment, fresh)
 
     def _rearrange(self) -> None:
         after = self._arranged()

@@ -97,10 +97,11 @@ class GalleryView(QListView):
         if sorted_anew:
             self.scrollToTop()
 
-    def show_marks(self, marks: Mapping[Candidate, Mark]) -> None:
-        """Show which candidates are pinned or rejected."""
+    def show_marks(self, marks: Mapping[Candidate, Mark], fresh: frozenset[Candidate]) -> None:
+        """Show which candidates are pinned or rejected, and which the last further run has added."""
         self._telling = False
         self.model_.set_marks(marks)
+        self.model_.set_fresh(fresh)
         self._telling = True
         self.mark(self._marked)
 
