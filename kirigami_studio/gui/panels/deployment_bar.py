@@ -18,6 +18,8 @@ from kirigami_studio.gui.views.phi_slider import PhiSlider
 #: Seconds from the flat sheet to fully turned while playing at the usual speed.
 PLAY_SECONDS = 4.0
 FRAME_MS = 16
+#: Radians from the last angle at which the sheet counts as open: less than a step of the slider.
+AT_LAST = 1e-3
 
 
 class DeploymentBar(QWidget):
@@ -101,7 +103,7 @@ class DeploymentBar(QWidget):
         if playing:
             mode, last = self.options.mode, self._last()
             self._phase = phase_of(self.slider.phi, mode, last)
-            if mode is not PlayMode.SWING and phi_at(self._phase, mode, last) <= last:
+            if mode is not PlayMode.SWING and phi_at(self._phase, mode, last) <= last + AT_LAST:
                 self._phase = 0.0  # it stands open already: start from the flat sheet
             self._clock.start()
             self._timer.start()

@@ -32,6 +32,7 @@ class _Row:
     tip: str
     unit: str
     series: tuple[tuple[str, Callable[[Reading, float], float]], ...]
+    from_zero: bool = False
 
 
 def _rows() -> tuple[_Row, ...]:
@@ -49,7 +50,7 @@ def _rows() -> tuple[_Row, ...]:
         )),
         _Row(tr("Gap"), tr("Narrowest bottleneck of air between parts of the outline, mm; 0 is contact"), "mm", (
             (tr("gap"), lambda reading, mm: reading.gap * mm),
-        )),
+        ), True),
     )  # fmt: skip
 
 
@@ -63,7 +64,7 @@ class PlotsPanel(QWidget):
         self._palette: Palette = LIGHT
         self._curves: Curves | None = None
         self._width_mm = 100.0
-        self._phi, self._pointed = math.pi, -1.0
+        self._phi, self._target, self._pointed = math.pi, 0.0, -1.0
         self._rows = _rows()
         self.charts: list[Chart] = []
         self.setObjectName("plain")
@@ -131,6 +132,12 @@ class PlotsPanel(QWidget):
             chart.set_phi(phi)
         self._read_out()
 
+    def set_target(self, phi: float) -> None:
+        """Mark the target angle, radians."""
+        self._target = phi
+        for chart in self.charts:
+            chart.set_target(phi)
+
     def set_palette(self, palette: Palette) -> None:
         """Draw in other colours."""
         self._palette = palette
@@ -145,12 +152,13 @@ class PlotsPanel(QWidget):
         from kirigami_studio.gui.views.chart import Chart  # the worker has imported what it draws with
 
         for row in self._rows:
-            chart = Chart(row.text, row.unit, tuple(name for name, _ in row.series))
+            chart = Chart(row.text, row.unit, tuple(name for name, _ in row.series), row.from_zero)
             chart.setToolTip(tr("{what}. Drag the line or click to go to an angle.", what=row.tip))
             chart.set_palette(self._palette)
             chart.phi_wanted.connect(self.phi_wanted)
             chart.pointed.connect(self._point)
             chart.set_phi(self._phi)
+            chart.set_target(self._target)
             self._column.addWidget(chart, 1)
             self.charts.append(chart)
 

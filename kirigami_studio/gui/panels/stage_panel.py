@@ -281,6 +281,7 @@ class StagePanel(Card):
         contact = None if score is None else score.contact
         self.view.show_design(shown.design, score, self._target)
         self.deployment.set_marks(shown.design.phi_target, None if contact is None else contact.phi)
+        self.plots.set_target(shown.design.phi_target)
 
     def _show_title(self) -> None:
         entry, rank = self._entry, self._rank
@@ -343,7 +344,7 @@ class StagePanel(Card):
         if self.split.orientation() is not side:
             self.split.setOrientation(side)
             size = self.split.size()
-            length, share = (size.width(), 0.42) if side is Qt.Orientation.Horizontal else (size.height(), 0.4)
+            length, share = (size.width(), 0.38) if side is Qt.Orientation.Horizontal else (size.height(), 0.4)
             self.split.setSizes([round((1.0 - share) * length), round(share * length)])
 
     def restore(self, settings: QSettings) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import numpy.typing as npt
-from PySide6.QtCore import QPointF, QRectF, Qt
+from PySide6.QtCore import QLineF, QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QFont, QFontMetricsF, QPainter, QPen
 
 from kirigami_studio.gui.scene.colour_scale import ColourScale
@@ -13,8 +13,8 @@ from kirigami_studio.gui.theme import Palette
 
 FloatArray = npt.NDArray[np.float64]
 
-#: Opacity of the heat map: the panels' edges shine through.
-HEAT_OPACITY = 0.82
+#: Opacity of the panels' edges on the heat map.
+EDGE_OPACITY = 0.35
 #: Numbers are this much smaller than other text.
 SMALL_PRINT = 0.82
 #: Pixels around a number that belong to it.
@@ -44,18 +44,25 @@ def quad_areas(quads: FloatArray) -> FloatArray:
 
 
 def paint_shaded(painter: QPainter, quads: FloatArray, values: FloatArray, scale: ColourScale) -> None:
-    """Fill quadrilaterals (K, 4, 2), pixels, with the colours of their values (K,)."""
+    """Fill quadrilaterals (K, 4, 2), pixels, with the colours of their values (K,).
+
+    Without a pen and opaque: with them 576 take 50 ms instead of 6.
+    """
+    painter.setPen(Qt.PenStyle.NoPen)
     for path, colour in zip(quad_paths(quads), scale.shades(values), strict=True):
-        painter.setPen(QPen(colour, 0.6))  # in the fill's colour: no hairlines between neighbours
         painter.setBrush(colour)
         painter.drawPath(path)
 
 
-def paint_heat(painter: QPainter, tiles: FloatArray, ratio: FloatArray, scale: ColourScale) -> None:
-    """Fill the tiles (m, n, 4, 2), pixels, with the colours of the ratios (m, n)."""
-    painter.setOpacity(HEAT_OPACITY)
-    paint_shaded(painter, tiles.reshape(-1, 4, 2), np.log10(ratio).ravel(), scale)
-    painter.setOpacity(1.0)
+def paint_heat(painter: QPainter, panels: FloatArray, ratio: FloatArray, scale: ColourScale, palette: Palette) -> None:
+    """Fill the tiles of panels ((m + 1)(n + 1), 4, 2), pixels, with the colours of the ratios (m, n)."""
+    rows, columns = ratio.shape
+    paint_shaded(painter, heat_tiles(panels, rows, columns).reshape(-1, 4, 2), np.log10(ratio).ravel(), scale)
+    line = QColor(palette.text)
+    line.setAlphaF(EDGE_OPACITY)
+    painter.setPen(QPen(line, 0.0))
+    sides = np.stack([panels, np.roll(panels, -1, axis=1)], axis=2).reshape(-1, 4)
+    painter.drawLines([QLineF(*side) for side in sides.tolist()])
 
 
 def paint_numbers(

@@ -13,6 +13,7 @@ from PySide6.QtCore import QEvent, QObject, Qt, Signal
 from PySide6.QtGui import QColor, QPen
 from PySide6.QtWidgets import QLabel, QVBoxLayout, QWidget
 
+from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.theme import LIGHT, Palette
 
 pg: Any = pyqtgraph  # it has types for a part of itself only
@@ -39,9 +40,10 @@ class Chart(QWidget):
     phi_wanted = Signal(float)  #: radians
     pointed = Signal(float)  #: radians, negative when the mouse has left
 
-    def __init__(self, title: str, unit: str, names: tuple[str, ...], parent: QWidget | None = None) -> None:
-        super().__init__(parent)
-        self._unit, self._names = unit, names
+    def __init__(self, title: str, unit: str, names: tuple[str, ...], from_zero: bool = False) -> None:
+        super().__init__()
+        self._unit, self._names, self._from_zero = unit, names, from_zero
+        self._nearest: int | None = None
         self._palette: Palette = LIGHT
         self._series = Series(np.zeros(0), tuple(np.zeros(0) for _ in names))
         self.setAccessibleName(f"{title}, {unit}")
@@ -61,6 +63,8 @@ class Chart(QWidget):
         self.curves: list[Any] = [self.plot.plot() for _ in names]
         self.dots: Any = pg.ScatterPlotItem(size=7)
         self.plot.addItem(self.dots)
+        self.target: Any = pg.InfiniteLine(pos=0.0, angle=90, movable=False)
+        self.plot.addItem(self.target)
         self.line: Any = pg.InfiniteLine(pos=180.0, angle=90, movable=True, bounds=(0.0, 180.0))
         self.plot.addItem(self.line)
         self.line.sigDragged.connect(lambda line: self.phi_wanted.emit(math.radians(line.value())))
@@ -82,11 +86,16 @@ class Chart(QWidget):
         known = known[np.isfinite(known)]
         if known.size:
             low, high = float(known.min()), float(known.max())
+            low = 0.0 if self._from_zero else low
             self.plot.setYRange(low, high if high > low else low + 1.0, padding=0.08)
 
     def set_phi(self, phi: float) -> None:
         """Move the line, radians; nobody is told."""
         self.line.setValue(math.degrees(phi))
+
+    def set_target(self, phi: float) -> None:
+        """Mark the target angle, radians."""
+        self.target.setValue(math.degrees(phi))
 
     def show_angles(self, shown: bool) -> None:
         """Whether the angle axis has numbers."""
@@ -104,6 +113,7 @@ class Chart(QWidget):
         self.plot.showGrid(x=True, y=True, alpha=0.25)
         for curve, colour, style in zip(self.curves, self._colours(), _STYLES, strict=False):
             curve.setPen(_pen(colour, 2.0, style))
+        self.target.setPen(_pen(palette.target, 1.4, Qt.PenStyle.DotLine))
         self.line.setPen(_pen(palette.text, 1.4, Qt.PenStyle.SolidLine))
         self.line.setHoverPen(_pen(palette.accent, 3.0, Qt.PenStyle.SolidLine))
         self.dots.setPen(_pen(palette.surface, 1.0, Qt.PenStyle.SolidLine))
@@ -119,8 +129,6 @@ class Chart(QWidget):
         if self._series.degrees.size:
             self._nearest = int(np.argmin(np.abs(self._series.degrees - math.degrees(phi))))
         self._write()
-
-    _nearest: int | None = None
 
     @property
     def nearest(self) -> tuple[float, tuple[float, ...]] | None:
@@ -174,5 +182,5 @@ def _pen(colour: str, width: float, style: Qt.PenStyle) -> QPen:
 
 def _readable(value: float, unit: str) -> str:
     if not math.isfinite(value):
-        return "\N{EN DASH}"
+        return tr("none")
     return f"{value:.0f} {unit}" if abs(value) >= 1000 else f"{value:.2f} {unit}"

@@ -273,9 +273,8 @@ class LayoutView(Canvas):
             return
         field = design.deployment.field
         if Overlay.RATIOS in self._overlays:
-            tiles = heat_tiles(frame.to_pixels(design.panels(nodes)), field.rows, field.columns)
             self._scales.append(ratio_scale(field.ratio, self.palette_))
-            paint_heat(painter, tiles, field.ratio, self._scales[-1])
+            paint_heat(painter, frame.to_pixels(design.panels(nodes)), field.ratio, self._scales[-1], self.palette_)
         if Overlay.OPENINGS in self._overlays:
             voids, mm2 = design.voids(nodes), self.mm_per_unit**2
             self._scales.append(opening_scale(self._largest_opening * mm2, self.palette_))
