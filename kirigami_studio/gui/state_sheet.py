@@ -24,6 +24,7 @@ from kirigami_studio.gui.sketching.point_tool import PointTool
 from kirigami_studio.gui.theme import DARK, LIGHT
 from kirigami_studio.gui.views.card_delegate import CardButton, button_boxes
 from kirigami_studio.gui.views.cut_view import CutOverlay
+from kirigami_studio.gui.views.layout_view import Overlay
 from kirigami_studio.gui.views.target_view import Tool
 from kirigami_studio.project.document import Mark
 from kirigami_studio.target.combining import Combine, combined
@@ -59,6 +60,8 @@ class StateSheet(Session):
         self.all_sizes("designs")
         self.lost_designs()
         self.collection()
+        self.overlays()
+        self.plots()
         self.before_and_after()
         self.trimmed()
         self.cuts()
@@ -195,6 +198,31 @@ class StateSheet(Session):
         if menu is not None:
             self.picture("card-menu", menu)
             menu.close()
+
+    def overlays(self) -> None:
+        """The heat map with the smallest parts at the target angle, openings and numbers half open."""
+        stage = self.window.stage
+        for angle, shown in (
+            (0.0, (Overlay.RATIOS, Overlay.SMALL_PARTS)),
+            (100.0, (Overlay.OPENINGS, Overlay.PANEL_NUMBERS, Overlay.VOID_NUMBERS)),
+        ):
+            stage.deployment.set_phi(math.radians(angle))
+            for overlay in shown:
+                stage.set_overlay(overlay, True)
+            self.all_sizes(f"overlay-{shown[0].value}")
+            for overlay in shown:
+                stage.set_overlay(overlay, False)
+        stage.deployment.set_phi(0.0)
+
+    def plots(self) -> None:
+        """The curves of the design, with the line at 60 degrees."""
+        stage = self.window.stage
+        click(stage.plots_switch)
+        self.until(lambda: stage.plots.complete, "the curves were not read")
+        stage.deployment.set_phi(math.radians(60.0))
+        self.all_sizes("plots")
+        click(stage.plots_switch)
+        stage.deployment.set_phi(0.0)
 
     def before_and_after(self) -> None:
         """The first design that polishing has changed, as it was drawn."""
