@@ -38,9 +38,9 @@ from kirigami_studio.gui.storing import Storing
 from kirigami_studio.gui.targeting import Targeting
 from kirigami_studio.gui.views.gallery_model import Entry
 from kirigami_studio.pipeline.events import Result
-from kirigami_studio.project import edits, hand_edits
+from kirigami_studio.project import edits
 from kirigami_studio.project.design_facts import design_facts
-from kirigami_studio.project.document import Document, Void
+from kirigami_studio.project.document import Document
 from kirigami_studio.project.edits import Edit, FabricationChange, SettingsChange
 from kirigami_studio.project.history import History
 from kirigami_studio.target.outline import Outline
@@ -267,22 +267,6 @@ class Controller(QObject):
             self.message.emit(Message("Wait until the designs are done, then trim the one you choose.", Tone.HINT))
         else:
             self.finishing.switch(on)
-
-    def refit(self) -> None:
-        """Fit the chosen design again, from where it is."""
-        if not self.running and not self.hand.postpones(self.refit):
-            self.finishing.stop()
-            self.refitting.start()
-
-    def lock_voids(self, voids: frozenset[Void], on: bool) -> None:
-        """Lock voids against changes by hand, or unlock them."""
-        if not self.hand.postpones(lambda: self.lock_voids(voids, on)):
-            self._apply(hand_edits.lock_voids(self.document, voids, on))
-
-    def lock_all(self, on: bool) -> None:
-        """Lock every void, or none."""
-        if not self.hand.postpones(lambda: self.lock_all(on)):
-            self._apply(hand_edits.lock_all(self.document, on))
 
     def _forget_stage(self, entry: Entry | None) -> None:
         """Another design is on the stage: what was asked for the one before is no longer wanted."""

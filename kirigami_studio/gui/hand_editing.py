@@ -156,6 +156,16 @@ class HandEditing(QObject):
         told = tr("Void ({row}, {column}): ratio x {ratio:.3f}", row=row, column=column, ratio=float(table[void]))
         self.status.emit(told)
 
+    def lock(self, voids: frozenset[Void], on: bool) -> None:
+        """Lock voids against changes by hand, or unlock them."""
+        if voids and not self.postpones(lambda: self.lock(voids, on)):
+            self.edited.emit(hand_edits.lock_voids(self._document(), voids, on))
+
+    def lock_all(self, on: bool) -> None:
+        """Lock every void, or none."""
+        if not self.postpones(lambda: self.lock_all(on)):
+            self.edited.emit(hand_edits.lock_all(self._document(), on))
+
     # the outline ---------------------------------------------------------------------------------------------------
 
     def begin_vertex(self, vertex: int, phi: float) -> None:

@@ -37,12 +37,12 @@ class HandWiring(QObject):
         gestures.vertex_begun.connect(hand.begin_vertex)
         gestures.vertex_moved.connect(hand.move_vertex)
         gestures.let_go.connect(hand.let_go)
-        gestures.lock_wanted.connect(controller.lock_voids)
+        gestures.lock_wanted.connect(hand.lock)
         gestures.menu_wanted.connect(self._show_menu)
         hand.drafted.connect(self._show_draft)
         bar.ratio_wanted.connect(self._set_ratios)
-        bar.lock_wanted.connect(controller.lock_voids)
-        bar.all_wanted.connect(controller.lock_all)
+        bar.lock_wanted.connect(hand.lock)
+        bar.all_wanted.connect(hand.lock_all)
         bar.refit_wanted.connect(self._refit)
         controller.document_changed.connect(lambda _: self._refresh())
         controller.showing.stage_changed.connect(lambda _: self._refresh())
@@ -53,8 +53,8 @@ class HandWiring(QObject):
         actions = self.window.actions_
         actions["hand"].triggered.connect(self.window.stage.hand.click)
         actions["lock"].triggered.connect(self.toggle_lock)
-        actions["lock_all"].triggered.connect(lambda: controller.lock_all(True))
-        actions["unlock_all"].triggered.connect(lambda: controller.lock_all(False))
+        actions["lock_all"].triggered.connect(lambda: hand.lock_all(True))
+        actions["unlock_all"].triggered.connect(lambda: hand.lock_all(False))
         actions["refit"].triggered.connect(lambda: self._refit(True))
 
     def _refresh(self) -> None:
@@ -114,7 +114,7 @@ class HandWiring(QObject):
         here = self.gestures.void
         voids = self.gestures.selected or (frozenset() if here is None else frozenset({here}))
         if voids:
-            self.controller.lock_voids(voids, not voids <= self.controller.document.locked)
+            self.hand.lock(voids, not voids <= self.controller.document.locked)
         else:
             self.controller.status.emit(tr("Point at a void, or select some, then press L to lock them."))
 
@@ -133,11 +133,13 @@ class HandWiring(QObject):
         self.menu.popup(place)
 
     def _refit(self, on: bool) -> None:
-        if on:
-            self.controller.refit()
-            self.bar.show_fitting(self.controller.refitting.busy)
-        else:
-            self.controller.cancel()
+        controller = self.controller
+        if not on:
+            controller.cancel()
+        elif not controller.running and not self.hand.postpones(lambda: self._refit(True)):
+            controller.finishing.stop()
+            controller.refitting.start()
+        self.bar.show_fitting(controller.refitting.busy)
 
     def _show_fitting(self, busy: bool) -> None:
         self.bar.show_fitting(busy)

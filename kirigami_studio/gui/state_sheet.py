@@ -64,6 +64,7 @@ class StateSheet(Session):
         self.plots()
         self.before_and_after()
         self.trimmed()
+        self.by_hand()
         self.cuts()
         self.exported()
         window.stage.deployment.set_phi(math.radians(100.0))
@@ -256,6 +257,29 @@ class StateSheet(Session):
         stage.deployment.set_phi(0.0)
         click(stage.trim)
         self.until(lambda: not self._planned() and self.window.fabrication.export.isEnabled(), "no whole cut plan")
+
+    def by_hand(self) -> None:
+        """The mode in which voids are changed: with locks and a label at the pointer."""
+        window, view, controller = self.window, self.window.stage.view, self.window.controller
+        click(window.stage.hand)
+        controller.hand.lock(frozenset((row, column) for row in (2, 3) for column in (3, 4, 5)), True)
+        for name, degrees in (("half-open", 70.0), ("flat", 180.0), ("target", 0.0)):
+            window.stage.deployment.set_phi(math.radians(degrees))
+            view.voids.select(frozenset({(5, 5)}))
+            for size in SIZES:
+                window.resize(size)
+                for palette in (LIGHT, DARK):
+                    window.set_theme(palette)
+                    QApplication.processEvents()
+                    view.voids.point_at((6, 6))
+                    self.picture(f"by-hand-{name}-{size.width()}x{size.height()}-{palette.name}")
+        window.set_theme(LIGHT)
+        controller.hand.nudge((5, 5), 0.3)
+        self.until(lambda: not controller.hand.busy, "the changed ratio was not scored")
+        self.all_sizes("by-hand-changed")
+        while window.controller.history.undo_label is not None and "void" in window.controller.history.undo_label:
+            window.actions_["undo"].trigger()
+        click(window.stage.hand)
 
     def cuts(self) -> None:
         """The cut plan: whole, half cut with its travel, with connectors of their own and a problem, with options."""

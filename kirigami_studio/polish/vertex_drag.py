@@ -71,7 +71,7 @@ class VertexDrag:
         self._weight = np.full(len(self._outline), HOLD / len(self._outline))
         self._weight[vertex] = 1.0
         self._change = CHANGE / self._start.size
-        self._z = self._start
+        self._z, self._here = self._start, self._outline
         self._slopes: FloatArray | None = None
         self._guarded = self._is_physical(field)
 
@@ -83,7 +83,7 @@ class VertexDrag:
     @property
     def place(self) -> FloatArray:
         """Where the vertex is now: (2,), unit cells."""
-        where: FloatArray = self._model.outline(self._z)[self._vertex]
+        where: FloatArray = self._here[self._vertex]
         return where
 
     def gap(self, place: FloatArray) -> float:
@@ -92,13 +92,16 @@ class VertexDrag:
 
     def cost(self, z: FloatArray, place: FloatArray) -> float:
         """What is minimised, at z (m * n,) for a wanted place (2,), unit cells."""
+        return self._cost(z, self._model.outline(z), place)
+
+    def _cost(self, z: FloatArray, outline: FloatArray, place: FloatArray) -> float:
         change = z - self._start
-        gaps = np.square(self._gaps(z, place)).sum(axis=1)
+        gaps = np.square(self._gaps(outline, place)).sum(axis=1)
         return float(self._weight @ gaps) + self._change * float(change @ change)
 
-    def gradient(self, z: FloatArray, place: FloatArray, slopes: FloatArray) -> FloatArray:
-        """Derivative (m * n,) of the cost, from the outline's derivative (L, 2, m * n)."""
-        weighted = self._weight[:, None] * self._gaps(z, place)
+    def gradient(self, z: FloatArray, outline: FloatArray, place: FloatArray, slopes: FloatArray) -> FloatArray:
+        """Derivative (m * n,) of the cost, from the outline (L, 2) at z and its derivative (L, 2, m * n)."""
+        weighted = self._weight[:, None] * self._gaps(outline, place)
         gradient: FloatArray = 2.0 * (np.tensordot(weighted, slopes, axes=2) + self._change * (z - self._start))
         return gradient
 
@@ -129,14 +132,15 @@ class VertexDrag:
 
     def _advance(self, place: FloatArray, slopes: FloatArray) -> bool:
         """Take one step, if a physical one is found that lowers the cost; whether it was."""
-        before, step = self.cost(self._z, place), self._step(place, slopes)
+        before, step = self._cost(self._z, self._here, place), self._step(place, slopes)
         for _ in range(HALVINGS):
             z = self._moved(step)
-            if self.cost(z, place) < before:
+            outline = self._model.outline(z)
+            if self._cost(z, outline, place) < before:
                 field = self._field_of(z)
                 physical = self._is_physical(field)
                 if physical or not self._guarded:
-                    self._z, self._field, self._guarded = z, field, physical
+                    self._z, self._here, self._field, self._guarded = z, outline, field, physical
                     return True
             step = 0.5 * step
         return False
@@ -149,7 +153,7 @@ class VertexDrag:
 
     def _step(self, place: FloatArray, slopes: FloatArray) -> FloatArray:
         """The Gauss-Newton step (m * n,): held voids stay, and those at a bound that would be pushed beyond it."""
-        gradient = self.gradient(self._z, place, slopes)
+        gradient = self.gradient(self._z, self._here, place, slopes)
         inward = ~((self._z >= self._high) & (gradient < 0.0)) & ~((self._z <= self._low) & (gradient > 0.0))
         free = self._free[inward[self._free]]
         step = np.zeros_like(self._z)
@@ -162,10 +166,10 @@ class VertexDrag:
         longest = float(np.abs(step).max())
         return step * min(1.0, LONGEST_STEP / longest) if longest else step
 
-    def _gaps(self, z: FloatArray, place: FloatArray) -> FloatArray:
-        """How far every vertex is from where it should be: (L, 2)."""
-        gaps = self._model.outline(z) - self._outline
-        gaps[self._vertex] += self._outline[self._vertex] - place
+    def _gaps(self, outline: FloatArray, place: FloatArray) -> FloatArray:
+        """How far every vertex of an outline (L, 2) is from where it should be: (L, 2)."""
+        gaps = outline - self._outline
+        gaps[self._vertex] = outline[self._vertex] - place
         return gaps
 
     def _field_of(self, z: FloatArray) -> RatioField:

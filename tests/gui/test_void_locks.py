@@ -60,7 +60,7 @@ def test_that_all_voids_are_locked_and_unlocked_at_once(by_hand: MainWindow) -> 
 def test_that_a_locked_void_is_moved_by_nothing(by_hand: MainWindow, until: Until) -> None:
     view, before = by_hand.stage.view, chosen(by_hand)
     locked = frozenset((row, column) for row in range(2) for column in range(5))
-    by_hand.controller.lock_voids(locked, True)
+    by_hand.controller.hand.lock(locked, True)
     turn(view, middle_of(view, (1, 2)), 2)
     drag(view, middle_of(view, (1, 1)), middle_of(view, (1, 1)) + QPoint(8, 8))
     by_hand.controller.hand.set_ratio((0, 0), 2.0)
@@ -127,11 +127,11 @@ def test_that_a_fit_that_finds_nothing_better_is_taken_only_when_asked(
     until: Until,
 ) -> None:
     controller = by_hand.controller
-    controller.lock_all(True)
-    controller.lock_voids(frozenset({(1, 1)}), False)  # a single ratio is soon as good as it gets
+    controller.hand.lock_all(True)
+    controller.hand.lock(frozenset({(1, 1)}), False)  # a single ratio is soon as good as it gets
     for _ in range(12):
         held = chosen(by_hand)
-        controller.refit()
+        controller.refitting.start()
         until(lambda: not controller.refitting.busy)
         if chosen(by_hand) == held:
             break
@@ -173,5 +173,5 @@ def test_that_locks_and_changed_designs_are_saved_and_reopened(
 def test_that_there_is_nothing_to_edit_without_a_design_or_before_its_polish(heart: MainWindow) -> None:
     assert not heart.stage.hand.isEnabled() and not heart.actions_["hand"].isEnabled()
     heart.actions_["refit"].trigger()
-    heart.controller.refit()
+    heart.controller.refitting.start()
     assert "Choose a finished design first" in heart.messages.messages[-1].sentence

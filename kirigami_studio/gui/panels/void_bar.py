@@ -108,7 +108,7 @@ class VoidBar(QWidget):
 
     def _fit(self) -> None:
         others = (self.ratio, self.lock, self.all, self.refit)
-        self.says.fit(self.width() - sum(part.sizeHint().width() + 6 for part in others) - 24)
+        self.says.fit(self.width() - sum(part.width() + 6 for part in others) - 8)
 
     def set_palette(self, palette: Palette) -> None:
         """Draw in other colours."""
@@ -128,7 +128,7 @@ def _told(voids: frozenset[Void], locked: int) -> tuple[str, ...]:
     if len(voids) == 1:
         ((row, column),) = voids
         short = tr("Void ({row}, {column})", row=row, column=column)
-        return tr("{void}: pull it, turn the wheel, or press + and -", void=short), short
+        return tr("{void}: pull it, turn the wheel, or press + and -", void=short), short, f"({row}, {column})"
     if voids:
         return (tr_n("{count} void", "{count} voids", len(voids)),)
     hint = tr("Pull a void or a corner of the outline; the wheel changes a ratio")

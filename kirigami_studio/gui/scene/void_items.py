@@ -20,7 +20,7 @@ HANDLE, HELD = 5.0, 9.0
 #: Handles closer together than this (pixels) would hide the outline: they get smaller.
 CROWDED = 14.0
 #: A lock's sign is drawn where a void's longer diagonal has at least this many pixels.
-ROOM_FOR_SIGN = 15.0
+ROOM_FOR_SIGN = 24.0
 #: Pixels between the pointer and its label.
 BESIDE = QPointF(16.0, 18.0)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,7 +10,6 @@ import numpy.typing as npt
 
 from kirigami_studio.gui.scene.frame import Bounds, Frame
 from kirigami_studio.gui.scene.posed import PosedDesign
-from kirigami_studio.lattice.deployment import ZIPPED_BELOW
 from kirigami_studio.project.document import Void
 
 FloatArray = npt.NDArray[np.float64]
@@ -18,6 +18,8 @@ FloatArray = npt.NDArray[np.float64]
 VOID_REACH = 7.0
 #: Distance (pixels) from a vertex of the outline that still means the vertex.
 VERTEX_REACH = 8.0
+#: Closer than this (radians) to the flat sheet, which is a rectangle whatever the ratios, the outline cannot be moved.
+STIFF_WITHIN = 0.02
 #: While a design is edited by hand, the picture keeps its place until its box has changed by this share.
 STEADY = 0.08
 
@@ -52,9 +54,9 @@ class VoidShapes:
         return cls(design, phi, frame, corners, frame.to_pixels(design.outline(nodes, phi)))
 
     @property
-    def zipped(self) -> bool:
-        """Whether the edge hinges have left the outline."""
-        return self.phi < ZIPPED_BELOW
+    def movable(self) -> bool:
+        """Whether a ratio can move the outline at this angle."""
+        return self.phi < math.pi - STIFF_WITHIN
 
     def void_at(self, x: float, y: float, reach: float = VOID_REACH) -> Void | None:
         """The void that pixel (x, y) lies in; else the nearest one within ``reach`` pixels: closed ones are slits."""
@@ -68,7 +70,9 @@ class VoidShapes:
         return row, column
 
     def vertex_at(self, x: float, y: float, reach: float = VERTEX_REACH) -> int | None:
-        """The vertex of the outline that is nearest to pixel (x, y), within ``reach`` pixels."""
+        """The vertex of the outline that is nearest to pixel (x, y), within ``reach`` pixels; none that cannot move."""
+        if not self.movable:
+            return None
         distance = np.hypot(*(self.vertices - (x, y)).T)
         nearest = int(distance.argmin())
         return nearest if distance[nearest] <= reach else None

@@ -126,6 +126,12 @@ class VoidGestures(QObject):
             self.selection_changed.emit(voids)
             self._canvas.update()
 
+    def point_at(self, void: Void) -> None:
+        """Point at a void without a mouse."""
+        shapes = self._shapes()
+        if shapes is not None:
+            self._point(QPointF(*shapes.corners[void].mean(axis=0).tolist()))
+
     def follow(self) -> None:
         """Another design is shown: forget what it does not have, and look again at what lies under the pointer."""
         shapes = self._shapes()
@@ -155,8 +161,9 @@ class VoidGestures(QObject):
             return
         rows, columns = shapes.corners.shape[:2]
         paint_locks(painter, shapes, [void for void in self.locked if void[0] < rows and void[1] < columns], palette)
-        if self.active:
+        if self.active and shapes.movable:
             paint_handles(painter, shapes, self._vertex, palette)
+        if self.active:
             paint_marked(painter, shapes, sorted(self._selected), palette, 2.6)
         if self._hovered is not None and self._hovered not in self._selected:
             paint_marked(painter, shapes, [self._hovered], palette, 2.0 if self.active else 1.4)
