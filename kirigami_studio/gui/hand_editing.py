@@ -19,7 +19,7 @@ import numpy as np
 from PySide6.QtCore import QObject, QTimer, Signal
 
 from kirigami_studio.evaluate.candidate import Candidate
-from kirigami_studio.foundation.words import tr
+from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.gui.hand_pull import LARGEST, SMALLEST, Pull
 from kirigami_studio.gui.jobs import hand_steps
 from kirigami_studio.gui.jobs.board import Board, Ears
@@ -109,52 +109,56 @@ class HandEditing(QObject):
 
     # ratios --------------------------------------------------------------------------------------------------------
 
-    def nudge(self, void: Void, step: float) -> None:
-        """Change the log10 of a ratio by ``step``."""
-        if self._may_change(void) and self.field is not None:
-            self._change_ratio(void, float(self.field.ratio[void]) * math.pow(10.0, step))
+    def nudge(self, voids: frozenset[Void], step: float) -> None:
+        """Change the log10 of ratios by ``step``."""
+        free = self._free(voids)
+        if free and self.field is not None:
+            self._change({void: float(self.field.ratio[void]) * math.pow(10.0, step) for void in free})
             self._pause.start()
 
-    def set_ratio(self, void: Void, ratio: float) -> None:
-        """Give a void a ratio, as typed."""
-        if self._may_change(void):
-            self._change_ratio(void, ratio)
+    def set_ratio(self, voids: frozenset[Void], ratio: float) -> None:
+        """Give voids a ratio, as typed."""
+        free = self._free(voids)
+        if free:
+            self._change(dict.fromkeys(free, ratio))
             self._pause.start()
 
     def begin_pull(self, void: Void, place: tuple[float, float], phi: float) -> None:
         """Take hold of a void at a place in the world."""
         self._begin_drag()
         design = self._design()
-        if self._may_change(void) and design is not None:
+        if self._free(frozenset({void})) and design is not None:
             self._pull = Pull.of(design, void, place, phi)
 
     def pull(self, place: tuple[float, float]) -> None:
         """The hand has moved to a place in the world; the void follows."""
         if self._pull is not None:
-            self._change_ratio(self._pull.void, self._pull.ratio_at(place))
+            self._change({self._pull.void: self._pull.ratio_at(place)})
 
-    def _may_change(self, void: Void) -> bool:
+    def _free(self, voids: frozenset[Void]) -> list[Void]:
+        """Those that may be changed; when none may, the status line says why."""
         document = self._document()
-        if document.candidate is None:
-            return False
-        if void in document.locked:
-            row, column = void
-            told = tr("Void ({row}, {column}) is locked. Unlock it (L) to change its ratio.", row=row, column=column)
+        if document.candidate is None or not voids:
+            return []
+        free = sorted(voids - document.locked)
+        if not free:
+            told = tr_n("{count} void is locked. Unlock it (L) to change its ratio.",
+                        "{count} voids are locked. Unlock them (L) to change their ratios.", len(voids))  # fmt: skip
             self.status.emit(told)
-            return False
-        return True
+        return free
 
-    def _change_ratio(self, void: Void, ratio: float) -> None:
+    def _change(self, wanted: dict[Void, float]) -> None:
+        """Give voids new ratios within the bounds; one that lay beyond them before may stay there."""
         field = self.field
         if field is None:
             return
         table = field.ratio.copy()
-        table[void] = min(max(ratio, min(SMALLEST, table[void])), max(LARGEST, table[void]))
-        row, column = void
-        label = tr("Change ratio of void ({row}, {column})", row=row, column=column)
+        for void, ratio in wanted.items():
+            table[void] = min(max(ratio, min(SMALLEST, table[void])), max(LARGEST, table[void]))
+        first = min(wanted)
+        label = _label(first, len(wanted))
         self._draft(RatioField(table), label)
-        told = tr("Void ({row}, {column}): ratio x {ratio:.3f}", row=row, column=column, ratio=float(table[void]))
-        self.status.emit(told)
+        self.status.emit(tr("{gesture}: x {ratio:.3f}", gesture=label, ratio=float(table[first])))
 
     def lock(self, voids: frozenset[Void], on: bool) -> None:
         """Lock voids against changes by hand, or unlock them."""
@@ -321,3 +325,11 @@ class HandEditing(QObject):
         self.settled.emit()
         for wish in wishes:
             wish()
+
+
+def _label(void: Void, count: int) -> str:
+    """How a change of ``count`` ratios is named; ``void`` is the only one, or one of them."""
+    if count > 1:
+        return tr_n("Change ratio of {count} void", "Change ratio of {count} voids", count)
+    row, column = void
+    return tr("Change ratio of void ({row}, {column})", row=row, column=column)

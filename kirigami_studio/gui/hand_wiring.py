@@ -40,7 +40,7 @@ class HandWiring(QObject):
         gestures.lock_wanted.connect(hand.lock)
         gestures.menu_wanted.connect(self._show_menu)
         hand.drafted.connect(self._show_draft)
-        bar.ratio_wanted.connect(self._set_ratios)
+        bar.ratio_wanted.connect(hand.set_ratio)
         bar.lock_wanted.connect(hand.lock)
         bar.all_wanted.connect(hand.lock_all)
         bar.refit_wanted.connect(self._refit)
@@ -84,10 +84,6 @@ class HandWiring(QObject):
         self.view.show_draft(design)
         self._refresh()
 
-    def _set_ratios(self, voids: frozenset[Void], ratio: float) -> None:
-        for void in sorted(voids):
-            self.hand.set_ratio(void, ratio)
-
     # the label at the pointer --------------------------------------------------------------------------------------
 
     def _tell(self, void: Void | None) -> None:
@@ -125,7 +121,7 @@ class HandWiring(QObject):
         lock.triggered.connect(self.toggle_lock)
         even = self.menu.addAction(tr("Make the ratio 1"))
         even.setEnabled(not voids <= locked)
-        even.triggered.connect(lambda: self._set_ratios(voids - locked, 1.0))
+        even.triggered.connect(lambda: self.hand.set_ratio(voids, 1.0))
         self.menu.addSeparator()
         for name in ("lock_all", "unlock_all", "refit"):
             self.menu.addAction(self.window.actions_[name])

@@ -274,7 +274,7 @@ class StateSheet(Session):
                     view.voids.point_at((6, 6))
                     self.picture(f"by-hand-{name}-{size.width()}x{size.height()}-{palette.name}")
         window.set_theme(LIGHT)
-        controller.hand.nudge((5, 5), 0.3)
+        controller.hand.nudge(frozenset({(5, 5)}), 0.3)
         self.until(lambda: not controller.hand.busy, "the changed ratio was not scored")
         self.all_sizes("by-hand-changed")
         while window.controller.history.undo_label is not None and "void" in window.controller.history.undo_label:

@@ -8,7 +8,9 @@ import numpy as np
 import pytest
 from hand_gestures import ALT, LEFT, SHIFT, Until, chosen, drag, middle_of, ratio, settle, shapes_of, turn, vertex_at
 from PySide6.QtCore import QPoint, Qt
+from PySide6.QtGui import QContextMenuEvent
 from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QApplication
 
 from kirigami_studio.evaluate.candidate import Origin
 from kirigami_studio.gui.main_window import MainWindow
@@ -63,7 +65,7 @@ def test_that_a_locked_void_is_moved_by_nothing(by_hand: MainWindow, until: Unti
     by_hand.controller.hand.lock(locked, True)
     turn(view, middle_of(view, (1, 2)), 2)
     drag(view, middle_of(view, (1, 1)), middle_of(view, (1, 1)) + QPoint(8, 8))
-    by_hand.controller.hand.set_ratio((0, 0), 2.0)
+    by_hand.controller.hand.set_ratio(frozenset({(0, 0)}), 2.0)
     assert not by_hand.controller.hand.busy and chosen(by_hand) == before
     vertices = shapes_of(view).vertices
     way = vertices[10] - vertices.mean(axis=0)  # at the sheet's lower edge, beside voids that are free
@@ -102,6 +104,34 @@ def test_that_a_typed_ratio_is_one_step(by_hand: MainWindow, until: Until) -> No
     settle(by_hand, until)
     assert ratio(by_hand, (3, 2)) == 1.75
     assert by_hand.controller.history.undo_label == "Change ratio of void (3, 2)"
+
+
+def test_that_several_voids_change_in_one_step_and_locked_ones_stay(by_hand: MainWindow, until: Until) -> None:
+    view, before = by_hand.stage.view, chosen(by_hand).field.ratio
+    lock(by_hand, (0, 0))
+    view.voids.select(frozenset({(0, 0), (1, 1), (2, 3)}))
+    view.setFocus()
+    QTest.keyClick(view, Qt.Key.Key_Minus)
+    settle(by_hand, until)
+    after = chosen(by_hand).field.ratio
+    assert by_hand.controller.history.undo_label == "Change ratio of 2 voids"
+    assert after[0, 0] == before[0, 0]
+    assert (after[1, 1], after[2, 3]) == pytest.approx((before[1, 1] / 1.05, before[2, 3] / 1.05), rel=1e-3)
+
+
+def test_that_the_menu_of_a_void_locks_it_and_evens_its_ratio(by_hand: MainWindow, until: Until) -> None:
+    view = by_hand.stage.view
+    place = middle_of(view, (2, 1))
+    QApplication.sendEvent(view, QContextMenuEvent(QContextMenuEvent.Reason.Mouse, place, view.mapToGlobal(place)))
+    menu = by_hand.wiring.by_hand.menu
+    assert menu is not None and menu.isVisible()
+    choices = {action.text(): action for action in menu.actions()}
+    choices["Make the ratio 1"].trigger()
+    settle(by_hand, until)
+    assert ratio(by_hand, (2, 1)) == 1.0
+    choices["Lock"].trigger()
+    assert by_hand.controller.document.locked == {(2, 1)}
+    menu.close()
 
 
 def test_that_fit_again_improves_the_design_and_holds_what_is_locked(

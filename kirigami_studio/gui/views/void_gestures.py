@@ -44,7 +44,7 @@ class VoidGestures(QObject):
 
     hovered = Signal(object)  #: Void or None
     selection_changed = Signal(object)  #: frozenset of Void
-    nudged = Signal(object, float)  #: Void, change of log10 of its ratio
+    nudged = Signal(object, float)  #: frozenset of Void, change of log10 of their ratios
     pull_begun = Signal(object, object, float)  #: Void, place in the world, angle (radians)
     pulled = Signal(object)  #: place in the world
     vertex_begun = Signal(int, float)  #: vertex of the outline, angle (radians)
@@ -264,8 +264,9 @@ class VoidGestures(QObject):
         notches = (delta.y() or delta.x()) / 120.0
         fine = bool(event.modifiers() & Qt.KeyboardModifier.ShiftModifier)
         if notches:
-            self.select(frozenset({self._hovered}))
-            self.nudged.emit(self._hovered, notches * (FINE_NOTCH if fine else NOTCH))
+            if self._hovered not in self._selected:
+                self.select(frozenset({self._hovered}))
+            self.nudged.emit(self._selected, notches * (FINE_NOTCH if fine else NOTCH))
         event.accept()
         return True
 
@@ -281,8 +282,7 @@ class VoidGestures(QObject):
         if event.type() != QEvent.Type.KeyPress:
             return False
         if step.direction:
-            for void in sorted(self._selected):
-                self.nudged.emit(void, step.direction * (FINE_NOTCH if step.fine else NOTCH))
+            self.nudged.emit(self._selected, step.direction * (FINE_NOTCH if step.fine else NOTCH))
         else:
             self._walk(step, shapes)
         return True
