@@ -18,7 +18,6 @@ from kirigami_studio.export.exporter import ExportJob
 from kirigami_studio.export.png import write_png
 from kirigami_studio.export.registry import export
 from kirigami_studio.export.svg import write_layout_svg
-from kirigami_studio.fabricate.material import find_material
 from kirigami_studio.fabricate.trimmed_sheet import needed_keep
 from kirigami_studio.foundation.errors import Cancelled, FabricationError
 from kirigami_studio.foundation.files import check_folder, write_atomically
@@ -30,6 +29,7 @@ from kirigami_studio.pipeline.request import POLISH_STEPS, Request
 from kirigami_studio.pipeline.run import run
 from kirigami_studio.project.design_facts import design_facts
 from kirigami_studio.project.document import Document
+from kirigami_studio.project.material_record import material_for
 from kirigami_studio.project.settings import DesignSettings, FabricationSettings
 from kirigami_studio.project.store import save
 from kirigami_studio.target.outline import Outline
@@ -172,7 +172,7 @@ def _in_cells(length_mm: float, fabrication: FabricationSettings, grid: tuple[in
 
 def _keep(fabrication: FabricationSettings, grid: tuple[int, int]) -> float:
     """How deep (unit cells) material has to stay at the hinges of a trimmed sheet so that its connectors hold."""
-    material = find_material(fabrication.material)
+    material = material_for(fabrication)
     connector = material.connector_mm if fabrication.connector_mm is None else fabrication.connector_mm
     kerf = material.kerf_mm if fabrication.kerf_mm is None else fabrication.kerf_mm
     needed = needed_keep(deploy(RatioField.uniform(*grid)), fabrication.width_mm, connector, kerf)

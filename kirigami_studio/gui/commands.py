@@ -60,18 +60,20 @@ class Commands(QObject):
         self.report: ExportReport | None = None
         self.materials: MaterialEditor | None = None
         self.history: HistoryList | None = None
-        self.recent = RecentMenu(window, controller.recent, self.take_file)
+        self.recent = RecentMenu(window, controller.filing.recent, self.take_file)
         insert_menu(window, "save", self.recent)
         self.pasting = Pasting(self)
         self.pasting.file_wanted.connect(self.take_file)
         self.pasting.message.connect(controller.message)
-        controller.recovering.recover_wanted.connect(
-            lambda leftover: self.guard("recover another", partial(controller.recovering.recover, leftover))
+        controller.filing.recovering.recover_wanted.connect(
+            lambda leftover: self.guard("recover another", partial(controller.filing.recovering.recover, leftover))
         )
         self.picturing = Picturing(window, controller.board, lambda: controller.order)
         self.pictures = PictureMenu(window, self.picturing, lambda proposal: self.files.picture(proposal))
         insert_menu(window, "animation", self.pictures)
-        controller.hear(self.picturing)
+        self.picturing.message.connect(controller.message)
+        self.picturing.status.connect(controller.status)
+        controller.filing.stocking.stocked.connect(self._take_materials)
         self._closing = False
         self._connect_actions()
 

@@ -20,21 +20,19 @@ from kirigami_studio.gui.cutting import Cutting
 from kirigami_studio.gui.design_run import DesignRun
 from kirigami_studio.gui.fabricating import Fabricating
 from kirigami_studio.gui.file_kinds import kind_of
+from kirigami_studio.gui.filing import Filing
 from kirigami_studio.gui.finishing import Finishing
 from kirigami_studio.gui.hand_editing import HandEditing
 from kirigami_studio.gui.jobs import steps
 from kirigami_studio.gui.jobs.board import Board, Ears
 from kirigami_studio.gui.marking import Marking
 from kirigami_studio.gui.messages import Message, Tone
-from kirigami_studio.gui.picturing import Picturing
 from kirigami_studio.gui.plotting import Plotting
 from kirigami_studio.gui.preferring import Preferring
-from kirigami_studio.gui.recent_files import RecentFiles
-from kirigami_studio.gui.recovering import Recovering, Work
+from kirigami_studio.gui.recovering import Work
 from kirigami_studio.gui.refitting import Refitting
 from kirigami_studio.gui.shelf import Shelf
 from kirigami_studio.gui.showing import Showing
-from kirigami_studio.gui.storing import Storing
 from kirigami_studio.gui.targeting import Targeting
 from kirigami_studio.gui.views.gallery_model import Entry
 from kirigami_studio.pipeline.events import Result
@@ -71,13 +69,11 @@ class Controller(QObject):
         self.fabricating = Fabricating(lambda: self.document, self)
         self.cutting = Cutting(self.board, self)
         self.targeting = Targeting(self.board, lambda: self.document, self)
-        self.storing = Storing(self.board, self)
         self.preferring = Preferring(self)
-        self.recovering = Recovering(self.board, lambda: Work(self.document, self.path, self.history.unsaved), self)
-        self.recent = RecentFiles(self.board, self)
         self.collecting = Collecting(lambda: self.document, self)
         self.marking = Marking(lambda: self.document, self)
         self.plotting = Plotting(self.board, self)
+        self.filing = Filing(self.board, self._work, self.targeting, self)
         self._connect()
 
     def _connect(self) -> None:
@@ -93,13 +89,10 @@ class Controller(QObject):
         self.targeting.adjusted.connect(self._adjust)
         self.targeting.begun.connect(self._begin)
         self.targeting.settled.connect(self.end_drag)
-        self.targeting.source_read.connect(self.recent.take_target)
-        self.storing.saved.connect(self._saved)
-        self.storing.opened.connect(self._opened)
-        for path_known in (self.saved, self.opened):
-            path_known.connect(self.recent.take_project)
-        self.recovering.recovered.connect(self._recovered)
-        self.document_changed.connect(lambda _: self.recovering.notice())
+        self.filing.saved.connect(self._saved)
+        self.filing.opened.connect(self._opened)
+        self.filing.recovered.connect(self._recovered)
+        self.document_changed.connect(lambda _: self.filing.recovering.notice())
         self.hand.drafted.connect(self._stop_finish)
         for part in self._parts():
             self._hear(part)
@@ -107,8 +100,7 @@ class Controller(QObject):
     def _parts(self) -> tuple[QObject, ...]:
         making = (self.targeting, self.collecting, self.marking, self.finishing, self.fabricating, self.cutting)
         changing = (self.hand, self.refitting)
-        keeping = (self.storing, self.preferring, self.recovering, self.recent)
-        return (self.showing, self.comparing, self.plotting, *making, *changing, *keeping)
+        return (self.showing, self.comparing, self.plotting, *making, *changing, self.preferring, self.filing)
 
     def _hear(self, part: QObject) -> None:
         """Take what a part proposes and says; not every part has all four signals."""
@@ -132,17 +124,11 @@ class Controller(QObject):
         """Whether candidates are being generated."""
         return self.run.running
 
-    def hear(self, part: Picturing) -> None:
-        """Pass on what a part of the window has to say."""
-        part.message.connect(self.message)
-        part.status.connect(self.status)
-        part.failed.connect(self._tell_failure)
-
     def close(self) -> None:
         """Stop all work; the window is going away."""
         self.cutting.close()
         self.board.close()
-        self.recovering.close()
+        self.filing.close()
 
     def use_preferences(self, path: Path) -> None:
         """Start with what was preferred the last time, and remember what is from now on."""
@@ -326,7 +312,7 @@ class Controller(QObject):
     def save(self, path: Path) -> None:
         """Write the project file."""
         if not self.hand.postpones(lambda: self.save(path)):
-            self.storing.save(self.document, path)
+            self.filing.storing.save(self.document, path)
 
     def _saved(self, path: Path, document: Document) -> None:
         self.path = path
@@ -337,7 +323,7 @@ class Controller(QObject):
 
     def open_project(self, path: Path) -> None:
         """Read a project file."""
-        self.storing.open(path)
+        self.filing.storing.open(path)
 
     def _opened(self, path: Path, document: Document) -> None:
         self._stop_design()
@@ -346,6 +332,10 @@ class Controller(QObject):
         self.opened.emit(path)
         self._show()
         self.status.emit(f"Opened {path}.")
+
+    def _work(self) -> Work:
+        picture = self.targeting.tracing.picture_of(self.document.target)
+        return Work(self.document, self.path, self.history.unsaved, picture)
 
     def _recovered(self, document: Document, path: Path | None) -> None:
         self._stop_design()

@@ -32,7 +32,6 @@ class Picturing(QObject):
     written = Signal(object)  #: Path
     copied = Signal()
     message = Signal(object)  #: Message
-    failed = Signal(str, str)  #: sentence, trace
     status = Signal(str)
 
     def __init__(
@@ -70,13 +69,13 @@ class Picturing(QObject):
             steps = partial(picture_steps.writing_svg, self.svg(view), path)
         else:
             steps = partial(picture_steps.writing_png, self.record(view), self.scale, path)
-        ears = Ears(self._told_written, on_failed=self.failed.emit)
+        ears = Ears(self._told_written, on_failed=self._tell_failure)
         self._board.start(f"writing {path.name}", steps, ears)
 
     def copy(self, view: QWidget) -> None:
         """Put a picture of a view on the clipboard."""
         steps = partial(picture_steps.drawing, self.record(view), self.scale)
-        self._board.start("copying a picture", steps, Ears(self._take_image, on_failed=self.failed.emit))
+        self._board.start("copying a picture", steps, Ears(self._take_image, on_failed=self._tell_failure))
 
     def copy_cuts(self) -> None:
         """Put the cut plan on the clipboard as SVG in mm, for a drawing program or a laser program."""
@@ -85,7 +84,7 @@ class Picturing(QObject):
             self.message.emit(Message(tr("There is no design to copy yet; generate one first."), Tone.HINT))
             return
         self.status.emit(tr("Planning the cuts to copy …"))
-        ears = Ears(self._take_cuts, on_failed=self.failed.emit)
+        ears = Ears(self._take_cuts, on_failed=self._tell_failure)
         self._board.start("copying the cuts", partial(picture_steps.drawing_cuts, order), ears)
 
     # drawing -------------------------------------------------------------------------------------------------------
@@ -129,6 +128,9 @@ class Picturing(QObject):
         return {} if order is None else order.facts
 
     # news ----------------------------------------------------------------------------------------------------------
+
+    def _tell_failure(self, sentence: str, trace: str) -> None:
+        self.message.emit(Message(sentence, Tone.ERROR, trace))
 
     def _told_written(self, path: object) -> None:
         if isinstance(path, Path):

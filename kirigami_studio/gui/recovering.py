@@ -15,7 +15,9 @@ from PySide6.QtCore import QDateTime, QDeadlineTimer, QLocale, QLockFile, QObjec
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.jobs import recovery_steps
 from kirigami_studio.gui.jobs.board import Board, Ears
+from kirigami_studio.gui.jobs.project_steps import Left, Project
 from kirigami_studio.gui.jobs.recovery_steps import Leftover
+from kirigami_studio.gui.jobs.steps import Picture
 from kirigami_studio.gui.messages import Message, Tone
 from kirigami_studio.project import recovery
 from kirigami_studio.project.document import Document
@@ -37,6 +39,7 @@ class Work:
     document: Document
     path: Path | None
     unsaved: bool
+    picture: Picture | None = None
 
 
 class Recovering(QObject):
@@ -48,15 +51,16 @@ class Recovering(QObject):
 
     recovered = Signal(object, object)  #: Document; Path of its project or None
     recover_wanted = Signal(object)  #: Leftover; whoever asks about unsaved changes goes on with recover()
+    picture_found = Signal(object, object)  #: Outline, Picture that it was traced from; comes before recovered
     kept = Signal(object)  #: Document that is on disk now
     message = Signal(object)  #: Message
     failed = Signal(str, str)  #: sentence, trace
     status = Signal(str)
 
-    def __init__(self, board: Board, work: Callable[[], Work], parent: QObject) -> None:
+    def __init__(self, board: Board, work: Callable[[], Work], place: Callable[[], Path], parent: QObject) -> None:
         super().__init__(parent)
         self._board = board
-        self._work = work
+        self._work, self._place = work, place
         self.quiet_ms, self.longest_ms = QUIET_MS, LONGEST_MS
         self._folder: Path | None = None
         self._own: Path | None = None
@@ -124,7 +128,7 @@ class Recovering(QObject):
         path = "" if work.path is None else str(work.path.absolute())
         note = Note(_name_of(work), path, recovery.now(), os.getpid())
         ears = Ears(self._take_kept, self._look_again, on_failed=lambda sentence, _: self._not_kept(sentence))
-        steps = partial(recovery_steps.keeping, work.document, note, self._own)
+        steps = partial(recovery_steps.keeping, work.document, work.picture, note, self._own)
         self._job = self._board.start("keeping the work for a recovery", steps, ears)
 
     def _locked(self, own: Path) -> bool:
@@ -214,7 +218,7 @@ class Recovering(QObject):
         """Open the kept work; its file goes once this session keeps the work itself."""
         self.status.emit(tr("Recovering {name} …", name=_called(leftover)))
         ears = Ears(partial(self._take_recovered, leftover), on_failed=partial(self._not_recovered, leftover))
-        steps = partial(recovery_steps.recovering, leftover)
+        steps = partial(recovery_steps.recovering, leftover, self._place())
         self._board.start(f"recovering {_called(leftover)}", steps, ears)
 
     def discard(self, leftover: Leftover) -> None:
@@ -229,9 +233,14 @@ class Recovering(QObject):
         if lock is not None:
             lock.unlock()
 
-    def _take_recovered(self, leftover: Leftover, document: object) -> None:
-        if not isinstance(document, Document):
+    def _take_recovered(self, leftover: Leftover, report: object) -> None:
+        if isinstance(report, Left):
+            self.message.emit(Message(report.sentence, Tone.WARNING))
+        if not isinstance(report, Project):
             return
+        document = report.document
+        if report.picture is not None:
+            self.picture_found.emit(document.target, report.picture)
         self._pending = leftover
         path = leftover.note.path if leftover.note is not None else ""
         self.recovered.emit(document, Path(path) if path else None)

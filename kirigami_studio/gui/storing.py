@@ -2,44 +2,71 @@
 
 from __future__ import annotations
 
+import tempfile
+from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 
 from PySide6.QtCore import QObject, Signal
 
-from kirigami_studio.gui.jobs import steps
+from kirigami_studio.gui.jobs import project_steps
 from kirigami_studio.gui.jobs.board import Board, Ears
+from kirigami_studio.gui.jobs.project_steps import Left, Project
+from kirigami_studio.gui.jobs.steps import Picture
+from kirigami_studio.gui.messages import Message, Tone
+from kirigami_studio.gui.pasting import PASTED
 from kirigami_studio.project.document import Document
+from kirigami_studio.target.outline import Outline
 
 
 class Storing(QObject):
-    """Saves and opens projects."""
+    """Saves and opens projects, with the picture behind the target."""
 
     saved = Signal(object, object)  #: Path, Document that it holds
     opened = Signal(object, object)  #: Path, Document
+    picture_found = Signal(object, object)  #: Outline, Picture that it was traced from; comes before opened
+    message = Signal(object)  #: Message
     failed = Signal(str, str)  #: sentence, trace
     status = Signal(str)
 
-    def __init__(self, board: Board, parent: QObject) -> None:
+    def __init__(self, board: Board, picture_of: Callable[[Outline | None], Picture | None], parent: QObject) -> None:
         super().__init__(parent)
         self._board = board
+        self._picture_of = picture_of
+        self._folder: tempfile.TemporaryDirectory[str] | None = None
+        self._count = 0
 
     def save(self, document: Document, path: Path) -> None:
         """Write a project file."""
         self.status.emit(f"Saving {path.name} …")
         ears = Ears(partial(self._saved, document), on_failed=self.failed.emit)
-        self._board.start(f"saving {path.name}", partial(steps.saving, document, path), ears)
+        steps = partial(project_steps.saving, document, self._picture_of(document.target), path)
+        self._board.start(f"saving {path.name}", steps, ears)
 
     def open(self, path: Path) -> None:
         """Read a project file."""
         self.status.emit(f"Opening {path.name} …")
         ears = Ears(partial(self._opened, path), on_failed=self.failed.emit)
-        self._board.start(f"opening {path.name}", partial(steps.loading, path), ears)
+        self._board.start(f"opening {path.name}", partial(project_steps.loading, path, self.place()), ears)
 
-    def _saved(self, document: Document, path: object) -> None:
-        if isinstance(path, Path):
-            self.saved.emit(path, document)
+    def place(self) -> Path:
+        """A folder for the picture of one project; it lasts as long as the session."""
+        if self._folder is None:
+            self._folder = tempfile.TemporaryDirectory(prefix=PASTED)
+            self.destroyed.connect(self._folder.cleanup)
+        self._count += 1
+        return Path(self._folder.name) / f"{PASTED}{self._count}"
 
-    def _opened(self, path: Path, document: object) -> None:
-        if isinstance(document, Document):
-            self.opened.emit(path, document)
+    def _saved(self, document: Document, report: object) -> None:
+        if isinstance(report, Left):
+            self.message.emit(Message(report.sentence, Tone.WARNING))
+        elif isinstance(report, Path):
+            self.saved.emit(report, document)
+
+    def _opened(self, path: Path, report: object) -> None:
+        if isinstance(report, Left):
+            self.message.emit(Message(report.sentence, Tone.WARNING))
+        elif isinstance(report, Project):
+            if report.picture is not None:
+                self.picture_found.emit(report.document.target, report.picture)
+            self.opened.emit(path, report.document)

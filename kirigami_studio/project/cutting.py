@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.fabricate.cut_plan import CutPlan, plan_cuts
-from kirigami_studio.fabricate.material import find_material
 from kirigami_studio.lattice.deployment import Deployment, deploy
+from kirigami_studio.project.material_record import material_for
 from kirigami_studio.project.settings import FabricationSettings
 
 
@@ -30,7 +30,7 @@ def plan_of(candidate: Candidate, settings: FabricationSettings, deployment: Dep
         width_mm=settings.width_mm,
         connector_mm=settings.connector_mm,
         kerf_mm=settings.kerf_mm,
-        material=find_material(settings.material),
+        material=material_for(settings),
         options=settings.options,
         kept=None if trim is None else trim.kept,
     )

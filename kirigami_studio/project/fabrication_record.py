@@ -5,6 +5,7 @@ from __future__ import annotations
 from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions, CutOrder
 from kirigami_studio.foundation.errors import ProjectError
 from kirigami_studio.project.json_record import Record, one_of
+from kirigami_studio.project.material_record import material_json, material_of
 from kirigami_studio.project.settings import FabricationSettings
 
 
@@ -26,6 +27,7 @@ def fabrication_json(settings: FabricationSettings) -> dict[str, object]:
         },
         "profile": settings.profile,
         "dxf_version": settings.dxf_version,
+        "own": None if settings.own is None else material_json(settings.own),
     }
 
 
@@ -53,6 +55,7 @@ def fabrication_of(record: Record) -> FabricationSettings:
         ),
         profile=record.text("profile"),
         dxf_version=record.text("dxf_version"),
+        own=material_of(record.record("own")) if record.holds("own") else None,
     )
 
 

@@ -18,6 +18,8 @@ from kirigami_studio.foundation.files import write_atomically
 from kirigami_studio.project import store
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.json_record import Record, read_json
+from kirigami_studio.project.material_record import with_material
+from kirigami_studio.project.picture_record import TracedPicture
 
 NOTE = "recovery.json"
 #: A note is a few hundred bytes; whatever is longer is none.
@@ -56,15 +58,15 @@ def now() -> str:
     return datetime.now(UTC).astimezone().isoformat(timespec="seconds")
 
 
-def keep(document: Document, note: Note, path: Path) -> None:
-    """Write document and note in one go; an older file at ``path`` survives any failure.
+def keep(document: Document, note: Note, path: Path, picture: TracedPicture | None = None) -> None:
+    """Write document, picture and note in one go; an older file at ``path`` survives any failure.
 
     Raises
     ------
     ExportError
         The file cannot be written.
     """
-    stream = io.BytesIO(store.pack(document))
+    stream = io.BytesIO(store.pack(with_material(document), picture))
     with zipfile.ZipFile(stream, "a", zipfile.ZIP_DEFLATED) as archive:
         archive.writestr(NOTE, json.dumps(asdict(note), indent=1))
     write_atomically(path, stream.getvalue())

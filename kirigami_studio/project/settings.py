@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 
-from kirigami_studio.fabricate.material import DEFAULT_PRESET
+from kirigami_studio.fabricate.material import DEFAULT_PRESET, Material
 from kirigami_studio.fabricate.options import CutOptions
 from kirigami_studio.foundation.errors import AngleError, GridError, UsageError
 from kirigami_studio.lattice.ratio_field import check_grid
@@ -94,6 +94,9 @@ class FabricationSettings:
         Key of the machine profile that cut files are written for.
     dxf_version : str
         DXF dialect of cut files.
+    own : Material or None
+        What the project knows of a material that is no preset; no choice of its own, so it decides nothing about
+        equality.
 
     Raises
     ------
@@ -108,6 +111,7 @@ class FabricationSettings:
     options: CutOptions = field(default_factory=CutOptions)
     profile: str = "any"
     dxf_version: str = "R2010"
+    own: Material | None = field(default=None, compare=False)
 
     def __post_init__(self) -> None:
         if not _is_number(self.width_mm) or not 0 < self.width_mm <= LARGEST_SHEET_MM:

@@ -6,6 +6,7 @@ import io
 import json
 import zipfile
 import zlib
+from dataclasses import dataclass
 from pathlib import Path
 
 from kirigami_studio import __version__
@@ -14,7 +15,9 @@ from kirigami_studio.foundation.files import write_atomically
 from kirigami_studio.project.codec import decode, encode
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.json_record import Record, read_json
+from kirigami_studio.project.material_record import with_material
 from kirigami_studio.project.migrations import CURRENT_VERSION, Members, migrate
+from kirigami_studio.project.picture_record import TracedPicture, picture_members, picture_of
 
 SUFFIX = ".kiri"
 MANIFEST = "manifest.json"
@@ -28,26 +31,45 @@ MOST_MEMBERS = 16
 _FIXED_DATE = (1980, 1, 1, 0, 0, 0)
 
 
-def save(document: Document, path: Path | str) -> None:
-    """Write the project file; an older one at ``path`` survives any failure.
+@dataclass(frozen=True, slots=True)
+class Opened:
+    """What a project file holds.
+
+    Attributes
+    ----------
+    document : Document
+    picture : TracedPicture or None
+        What the target was traced from.
+    notes : tuple of str
+        Sentences about what had to be left out.
+    """
+
+    document: Document
+    picture: TracedPicture | None = None
+    notes: tuple[str, ...] = ()
+
+
+def save(document: Document, path: Path | str, picture: TracedPicture | None = None) -> None:
+    """Write the project file with its own material and picture; an older one at ``path`` survives any failure.
 
     Raises
     ------
     ExportError
         The file cannot be written.
     """
-    write_atomically(Path(path), pack(document))
+    write_atomically(Path(path), pack(with_material(document), picture))
 
 
-def pack(document: Document) -> bytes:
-    """Return the project file's bytes; equal documents give equal bytes."""
+def pack(document: Document, picture: TracedPicture | None = None) -> bytes:
+    """Return the project file's bytes; equal documents and pictures give equal bytes."""
     manifest = {"format": FORMAT, "version": CURRENT_VERSION, "app_version": __version__}
-    members = {MANIFEST: json.dumps(manifest, indent=1).encode(), **encode(document)}
+    members = {MANIFEST: json.dumps(manifest, indent=1).encode(), **encode(document), **picture_members(picture)}
     stream = io.BytesIO()
     with zipfile.ZipFile(stream, "w") as archive:
         for name, content in members.items():
             entry = zipfile.ZipInfo(name, _FIXED_DATE)
-            entry.compress_type = zipfile.ZIP_DEFLATED
+            packed = picture is not None and name == picture.member  # a PNG or JPEG does not get smaller
+            entry.compress_type = zipfile.ZIP_STORED if packed else zipfile.ZIP_DEFLATED
             entry.create_system = 3
             entry.external_attr = 0o644 << 16
             archive.writestr(entry, content)
@@ -55,7 +77,12 @@ def pack(document: Document) -> bytes:
 
 
 def load(path: Path | str) -> Document:
-    """Read a project file.
+    """Read a project file without its picture, see :func:`load_all`."""
+    return load_all(path).document
+
+
+def load_all(path: Path | str) -> Opened:
+    """Read a project file; a picture that cannot be read is left out with a sentence.
 
     Raises
     ------
@@ -74,9 +101,13 @@ def load(path: Path | str) -> Document:
     except ProjectError as error:
         raise ProjectError(f"The project {path} cannot be opened: {error}.") from error
     try:
-        return decode(members)
+        document = decode(members)
     except KirigamiError as error:
         raise _damaged(path, error) from error
+    try:
+        return Opened(document, picture_of(members))
+    except ProjectError as error:
+        return Opened(document, notes=(str(error),))
 
 
 def _damaged(path: Path, error: KirigamiError) -> ProjectError:

@@ -32,7 +32,7 @@ def test_that_what_was_opened_stands_first_and_survives_the_session(
     window: MainWindow, project_file: Path, tmp_path: Path, until: Until
 ) -> None:
     kept, controller = tmp_path / "recent.toml", window.controller
-    controller.recent.load(kept)
+    controller.filing.recent.load(kept)
     assert not window.commands.recent.menuAction().isEnabled()
     target = tmp_path / "triangle.json"
     target.write_text("[[0, 0], [50, 0], [25, 40]]")
@@ -59,7 +59,7 @@ def test_that_a_missing_file_is_grey_and_a_present_one_opens(
 ) -> None:
     gone, kept = tmp_path / "gone.kiri", tmp_path / "recent.toml"
     recent.save(Recent((str(gone), str(project_file))), kept)
-    window.controller.recent.load(kept)
+    window.controller.filing.recent.load(kept)
     menu = window.commands.recent
     menu.aboutToShow.emit()
     until(lambda: not menu.entries[str(gone)].isEnabled())
@@ -79,7 +79,7 @@ def test_that_pasted_pictures_are_not_remembered_as_files(window: MainWindow, un
     QGuiApplication.clipboard().setImage(image)
     window.actions_["paste"].trigger()
     until(lambda: window.controller.document.target is not None)
-    assert window.controller.recent.present == Recent()
+    assert window.controller.filing.recent.present == Recent()
 
 
 def test_that_a_list_of_recent_files_holds_ten_of_each_kind_and_none_twice() -> None:
@@ -95,9 +95,9 @@ def test_that_a_spoilt_list_is_told_and_left_as_it_is(text: str, tmp_path: Path,
     kept.write_text(text)
     with pytest.raises(ProjectError, match="list of recent"):
         recent.load(kept)
-    window.controller.recent.load(kept)
+    window.controller.filing.recent.load(kept)
     assert "list of recent" in window.messages.messages[-1].sentence
-    window.controller.recent.take_project(tmp_path / "new.kiri")
+    window.controller.filing.recent.take_project(tmp_path / "new.kiri")
     assert kept.read_text() == text
 
 

@@ -30,7 +30,7 @@ from kirigami_studio.gui.application import create_application, create_window
 
 application = create_application(["studio"])
 window = create_window()
-recovering = window.controller.recovering
+recovering = window.controller.filing.recovering
 recovering.quiet_ms = 20
 recovering.use(Path(sys.argv[1]))
 def change(path):
@@ -78,7 +78,7 @@ def test_that_a_killed_studio_loses_nothing(
     (left,) = kept_files(folder)
     assert recovery.read_note(left).path == str(project_file)
 
-    window.controller.recovering.use(folder)
+    window.controller.filing.recovering.use(folder)
     until(lambda: bool(asked(window)))
     (message,) = asked(window)
     assert "heart.kiri" in message.sentence and [label for label, _ in message.actions] == [
@@ -94,7 +94,7 @@ def test_that_a_killed_studio_loses_nothing(
     assert store.load(project_file).fabrication.width_mm == 100.0, "the project itself is only written by Save"
     # The old file goes once this session keeps the work itself, so that a second crash loses nothing either.
     until(lambda: not left.exists())
-    own = controller.recovering.file
+    own = controller.filing.recovering.file
     assert own is not None and kept_files(folder) == [own] and store.load(own) == controller.document
     window.actions_["save"].trigger()
     until(lambda: not controller.history.unsaved)
@@ -102,14 +102,14 @@ def test_that_a_killed_studio_loses_nothing(
 
 
 def test_that_two_studios_do_not_recover_each_others_work(designed: MainWindow, folder: Path, until: Until) -> None:
-    designed.controller.recovering.quiet_ms = 0
-    designed.controller.recovering.use(folder)
+    designed.controller.filing.recovering.quiet_ms = 0
+    designed.controller.filing.recovering.use(folder)
     designed.controller.change_fabrication(width_mm=88.0)
     until(lambda: len(kept_files(folder)) == 1)
     other = Controller()
     told: list[Message] = []
     other.message.connect(told.append)
-    other.recovering.use(folder)
+    other.filing.recovering.use(folder)
     assert not other.board.busy, "there is nothing to look at: the only file belongs to a living session"
     other.close()
     assert told == [] and len(kept_files(folder)) == 1
@@ -119,9 +119,9 @@ def test_that_two_studios_do_not_recover_each_others_work(designed: MainWindow, 
 
 def test_that_closing_as_usual_leaves_nothing_to_recover(qtbot: QtBot, folder: Path) -> None:
     controller = Controller()
-    controller.recovering.quiet_ms = 0
-    controller.recovering.use(folder)
-    with qtbot.waitSignal(controller.recovering.kept):
+    controller.filing.recovering.quiet_ms = 0
+    controller.filing.recovering.use(folder)
+    with qtbot.waitSignal(controller.filing.recovering.kept):
         controller.change_fabrication(width_mm=88.0)
     assert len(kept_files(folder)) == 1
     controller.change_fabrication(width_mm=89.0)
@@ -132,7 +132,7 @@ def test_that_closing_as_usual_leaves_nothing_to_recover(qtbot: QtBot, folder: P
 
 def test_that_steady_changes_do_not_put_the_keeping_off_for_ever(qtbot: QtBot, folder: Path) -> None:
     controller = Controller()
-    recovering = controller.recovering
+    recovering = controller.filing.recovering
     recovering.quiet_ms, recovering.longest_ms = 60_000, 200
     recovering.use(folder)
     steady = QTimer()
@@ -149,7 +149,7 @@ def test_that_discarded_work_is_gone_and_work_kept_for_later_is_asked_about_agai
 ) -> None:
     for name in ("one", "two"):
         recovery.keep(designs, Note(name, "", recovery.now(), 1), folder / f"{name}.kiri")
-    recovering = window.controller.recovering
+    recovering = window.controller.filing.recovering
     recovering.use(folder)
     until(lambda: len(asked(window)) == 2)
     first, second = (next(one for one in asked(window) if f"Recover {name}" in one.sentence) for name in ("one", "two"))
@@ -169,7 +169,7 @@ def test_that_recovering_asks_before_it_takes_the_place_of_unsaved_work(
     recovery.keep(edits.choose(designs, 2).document, Note("other", "", recovery.now(), 1), folder / "other.kiri")
     designed.controller.change_fabrication(width_mm=88.0)
     before = designed.controller.document
-    designed.controller.recovering.use(folder)
+    designed.controller.filing.recovering.use(folder)
     until(lambda: len(asked(designed)) == 1)
     dict(asked(designed)[0].actions)["Recover"]()
     assert designed.controller.document is before
@@ -183,7 +183,7 @@ def test_that_recovering_asks_before_it_takes_the_place_of_unsaved_work(
 def test_that_a_place_that_cannot_be_written_is_told_once_and_the_work_goes_on(
     obstacle: str, heart: MainWindow, folder: Path, until: Until
 ) -> None:
-    recovering = heart.controller.recovering
+    recovering = heart.controller.filing.recovering
     recovering.quiet_ms = 0
     if obstacle == "folder":  # a file stands where the folder should be
         folder.parent.mkdir()
@@ -206,7 +206,7 @@ def test_that_a_place_that_cannot_be_written_is_told_once_and_the_work_goes_on(
 def test_that_damaged_work_is_named_and_can_be_discarded(window: MainWindow, folder: Path, until: Until) -> None:
     folder.mkdir(parents=True)
     (folder / "torn.kiri").write_bytes(b"PK\x03\x04 torn")
-    window.controller.recovering.use(folder)
+    window.controller.filing.recovering.use(folder)
     until(lambda: len(asked(window)) == 1)
     (message,) = asked(window)
     assert [label for label, _ in message.actions] == ["Discard", "Keep for later"] and "damaged" in message.details

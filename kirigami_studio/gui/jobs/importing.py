@@ -35,8 +35,6 @@ def import_pictures() -> None:
 def import_exporters() -> None:
     """What writes files, and reads them back."""
     with quietly():
-        from kirigami_studio.export import export_set as _export_set
-        from kirigami_studio.export import registry as _registry
         from kirigami_studio.export import verification as _verification  # noqa: F401
 
 
@@ -46,6 +44,4 @@ def import_generator() -> None:
         from kirigami_studio.generator.libraries import map_libraries
 
         map_libraries()
-        from kirigami_studio.generator import sampler as _sampler
-        from kirigami_studio.generator import weights as _weights
         from kirigami_studio.pipeline import run as _run  # noqa: F401

@@ -7,9 +7,11 @@ from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
-from kirigami_studio.foundation.errors import KirigamiError
+from kirigami_studio.foundation.errors import KirigamiError, ProjectError
+from kirigami_studio.gui.jobs.project_steps import Left, Project, loading, stored
+from kirigami_studio.gui.jobs.steps import Picture
 from kirigami_studio.gui.jobs.worker import Cancel
-from kirigami_studio.project import recovery, store
+from kirigami_studio.project import recovery
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.recovery import Note
 
@@ -32,9 +34,12 @@ class Leftover:
     fault: str = ""
 
 
-def keeping(document: Document, note: Note, path: Path, cancel: Cancel) -> Iterator[Document]:
-    """Keep a document, and yield it once it is on disk."""
-    recovery.keep(document, note, path)
+def keeping(document: Document, picture: Picture | None, note: Note, path: Path, cancel: Cancel) -> Iterator[Document]:
+    """Keep a document, and yield it once it is on disk; a picture that cannot be kept is told when it is saved."""
+    kept = None
+    with suppress(ProjectError):
+        kept = stored(picture)
+    recovery.keep(document, note, path, kept)
     yield document
 
 
@@ -47,9 +52,9 @@ def looking(files: tuple[Path, ...], cancel: Cancel) -> Iterator[Leftover]:
             yield Leftover(file, None, str(error))
 
 
-def recovering(leftover: Leftover, cancel: Cancel) -> Iterator[Document]:
-    """Read the work that was kept."""
-    yield store.load(leftover.file)
+def recovering(leftover: Leftover, folder: Path, cancel: Cancel) -> Iterator[Left | Project]:
+    """Read the work that was kept; its picture is laid into a folder."""
+    yield from loading(leftover.file, folder, cancel)
 
 
 def removing(file: Path, cancel: Cancel) -> Iterator[Path]:

@@ -22,7 +22,6 @@ from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.pipeline.events import CandidateFound, CandidateImproved, Event
 from kirigami_studio.pipeline.request import Request
-from kirigami_studio.project.document import Document
 from kirigami_studio.project.settings import FabricationSettings
 from kirigami_studio.target.outline import Outline
 
@@ -173,13 +172,13 @@ def comparing(candidate: Candidate, target: Outline, cancel: Cancel) -> Iterator
 
 def trimming(candidate: Candidate, target: Outline, settings: FabricationSettings, cancel: Cancel) -> Iterator[Decoded]:
     """Fit a candidate so that it covers the target, and trim it, with room for the connectors at its hinges."""
-    from kirigami_studio.fabricate.material import find_material
     from kirigami_studio.fabricate.trimmed_sheet import needed_keep
     from kirigami_studio.pipeline.tasks import COVER_STEPS
     from kirigami_studio.pipeline.threads import one_blas_thread
     from kirigami_studio.polish.covering import fit_cover
+    from kirigami_studio.project.material_record import material_for
 
-    material, score = find_material(settings.material), candidate.score
+    material, score = material_for(settings), candidate.score
     connector = material.connector_mm if settings.connector_mm is None else settings.connector_mm
     kerf = material.kerf_mm if settings.kerf_mm is None else settings.kerf_mm
     needed = needed_keep(deploy(candidate.field), settings.width_mm, connector, kerf)
@@ -308,21 +307,6 @@ def _verified(plan: CutPlan, path: Path, settings: FabricationSettings) -> tuple
     if path.suffix.lower() not in FORMATS:
         return ()
     return (verify_export(plan, path, settings.profile, settings.dxf_version),)
-
-
-def saving(document: Document, path: Path, cancel: Cancel) -> Iterator[Path]:
-    """Write the project file."""
-    from kirigami_studio.project import store
-
-    store.save(document, path)
-    yield path
-
-
-def loading(path: Path, cancel: Cancel) -> Iterator[Document]:
-    """Read a project file."""
-    from kirigami_studio.project import store
-
-    yield store.load(path)
 
 
 def warming(cancel: Cancel) -> Iterator[Loaded | tuple[str, ...]]:

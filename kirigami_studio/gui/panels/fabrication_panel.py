@@ -25,6 +25,7 @@ from kirigami_studio.gui.panels.more_options import MoreOptions
 from kirigami_studio.gui.panels.opened_row import OpenedRow
 from kirigami_studio.gui.readable import UNKNOWN, readable_length, readable_range, readable_size, readable_time
 from kirigami_studio.gui.theme import LIGHT, Palette
+from kirigami_studio.project.material_record import carried_material
 from kirigami_studio.project.settings import FabricationSettings
 
 if TYPE_CHECKING:
@@ -218,10 +219,10 @@ class FabricationPanel(Card):
 
     def show_settings(self, settings: FabricationSettings) -> None:
         """Show the document's numbers, the material's own where it holds none."""
-        material = self._presets.get(settings.material)
+        material = self._presets.get(settings.material) or carried_material(settings)
         with QSignalBlocker(self.material):
-            if material is None and self.material.findData(settings.material) < 0:
-                self.material.addItem(settings.material, settings.material)
+            if self.material.findData(settings.material) < 0:
+                self.material.addItem(material.name if material else settings.material, settings.material)
             self.material.setCurrentIndex(self.material.findData(settings.material))
         if material is not None:
             self.material.setToolTip(f"{material.machine}, {material.thickness_mm:g} mm. {material.note}")

@@ -1,4 +1,4 @@
-"""Version 3 -> 4: what a person thinks of each design, locked voids, how each design came to be."""
+"""Version 3 -> 4: marks, locked voids, how each design came to be, own materials."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ def with_marks(members: Mapping[str, bytes]) -> Mapping[str, bytes]:
     try:
         design = json.loads(members[DESIGN])
         candidates, known = design["candidates"], design["provenance"]
+        design["fabrication"] |= {"own": None}
         design |= {"marks": ["none" for _ in candidates], "locked": []}
         # A search adds one design, with the last number.
         last = max((entry["index"] for entry in candidates), default=0) if "search" in known else None

@@ -1,0 +1,98 @@
+"""What the worker does about project files: write and read them with the picture that the target was traced from."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from kirigami_studio.foundation.errors import ProjectError
+from kirigami_studio.foundation.words import tr
+from kirigami_studio.gui.jobs.steps import Picture
+from kirigami_studio.gui.jobs.worker import Cancel
+from kirigami_studio.project import store
+from kirigami_studio.project.document import Document
+from kirigami_studio.project.picture_record import LARGEST_PICTURE, TracedPicture
+from kirigami_studio.project.store import Opened
+from kirigami_studio.target.outline import Outline
+
+
+@dataclass(frozen=True, slots=True)
+class Left:
+    """Something that is not in the project file, or could not be read from it: one sentence."""
+
+    sentence: str
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Project:
+    """A project that was read."""
+
+    document: Document
+    picture: Picture | None
+
+
+def saving(document: Document, picture: Picture | None, path: Path, cancel: Cancel) -> Iterator[Left | Path]:
+    """Write the project file."""
+    try:
+        kept = stored(picture)
+    except ProjectError as error:
+        kept = None
+        yield Left(tr("The photo behind the target was not saved with the project: {reason}.", reason=error))
+    store.save(document, path, kept)
+    yield path
+
+
+def loading(path: Path, folder: Path, cancel: Cancel) -> Iterator[Left | Project]:
+    """Read a project file; its picture is laid into a folder of its own inside ``folder``."""
+    opened = store.load_all(path)
+    for note in opened.notes:
+        yield Left(note)
+    picture = None
+    try:
+        picture = laid_out(opened, folder)
+    except (OSError, ProjectError) as error:
+        yield Left(tr("The photo in this project cannot be shown and was left out: {reason}.", reason=error))
+    yield Project(opened.document, picture)
+
+
+def stored(picture: Picture | None) -> TracedPicture | None:
+    """A picture as a project file keeps it.
+
+    Raises
+    ------
+    ProjectError
+        It is not there any more, or too large.
+    """
+    if picture is None or picture.traced is None:
+        return None
+    traced, path = picture.traced, picture.path
+    try:
+        size = path.stat().st_size
+        if size > LARGEST_PICTURE:
+            raise ProjectError(
+                tr(
+                    "{name} has {size:.0f} MB, more than {most}",
+                    name=path.name,
+                    size=size / 2**20,
+                    most=LARGEST_PICTURE // 2**20,
+                )
+            )
+        content = path.read_bytes()
+    except OSError as error:
+        raise ProjectError(f"{path.name}: {error.strerror or error}") from error
+    levels = (picture.automatic, picture.threshold)
+    return TracedPicture(path.name, content, *levels, traced.scale, traced.centre, traced.picture)
+
+
+def laid_out(opened: Opened, folder: Path) -> Picture | None:
+    """The picture of a project as a file that can be traced again; None if it keeps none."""
+    from kirigami_studio.target.read_image import Traced
+
+    kept, target = opened.picture, opened.document.target
+    if kept is None or not isinstance(target, Outline):
+        return None
+    folder.mkdir(parents=True, exist_ok=True)
+    path = folder / kept.name
+    path.write_bytes(kept.content)
+    return Picture(path, kept.automatic, kept.threshold, Traced(target, kept.scale, kept.centre, kept.size))

@@ -1,0 +1,223 @@
+"""A project brings what it was made with: its own material and the photo behind its target."""
+
+from __future__ import annotations
+
+import json
+import zipfile
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from PIL import Image, ImageDraw
+
+from kirigami_studio.fabricate.material import library
+from kirigami_studio.fabricate.material_copies import changed_copy, delete_copy, save_copy
+from kirigami_studio.gui.controller import Controller
+from kirigami_studio.gui.main_window import MainWindow
+from kirigami_studio.gui.messages import Message
+from kirigami_studio.project import edits, picture_record, recovery, store
+from kirigami_studio.project.document import Document
+from kirigami_studio.target.read_image import automatic_threshold, read_image
+
+Until = Callable[[Callable[[], bool]], None]
+
+
+def rewritten(path: Path, change: Callable[[dict[str, bytes]], None]) -> Path:
+    """A project file with other members."""
+    with zipfile.ZipFile(path) as archive:
+        members = {name: archive.read(name) for name in archive.namelist()}
+    change(members)
+    with zipfile.ZipFile(path, "w") as archive:
+        for name, content in members.items():
+            archive.writestr(name, content)
+    return path
+
+
+def told(window: MainWindow, words: str) -> list[Message]:
+    return [one for one in window.messages.messages if words in one.sentence]
+
+
+# own materials ---------------------------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def own_project(designs: Document, own_materials: Path, tmp_path: Path) -> Path:
+    """A project cut from an own material that nobody has in stock any more."""
+    save_copy(changed_copy("film-uv", "my-film", {"connector_mm": 0.41, "kerf_mm": 0.07, "name": "My film"}))
+    document = edits.set_fabrication(designs, material="my-film").document
+    path = tmp_path / "own.kiri"
+    store.save(document, path)
+    assert store.load(path) == document
+    delete_copy("my-film")
+    assert "my-film" not in library().materials
+    return path
+
+
+def test_that_a_deleted_own_material_is_still_cut_and_can_be_taken_over(
+    window: MainWindow, own_project: Path, tmp_path: Path, until: Until
+) -> None:
+    window.controller.open_project(own_project)
+    until(lambda: window.fabrication.export.isEnabled())
+    fabrication = window.fabrication
+    assert fabrication.material.currentText() == "My film"
+    assert fabrication.lengths["connector_mm"].value() == 0.41 and fabrication.lengths["kerf_mm"].value() == 0.07
+    assert fabrication.numbers["ligament"].text() == "0.41 mm"
+    (message,) = told(window, "is not among yours")
+    assert "My film" in message.sentence
+    # Saving keeps the numbers although they are not in stock.
+    window.controller.save(tmp_path / "again.kiri")
+    until(lambda: (tmp_path / "again.kiri").exists())
+    carried = store.load(tmp_path / "again.kiri").fabrication.own
+    assert carried is not None and (carried.key, carried.kerf_mm) == ("my-film", 0.07)
+    dict(message.actions)["Add to my materials"]()
+    assert library().materials["my-film"] == carried
+    assert fabrication.material.findData("my-film") >= 0 and fabrication.material.currentText() == "My film"
+
+
+def test_that_the_own_stock_wins_over_what_a_project_knew(window: MainWindow, own_project: Path, until: Until) -> None:
+    save_copy(changed_copy("film-uv", "my-film", {"connector_mm": 0.55, "kerf_mm": 0.07, "name": "My film"}))
+    window.controller.open_project(own_project)
+    until(lambda: window.fabrication.export.isEnabled())
+    assert window.fabrication.numbers["ligament"].text() == "0.55 mm"
+    (message,) = told(window, "has other numbers")
+    assert message.details == "connector_mm: 0.41 in the project, 0.55 in stock"
+
+
+def test_that_a_preset_is_not_carried(designs: Document, tmp_path: Path) -> None:
+    store.save(designs, tmp_path / "preset.kiri")
+    with zipfile.ZipFile(tmp_path / "preset.kiri") as archive:
+        assert json.loads(archive.read("design.json"))["fabrication"]["own"] is None
+
+
+@pytest.mark.parametrize(("entry", "value"), [("kerf_mm", -1.0), ("kerf_mm", "wide"), ("passes", 0), ("name", None)])
+def test_that_an_impossible_material_in_a_project_is_refused(entry: str, value: object, own_project: Path) -> None:
+    def spoil(members: dict[str, bytes]) -> None:
+        design = json.loads(members["design.json"])
+        design["fabrication"]["own"][entry] = value
+        members["design.json"] = json.dumps(design).encode()
+
+    with pytest.raises(store.ProjectError, match="cannot be opened"):
+        store.load(rewritten(own_project, spoil))
+
+
+# the photo -------------------------------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def photo(tmp_path: Path) -> Path:
+    """A dark disc with a lighter ear on light paper."""
+    page = Image.new("L", (120, 100), 240)
+    draw = ImageDraw.Draw(page)
+    draw.ellipse((10, 40, 60, 70), fill=150)
+    draw.ellipse((40, 20, 100, 80), fill=50)
+    path = tmp_path / "two greys.png"
+    page.save(path)
+    return path
+
+
+@pytest.fixture
+def traced_project(photo: Path, tmp_path: Path, until: Until) -> Path:
+    """A project that another session saved: traced at another threshold than the automatic one."""
+    controller, path = Controller(), tmp_path / "traced.kiri"
+    controller.targeting.open(str(photo))
+    until(lambda: controller.document.target is not None)
+    controller.targeting.change_threshold(0.8)
+    until(lambda: controller.document.target == read_image(photo, 0.8))
+    until(lambda: not controller.board.busy)
+    controller.save(path)
+    until(lambda: not controller.history.unsaved)
+    controller.close()
+    return path
+
+
+def test_that_photo_and_threshold_come_back_although_the_file_is_gone(
+    window: MainWindow, traced_project: Path, photo: Path, until: Until
+) -> None:
+    at_half, automatic = read_image(photo, 0.5), automatic_threshold(photo)
+    photo.unlink()
+    controller = window.controller
+    controller.open_project(traced_project)
+    until(lambda: window.target.threshold.isVisible())
+    assert window.target.threshold.slider.value() == 160 and window.target.view.underlay is not None
+    assert not controller.history.unsaved
+    controller.targeting.change_threshold(0.5)
+    until(lambda: controller.document.target == at_half)
+    assert at_half.name == "two greys" and controller.history.undo_label == "Change threshold"
+    until(lambda: not controller.board.busy)
+    controller.targeting.change_threshold(None)
+    until(lambda: not controller.board.busy)
+    assert window.target.threshold.slider.value() == round(200 * automatic)
+    controller.end_drag()
+    controller.undo()
+    assert window.target.threshold.slider.value() == 160
+
+
+def test_that_a_recovered_project_brings_its_photo(
+    window: MainWindow, traced_project: Path, tmp_path: Path, until: Until
+) -> None:
+    opened = store.load_all(traced_project)
+    note = recovery.Note("traced.kiri", str(traced_project), recovery.now(), 1)
+    recovery.keep(opened.document, note, tmp_path / "state" / "left.kiri", opened.picture)
+    window.controller.filing.recovering.use(tmp_path / "state")
+    until(lambda: bool(told(window, "Recover traced.kiri")))
+    dict(told(window, "Recover traced.kiri")[0].actions)["Recover"]()
+    until(lambda: window.target.threshold.isVisible())
+    assert window.target.threshold.slider.value() == 160
+    until(lambda: not (tmp_path / "state" / "left.kiri").exists())
+    own = window.controller.filing.recovering.file
+    assert own is not None and store.load_all(own).picture == opened.picture
+
+
+@pytest.mark.parametrize("fault", ["missing", "no picture", "too large", "no number"])
+def test_that_a_photo_that_cannot_be_read_is_left_out_with_a_sentence(
+    fault: str, window: MainWindow, traced_project: Path, until: Until
+) -> None:
+    def spoil(members: dict[str, bytes]) -> None:
+        if fault == "missing":
+            del members["picture.png"]
+        elif fault == "no picture":
+            members["picture.json"] = members["picture.json"].replace(b"two greys.png", b"../../evil.png")
+        elif fault == "too large":
+            members["picture.png"] += bytes(picture_record.LARGEST_PICTURE)
+        else:
+            members["picture.json"] = members["picture.json"].replace(b"0.8", b"7.5")
+
+    window.controller.open_project(rewritten(traced_project, spoil))
+    until(lambda: bool(told(window, "left out")) and window.controller.document.target is not None)
+    assert not window.target.threshold.isVisible()
+    assert len(told(window, "The photo in this project cannot be read and was left out")) == 1
+
+
+def test_that_a_photo_that_is_gone_at_saving_is_told_and_the_project_is_saved(
+    window: MainWindow, photo: Path, tmp_path: Path, until: Until
+) -> None:
+    window.controller.targeting.open(str(photo))
+    until(lambda: window.controller.document.target is not None)
+    photo.unlink()
+    window.controller.save(tmp_path / "without.kiri")
+    until(lambda: not window.controller.history.unsaved)
+    assert "two greys.png" in told(window, "was not saved with the project")[0].sentence
+    opened = store.load_all(tmp_path / "without.kiri")
+    assert opened.document == window.controller.document and opened.picture is None and opened.notes == ()
+
+
+def test_that_a_photo_larger_than_a_project_keeps_is_told(
+    window: MainWindow, photo: Path, tmp_path: Path, until: Until
+) -> None:
+    with photo.open("ab") as stream:  # readers ignore what follows the end of a PNG
+        stream.write(bytes(picture_record.LARGEST_PICTURE))
+    window.controller.targeting.open(str(photo))
+    until(lambda: window.controller.document.target is not None)
+    window.controller.save(tmp_path / "small.kiri")
+    until(lambda: not window.controller.history.unsaved)
+    assert "more than 16" in told(window, "was not saved with the project")[0].sentence
+    assert (tmp_path / "small.kiri").stat().st_size < 100_000
+
+
+def test_that_equal_projects_give_equal_bytes_with_their_photo(traced_project: Path) -> None:
+    opened = store.load_all(traced_project)
+    assert opened.picture is not None
+    assert store.pack(opened.document, opened.picture) == traced_project.read_bytes()
+    with pytest.raises(store.ProjectError):
+        replace(opened.picture, name="page.tiff")
