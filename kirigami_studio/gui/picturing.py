@@ -9,7 +9,7 @@ from pathlib import Path
 
 from PySide6.QtCore import QBuffer, QIODevice, QMimeData, QObject, QPoint, QRect, Signal
 from PySide6.QtGui import QGuiApplication, QImage, QPainter, QPicture
-from PySide6.QtWidgets import QGraphicsView, QListView, QWidget
+from PySide6.QtWidgets import QGraphicsView, QWidget
 
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.jobs import picture_steps
@@ -18,11 +18,12 @@ from kirigami_studio.gui.jobs.picture_steps import Recording
 from kirigami_studio.gui.jobs.steps import Order
 from kirigami_studio.gui.messages import Message, Tone
 from kirigami_studio.gui.views.canvas import Canvas
+from kirigami_studio.gui.views.gallery_view import GalleryView
 
 #: Pixels of the picture for each pixel of the view.
 SCALES = (1, 2, 4)
-#: Lists that answer questions or hold text are no views.
-VIEWS = (Canvas, QGraphicsView, QListView)
+#: What shows designs; plots are graphics views.
+VIEWS = (Canvas, QGraphicsView, GalleryView)
 SVG_TYPE = "image/svg+xml"
 
 
@@ -48,8 +49,8 @@ class Picturing(QObject):
 
     def views(self) -> dict[str, QWidget]:
         """All views in sight by the name that a screen reader says; the whole window comes last."""
-        found = [each for each in self._window.findChildren(QWidget) if isinstance(each, VIEWS) and each.isVisible()]
-        named = {each.accessibleName(): each for each in found if each.accessibleName()}
+        found = [view for view in self._window.findChildren(QWidget) if isinstance(view, VIEWS) and view.isVisible()]
+        named = {view.accessibleName(): view for view in found if view.accessibleName()}
         return {**named, tr("Whole window"): self._window}
 
     def view_at_work(self) -> QWidget:

@@ -26,7 +26,9 @@ from kirigami_studio.gui.views.card_delegate import CardButton, button_boxes
 from kirigami_studio.gui.views.cut_view import CutOverlay
 from kirigami_studio.gui.views.layout_view import Overlay
 from kirigami_studio.gui.views.target_view import Tool
+from kirigami_studio.project import recovery
 from kirigami_studio.project.document import Mark
+from kirigami_studio.project.recovery import Note
 from kirigami_studio.target.combining import Combine, combined
 from kirigami_studio.target.figure_nodes import placed_figure
 from kirigami_studio.target.figures import Box, Figure, figure
@@ -76,6 +78,7 @@ class StateSheet(Session):
         self.all_sizes("refused")
         window.actions_["undo"].trigger()
         self.until(window.fabrication.export.isEnabled, "undo did not bring the plan back")
+        self.project()
         self.messages()
         click(window.target.buttons["library"])
         if window.commands.picker is not None:
@@ -338,6 +341,38 @@ class StateSheet(Session):
         page.save(path)
         self.window.controller.targeting.open(str(path))
         self.until(lambda: self.window.target.threshold.isVisible(), "the picture was not read")
+
+    def project(self) -> None:
+        """Work of a session that was cut off, the menus about files and pictures, the history with undone steps."""
+        window, commands = self.window, self.window.commands
+        filing, folder = window.controller.filing, self.out / "recovery"
+        left = folder / "left.kiri"
+        note = Note("teapot.kiri", str(self.out / "teapot.kiri"), "2026-11-21T12:03:00+00:00", 1)
+        recovery.keep(window.controller.document, note, left)
+        filing.recovering.use(folder)
+        self.until(lambda: "ended unexpectedly" in window.messages.sentence.text(), "the lost work was not offered")
+        self.all_sizes("recovery")
+        dict(window.messages.messages[-1].actions)["Discard"]()
+        while window.messages.messages:
+            window.messages.close_message()
+        for name in ("teapot.kiri", "session.kiri"):
+            filing.recent.take_project(self.out / name)
+        filing.recent.take_target(str(self.out / f"{LONG_NAME}.png"))
+        commands.recent.show_missing(frozenset({str((self.out / "teapot.kiri").absolute())}))
+        window.actions_["history"].trigger()
+        window.controller.go_to(max(0, window.controller.history.position - 2))
+        for palette in (DARK, LIGHT):
+            window.set_theme(palette)
+            for menu, name in ((commands.recent, "recent"), (commands.pictures, "pictures")):
+                menu.popup(window.mapToGlobal(window.rect().topLeft()))
+                self.picture(f"menu-{name}-{palette.name}", menu)
+                menu.close()
+            if commands.history is not None:
+                commands.history.show_history(window.controller.history)
+                self.picture(f"history-{palette.name}", commands.history)
+        window.controller.go_to(len(window.controller.history.steps))
+        if commands.history is not None:
+            commands.history.close()
 
     def messages(self) -> None:
         """An error with details, then a question."""

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QGuiApplication, QImage
-from PySide6.QtWidgets import QMenu
+from PySide6.QtWidgets import QLabel, QMenu, QWidgetAction
 from pytestqt.qtbot import QtBot
 
 from kirigami_studio.foundation.errors import ProjectError
@@ -52,6 +52,15 @@ def test_that_what_was_opened_stands_first_and_survives_the_session(
         "&2  heart.kiri",
         "&1  triangle.json",
     ]
+
+
+def test_that_the_menu_says_which_are_projects_and_which_targets(window: MainWindow, tmp_path: Path) -> None:
+    window.controller.filing.recent.take_project(tmp_path / "one.kiri")
+    window.controller.filing.recent.take_target(str(tmp_path / "two.svg"))
+    captions = [action for action in window.commands.recent.actions() if isinstance(action, QWidgetAction)]
+    labels = [caption.defaultWidget() for caption in captions]
+    assert [label.text() for label in labels if isinstance(label, QLabel)] == ["Projects", "Targets"]
+    assert not any(caption.isEnabled() for caption in captions)
 
 
 def test_that_a_missing_file_is_grey_and_a_present_one_opens(

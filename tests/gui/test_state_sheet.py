@@ -49,6 +49,17 @@ def test_that_the_message_states_leave_no_message(sheet: StateSheet, tmp_path: P
     assert (tmp_path / "question-1000x640-dark.png").exists()
 
 
+def test_that_the_project_states_offer_lost_work_and_leave_none(
+    sheet: StateSheet, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("kirigami_studio.gui.state_sheet.SIZES", SIZES[1:2])
+    sheet.window.controller.change_fabrication(width_mm=88.0)
+    sheet.project()
+    assert sheet.window.messages.messages == () and not list((tmp_path / "recovery").glob("left*"))
+    for name in ("recovery-1280x720-dark", "menu-recent-light", "menu-pictures-dark", "history-light"):
+        assert (tmp_path / f"{name}.png").exists()
+
+
 def test_that_the_editor_states_show_tools_and_a_marked_arm(
     sheet: StateSheet, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

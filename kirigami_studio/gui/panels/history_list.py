@@ -23,6 +23,7 @@ class HistoryList(QWidget):
         self.steps.setAccessibleName(tr("Steps of the history"))
         self.steps.setToolTip(tr("Click a step, or press Enter on it, to go there; later steps can be done again."))
         self.steps.setUniformItemSizes(True)
+        self.steps.setSpacing(2)
         self.steps.itemClicked.connect(self._go)
         self.steps.itemActivated.connect(self._go)
         self.counted = QLabel()

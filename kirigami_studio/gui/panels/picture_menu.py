@@ -30,10 +30,10 @@ class PictureMenu(QMenu):
         self.clear()
         for name, view in self._picturing.views().items():
             self.addAction(name.replace("&", "&&")).triggered.connect(partial(self._write, view, name))
-        self.addSection(tr("Size"))
+        self.addSeparator()
         sizes = QActionGroup(self)
         for scale in SCALES:
-            each = self.addAction(tr("{scale} x as seen", scale=scale))
+            each = self.addAction(tr("&{scale} x as large (PNG)", scale=scale))
             each.setToolTip(tr("{scale} pixels of a PNG for each pixel of the view", scale=scale))
             each.setCheckable(True)
             each.setChecked(scale == self._picturing.scale)

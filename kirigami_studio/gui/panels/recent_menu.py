@@ -7,7 +7,7 @@ from functools import partial
 from pathlib import Path
 
 from PySide6.QtGui import QAction
-from PySide6.QtWidgets import QMenu, QWidget
+from PySide6.QtWidgets import QLabel, QMenu, QWidget, QWidgetAction
 
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.recent_files import RecentFiles
@@ -35,7 +35,7 @@ class RecentMenu(QMenu):
         self.entries.clear()
         for title, paths in ((tr("Projects"), recent.projects), (tr("Targets"), recent.targets)):
             if paths:
-                self.addSection(title)
+                self.addAction(self._caption(title))
             for number, path in enumerate(paths, start=1):
                 self._add(path, number, paths)
         self.addSeparator()
@@ -49,6 +49,16 @@ class RecentMenu(QMenu):
         for path, action in self.entries.items():
             action.setEnabled(path not in missing)
             action.setToolTip(tr("{path} is not there any more.", path=path) if path in missing else path)
+
+    def _caption(self, title: str) -> QAction:
+        """A line that only says what follows; the style draws no titles of sections."""
+        label = QLabel(title)
+        label.setObjectName("muted")
+        label.setContentsMargins(12, 6, 12, 2)
+        caption = QWidgetAction(self)
+        caption.setDefaultWidget(label)
+        caption.setEnabled(False)
+        return caption
 
     def _add(self, path: str, number: int, paths: tuple[str, ...]) -> None:
         name = Path(path).name
