@@ -74,7 +74,9 @@ class Commands(QObject):
         self.picturing.message.connect(controller.message)
         self.picturing.status.connect(controller.status)
         controller.filing.stocking.stocked.connect(self._take_materials)
-        self._closing = False
+        self._closing = self._quit_when_saved = False
+        controller.saved.connect(lambda _: self._saved())
+        controller.filing.storing.failed.connect(self._stay)
         self._connect_actions()
 
     def _connect_actions(self) -> None:
@@ -170,18 +172,19 @@ class Commands(QObject):
         if path is not None:
             self.controller.open_project(path)
 
-    def save(self) -> None:
-        """Save where the project lives; ask when it has no place yet."""
+    def save(self) -> bool:
+        """Save where the project lives; ask when it has no place yet.  False if the user thought better of it."""
         if self.controller.path is None:
-            self.save_as()
-        else:
-            self.controller.save(self.controller.path)
+            return self.save_as()
+        self.controller.save(self.controller.path)
+        return True
 
-    def save_as(self) -> None:
-        """Save in a place of the user's choice."""
+    def save_as(self) -> bool:
+        """Save in a place of the user's choice; False if there is none."""
         path = self.files.save(f"{self._name()}.kiri")
         if path is not None:
             self.controller.save(path)
+        return path is not None
 
     def export(self, extension: str = ".dxf") -> None:
         """Write the cut file, or another kind of file, in a place of the user's choice."""
@@ -318,7 +321,7 @@ class Commands(QObject):
             Message(
                 f"This project has unsaved changes. Save them before you {purpose}?",
                 Tone.WARNING,
-                actions=(("Save first", self.save), (f"{purpose.capitalize()} without saving", then)),
+                actions=(("Save first", self._save_first), (f"{purpose.capitalize()} without saving", then)),
             )
         )
 
@@ -337,9 +340,21 @@ class Commands(QObject):
         )
         return False
 
-    def _save_and_quit(self) -> None:
-        self.controller.saved.connect(lambda _: self._quit())
+    def _save_first(self) -> None:
         self.save()
+
+    def _save_and_quit(self) -> None:
+        self._quit_when_saved = True
+        if not self.save():
+            self._quit_when_saved = False
+
+    def _saved(self) -> None:
+        if self._quit_when_saved:
+            self._quit()
+
+    def _stay(self) -> None:
+        """The project could not be saved: a later save is no wish to quit."""
+        self._quit_when_saved = False
 
     def _quit(self) -> None:
         self._closing = True

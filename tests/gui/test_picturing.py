@@ -144,6 +144,7 @@ def test_that_copied_cuts_are_the_exported_file(
     assert (tmp_path / "cut.svg").read_bytes() == content
     (tmp_path / "copied.svg").write_bytes(content)
     assert read_with_svgelements(tmp_path / "copied.svg").extent == pytest.approx((100.3, 80.3), abs=20.0)
+    assert b"FROM_SEED 7" in content and b"FROM_ORIGIN sampled" in content
     assert re.search(rb'width="[\d.]+mm"', content)
 
 

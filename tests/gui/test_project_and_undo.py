@@ -73,6 +73,22 @@ def test_that_closing_with_unsaved_work_asks_without_blocking(designed: MainWind
     assert not designed.isVisible()
 
 
+def test_that_a_save_and_quit_that_was_called_off_does_not_quit_later(
+    heart: MainWindow, files: object, until: Until, tmp_path: Path
+) -> None:
+    assert not heart.close()
+    dict(heart.messages.messages[-1].actions)["Save and quit"]()  # no file is chosen
+    files.answer = tmp_path / "later.kiri"  # type: ignore[attr-defined]
+    heart.actions_["save"].trigger()
+    until(lambda: not heart.controller.history.unsaved)
+    assert heart.isVisible()
+    heart.controller.change_fabrication(width_mm=77.0)
+    assert not heart.close()
+    dict(heart.messages.messages[-1].actions)["Save and quit"]()
+    until(lambda: not heart.isVisible())
+    assert store.load(tmp_path / "later.kiri").fabrication.width_mm == 77.0
+
+
 def test_that_a_new_project_asks_before_it_forgets(designed: MainWindow) -> None:
     designed.actions_["next"].trigger()
     before = designed.controller.document

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import Qt, Signal
+from PySide6.QtCore import QPoint, Qt, Signal
 from PySide6.QtGui import QKeyEvent
 from PySide6.QtWidgets import QLabel, QListWidget, QListWidgetItem, QVBoxLayout, QWidget
 
 from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.project.history import History
+
+#: Pixels.
+WIDTH = 300
 
 
 class HistoryList(QWidget):
@@ -33,7 +36,9 @@ class HistoryList(QWidget):
         column.setSpacing(6)
         column.addWidget(self.steps, 1)
         column.addWidget(self.counted)
-        self.resize(300, 380)
+        self.resize(WIDTH, 380)
+        # Over the stage's upper right corner: beside the candidates, off the target and the menus.
+        self.move(parent.mapToGlobal(QPoint(round(0.74 * parent.width()) - WIDTH, 120)))
 
     def show_history(self, history: History) -> None:
         """List the steps of a history."""
