@@ -94,7 +94,8 @@ class Reshaping(QObject):
 
         placed = self._easel.placed
         if placed is not None:
-            width, height = placed.size
+            known = placed.outline.size if placed.outline.unit == "mm" else None
+            width, height = placed.size if known is None else known  # as it is told, free of rounding
             ring = placed.ring
             x, y = (0.5 * (ring.min(axis=0) + ring.max(axis=0))).tolist()
             factors = (width_mm / width, height_mm / height)

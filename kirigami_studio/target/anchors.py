@@ -20,6 +20,7 @@ from kirigami_studio.target import bezier
 from kirigami_studio.target.contour import FloatArray
 from kirigami_studio.target.nodes import FEWEST_NODES, BoolArray, Kind, Nodes
 from kirigami_studio.target.placed import Placed
+from kirigami_studio.target.polylines import apart, nearest, turns, weights
 
 #: Anchors of a target are the corners of its simplification by this share of the root of its area.
 ANCHOR_ERROR = 0.03
@@ -73,7 +74,7 @@ class Anchors:
             chosen = _corners(ring, error * target.scale)
         spans = _spans(ring, chosen)
         curved = np.array([len(span) > 0 for span in spans])
-        soft = (_turns(ring)[chosen] < SMOOTH_TURN) & (curved | np.roll(curved, 1))
+        soft = (turns(ring)[chosen] < SMOOTH_TURN) & (curved | np.roll(curved, 1))
         kinds = tuple(Kind.SMOOTH if smooth else Kind.CORNER for smooth in soft.tolist())
         bare = cls(ring[chosen], kinds, np.zeros((len(chosen), 2, 2)), spans, curved)
         return bare._with_found_handles(range(len(chosen)))
@@ -138,8 +139,8 @@ class Anchors:
             kept[index] &= not _torn(self.line(index), one - other)
             if len(span) and (np.any(one) or np.any(other)):
                 line, soft = self.line(index), self.smooth
-                towards = _weights(line[::-1], bool(soft[index]))[::-1, None]
-                away = _weights(line, bool(soft[(index + 1) % count]))[:, None]
+                towards = weights(line[::-1], bool(soft[index]))[::-1, None]
+                away = weights(line, bool(soft[(index + 1) % count]))[:, None]
                 moved = span + one if np.array_equal(one, other) else span + towards * one + away * other
                 spans.append(moved)
             else:
@@ -199,16 +200,20 @@ class Anchors:
         changed = replace(self, kinds=_put(self.kinds, index, kind), handles=handles)
         return changed._redrawn([(index - 1) % len(self.places), index])
 
+    def as_cusp(self, index: int) -> Anchors:
+        """Make an anchor a corner that keeps its handles: the line stays, each side can be bent alone from now on."""
+        return replace(self, kinds=_put(self.kinds, index, Kind.CORNER))
+
     # more and fewer ------------------------------------------------------------------------------------------------
 
     def inserted(self, place: tuple[float, float]) -> tuple[Anchors, int]:
         """Set another anchor on the line, as near to a place as possible, and return its index."""
-        best = min(range(len(self.places)), key=lambda index: _nearest(self.line(index), place)[0])
+        best = self._nearest_span(place)
         line = self.line(best)
-        _, piece, spot = _nearest(line, place)
+        piece, spot = nearest(line, place)
         bent, after = len(self.spans[best]) > 0, (best + 1) % len(self.places)
         handles = np.insert(self.handles, best + 1, 0.0, axis=0)
-        spans = [_apart(line[1 : piece + 1], spot), _apart(line[piece + 1 : -1], spot)]
+        spans = [apart(line[1 : piece + 1], spot), apart(line[piece + 1 : -1], spot)]
         if bent and not self.kept[best]:
             ends = self.places[best], self.handles[best, OUT], self.handles[after, INTO], self.places[after]
             share = float(np.linalg.norm(spot - line[piece]) / np.linalg.norm(line[piece + 1] - line[piece]))
@@ -229,10 +234,19 @@ class Anchors:
             return more._with_found_handles([best, best + 1]), best + 1
         return more._redrawn([best, best + 1]), best + 1
 
+    def _nearest_span(self, place: tuple[float, float]) -> int:
+        """The span of the whole line's nearest piece."""
+        ring = self.ring
+        piece, _ = nearest(np.concatenate([ring, ring[:1]]), place)
+        starts = np.cumsum([0, *(len(span) + 1 for span in self.spans)])
+        return int(np.searchsorted(starts, piece, side="right")) - 1
+
     def evened(self, images: Iterable[FloatArray], reach: float) -> Anchors:
         """Set anchors on the line within ``reach`` (mm) of places (P, 2) that have none: those of a mirror image."""
         more = self
-        for place in np.concatenate([*images, np.empty((0, 2))]):
+        wanted = np.concatenate([*images, np.empty((0, 2))])
+        off = shapely.distance(shapely.points(wanted), shapely.linearrings(self.ring))
+        for place in wanted[off <= reach]:
             if float(np.min(np.linalg.norm(more.places - place, axis=1))) <= reach or len(more.places) >= MOST_NODES:
                 continue
             fuller, index = more.inserted((float(place[0]), float(place[1])))
@@ -360,38 +374,6 @@ def _corners(ring: FloatArray, tolerance: float) -> list[int]:
     return found if len(found) >= FEWEST_NODES else [0, len(ring) // 3, 2 * len(ring) // 3]
 
 
-def _turns(ring: FloatArray) -> FloatArray:
-    before, after = ring - np.roll(ring, 1, axis=0), np.roll(ring, -1, axis=0) - ring
-    cross = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
-    turns: FloatArray = np.abs(np.arctan2(cross, np.sum(before * after, axis=1)))
-    return turns
-
-
-def _weights(line: FloatArray, smooth: bool) -> FloatArray:
-    """(P,) float, 0..1: how far the inner vertices of a line follow its last one, by their way from its first."""
-    along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(line, axis=0), axis=1))])
-    share = along[1:-1] / max(float(along[-1]), 1e-300)
-    return share * share * (3.0 - 2.0 * share) if smooth else share
-
-
 def _torn(line: FloatArray, by: FloatArray) -> bool:
     """Whether a line is pulled so far at one end that following would leave nothing of how it ran."""
     return float(np.linalg.norm(by)) > LARGEST_PULL * float(np.linalg.norm(line[-1] - line[0]))
-
-
-def _nearest(line: FloatArray, place: tuple[float, float]) -> tuple[float, int, FloatArray]:
-    """Distance, segment and spot of a polyline nearest to a place; ends of the line are kept out of reach."""
-    start, along = line[:-1], np.diff(line, axis=0)
-    squared = np.maximum(np.sum(along**2, axis=1), 1e-300)
-    share = np.clip(np.sum((np.array(place) - start) * along, axis=1) / squared, 0.0, 1.0)
-    share[0], share[-1] = max(share[0], 0.05), min(share[-1], 0.95)
-    spots = start + share[:, None] * along
-    distance = np.linalg.norm(spots - place, axis=1)
-    best = int(np.argmin(distance))
-    return float(distance[best]), best, spots[best]
-
-
-def _apart(part: FloatArray, spot: FloatArray) -> FloatArray:
-    """A part of a line without the vertices that coincide with the new anchor."""
-    kept: FloatArray = part[np.linalg.norm(part - spot, axis=1) > 0]
-    return kept

@@ -185,6 +185,13 @@ def test_that_keys_and_buttons_change_the_kind_and_handles_can_be_dragged(plate:
     drag(plate, place, (place[0], place[1] + 4), SHIFT | CTRL)
     assert tool.anchors.kinds[index] is Kind.SYMMETRIC
     np.testing.assert_allclose(tool.anchors.handles[index, 0], -tool.anchors.handles[index, 1], atol=1e-9)
+    before_cusp = placed(plate).outline
+    qtbot.mouseClick(buttons[Kind.CORNER], LEFT)
+    assert placed(plate).outline == before_cusp and tool.anchors.kinds[index] is Kind.CORNER
+    place = handle_place(tool, index, OUT)
+    other = tool.anchors.handles[index, 0].copy()
+    drag(plate, place, (place[0] + 3, place[1] - 2), CTRL)
+    np.testing.assert_allclose(tool.anchors.handles[index, 0], other, atol=1e-9)
     qtbot.mouseClick(buttons[Kind.CORNER], LEFT)
     assert len(placed(plate).ring) == 4 and undo_label(plate) == "Make point a corner"
 
@@ -271,3 +278,15 @@ def test_that_drawn_shapes_and_strokes_are_mirrored_in_one_step(plate: MainWindo
     assert shape.polygon.symmetric_difference(mirrored).area < 1e-5 * shape.polygon.area
     plate.actions_["undo"].trigger()
     assert plate.controller.document.target is None
+
+
+def test_that_the_axis_goes_through_the_middle_of_a_target_that_is_opened(plate: MainWindow, until: Until) -> None:
+    easel = plate.target.view.easel
+    plate.target.set_tool(Tool.POSE)
+    drag(plate, (0, 0), (25, 10), CTRL)
+    plate.target.strip.axis.set_axis(Axis.BOTH)
+    assert easel.mirror.at == pytest.approx((25, 10))
+    plate.controller.targeting.open("heart")
+    until(lambda: plate.controller.document.target is not None and plate.controller.document.target.name == "heart")
+    ring = placed(plate).ring
+    assert easel.mirror.at == pytest.approx(tuple(0.5 * (ring.min(axis=0) + ring.max(axis=0))))

@@ -22,7 +22,10 @@ class NodeOptions(QWidget):
         row.setSpacing(2)
         self.buttons: dict[Kind, QToolButton] = {}
         for kind, tip in (
-            (Kind.CORNER, tr("Corner (Shift+C). Straight lines to the selected points; Alt+drag a handle for a cusp.")),
+            (
+                Kind.CORNER,
+                tr("Corner (Shift+C). Handles of the selected points go their own ways (Alt+drag); again: no handles."),
+            ),
             (Kind.SMOOTH, tr("Smooth (Shift+S). Both handles of the selected points lie on one line.")),
             (Kind.SYMMETRIC, tr("Symmetric (Shift+Y). Both handles are also of one length; Shift+drag does the same.")),
             (Kind.AUTO, tr("Automatic (Shift+A). The neighbours of the selected points set their handles.")),

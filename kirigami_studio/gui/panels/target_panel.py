@@ -118,9 +118,12 @@ class TargetPanel(Card):
         self.threshold.setVisible(picture is not None)
         if picture is not None:
             self.threshold.show_levels(picture.threshold, picture.automatic)
-        if outline is None or self.view.easel.recall(outline) is None:
-            self.set_tool(Tool.LOOK)  # it came from elsewhere
+        elsewhere = outline is None or self.view.easel.recall(outline) is None
+        if elsewhere:
+            self.set_tool(Tool.LOOK)
         self.view.show_outline(outline, picture)
+        if elsewhere and picture is None:  # the axes go through the middle of what is drawn on
+            self.view.easel.set_axis(self.view.easel.mirror.axis)
         self.strip.show_target(outline is not None)
         self.refine.show_placed(self.view.easel.placed)
         self.strip.options.pose.show_placed(self.view.easel.placed)

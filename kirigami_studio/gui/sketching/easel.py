@@ -11,6 +11,7 @@ import numpy.typing as npt
 from PySide6.QtCore import QObject, QPointF, Qt, Signal
 from PySide6.QtGui import QKeyEvent, QPainter
 
+from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.scene.frame import Bounds, Frame
 from kirigami_studio.gui.theme import Palette
 from kirigami_studio.target.combining import Combine
@@ -165,11 +166,19 @@ class Easel(QObject):
         """Let a new shape replace the target, join it or be taken from it; a replacing tool is then put away."""
         how, target, mirror = self.combine, self.placed, self.mirror
         replaces = how is Combine.REPLACE or target is None
-        verb = "Draw" if replaces else "Add" if how is Combine.ADD else "Take away"
-        gesture = f"{verb} {name}" if mirror.axis is Axis.NONE else f"{verb} {name} with its mirror image"
+        gesture = _told(Combine.REPLACE if replaces else how, name)
+        if mirror.axis is not Axis.NONE:
+            gesture = tr("{gesture} with its mirror image", gesture=gesture)
         self.changed.emit(Change(gesture, lambda: mirrored(target, make(), how, name, mirror)))
         if replaces:
             self.tool_done.emit()
+
+
+def _told(how: Combine, name: str) -> str:
+    """A drawn shape as it follows the word Undo."""
+    if how is Combine.REPLACE:
+        return tr("Draw {name}", name=name)
+    return tr("Add {name}", name=name) if how is Combine.ADD else tr("Take away {name}", name=name)
 
 
 def _key(outline: Outline) -> tuple[object, ...]:

@@ -193,7 +193,7 @@ class PointTool(SketchTool):
         index = self._at(spot.pixel)
         if index is not None:
             self.select({index}, index)
-            self.set_kind(Kind.AUTO if self._anchors.kinds[index] is Kind.CORNER else Kind.CORNER)
+            self._take_kind(Kind.AUTO if self._anchors.kinds[index] is Kind.CORNER else Kind.CORNER)
             return
         more, index = self._anchors.inserted(spot.free)
         if self._far(more.places[index], spot.pixel) <= REACH:
@@ -204,12 +204,21 @@ class PointTool(SketchTool):
     # changing ------------------------------------------------------------------------------------------------------
 
     def set_kind(self, kind: Kind) -> None:
-        """Make the selected points, and their mirror images, of one kind."""
+        """Make the selected points, and their mirror images, of one kind.
+
+        Corners keep their handles at first, so that each side can be bent alone; made corners again they lose them.
+        """
+        anchors = self._anchors
+        if anchors is not None:
+            soft = any(anchors.kinds[index] is not Kind.CORNER for index in self.selected)
+            self._take_kind(kind, cusp=soft and kind is Kind.CORNER)
+
+    def _take_kind(self, kind: Kind, cusp: bool = False) -> None:
         anchors = self._anchors
         if anchors is None or not self.selected or self.easel.placed is not self._shown:
             return
         for index in sorted(self.selected | self._images(anchors).keys()):
-            anchors = anchors.with_kind(index, kind)
+            anchors = anchors.as_cusp(index) if cusp else anchors.with_kind(index, kind)
         if anchors is not self._anchors:
             self._commit(anchors, _told(kind, len(self.selected)))
 
