@@ -162,7 +162,11 @@ COMMANDS = (
     Command("swap", "S&wap compared designs", "&View", ("Shift+K",), "swap", "Choose the design that is compared"),
     Command("fit", "Show &everything", "&View", ("0",), "fit", "Fit the layout into the view", gap=True),
     Command("theme", "&Dark theme", "&View", ("Ctrl+D",), "moon", "Switch between light and dark", True, gap=True),
+    Command("theme_system", "Follow the s&ystem", "&View", (), "", "Look as the desktop does", False, True),
     Command("guide", "&Guide", "&Help", ("F1",), "guide", "Open the user guide", True),
+    Command("shortcuts", "&Keyboard shortcuts", "&Help", ("?", "Ctrl+/"), "", "List and search all keys and gestures"),
+    Command("tour", "&Tour", "&Help", (), "", "Be led through the window in six steps", gap=True),
+    Command("sample", "Open &sample project", "&Help", (), "", "Open a project with designs for the heart"),
 )
 
 

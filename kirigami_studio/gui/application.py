@@ -109,10 +109,14 @@ def run(argv: list[str]) -> int:
     window.controller.filing.recent.load(config / RECENT)
     window.controller.filing.recovering.use(platformdirs.user_state_path("kirigami-studio", appauthor=False) / RECOVERY)
     application.aboutToQuit.connect(lambda: window.remember(state))
-    QGuiApplication.styleHints().colorSchemeChanged.connect(lambda _: window.set_theme(theme.system_palette()))
+    window.commands.dressing.refresh()
+    window.commands.dressing.listen()
     window.show()
     QTimer.singleShot(0, window, lambda: open_first(window, argv[1] if len(argv) > 1 else FIRST_TARGET))
     WarmUp(window.controller.warm_up, lambda: window.controller.board.busy, window)
+    if not window.controller.preferring.present.tour_seen:
+        window.controller.preferring.note_tour()
+        QTimer.singleShot(0, window, window.commands.tour.start)
     return application.exec()
 
 

@@ -13,8 +13,10 @@ from PySide6.QtGui import QDesktopServices, QGuiApplication
 from PySide6.QtWidgets import QAbstractButton, QComboBox
 
 from kirigami_studio.gui.actions import insert_menu
+from kirigami_studio.foundation.resources import resource
 from kirigami_studio.gui.controller import Controller
 from kirigami_studio.gui.dialogs.files import FileChoosers, FileQuestions
+from kirigami_studio.gui.dressing import Dressing
 from kirigami_studio.gui.jobs.steps import Exported
 from kirigami_studio.gui.messages import Message, Tone
 from kirigami_studio.gui.panels.picture_menu import PictureMenu
@@ -22,8 +24,8 @@ from kirigami_studio.gui.panels.recent_menu import RecentMenu
 from kirigami_studio.gui.pasting import Pasting
 from kirigami_studio.gui.picturing import Picturing
 from kirigami_studio.gui.shell import Shell
-from kirigami_studio.gui.theme import DARK, LIGHT
 from kirigami_studio.gui.views.layout_view import USUAL, Overlay
+from kirigami_studio.gui.tour import Tour
 from kirigami_studio.gui.views.target_view import Tool
 from kirigami_studio.target.combining import Combine
 
@@ -32,6 +34,7 @@ if TYPE_CHECKING:
     from kirigami_studio.gui.dialogs.export_report import ExportReport
     from kirigami_studio.gui.dialogs.guide import GuideWindow
     from kirigami_studio.gui.dialogs.material_editor import MaterialEditor
+    from kirigami_studio.gui.dialogs.shortcut_sheet import ShortcutSheet
     from kirigami_studio.gui.dialogs.silhouette_picker import SilhouettePicker
     from kirigami_studio.gui.panels.history_list import HistoryList
 
@@ -62,6 +65,9 @@ class Commands(QObject):
         self.history: HistoryList | None = None
         self.recent = RecentMenu(window, controller.filing.recent, self.take_file)
         insert_menu(window, "save", self.recent)
+        self.shortcuts: ShortcutSheet | None = None
+        self.dressing = Dressing(window, controller.preferring)
+        self.tour = Tour(window, controller)
         self.pasting = Pasting(self)
         self.pasting.file_wanted.connect(self.take_file)
         self.pasting.message.connect(controller.message)
@@ -124,8 +130,12 @@ class Commands(QObject):
             "cuts": window.stage.cuts_switch.click,
             "plots": window.stage.plots_switch.click,
             "fit": window.stage.fit,
-            "theme": lambda: window.set_theme(LIGHT if window.palette_.dark else DARK),
+            "theme": self.dressing.switch,
+            "theme_system": self.dressing.follow,
             "guide": self.show_guide,
+            "shortcuts": self.show_shortcuts,
+            "tour": self.tour.start,
+            "sample": lambda: self.guard("open the sample", self.open_sample),
         }
         for name, command in commands.items():
             actions[name].triggered.connect(lambda _=False, command=command: command())
@@ -245,8 +255,9 @@ class Commands(QObject):
 
     def close_dialogs(self) -> None:
         """The window is closing: what stands beside it goes with it."""
+        self.tour.end()
         self.close_report()
-        for dialog in (self.materials, self.guide, self.history):
+        for dialog in (self.materials, self.guide, self.history, self.shortcuts):
             if dialog is not None:
                 dialog.close()
 
@@ -285,6 +296,21 @@ class Commands(QObject):
         self.guide.show()
         self.guide.raise_()
         self.guide.activateWindow()
+
+    def show_shortcuts(self) -> None:
+        """Open the sheet of keys and gestures, or bring it to the front."""
+        from kirigami_studio.gui.dialogs.shortcut_sheet import ShortcutSheet
+
+        if self.shortcuts is None:
+            self.shortcuts = ShortcutSheet(self.window)
+        self.shortcuts.show()
+        self.shortcuts.raise_()
+        self.shortcuts.activateWindow()
+        self.shortcuts.search.setFocus()
+
+    def open_sample(self) -> None:
+        """Open the bundled project; it is saved elsewhere."""
+        self.controller.open_project(resource("examples", "heart.kiri"))
 
     def _play(self) -> None:
         """Space plays, unless the keyboard's focus is on a button or a list of choices, which own the key by custom.

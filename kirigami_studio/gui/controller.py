@@ -15,6 +15,7 @@ from PySide6.QtCore import QObject, Signal
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.gui.collecting import Collecting, Plan
+from kirigami_studio.foundation.resources import resource_root
 from kirigami_studio.gui.comparing import Comparing
 from kirigami_studio.gui.cutting import Cutting
 from kirigami_studio.gui.design_run import DesignRun
@@ -327,7 +328,7 @@ class Controller(QObject):
 
     def _opened(self, path: Path, document: Document) -> None:
         self._stop_design()
-        self.path = path
+        self.path = None if path.is_relative_to(resource_root()) else path  # a bundled one is saved elsewhere
         self.history.restart(document)
         self.opened.emit(path)
         self._show()

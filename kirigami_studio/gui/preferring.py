@@ -1,7 +1,8 @@
-"""The preferences of the window: read once, and written when a cut file was exported for another machine."""
+"""The preferences of the window: read once, written when a choice changes that outlives a project."""
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 from PySide6.QtCore import QObject, Signal
@@ -10,7 +11,7 @@ from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.gui.messages import Message, Tone
 from kirigami_studio.project import preferences
 from kirigami_studio.project.document import Document
-from kirigami_studio.project.preferences import Preferences, preferences_of
+from kirigami_studio.project.preferences import Preferences
 
 
 class Preferring(QObject):
@@ -34,7 +35,17 @@ class Preferring(QObject):
 
     def remember(self, document: Document) -> None:
         """A cut file of this document was written."""
-        wanted = preferences_of(document)
+        self._keep(self.present.on_machine_of(document))
+
+    def choose_theme(self, theme: str) -> None:
+        """The window is to look like this from now on: "system", "light" or "dark"."""
+        self._keep(replace(self.present, theme=theme))
+
+    def note_tour(self) -> None:
+        """The guided tour was offered; it comes by itself only once."""
+        self._keep(replace(self.present, tour_seen=True))
+
+    def _keep(self, wanted: Preferences) -> None:
         if wanted == self.present:
             return
         self.present = wanted

@@ -12,6 +12,9 @@ from kirigami_studio.foundation.errors import ProjectError
 from kirigami_studio.foundation.files import write_atomically
 from kirigami_studio.project.document import Document
 
+#: The desktop's own look, or one of the two palettes.
+THEMES = ("system", "light", "dark")
+
 
 @dataclass(frozen=True, slots=True)
 class Preferences:
@@ -23,25 +26,36 @@ class Preferences:
         Key of the machine profile that was exported for last.
     dxf_version : str
         DXF dialect that was exported last.
+    theme : str
+        Look of the window, one of :data:`THEMES`.
+    tour_seen : bool
+        Whether the guided tour was offered before.
     """
 
     profile: str = "any"
     dxf_version: str = "R2010"
+    theme: str = "system"
+    tour_seen: bool = False
 
     def __post_init__(self) -> None:
-        for name, value in asdict(self).items():
+        for name in ("profile", "dxf_version", "theme"):
+            value = getattr(self, name)
             if not isinstance(value, str) or not value:
                 raise ProjectError(f"The preference {name} must be a name, got {value!r}.")
+        if self.theme not in THEMES:
+            raise ProjectError(f"The preference theme must be one of {', '.join(THEMES)}, got {self.theme!r}.")
+        if not isinstance(self.tour_seen, bool):
+            raise ProjectError(f"The preference tour_seen must be true or false, got {self.tour_seen!r}.")
 
     def new_document(self) -> Document:
         """An empty document with these choices."""
         empty = Document()
-        return replace(empty, fabrication=replace(empty.fabrication, **asdict(self)))
+        machine = {"profile": self.profile, "dxf_version": self.dxf_version}
+        return replace(empty, fabrication=replace(empty.fabrication, **machine))
 
-
-def preferences_of(document: Document) -> Preferences:
-    """What a document says about the machine that it is cut on."""
-    return Preferences(document.fabrication.profile, document.fabrication.dxf_version)
+    def on_machine_of(self, document: Document) -> Preferences:
+        """The same with what a document says about the machine that it is cut on."""
+        return replace(self, profile=document.fabrication.profile, dxf_version=document.fabrication.dxf_version)
 
 
 def load(path: Path) -> Preferences:

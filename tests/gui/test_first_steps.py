@@ -1,0 +1,208 @@
+"""What somebody new finds: a tour, a sample, a sheet of keys, and a window that remembers how it was left."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from PySide6.QtCore import QByteArray, QRect, QSettings, QSize, Qt
+from PySide6.QtGui import QKeySequence
+from PySide6.QtWidgets import QApplication
+from pytestqt.qtbot import QtBot
+
+from kirigami_studio.foundation.errors import ProjectError
+from kirigami_studio.foundation.resources import resource
+from kirigami_studio.gui.actions import COMMANDS
+from kirigami_studio.gui.dialogs.shortcut_sheet import ShortcutSheet
+from kirigami_studio.gui.main_window import MainWindow
+from kirigami_studio.gui.theme import DARK, LIGHT
+from kirigami_studio.gui.views.callout import beside
+from kirigami_studio.project import preferences
+from kirigami_studio.project.document import Document
+from kirigami_studio.project.preferences import Preferences
+
+Until = Callable[[Callable[[], bool]], None]
+LEFT = Qt.MouseButton.LeftButton
+
+
+def test_that_the_tour_points_at_every_control_and_ends_after_the_last(designed: MainWindow, qtbot: QtBot) -> None:
+    designed.actions_["tour"].trigger()
+    tour = designed.commands.tour
+    titles = []
+    while tour.running:
+        bubble, ring, anchor = tour.callout, tour.ring, tour.steps[tour.at].anchor()
+        assert bubble.isVisible() and designed.rect().contains(bubble.geometry())
+        place = QRect(anchor.mapTo(designed, anchor.rect().topLeft()), anchor.size())
+        assert ring.geometry().contains(place) and not bubble.geometry().contains(place.center())
+        assert bubble.text.height() >= bubble.text.heightForWidth(bubble.text.width())
+        titles.append(bubble.title.text())
+        qtbot.mouseClick(bubble.next, LEFT)
+    assert len(set(titles)) == len(tour.steps) == 6
+    assert not tour.callout.isVisible() and not tour.ring.isVisible()
+    assert not designed.isWindowModified()
+
+
+def test_that_the_tour_is_walked_and_left_by_keys(designed: MainWindow, qtbot: QtBot) -> None:
+    designed.actions_["tour"].trigger()
+    tour = designed.commands.tour
+    assert QApplication.focusWidget() is tour.callout
+    for key, at in ((Qt.Key.Key_Right, 1), (Qt.Key.Key_Return, 2), (Qt.Key.Key_Left, 1), (Qt.Key.Key_Escape, -1)):
+        qtbot.keyClick(tour.callout, key)
+        assert tour.at == at
+    designed.actions_["tour"].trigger()
+    designed.gallery.view.setFocus()
+    qtbot.keyClick(designed.gallery.view, Qt.Key.Key_Escape)
+    assert not tour.running
+
+
+def test_that_the_tour_goes_on_when_the_user_does_the_thing(designed: MainWindow, qtbot: QtBot, until: Until) -> None:
+    tour = designed.commands.tour
+    tour.start()
+    designed.controller.targeting.open("star")
+    until(lambda: tour.at == 1)
+    designed.actions_["undo"].trigger()
+    until(lambda: designed.gallery.view.model_.rowCount() == 3)
+    qtbot.mouseClick(tour.callout.next, LEFT)
+    assert tour.at == 2
+    view = designed.gallery.view
+    qtbot.mouseClick(view.viewport(), LEFT, pos=view.visualRect(view.model_.index(1, 0)).center())
+    assert tour.at == 3
+    qtbot.keyClick(designed.stage.deployment.slider, Qt.Key.Key_Left)
+    assert tour.at == 4
+    qtbot.mouseClick(designed.stage.cuts_switch, LEFT)
+    assert tour.at == 5
+    tour.end()
+
+
+def test_that_esc_stops_a_run_before_it_ends_the_tour(heart: MainWindow, until: Until) -> None:
+    tour = heart.commands.tour
+    tour.start()
+    escape, cancel = tour._escape, heart.actions_["cancel"]
+    assert escape.isEnabled() and not cancel.isEnabled()
+    heart.controller.generate()
+    assert tour.at == 1 or tour.running
+    assert cancel.isEnabled() and not escape.isEnabled()
+    cancel.trigger()
+    until(lambda: not heart.controller.running)
+    assert escape.isEnabled()
+    tour.end()
+
+
+def test_that_the_bubble_waits_while_the_drawing_board_needs_the_room(designed: MainWindow) -> None:
+    tour = designed.commands.tour
+    tour.start()
+    designed.target.set_editing(True)
+    QApplication.processEvents()
+    assert tour.running and not tour.callout.isVisible()
+    designed.target.set_editing(False)
+    QApplication.processEvents()
+    assert tour.callout.isVisible()
+
+
+@pytest.mark.parametrize("place", [QRect(10, 300, 300, 60), QRect(900, 10, 90, 30), QRect(400, 560, 200, 70)])
+def test_that_a_bubble_lies_inside_and_beside_its_control(place: QRect) -> None:
+    room = QRect(0, 0, 1000, 640)
+    bubble = QRect(beside(place, QSize(350, 160), room), QSize(350, 160))
+    assert room.contains(bubble) and not bubble.intersects(place)
+
+
+def test_that_the_sample_opens_and_is_saved_elsewhere(window: MainWindow, until: Until, files: object) -> None:
+    window.actions_["sample"].trigger()
+    until(lambda: window.controller.stage is not None and window.fabrication.export.isEnabled())
+    document = window.controller.document
+    assert document.target is not None and len(document.candidates) >= 6 and document.provenance["model_sha256"]
+    assert window.controller.path is None
+    bundled = resource("examples", "heart.kiri").read_bytes()
+    window.actions_["save"].trigger()
+    assert files.proposals == ["heart.kiri"]  # type: ignore[attr-defined]
+    assert resource("examples", "heart.kiri").read_bytes() == bundled
+
+
+def test_that_the_sheet_lists_every_key_and_finds_by_word_and_key(window: MainWindow, qtbot: QtBot) -> None:
+    qtbot.keyClick(window, Qt.Key.Key_Slash, Qt.KeyboardModifier.ControlModifier)
+    sheet = window.commands.shortcuts
+    assert sheet is not None and sheet.isVisible() and not sheet.isModal()
+    text = "\n".join(keys for _, keys in sheet.showing())
+    for command in COMMANDS:
+        for keys in command.shortcuts:
+            assert QKeySequence(keys).toString(QKeySequence.SequenceFormat.NativeText) in text
+    whole = len(sheet.showing())
+    qtbot.keyClicks(sheet.search, "export every")
+    assert [keys for _, keys in sheet.showing()] == ["Ctrl+Shift+E"]
+    qtbot.keyClick(sheet, Qt.Key.Key_Escape)
+    assert len(sheet.showing()) == whole and sheet.isVisible()
+    qtbot.keyClicks(sheet.search, "wheel")
+    assert any("Zoom" in effect for effect, _ in sheet.showing())
+    qtbot.keyClicks(sheet.search, " nothing like it")
+    assert sheet.showing() == [] and sheet.found.text() == "0 lines"
+
+
+def test_that_no_two_commands_share_a_key() -> None:
+    keys = [QKeySequence(one).toString() for command in COMMANDS for one in command.shortcuts]
+    assert len(keys) == len(set(keys)) and "" not in keys
+
+
+def test_that_a_sheet_of_other_commands_shows_those(qtbot: QtBot, window: MainWindow) -> None:
+    only = tuple(command for command in COMMANDS if command.name == "quit")
+    sheet = ShortcutSheet(window, only)
+    qtbot.addWidget(sheet)
+    assert sheet.showing()[0] == ("Close Kirigami Studio", "Ctrl+Q")
+    assert not any("DXF" in effect for effect, _ in sheet.showing())
+
+
+def test_that_a_chosen_look_stays_until_the_desktop_is_followed_again(window: MainWindow, tmp_path: Path) -> None:
+    kept = tmp_path / "preferences.toml"
+    window.controller.use_preferences(kept)
+    window.actions_["theme"].trigger()
+    assert window.palette_ is DARK and preferences.load(kept).theme == "dark"
+    assert not window.actions_["theme_system"].isChecked()
+    window.actions_["theme_system"].trigger()
+    assert window.palette_ is LIGHT and preferences.load(kept).theme == "system"
+    window.actions_["theme_system"].trigger()
+    assert preferences.load(kept).theme == "light" and not window.actions_["theme_system"].isChecked()
+    preferences.save(replace(preferences.load(kept), theme="dark"), kept)
+    window.controller.use_preferences(kept)
+    window.commands.dressing.refresh()
+    assert window.palette_ is DARK
+    assert window.controller.document == Document()
+
+
+@pytest.mark.parametrize("entry", ['theme = "pink"', "theme = 3", 'tour_seen = "yes"', "tour_seen = 1"])
+def test_that_a_wrong_preference_is_named_and_the_file_left_alone(
+    entry: str, window: MainWindow, tmp_path: Path
+) -> None:
+    kept = tmp_path / "preferences.toml"
+    kept.write_text(f"{entry}\n", encoding="utf-8")
+    with pytest.raises(ProjectError, match=entry.split()[0]):
+        preferences.load(kept)
+    window.controller.use_preferences(kept)
+    assert entry.split()[0] in window.messages.messages[-1].sentence
+    window.actions_["theme"].trigger()
+    assert kept.read_text(encoding="utf-8") == f"{entry}\n"
+
+
+def test_that_the_tour_is_noted_beside_the_other_preferences(window: MainWindow, tmp_path: Path) -> None:
+    kept = tmp_path / "preferences.toml"
+    preferences.save(Preferences("lightburn", theme="light"), kept)
+    window.controller.use_preferences(kept)
+    window.controller.preferring.note_tour()
+    assert preferences.load(kept) == Preferences("lightburn", theme="light", tour_seen=True)
+
+
+def test_that_a_window_left_on_a_larger_screen_comes_back_inside_this_one(window: MainWindow, tmp_path: Path) -> None:
+    settings = QSettings(str(tmp_path / "state.ini"), QSettings.Format.IniFormat)
+    window.resize(5000, 4000)
+    window.move(7000, 3000)
+    window.remember(settings)
+    window.resize(1000, 640)
+    window.move(0, 0)
+    window.restore(settings)
+    room = window.screen().availableGeometry()
+    assert room.contains(window.geometry().topLeft())
+    assert window.width() <= max(room.width(), window.minimumWidth())
+    assert window.height() <= max(room.height(), window.minimumHeight())
+    settings.setValue("geometry", QByteArray(b"not a geometry"))
+    window.restore(settings)
+    assert room.contains(window.geometry().topLeft())
