@@ -12,8 +12,8 @@ from PySide6.QtCore import QObject, Qt, QUrl
 from PySide6.QtGui import QDesktopServices, QGuiApplication
 from PySide6.QtWidgets import QAbstractButton, QComboBox
 
-from kirigami_studio.gui.actions import insert_menu
 from kirigami_studio.foundation.resources import resource
+from kirigami_studio.gui.actions import insert_menu
 from kirigami_studio.gui.controller import Controller
 from kirigami_studio.gui.dialogs.files import FileChoosers, FileQuestions
 from kirigami_studio.gui.dressing import Dressing
@@ -24,8 +24,8 @@ from kirigami_studio.gui.panels.recent_menu import RecentMenu
 from kirigami_studio.gui.pasting import Pasting
 from kirigami_studio.gui.picturing import Picturing
 from kirigami_studio.gui.shell import Shell
-from kirigami_studio.gui.views.layout_view import USUAL, Overlay
 from kirigami_studio.gui.tour import Tour
+from kirigami_studio.gui.views.layout_view import USUAL, Overlay
 from kirigami_studio.gui.views.target_view import Tool
 from kirigami_studio.target.combining import Combine
 
