@@ -15,7 +15,6 @@ from kirigami_studio.gui.messages import Message, Tone
 from kirigami_studio.pipeline.events import Result
 from kirigami_studio.pipeline.rank import rank_key, ranked
 from kirigami_studio.pipeline.request import Request
-from kirigami_studio.pipeline.variety import distinct
 from kirigami_studio.project import candidate_edits
 from kirigami_studio.project.candidate_edits import Brought
 from kirigami_studio.project.document import Document, Mark
@@ -126,13 +125,16 @@ class Collecting(QObject):
         return plan
 
     def edit_for(self, result: Result, provenance: dict[str, str], preview: Candidate | None) -> Edit:
-        """What a finished run leads to; ``preview`` is the design that the user looked at meanwhile."""
+        """What a finished run leads to; where it joins, its result holds new designs alone.
+
+        ``preview`` is the design that the user looked at meanwhile.
+        """
         document, plan = self._document(), self._plan
         seed = None if plan is None else plan.seed
         if plan is not None and plan.joins:
-            found = distinct(ranked(result.candidates), document.candidates)
-            self.added = frozenset(found)
-            edit = candidate_edits.add_candidates(document, Brought(found, provenance, seed), rank_key)
+            self.added = frozenset(result.candidates)
+            brought = Brought(result.candidates, provenance, seed)
+            edit = candidate_edits.add_candidates(document, brought, rank_key)
             return _choosing(edit, preview)
         self.added = frozenset()
         staying = _staying(document, result.request)
@@ -148,17 +150,17 @@ class Collecting(QObject):
 
     def told(self, result: Result, before: Document) -> str:
         """What the status line says of a finished run."""
-        score = result.best.score
         plan, document = self._plan, self._document()
         if plan is None or not plan.joins:
+            score = result.best.score
             return (
                 f"{len(result.candidates)} designs in {result.seconds:.1f} s. Best: sIoU {100 * score.siou:.1f} %, "
                 f"{100 * score.siou_gain:+.1f} over the uniform sheet."
             )
         added = len(set(document.candidates) - set(before.candidates))
         if not added:
-            return tr("Nothing new: all {count} designs were there already.", count=len(result.candidates))
-        best = tr("best of them sIoU {siou:.1f} %", siou=100 * score.siou)
+            return tr("Nothing new: all {count} designs were there already.", count=result.request.k)
+        best = tr("best of them sIoU {siou:.1f} %", siou=100 * result.best.score.siou)
         return tr_n("{count} design added", "{count} designs added", added) + f", {best}."
 
 

@@ -199,7 +199,7 @@ class Controller(QObject):
             return
         self._stop_finish()
         self.showing.begin_run(plan.kept, plan.joins)
-        self.run.start(plan.request)
+        self.run.start(plan.request, plan.kept if plan.joins else None)
         self.status.emit(plan.says)
 
     def cancel(self) -> None:

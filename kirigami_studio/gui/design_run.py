@@ -9,6 +9,7 @@ from PySide6.QtCore import QObject, Signal
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.gui.jobs import steps
+from kirigami_studio.gui.jobs.adding_steps import adding
 from kirigami_studio.gui.jobs.board import Board, Ears
 from kirigami_studio.gui.shelf import Shelf
 from kirigami_studio.pipeline.events import CandidateFound, CandidateImproved, Finished, Progress, Started
@@ -45,13 +46,17 @@ class DesignRun(QObject):
     def running(self) -> bool:
         return self._number is not None
 
-    def start(self, request: Request) -> None:
-        """Begin; the caller has made sure that nothing runs."""
+    def start(self, request: Request, others: tuple[Candidate, ...] | None = None) -> None:
+        """Begin; the caller has made sure that nothing runs.
+
+        With ``others`` the result holds only designs that are not among them, perhaps none.
+        """
         self._asked = request.k
         self._sampled.clear()
         self._now.clear()
         ears = Ears(self._report, self._finish, self._cancel, self._fail)
-        self._number = self._board.start("generating designs", partial(steps.generating, request), ears)
+        work = partial(steps.generating, request) if others is None else partial(adding, request, others)
+        self._number = self._board.start("generating designs", work, ears)
         self.started.emit(request.k)
 
     def cancel(self) -> None:

@@ -84,7 +84,7 @@ def add_candidates(document: Document, brought: Brought, rank: RankKey, limit: i
     if brought.seed is not None:
         changed = replace(changed, settings=replace(document.settings, seed=brought.seed))
     if not added:
-        changed = replace(document, settings=changed.settings)
+        return Edit(tr("Change the seed"), replace(document, settings=changed.settings))
     return Edit(tr_n("Add {count} design", "Add {count} designs", len(added)), changed)
 
 

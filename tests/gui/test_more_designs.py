@@ -11,13 +11,16 @@ from pytestqt.qtbot import QtBot
 
 from kirigami_studio.evaluate.candidate import Candidate, Origin
 from kirigami_studio.gui.collecting import next_seed
+from kirigami_studio.gui.jobs.adding_steps import adding
 from kirigami_studio.gui.main_window import MainWindow
 from kirigami_studio.gui.messages import Tone
 from kirigami_studio.gui.selecting import Order
 from kirigami_studio.gui.views.gallery_model import FRESH_ROLE
+from kirigami_studio.pipeline.events import Finished
 from kirigami_studio.pipeline.rank import ranked
 from kirigami_studio.pipeline.variety import distances
 from kirigami_studio.project.document import Document, Mark
+from kirigami_studio.target import silhouettes
 
 Until = Callable[[Callable[[], bool]], None]
 LEFT = Qt.MouseButton.LeftButton
@@ -76,6 +79,22 @@ def test_that_again_adds_designs_of_the_next_seed_and_keeps_choice_and_marks(
     drawn.actions_["undo"].trigger()
     assert controller.document == before
     until(lambda: tuple(shown(drawn)) == before.candidates)
+
+
+@pytest.mark.torch
+def test_that_designs_that_are_there_already_are_not_added_again(drawn: MainWindow, until: Until) -> None:
+    controller = drawn.controller
+    request = replace(controller.collecting.more(silhouettes.load("heart")).request, seed=0)
+    found = [event.result for event in adding(request, (), lambda: False) if isinstance(event, Finished)]
+    assert found[0].candidates == controller.document.candidates
+    others = controller.document.candidates[1:]
+    left = [event.result for event in adding(request, others, lambda: False) if isinstance(event, Finished)]
+    assert left[0].candidates == controller.document.candidates[:1]
+    before = controller.document
+    controller.run.start(request, before.candidates)
+    until(lambda: not controller.running)
+    assert controller.document is before and tuple(shown(drawn)) == before.candidates
+    assert drawn.says.text() == "Nothing new: all 3 designs were there already."
 
 
 @pytest.mark.torch

@@ -192,7 +192,7 @@ class GalleryModel(QAbstractListModel):
                 self.dataChanged.emit(self.index(0, 0), self.index(len(self._shown) - 1, 0))
 
     def mark_of(self, candidate: Candidate) -> Mark:
-        return self._marks.get(candidate, Mark.NONE)
+        return self._marks.get(candidate, Mark.NONE) if self._marks else Mark.NONE
 
     def number_of(self, candidate: Candidate | None) -> int:
         """The number of a design among all, from 1; 0 when there is no such design."""
@@ -207,7 +207,7 @@ class GalleryModel(QAbstractListModel):
         return [self._all[place] for place in arranged(designs, self._selection)]
 
     def _as_shown(self, entry: Entry, place: int) -> Shown:
-        mark, fresh = self.mark_of(entry.candidate), entry.candidate in self._fresh
+        mark, fresh = self.mark_of(entry.candidate), bool(self._fresh) and entry.candidate in self._fresh
         return Shown(place, entry.candidate, mark, entry.design.deployment, fresh)
 
     def _rearrange(self) -> None:
