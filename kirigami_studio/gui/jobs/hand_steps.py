@@ -38,12 +38,12 @@ class Refitted:
 
 def scoring(candidate: Candidate, field: RatioField, target: Outline, cancel: Cancel) -> Iterator[Decoded]:
     """Score a candidate with another field, changed by hand; a trim belonged to the old one and goes."""
-    from kirigami_studio.evaluate.score import evaluate
+    from kirigami_studio.evaluate.staying import evaluate_near
     from kirigami_studio.pipeline.threads import one_blas_thread
 
     deployment = deploy(field)
     with one_blas_thread():
-        score = evaluate(deployment, target, candidate.score.phi)
+        score = evaluate_near(deployment, target, candidate.score.phi, candidate.score.transform)
     changed = replace(candidate, field=field, score=score, polished=False, trim=None, origin=Origin.EDITED)
     yield Decoded(changed, deployment)
 
@@ -52,7 +52,7 @@ def refitting(
     candidate: Candidate, target: Outline, prefer: str, locked: frozenset[Void], cancel: Cancel
 ) -> Iterator[Refitted]:
     """Fit a candidate on the exact geometry from its present field; locked voids keep their ratios."""
-    from kirigami_studio.evaluate.score import evaluate
+    from kirigami_studio.evaluate.staying import evaluate_near
     from kirigami_studio.pipeline.rank import rank_key
     from kirigami_studio.pipeline.threads import one_blas_thread
     from kirigami_studio.polish.levenberg import polish
@@ -76,7 +76,7 @@ def refitting(
         if cancel():
             raise Cancelled("Fitting was stopped; nothing was changed.")
         deployment = deploy(fit.field)
-        found = evaluate(deployment, target, score.phi)
+        found = evaluate_near(deployment, target, score.phi, fit.pose)
     drawn = candidate.drawn or candidate.field
     fitted = replace(candidate, field=fit.field, score=found, polished=True, drawn=drawn, trim=None)
     yield Refitted(Decoded(fitted, deployment), rank_key(fitted) < rank_key(replace(candidate, trim=None)))
