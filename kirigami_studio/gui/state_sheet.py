@@ -13,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 from PIL import Image, ImageDraw
-from PySide6.QtCore import QPoint, QPointF, QSize
+from PySide6.QtCore import QEvent, QPoint, QPointF, QSize
 from PySide6.QtWidgets import QApplication
 
 from kirigami_studio.gui.messages import Message, Tone
@@ -277,6 +277,7 @@ class StateSheet(Session):
                     view.voids.point_at((6, 6))
                     self.picture(f"by-hand-{name}-{size.width()}x{size.height()}-{palette.name}")
         window.set_theme(LIGHT)
+        QApplication.sendEvent(view, QEvent(QEvent.Type.Leave))
         controller.hand.nudge(frozenset({(5, 5)}), 0.3)
         self.until(lambda: not controller.hand.busy, "the changed ratio was not scored")
         self.all_sizes("by-hand-changed")

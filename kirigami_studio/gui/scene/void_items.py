@@ -32,10 +32,10 @@ def paint_marked(painter: QPainter, shapes: VoidShapes, voids: Iterable[Void], p
         tint = QColor(palette.accent)
         tint.setAlpha(60)
         painter.setBrush(tint)
-        painter.setPen(_pen(palette.canvas, width + 2.5))
+        painter.setPen(_pen(palette.canvas, width + 3.5))
         painter.drawPath(path)
         painter.setBrush(Qt.BrushStyle.NoBrush)
-        painter.setPen(_pen(palette.accent, width))
+        painter.setPen(_pen(palette.accent_hover, width))
         painter.drawPath(path)
 
 

@@ -164,7 +164,7 @@ class VoidGestures(QObject):
         if self.active and shapes.movable:
             paint_handles(painter, shapes, self._vertex, palette)
         if self.active:
-            paint_marked(painter, shapes, sorted(self._selected), palette, 2.6)
+            paint_marked(painter, shapes, sorted(self._selected), palette, 3.0)
         if self._hovered is not None and self._hovered not in self._selected:
             paint_marked(painter, shapes, [self._hovered], palette, 2.0 if self.active else 1.4)
         if self._band is not None:
