@@ -24,7 +24,7 @@ help:
 	@echo "make bench   print the timings of the exact geometry"
 	@echo "make consumers  let MeerK40t, in an environment of its own, plan our cut files"
 	@echo "make demo    design a heart on the command line into out/heart"
-	@echo "make states  pictures of every state of the window into out/states"
+	@echo "make states  pictures of every state of the window into out/states, at 200 % into out/states-200"
 	@echo "make clean   remove what the other targets made, .venv excepted"
 
 setup: $(STAMP)
@@ -77,6 +77,7 @@ demo: setup
 
 states: setup
 	QT_QPA_PLATFORM=offscreen $(BIN)/python -m kirigami_studio.gui.state_sheet --out out/states
+	QT_QPA_PLATFORM=offscreen $(BIN)/python -m kirigami_studio.gui.state_sheet --out out/states-200 --scale 2
 
 clean:
 	rm -rf out build dist *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis .import_linter_cache .benchmarks

@@ -1,7 +1,7 @@
 """One picture of every state of the window, in every size and both themes, to be looked at.
 
-``python -m kirigami_studio.gui.state_sheet --out out/states`` writes them; ``--scale 2`` draws them for a
-high-resolution screen.
+``python -m kirigami_studio.gui.state_sheet --out out/states`` writes them, and a page of small ones for every size and
+theme; ``--scale 2`` draws them for a high-resolution screen.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ from PIL import Image, ImageDraw
 from PySide6.QtCore import QEvent, QPoint, QPointF, QSize
 from PySide6.QtWidgets import QApplication
 
+from kirigami_studio.gui.contact_sheet import contact_sheets
 from kirigami_studio.gui.messages import Message, Tone
 from kirigami_studio.gui.offscreen_session import DESIGNS, Session, SessionError, click, hover, main
 from kirigami_studio.gui.selecting import Order
@@ -36,6 +37,11 @@ from kirigami_studio.target.mirroring import Axis
 from kirigami_studio.target.placed import Placed
 
 SIZES = (QSize(1000, 640), QSize(1280, 720), QSize(1440, 900))
+#: A large screen, for the states that look different there.
+LARGE = QSize(2560, 1440)
+LARGE_STATES = frozenset({"editor-points", "designs", "cuts", "half-open", "tour"})
+#: What is drawn at twice the scale: 2560 x 1440 dots.
+SCALED = QSize(1280, 720)
 LONG_NAME = "a scanned drawing with the long name that scanners like to give, page 3 of 12"
 
 
@@ -87,9 +93,27 @@ class StateSheet(Session):
         window.commands.show_guide()
         if window.commands.guide is not None:
             self.picture("guide", window.commands.guide)
+        self.first_steps()
         window.controller.history.mark_saved()
         window.close()
+        self.files.extend(contact_sheets([file for file in self.files if file.suffix == ".png"], self.out))
         return self.files
+
+    def first_steps(self) -> None:
+        """The tour at a control on every side, and the sheet of keys."""
+        commands = self.window.commands
+        commands.tour.start()
+        for step in range(len(commands.tour.steps)):
+            if step == 2:
+                self.all_sizes("tour")
+            else:
+                self.picture(f"tour-{step + 1}")
+            click(commands.tour.callout.next)
+        commands.show_shortcuts()
+        if commands.shortcuts is not None:
+            for palette in (DARK, LIGHT):
+                self.window.set_theme(palette)
+                self.picture(f"shortcuts-{palette.name}", commands.shortcuts)
 
     def editor(self) -> None:
         """A shape with a thin arm on the drawing board, its points, its handles, and a shape about to be taken away."""
@@ -387,9 +411,15 @@ class StateSheet(Session):
         while bar.messages:
             bar.close_message()
 
+    def sizes(self, name: str) -> tuple[QSize, ...]:
+        """The sizes that a state is pictured in."""
+        if self.window.devicePixelRatioF() > 1.0:
+            return (SCALED,)
+        return (*SIZES, LARGE) if name in LARGE_STATES else SIZES
+
     def all_sizes(self, name: str) -> None:
         """Take one picture for every size and theme."""
-        for size in SIZES:
+        for size in self.sizes(name):
             self.window.resize(size)
             for palette in (LIGHT, DARK):
                 self.window.set_theme(palette)

@@ -78,7 +78,7 @@ def read_target(source: str | Path) -> Outline:
     if reader is not None:
         return reader(path)
     if exists:
-        raise TargetError(f"{path.name} is of an unknown kind; a target is one of {kinds}.")
+        raise TargetError(f"{path.name} is of an unknown kind; choose a target of one of these: {kinds}.")
     return silhouettes.load(str(source))
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -36,6 +37,9 @@ def read_bytes(path: Path, most_megabytes: int = 20) -> bytes:
         raise TargetError(f"{path} is empty; save the drawing again.")
     return content
 
+#: Bytes that a decoder quotes out of a file that is no text, themselves or as escapes.
+UNREADABLE = re.compile(r"(?:\\x[0-9a-fA-F]{2}|\\[a-z0]|[^\x20-\x7e\s\u00a0-\uffff])+")
+
 
 @contextmanager
 def decoding(path: Path, kind: str) -> Iterator[None]:
@@ -61,7 +65,7 @@ def decoding(path: Path, kind: str) -> Iterator[None]:
         sentence = str(error)
         raise TargetError(sentence if str(path) in sentence else f"{path.name}: {sentence}") from error
     except Exception as error:
-        reason = " ".join(str(error).split())[:160] or type(error).__name__
+        reason = " ".join(UNREADABLE.sub("…", str(error)).split())[:160] or type(error).__name__
         raise TargetError(
             f"{path.name} is damaged or not {kind} ({reason}); open it in the program that made it and save it again."
         ) from error

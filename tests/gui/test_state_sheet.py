@@ -10,7 +10,8 @@ from PIL import Image
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
-from kirigami_studio.gui.state_sheet import SIZES, StateSheet
+from kirigami_studio.gui.contact_sheet import contact_sheets
+from kirigami_studio.gui.state_sheet import LARGE, SIZES, StateSheet
 
 
 @pytest.fixture
@@ -35,6 +36,35 @@ def test_that_each_size_and_theme_gets_its_picture(sheet: StateSheet, tmp_path: 
                 assert picture.size == (size.width(), size.height())
                 shown[theme] = picture.convert("L").resize((1, 1)).getpixel((0, 0))
         assert shown["light"] > 2 * shown["dark"]
+
+
+def test_that_a_large_screen_gets_the_states_that_look_different_there(sheet: StateSheet, tmp_path: Path) -> None:
+    assert LARGE in sheet.sizes("designs") and LARGE not in sheet.sizes("empty")
+    sheet.window.resize(LARGE)
+    sheet.picture("designs-2560x1440-light")
+    with Image.open(tmp_path / "designs-2560x1440-light.png") as picture:
+        assert picture.size == (2560, 1440)
+
+
+def test_that_a_contact_sheet_shows_every_picture_of_its_size_and_theme_with_a_caption(tmp_path: Path) -> None:
+    pictures = []
+    for number, theme in enumerate(("light",) * 5 + ("dark",)):
+        path = tmp_path / f"state {number}-1280x720-{theme}.png"
+        Image.new("RGB", (1280, 720), (10 + 40 * number, 0, 200)).save(path)
+        pictures.append(path)
+    Image.new("RGB", (300, 900), "white").save(tmp_path / "guide.png")
+    pages = contact_sheets([*pictures, tmp_path / "guide.png"], tmp_path)
+    assert [page.name for page in pages] == [
+        "contact-1280x720-light.png", "contact-1280x720-dark.png", "contact-others.png",
+    ]  # fmt: skip
+    with Image.open(pages[0]) as page:
+        colours = {colour for _, colour in page.getcolors(100_000) or ()}
+        assert {(10 + 40 * number, 0, 200) for number in range(5)} <= colours
+        assert page.width == 4 * 490 + 10 and page.height == 2 * (270 + 22 + 10) + 10
+        blank = Image.new("RGB", (480, 22), "#8a94a0")
+        assert page.crop((10, 10, 490, 32)).tobytes() != blank.tobytes()
+    with Image.open(pages[2]) as page:
+        assert page.height == 360 + 22 + 20
 
 
 def test_that_the_photo_state_shows_a_threshold(sheet: StateSheet) -> None:
