@@ -1,7 +1,7 @@
 """How long a user-interface thread is held up, with what the machine took for others left out.
 
-A person waits when the window does not take events.  A timer of 5 ms in the watched thread notes when it fires; the time
-between two firings is one turn of the event loop.  A turn can be long for three reasons:
+A person waits when the window does not take events.  A timer of 5 ms in the watched thread notes when it fires; the
+time between two firings is one turn of the event loop.  A turn can be long for three reasons:
 
 1. the thread itself computed;
 2. it slept, nearly always because another thread of the program held the interpreter's lock;
@@ -18,6 +18,7 @@ import os
 import threading
 import time
 from dataclasses import dataclass
+from pathlib import Path
 
 from PySide6.QtCore import QObject, Qt, QTimer
 
@@ -36,7 +37,7 @@ class Turn:
 
 
 class ThreadWatch(QObject):
-    """Watches the thread that makes it, from :meth:`begin` to :meth:`end`; its timer wakes the loop until it is closed."""
+    """Watches the thread that made it, from :meth:`begin` to :meth:`end`; its timer wakes the loop until closed."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -92,7 +93,7 @@ class ThreadWatch(QObject):
     def _recount(self) -> None:
         """Open the counters of threads that are new; there are none on other systems than Linux."""
         try:
-            threads = {int(name) for name in os.listdir("/proc/self/task")}
+            threads = {int(entry.name) for entry in Path("/proc/self/task").iterdir()}
         except OSError:
             return
         for thread in threads - self._files.keys():

@@ -1,4 +1,4 @@
-"""Many screenshots on one page, small and with captions, so that a person sees all states of a size and theme at once."""
+"""Many screenshots on one page, small and with captions: all states of a size and theme at a glance."""
 
 from __future__ import annotations
 

@@ -61,9 +61,7 @@ def steps_of(window: Shell, controller: Controller) -> tuple[Step, ...]:
         Step(
             lambda: stage.deployment,
             tr("Open the sheet"),
-            tr(
-                "Drag the angle from 180°, flat as it is cut, to the target; Space plays. Contacts are marked in yellow."
-            ),
+            tr("Drag the angle from 180°, flat as it is cut, to the target; Space plays. Contacts are yellow."),
             (slider.sliderPressed, slider.actionTriggered, stage.deployment.play.toggled),
         ),
         Step(

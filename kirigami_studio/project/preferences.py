@@ -50,8 +50,8 @@ class Preferences:
     def new_document(self) -> Document:
         """An empty document with these choices."""
         empty = Document()
-        machine = {"profile": self.profile, "dxf_version": self.dxf_version}
-        return replace(empty, fabrication=replace(empty.fabrication, **machine))
+        machine = replace(empty.fabrication, profile=self.profile, dxf_version=self.dxf_version)
+        return replace(empty, fabrication=machine)
 
     def on_machine_of(self, document: Document) -> Preferences:
         """The same with what a document says about the machine that it is cut on."""

@@ -37,6 +37,7 @@ def read_bytes(path: Path, most_megabytes: int = 20) -> bytes:
         raise TargetError(f"{path} is empty; save the drawing again.")
     return content
 
+
 #: Bytes that a decoder quotes out of a file that is no text, themselves or as escapes.
 UNREADABLE = re.compile(r"(?:\\x[0-9a-fA-F]{2}|\\[a-z0]|[^\x20-\x7e\s\u00a0-\uffff])+")
 

@@ -1,4 +1,4 @@
-"""Files that are dropped on the window and are no good: one clear sentence each, with what to try, and nothing is lost."""
+"""Files that are dropped on the window and are no good: one clear sentence each with what to try; nothing is lost."""
 
 from __future__ import annotations
 

@@ -96,7 +96,7 @@ class Sitting:
         before, painted = self.document, view.frames_painted
         y, left, right = slider.height() // 2, 14, slider.width() - 15
         self.bot.mousePress(slider, LEFT, pos=QPoint(right, y))
-        for x in np.linspace(right, left, 12).astype(int).tolist() + [(left + right) // 2]:
+        for x in [*np.linspace(right, left, 12).astype(int).tolist(), (left + right) // 2]:
             self.bot.mouseMove(slider, QPoint(x, y))
             view.repaint()
         self.bot.mouseRelease(slider, LEFT, pos=QPoint((left + right) // 2, y))

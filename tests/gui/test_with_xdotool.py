@@ -1,7 +1,7 @@
 """The installed program on a display of its own, used from outside as a person does: a pointer, a keyboard, files.
 
-Nothing here reaches into the program: xdotool moves the pointer and types, and what is judged is on disk.  Where a control
-lies is asked of a window of the same size in this process.
+Nothing here reaches into the program: xdotool moves the pointer and types, and what is judged is on disk.  Where a
+control lies is asked of a window of the same size in this process.
 """
 
 from __future__ import annotations

@@ -106,18 +106,19 @@ class ShortcutSheet(QWidget):
         """The lines in sight: effect, keys."""
         return [(line.text(0), line.text(1)) for line in self._lines() if not line.isHidden()]
 
+    def _heads(self) -> list[QTreeWidgetItem]:
+        found = (self.list.topLevelItem(row) for row in range(self.list.topLevelItemCount()))
+        return [head for head in found if head is not None]
+
     def _lines(self) -> list[QTreeWidgetItem]:
-        heads = [self.list.topLevelItem(row) for row in range(self.list.topLevelItemCount())]
-        return [head.child(row) for head in heads if head is not None for row in range(head.childCount())]
+        return [line for head in self._heads() for line in lines_of(head)]
 
     def _filter(self, text: str) -> None:
         words = text.lower().split()
         for line in self._lines():
             line.setHidden(not all(word in line.data(0, WORDS) for word in words))
-        for row in range(self.list.topLevelItemCount()):
-            head = self.list.topLevelItem(row)
-            if head is not None:
-                head.setHidden(all(head.child(line).isHidden() for line in range(head.childCount())))
+        for head in self._heads():
+            head.setHidden(all(line.isHidden() for line in lines_of(head)))
         self.found.setText(tr_n("{count} line", "{count} lines", len(self.showing())))
 
     def keyPressEvent(self, event: QKeyEvent) -> None:  # noqa: N802 - Qt's name
@@ -128,6 +129,11 @@ class ShortcutSheet(QWidget):
             self.search.clear()
         else:
             self.close()
+
+
+def lines_of(head: QTreeWidgetItem) -> list[QTreeWidgetItem]:
+    """What stands under a heading."""
+    return [line for line in (head.child(row) for row in range(head.childCount())) if line is not None]
 
 
 def shown(keys: str) -> str:

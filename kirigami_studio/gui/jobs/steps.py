@@ -232,6 +232,7 @@ def planned(order: Order) -> Planned:
     trim = order.candidate.trim
     plan = plan_of(order.candidate, order.settings, order.deployment)
     report = check_plan(plan, phi=target_angle(order.candidate))
+    _ = plan.times  # worked out once and kept: here, so that the window need not
     removed = 0.0 if trim is None else trim.removed_share
     return Planned(plan, report, removed, _slots_length(plan, order.settings.profile))
 

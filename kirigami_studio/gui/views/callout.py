@@ -48,6 +48,7 @@ class Callout(QWidget):
 
     def __init__(self, window: QWidget) -> None:
         super().__init__(window)
+        self._window = window
         self.palette_: Palette = LIGHT
         self._tip = QPoint()
         self._body = QRect()
@@ -102,7 +103,7 @@ class Callout(QWidget):
         self._column.setContentsMargins(14 + ARROW, 10 + ARROW, 14 + ARROW, 10 + ARROW)
         width = WIDTH + 2 * ARROW
         size = QSize(width, self._column.totalHeightForWidth(width))
-        room = self.parentWidget().rect().adjusted(MARGIN, MARGIN, -MARGIN, -MARGIN)
+        room = self._window.rect().adjusted(MARGIN, MARGIN, -MARGIN, -MARGIN)
         self.setGeometry(QRect(beside(place, size, room), size))
         self._tip = self.mapFromParent(place.center())
         self.raise_()
@@ -137,7 +138,7 @@ class Callout(QWidget):
 
 
 def beside(place: QRect, size: QSize, room: QRect) -> QPoint:
-    """Upper left corner of a bubble of ``size`` beside ``place``: on the side with most room to spare, inside ``room``."""
+    """Upper left corner of a bubble of ``size`` beside ``place``: where most room is left, inside ``room``."""
     x = place.center().x() - size.width() // 2
     y = place.center().y() - size.height() // 2
     spare = {
