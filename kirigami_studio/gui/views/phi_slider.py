@@ -44,6 +44,8 @@ class PhiSlider(QSlider):
         self.setAccessibleName("Deployment angle")
         self._say_legend()
         self.valueChanged.connect(lambda value: self.phi_changed.emit(self.phi))
+        self.valueChanged.connect(lambda _: self._tell_value())
+        self._tell_value()
 
     @property
     def phi(self) -> float:
@@ -126,6 +128,10 @@ class PhiSlider(QSlider):
             if box.contains(place) or sign.contains(place):
                 return mark
         return None
+
+    def _tell_value(self) -> None:
+        """A screen reader would say the slider's whole number, which means nothing to anybody."""
+        self.setAccessibleDescription(tr("{angle:.1f}°", angle=math.degrees(self.phi)))
 
     def _go(self, x: float) -> None:
         self.setValue(round(LAST * (x - SIDE) / max(self.width() - 2 * SIDE, 1.0)))

@@ -1,0 +1,194 @@
+"""The window without a mouse and without sight: every control is named, reached by Tab, and shows that it has the focus."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import pytest
+from PySide6.QtCore import QPoint, QRect, Qt
+from PySide6.QtGui import QAccessible
+from PySide6.QtWidgets import (
+    QAbstractButton,
+    QAbstractItemView,
+    QAbstractSpinBox,
+    QApplication,
+    QComboBox,
+    QLineEdit,
+    QPlainTextEdit,
+    QSlider,
+    QTextBrowser,
+    QWidget,
+)
+from pytestqt.qtbot import QtBot
+
+from kirigami_studio.gui.jobs.steps import Exported
+from kirigami_studio.gui.main_window import MainWindow
+from kirigami_studio.gui.theme import DARK, LIGHT, Palette
+from kirigami_studio.gui.views.canvas import Canvas
+
+CONTROLS = (
+    QAbstractButton,
+    QAbstractSpinBox,
+    QComboBox,
+    QLineEdit,
+    QSlider,
+    QAbstractItemView,
+    QPlainTextEdit,
+    QTextBrowser,
+    Canvas,
+)
+Open = Callable[[MainWindow], QWidget]
+Until = Callable[[Callable[[], bool]], None]
+
+
+def library(window: MainWindow) -> QWidget:
+    window.actions_["library"].trigger()
+    assert window.commands.picker is not None
+    return window.commands.picker
+
+
+def materials(window: MainWindow) -> QWidget:
+    window.actions_["materials"].trigger()
+    assert window.commands.materials is not None
+    return window.commands.materials
+
+
+def guide(window: MainWindow) -> QWidget:
+    window.actions_["guide"].trigger()
+    assert window.commands.guide is not None
+    return window.commands.guide
+
+
+def shortcuts(window: MainWindow) -> QWidget:
+    window.actions_["shortcuts"].trigger()
+    assert window.commands.shortcuts is not None
+    return window.commands.shortcuts
+
+
+def tour(window: MainWindow) -> QWidget:
+    window.actions_["tour"].trigger()
+    return window.commands.tour.callout
+
+
+def board(window: MainWindow) -> QWidget:
+    window.target.set_editing(True)
+    return window.target
+
+
+def cuts(window: MainWindow) -> QWidget:
+    window.stage.cuts_switch.click()
+    return window.stage
+
+
+def whole(window: MainWindow) -> QWidget:
+    return window
+
+
+def told(widget: QWidget) -> str:
+    """What a screen reader says of a widget."""
+    found = QAccessible.queryAccessibleInterface(widget)
+    return found.text(QAccessible.Text.Name) if found is not None else ""
+
+
+def inner(widget: QWidget) -> bool:
+    """Whether a widget is a part of another control, or of Qt's own, which speaks for it."""
+    parent = widget.parentWidget()
+    return widget.objectName().startswith("qt_") or isinstance(
+        parent, QAbstractSpinBox | QComboBox | QAbstractItemView | QLineEdit
+    )
+
+
+def test_that_a_screen_reader_has_a_name_for_every_control(designed: MainWindow) -> None:
+    for opened in (whole, cuts, tour, materials, guide, shortcuts, library, board):
+        place = opened(designed)
+        QApplication.processEvents()
+        controls = [one for one in place.findChildren(QWidget) if isinstance(one, CONTROLS) and not inner(one)]
+        assert controls
+        nameless = [
+            one.objectName() or one.metaObject().className()
+            for one in controls
+            if one.isVisible() and not told(one).strip("&… ")
+        ]
+        assert nameless == [], opened.__name__
+    assert designed.commands.picker is not None
+    designed.commands.picker.close()
+
+
+def test_that_the_report_of_an_export_is_named_too(designed: MainWindow, files: object, until: Until, tmp_path) -> None:  # type: ignore[no-untyped-def]
+    files.answer = tmp_path / "cut.dxf"  # type: ignore[attr-defined]
+    told_: list[Exported] = []
+    designed.controller.cutting.exported.connect(told_.append)
+    designed.actions_["export"].trigger()
+    until(lambda: bool(told_) and designed.commands.report is not None)
+    assert designed.commands.report is not None
+    for one in designed.commands.report.findChildren(QWidget):
+        if isinstance(one, CONTROLS) and one.isVisible() and not inner(one):
+            assert told(one).strip(), one.metaObject().className()
+
+
+def test_that_painted_controls_say_their_value(designed: MainWindow) -> None:
+    slider = designed.stage.deployment.slider
+    designed.stage.deployment.set_phi(1.0)
+    found = QAccessible.queryAccessibleInterface(slider)
+    assert found is not None and "57.3°" in found.text(QAccessible.Text.Description)
+    view = designed.gallery.view
+    gallery = QAccessible.queryAccessibleInterface(view)
+    assert gallery is not None and gallery.childCount() == 3
+    card = gallery.child(0)
+    assert card is not None and card.text(QAccessible.Text.Name).startswith("Design 1: sIoU")
+
+
+def test_that_tab_visits_every_column_from_left_to_right_and_comes_back(designed: MainWindow, qtbot: QtBot) -> None:
+    designed.activateWindow()
+    designed.settings.rows.setFocus()
+    visited: list[QWidget] = []
+    while (focused := QApplication.focusWidget()) is not None and focused not in visited and len(visited) < 120:
+        visited.append(focused)
+        qtbot.keyClick(focused, Qt.Key.Key_Tab)
+    assert QApplication.focusWidget() is visited[0]
+    assert all(one.isVisible() and one.isEnabled() for one in visited)
+    for wanted in (
+        designed.settings.rows,
+        designed.settings.search,
+        designed.run.generate,
+        designed.stage.cuts_switch,
+        designed.stage.deployment.slider,
+        designed.gallery.view,
+        designed.fabrication.export,
+    ):
+        assert wanted in visited, wanted.objectName()
+    columns = [
+        next((number for number, part in enumerate(parts(designed)) if part.isAncestorOf(one)), None)
+        for one in visited
+    ]  # fmt: skip
+    order = [column for column in columns if column is not None]
+    order = order[order.index(0) :] + order[: order.index(0)]  # the walk began in the second of them
+    turns = [(one, other) for one, other in zip(order, order[1:], strict=False) if one != other]
+    assert len(turns) == len(parts(designed)) - 1, turns
+    assert order == sorted(order)
+
+
+def parts(window: MainWindow) -> tuple[QWidget, ...]:
+    return window.target, window.settings, window.stage, window.gallery, window.fabrication
+
+
+@pytest.mark.parametrize("palette", [LIGHT, DARK], ids=["light", "dark"])
+def test_that_the_focus_shows_on_every_control_that_tab_reaches(
+    palette: Palette, designed: MainWindow, qtbot: QtBot
+) -> None:
+    designed.set_theme(palette)
+    designed.activateWindow()
+    designed.settings.rows.setFocus()
+    invisible = []
+    seen: list[QWidget] = []
+    while (focused := QApplication.focusWidget()) is not None and focused not in seen and len(seen) < 120:
+        seen.append(focused)
+        QApplication.processEvents()
+        place, box = designed, QRect(focused.mapTo(designed, QPoint()), focused.size()).adjusted(-6, -6, 6, 6)
+        with_focus = place.grab(box).toImage()
+        qtbot.keyClick(focused, Qt.Key.Key_Tab)
+        QApplication.processEvents()
+        if place.grab(box).toImage() == with_focus:
+            invisible.append(focused.objectName() or focused.metaObject().className())
+    assert len(seen) > 20
+    assert invisible == []
