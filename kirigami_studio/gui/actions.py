@@ -115,9 +115,9 @@ COMMANDS = (
     Command("reject", "Re&ject design", "&Design", (), "reject", "Reject the chosen design (Del in the gallery)"),
     Command("play", "&Play / pause", "&View", ("Space",), "play", "Play the deployment"),
     Command(
-        "slower", "S&lower", "&View", ("[",), tip="Play the deployment slower, down to a quarter of the usual speed"
+        "slower", "S&lower", "&View", ("<",), tip="Play the deployment slower, down to a quarter of the usual speed"
     ),
-    Command("faster", "Fa&ster", "&View", ("]",), tip="Play the deployment faster, up to four times the usual speed"),
+    Command("faster", "Fa&ster", "&View", (">",), tip="Play the deployment faster, up to four times the usual speed"),
     Command(
         "play_mode", "Play to and fro, in a loop or &once", "&View", ("Shift+P",), tip="Change how playing goes on"
     ),

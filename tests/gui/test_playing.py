@@ -129,14 +129,14 @@ def test_that_keys_change_mode_and_speed_and_the_choice_is_remembered(
 ) -> None:
     options = designed.stage.deployment.options
     for _ in range(9):
-        qtbot.keyClick(designed, Qt.Key.Key_BracketRight)
+        qtbot.keyClick(designed, Qt.Key.Key_Greater)
     assert options.speed == SPEEDS[-1] and options.text().startswith("4")
     qtbot.keyClick(designed, Qt.Key.Key_P, Qt.KeyboardModifier.ShiftModifier)
     assert options.mode is PlayMode.LOOP and "loop" in options.toolTip()
     state = QSettings(str(tmp_path / "state.ini"), QSettings.Format.IniFormat)
     designed.remember(state)
     for _ in range(9):
-        qtbot.keyClick(designed, Qt.Key.Key_BracketLeft)
+        qtbot.keyClick(designed, Qt.Key.Key_Less)
     assert options.speed == SPEEDS[0]
     options.next_mode()
     designed.stage.restore(state)

@@ -121,7 +121,7 @@ class PlayOptions(QToolButton):
         self.setToolButtonStyle(only if usual else beside)
         self.setIcon(icons.icon(MODE_ICONS[self.mode], self._palette))
         words = self.modes[self.mode].text().replace("&", "").lower()
-        tip = tr("Playing {mode} at {speed:g} times the usual speed. Speed: [ and ], mode: Shift+P.",
+        tip = tr("Playing {mode} at {speed:g} times the usual speed. Speed: < and >, mode: Shift+P.",
                  mode=words, speed=self.speed)  # fmt: skip
         self.setToolTip(tip)
         self.changed.emit()
