@@ -142,8 +142,11 @@ class HandEditing(QObject):
             return []
         free = sorted(voids - document.locked)
         if not free:
-            told = tr_n("{count} void is locked. Unlock it (L) to change its ratio.",
-                        "{count} voids are locked. Unlock them (L) to change their ratios.", len(voids))  # fmt: skip
+            told = tr_n(
+                "{count} void is locked. Unlock it (L) to change its ratio.",
+                "{count} voids are locked. Unlock them (L) to change their ratios.",
+                len(voids),
+            )
             self.status.emit(told)
         return free
 

@@ -185,6 +185,8 @@ class VoidGestures(QObject):
             return self._turn(event)
         if isinstance(event, QContextMenuEvent):
             return self._ask_menu(event)
+        if kind == QEvent.Type.ToolTip:
+            return self._hovered is not None  # the label at the pointer has the word
         if kind == QEvent.Type.Leave:
             self._leave()
         elif isinstance(event, QMouseEvent):
