@@ -16,6 +16,7 @@ from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.foundation.resources import resource_root
 from kirigami_studio.gui.collecting import Collecting, Plan
+from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.comparing import Comparing
 from kirigami_studio.gui.cutting import Cutting
 from kirigami_studio.gui.design_run import DesignRun
@@ -378,7 +379,7 @@ class Controller(QObject):
             self._stop_design()
             self._show()
             label = self.history.undo_label
-            self.status.emit("Back at the start." if label is None else f"At the step: {label}.")
+            self.status.emit(tr("Back at the start.") if label is None else tr("At the step: {label}.", label=label))
 
     def _stop_design(self) -> None:
         """Another document comes: what is still on its way belongs to the old one."""

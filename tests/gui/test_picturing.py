@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -26,8 +26,9 @@ SVG = "{http://www.w3.org/2000/svg}"
 
 
 @pytest.fixture
-def picturing(designed: MainWindow) -> Picturing:
-    return designed.commands.picturing
+def picturing(designed: MainWindow) -> Iterator[Picturing]:
+    yield designed.commands.picturing
+    QGuiApplication.clipboard().clear()  # Qt's off-screen clipboard outlives the application otherwise, and falls
 
 
 def written(designed: MainWindow, view: QWidget, path: Path, qtbot: QtBot) -> Path:

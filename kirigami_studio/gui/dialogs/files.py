@@ -7,10 +7,10 @@ from typing import Protocol
 
 from PySide6.QtWidgets import QFileDialog, QWidget
 
+from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.file_kinds import FILE_KINDS, kind_of
 
 TARGET_FILTER = "Targets (*.png *.jpg *.jpeg *.bmp *.svg *.dxf *.json);;All files (*)"
-PICTURE_KINDS = (("PNG picture", ".png"), ("SVG drawing", ".svg"))
 PROJECT_FILTER = "Kirigami Studio projects (*.kiri)"
 
 
@@ -63,8 +63,8 @@ class FileChoosers:
         return self._answer(dialog)
 
     def picture(self, proposal: str) -> Path | None:
-        dialog = self._saver("Export picture", proposal, [f"{kind} (*{end})" for kind, end in PICTURE_KINDS])
-        kinds = {f"{kind} (*{end})": end for kind, end in PICTURE_KINDS}
+        kinds = {tr("PNG picture (*.png)"): ".png", tr("SVG drawing (*.svg)"): ".svg"}
+        dialog = self._saver(tr("Export picture"), proposal, list(kinds))
         dialog.filterSelected.connect(lambda text: take_extension(dialog, kinds.get(text, "")))
         return self._answer(dialog)
 
