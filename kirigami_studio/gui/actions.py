@@ -101,7 +101,7 @@ COMMANDS = (
     Command("lock", "&Lock voids", "&Design", ("L",), "lock", "Lock or unlock the selected voids"),
     Command("lock_all", "Lock all &voids", "&Design", tip="No void may be changed by hand"),
     Command("unlock_all", "&Unlock all voids", "&Design", tip="Every void may be changed by hand"),
-    Command("refit", "&Fit again", "&Design", ("Ctrl+R",), "refit", "Improve the design from where it is"),
+    Command("refit", "&Fit again", "&Design", ("Ctrl+F",), "refit", "Improve the design from where it is"),
     Command("materials", "&Materials …", "&Design", ("Ctrl+M",), "material", "Copy, change and calibrate materials"),
     Command("next", "&Next design", "&Design", ("Ctrl+Down", "PgDown"), "", "Choose the next design", gap=True),
     Command("previous", "&Previous design", "&Design", ("Ctrl+Up", "PgUp"), "", "Choose the previous design"),
@@ -128,7 +128,9 @@ COMMANDS = (
     ),
     Command("show_mismatch", "&Mismatch", "&View", ("M",), "mismatch", "Show missing and extra area", False, True),
     Command("show_faults", "F&aults", "&View", ("F",), "fault", "Mark places that are not physical", False, True),
-    Command("show_ratios", "&Ratio heat map", "&View", ("H",), "heat", "Colour voids by their side ratio", False, True),
+    Command(
+        "show_ratios", "&Ratio heat map", "&View", ("Shift+H",), "heat", "Colour voids by their ratio", False, True
+    ),
     Command(
         "show_openings",
         "&Void opening",
@@ -143,7 +145,7 @@ COMMANDS = (
         "show_small_parts",
         "&Smallest features",
         "&View",
-        ("Shift+S",),
+        ("Shift+T",),
         "small",
         "Mark the shortest panel edges and narrowest necks, mm between the centre lines of the cuts",
         False,
@@ -157,7 +159,7 @@ COMMANDS = (
         "before", "&Before polish", "&View", ("B",), "before", "Show the design as it was drawn", False, True, True
     ),
     Command("cuts", "&Cuts", "&View", ("C",), "cuts", "Show the cut plan as it will burn", False, True),
-    Command("plots", "P&lots", "&View", ("L",), "plots", "Show match, size and gaps at every angle", False, True),
+    Command("plots", "P&lots", "&View", ("J",), "plots", "Show match, size and gaps at every angle", False, True),
     Command("compare", "Side by &side", "&View", ("K",), "compare", "Compare two designs side by side", False, True),
     Command("swap", "S&wap compared designs", "&View", ("Shift+K",), "swap", "Choose the design that is compared"),
     Command("fit", "Show &everything", "&View", ("0",), "fit", "Fit the layout into the view", gap=True),

@@ -15,8 +15,8 @@ from PySide6.QtCore import QObject, Signal
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.foundation.resources import resource_root
-from kirigami_studio.gui.collecting import Collecting, Plan
 from kirigami_studio.foundation.words import tr
+from kirigami_studio.gui.collecting import Collecting, Plan
 from kirigami_studio.gui.comparing import Comparing
 from kirigami_studio.gui.cutting import Cutting
 from kirigami_studio.gui.design_run import DesignRun

@@ -1,9 +1,9 @@
-"""The window without a mouse and without sight: every control is named, reached by Tab, and shows its focus."""
+"""The window without a mouse and without sight: every control has a name, is reached by Tab and shows its focus."""
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable
-from itertools import pairwise
 
 import pytest
 from PySide6.QtCore import QPoint, QRect, Qt
@@ -164,7 +164,7 @@ def test_that_tab_visits_every_column_from_left_to_right_and_comes_back(designed
     ]  # fmt: skip
     order = [column for column in columns if column is not None]
     order = order[order.index(0) :] + order[: order.index(0)]  # the walk began in the second of them
-    turns = [(one, other) for one, other in pairwise(order) if one != other]
+    turns = [(one, other) for one, other in itertools.pairwise(order) if one != other]
     assert len(turns) == len(parts(designed)) - 1, turns
     assert order == sorted(order)
 

@@ -38,7 +38,7 @@ TRIM = "Trim to target (Ctrl+T). Cuts the edge panels along the target; every hi
 UNTRIM = "Trim to target (Ctrl+T). Press again to bring back what was cut off."
 TRIMMING = "Trim to target: at work. Press again, or Esc, to stop."
 CUTS = "Cuts: show the cut plan as it will burn (C)."
-PLOTS = "Plots: match, area, size and gaps at every angle (L)."
+PLOTS = "Plots: match, area, size and gaps at every angle (J)."
 #: A stage at least this wide (pixels) has its plots at the side, a narrower one below.
 WIDE = 640
 #: Pixels between the title and the numbers at least.

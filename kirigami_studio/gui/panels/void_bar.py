@@ -59,7 +59,7 @@ class VoidBar(QWidget):
         self.all.setMenu(menu)
         self.refit = tool_button(
             "refit",
-            tr("Fit again. Improve the match from here; locked voids stay as they are (Ctrl+R)."),
+            tr("Fit again. Improve the match from here; locked voids stay as they are (Ctrl+F)."),
             checkable=True,
         )
         self._lay_out()
