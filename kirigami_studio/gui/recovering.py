@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import uuid
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
@@ -22,8 +21,9 @@ from kirigami_studio.gui.messages import Message, Tone
 from kirigami_studio.project import recovery
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.recovery import Note
-from kirigami_studio.project.store import SUFFIX
 
+#: Kept work is a whole project.
+SUFFIX = ".kiri"
 #: The work is kept once nothing has changed for so long (ms) …
 QUIET_MS = 3_000
 #: … and at the latest so long after the first change that is not kept yet.
@@ -88,7 +88,7 @@ class Recovering(QObject):
     def use(self, folder: Path) -> None:
         """Keep work in this folder from now on, and offer what earlier sessions left there."""
         self._folder = folder
-        self._own = folder / f"{os.getpid()}-{uuid.uuid4().hex[:12]}{SUFFIX}"
+        self._own = folder / f"{os.getpid()}-{os.urandom(6).hex()}{SUFFIX}"
         self.look_back()
         self.notice()
 

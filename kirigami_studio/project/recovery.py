@@ -15,10 +15,8 @@ from pathlib import Path
 
 from kirigami_studio.foundation.errors import KirigamiError, ProjectError
 from kirigami_studio.foundation.files import write_atomically
-from kirigami_studio.project import store
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.json_record import Record, read_json
-from kirigami_studio.project.material_record import with_material
 from kirigami_studio.project.picture_record import TracedPicture
 
 NOTE = "recovery.json"
@@ -66,6 +64,10 @@ def keep(document: Document, note: Note, path: Path, picture: TracedPicture | No
     ExportError
         The file cannot be written.
     """
+    # Here, so that knowing of notes costs the window's start nothing.
+    from kirigami_studio.project import store
+    from kirigami_studio.project.material_record import with_material
+
     stream = io.BytesIO(store.pack(with_material(document), picture))
     with zipfile.ZipFile(stream, "a", zipfile.ZIP_DEFLATED) as archive:
         archive.writestr(NOTE, json.dumps(asdict(note), indent=1))

@@ -5,16 +5,18 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from kirigami_studio.foundation.errors import ProjectError
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.jobs.steps import Picture
 from kirigami_studio.gui.jobs.worker import Cancel
-from kirigami_studio.project import store
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.picture_record import LARGEST_PICTURE, TracedPicture
-from kirigami_studio.project.store import Opened
 from kirigami_studio.target.outline import Outline
+
+if TYPE_CHECKING:
+    from kirigami_studio.project.store import Opened
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,6 +36,8 @@ class Project:
 
 def saving(document: Document, picture: Picture | None, path: Path, cancel: Cancel) -> Iterator[Left | Path]:
     """Write the project file."""
+    from kirigami_studio.project import store
+
     try:
         kept = stored(picture)
     except ProjectError as error:
@@ -45,6 +49,8 @@ def saving(document: Document, picture: Picture | None, path: Path, cancel: Canc
 
 def loading(path: Path, folder: Path, cancel: Cancel) -> Iterator[Left | Project]:
     """Read a project file; its picture is laid into a folder of its own inside ``folder``."""
+    from kirigami_studio.project import store
+
     opened = store.load_all(path)
     for note in opened.notes:
         yield Left(note)
