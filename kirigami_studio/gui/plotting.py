@@ -6,6 +6,7 @@ from collections import OrderedDict
 from dataclasses import dataclass, replace
 from functools import partial
 
+import numpy as np
 from PySide6.QtCore import QObject, Signal
 
 from kirigami_studio.gui.jobs.board import Board, Ears
@@ -68,10 +69,12 @@ class Plotting(QObject):
             self.grown.emit(None)
             return
         known = self._known.get((design, self._target))
-        self.grown.emit(known)
         if known is not None and known.complete:
+            self.grown.emit(known)
             return
-        self._known[design, self._target] = Curves((), 1.0 / (design.deployment.field.columns + 1))
+        begun = Curves((), 1.0 / float(np.ptp(design.deployment.compact[:, 0])))
+        self._known[design, self._target] = begun
+        self.grown.emit(begun)
         while len(self._known) > CAPACITY:
             self._known.popitem(last=False)
         ears = Ears(self._take, self._end, on_failed=self._fail)

@@ -49,6 +49,8 @@ class Chart(QWidget):
         self.setAccessibleName(f"{title}, {unit}")
         self.numbers = QLabel()
         self.numbers.setTextFormat(Qt.TextFormat.RichText)
+        # Moves that follow each other closely must not be dropped: the last one says where the line is to stay.
+        pg.setConfigOptions(mouseRateLimit=0)
         self.plot: Any = pg.PlotWidget()
         self.plot.setMenuEnabled(False)
         self.plot.hideButtons()
