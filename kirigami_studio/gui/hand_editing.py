@@ -226,6 +226,20 @@ class HandEditing(QObject):
             self._next.stop()
         self.commit()
 
+    def take_back(self) -> None:
+        """The gesture under way never was."""
+        self._next.stop()
+        self._pause.stop()
+        self._pull, self._drag, self._goal = None, None, None
+        if self._open is None:
+            return
+        self._field, self._open = self._last, None
+        if self._job is None:
+            self._restore()
+        else:
+            self._show_draft()
+        self.status.emit(tr("Let go; nothing was changed."))
+
     # drafts and edits ----------------------------------------------------------------------------------------------
 
     def _draft(self, field: RatioField, label: str) -> None:

@@ -37,6 +37,7 @@ class HandWiring(QObject):
         gestures.vertex_begun.connect(hand.begin_vertex)
         gestures.vertex_moved.connect(hand.move_vertex)
         gestures.let_go.connect(hand.let_go)
+        gestures.taken_back.connect(hand.take_back)
         gestures.lock_wanted.connect(hand.lock)
         gestures.menu_wanted.connect(self._show_menu)
         hand.drafted.connect(self._show_draft)
@@ -98,6 +99,8 @@ class HandWiring(QObject):
         width, locked = document.fabrication.width_mm, void in document.locked
         facts = VoidFacts.of(design.deployment, void, self.view.phi, width, locked)
         self.gestures.lines = facts.lines()
+        if self.controller.running:  # the line tells how far the run is
+            return
         if self.window.says.text() != self._said or not self._said:
             self._before = self.window.says.text()
         self._said = facts.sentence()

@@ -21,7 +21,7 @@ from hand_gestures import (
     turn,
     vertex_at,
 )
-from PySide6.QtCore import QPoint
+from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 from pytestqt.qtbot import QtBot
 
@@ -216,6 +216,18 @@ def test_that_undo_in_the_middle_of_a_drag_ends_it_and_takes_it_back(by_hand: Ma
     settle(by_hand, until)
     assert chosen(by_hand) == before
     assert view.design is not None and view.design.deployment.field == before.field
+
+
+def test_that_escape_takes_a_drag_back_without_a_step(by_hand: MainWindow) -> None:
+    view, before = by_hand.stage.view, chosen(by_hand)
+    for start in (middle_of(view, (1, 2)), vertex_at(view, 4)):
+        drag(view, start, start + QPoint(6, 6), let_go=False)
+        assert view.design is not None and view.design.deployment.field != before.field
+        QTest.keyClick(view, Qt.Key.Key_Escape)
+        QTest.mouseMove(view, start + QPoint(9, 9))
+        QTest.mouseRelease(view, LEFT, NONE, start + QPoint(9, 9))
+        assert not by_hand.controller.hand.busy and by_hand.controller.history.undo_label is None
+        assert view.design.deployment.field == before.field
 
 
 def test_that_a_trim_goes_with_the_first_change_and_comes_back_with_undo(by_hand: MainWindow, until: Until) -> None:

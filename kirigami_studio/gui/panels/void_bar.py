@@ -95,7 +95,7 @@ class VoidBar(QWidget):
         if ready and ratio is not None:
             with QSignalBlocker(self.ratio):
                 self.ratio.setValue(ratio)
-        self.says.set_texts(*_told(voids, len(locked)))
+        self.says.set_texts(*_told(voids, locked))
         self._fit()
 
     def show_fitting(self, busy: bool) -> None:
@@ -123,16 +123,18 @@ class VoidBar(QWidget):
             super().keyPressEvent(event)
 
 
-def _told(voids: frozenset[Void], locked: int) -> tuple[str, ...]:
+def _told(voids: frozenset[Void], locked: frozenset[Void]) -> tuple[str, ...]:
     """What the row says, longest first."""
     if len(voids) == 1:
         ((row, column),) = voids
         short = tr("Void ({row}, {column})", row=row, column=column)
+        if voids <= locked:
+            return tr("{void}: locked against changes by hand", void=short), short, f"({row}, {column})"
         return tr("{void}: pull it, turn the wheel, or press + and -", void=short), short, f"({row}, {column})"
     if voids:
         return (tr_n("{count} void", "{count} voids", len(voids)),)
     hint = tr("Pull a void or a corner of the outline; the wheel changes a ratio")
     if locked:
-        count = tr_n("{count} void locked", "{count} voids locked", locked)
+        count = tr_n("{count} void locked", "{count} voids locked", len(locked))
         return tr("{hint}  ·  {count}", hint=hint, count=count), count
     return hint, tr("Pull a void or the outline")

@@ -50,6 +50,7 @@ class VoidGestures(QObject):
     vertex_begun = Signal(int, float)  #: vertex of the outline, angle (radians)
     vertex_moved = Signal(object)  #: place in the world
     let_go = Signal()  #: of a void or a vertex
+    taken_back = Signal()  #: Esc while a void or a vertex is held
     lock_wanted = Signal(object, bool)  #: frozenset of Void, whether they are to be locked
     menu_wanted = Signal(object, object)  #: Void, QPoint on the screen
 
@@ -274,6 +275,9 @@ class VoidGestures(QObject):
 
     def _take_key(self, event: QKeyEvent) -> bool:
         """Arrows walk from void to void, + and - change the ratio; the window's own keys of that name wait."""
+        if self._dragging and event.key() == Qt.Key.Key_Escape:
+            self._take_back(event)
+            return True
         step = step_of(event) if self.active else None
         shapes = self._shapes()
         if step is None or shapes is None:
@@ -288,6 +292,15 @@ class VoidGestures(QObject):
         else:
             self._walk(step, shapes)
         return True
+
+    def _take_back(self, event: QKeyEvent) -> None:
+        """Esc belongs to the drag: first the question whose key it is, then the key."""
+        event.accept()
+        if event.type() == QEvent.Type.KeyPress:
+            self._pressed = self._grasp = None
+            self._dragging = False
+            self._canvas.unsetCursor()
+            self.taken_back.emit()
 
     def _walk(self, step: Step, shapes: VoidShapes) -> None:
         rows, columns = shapes.corners.shape[:2]
