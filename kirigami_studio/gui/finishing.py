@@ -75,7 +75,7 @@ class Finishing(QObject):
         self.stop()
         work = partial(steps.trimming, candidate, document.target, document.fabrication)
         self._candidate = candidate
-        self._job = self._board.start("trimming the design", work, Ears(self._take, self._over, self._over, self._fail))
+        self._job = self._board.start("trimming the design", work, Ears(self._take, on_failed=self._fail))
         self.busy_changed.emit(True)
         self.status.emit(f"Trimming {self._name()} …")
 
