@@ -123,6 +123,8 @@ class StagePanel(Card):
         self.whole = tool_button("fit", "Show everything (0).")
         self.whole.clicked.connect(self.fit)
         self.header.addWidget(self.whole)
+        for button in (self.whole, *self.toggles.values()):
+            button.hide()  # until it is known that there is room: they must not make the stage wider than its share
 
     def _add_pages(self) -> None:
         self._layout_page = layout = QWidget()
@@ -320,12 +322,13 @@ class StagePanel(Card):
         used = sum(button.sizeHint().width() + self.header.spacing() for button in buttons) + 14
         room = self.width() - 2 * INSET - used - self.title.sizeHint().width() - GAP
         for button in (self.whole, *giving_way):  # keys, menus and the double-click stay
-            button.setVisible(room + GAP >= 0)
-            room += 0 if room + GAP >= 0 else button.sizeHint().width() + self.header.spacing()
-        fits = self.numbers.fit(room)
+            fits = room + GAP >= 2 * self.header.spacing()
+            button.setVisible(fits)
+            room += 0 if fits else button.sizeHint().width() + self.header.spacing()
+        told = self.numbers.fit(room)
         texts = self._texts()
         special = self._drawn is not None or (self._entry is not None and self._entry.candidate.trim is not None)
-        self.view.set_caption(texts[0] if special and texts and not fits else "")
+        self.view.set_caption(texts[0] if special and texts and not told else "")
 
     def set_sheet_width(self, width_mm: float) -> None:
         """Tell how wide the flat sheet is, mm."""
