@@ -153,6 +153,9 @@ class Shell(QMainWindow):
             left = min(max(LEFT_SHARE * self.width(), LEFT_WIDTH[0]), LEFT_WIDTH[1])
             right = min(max(RIGHT_SHARE * self.width(), RIGHT_WIDTH[0]), RIGHT_WIDTH[1])
             self.columns.setSizes([round(left), round(self.width() - left - right), round(right)])
+        elif self.target.editing:  # what a larger window has to give goes to the drawing board
+            right = min(self._sizes_before[2], RIGHT_WIDTH[1])
+            self.columns.setSizes([self.width() - right, 0, right])
 
     def _make_room(self, editing: bool) -> None:
         """The target's editor takes the place of the stage and the settings while it is open."""

@@ -191,6 +191,20 @@ def test_that_the_tour_is_noted_beside_the_other_preferences(window: MainWindow,
     assert preferences.load(kept) == Preferences("lightburn", theme="light", tour_seen=True)
 
 
+def test_that_a_larger_window_gives_its_room_to_the_drawing_board(window: MainWindow) -> None:
+    window.resize(1000, 640)
+    QApplication.processEvents()
+    window.target.set_editing(True)
+    QApplication.processEvents()
+    gallery = window.gallery.width()
+    window.resize(1900, 1000)
+    QApplication.processEvents()
+    assert window.gallery.width() <= gallery + 60 and window.target.width() > 1400
+    window.target.set_editing(False)
+    QApplication.processEvents()
+    assert window.stage.width() > 1000 and window.target.width() < 400
+
+
 def test_that_a_window_left_on_a_larger_screen_comes_back_inside_this_one(window: MainWindow, tmp_path: Path) -> None:
     settings = QSettings(str(tmp_path / "state.ini"), QSettings.Format.IniFormat)
     window.resize(5000, 4000)
