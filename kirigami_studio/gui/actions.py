@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from PySide6.QtGui import QAction, QKeySequence
 from PySide6.QtWidgets import QMainWindow, QMenu
 
+from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui import icons
 from kirigami_studio.gui.theme import Palette
 
@@ -46,129 +47,308 @@ class Command:
 
 
 COMMANDS = (
-    Command("new", "&New project", "&File", ("Ctrl+N",), tip="Start empty"),
-    Command("open_project", "Open &project …", "&File", ("Ctrl+Shift+O",), "project", "Open a .kiri project", True),
-    Command("save", "&Save project", "&File", ("Ctrl+S",), "save", "Save the project", True),
-    Command("save_as", "Save project &as …", "&File", ("Ctrl+Shift+S",), tip="Save under another name"),
-    Command("open_target", "&Open target …", "&File", ("Ctrl+O",), "open", "Open a target silhouette", gap=True),
-    Command("library", "Target &library …", "&File", ("Ctrl+L",), "library", "Choose a silhouette of the library"),
+    Command("new", tr("&New project"), tr("&File"), ("Ctrl+N",), tip=tr("Start empty")),
     Command(
-        "export", "Export &DXF …", "&File", ("Ctrl+E",), "export", "Write the cut file in mm, or a picture", gap=True
+        "open_project",
+        tr("Open &project …"),
+        tr("&File"),
+        ("Ctrl+Shift+O",),
+        "project",
+        tr("Open a .kiri project"),
+        True,
+    ),
+    Command("save", tr("&Save project"), tr("&File"), ("Ctrl+S",), "save", tr("Save the project"), True),
+    Command("save_as", tr("Save project &as …"), tr("&File"), ("Ctrl+Shift+S",), tip=tr("Save under another name")),
+    Command(
+        "open_target", tr("&Open target …"), tr("&File"), ("Ctrl+O",), "open", tr("Open a target silhouette"), gap=True
     ),
     Command(
-        "export_all", "Export &everything …", "&File", ("Ctrl+Shift+E",), "", "Write every kind of file into one folder"
+        "library",
+        tr("Target &library …"),
+        tr("&File"),
+        ("Ctrl+L",),
+        "library",
+        tr("Choose a silhouette of the library"),
     ),
-    Command("animation", "Export a&nimation …", "&File", (), "", "Write the deployment as a looping GIF"),
-    Command("quit", "&Quit", "&File", ("Ctrl+Q",), tip="Close Kirigami Studio", gap=True),
-    Command("undo", "&Undo", "&Edit", ("Ctrl+Z",), "undo", "Undo", True),
-    Command("redo", "&Redo", "&Edit", ("Ctrl+Y", "Ctrl+Shift+Z"), "redo", "Redo", True),
-    Command("history", "&History …", "&Edit", ("Ctrl+Shift+H",), tip="List all steps and go to one"),
-    Command("paste", "&Paste target", "&Edit", ("Ctrl+V",), "", "Take a picture, SVG or path as target", gap=True),
-    Command("copy_picture", "&Copy picture", "&Edit", ("Ctrl+Shift+C",), "", "Copy a picture of the view in use"),
-    Command("copy_cuts", "Copy cuts as S&VG", "&Edit", ("Ctrl+Alt+C",), "", "Copy the cut plan as SVG in mm"),
-    Command("clear", "&Clear target", "&Edit", (), "clear", "Remove the target"),
-    Command("edit_target", "&Edit target", "D&raw", ("E",), "edit", "Open or leave the drawing board"),
-    Command("points", "Move &points", "D&raw", ("N",), "points", "Drag the points of the target", gap=True),
-    Command("pose", "&Move, resize and rotate", "D&raw", ("V",), "pose", "Move, stretch and turn the target"),
-    Command("freehand", "&Freehand", "D&raw", ("D",), "draw", "Draw the target in one stroke", gap=True),
-    Command("polygon", "P&olygon", "D&raw", ("P",), "polygon", "Draw the target corner by corner"),
-    Command("rectangle", "Rec&tangle", "D&raw", ("R",), "rectangle", "Draw a rectangle"),
-    Command("ellipse", "E&llipse", "D&raw", ("O",), "ellipse", "Draw an ellipse or a circle"),
-    Command("regular", "Re&gular polygon", "D&raw", ("G",), "regular", "Draw a regular polygon"),
-    Command("star", "&Star", "D&raw", ("S",), "star", "Draw a star"),
-    Command("text", "Te&xt", "D&raw", ("X",), "text", "Draw letters that hang together"),
-    Command("mode_new", "&New shape", "D&raw", ("=",), "replace", "The next shape replaces the target", gap=True),
-    Command("mode_add", "&Add shape", "D&raw", ("+",), "add", "The next shape joins the target"),
-    Command("mode_subtract", "Ta&ke away", "D&raw", ("-",), "subtract", "The next shape is cut off the target"),
     Command(
-        "axis", "M&irror while drawing", "D&raw", ("Shift+M",), "axis-upright", "Next choice of mirror axes", gap=True
+        "export",
+        tr("Export &DXF …"),
+        tr("&File"),
+        ("Ctrl+E",),
+        "export",
+        tr("Write the cut file in mm, or a picture"),
+        gap=True,
     ),
-    Command("grid", "Snap to &grid", "D&raw", ("Ctrl+Shift+G",), "grid", "Show the grid and snap to it"),
-    Command("generate", "&Generate", "&Design", ("Ctrl+G", "Ctrl+Return"), "generate", "Design sheets for the target"),
-    Command("cancel", "&Cancel", "&Design", ("Esc",), "stop", "Stop generating"),
+    Command(
+        "export_all",
+        tr("Export &everything …"),
+        tr("&File"),
+        ("Ctrl+Shift+E",),
+        "",
+        tr("Write every kind of file into one folder"),
+    ),
+    Command("animation", tr("Export a&nimation …"), tr("&File"), (), "", tr("Write the deployment as a looping GIF")),
+    Command("quit", tr("&Quit"), tr("&File"), ("Ctrl+Q",), tip=tr("Close Kirigami Studio"), gap=True),
+    Command("undo", tr("&Undo"), tr("&Edit"), ("Ctrl+Z",), "undo", tr("Undo"), True),
+    Command("redo", tr("&Redo"), tr("&Edit"), ("Ctrl+Y", "Ctrl+Shift+Z"), "redo", tr("Redo"), True),
+    Command("history", tr("&History …"), tr("&Edit"), ("Ctrl+Shift+H",), tip=tr("List all steps and go to one")),
+    Command(
+        "paste",
+        tr("&Paste target"),
+        tr("&Edit"),
+        ("Ctrl+V",),
+        "",
+        tr("Take a picture, SVG or path as target"),
+        gap=True,
+    ),
+    Command(
+        "copy_picture", tr("&Copy picture"), tr("&Edit"), ("Ctrl+Shift+C",), "", tr("Copy a picture of the view in use")
+    ),
+    Command(
+        "copy_cuts", tr("Copy cuts as S&VG"), tr("&Edit"), ("Ctrl+Alt+C",), "", tr("Copy the cut plan as SVG in mm")
+    ),
+    Command("clear", tr("&Clear target"), tr("&Edit"), (), "clear", tr("Remove the target")),
+    Command("edit_target", tr("&Edit target"), tr("D&raw"), ("E",), "edit", tr("Open or leave the drawing board")),
+    Command("points", tr("Move &points"), tr("D&raw"), ("N",), "points", tr("Drag the points of the target"), gap=True),
+    Command(
+        "pose", tr("&Move, resize and rotate"), tr("D&raw"), ("V",), "pose", tr("Move, stretch and turn the target")
+    ),
+    Command("freehand", tr("&Freehand"), tr("D&raw"), ("D",), "draw", tr("Draw the target in one stroke"), gap=True),
+    Command("polygon", tr("P&olygon"), tr("D&raw"), ("P",), "polygon", tr("Draw the target corner by corner")),
+    Command("rectangle", tr("Rec&tangle"), tr("D&raw"), ("R",), "rectangle", tr("Draw a rectangle")),
+    Command("ellipse", tr("E&llipse"), tr("D&raw"), ("O",), "ellipse", tr("Draw an ellipse or a circle")),
+    Command("regular", tr("Re&gular polygon"), tr("D&raw"), ("G",), "regular", tr("Draw a regular polygon")),
+    Command("star", tr("&Star"), tr("D&raw"), ("S",), "star", tr("Draw a star")),
+    Command("text", tr("Te&xt"), tr("D&raw"), ("X",), "text", tr("Draw letters that hang together")),
+    Command(
+        "mode_new", tr("&New shape"), tr("D&raw"), ("=",), "replace", tr("The next shape replaces the target"), gap=True
+    ),
+    Command("mode_add", tr("&Add shape"), tr("D&raw"), ("+",), "add", tr("The next shape joins the target")),
+    Command(
+        "mode_subtract", tr("Ta&ke away"), tr("D&raw"), ("-",), "subtract", tr("The next shape is cut off the target")
+    ),
+    Command(
+        "axis",
+        tr("M&irror while drawing"),
+        tr("D&raw"),
+        ("Shift+M",),
+        "axis-upright",
+        tr("Next choice of mirror axes"),
+        gap=True,
+    ),
+    Command("grid", tr("Snap to &grid"), tr("D&raw"), ("Ctrl+Shift+G",), "grid", tr("Show the grid and snap to it")),
+    Command(
+        "generate",
+        tr("&Generate"),
+        tr("&Design"),
+        ("Ctrl+G", "Ctrl+Return"),
+        "generate",
+        tr("Design sheets for the target"),
+    ),
+    Command("cancel", tr("&Cancel"), tr("&Design"), ("Esc",), "stop", tr("Stop generating")),
     Command(
         "trim",
-        "&Trim to target",
-        "&Design",
+        tr("&Trim to target"),
+        tr("&Design"),
         ("Ctrl+T",),
         "trim",
-        "Cut the edge panels along the target",
+        tr("Cut the edge panels along the target"),
         False,
         True,
         True,
     ),
-    Command("hand", "Edit by &hand", "&Design", ("H",), "hand", "Change voids and outline by hand", False, True),
-    Command("lock", "&Lock voids", "&Design", ("L",), "lock", "Lock or unlock the selected voids"),
-    Command("lock_all", "Lock all &voids", "&Design", tip="No void may be changed by hand"),
-    Command("unlock_all", "&Unlock all voids", "&Design", tip="Every void may be changed by hand"),
-    Command("refit", "&Fit again", "&Design", ("Ctrl+F",), "refit", "Improve the design from where it is"),
-    Command("materials", "&Materials …", "&Design", ("Ctrl+M",), "material", "Copy, change and calibrate materials"),
-    Command("next", "&Next design", "&Design", ("Ctrl+Down", "PgDown"), "", "Choose the next design", gap=True),
-    Command("previous", "&Previous design", "&Design", ("Ctrl+Up", "PgUp"), "", "Choose the previous design"),
     Command(
-        "again", "&More designs", "&Design", ("Ctrl+R",), "again", "Add designs drawn from the next seed", gap=True
+        "hand", tr("Edit by &hand"), tr("&Design"), ("H",), "hand", tr("Change voids and outline by hand"), False, True
+    ),
+    Command("lock", tr("&Lock voids"), tr("&Design"), ("L",), "lock", tr("Lock or unlock the selected voids")),
+    Command("lock_all", tr("Lock all &voids"), tr("&Design"), tip=tr("No void may be changed by hand")),
+    Command("unlock_all", tr("&Unlock all voids"), tr("&Design"), tip=tr("Every void may be changed by hand")),
+    Command("refit", tr("&Fit again"), tr("&Design"), ("Ctrl+F",), "refit", tr("Improve the design from where it is")),
+    Command(
+        "materials",
+        tr("&Materials …"),
+        tr("&Design"),
+        ("Ctrl+M",),
+        "material",
+        tr("Copy, change and calibrate materials"),
     ),
     Command(
-        "more_like", "More &like this", "&Design", ("Ctrl+Shift+R",), "alike", "Add designs drawn near the chosen one"
+        "next", tr("&Next design"), tr("&Design"), ("Ctrl+Down", "PgDown"), "", tr("Choose the next design"), gap=True
     ),
-    Command("pin", "&Pin design", "&Design", ("I",), "pin", "Pin the chosen design, or unpin it", gap=True),
-    Command("reject", "Re&ject design", "&Design", (), "reject", "Reject the chosen design (Del in the gallery)"),
-    Command("play", "&Play / pause", "&View", ("Space",), "play", "Play the deployment"),
     Command(
-        "slower", "S&lower", "&View", ("<",), tip="Play the deployment slower, down to a quarter of the usual speed"
+        "previous", tr("&Previous design"), tr("&Design"), ("Ctrl+Up", "PgUp"), "", tr("Choose the previous design")
     ),
-    Command("faster", "Fa&ster", "&View", (">",), tip="Play the deployment faster, up to four times the usual speed"),
     Command(
-        "play_mode", "Play to and fro, in a loop or &once", "&View", ("Shift+P",), tip="Change how playing goes on"
+        "again",
+        tr("&More designs"),
+        tr("&Design"),
+        ("Ctrl+R",),
+        "again",
+        tr("Add designs drawn from the next seed"),
+        gap=True,
     ),
-    Command("to_flat", "&Flat sheet (180°)", "&View", ("Ctrl+Left",), "", "Show the compact sheet"),
-    Command("to_target", "&Target angle", "&View", ("Ctrl+Right",), "", "Show the target angle"),
     Command(
-        "show_target", "Target &outline", "&View", ("T",), "target", "Show the target's outline", False, True, True
+        "more_like",
+        tr("More &like this"),
+        tr("&Design"),
+        ("Ctrl+Shift+R",),
+        "alike",
+        tr("Add designs drawn near the chosen one"),
     ),
-    Command("show_mismatch", "&Mismatch", "&View", ("M",), "mismatch", "Show missing and extra area", False, True),
-    Command("show_faults", "F&aults", "&View", ("F",), "fault", "Mark places that are not physical", False, True),
+    Command("pin", tr("&Pin design"), tr("&Design"), ("I",), "pin", tr("Pin the chosen design, or unpin it"), gap=True),
     Command(
-        "show_ratios", "&Ratio heat map", "&View", ("Shift+H",), "heat", "Colour voids by their ratio", False, True
+        "reject", tr("Re&ject design"), tr("&Design"), (), "reject", tr("Reject the chosen design (Del in the gallery)")
+    ),
+    Command("play", tr("&Play / pause"), tr("&View"), ("Space",), "play", tr("Play the deployment")),
+    Command(
+        "slower",
+        tr("S&lower"),
+        tr("&View"),
+        ("<",),
+        tip=tr("Play the deployment slower, down to a quarter of the usual speed"),
+    ),
+    Command(
+        "faster",
+        tr("Fa&ster"),
+        tr("&View"),
+        (">",),
+        tip=tr("Play the deployment faster, up to four times the usual speed"),
+    ),
+    Command(
+        "play_mode",
+        tr("Play to and fro, in a loop or &once"),
+        tr("&View"),
+        ("Shift+P",),
+        tip=tr("Change how playing goes on"),
+    ),
+    Command("to_flat", tr("&Flat sheet (180°)"), tr("&View"), ("Ctrl+Left",), "", tr("Show the compact sheet")),
+    Command("to_target", tr("&Target angle"), tr("&View"), ("Ctrl+Right",), "", tr("Show the target angle")),
+    Command(
+        "show_target",
+        tr("Target &outline"),
+        tr("&View"),
+        ("T",),
+        "target",
+        tr("Show the target's outline"),
+        False,
+        True,
+        True,
+    ),
+    Command(
+        "show_mismatch",
+        tr("&Mismatch"),
+        tr("&View"),
+        ("M",),
+        "mismatch",
+        tr("Show missing and extra area"),
+        False,
+        True,
+    ),
+    Command(
+        "show_faults", tr("F&aults"), tr("&View"), ("F",), "fault", tr("Mark places that are not physical"), False, True
+    ),
+    Command(
+        "show_ratios",
+        tr("&Ratio heat map"),
+        tr("&View"),
+        ("Shift+H",),
+        "heat",
+        tr("Colour voids by their ratio"),
+        False,
+        True,
     ),
     Command(
         "show_openings",
-        "&Void opening",
-        "&View",
+        tr("&Void opening"),
+        tr("&View"),
         ("Shift+O",),
         "opening",
-        "Colour voids by their area at this angle, mm²",
+        tr("Colour voids by their area at this angle, mm²"),
         False,
         True,
     ),
     Command(
         "show_small_parts",
-        "&Smallest features",
-        "&View",
+        tr("&Smallest features"),
+        tr("&View"),
         ("Shift+T",),
         "small",
-        "Mark the shortest panel edges and narrowest necks, mm between the centre lines of the cuts",
+        tr("Mark the shortest panel edges and narrowest necks, mm between the centre lines of the cuts"),
         False,
         True,
     ),
-    Command("show_panel_numbers", "Panel &numbers", "&View", ("Shift+I",), "numbers", "Row, column", False, True),
-    Command("show_void_numbers", "Vo&id numbers", "&View", ("Shift+N",), "numbers", "Row, column", False, True),
-    Command("next_fault", "Ne&xt fault", "&View", ("F3",), tip="Bring the next fault to the middle, enlarged"),
-    Command("previous_fault", "Previo&us fault", "&View", ("Shift+F3",), tip="Bring the fault before to the middle"),
     Command(
-        "before", "&Before polish", "&View", ("B",), "before", "Show the design as it was drawn", False, True, True
+        "show_panel_numbers", tr("Panel &numbers"), tr("&View"), ("Shift+I",), "numbers", tr("Row, column"), False, True
     ),
-    Command("cuts", "&Cuts", "&View", ("C",), "cuts", "Show the cut plan as it will burn", False, True),
-    Command("plots", "P&lots", "&View", ("J",), "plots", "Show match, size and gaps at every angle", False, True),
-    Command("compare", "Side by &side", "&View", ("K",), "compare", "Compare two designs side by side", False, True),
-    Command("swap", "S&wap compared designs", "&View", ("Shift+K",), "swap", "Choose the design that is compared"),
-    Command("fit", "Show &everything", "&View", ("0",), "fit", "Fit the layout into the view", gap=True),
-    Command("theme", "&Dark theme", "&View", ("Ctrl+D",), "moon", "Switch between light and dark", True, gap=True),
-    Command("theme_system", "Follow the s&ystem", "&View", (), "", "Look as the desktop does", False, True),
-    Command("guide", "&Guide", "&Help", ("F1",), "guide", "Open the user guide", True),
-    Command("shortcuts", "&Keyboard shortcuts", "&Help", ("?", "Ctrl+/"), "", "List and search all keys and gestures"),
-    Command("tour", "&Tour", "&Help", (), "", "Be led through the window in six steps", gap=True),
-    Command("sample", "Open &sample project", "&Help", (), "", "Open a project with designs for the heart"),
+    Command(
+        "show_void_numbers", tr("Vo&id numbers"), tr("&View"), ("Shift+N",), "numbers", tr("Row, column"), False, True
+    ),
+    Command(
+        "next_fault", tr("Ne&xt fault"), tr("&View"), ("F3",), tip=tr("Bring the next fault to the middle, enlarged")
+    ),
+    Command(
+        "previous_fault",
+        tr("Previo&us fault"),
+        tr("&View"),
+        ("Shift+F3",),
+        tip=tr("Bring the fault before to the middle"),
+    ),
+    Command(
+        "before",
+        tr("&Before polish"),
+        tr("&View"),
+        ("B",),
+        "before",
+        tr("Show the design as it was drawn"),
+        False,
+        True,
+        True,
+    ),
+    Command("cuts", tr("&Cuts"), tr("&View"), ("C",), "cuts", tr("Show the cut plan as it will burn"), False, True),
+    Command(
+        "plots", tr("P&lots"), tr("&View"), ("J",), "plots", tr("Show match, size and gaps at every angle"), False, True
+    ),
+    Command(
+        "compare",
+        tr("Side by &side"),
+        tr("&View"),
+        ("K",),
+        "compare",
+        tr("Compare two designs side by side"),
+        False,
+        True,
+    ),
+    Command(
+        "swap",
+        tr("S&wap compared designs"),
+        tr("&View"),
+        ("Shift+K",),
+        "swap",
+        tr("Choose the design that is compared"),
+    ),
+    Command("fit", tr("Show &everything"), tr("&View"), ("0",), "fit", tr("Fit the layout into the view"), gap=True),
+    Command(
+        "theme",
+        tr("&Dark theme"),
+        tr("&View"),
+        ("Ctrl+D",),
+        "moon",
+        tr("Switch between light and dark"),
+        True,
+        gap=True,
+    ),
+    Command("theme_system", tr("Follow the s&ystem"), tr("&View"), (), "", tr("Look as the desktop does"), False, True),
+    Command("guide", tr("&Guide"), tr("&Help"), ("F1",), "guide", tr("Open the user guide"), True),
+    Command(
+        "shortcuts",
+        tr("&Keyboard shortcuts"),
+        tr("&Help"),
+        ("?", "Ctrl+/"),
+        "",
+        tr("List and search all keys and gestures"),
+    ),
+    Command("tour", tr("&Tour"), tr("&Help"), (), "", tr("Be led through the window in six steps"), gap=True),
+    Command("sample", tr("Open &sample project"), tr("&Help"), (), "", tr("Open a project with designs for the heart")),
 )
 
 
@@ -214,5 +394,5 @@ def dress(actions: dict[str, QAction], palette: Palette) -> None:
     for command in COMMANDS:
         if command.icon:
             actions[command.name].setIcon(icons.icon(command.icon, palette))
-    actions["theme"].setText("&Light theme" if palette.dark else "&Dark theme")
+    actions["theme"].setText(tr("&Light theme") if palette.dark else tr("&Dark theme"))
     actions["theme"].setIcon(icons.icon("sun" if palette.dark else "moon", palette))

@@ -11,6 +11,7 @@ from PySide6.QtCore import QCoreApplication, QSettings, Qt, QTimer
 from PySide6.QtGui import QFont, QFontDatabase, QGuiApplication
 from PySide6.QtWidgets import QApplication
 
+from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui import faults, theme
 from kirigami_studio.gui.controller import Controller
 from kirigami_studio.gui.main_window import MainWindow
@@ -21,9 +22,10 @@ PREFERENCES = "preferences.toml"
 RECENT = "recent.toml"
 RECOVERY = "recovery"
 SMALLEST_FONT = 9.5
-NO_DISPLAY = (
-    "There is no display to open the window on; use the commands (kirigami-studio --help), or play a session without "
-    "one: python -m kirigami_studio.gui.offscreen_session --out out."
+NO_DISPLAY = tr(
+    "There is no display to open the window on; use the commands (kirigami-studio "
+    "--help), or play a session without one: python -m "
+    "kirigami_studio.gui.offscreen_session --out out."
 )
 #: Where distributions keep fonts; the off-screen platform does not ask fontconfig.
 FONT_FOLDERS = ("/usr/share/fonts/truetype/dejavu", "/usr/share/fonts/TTF", "/usr/share/fonts/dejavu")

@@ -77,7 +77,7 @@ class Collecting(QObject):
         settings = document.settings
         seed = settings.seed if self.keeps_seed else next_seed(document)
         request = request_of(target, replace(settings, seed=seed))
-        says = f"Generating {request.k} designs for {target.name} …"
+        says = tr("Generating {k} designs for {name} …", k=request.k, name=target.name)
         return self._planned(Plan(request, ranked(_staying(document, request)), False, seed, says))
 
     def more(self, target: Outline) -> Plan:
@@ -153,9 +153,12 @@ class Collecting(QObject):
         plan, document = self._plan, self._document()
         if plan is None or not plan.joins:
             score = result.best.score
-            return (
-                f"{len(result.candidates)} designs in {result.seconds:.1f} s. Best: sIoU {100 * score.siou:.1f} %, "
-                f"{100 * score.siou_gain:+.1f} over the uniform sheet."
+            return tr(
+                "{count} designs in {seconds:.1f} s. Best: sIoU {siou:.1f} %, {siou_gain:+.1f} over the uniform sheet.",
+                count=len(result.candidates),
+                seconds=result.seconds,
+                siou=100 * score.siou,
+                siou_gain=100 * score.siou_gain,
             )
         added = len(set(document.candidates) - set(before.candidates))
         if not added:

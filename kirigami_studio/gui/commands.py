@@ -13,6 +13,7 @@ from PySide6.QtGui import QDesktopServices, QGuiApplication
 from PySide6.QtWidgets import QAbstractButton, QComboBox
 
 from kirigami_studio.foundation.resources import resource
+from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.actions import insert_menu
 from kirigami_studio.gui.controller import Controller
 from kirigami_studio.gui.dialogs.files import FileChoosers, FileQuestions
@@ -72,7 +73,7 @@ class Commands(QObject):
         self.pasting.file_wanted.connect(self.take_file)
         self.pasting.message.connect(controller.message)
         controller.filing.recovering.recover_wanted.connect(
-            lambda leftover: self.guard("recover another", partial(controller.filing.recovering.recover, leftover))
+            lambda leftover: self.guard(tr("recover another"), partial(controller.filing.recovering.recover, leftover))
         )
         self.picturing = Picturing(window, controller.board, lambda: controller.order)
         self.pictures = PictureMenu(window, self.picturing, lambda proposal: self.files.picture(proposal))
@@ -89,8 +90,8 @@ class Commands(QObject):
         window, controller, actions = self.window, self.controller, self.window.actions_
         bar = window.stage.deployment
         commands: dict[str, Callable[[], object]] = {
-            "new": lambda: self.guard("start a new project", controller.new_project),
-            "open_project": lambda: self.guard("open another project", self.ask_project),
+            "new": lambda: self.guard(tr("start a new project"), controller.new_project),
+            "open_project": lambda: self.guard(tr("open another project"), self.ask_project),
             "save": self.save,
             "save_as": self.save_as,
             "open_target": self.ask_target,
@@ -135,7 +136,7 @@ class Commands(QObject):
             "guide": self.show_guide,
             "shortcuts": self.show_shortcuts,
             "tour": self.tour.start,
-            "sample": lambda: self.guard("open the sample", self.open_sample),
+            "sample": lambda: self.guard(tr("open the sample"), self.open_sample),
         }
         for name, command in commands.items():
             actions[name].triggered.connect(lambda _=False, command=command: command())
@@ -151,7 +152,7 @@ class Commands(QObject):
             self.window.target.set_tool(tool)
         else:
             self.controller.message.emit(
-                Message("There is no target to change yet; draw or open one first.", Tone.HINT)
+                Message(tr("There is no target to change yet; draw or open one first."), Tone.HINT)
             )
 
     def _set_mode(self, mode: Combine) -> None:
@@ -172,7 +173,7 @@ class Commands(QObject):
     def take_file(self, name: str) -> None:
         """Open a dropped file: a project or a target."""
         if Path(name).suffix.lower() == ".kiri":
-            self.guard("open another project", lambda: self.controller.open_project(Path(name)))
+            self.guard(tr("open another project"), lambda: self.controller.open_project(Path(name)))
         else:
             self.controller.targeting.open(name)
 
@@ -199,7 +200,9 @@ class Commands(QObject):
     def export(self, extension: str = ".dxf") -> None:
         """Write the cut file, or another kind of file, in a place of the user's choice."""
         if self.controller.stage is None:
-            self.controller.message.emit(Message("There is no design to export yet; generate one first.", Tone.HINT))
+            self.controller.message.emit(
+                Message(tr("There is no design to export yet; generate one first."), Tone.HINT)
+            )
             return
         path = self.files.export(f"{self._name()}{extension}")
         if path is not None:
@@ -345,9 +348,12 @@ class Commands(QObject):
             return
         self.controller.message.emit(
             Message(
-                f"This project has unsaved changes. Save them before you {purpose}?",
+                tr("This project has unsaved changes. Save them before you {purpose}?", purpose=purpose),
                 Tone.WARNING,
-                actions=(("Save first", self._save_first), (f"{purpose.capitalize()} without saving", then)),
+                actions=(
+                    (tr("Save first"), self._save_first),
+                    (tr("{capitalize} without saving", capitalize=purpose.capitalize()), then),
+                ),
             )
         )
 
@@ -359,9 +365,9 @@ class Commands(QObject):
             return True
         self.controller.message.emit(
             Message(
-                "This project has unsaved changes. Save them before you quit?",
+                tr("This project has unsaved changes. Save them before you quit?"),
                 Tone.WARNING,
-                actions=(("Save and quit", self._save_and_quit), ("Quit without saving", self._quit)),
+                actions=((tr("Save and quit"), self._save_and_quit), (tr("Quit without saving"), self._quit)),
             )
         )
         return False

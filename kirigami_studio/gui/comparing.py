@@ -8,6 +8,7 @@ from functools import partial
 from PySide6.QtCore import QObject, Signal
 
 from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.jobs import steps
 from kirigami_studio.gui.jobs.board import Board, Ears
 from kirigami_studio.gui.shelf import Shelf
@@ -40,7 +41,7 @@ class Comparing(QObject):
             self.known.emit(candidate, self._shelf.entry(before))
             return
         ears = Ears(partial(self._take, candidate, target), self._end, self._end, self._fail)
-        self._job = self._board.start("scoring the drawn design", partial(steps.comparing, candidate, target), ears)
+        self._job = self._board.start(tr("scoring the drawn design"), partial(steps.comparing, candidate, target), ears)
 
     def stop(self) -> None:
         """Forget what is still being scored."""

@@ -34,7 +34,7 @@ class Controller(Workbench):
     def warm_up(self) -> None:
         """Import in the worker what the first run needs, and learn which generators there are."""
         ears = Ears(self._take_warmth, on_failed=self.tell_failure)
-        self.board.start("loading the generator", steps.warming, ears)
+        self.board.start(tr("loading the generator"), steps.warming, ears)
 
     def _take_warmth(self, report: object) -> None:
         if isinstance(report, tuple):
@@ -82,7 +82,7 @@ class Controller(Workbench):
         if self.running:
             return
         if self.document.target is None:
-            self.message.emit(Message("Choose or draw a target first, then press Generate.", Tone.HINT))
+            self.message.emit(Message(tr("Choose or draw a target first, then press Generate."), Tone.HINT))
             return
         try:
             plan = planned(self.document.target)
@@ -98,7 +98,7 @@ class Controller(Workbench):
         """Ask the run, or the trimming of a design, to stop; the document stays as it is."""
         if self.running:
             self.run.cancel()
-            self.status.emit("Stopping …")
+            self.status.emit(tr("Stopping …"))
         elif self.finishing.busy:
             self.finishing.cancel()
         elif self.refitting.busy:
@@ -128,7 +128,7 @@ class Controller(Workbench):
         if self.hand.postpones(lambda: self.trim(on)):
             return
         if self.running:
-            self.message.emit(Message("Wait until the designs are done, then trim the one you choose.", Tone.HINT))
+            self.message.emit(Message(tr("Wait until the designs are done, then trim the one you choose."), Tone.HINT))
         else:
             self.finishing.switch(on)
 
@@ -140,7 +140,7 @@ class Controller(Workbench):
             return
         order = self.order
         if order is None:
-            self.message.emit(Message("There is no design to export yet; generate one first.", Tone.HINT))
+            self.message.emit(Message(tr("There is no design to export yet; generate one first."), Tone.HINT))
         else:
             if kind_of(path.suffix).cuts:
                 self.preferring.remember(self.document)
@@ -176,7 +176,7 @@ class Controller(Workbench):
         self.path = None
         self.history.restart(self.preferring.new_document())
         self.show()
-        self.status.emit("New project. Choose or draw a target.")
+        self.status.emit(tr("New project. Choose or draw a target."))
 
     def undo(self) -> None:
         """Go one step back."""
@@ -186,7 +186,7 @@ class Controller(Workbench):
         if self.history.undo():
             self.stop_design()
             self.show()
-            self.status.emit(f"Undone: {label}.")
+            self.status.emit(tr("Undone: {label}.", label=label))
 
     def redo(self) -> None:
         """Go one undone step forth."""
@@ -196,7 +196,7 @@ class Controller(Workbench):
         if self.history.redo():
             self.stop_design()
             self.show()
-            self.status.emit(f"Redone: {label}.")
+            self.status.emit(tr("Redone: {label}.", label=label))
 
     def go_to(self, position: int) -> None:
         """Undo or redo until so many steps of the history are done."""

@@ -8,6 +8,7 @@ from pathlib import Path
 from PySide6.QtCore import QObject, QTimer, Signal
 
 from kirigami_studio.fabricate.material import Material
+from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.jobs import steps
 from kirigami_studio.gui.jobs.board import Board, Ears
 from kirigami_studio.gui.messages import Message, Tone
@@ -15,7 +16,7 @@ from kirigami_studio.project.settings import FabricationSettings
 
 #: Changes that follow each other faster than this (ms) lead to one plan.
 PLAN_DELAY_MS = 120
-TRIM_AGAIN = " Or take the trim off and trim again: it then keeps what these widths need."
+TRIM_AGAIN = tr(" Or take the trim off and trim again: it then keeps what these widths need.")
 
 
 class Cutting(QObject):
@@ -55,41 +56,50 @@ class Cutting(QObject):
             return
         again = "" if self._wanted.candidate.trim is None else TRIM_AGAIN
         ears = Ears(self.planned.emit, on_failed=lambda sentence, _: self.refused.emit(sentence + again))
-        self._job = self._board.start("planning the cuts", partial(steps.planning, self._wanted), ears)
+        self._job = self._board.start(tr("planning the cuts"), partial(steps.planning, self._wanted), ears)
 
     def export(self, order: steps.Order, path: Path) -> None:
         """Write a cut file or a picture, by the extension."""
-        self.status.emit(f"Writing {path.name} …")
+        self.status.emit(tr("Writing {name} …", name=path.name))
         ears = Ears(self._written, on_failed=self._not_written)
-        self._board.start(f"writing {path.name}", partial(steps.exporting, order, path), ears)
+        self._board.start(tr("writing {name}", name=path.name), partial(steps.exporting, order, path), ears)
 
     def export_all(self, order: steps.Order, folder: Path, name: str) -> None:
         """Write everything that there is of a design into a folder."""
-        self.status.emit(f"Writing into {folder.name} …")
+        self.status.emit(tr("Writing into {name} …", name=folder.name))
         work = partial(steps.exporting_all, order, folder, name)
-        self._board.start(f"writing into {folder.name}", work, Ears(self._written, on_failed=self._not_written))
+        self._board.start(
+            tr("writing into {name}", name=folder.name), work, Ears(self._written, on_failed=self._not_written)
+        )
 
     def export_coupon(self, material: Material, path: Path, settings: FabricationSettings) -> None:
         """Write the calibration coupon of a material."""
-        self.status.emit(f"Writing {path.name} …")
+        self.status.emit(tr("Writing {name} …", name=path.name))
         work = partial(steps.exporting_coupon, material, path, settings)
-        self._board.start(f"writing {path.name}", work, Ears(self._written, on_failed=self._not_written))
+        self._board.start(tr("writing {name}", name=path.name), work, Ears(self._written, on_failed=self._not_written))
 
     def _written(self, report: object) -> None:
         if not isinstance(report, steps.Exported):
             return
         path, made = report.path, report.planned
         if made is None:
-            self.status.emit(f"Exported {path}.")
-            message = Message(f"{path.name} was written.", Tone.DONE, str(path))
+            self.status.emit(tr("Exported {path}.", path=path))
+            message = Message(tr("{name} was written.", name=path.name), Tone.DONE, str(path))
         else:
-            self.status.emit(f"Exported {path}: {len(made.plan.paths)} cuts, {made.plan.cut_length_mm:.0f} mm.")
+            self.status.emit(
+                tr(
+                    "Exported {path}: {count} cuts, {cut_length_mm:.0f} mm.",
+                    path=path,
+                    count=len(made.plan.paths),
+                    cut_length_mm=made.plan.cut_length_mm,
+                )
+            )
             message = told(path, made)
         self.message.emit(message)
         self.exported.emit(report)
 
     def _not_written(self, sentence: str, trace: str) -> None:
-        self.status.emit("The file was not written.")
+        self.status.emit(tr("The file was not written."))
         self.message.emit(Message(sentence, Tone.ERROR, trace))
 
 
@@ -98,8 +108,13 @@ def told(path: Path, made: steps.Planned) -> Message:
     plan, check = made.plan, made.report
     details = "\n".join([str(path), *(problem.text for problem in check.problems), *plan.notes])
     if check.ok:
-        trimmed = ", trimmed outline" if made.removed_share else ""
-        sentence = f"{path.name} was written and read back: {len(plan.paths)} cuts{trimmed}, no fault."
+        trimmed = tr(", trimmed outline") if made.removed_share else ""
+        sentence = tr(
+            "{name} was written and read back: {count} cuts{trimmed}, no fault.",
+            name=path.name,
+            count=len(plan.paths),
+            trimmed=trimmed,
+        )
         return Message(sentence, Tone.DONE, details)
-    sentence = f"{path.name} was written, but cutting it would fail: {check.problems[0].text}"
+    sentence = tr("{name} was written, but cutting it would fail: {text}", name=path.name, text=check.problems[0].text)
     return Message(sentence, Tone.WARNING, details)

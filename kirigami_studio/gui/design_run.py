@@ -8,6 +8,7 @@ from functools import partial
 from PySide6.QtCore import QObject, Signal
 
 from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.jobs import steps
 from kirigami_studio.gui.jobs.adding_steps import adding
 from kirigami_studio.gui.jobs.board import Board, Ears
@@ -56,7 +57,7 @@ class DesignRun(QObject):
         self._now.clear()
         ears = Ears(self._report, self._finish, self._cancel, self._fail)
         work = partial(steps.generating, request) if others is None else partial(adding, request, others)
-        self._number = self._board.start("generating designs", work, ears)
+        self._number = self._board.start(tr("generating designs"), work, ears)
         self.started.emit(request.k)
 
     def cancel(self) -> None:
@@ -74,7 +75,7 @@ class DesignRun(QObject):
         if isinstance(report, Progress):
             self.progressed.emit(report.done, report.total, report.message)
         elif isinstance(report, Started):
-            self.progressed.emit(0, report.total, f"Starting {report.total} designs")
+            self.progressed.emit(0, report.total, tr("Starting {total} designs", total=report.total))
         elif isinstance(report, CandidateFound | CandidateImproved):
             self._take(report.candidate)
         elif isinstance(report, steps.Decoded):
@@ -94,10 +95,23 @@ class DesignRun(QObject):
         self._now[candidate.index] = candidate
         best = min(self._now.values(), key=rank_key).score.siou
         if candidate.index >= self._asked:
-            self.told.emit(f"The search found a design with sIoU {100 * siou:.1f} % (best {100 * best:.1f} %).")
+            self.told.emit(
+                tr(
+                    "The search found a design with sIoU {siou:.1f} % (best {best:.1f} %).",
+                    siou=100 * siou,
+                    best=100 * best,
+                )
+            )
         elif improved:
             polished = sum(one.polished for one in self._now.values())
-            self.told.emit(f"Polished {polished} of {self._asked} (best {100 * best:.1f} %)")
+            self.told.emit(
+                tr(
+                    "Polished {polished} of {asked} (best {best:.1f} %)",
+                    polished=polished,
+                    asked=self._asked,
+                    best=100 * best,
+                )
+            )
 
     def _finish(self) -> None:
         if self.running:  # the generator ended without a result

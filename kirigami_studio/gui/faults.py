@@ -12,6 +12,7 @@ from PySide6.QtCore import QMessageLogContext, QtMsgType, qInstallMessageHandler
 
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.foundation.log import topic
+from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.messages import Message, Tone
 
 log = topic("gui")
@@ -54,7 +55,8 @@ def message_for(error: BaseException) -> Message:
     details = "".join(traceback.format_exception(error))
     if isinstance(error, KirigamiError):
         return Message(str(error), Tone.ERROR, details)
-    sentence = (
-        f"Something unexpected went wrong: {error or type(error).__name__}. Your work is kept; save it to be safe."
+    sentence = tr(
+        "Something unexpected went wrong: {value}. Your work is kept; save it to be safe.",
+        value=error or type(error).__name__,
     )
     return Message(sentence, Tone.ERROR, details)

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from kirigami_studio.foundation.words import tr
+
 
 @dataclass(frozen=True, slots=True)
 class FileKind:
@@ -34,12 +36,14 @@ class FileKind:
 
 
 FILE_KINDS = (
-    FileKind(".dxf", "DXF cut file, mm", "Cut file in mm, DXF R2010, read back and checked", True),
-    FileKind(".svg", "SVG cut file, mm", "Cut file in mm for laser programs and Inkscape", True),
-    FileKind(".pdf", "PDF cut sheet, mm", "Cut sheet at 1:1, to print or to plot", True),
-    FileKind(".png", "PNG picture", "Picture of the opened sheet over its target", False),
-    FileKind(".gif", "GIF animation", "The sheet opening from flat to the target angle", False),
-    FileKind(".lbrn2", "LightBurn project", "Named layers in cutting order; connectors on the tool layer", True),
+    FileKind(".dxf", tr("DXF cut file, mm"), tr("Cut file in mm, DXF R2010, read back and checked"), True),
+    FileKind(".svg", tr("SVG cut file, mm"), tr("Cut file in mm for laser programs and Inkscape"), True),
+    FileKind(".pdf", tr("PDF cut sheet, mm"), tr("Cut sheet at 1:1, to print or to plot"), True),
+    FileKind(".png", tr("PNG picture"), tr("Picture of the opened sheet over its target"), False),
+    FileKind(".gif", tr("GIF animation"), tr("The sheet opening from flat to the target angle"), False),
+    FileKind(
+        ".lbrn2", tr("LightBurn project"), tr("Named layers in cutting order; connectors on the tool layer"), True
+    ),
 )
 
 

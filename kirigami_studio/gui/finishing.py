@@ -9,6 +9,7 @@ from functools import partial
 from PySide6.QtCore import QObject, Signal
 
 from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.jobs import steps
 from kirigami_studio.gui.jobs.board import Board, Ears
 from kirigami_studio.gui.messages import Message, Tone
@@ -45,17 +46,17 @@ class Finishing(QObject):
         if not on and self.busy:
             self.cancel()
         elif candidate is None:
-            self.message.emit(Message("Choose a finished design first, then trim it.", Tone.HINT))
+            self.message.emit(Message(tr("Choose a finished design first, then trim it."), Tone.HINT))
         elif on and candidate.trim is None:
             self._start(candidate)
         elif not on and candidate.trim is not None:
-            self._replace(replace(candidate, trim=None), "Untrim")
-            self.status.emit("The design is whole again.")
+            self._replace(replace(candidate, trim=None), tr("Untrim"))
+            self.status.emit(tr("The design is whole again."))
 
     def cancel(self) -> None:
         """Stop because the user says so."""
         self.stop()
-        self.status.emit("Trimming stopped; nothing was changed.")
+        self.status.emit(tr("Trimming stopped; nothing was changed."))
 
     def stop(self) -> None:
         """Forget what is still being trimmed."""
@@ -75,9 +76,9 @@ class Finishing(QObject):
         self.stop()
         work = partial(steps.trimming, candidate, document.target, document.fabrication)
         self._candidate = candidate
-        self._job = self._board.start("trimming the design", work, Ears(self._take, on_failed=self._fail))
+        self._job = self._board.start(tr("trimming the design"), work, Ears(self._take, on_failed=self._fail))
         self.busy_changed.emit(True)
-        self.status.emit(f"Trimming {self._name()} …")
+        self.status.emit(tr("Trimming {name} …", name=self._name()))
 
     def _take(self, report: object) -> None:
         before = self._candidate
@@ -88,9 +89,17 @@ class Finishing(QObject):
         if trim is None:
             return
         self._shelf.put(after, report.deployment)
-        self._replace(after, "Trim")
-        scores = f"Trimmed IoU {100 * trim.iou:.1f} %, untrimmed sIoU {100 * after.score.siou:.1f} %"
-        self.status.emit(f"{scores}; {100 * trim.removed_share:.1f} % of the sheet is cut off.")
+        self._replace(after, tr("Trim"))
+        scores = tr(
+            "Trimmed IoU {iou:.1f} %, untrimmed sIoU {siou:.1f} %", iou=100 * trim.iou, siou=100 * after.score.siou
+        )
+        self.status.emit(
+            tr(
+                "{scores}; {removed_share:.1f} % of the sheet is cut off.",
+                scores=scores,
+                removed_share=100 * trim.removed_share,
+            )
+        )
 
     def _replace(self, candidate: Candidate, gesture: str) -> None:
         document = self._document()
@@ -100,7 +109,7 @@ class Finishing(QObject):
 
     def _name(self) -> str:
         chosen = self._document().chosen
-        return "the design" if chosen is None else f"design {chosen + 1}"
+        return tr("the design") if chosen is None else tr("design {chosen}", chosen=chosen + 1)
 
     def _fail(self, sentence: str, trace: str) -> None:
         self._over()

@@ -289,7 +289,7 @@ class HandEditing(QObject):
         gesture = self._waiting.popleft()
         work = partial(hand_steps.scoring, self._base, gesture.field, target)
         ears = Ears(partial(self._take, gesture), on_failed=self._fail)
-        self._job = self._board.start("scoring the change", work, ears)
+        self._job = self._board.start(tr("scoring the change"), work, ears)
 
     def _take(self, gesture: _Gesture, report: object) -> None:
         self._job = None

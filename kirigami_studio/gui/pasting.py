@@ -11,13 +11,14 @@ from xml.sax.saxutils import quoteattr
 from PySide6.QtCore import QMimeData, QObject, Signal
 from PySide6.QtGui import QImage
 
+from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.messages import Message, Tone
 
 #: How SVG path data begins: a move to a number.
 PATH_BEGINS = re.compile(r"[Mm]\s*[-+.\d]")
 #: How the names of the folders with pasted content begin.
 PASTED = "kirigami-pasted-"
-NOTHING = "The clipboard holds no picture, no file, no SVG and no path; copy one of them and paste again."
+NOTHING = tr("The clipboard holds no picture, no file, no SVG and no path; copy one of them and paste again.")
 
 
 class Pasting(QObject):
@@ -44,7 +45,9 @@ class Pasting(QObject):
             if picture.save(str(path)):
                 self.file_wanted.emit(str(path))
             else:
-                self.message.emit(Message(f"The picture cannot be kept in {path}; free some disk space.", Tone.ERROR))
+                self.message.emit(
+                    Message(tr("The picture cannot be kept in {path}; free some disk space.", path=path), Tone.ERROR)
+                )
             return
         found = recognised(svg_of(content))
         if found is None:
@@ -57,7 +60,7 @@ class Pasting(QObject):
 
     def _place(self, extension: str) -> Path:
         self._count += 1
-        return Path(self._folder.name) / f"pasted {self._count}{extension}"
+        return Path(self._folder.name) / tr("pasted {count}{extension}", count=self._count, extension=extension)
 
 
 def svg_of(content: QMimeData) -> str:

@@ -71,12 +71,12 @@ class Picturing(QObject):
         else:
             steps = partial(picture_steps.writing_png, self.record(view), self.scale, path)
         ears = Ears(self._told_written, on_failed=self._tell_failure)
-        self._board.start(f"writing {path.name}", steps, ears)
+        self._board.start(tr("writing {name}", name=path.name), steps, ears)
 
     def copy(self, view: QWidget) -> None:
         """Put a picture of a view on the clipboard."""
         steps = partial(picture_steps.drawing, self.record(view), self.scale)
-        self._board.start("copying a picture", steps, Ears(self._take_image, on_failed=self._tell_failure))
+        self._board.start(tr("copying a picture"), steps, Ears(self._take_image, on_failed=self._tell_failure))
 
     def copy_cuts(self) -> None:
         """Put the cut plan on the clipboard as SVG in mm, for a drawing program or a laser program."""
@@ -86,7 +86,7 @@ class Picturing(QObject):
             return
         self.status.emit(tr("Planning the cuts to copy …"))
         ears = Ears(self._take_cuts, on_failed=self._tell_failure)
-        self._board.start("copying the cuts", partial(picture_steps.drawing_cuts, order), ears)
+        self._board.start(tr("copying the cuts"), partial(picture_steps.drawing_cuts, order), ears)
 
     # drawing -------------------------------------------------------------------------------------------------------
 

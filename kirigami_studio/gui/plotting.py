@@ -9,6 +9,7 @@ from functools import partial
 import numpy as np
 from PySide6.QtCore import QObject, Signal
 
+from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.jobs.board import Board, Ears
 from kirigami_studio.gui.jobs.plot_steps import Reading, plotting
 from kirigami_studio.gui.scene.posed import PosedDesign
@@ -78,7 +79,7 @@ class Plotting(QObject):
         while len(self._known) > CAPACITY:
             self._known.popitem(last=False)
         ears = Ears(self._take, self._end, on_failed=self._fail)
-        self._job = self._board.start("reading the curves", partial(plotting, design, self._target), ears)
+        self._job = self._board.start(tr("reading the curves"), partial(plotting, design, self._target), ears)
 
     def stop(self) -> None:
         """Read no further."""

@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
+from kirigami_studio.foundation.words import tr
+
 UNKNOWN = "\N{EN DASH}"
 TIMES = "\N{MULTIPLICATION SIGN}"
 
 
 def readable_length(mm: float) -> str:
     """Millimetres up to a metre, then metres."""
-    return f"{mm:.0f} mm" if mm < 1000 else f"{mm / 1000:.2f} m"
+    return tr("{mm:.0f} mm", mm=mm) if mm < 1000 else tr("{mm:.2f} m", mm=mm / 1000)
 
 
 def readable_time(seconds: float) -> str:
     """Seconds up to two minutes, then minutes."""
-    return f"{seconds:.0f} s" if seconds < 120 else f"{seconds / 60:.1f} min"
+    return tr("{seconds:.0f} s", seconds=seconds) if seconds < 120 else tr("{seconds:.1f} min", seconds=seconds / 60)
 
 
 def readable_range(low: float, high: float) -> str:
@@ -21,15 +23,15 @@ def readable_range(low: float, high: float) -> str:
     if readable_time(low) == readable_time(high):
         return readable_time(low)
     if high < 120:
-        return f"{low:.0f}{UNKNOWN}{high:.0f} s"
-    return f"{low / 60:.1f}{UNKNOWN}{high / 60:.1f} min"
+        return tr("{low:.0f}{unknown}{high:.0f} s", low=low, unknown=UNKNOWN, high=high)
+    return tr("{low:.1f}{unknown}{high:.1f} min", low=low / 60, unknown=UNKNOWN, high=high / 60)
 
 
 def readable_size(width_mm: float, height_mm: float) -> str:
     """A sheet's two sides."""
-    return f"{width_mm:.0f} {TIMES} {height_mm:.0f} mm"
+    return tr("{width_mm:.0f} {times} {height_mm:.0f} mm", width_mm=width_mm, times=TIMES, height_mm=height_mm)
 
 
 def readable_area(mm2: float) -> str:
     """Three digits, all of them before the point where there are more."""
-    return f"{mm2:.0f} mm²" if mm2 >= 100.0 else f"{mm2:.3g} mm²"
+    return tr("{mm2:.0f} mm²", mm2=mm2) if mm2 >= 100.0 else tr("{mm2:.3g} mm²", mm2=mm2)

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from PySide6.QtCore import QObject, Signal
 
+from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.jobs import steps
 from kirigami_studio.gui.jobs.board import Board, Ears
 from kirigami_studio.gui.tracing import Tracing
@@ -31,7 +32,9 @@ class Reading(QObject):
         """Read a file, or a silhouette of the library by name."""
         self.stop()
         ears = Ears(partial(self._take, source, first), self._end, on_failed=self._fail)
-        self._job = self._board.start(f"reading {Path(source).name}", partial(steps.reading_target, source), ears)
+        self._job = self._board.start(
+            tr("reading {name}", name=Path(source).name), partial(steps.reading_target, source), ears
+        )
 
     def stop(self) -> None:
         """Forget what is still being read: something else took its place."""

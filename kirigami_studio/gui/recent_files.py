@@ -9,6 +9,7 @@ from pathlib import Path
 from PySide6.QtCore import QObject, Signal
 
 from kirigami_studio.foundation.errors import KirigamiError
+from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.jobs.board import Board, Ears
 from kirigami_studio.gui.jobs.worker import Cancel
 from kirigami_studio.gui.messages import Message, Tone
@@ -59,7 +60,7 @@ class RecentFiles(QObject):
         paths = (*self.present.projects, *self.present.targets)
         if paths:
             ears = Ears(self.missing.emit)
-            self._board.start("looking for recent files", partial(_looking, paths), ears)
+            self._board.start(tr("looking for recent files"), partial(_looking, paths), ears)
 
     def _change(self, wanted: Recent) -> None:
         if wanted == self.present:

@@ -129,7 +129,7 @@ class Recovering(QObject):
         note = Note(_name_of(work), path, recovery.now(), os.getpid())
         ears = Ears(self._take_kept, self._look_again, on_failed=lambda sentence, _: self._not_kept(sentence))
         steps = partial(recovery_steps.keeping, work.document, work.picture, note, self._own)
-        self._job = self._board.start("keeping the work for a recovery", steps, ears)
+        self._job = self._board.start(tr("keeping the work for a recovery"), steps, ears)
 
     def _locked(self, own: Path) -> bool:
         if self._lock is None:
@@ -170,7 +170,7 @@ class Recovering(QObject):
         if self._job is not None:  # it may be writing at this moment
             self._board.abandon(self._job)
             self._job = None
-            self._board.start("tidying up", partial(recovery_steps.removing, self._own), Ears())
+            self._board.start(tr("tidying up"), partial(recovery_steps.removing, self._own), Ears())
         _remove(self._own)
         self._drop_pending()
 
@@ -194,7 +194,7 @@ class Recovering(QObject):
         if abandoned:
             ears = Ears(self._offer, on_failed=self.failed.emit)
             steps = partial(recovery_steps.looking, tuple(abandoned[::-1]))
-            self._board.start("looking for unsaved work", steps, ears)
+            self._board.start(tr("looking for unsaved work"), steps, ears)
 
     def _offer(self, leftover: object) -> None:
         if not isinstance(leftover, Leftover):
@@ -219,7 +219,7 @@ class Recovering(QObject):
         self.status.emit(tr("Recovering {name} …", name=_called(leftover)))
         ears = Ears(partial(self._take_recovered, leftover), on_failed=partial(self._not_recovered, leftover))
         steps = partial(recovery_steps.recovering, leftover, self._place())
-        self._board.start(f"recovering {_called(leftover)}", steps, ears)
+        self._board.start(tr("recovering {called}", called=_called(leftover)), steps, ears)
 
     def discard(self, leftover: Leftover) -> None:
         """Delete the kept work."""

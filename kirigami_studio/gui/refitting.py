@@ -52,7 +52,7 @@ class Refitting(QObject):
         # The report is the end: what the worker says afterwards may come when the next fit has begun.
         ears = Ears(self._take, on_failed=self._fail)
         self._candidate = candidate
-        self._job = self._board.start("fitting the design", work, ears)
+        self._job = self._board.start(tr("fitting the design"), work, ears)
         self.busy_changed.emit(True)
         self.status.emit(tr("Fitting {design} … Esc stops.", design=self._name()))
 

@@ -8,13 +8,14 @@ from dataclasses import replace
 from PySide6.QtCore import QObject, Signal
 
 from kirigami_studio.foundation.errors import KirigamiError
+from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.sketching.easel import Change, Easel
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.edits import Edit, without_designs
 from kirigami_studio.target.placed import Placed
 
 #: What the sliders do, by their names.
-REFINEMENTS = {"simplify": "Simplify target", "smooth": "Smooth target"}
+REFINEMENTS = {"simplify": tr("Simplify target"), "smooth": tr("Smooth target")}
 
 
 class Reshaping(QObject):
@@ -99,7 +100,7 @@ class Reshaping(QObject):
             ring = placed.ring
             x, y = (0.5 * (ring.min(axis=0) + ring.max(axis=0))).tolist()
             factors = (width_mm / width, height_mm / height)
-            self.take(Change("Resize target", lambda: stretched(placed, factors, (x, y))))
+            self.take(Change(tr("Resize target"), lambda: stretched(placed, factors, (x, y))))
 
     def mirror(self, how: str) -> None:
         """Reflect: ``left``, ``right``, ``top`` or ``bottom`` keeps that half; ``across`` and ``over`` turn all."""
@@ -110,9 +111,9 @@ class Reshaping(QObject):
         if placed is None:
             return
         if how in FLIPS:
-            self.take(Change("Flip target", lambda: stretched(placed, FLIPS[how])))
+            self.take(Change(tr("Flip target"), lambda: stretched(placed, FLIPS[how])))
         else:
-            self.take(Change(f"Mirror {how} half", lambda: symmetric(placed, Half(how))))
+            self.take(Change(tr("Mirror {how} half", how=how), lambda: symmetric(placed, Half(how))))
 
 
 #: Factors along x and y of the reflections of the whole target.

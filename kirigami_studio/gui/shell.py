@@ -19,6 +19,7 @@ from PySide6.QtWidgets import (
 )
 
 from kirigami_studio.foundation.resources import resource
+from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui import actions, theme
 from kirigami_studio.gui.panels.fabrication_panel import FabricationPanel
 from kirigami_studio.gui.panels.gallery_panel import GalleryPanel
@@ -69,7 +70,7 @@ class Shell(QMainWindow):
         self.set_theme(palette)
 
     def _build_toolbar(self) -> None:
-        bar = self.addToolBar("Main")
+        bar = self.addToolBar(tr("Main"))
         bar.setObjectName("mainToolBar")
         bar.setMovable(False)
         bar.setIconSize(QSize(18, 18))
@@ -121,7 +122,7 @@ class Shell(QMainWindow):
 
     def _build_status(self) -> None:
         self.says = QLabel()
-        self.says.setAccessibleName("What happens")
+        self.says.setAccessibleName(tr("What happens"))
         self.says.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
         self.facts = QLabel()
         bar = self.statusBar()

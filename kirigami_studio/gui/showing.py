@@ -8,6 +8,7 @@ from functools import partial
 from PySide6.QtCore import QObject, Signal
 
 from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.jobs import steps
 from kirigami_studio.gui.jobs.board import Board, Ears
 from kirigami_studio.gui.shelf import Shelf
@@ -77,7 +78,7 @@ class Showing(QObject):
         missing = self._shelf.missing(document.candidates)
         if missing:
             ears = Ears(self._decoded, self._ready, on_failed=self.failed.emit)
-            self._board.start("decoding the designs", partial(steps.decoding, missing), ears)
+            self._board.start(tr("decoding the designs"), partial(steps.decoding, missing), ears)
         else:
             self._ready()
 

@@ -9,6 +9,7 @@ from pathlib import Path
 
 from PySide6.QtCore import QObject, Signal
 
+from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.jobs import project_steps
 from kirigami_studio.gui.jobs.board import Board, Ears
 from kirigami_studio.gui.jobs.project_steps import Left, Project
@@ -38,16 +39,18 @@ class Storing(QObject):
 
     def save(self, document: Document, path: Path) -> None:
         """Write a project file."""
-        self.status.emit(f"Saving {path.name} …")
+        self.status.emit(tr("Saving {name} …", name=path.name))
         ears = Ears(partial(self._saved, document), on_failed=self.failed.emit)
         steps = partial(project_steps.saving, document, self._picture_of(document.target), path)
-        self._board.start(f"saving {path.name}", steps, ears)
+        self._board.start(tr("saving {name}", name=path.name), steps, ears)
 
     def open(self, path: Path) -> None:
         """Read a project file."""
-        self.status.emit(f"Opening {path.name} …")
+        self.status.emit(tr("Opening {name} …", name=path.name))
         ears = Ears(partial(self._opened, path), on_failed=self.failed.emit)
-        self._board.start(f"opening {path.name}", partial(project_steps.loading, path, self.place()), ears)
+        self._board.start(
+            tr("opening {name}", name=path.name), partial(project_steps.loading, path, self.place()), ears
+        )
 
     def place(self) -> Path:
         """A folder for the picture of one project; it lasts as long as the session."""

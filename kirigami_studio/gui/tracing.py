@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, cast
 
 from PySide6.QtCore import QObject, Signal
 
+from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.jobs import steps
 from kirigami_studio.gui.jobs.board import Board, Ears
 from kirigami_studio.gui.jobs.steps import Picture
@@ -67,7 +68,9 @@ class Tracing(QObject):
 
     def _start(self, picture: Picture) -> None:
         ears = Ears(partial(self._take, picture), partial(self._go_on, picture), on_failed=partial(self._fail, picture))
-        self._job = self._board.start(f"tracing {picture.path.name}", partial(steps.tracing, picture), ears)
+        self._job = self._board.start(
+            tr("tracing {name}", name=picture.path.name), partial(steps.tracing, picture), ears
+        )
 
     def _take(self, picture: Picture, report: object) -> None:
         # By its shape, not by its type: the reader is imported in the worker, which takes a while.

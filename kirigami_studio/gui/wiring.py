@@ -5,6 +5,7 @@ from __future__ import annotations
 from PySide6.QtCore import QObject
 from PySide6.QtGui import QAction
 
+from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.commands import OVERLAY_ACTIONS, Commands
 from kirigami_studio.gui.controller import Controller
 from kirigami_studio.gui.gallery_wiring import GalleryWiring
@@ -42,7 +43,7 @@ class Wiring(QObject):
         self._show_document(controller.document, everything=True)
         self._show_stage(None)
         self._end_run(completed=False)
-        window.says.setText("Choose or draw a target to begin.")
+        window.says.setText(tr("Choose or draw a target to begin."))
 
     # gestures ------------------------------------------------------------------------------------------------------
 
@@ -144,10 +145,10 @@ class Wiring(QObject):
 
     def _show_hints(self, has_target: bool) -> None:
         if has_target:
-            self.window.stage.view.set_hint("generate", "Ready to design", "Press Generate (Ctrl+G).")
+            self.window.stage.view.set_hint("generate", tr("Ready to design"), tr("Press Generate (Ctrl+G)."))
         else:
-            hint = "Open a file (Ctrl+O), choose from the library (Ctrl+L) or draw a silhouette on the left."
-            self.window.stage.view.set_hint("target", "Start with a target", hint)
+            hint = tr("Open a file (Ctrl+O), choose from the library (Ctrl+L) or draw a silhouette on the left.")
+            self.window.stage.view.set_hint("target", tr("Start with a target"), hint)
 
     def _show_history(self) -> None:
         history, actions = self.controller.history, self.window.actions_
@@ -160,10 +161,10 @@ class Wiring(QObject):
 
     def _show_title(self) -> None:
         unsaved = self.controller.history.unsaved
-        name = self.controller.path.name if self.controller.path is not None else "Untitled"
-        self.window.setWindowTitle(f"{name}[*] \N{EN DASH} Kirigami Studio")
+        name = self.controller.path.name if self.controller.path is not None else tr("Untitled")
+        self.window.setWindowTitle(tr("{name}[*] \N{EN DASH} Kirigami Studio", name=name))
         self.window.setWindowModified(unsaved)
-        self.window.heading.setText(f"{name}  ·  unsaved changes" if unsaved else name)
+        self.window.heading.setText(tr("{name}  ·  unsaved changes", name=name) if unsaved else name)
 
     def _show_stage(self, entry: Entry | None) -> None:
         view = self.window.gallery.view
@@ -179,11 +180,11 @@ class Wiring(QObject):
             self.window.facts.clear()
             return
         field, score = entry.candidate.field, entry.candidate.score
-        kind = "feasible" if score.feasible else "not feasible"
-        grid = f"{field.rows} \N{MULTIPLICATION SIGN} {field.columns} voids"
-        facts = [grid, f"exact IoU {100 * score.iou_exact:.1f} %", kind]
+        kind = "feasible" if score.feasible else tr("not feasible")
+        grid = tr("{rows} \N{MULTIPLICATION SIGN} {columns} voids", rows=field.rows, columns=field.columns)
+        facts = [grid, tr("exact IoU {iou_exact:.1f} %", iou_exact=100 * score.iou_exact), kind]
         if entry.candidate.trim is not None:
-            facts.insert(2, f"trimmed IoU {100 * entry.candidate.trim.iou:.1f} %")
+            facts.insert(2, tr("trimmed IoU {iou:.1f} %", iou=100 * entry.candidate.trim.iou))
         self.window.facts.setText("   ·   ".join(facts))
 
     def _show_plan(self, planned: Planned | None) -> None:
@@ -227,8 +228,10 @@ class Wiring(QObject):
     def _show_run(self, total: int) -> None:
         self.window.run.show_running(total)
         self.window.stage.set_trimmable(False)
-        self.window.gallery.view.set_hint("Generating …", "The first designs appear in a moment.")
-        self.window.stage.view.set_hint("generate", "Generating …", "The best design so far will be shown here.")
+        self.window.gallery.view.set_hint(tr("Generating …"), tr("The first designs appear in a moment."))
+        self.window.stage.view.set_hint(
+            "generate", tr("Generating …"), tr("The best design so far will be shown here.")
+        )
         self.window.fabrication.show_waiting()
         self.window.stage.cuts.show_plan(None)
         self.window.actions_["cancel"].setEnabled(True)
@@ -241,8 +244,8 @@ class Wiring(QObject):
         self.window.stage.set_trimmable(True)
         self.window.run.show_ready(has_target)
         self._show_hints(has_target)
-        hint = "Candidates appear here, best first, while they are generated."
-        self.window.gallery.view.set_hint("No designs yet", hint)
+        hint = tr("Candidates appear here, best first, while they are generated.")
+        self.window.gallery.view.set_hint(tr("No designs yet"), hint)
         self.window.actions_["cancel"].setEnabled(False)
         self.window.actions_["generate"].setEnabled(has_target)
 

@@ -11,6 +11,7 @@ from PySide6.QtCore import QObject, Signal
 
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.foundation.resources import resource_root
+from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.collecting import Collecting
 from kirigami_studio.gui.comparing import Comparing
 from kirigami_studio.gui.cutting import Cutting
@@ -135,7 +136,7 @@ class Workbench(QObject):
 
     def _run_cancelled(self) -> None:
         self.showing.show(self.document)
-        self.status.emit("Generation stopped; nothing was changed.")
+        self.status.emit(tr("Generation stopped; nothing was changed."))
 
     def _run_failed(self, sentence: str, trace: str) -> None:
         self.showing.show(self.document)
@@ -170,7 +171,7 @@ class Workbench(QObject):
         self.history.mark_saved(document)
         self.saved.emit(path)
         self.document_changed.emit(self.document)
-        self.status.emit(f"Saved {path}.")
+        self.status.emit(tr("Saved {path}.", path=path))
 
     def _opened(self, path: Path, document: Document) -> None:
         self.stop_design()
@@ -178,7 +179,7 @@ class Workbench(QObject):
         self.history.restart(document)
         self.opened.emit(path)
         self.show()
-        self.status.emit(f"Opened {path}.")
+        self.status.emit(tr("Opened {path}.", path=path))
 
     def _work(self) -> Work:
         picture = self.targeting.tracing.picture_of(self.document.target)
@@ -233,9 +234,9 @@ class Workbench(QObject):
         """Tell why nothing was changed."""
         self.document_changed.emit(self.document)  # so that the control shows the value that holds
         self.message.emit(Message(str(error), Tone.ERROR))
-        self.status.emit("Nothing was changed.")
+        self.status.emit(tr("Nothing was changed."))
 
     def tell_failure(self, sentence: str, trace: str) -> None:
         """Say what went wrong, with the trace behind it."""
         self.message.emit(Message(sentence, Tone.ERROR, trace))
-        self.status.emit("That did not succeed; nothing was changed.")
+        self.status.emit(tr("That did not succeed; nothing was changed."))

@@ -8,6 +8,7 @@ from typing import TypedDict, Unpack
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions, CutOrder
+from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.settings import FabricationSettings
 from kirigami_studio.target.outline import Outline
@@ -67,33 +68,33 @@ class OptionsChange(TypedDict, total=False):
 
 
 _NAMES = {
-    "grid": "the grid",
-    "phi": "the target angle",
-    "k": "the number of candidates",
-    "seed": "the seed",
-    "variant": "the generator",
-    "steps": "the number of steps",
-    "polish": "the polish",
-    "prefer": "what the polish prefers",
-    "search": "the search",
-    "width_mm": "the sheet's width",
-    "material": "the material",
-    "connector_mm": "the connector width",
-    "kerf_mm": "the kerf",
-    "options": "the cuts",
-    "profile": "the machine profile",
-    "dxf_version": "the DXF version",
-    "style": "the connector style",
-    "order": "the cutting order",
-    "tabs": "the number of tabs",
-    "tab_mm": "the tab width",
+    "grid": tr("the grid"),
+    "phi": tr("the target angle"),
+    "k": tr("the number of candidates"),
+    "seed": tr("the seed"),
+    "variant": tr("the generator"),
+    "steps": tr("the number of steps"),
+    "polish": tr("the polish"),
+    "prefer": tr("what the polish prefers"),
+    "search": tr("the search"),
+    "width_mm": tr("the sheet's width"),
+    "material": tr("the material"),
+    "connector_mm": tr("the connector width"),
+    "kerf_mm": tr("the kerf"),
+    "options": tr("the cuts"),
+    "profile": tr("the machine profile"),
+    "dxf_version": tr("the DXF version"),
+    "style": tr("the connector style"),
+    "order": tr("the cutting order"),
+    "tabs": tr("the number of tabs"),
+    "tab_mm": tr("the tab width"),
 }
 
 
 def set_target(document: Document, target: Outline) -> Edit:
     """Take another target; the designs of the old one go."""
     changed = without_designs(document, target)
-    return Edit(f"Set target {target.name}", changed)
+    return Edit(tr("Set target {name}", name=target.name), changed)
 
 
 def without_designs(document: Document, target: Outline | None) -> Document:
@@ -142,7 +143,7 @@ def set_candidates(
         locked=frozenset(),
     )
     count = len(found)
-    return Edit(f"Generate {count} design{'' if count == 1 else 's'}", changed)
+    return Edit(tr_n("Generate {count} design", "Generate {count} designs", count), changed)
 
 
 def _without_strange_hinges(document: Document, found: tuple[Candidate, ...]) -> FabricationSettings:
@@ -169,7 +170,7 @@ def choose(document: Document, index: int | None) -> Edit:
     ProjectError
         There is no such candidate.
     """
-    label = "Choose no design" if index is None else f"Choose design {index + 1}"
+    label = tr("Choose no design") if index is None else tr("Choose design {index}", index=index + 1)
     return Edit(label, replace(document, chosen=index))
 
 
@@ -199,7 +200,7 @@ def set_cut_options(document: Document, **changes: Unpack[OptionsChange]) -> Edi
 
 
 def _label(changes: Mapping[str, object]) -> str:
-    return "Change " + " and ".join(_NAMES[name] for name in changes)
+    return tr("Change ") + tr(" and ").join(_NAMES[name] for name in changes)
 
 
 def _merge_key(room: str, changes: Mapping[str, object]) -> str:

@@ -6,6 +6,7 @@ from collections.abc import Collection
 from dataclasses import replace
 
 from kirigami_studio.fabricate.options import CutOptions
+from kirigami_studio.foundation.words import tr
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.edits import Edit
 
@@ -36,19 +37,24 @@ def set_hinge_width(document: Document, hinges: Collection[int], width_mm: float
     widths = dict(options.hinge_mm) | dict.fromkeys(hinges, round(float(width_mm), DECIMALS))
     changed = replace(options, hinge_mm=tuple(sorted(widths.items())))
     numbers = ",".join(str(hinge) for hinge in sorted(hinges))
-    return _edit(document, changed, f"Set {_named(hinges)} to {width_mm:g} mm", f"hinges:{numbers}")
+    return _edit(
+        document,
+        changed,
+        tr("Set {named} to {width_mm:g} mm", named=_named(hinges), width_mm=width_mm),
+        f"hinges:{numbers}",
+    )
 
 
 def remove_hinges(document: Document, hinges: Collection[int]) -> Edit:
     """Leave no connector at these hinges."""
     options = _without(document.fabrication.options, hinges)
     changed = replace(options, removed=tuple(sorted({*options.removed, *hinges})))
-    return _edit(document, changed, f"Cut through {_named(hinges)}")
+    return _edit(document, changed, tr("Cut through {named}", named=_named(hinges)))
 
 
 def reset_hinges(document: Document, hinges: Collection[int]) -> Edit:
     """Give connectors the sheet's usual width again."""
-    return _edit(document, _without(document.fabrication.options, hinges), f"Reset {_named(hinges)}")
+    return _edit(document, _without(document.fabrication.options, hinges), tr("Reset {named}", named=_named(hinges)))
 
 
 def _without(options: CutOptions, hinges: Collection[int]) -> CutOptions:
@@ -67,4 +73,8 @@ def _edit(document: Document, options: CutOptions, label: str, merge_key: str | 
 
 
 def _named(hinges: Collection[int]) -> str:
-    return f"connector {min(hinges)}" if len(hinges) == 1 else f"{len(hinges)} connectors"
+    return (
+        tr("connector {hinges}", hinges=min(hinges))
+        if len(hinges) == 1
+        else tr("{count} connectors", count=len(hinges))
+    )

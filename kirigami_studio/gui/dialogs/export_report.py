@@ -19,6 +19,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.gui import icons
 from kirigami_studio.gui.panels.card import ElidedLabel
 from kirigami_studio.gui.readable import UNKNOWN, readable_length, readable_range
@@ -41,26 +42,26 @@ class ExportReport(QDialog):
         self.verifications = verifications
         self._palette: Palette = palette
         self.setObjectName("exportReport")
-        self.setWindowTitle("Export report")
+        self.setWindowTitle(tr("Export report"))
         self.setModal(False)
         self.resize(SIZE)
         self.file = QComboBox()
-        self.file.setAccessibleName("File of the report")
+        self.file.setAccessibleName(tr("File of the report"))
         self.file.addItems([label(one) for one in verifications])
         self.file.setVisible(len(verifications) > 1)
         self.symbol, self.verdict, self.path = QLabel(), QLabel(), ElidedLabel()
         self.verdict.setWordWrap(True)
         self.findings = QListWidget()
         self.findings.setObjectName("reportFindings")
-        self.findings.setAccessibleName("Findings of the export report")
+        self.findings.setAccessibleName(tr("Findings of the export report"))
         self.findings.setWordWrap(True)
         self.findings.setIconSize(QSize(18, 18))
         self.findings.setSelectionMode(QListWidget.SelectionMode.NoSelection)
         self.findings.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
         self.facts = {name: QLabel() for name in told_facts(verifications[0])}
-        self.folder = QPushButton("Show in &folder")
-        self.copy = QPushButton("&Copy")
-        self.shut = QPushButton("Cl&ose")
+        self.folder = QPushButton(tr("Show in &folder"))
+        self.copy = QPushButton(tr("&Copy"))
+        self.shut = QPushButton(tr("Cl&ose"))
         self.shut.setDefault(True)
         self._lay_out()
         self.folder.clicked.connect(lambda: self.folder_wanted.emit(self.shown.path))
@@ -155,10 +156,16 @@ def verdict(verification: Verification) -> str:
     bad = sum(not finding.ok for finding in verification.findings)
     notes = sum(finding.ok and finding.warning for finding in verification.findings) + len(verification.warnings)
     if not verification.ok:
-        return f"Do not cut this file: {bad} finding{'s are' if bad != 1 else ' is'} bad."
+        return tr_n(
+            "Do not cut this file: {count} finding is bad.", "Do not cut this file: {count} findings are bad.", bad
+        )
     if notes:
-        return f"Verified. {notes} thing{'s' if notes != 1 else ''} to read before cutting."
-    return "Verified: what is in the file is what was planned."
+        return tr_n(
+            "Verified. {count} thing to read before cutting.",
+            "Verified. {count} things to read before cutting.",
+            notes,
+        )
+    return tr("Verified: what is in the file is what was planned.")
 
 
 def told_facts(verification: Verification) -> dict[str, str]:
@@ -166,7 +173,7 @@ def told_facts(verification: Verification) -> dict[str, str]:
     width, height = verification.size_mm
     pieces = UNKNOWN if verification.pieces is None else str(verification.pieces)
     return {
-        "Size with overcuts": f"{width:.2f} \N{MULTIPLICATION SIGN} {height:.2f} mm",
+        "Size with overcuts": tr("{width:.2f} \N{MULTIPLICATION SIGN} {height:.2f} mm", width=width, height=height),
         "Pieces": pieces,
         "Cut length": readable_length(verification.cut_length_mm),
         "Time": readable_range(verification.seconds_low, verification.seconds_high),
@@ -176,14 +183,14 @@ def told_facts(verification: Verification) -> dict[str, str]:
 def told_findings(verification: Verification) -> list[tuple[str, str, str]]:
     """Word, icon and sentence of each line, the bad ones first."""
     lines = [_told(finding) for finding in verification.findings]
-    lines += [("Note", "warning", text) for text in verification.warnings]
+    lines += [(tr("Note"), "warning", text) for text in verification.warnings]
     return sorted(lines, key=lambda line: ("Bad", "Note", "Good").index(line[0]))
 
 
 def _told(finding: Finding) -> tuple[str, str, str]:
     if not finding.ok:
-        return "Bad", "fault", finding.text
-    return ("Note", "warning", finding.text) if finding.warning else ("Good", "check", finding.text)
+        return tr("Bad"), "fault", finding.text
+    return (tr("Note"), "warning", finding.text) if finding.warning else (tr("Good"), "check", finding.text)
 
 
 def as_text(verification: Verification) -> str:

@@ -10,8 +10,8 @@ from PySide6.QtWidgets import QFileDialog, QWidget
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.file_kinds import FILE_KINDS, kind_of
 
-TARGET_FILTER = "Targets (*.png *.jpg *.jpeg *.bmp *.svg *.dxf *.json);;All files (*)"
-PROJECT_FILTER = "Kirigami Studio projects (*.kiri)"
+TARGET_FILTER = tr("Targets (*.png *.jpg *.jpeg *.bmp *.svg *.dxf *.json);;All files (*)")
+PROJECT_FILTER = tr("Kirigami Studio projects (*.kiri)")
 
 
 class FileQuestions(Protocol):
@@ -44,20 +44,22 @@ class FileChoosers:
         self._folder = ""
 
     def target(self) -> Path | None:
-        name, _ = QFileDialog.getOpenFileName(self._window, "Open target", self._folder, TARGET_FILTER)
+        name, _ = QFileDialog.getOpenFileName(self._window, tr("Open target"), self._folder, TARGET_FILTER)
         return self._remembered(name)
 
     def project(self) -> Path | None:
-        name, _ = QFileDialog.getOpenFileName(self._window, "Open project", self._folder, PROJECT_FILTER)
+        name, _ = QFileDialog.getOpenFileName(self._window, tr("Open project"), self._folder, PROJECT_FILTER)
         return self._remembered(name)
 
     def save(self, proposal: str) -> Path | None:
-        dialog = self._saver("Save project", proposal, [PROJECT_FILTER])
+        dialog = self._saver(tr("Save project"), proposal, [PROJECT_FILTER])
         return self._answer(dialog)
 
     def export(self, proposal: str) -> Path | None:
         kind = kind_of(Path(proposal).suffix)
-        dialog = self._saver(f"Export {kind.extension[1:].upper()}", proposal, [each.filter for each in FILE_KINDS])
+        dialog = self._saver(
+            tr("Export {upper}", upper=kind.extension[1:].upper()), proposal, [each.filter for each in FILE_KINDS]
+        )
         dialog.selectNameFilter(kind.filter)
         dialog.filterSelected.connect(lambda text: follow_filter(dialog, text))
         return self._answer(dialog)
@@ -69,7 +71,7 @@ class FileChoosers:
         return self._answer(dialog)
 
     def folder(self) -> Path | None:
-        name = QFileDialog.getExistingDirectory(self._window, "Export everything into a folder", self._folder)
+        name = QFileDialog.getExistingDirectory(self._window, tr("Export everything into a folder"), self._folder)
         return self._remembered(name)
 
     def _saver(self, title: str, proposal: str, filters: list[str]) -> QFileDialog:

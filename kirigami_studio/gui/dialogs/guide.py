@@ -6,6 +6,7 @@ from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QTextBrowser, QVBoxLayout, QWidget
 
 from kirigami_studio.foundation.resources import resource
+from kirigami_studio.foundation.words import tr
 
 
 class GuideWindow(QWidget):
@@ -13,10 +14,10 @@ class GuideWindow(QWidget):
 
     def __init__(self, parent: QWidget) -> None:
         super().__init__(parent, Qt.WindowType.Window)
-        self.setWindowTitle("Kirigami Studio guide")
+        self.setWindowTitle(tr("Kirigami Studio guide"))
         self.text = QTextBrowser()
         self.text.setObjectName("guideText")
-        self.text.setAccessibleName("User guide")
+        self.text.setAccessibleName(tr("User guide"))
         self.text.setOpenExternalLinks(True)
         self.text.setMarkdown(resource("guide", "guide.md").read_text(encoding="utf-8"))
         column = QVBoxLayout(self)

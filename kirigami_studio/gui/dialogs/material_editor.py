@@ -24,11 +24,12 @@ from PySide6.QtWidgets import (
 from kirigami_studio.fabricate import material_copies
 from kirigami_studio.fabricate.material import Library, Material, library
 from kirigami_studio.foundation.errors import KirigamiError
+from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.dialogs.gap_row import GapRow
 from kirigami_studio.gui.dialogs.material_form import TEXTS, MaterialForm
 
 SIZE = QSize(760, 560)
-NEW = "Your own copy of a preset can be changed; presets stay as they are."
+NEW = tr("Your own copy of a preset can be changed; presets stay as they are.")
 
 
 class MaterialEditor(QDialog):
@@ -40,12 +41,12 @@ class MaterialEditor(QDialog):
     def __init__(self, parent: QWidget, key: str) -> None:
         super().__init__(parent)
         self.setObjectName("materialEditor")
-        self.setWindowTitle("Materials")
+        self.setWindowTitle(tr("Materials"))
         self.setModal(False)
         self.resize(SIZE)
         self._library: Library = library()
         self.list = QListWidget()
-        self.list.setAccessibleName("Materials")
+        self.list.setAccessibleName(tr("Materials"))
         self.list.setObjectName("materialList")
         self.list.setFixedWidth(260)
         self.list.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
@@ -57,17 +58,17 @@ class MaterialEditor(QDialog):
         self.says.setObjectName("muted")
         self.gaps = GapRow()
         self.author = QLineEdit()
-        self.author.setAccessibleName("Measured by")
-        self.author.setPlaceholderText("Measured by …")
-        self.author.setToolTip("Who measured the coupon.")
+        self.author.setAccessibleName(tr("Measured by"))
+        self.author.setPlaceholderText(tr("Measured by …"))
+        self.author.setToolTip(tr("Who measured the coupon."))
         self.buttons = {
             name: _button(name, text, tip)
             for name, text, tip in (
-                ("copy", "C&opy", "Make a copy of this material that can be changed."),
-                ("delete", "&Delete", "Delete this own material. A preset cannot be deleted."),
-                ("coupon", "Export &coupon …", "Write a small sheet that tells kerf and smallest ligament."),
-                ("save", "&Save", "Save the numbers. A changed number makes the material uncalibrated."),
-                ("calibrate", "&Mark as calibrated", "The numbers were measured today, on a coupon."),
+                ("copy", tr("C&opy"), tr("Make a copy of this material that can be changed.")),
+                ("delete", tr("&Delete"), tr("Delete this own material. A preset cannot be deleted.")),
+                ("coupon", tr("Export &coupon …"), tr("Write a small sheet that tells kerf and smallest ligament.")),
+                ("save", tr("&Save"), tr("Save the numbers. A changed number makes the material uncalibrated.")),
+                ("calibrate", tr("&Mark as calibrated"), tr("The numbers were measured today, on a coupon.")),
             )
         }
         self._lay_out()
@@ -130,28 +131,30 @@ class MaterialEditor(QDialog):
     def copy(self) -> None:
         """Save a copy of the chosen material under a new key."""
         source = self.chosen
-        made = material_copies.changed_copy(source.key, self._free_key(source.key), {"name": f"{source.name} (copy)"})
+        made = material_copies.changed_copy(
+            source.key, self._free_key(source.key), {"name": tr("{name} (copy)", name=source.name)}
+        )
         material_copies.save_copy(made)
-        self._saved(made.key, f"{made.name!r} was saved; change its numbers, then save.")
+        self._saved(made.key, tr("{name!r} was saved; change its numbers, then save.", name=made.name))
         self.form.texts["name"].setFocus()
 
     def save(self) -> None:
         """Save the form; new numbers are uncalibrated ones."""
         made = self._edited()
         material_copies.save_copy(made)
-        self._saved(made.key, "Saved.")
+        self._saved(made.key, tr("Saved."))
 
     def calibrate(self) -> None:
         """Save the form as measured today."""
         made = material_copies.mark_calibrated(self._edited(), date.today(), self.author.text())
-        self._saved(made.key, "Saved as calibrated.")
+        self._saved(made.key, tr("Saved as calibrated."))
 
     def delete(self) -> None:
         """Delete the chosen own material."""
         key, name = self.chosen.key, self.chosen.name
         material_copies.delete_copy(key)
         self._list(key)
-        self.says.setText(f"{name!r} was deleted.")
+        self.says.setText(tr("{name!r} was deleted.", name=name))
         self.stock_changed.emit("")
 
     def _take_kerf(self, kerf_mm: float, sentence: str) -> None:
@@ -182,7 +185,9 @@ class MaterialEditor(QDialog):
         self._library = library()
         self.list.clear()
         for one, material in self._library.materials.items():
-            item = QListWidgetItem(f"Own  ·  {material.name}" if one in self._library.own else material.name)
+            item = QListWidgetItem(
+                tr("Own  ·  {name}", name=material.name) if one in self._library.own else material.name
+            )
             item.setData(Qt.ItemDataRole.UserRole, one)
             item.setToolTip(f"{material.name} ({one})\n{material.machine}\n{_state(material)}")
             self.list.addItem(item)
@@ -216,9 +221,9 @@ class MaterialEditor(QDialog):
 def _state(material: Material) -> str:
     """Whether the numbers were measured, in words."""
     if not material.calibrated:
-        return "Not calibrated: a starting point. Cut a coupon and measure."
+        return tr("Not calibrated: a starting point. Cut a coupon and measure.")
     by, on = material.measured_by, material.measured_on
-    return "Calibrated" + (f" on {on}" if on else "") + (f" by {by}" if by else "") + "."
+    return tr("Calibrated") + (tr(" on {on}", on=on) if on else "") + (tr(" by {by}", by=by) if by else "") + "."
 
 
 def _button(name: str, text: str, tip: str) -> QPushButton:

@@ -8,6 +8,7 @@ from PySide6.QtCore import QSignalBlocker, Signal
 from PySide6.QtWidgets import QDoubleSpinBox, QFormLayout, QLabel, QLineEdit, QSpinBox, QWidget
 
 from kirigami_studio.fabricate.material import Material
+from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.panels.number_field import number_field
 
 
@@ -27,26 +28,49 @@ class Number:
 
 
 NUMBERS = (
-    Number("thickness_mm", "Thickness", "mm", 0.005, 50.0, 0.05, 3, "Thickness of the sheet."),
-    Number("kerf_mm", "Kerf", "mm", 0.0, 5.0, 0.01, 3, "Full width of the cut; 0 for a blade."),
-    Number("connector_mm", "Connector", "mm", 0.02, 20.0, 0.05, 3, "Usual finished width of a connector."),
-    Number("min_ligament_mm", "Smallest ligament", "mm", 0.005, 20.0, 0.01, 3, "Narrower ones are warned about."),
-    Number("min_slit_mm", "Shortest slit", "mm", 0.005, 20.0, 0.05, 3, "Shorter slits are warned about."),
-    Number("relief_radius_mm", "Relief radius", "mm", 0.0, 5.0, 0.05, 3, "Radius of a relief hole at a slit's end."),
-    Number("strain_limit", "Breaks at strain", "%", 0.01, 500.0, 0.5, 2, "Strain at which the material breaks.", 100.0),
-    Number("speed_mm_s", "Cutting speed", "mm/s", 0.01, 10_000.0, 5.0, 2, "Speed with the beam on."),
-    Number("travel_mm_s", "Travel speed", "mm/s", 0.01, 20_000.0, 20.0, 2, "Speed between cuts."),
-    Number("acceleration_mm_s2", "Acceleration", "mm/s²", 0.1, 200_000.0, 100.0, 1, "How fast the head speeds up."),
-    Number("on_delay_s", "Delay before a cut", "ms", 0.0, 10_000.0, 5.0, 1, "Waited before each cut.", 1000.0),
-    Number("off_delay_s", "Delay after a cut", "ms", 0.0, 10_000.0, 5.0, 1, "Waited after each cut.", 1000.0),
+    Number("thickness_mm", tr("Thickness"), "mm", 0.005, 50.0, 0.05, 3, tr("Thickness of the sheet.")),
+    Number("kerf_mm", tr("Kerf"), "mm", 0.0, 5.0, 0.01, 3, tr("Full width of the cut; 0 for a blade.")),
+    Number("connector_mm", tr("Connector"), "mm", 0.02, 20.0, 0.05, 3, tr("Usual finished width of a connector.")),
     Number(
-        "join_tolerance_mm", "Joins gaps below", "mm", 0.0, 2.0, 0.01, 3, "Gaps that the machine's program may close."
+        "min_ligament_mm", tr("Smallest ligament"), "mm", 0.005, 20.0, 0.01, 3, tr("Narrower ones are warned about.")
+    ),
+    Number("min_slit_mm", tr("Shortest slit"), "mm", 0.005, 20.0, 0.05, 3, tr("Shorter slits are warned about.")),
+    Number(
+        "relief_radius_mm", tr("Relief radius"), "mm", 0.0, 5.0, 0.05, 3, tr("Radius of a relief hole at a slit's end.")
+    ),
+    Number(
+        "strain_limit",
+        tr("Breaks at strain"),
+        "%",
+        0.01,
+        500.0,
+        0.5,
+        2,
+        tr("Strain at which the material breaks."),
+        100.0,
+    ),
+    Number("speed_mm_s", tr("Cutting speed"), "mm/s", 0.01, 10_000.0, 5.0, 2, tr("Speed with the beam on.")),
+    Number("travel_mm_s", tr("Travel speed"), "mm/s", 0.01, 20_000.0, 20.0, 2, tr("Speed between cuts.")),
+    Number(
+        "acceleration_mm_s2", tr("Acceleration"), "mm/s²", 0.1, 200_000.0, 100.0, 1, tr("How fast the head speeds up.")
+    ),
+    Number("on_delay_s", tr("Delay before a cut"), "ms", 0.0, 10_000.0, 5.0, 1, tr("Waited before each cut."), 1000.0),
+    Number("off_delay_s", tr("Delay after a cut"), "ms", 0.0, 10_000.0, 5.0, 1, tr("Waited after each cut."), 1000.0),
+    Number(
+        "join_tolerance_mm",
+        tr("Joins gaps below"),
+        "mm",
+        0.0,
+        2.0,
+        0.01,
+        3,
+        tr("Gaps that the machine's program may close."),
     ),
 )
 TEXTS = (
-    ("name", "Name", "What the list of materials shows."),
-    ("machine", "Machine", "The machine that these numbers were found on."),
-    ("note", "Note", "What one should know."),
+    ("name", tr("Name"), tr("What the list of materials shows.")),
+    ("machine", tr("Machine"), tr("The machine that these numbers were found on.")),
+    ("note", tr("Note"), tr("What one should know.")),
 )
 
 
@@ -64,8 +88,8 @@ class MaterialForm(QWidget):
         self.passes.setObjectName("passes")
         self.passes.setRange(1, 100)
         number_field(self.passes)
-        self.passes.setAccessibleName("Passes")
-        self.passes.setToolTip("How many times the job is cut (1 to 100).")
+        self.passes.setAccessibleName(tr("Passes"))
+        self.passes.setToolTip(tr("How many times the job is cut (1 to 100)."))
         form = QFormLayout(self)
         form.setContentsMargins(0, 0, 6, 0)
         form.setVerticalSpacing(5)
@@ -76,7 +100,7 @@ class MaterialForm(QWidget):
         for number in NUMBERS:
             form.addRow(_caption(number.label), self.numbers[number.field])
             self.numbers[number.field].valueChanged.connect(self.changed)
-        form.addRow(_caption("Passes"), self.passes)
+        form.addRow(_caption(tr("Passes")), self.passes)
         self.passes.valueChanged.connect(self.changed)
 
     def show_material(self, material: Material, editable: bool) -> None:
@@ -135,5 +159,13 @@ def _number(number: Number) -> QDoubleSpinBox:
     number_field(box)
     box.setKeyboardTracking(False)
     box.setAccessibleName(f"{number.label}, {number.unit}")
-    box.setToolTip(f"{number.tip} Unit: {number.unit} ({number.low:g} to {number.high:g}).")
+    box.setToolTip(
+        tr(
+            "{tip} Unit: {unit} ({low:g} to {high:g}).",
+            tip=number.tip,
+            unit=number.unit,
+            low=number.low,
+            high=number.high,
+        )
+    )
     return box

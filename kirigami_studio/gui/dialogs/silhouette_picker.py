@@ -6,6 +6,7 @@ from PySide6.QtCore import QPoint, QSize, Qt, Signal
 from PySide6.QtGui import QGuiApplication, QIcon, QKeyEvent
 from PySide6.QtWidgets import QFrame, QLabel, QLineEdit, QListView, QListWidget, QListWidgetItem, QVBoxLayout, QWidget
 
+from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.scene.thumbnail import target_pixmap
 from kirigami_studio.gui.theme import Palette
 from kirigami_studio.target import silhouettes
@@ -23,19 +24,19 @@ class SilhouettePicker(QFrame):
         super().__init__(parent, Qt.WindowType.Popup)
         self.setObjectName("popup")
         self.search = QLineEdit()
-        self.search.setPlaceholderText("Search the library")
+        self.search.setPlaceholderText(tr("Search the library"))
         self.search.setClearButtonEnabled(True)
-        self.search.setAccessibleName("Search the library")
+        self.search.setAccessibleName(tr("Search the library"))
         self.list = QListWidget()
         self.list.setObjectName("libraryList")
-        self.list.setAccessibleName("Library silhouettes")
+        self.list.setAccessibleName(tr("Library silhouettes"))
         self.list.setViewMode(QListView.ViewMode.IconMode)
         self.list.setMovement(QListView.Movement.Static)
         self.list.setResizeMode(QListView.ResizeMode.Adjust)
         self.list.setIconSize(PICTURE)
         self.list.setGridSize(QSize(104, 104))
         self.list.setWordWrap(True)
-        self.about = QLabel("Choose a silhouette")
+        self.about = QLabel(tr("Choose a silhouette"))
         self.about.setObjectName("muted")
         self.about.setWordWrap(True)
         column = QVBoxLayout(self)
@@ -100,7 +101,7 @@ class SilhouettePicker(QFrame):
             item.setHidden(text.strip().lower() not in item.text().lower())
 
     def _tell(self, item: QListWidgetItem | None) -> None:
-        self.about.setText(item.toolTip() if item is not None else "Choose a silhouette")
+        self.about.setText(item.toolTip() if item is not None else tr("Choose a silhouette"))
 
     def _take(self, item: QListWidgetItem) -> None:
         self.chosen.emit(item.data(NAME_ROLE))

@@ -9,6 +9,7 @@ import numpy as np
 
 from kirigami_studio.evaluate.candidate import Candidate, Origin
 from kirigami_studio.foundation.errors import Cancelled
+from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.jobs.steps import Decoded
 from kirigami_studio.gui.jobs.worker import Cancel
 from kirigami_studio.lattice.deployment import deploy
@@ -74,7 +75,7 @@ def refitting(
             held=held if held.any() else None,
         )
         if cancel():
-            raise Cancelled("Fitting was stopped; nothing was changed.")
+            raise Cancelled(tr("Fitting was stopped; nothing was changed."))
         deployment = deploy(fit.field)
         found = evaluate_near(deployment, target, score.phi, fit.pose)
     drawn = candidate.drawn or candidate.field

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.trimming import KEEP, LARGEST_KEEP
 from kirigami_studio.foundation.errors import Cancelled, ExportError, UsageError
+from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.file_kinds import kind_of
 from kirigami_studio.gui.jobs import importing
 from kirigami_studio.gui.jobs.worker import Cancel
@@ -185,14 +186,20 @@ def trimming(candidate: Candidate, target: Outline, settings: FabricationSetting
     if needed > LARGEST_KEEP:
         least = settings.width_mm * needed / LARGEST_KEEP
         raise UsageError(
-            f"Connectors of {connector:g} mm leave nothing to trim on a sheet {settings.width_mm:g} mm wide; make the "
-            f"sheet at least {math.ceil(least)} mm wide or the connectors narrower, then trim again."
+            tr(
+                "Connectors of {connector:g} mm leave nothing to trim on a sheet {width_mm:g} mm "
+                "wide; make the sheet at least {ceil} mm wide or the connectors narrower, then trim "
+                "again.",
+                connector=connector,
+                width_mm=settings.width_mm,
+                ceil=math.ceil(least),
+            )
         )
     with one_blas_thread():
         keep = max(KEEP, needed)
         cover = fit_cover(candidate.field, target, score.phi, COVER_STEPS, score.transform, keep, cancel)
     if cancel():
-        raise Cancelled("Trimming was stopped; nothing was changed.")
+        raise Cancelled(tr("Trimming was stopped; nothing was changed."))
     yield Decoded(replace(candidate, trim=cover.trim), deploy(cover.trim.field))
 
 
@@ -269,7 +276,7 @@ def exporting_all(order: Order, folder: Path, name: str, cancel: Cancel) -> Iter
 
     def stop_if_asked(_: Path) -> None:
         if cancel():
-            raise Cancelled(f"Writing into {folder} was stopped; what was written before stays.")
+            raise Cancelled(tr("Writing into {folder} was stopped; what was written before stays.", folder=folder))
 
     made = planned(order)
     found = export_all(export_job(order, made), folder, name, tell=stop_if_asked)
@@ -295,7 +302,9 @@ def exporting_coupon(
     from kirigami_studio.fabricate.coupon import plan_coupon
 
     if path.suffix.lower() != ".dxf":
-        raise UsageError(f"A coupon is written as .dxf here, got {path.name}; the command line knows other kinds.")
+        raise UsageError(
+            tr("A coupon is written as .dxf here, got {name}; the command line knows other kinds.", name=path.name)
+        )
     plan = plan_coupon(material)
     write_dxf(plan, path, settings.dxf_version, find_profile(settings.profile))
     yield Exported(path, Planned(plan, check_plan(plan)), _verified(plan, path, settings))

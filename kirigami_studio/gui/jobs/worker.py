@@ -13,6 +13,7 @@ from PySide6.QtCore import QMetaObject, QObject, Qt, Signal, Slot
 
 from kirigami_studio.foundation.errors import Cancelled, KirigamiError
 from kirigami_studio.foundation.log import topic
+from kirigami_studio.foundation.words import tr
 
 log: logging.Logger = topic("gui.jobs")
 
@@ -78,7 +79,7 @@ class Worker(QObject):
         """Whether the job has more to do."""
         try:
             if job.flag.is_set():
-                raise Cancelled(f"Stopped {job.name}.")
+                raise Cancelled(tr("Stopped {name}.", name=job.name))
             if job.iterator is None:
                 job.iterator = job.steps(job.flag.is_set)
             report = next(job.iterator)
@@ -91,7 +92,11 @@ class Worker(QObject):
             self.failed.emit(job.number, str(error), traceback.format_exc())
         except Exception as error:  # a thread's last line of defence: it must reach the user, not end the thread
             log.exception("job %d (%s) failed", job.number, job.name)
-            sentence = f"Something unexpected went wrong while {job.name}: {error or type(error).__name__}."
+            sentence = tr(
+                "Something unexpected went wrong while {name}: {value}.",
+                name=job.name,
+                value=error or type(error).__name__,
+            )
             self.failed.emit(job.number, sentence, traceback.format_exc())
         else:
             self.reported.emit(job.number, report)

@@ -170,7 +170,9 @@ class ComparePage(QWidget):
             return
         entry, number = one
         chosen = side is self.left
-        side.title.setText(tr("Design {number}, chosen", number=number) if chosen else f"Design {number}")
+        side.title.setText(
+            tr("Design {number}, chosen", number=number) if chosen else tr("Design {number}", number=number)
+        )
         candidate = entry.candidate
         # Contacts are known of the field that was scored; the one fitted for trimming is free of them.
         scored = candidate.trim is None or candidate.trim.field == candidate.field

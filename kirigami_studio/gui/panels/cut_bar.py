@@ -5,6 +5,7 @@ from __future__ import annotations
 from PySide6.QtCore import QElapsedTimer, Qt, QTimer, Signal
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QSlider, QWidget
 
+from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui import icons
 from kirigami_studio.gui.panels.card import tool_button
 from kirigami_studio.gui.readable import readable_length, readable_time
@@ -27,14 +28,16 @@ class CutBar(QWidget):
         self._steps: CutSteps | None = None
         self._seconds = 0.0
         self._clock = QElapsedTimer()
-        self.play = tool_button("playCuts", "Play or pause the cutting (Space).", checkable=True)
+        self.play = tool_button("playCuts", tr("Play or pause the cutting (Space)."), checkable=True)
         self.slider = QSlider(Qt.Orientation.Horizontal)
         self.slider.setObjectName("cutStep")
-        self.slider.setAccessibleName("Cuts made so far")
-        self.slider.setToolTip("Cuts made so far, in cutting order (arrow keys: one cut; Home and End: none and all)")
+        self.slider.setAccessibleName(tr("Cuts made so far"))
+        self.slider.setToolTip(
+            tr("Cuts made so far, in cutting order (arrow keys: one cut; Home and End: none and all)")
+        )
         self.slider.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self.count, self.so_far = QLabel(), QLabel()
-        for label, name in ((self.count, "Cuts so far"), (self.so_far, "Time and cut length so far")):
+        for label, name in ((self.count, tr("Cuts so far")), (self.so_far, tr("Time and cut length so far"))):
             label.setObjectName("muted")
             label.setAccessibleName(name)
             label.setAlignment(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)

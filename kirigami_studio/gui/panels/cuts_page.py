@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QToolButton, QVBoxLayout, QWidget
 
+from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui import icons
 from kirigami_studio.gui.panels.card import tool_button
 from kirigami_studio.gui.panels.cut_bar import CutBar
@@ -22,13 +23,13 @@ if TYPE_CHECKING:
     from kirigami_studio.gui.jobs.steps import Planned
 
 OVERLAYS = (
-    (CutOverlay.TRAVEL, "travel", "Show the moves between cuts, dashed."),
+    (CutOverlay.TRAVEL, "travel", tr("Show the moves between cuts, dashed.")),
     (
         CutOverlay.CONNECTORS,
         "connector",
-        "Show the connectors. Dark: narrow, light: wide (in the dark theme reversed).",
+        tr("Show the connectors. Dark: narrow, light: wide (in the dark theme reversed)."),
     ),
-    (CutOverlay.PROBLEMS, "fault", "Mark what the cut check found."),
+    (CutOverlay.PROBLEMS, "fault", tr("Mark what the cut check found.")),
 )
 
 
@@ -84,8 +85,8 @@ class CutsPage(QWidget):
         if self._plan is None:
             return ()
         size, count = readable_size(*self._plan.size_mm), len(self._plan.paths)
-        kerf = f"kerf {self._plan.kerf_mm:g} mm"
-        return f"{size}  ·  {count} cuts  ·  {kerf}", f"{size}  ·  {kerf}", size
+        kerf = tr("kerf {kerf_mm:g} mm", kerf_mm=self._plan.kerf_mm)
+        return tr("{size}  ·  {count} cuts  ·  {kerf}", size=size, count=count, kerf=kerf), f"{size}  ·  {kerf}", size
 
     def show_plan(self, planned: Planned | None) -> None:
         """Show another plan, or the empty state; a new picture of one sheet keeps its place."""
@@ -103,7 +104,9 @@ class CutsPage(QWidget):
 
     def show_refusal(self, sentence: str) -> None:
         """There is no plan for the present numbers; the last one stays in sight, and says so."""
-        self.view.set_caption(f"Not the present numbers: {sentence}" if self._plan is not None else "")
+        self.view.set_caption(
+            tr("Not the present numbers: {sentence}", sentence=sentence) if self._plan is not None else ""
+        )
 
     def set_palette(self, palette: Palette) -> None:
         """Draw in other colours."""

@@ -7,6 +7,7 @@ import math
 from PySide6.QtCore import QElapsedTimer, QSettings, QSignalBlocker, QTimer, Signal
 from PySide6.QtWidgets import QDoubleSpinBox, QHBoxLayout, QWidget
 
+from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui import icons
 from kirigami_studio.gui.panels.card import tool_button
 from kirigami_studio.gui.panels.number_field import number_field
@@ -33,7 +34,7 @@ class DeploymentBar(QWidget):
         self._phase = 0.0
         self._target = 0.0
         self._clock = QElapsedTimer()
-        self.play = tool_button("play", "Play or pause the deployment (Space).", checkable=True)
+        self.play = tool_button("play", tr("Play or pause the deployment (Space)."), checkable=True)
         self.options = PlayOptions()
         self.slider = PhiSlider()
         self.number = QDoubleSpinBox()
@@ -44,8 +45,8 @@ class DeploymentBar(QWidget):
         self.number.setFixedWidth(82)
         number_field(self.number)
         self.number.setKeyboardTracking(False)
-        self.number.setAccessibleName("Deployment angle in degrees")
-        self.number.setToolTip("Deployment angle φ in degrees: 180° flat, 0° fully turned")
+        self.number.setAccessibleName(tr("Deployment angle in degrees"))
+        self.number.setToolTip(tr("Deployment angle φ in degrees: 180° flat, 0° fully turned"))
         row = QHBoxLayout(self)
         row.setContentsMargins(0, 0, 0, 0)
         row.setSpacing(4)

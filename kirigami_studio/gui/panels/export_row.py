@@ -6,6 +6,7 @@ from PySide6.QtCore import QSize, Qt, Signal
 from PySide6.QtGui import QAction
 from PySide6.QtWidgets import QHBoxLayout, QMenu, QPushButton, QSizePolicy, QToolButton, QWidget
 
+from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui import icons
 from kirigami_studio.gui.file_kinds import FILE_KINDS
 from kirigami_studio.gui.theme import Palette
@@ -19,7 +20,7 @@ class ExportRow(QWidget):
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
-        self.export = QPushButton("Export DXF")
+        self.export = QPushButton(tr("Export DXF"))
         self.export.setObjectName("primary")
         self.export.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         self.export.setIconSize(QSize(18, 18))
@@ -27,8 +28,8 @@ class ExportRow(QWidget):
         self.more = QToolButton()
         self.more.setObjectName("moreExports")
         self.more.setFocusPolicy(Qt.FocusPolicy.TabFocus)
-        self.more.setToolTip("Export another kind of file: SVG, PDF, PNG, GIF")
-        self.more.setAccessibleName("Export another kind of file")
+        self.more.setToolTip(tr("Export another kind of file: SVG, PDF, PNG, GIF"))
+        self.more.setAccessibleName(tr("Export another kind of file"))
         self.more.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)
         self.menu = QMenu(self.more)
         self.menu.setToolTipsVisible(True)
@@ -39,8 +40,8 @@ class ExportRow(QWidget):
             action.triggered.connect(lambda _=False, kind=kind: self.export_wanted.emit(kind.extension))
             self.kinds[kind.extension] = action
         self.menu.addSeparator()
-        self.everything = self.menu.addAction("Everything, into a folder …")
-        self.everything.setToolTip("Every kind of cut file, pictures and a record of the job (Ctrl+Shift+E)")
+        self.everything = self.menu.addAction(tr("Everything, into a folder …"))
+        self.everything.setToolTip(tr("Every kind of cut file, pictures and a record of the job (Ctrl+Shift+E)"))
         self.everything.triggered.connect(lambda: self.all_wanted.emit())
         self.more.setMenu(self.menu)
         row = QHBoxLayout(self)
@@ -53,7 +54,13 @@ class ExportRow(QWidget):
 
     def show_goal(self, profile: str, version: str) -> None:
         """Say in the tooltip what the cut file is written for."""
-        self.export.setToolTip(f"Write the cut file in mm, DXF {version}, and check it (Ctrl+E).\nFor: {profile}.")
+        self.export.setToolTip(
+            tr(
+                "Write the cut file in mm, DXF {version}, and check it (Ctrl+E).\nFor: {profile}.",
+                version=version,
+                profile=profile,
+            )
+        )
 
     def allow(self, cuts: bool, pictures: bool) -> None:
         """Offer only what can be written: a picture needs a design, a cut file a plan."""

@@ -36,34 +36,42 @@ if TYPE_CHECKING:
 LENGTHS = (
     (
         "width_mm",
-        "&Width, mm",
+        tr("&Width, mm"),
         5.0,
         3000.0,
         5.0,
         1,
-        "Width of the flat sheet, mm (5 to 3000); the height follows the grid.",
+        tr("Width of the flat sheet, mm (5 to 3000); the height follows the grid."),
     ),
-    ("connector_mm", "&Connector, mm", 0.02, 20.0, 0.05, 2, "Finished width of the material left at each hinge, mm."),
+    (
+        "connector_mm",
+        tr("&Connector, mm"),
+        0.02,
+        20.0,
+        0.05,
+        2,
+        tr("Finished width of the material left at each hinge, mm."),
+    ),
     (
         "kerf_mm",
-        "&Kerf, mm",
+        tr("&Kerf, mm"),
         0.0,
         5.0,
         0.01,
         3,
-        "Full width of the cut, mm; the slits are shortened for it. 0 for a blade.",
+        tr("Full width of the cut, mm; the slits are shortened for it. 0 for a blade."),
     ),
 )
 #: Height (pixels) that unfolded numbers keep in a small window, where they scroll.
 LEAST_DETAILS = 150
 #: Key and label of the live numbers, in reading order.
 NUMBERS = (
-    ("size", "Sheet"),
-    ("slits", "Cuts"),
-    ("length", "Cut length"),
-    ("time", "Time"),
-    ("pieces", "Pieces"),
-    ("ligament", "Min. ligament"),
+    ("size", tr("Sheet")),
+    ("slits", tr("Cuts")),
+    ("length", tr("Cut length")),
+    ("time", tr("Time")),
+    ("pieces", tr("Pieces")),
+    ("ligament", tr("Min. ligament")),
 )
 
 
@@ -77,7 +85,7 @@ class FabricationPanel(Card):
     export_wanted = Signal(str)  #: extension
 
     def __init__(self, parent: QWidget | None = None) -> None:
-        super().__init__("Fabrication", parent)
+        super().__init__(tr("Fabrication"), parent)
         self._palette: Palette = LIGHT
         self._calm = True
         self._folded, self._by_hand = False, False
@@ -86,11 +94,11 @@ class FabricationPanel(Card):
         self.material = QComboBox()
         self.material.setObjectName("material")
         self.material.setFocusPolicy(Qt.FocusPolicy.TabFocus)
-        self.material.setAccessibleName("Material preset")
+        self.material.setAccessibleName(tr("Material preset"))
         self.material.setMinimumContentsLength(8)
         self.material.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
         self.material.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
-        self.edit_materials = tool_button("editMaterials", "Copy, change and calibrate materials (Ctrl+M).")
+        self.edit_materials = tool_button("editMaterials", tr("Copy, change and calibrate materials (Ctrl+M)."))
         self.edit_materials.clicked.connect(self.materials_wanted)
         self.reload_materials()
         self.material.activated.connect(self._take_material)
@@ -120,7 +128,7 @@ class FabricationPanel(Card):
         self.details.setObjectName("plain")
         self.summary = QLabel()
         self.summary.setObjectName("muted")
-        self.fold = tool_button("foldFabrication", "Fold the cutting numbers away.")
+        self.fold = tool_button("foldFabrication", tr("Fold the cutting numbers away."))
         self.header.addWidget(self.summary)
         self.header.addWidget(self.fold)
         self.fold.clicked.connect(self._fold_by_hand)
@@ -142,7 +150,9 @@ class FabricationPanel(Card):
 
     def _set_folded(self, folded: bool) -> None:
         self._folded = folded
-        self.fold.setToolTip("Show material, widths and cutting numbers." if folded else "Fold the numbers away.")
+        self.fold.setToolTip(
+            tr("Show material, widths and cutting numbers.") if folded else tr("Fold the numbers away.")
+        )
         self.scrolled.setVisible(not folded)
         self._show_summary()
         self._show_warning()
@@ -175,7 +185,7 @@ class FabricationPanel(Card):
         material.setSpacing(4)
         material.addWidget(self.material, 1)
         material.addWidget(self.edit_materials)
-        rows.addLayout(captioned("&Material", self.material, material))
+        rows.addLayout(captioned(tr("&Material"), self.material, material))
         row = QHBoxLayout()
         row.setSpacing(8)
         for field, label, *_ in LENGTHS:
@@ -225,7 +235,14 @@ class FabricationPanel(Card):
                 self.material.addItem(material.name if material else settings.material, settings.material)
             self.material.setCurrentIndex(self.material.findData(settings.material))
         if material is not None:
-            self.material.setToolTip(f"{material.machine}, {material.thickness_mm:g} mm. {material.note}")
+            self.material.setToolTip(
+                tr(
+                    "{machine}, {thickness_mm:g} mm. {note}",
+                    machine=material.machine,
+                    thickness_mm=material.thickness_mm,
+                    note=material.note,
+                )
+            )
         own = {
             "width_mm": settings.width_mm,
             "connector_mm": settings.connector_mm or (material.connector_mm if material else 0.0),
@@ -242,7 +259,7 @@ class FabricationPanel(Card):
         self.exports.allow(cuts=planned is not None, pictures=planned is not None)
         if planned is None:
             self._forget_numbers()
-            self._warn("Choose a design to see its cut plan.", calm=True)
+            self._warn(tr("Choose a design to see its cut plan."), calm=True)
             return
         plan, report = planned.plan, planned.report
         texts = {
@@ -251,7 +268,7 @@ class FabricationPanel(Card):
             "length": readable_length(planned.slots_mm or plan.cut_length_mm),
             "time": readable_range(plan.times.low, plan.times.high),
             "pieces": f"{report.pieces}",
-            "ligament": f"{report.min_ligament_mm:.2f} mm",
+            "ligament": tr("{min_ligament_mm:.2f} mm", min_ligament_mm=report.min_ligament_mm),
         }
         for key, text in texts.items():
             self.numbers[key].setText(text)
@@ -259,14 +276,19 @@ class FabricationPanel(Card):
         self.numbers["length"].setToolTip(told_slots(planned))
         self._sum_up(texts, planned.removed_share)
         found = [*(problem.text for problem in report.problems), *plan.notes]
-        self._warn("\n".join(found) if found else "The cut check found no problem.", calm=not found)
+        self._warn("\n".join(found) if found else tr("The cut check found no problem."), calm=not found)
 
     def _sum_up(self, texts: dict[str, str], removed_share: float) -> None:
         """The header's words, folded and unfolded; that a sheet is trimmed is said in both."""
-        unfolded = f"trimmed, {100 * removed_share:.1f} % cut off" if removed_share else ""
+        unfolded = (
+            tr("trimmed, {removed_share:.1f} % cut off", removed_share=100 * removed_share) if removed_share else ""
+        )
         self._summaries = (unfolded, f"{texts['size']}  ·  {'trimmed' if removed_share else texts['slits'] + ' cuts'}")
-        share = f"{100 * removed_share:.1f} % of the sheet is cut off along the target; the cut file has that edge"
-        self.summary.setToolTip(f"Trimmed: {share}." if removed_share else "")
+        share = tr(
+            "{removed_share:.1f} % of the sheet is cut off along the target; the cut file has that edge",
+            removed_share=100 * removed_share,
+        )
+        self.summary.setToolTip(tr("Trimmed: {share}.", share=share) if removed_share else "")
         self._show_summary()
 
     def _show_summary(self) -> None:
@@ -277,7 +299,7 @@ class FabricationPanel(Card):
     def show_waiting(self) -> None:
         """Designs are being made; there is no plan to show before one is chosen."""
         self.show_plan(None)
-        self._warn("The cut plan follows when the designs are done.", calm=True)
+        self._warn(tr("The cut plan follows when the designs are done."), calm=True)
 
     def show_refusal(self, sentence: str) -> None:
         """Say why no plan can be made with these numbers."""
@@ -293,7 +315,7 @@ class FabricationPanel(Card):
 
     def _warn(self, text: str, calm: bool) -> None:
         first, *more = text.split("\n")
-        self.warnings.setText(f"{first}  (+{len(more)} more)" if more else first)
+        self.warnings.setText(tr("{first}  (+{count} more)", first=first, count=len(more)) if more else first)
         self.warnings.setToolTip(text)
         self.warnings.setObjectName("muted" if calm else "warning")
         self.warnings.style().unpolish(self.warnings)
@@ -330,4 +352,8 @@ def told_times(times: CutTimes) -> str:
     """What the time consists of."""
     parts = (("cutting", times.cut), ("travel", times.travel), ("switching", times.extra))
     split = ", ".join(f"{readable_time(seconds)} {word}" for word, seconds in parts)
-    return f"About {readable_time(times.total)}: {split}.\nThe range allows for half and for twice the acceleration."
+    return tr(
+        "About {readable_time}: {split}.\nThe range allows for half and for twice the acceleration.",
+        readable_time=readable_time(times.total),
+        split=split,
+    )

@@ -6,6 +6,7 @@ from PySide6.QtCore import QSize
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QWidget
 
+from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.panels.card import INSET, Card, FittingLabel
 from kirigami_studio.gui.panels.gallery_bar import GalleryBar
 from kirigami_studio.gui.selecting import Selection, counted
@@ -17,7 +18,7 @@ class GalleryPanel(Card):
     """Title, count, bar and cards."""
 
     def __init__(self, parent: QWidget | None = None) -> None:
-        super().__init__("Candidates", parent, right_inset=4)
+        super().__init__(tr("Candidates"), parent, right_inset=4)
         self.view = GalleryView()
         self.bar = GalleryBar()
         self.count = FittingLabel()

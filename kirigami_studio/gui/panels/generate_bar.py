@@ -5,6 +5,7 @@ from __future__ import annotations
 from PySide6.QtCore import QSize, Qt, Signal
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QProgressBar, QPushButton, QVBoxLayout, QWidget
 
+from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui import icons
 from kirigami_studio.gui.theme import Palette
 
@@ -17,18 +18,18 @@ class GenerateBar(QWidget):
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
-        self.generate = QPushButton("Generate")
+        self.generate = QPushButton(tr("Generate"))
         self.generate.setObjectName("primary")
         self.generate.setFocusPolicy(Qt.FocusPolicy.TabFocus)
-        self.generate.setToolTip("Design sheets for this target (Ctrl+G)")
+        self.generate.setToolTip(tr("Design sheets for this target (Ctrl+G)"))
         self.generate.setIconSize(QSize(18, 18))
-        self.stop = QPushButton("Cancel")
+        self.stop = QPushButton(tr("Cancel"))
         self.stop.setObjectName("cancel")
         self.stop.setFocusPolicy(Qt.FocusPolicy.TabFocus)
-        self.stop.setToolTip("Stop generating; the project stays as it is (Esc)")
+        self.stop.setToolTip(tr("Stop generating; the project stays as it is (Esc)"))
         self.progress = QProgressBar()
         self.progress.setTextVisible(False)
-        self.progress.setAccessibleName("Progress of the run")
+        self.progress.setAccessibleName(tr("Progress of the run"))
         self.says = QLabel()
         self.says.setObjectName("muted")
         buttons = QHBoxLayout()
@@ -53,9 +54,9 @@ class GenerateBar(QWidget):
     def show_running(self, total: int) -> None:
         """A run has begun."""
         self.generate.setEnabled(False)
-        self.generate.setText("Generating …")
+        self.generate.setText(tr("Generating …"))
         self.progress.setRange(0, 0)
-        self.says.setText(f"Starting {total} designs")
+        self.says.setText(tr("Starting {total} designs", total=total))
         for part in (self.stop, self.progress, self.says):
             part.show()
 
@@ -68,7 +69,7 @@ class GenerateBar(QWidget):
     def show_idle(self) -> None:
         """No run is going on."""
         self.generate.setEnabled(True)
-        self.generate.setText("Generate")
+        self.generate.setText(tr("Generate"))
         for part in (self.stop, self.progress, self.says):
             part.hide()
 

@@ -7,13 +7,14 @@ from PySide6.QtGui import QKeyEvent, QResizeEvent
 from PySide6.QtWidgets import QDoubleSpinBox, QHBoxLayout, QMenu, QToolButton, QWidget
 
 from kirigami_studio.fabricate.cut_plan import CutPlan
+from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui import icons
 from kirigami_studio.gui.panels.card import FittingLabel, tool_button
 from kirigami_studio.gui.panels.number_field import number_field
 from kirigami_studio.gui.scene.hinge_rules import RULES
 from kirigami_studio.gui.theme import Palette
 
-WIDTH_TIP = "Finished width of the selected connectors, mm (0.02 to 20)."
+WIDTH_TIP = tr("Finished width of the selected connectors, mm (0.02 to 20).")
 
 
 class HingeBar(QWidget):
@@ -30,9 +31,9 @@ class HingeBar(QWidget):
         self._plan: CutPlan | None = None
         self.rules = QToolButton()
         self.rules.setObjectName("hingeRules")
-        self.rules.setText("Select \N{BLACK DOWN-POINTING SMALL TRIANGLE}")
-        self.rules.setToolTip("Select connectors by a rule, or click them in the drawing.")
-        self.rules.setAccessibleName("Select connectors by a rule")
+        self.rules.setText(tr("Select ▾"))
+        self.rules.setToolTip(tr("Select connectors by a rule, or click them in the drawing."))
+        self.rules.setAccessibleName(tr("Select connectors by a rule"))
         self.rules.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         self.rules.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)
         menu = QMenu(self.rules)
@@ -50,14 +51,16 @@ class HingeBar(QWidget):
         self.width_mm.setRange(0.02, 20.0)
         self.width_mm.setSingleStep(0.05)
         self.width_mm.setDecimals(3)
-        self.width_mm.setSuffix(" mm")
+        self.width_mm.setSuffix(tr(" mm"))
         self.width_mm.setKeyboardTracking(False)
         self.width_mm.setToolTip(WIDTH_TIP)
-        self.width_mm.setAccessibleName("Width of the selected connectors in millimetres")
+        self.width_mm.setAccessibleName(tr("Width of the selected connectors in millimetres"))
         self.width_mm.setFixedWidth(108)
         number_field(self.width_mm)
-        self.remove = tool_button("removeHinges", "Cut through: leave no connector here (Delete).")
-        self.reset = tool_button("resetHinges", "Usual width: give the selected connectors the sheet's width again.")
+        self.remove = tool_button("removeHinges", tr("Cut through: leave no connector here (Delete)."))
+        self.reset = tool_button(
+            "resetHinges", tr("Usual width: give the selected connectors the sheet's width again.")
+        )
         self._lay_out()
         self.width_mm.valueChanged.connect(self.width_wanted)
         self.width_mm.editingFinished.connect(self.edited)
@@ -125,7 +128,7 @@ class HingeBar(QWidget):
 
 def _told(hinges: frozenset[int]) -> tuple[str, ...]:
     if not hinges:
-        return ("No connector selected", "None")
+        return (tr("No connector selected"), tr("None"))
     if len(hinges) == 1:
-        return (f"Connector {min(hinges)}", f"{min(hinges)}")
-    return (f"{len(hinges)} connectors", f"{len(hinges)}")
+        return (tr("Connector {hinges}", hinges=min(hinges)), f"{min(hinges)}")
+    return (tr("{count} connectors", count=len(hinges)), f"{len(hinges)}")

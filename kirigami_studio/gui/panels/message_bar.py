@@ -17,6 +17,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui import icons
 from kirigami_studio.gui.messages import Message, Tone
 from kirigami_studio.gui.panels.card import tool_button
@@ -40,19 +41,19 @@ class MessageBar(QFrame):
         self.sentence.setWordWrap(True)
         self.sentence.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
         self.sentence.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
-        self.details = QPushButton("Details")
+        self.details = QPushButton(tr("Details"))
         self.details.setObjectName("link")
         self.details.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         self.details.setCheckable(True)
-        self.copy = tool_button("copyMessage", "Copy the message with its details.")
-        self.previous = tool_button("previousMessage", "Earlier message.")
+        self.copy = tool_button("copyMessage", tr("Copy the message with its details."))
+        self.previous = tool_button("previousMessage", tr("Earlier message."))
         self.position = QLabel()
         self.position.setObjectName("muted")
-        self.next = tool_button("nextMessage", "Later message.")
-        self.shut = tool_button("closeMessage", "Close this message.")
+        self.next = tool_button("nextMessage", tr("Later message."))
+        self.shut = tool_button("closeMessage", tr("Close this message."))
         self.trace = QPlainTextEdit()
         self.trace.setReadOnly(True)
-        self.trace.setAccessibleName("Details of the message")
+        self.trace.setAccessibleName(tr("Details of the message"))
         self._actions = QHBoxLayout()
         self._actions.setSpacing(6)
         self._lay_out()
@@ -136,7 +137,7 @@ class MessageBar(QFrame):
         several = len(self._messages) > 1
         for part in (self.previous, self.position, self.next):
             part.setVisible(several)
-        self.position.setText(f"{self._at + 1} of {len(self._messages)}")
+        self.position.setText(tr("{at} of {count}", at=self._at + 1, count=len(self._messages)))
         self.previous.setEnabled(self._at > 0)
         self.next.setEnabled(self._at < len(self._messages) - 1)
         colour = self._palette.accent if message.tone in (Tone.HINT, Tone.DONE) else self._palette.warning

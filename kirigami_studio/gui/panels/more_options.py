@@ -7,6 +7,7 @@ from PySide6.QtWidgets import QComboBox, QDoubleSpinBox, QGridLayout, QSizePolic
 
 from kirigami_studio.export.profile import PROFILES
 from kirigami_studio.fabricate.options import MOST_TABS, ConnectorStyle, CutOrder
+from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui import icons
 from kirigami_studio.gui.panels.card import captioned, compact, tool_button
 from kirigami_studio.gui.theme import LIGHT, Palette
@@ -15,23 +16,23 @@ from kirigami_studio.project.settings import FabricationSettings
 TOOLTIP = Qt.ItemDataRole.ToolTipRole
 #: Value, label, what it means.
 STYLES = (
-    (ConnectorStyle.STRAIGHT, "Straight", "The slit ends in a plain tip."),
-    (ConnectorStyle.ROUND, "Round", "A round hole at the slit's end takes the stress off the tip."),
-    (ConnectorStyle.TEARDROP, "Teardrop", "A drop-shaped hole at the slit's end: round, without a step."),
-    (ConnectorStyle.ARC, "Arc", "A short arc across the slit's end guides the connector."),
-    (ConnectorStyle.DOUBLE, "Double", "Two narrow connectors side by side that twist like a hinge."),
+    (ConnectorStyle.STRAIGHT, tr("Straight"), tr("The slit ends in a plain tip.")),
+    (ConnectorStyle.ROUND, tr("Round"), tr("A round hole at the slit's end takes the stress off the tip.")),
+    (ConnectorStyle.TEARDROP, tr("Teardrop"), tr("A drop-shaped hole at the slit's end: round, without a step.")),
+    (ConnectorStyle.ARC, tr("Arc"), tr("A short arc across the slit's end guides the connector.")),
+    (ConnectorStyle.DOUBLE, tr("Double"), tr("Two narrow connectors side by side that twist like a hinge.")),
 )
 ORDERS = (
-    (CutOrder.SHORTEST, "Shortest way", "As little travel as can be found."),
-    (CutOrder.ROWS, "Row by row", "Rows from one side to the other."),
-    (CutOrder.INSIDE_OUT, "Inside out", "From the middle outwards: the sheet stays flat longest."),
-    (CutOrder.SPREAD, "Spread", "Far apart one after the other, to spread the heat."),
+    (CutOrder.SHORTEST, tr("Shortest way"), tr("As little travel as can be found.")),
+    (CutOrder.ROWS, tr("Row by row"), tr("Rows from one side to the other.")),
+    (CutOrder.INSIDE_OUT, tr("Inside out"), tr("From the middle outwards: the sheet stays flat longest.")),
+    (CutOrder.SPREAD, tr("Spread"), tr("Far apart one after the other, to spread the heat.")),
 )
 VERSIONS = (
-    ("R2010", "R2010", "The usual choice: holds the unit mm and light polylines."),
-    ("R12", "R12", "For old programs. Holds no unit: import it as mm."),
+    ("R2010", "R2010", tr("The usual choice: holds the unit mm and light polylines.")),
+    ("R12", "R12", tr("For old programs. Holds no unit: import it as mm.")),
 )
-PROFILE_TIP = "Machine profile: how colours and layers of cut files are arranged for your machine's program."
+PROFILE_TIP = tr("Machine profile: how colours and layers of cut files are arranged for your machine's program.")
 
 
 class MoreOptions(QWidget):
@@ -44,32 +45,35 @@ class MoreOptions(QWidget):
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self._palette: Palette = LIGHT
-        self.fold = tool_button("moreOptions", "More options: connector style, order, tabs, machine, DXF version.")
-        self.fold.setText("More options")
+        self.fold = tool_button("moreOptions", tr("More options: connector style, order, tabs, machine, DXF version."))
+        self.fold.setText(tr("More options"))
         self.fold.setToolButtonStyle(Qt.ToolButtonStyle.ToolButtonTextBesideIcon)
         self.fold.setCheckable(True)
-        self.style_ = _choice("connectorStyle", "Connector style", STYLES)
-        self.order = _choice("cutOrder", "Cutting order", ORDERS)
+        self.style_ = _choice("connectorStyle", tr("Connector style"), STYLES)
+        self.order = _choice("cutOrder", tr("Cutting order"), ORDERS)
         self.profile = _choice(
-            "machineProfile", "Machine profile", tuple((key, one.name, one.note) for key, one in PROFILES.items())
+            "machineProfile", tr("Machine profile"), tuple((key, one.name, one.note) for key, one in PROFILES.items())
         )
         self.profile.setToolTip(PROFILE_TIP)
-        self.dxf_version = _choice("dxfVersion", "DXF version", VERSIONS)
+        self.dxf_version = _choice("dxfVersion", tr("DXF version"), VERSIONS)
         self.tabs = QSpinBox()
         self.tabs.setObjectName("tabs")
         self.tabs.setRange(0, MOST_TABS)
-        self.tabs.setSpecialValueText("None")
-        self.tabs.setAccessibleName("Number of tabs")
+        self.tabs.setSpecialValueText(tr("None"))
+        self.tabs.setAccessibleName(tr("Number of tabs"))
         self.tabs.setToolTip(
-            f"Uncut places of the outline that hold the sheet until it is taken out (0 to {MOST_TABS})."
+            tr(
+                "Uncut places of the outline that hold the sheet until it is taken out (0 to {most_tabs}).",
+                most_tabs=MOST_TABS,
+            )
         )
         self.tab_mm = QDoubleSpinBox()
         self.tab_mm.setObjectName("tabWidth")
         self.tab_mm.setRange(0.05, 20.0)
         self.tab_mm.setSingleStep(0.1)
         self.tab_mm.setDecimals(2)
-        self.tab_mm.setAccessibleName("Tab width in millimetres")
-        self.tab_mm.setToolTip("Finished width of a tab, mm (0.05 to 20).")
+        self.tab_mm.setAccessibleName(tr("Tab width in millimetres"))
+        self.tab_mm.setToolTip(tr("Finished width of a tab, mm (0.05 to 20)."))
         self.content = QWidget()
         self.content.setObjectName("plain")
         self._lay_out()
@@ -81,12 +85,12 @@ class MoreOptions(QWidget):
         table.setContentsMargins(0, 0, 0, 0)
         table.setHorizontalSpacing(8)
         table.setVerticalSpacing(6)
-        table.addLayout(captioned("Connector st&yle", self.style_, self.style_), 0, 0, 1, 2)
-        table.addLayout(captioned("&Order", self.order, self.order), 0, 2, 1, 2)
-        table.addLayout(captioned("&Tabs", self.tabs, self.tabs), 1, 0)
-        table.addLayout(captioned("Tab, mm", self.tab_mm, self.tab_mm), 1, 1)
-        table.addLayout(captioned("DXF &version", self.dxf_version, self.dxf_version), 1, 2, 1, 2)
-        table.addLayout(captioned("Mac&hine profile", self.profile, self.profile), 2, 0, 1, 4)
+        table.addLayout(captioned(tr("Connector st&yle"), self.style_, self.style_), 0, 0, 1, 2)
+        table.addLayout(captioned(tr("&Order"), self.order, self.order), 0, 2, 1, 2)
+        table.addLayout(captioned(tr("&Tabs"), self.tabs, self.tabs), 1, 0)
+        table.addLayout(captioned(tr("Tab, mm"), self.tab_mm, self.tab_mm), 1, 1)
+        table.addLayout(captioned(tr("DXF &version"), self.dxf_version, self.dxf_version), 1, 2, 1, 2)
+        table.addLayout(captioned(tr("Mac&hine profile"), self.profile, self.profile), 2, 0, 1, 4)
         for column in range(4):
             table.setColumnStretch(column, 1)
         whole = QVBoxLayout(self)

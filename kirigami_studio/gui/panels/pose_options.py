@@ -24,8 +24,8 @@ class PoseOptions(QWidget):
         row = QHBoxLayout(self)
         row.setContentsMargins(0, 0, 0, 0)
         row.setSpacing(6)
-        self.x_ = self._field(tr("Middle of the target from left to right, mm on the board"), LARGEST_MM, 1, " mm")
-        self.y_ = self._field(tr("Middle of the target from bottom to top, mm on the board"), LARGEST_MM, 1, " mm")
+        self.x_ = self._field(tr("Middle of the target from left to right, mm on the board"), LARGEST_MM, 1, tr(" mm"))
+        self.y_ = self._field(tr("Middle of the target from bottom to top, mm on the board"), LARGEST_MM, 1, tr(" mm"))
         self.turn = self._field(tr("Turn the target by this angle, degrees counter-clockwise"), 360.0, 1, "°")
         for caption, field in ((tr("&X"), self.x_), (tr("&Y"), self.y_), (tr("T&urn by"), self.turn)):
             label = QLabel(caption)

@@ -6,13 +6,14 @@ from PySide6.QtCore import QSignalBlocker, QSize, Qt, Signal
 from PySide6.QtWidgets import QListWidget, QListWidgetItem, QWidget
 
 from kirigami_studio.fabricate.checks import Problem, Severity
+from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui import icons
 from kirigami_studio.gui.theme import LIGHT, Palette
 
 #: Lines that are shown without scrolling.
 MOST_LINES = 3
 ICONS = {Severity.ERROR: "fault", Severity.WARNING: "warning"}
-WORDS = {Severity.ERROR: "Error", Severity.WARNING: "Warning"}
+WORDS = {Severity.ERROR: tr("Error"), Severity.WARNING: tr("Warning")}
 
 
 class ProblemList(QListWidget):
@@ -25,7 +26,7 @@ class ProblemList(QListWidget):
         self._problems: tuple[Problem, ...] = ()
         self._palette: Palette = LIGHT
         self.setObjectName("problemList")
-        self.setAccessibleName("Problems of the cut plan")
+        self.setAccessibleName(tr("Problems of the cut plan"))
         self.setIconSize(QSize(16, 16))
         self.setTextElideMode(Qt.TextElideMode.ElideRight)
         self.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
@@ -40,7 +41,7 @@ class ProblemList(QListWidget):
             self.clear()
             for problem in problems:
                 item = QListWidgetItem(f"{WORDS[problem.severity]}: {problem.text}")
-                place = "" if problem.where is None else "\nClick to see the place."
+                place = "" if problem.where is None else tr("\nClick to see the place.")
                 item.setToolTip(f"{problem.text}{place}")
                 self.addItem(item)
             self.setCurrentRow(-1)

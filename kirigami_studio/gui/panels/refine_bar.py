@@ -17,8 +17,8 @@ from kirigami_studio.target.placed import LARGEST_MM, Placed
 STEPS = 100
 #: Name, caption, tooltip.
 SLIDERS = (
-    ("simplify", "S&implify", "Drop points: the further to the right, the fewer corners stay"),
-    ("smooth", "S&mooth", "Round corners and calm edges; the area stays"),
+    ("simplify", tr("S&implify"), tr("Drop points: the further to the right, the fewer corners stay")),
+    ("smooth", tr("S&mooth"), tr("Round corners and calm edges; the area stays")),
 )
 
 
@@ -42,7 +42,7 @@ class RefineBar(QWidget):
             slider.setObjectName("threshold")
             slider.setRange(0, STEPS)
             slider.setPageStep(STEPS // 10)
-            slider.setAccessibleName(f"{caption.replace('&', '')} the target")
+            slider.setAccessibleName(tr("{replace} the target", replace=caption.replace("&", "")))
             slider.setToolTip(tip)
             slider.setMinimumWidth(60)
             slider.valueChanged.connect(lambda value, name=name: self._slide(name, value))
@@ -50,9 +50,9 @@ class RefineBar(QWidget):
             self.sliders[name] = slider
             row.addWidget(_caption(caption, slider))
             row.addWidget(slider, 1)
-        self.width_ = _length("Width of the target")
-        self.height_ = _length("Height of the target")
-        for caption, field in (("Size", self.width_), ("\N{MULTIPLICATION SIGN}", self.height_)):
+        self.width_ = _length(tr("Width of the target"))
+        self.height_ = _length(tr("Height of the target"))
+        for caption, field in ((tr("Size"), self.width_), ("\N{MULTIPLICATION SIGN}", self.height_)):
             row.addWidget(_caption(caption, field))
             row.addWidget(field)
         self.proportions = tool_button("keepProportions", tr("Keep proportions. Off: width or height alone."), True)
@@ -113,9 +113,9 @@ def _length(name: str) -> QDoubleSpinBox:
     field = QDoubleSpinBox()
     field.setRange(0.1, LARGEST_MM)
     field.setDecimals(1)
-    field.setSuffix(" mm")
+    field.setSuffix(tr(" mm"))
     number_field(field)
     field.setKeyboardTracking(False)
     field.setAccessibleName(name)
-    field.setToolTip(f"{name} in mm; the chain beside it keeps the proportions")
+    field.setToolTip(tr("{name} in mm; the chain beside it keeps the proportions", name=name))
     return field

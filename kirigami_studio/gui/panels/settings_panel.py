@@ -30,31 +30,31 @@ TOOLTIP = Qt.ItemDataRole.ToolTipRole
 
 #: What is known about a generator by its name; others are listed by name alone.
 VARIANTS = {
-    "prior": ("Prior", "As learned from random sheets: the widest choice, rougher fields."),
-    "accuracy": ("Accuracy", "Aligned with the geometry for the closest match."),
-    "regularity": ("Regularity", "Aligned for even panels that are easy to cut, at a little less match."),
-    "balanced": ("Balanced", "Aligned for match and evenness together; the usual choice."),
+    "prior": (tr("Prior"), tr("As learned from random sheets: the widest choice, rougher fields.")),
+    "accuracy": (tr("Accuracy"), tr("Aligned with the geometry for the closest match.")),
+    "regularity": (tr("Regularity"), tr("Aligned for even panels that are easy to cut, at a little less match.")),
+    "balanced": (tr("Balanced"), tr("Aligned for match and evenness together; the usual choice.")),
 }
 
 
 #: How thoroughly designs are fitted on the exact geometry: name, steps, what it means.
 POLISH = (
-    ("Off", 0, "Designs stay as the generator drew them."),
-    ("Light", 5, "A quick fit: most of the gain, fields stay close to what was drawn."),
-    ("Full", 15, "Nearly converged; the usual choice."),
-    ("Deep", 60, "Until nothing is gained any more; for sharp corners and thin arms."),
+    (tr("Off"), 0, tr("Designs stay as the generator drew them.")),
+    (tr("Light"), 5, tr("A quick fit: most of the gain, fields stay close to what was drawn.")),
+    (tr("Full"), 15, tr("Nearly converged; the usual choice.")),
+    (tr("Deep"), 60, tr("Until nothing is gained any more; for sharp corners and thin arms.")),
 )
 
 #: What a fit prefers among nearly equal matches: name of the preference, label, what it means.
 PREFER = (
-    ("accuracy", "Accuracy", "The closest match, whatever the panels look like."),
-    ("balanced", "Balanced", "The usual choice: as close, and about 30 % calmer."),
-    ("regularity", "Regularity", "Calmer panels, for a loss of match of about 0.1 to 0.2 %."),
-    ("calm", "Calm", "The calmest panels, for the largest loss of match."),
+    ("accuracy", tr("Accuracy"), tr("The closest match, whatever the panels look like.")),
+    ("balanced", tr("Balanced"), tr("The usual choice: as close, and about 30 % calmer.")),
+    ("regularity", tr("Regularity"), tr("Calmer panels, for a loss of match of about 0.1 to 0.2 %.")),
+    ("calm", tr("Calm"), tr("The calmest panels, for the largest loss of match.")),
 )
-SEARCH = (
-    "Look beyond the samples, by way of easier shapes, for one more design. Costs a few seconds; helps with thin arms "
-    "and notches."
+SEARCH = tr(
+    "Look beyond the samples, by way of easier shapes, for one more design. Costs a few "
+    "seconds; helps with thin arms and notches."
 )
 KEEP_SEED = tr(
     "Keep this seed. On: Generate draws the same designs again. Off: every run takes the next seed and shows it here."
@@ -69,46 +69,49 @@ class SettingsPanel(Card):
     keep_changed = Signal(bool)  #: whether Generate draws from the seed that is shown
 
     def __init__(self, parent: QWidget | None = None) -> None:
-        super().__init__("Design", parent)
-        tip = "Voids from {}. More voids follow the target more closely but are smaller ({} to {})."
+        super().__init__(tr("Design"), parent)
+        tip = tr("Voids from {}. More voids follow the target more closely but are smaller ({} to {}).")
         self.rows = _whole(
-            "rows", SMALLEST_GRID, LARGEST_GRID, tip.format("top to bottom", SMALLEST_GRID, LARGEST_GRID)
+            "rows", SMALLEST_GRID, LARGEST_GRID, tip.format(tr("top to bottom"), SMALLEST_GRID, LARGEST_GRID)
         )
         self.columns = _whole(
-            "columns", SMALLEST_GRID, LARGEST_GRID, tip.format("left to right", SMALLEST_GRID, LARGEST_GRID)
+            "columns", SMALLEST_GRID, LARGEST_GRID, tip.format(tr("left to right"), SMALLEST_GRID, LARGEST_GRID)
         )
         self.candidates = _whole(
-            "candidates", 1, LARGEST_K, f"Number of designs to generate and compare (1 to {LARGEST_K})."
+            "candidates",
+            1,
+            LARGEST_K,
+            tr("Number of designs to generate and compare (1 to {largest_k}).", largest_k=LARGEST_K),
         )
         self.seed = _whole(
-            "seed", 0, LARGEST_SEED, "Start of the random numbers: the same seed gives the same designs."
+            "seed", 0, LARGEST_SEED, tr("Start of the random numbers: the same seed gives the same designs.")
         )
         self.angle = QDoubleSpinBox()
         self.angle.setObjectName("targetAngle")
         self.angle.setRange(0.0, 179.0)
         self.angle.setDecimals(1)
         self.angle.setSuffix("°")
-        self.angle.setAccessibleName("Target angle in degrees")
-        self.angle.setToolTip("Deployment angle (degrees) at which the sheet shows the target; 0° is fully turned.")
-        self.dice = tool_button("newSeed", "New random seed.")
+        self.angle.setAccessibleName(tr("Target angle in degrees"))
+        self.angle.setToolTip(tr("Deployment angle (degrees) at which the sheet shows the target; 0° is fully turned."))
+        self.dice = tool_button("newSeed", tr("New random seed."))
         self.dice.setFixedSize(29, 29)
         self.keep = tool_button("keepSeed", KEEP_SEED, checkable=True)
         self.keep.setChecked(True)
         self.keep.setFixedSize(29, 29)
         self.keep.toggled.connect(self.keep_changed)
-        self.variant = _choice("variant", "Generator variant")
-        self.polish = _choice("polish", "Polish")
+        self.variant = _choice("variant", tr("Generator variant"))
+        self.polish = _choice("polish", tr("Polish"))
         for title, steps, about in POLISH:
             self.polish.addItem(title, steps)
             self.polish.setItemData(self.polish.count() - 1, about, TOOLTIP)
-        self.prefer = _choice("prefer", "What polishing prefers")
+        self.prefer = _choice("prefer", tr("What polishing prefers"))
         for name, title, about in PREFER:
             self.prefer.addItem(title, name)
             self.prefer.setItemData(self.prefer.count() - 1, about, TOOLTIP)
-        self.search = QCheckBox("Searc&h")
+        self.search = QCheckBox(tr("Searc&h"))
         self.search.setObjectName("search")
         self.search.setFocusPolicy(Qt.FocusPolicy.TabFocus)
-        self.search.setAccessibleName("Search beyond the samples")
+        self.search.setAccessibleName(tr("Search beyond the samples"))
         self.search.setToolTip(SEARCH)
         self.search.setMinimumHeight(29)
         self._lay_out()
@@ -122,13 +125,13 @@ class SettingsPanel(Card):
         for row in (first, second, third):
             row.setSpacing(10)
             self.body.addLayout(row)
-        first.addLayout(captioned("&Grid (voids)", self.rows, grid), 5)
-        first.addLayout(captioned("&Angle", self.angle, self.angle), 3)
-        first.addLayout(captioned("Desi&gns", self.candidates, self.candidates), 3)
-        second.addLayout(captioned("&Seed", self.seed, seed), 4)
-        second.addLayout(captioned("&Model", self.variant, self.variant), 3)
-        third.addLayout(captioned("&Polish", self.polish, self.polish), 7)
-        third.addLayout(captioned("Pre&fer", self.prefer, self.prefer), 10)
+        first.addLayout(captioned(tr("&Grid (voids)"), self.rows, grid), 5)
+        first.addLayout(captioned(tr("&Angle"), self.angle, self.angle), 3)
+        first.addLayout(captioned(tr("Desi&gns"), self.candidates, self.candidates), 3)
+        second.addLayout(captioned(tr("&Seed"), self.seed, seed), 4)
+        second.addLayout(captioned(tr("&Model"), self.variant, self.variant), 3)
+        third.addLayout(captioned(tr("&Polish"), self.polish, self.polish), 7)
+        third.addLayout(captioned(tr("Pre&fer"), self.prefer, self.prefer), 10)
         third.addLayout(captioned("", self.search, self.search))
         third.setSpacing(8)
 
@@ -187,10 +190,12 @@ class SettingsPanel(Card):
     def _choose_polish(self, steps: int) -> None:
         index = self.polish.findData(steps)
         if index < 0:
-            self.polish.addItem(f"{steps} steps", steps)
+            self.polish.addItem(tr("{steps} steps", steps=steps), steps)
             index = self.polish.count() - 1
         self.polish.setCurrentIndex(index)
-        self.polish.setToolTip(f"How thoroughly designs are fitted to the target: {steps} steps at most.")
+        self.polish.setToolTip(
+            tr("How thoroughly designs are fitted to the target: {steps} steps at most.", steps=steps)
+        )
 
     def _choose_preference(self, name: str, fitted: bool) -> None:
         index = self.prefer.findData(name)
@@ -200,8 +205,8 @@ class SettingsPanel(Card):
         self.prefer.setCurrentIndex(index)
         self.prefer.setEnabled(fitted)
         about = self.prefer.itemData(index, TOOLTIP) or ""
-        tip = f"What polishing prefers among nearly equal matches. {about}".strip()
-        self.prefer.setToolTip(tip if fitted else "What polishing prefers; Polish is off.")
+        tip = tr("What polishing prefers among nearly equal matches. {about}", about=about).strip()
+        self.prefer.setToolTip(tip if fitted else tr("What polishing prefers; Polish is off."))
 
     def _choose_variant(self, name: str) -> None:
         index = self.variant.findData(name)
@@ -209,7 +214,9 @@ class SettingsPanel(Card):
             self.variant.addItem(VARIANTS.get(name, (name, ""))[0], name)
             index = self.variant.count() - 1
         self.variant.setCurrentIndex(index)
-        self.variant.setToolTip(f"Which generator draws the designs. {VARIANTS.get(name, ('', ''))[1]}".strip())
+        self.variant.setToolTip(
+            tr("Which generator draws the designs. {get}", get=VARIANTS.get(name, ("", ""))[1]).strip()
+        )
 
     def set_palette(self, palette: Palette) -> None:
         """Draw in other colours."""

@@ -23,22 +23,22 @@ from kirigami_studio.gui.views.layout_view import USUAL, LayoutView, Overlay
 from kirigami_studio.target.outline import Outline
 
 OVERLAYS = (
-    (Overlay.TARGET, "target", "Show the target's outline (T)."),
+    (Overlay.TARGET, "target", tr("Show the target's outline (T).")),
     (
         Overlay.MISMATCH,
         "mismatch",
-        "Show missing and extra area near the target angle (M). Orange stripes: missing; dark stripes: extra.",
+        tr("Show missing and extra area near the target angle (M). Orange stripes: missing; dark stripes: extra."),
     ),
-    (Overlay.FAULTS, "fault", "Mark inverted panels and the first contact (F)."),
+    (Overlay.FAULTS, "fault", tr("Mark inverted panels and the first contact (F).")),
 )
-BEFORE = "Before polish: show the design as the generator drew it (B)."
-NEVER_POLISHED = "Before polish (B). Nothing to compare: polishing has not changed this design."
-NEVER_DRAWN = "Before polish (B). Nothing to compare: this design was not drawn by the generator."
-TRIM = "Trim to target (Ctrl+T). Cuts the edge panels along the target; every hinge keeps its material."
-UNTRIM = "Trim to target (Ctrl+T). Press again to bring back what was cut off."
-TRIMMING = "Trim to target: at work. Press again, or Esc, to stop."
-CUTS = "Cuts: show the cut plan as it will burn (C)."
-PLOTS = "Plots: match, area, size and gaps at every angle (J)."
+BEFORE = tr("Before polish: show the design as the generator drew it (B).")
+NEVER_POLISHED = tr("Before polish (B). Nothing to compare: polishing has not changed this design.")
+NEVER_DRAWN = tr("Before polish (B). Nothing to compare: this design was not drawn by the generator.")
+TRIM = tr("Trim to target (Ctrl+T). Cuts the edge panels along the target; every hinge keeps its material.")
+UNTRIM = tr("Trim to target (Ctrl+T). Press again to bring back what was cut off.")
+TRIMMING = tr("Trim to target: at work. Press again, or Esc, to stop.")
+CUTS = tr("Cuts: show the cut plan as it will burn (C).")
+PLOTS = tr("Plots: match, area, size and gaps at every angle (J).")
 #: A stage at least this wide (pixels) has its plots at the side, a narrower one below.
 WIDE = 640
 #: Pixels between the title and the numbers at least.
@@ -57,7 +57,7 @@ class StagePanel(Card):
     comparing_changed = Signal(bool)  #: whether two designs are shown side by side
 
     def __init__(self, parent: QWidget | None = None) -> None:
-        super().__init__("Layout", parent)
+        super().__init__(tr("Layout"), parent)
         self._entry: Entry | None = None
         self._drawn: Entry | None = None
         self._target: Outline | None = None
@@ -120,7 +120,7 @@ class StagePanel(Card):
         self.plots_switch = tool_button("plots", PLOTS, checkable=True)
         self.plots_switch.toggled.connect(self._toggle_plots)
         self.header.addWidget(self.plots_switch)
-        self.whole = tool_button("fit", "Show everything (0).")
+        self.whole = tool_button("fit", tr("Show everything (0)."))
         self.whole.clicked.connect(self.fit)
         self.header.addWidget(self.whole)
         for button in (self.whole, *self.toggles.values()):
@@ -287,7 +287,7 @@ class StagePanel(Card):
 
     def _show_title(self) -> None:
         entry, rank = self._entry, self._rank
-        self.title.setText("Layout" if entry is None or rank <= 0 else f"Design {rank}")
+        self.title.setText(tr("Layout") if entry is None or rank <= 0 else tr("Design {rank}", rank=rank))
         self.numbers.set_texts(*self._texts())
         self.numbers.setToolTip("" if entry is None else described(entry.candidate, max(rank, 1)))
         self._fit_numbers()
@@ -304,11 +304,17 @@ class StagePanel(Card):
         siou = f"{100 * score.siou:.1f} %"
         if self._drawn is not None:
             before = f"{100 * self._drawn.candidate.score.siou:.1f} %"
-            return f"before polish: sIoU {before}  ·  after: {siou}", f"before {before}  ·  after {siou}"
+            return tr("before polish: sIoU {before}  ·  after: {siou}", before=before, siou=siou), tr(
+                "before {before}  ·  after {siou}", before=before, siou=siou
+            )
         if trim is not None:
             trimmed = f"{100 * trim.iou:.1f} %"
-            return f"sIoU {siou}  ·  trimmed IoU {trimmed}", f"{siou}  ·  trimmed {trimmed}"
-        return f"sIoU {siou}   gain {100 * score.siou_gain:+.1f}   TV {score.tv:.2f}", f"sIoU {siou}"
+            return tr("sIoU {siou}  ·  trimmed IoU {trimmed}", siou=siou, trimmed=trimmed), tr(
+                "{siou}  ·  trimmed {trimmed}", siou=siou, trimmed=trimmed
+            )
+        return tr(
+            "sIoU {siou}   gain {siou_gain:+.1f}   TV {tv:.2f}", siou=siou, siou_gain=100 * score.siou_gain, tv=score.tv
+        ), tr("sIoU {siou}", siou=siou)
 
     def _fit_numbers(self) -> None:
         """Put the longest text that fits into the header; none fits beside many buttons in a narrow stage."""

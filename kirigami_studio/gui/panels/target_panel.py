@@ -5,6 +5,7 @@ from __future__ import annotations
 from PySide6.QtCore import QSize, Signal
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QSizePolicy, QWidget
 
+from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui import icons
 from kirigami_studio.gui.jobs.steps import Picture
 from kirigami_studio.gui.panels.card import Card, ElidedLabel, muted_label, tool_button
@@ -18,15 +19,15 @@ from kirigami_studio.target.reach import reach_of, told
 
 #: Tool button name, icon, tooltip, whether it stays down.
 BUTTONS = (
-    ("openTarget", "open", "Open a target file (Ctrl+O). PNG, JPG, BMP, SVG, DXF or JSON.", False),
-    ("library", "library", "Choose a silhouette from the library (Ctrl+L).", False),
-    ("edit", "edit", "Draw and edit the target (E). Shapes, points, add and take away.", True),
-    ("clearTarget", "clear", "Clear the target. Undo brings it back.", False),
+    ("openTarget", "open", tr("Open a target file (Ctrl+O). PNG, JPG, BMP, SVG, DXF or JSON."), False),
+    ("library", "library", tr("Choose a silhouette from the library (Ctrl+L)."), False),
+    ("edit", "edit", tr("Draw and edit the target (E). Shapes, points, add and take away."), True),
+    ("clearTarget", "clear", tr("Clear the target. Undo brings it back."), False),
 )
 
 
 #: Said when the editor is left.
-DONE_HINT = "Press Generate (Ctrl+G) to design a sheet for this target."
+DONE_HINT = tr("Press Generate (Ctrl+G) to design a sheet for this target.")
 
 
 class TargetPanel(Card):
@@ -38,7 +39,7 @@ class TargetPanel(Card):
     editing_changed = Signal(bool)
 
     def __init__(self, parent: QWidget | None = None) -> None:
-        super().__init__("Target", parent)
+        super().__init__(tr("Target"), parent)
         self.view = TargetView()
         self.editing = False
         self._said = ("", "")
@@ -60,7 +61,7 @@ class TargetPanel(Card):
         self.notes.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
         self.reach = ElidedLabel()
         self.reach.setObjectName("warning")
-        self.reach.setAccessibleName("What the grid may not show")
+        self.reach.setAccessibleName(tr("What the grid may not show"))
         self.reach.setVisible(False)
         self.threshold = ThresholdBar()
         self.body.addWidget(self.strip)
@@ -170,6 +171,6 @@ class TargetPanel(Card):
 def measured(outline: Outline) -> str:
     """Source size when it has a unit, else the number of corners."""
     if outline.size is None or not outline.unit:
-        return f"{len(outline.points)} points"
+        return tr("{count} points", count=len(outline.points))
     width, height = outline.size
     return f"{width:.4g} \N{MULTIPLICATION SIGN} {height:.4g} {outline.unit}"

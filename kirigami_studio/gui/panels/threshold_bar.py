@@ -5,6 +5,8 @@ from __future__ import annotations
 from PySide6.QtCore import QSignalBlocker, Qt, Signal
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QPushButton, QSlider, QWidget
 
+from kirigami_studio.foundation.words import tr
+
 #: Slider steps from black to white; the ends would leave no shape.
 STEPS = 200
 
@@ -18,24 +20,24 @@ class ThresholdBar(QWidget):
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
-        caption = QLabel("&Threshold")
+        caption = QLabel(tr("&Threshold"))
         caption.setObjectName("muted")
         self.slider = QSlider(Qt.Orientation.Horizontal)
         self.slider.setObjectName("threshold")
         self.slider.setRange(1, STEPS - 1)
         self.slider.setPageStep(STEPS // 20)
-        self.slider.setAccessibleName("Threshold between shape and ground, from black to white")
+        self.slider.setAccessibleName(tr("Threshold between shape and ground, from black to white"))
         self.slider.setToolTip(
-            "Grey level that divides shape and ground: 0 % is black, 100 % white (arrow keys: 0.5 %)"
+            tr("Grey level that divides shape and ground: 0 % is black, 100 % white (arrow keys: 0.5 %)")
         )
         self.number = QLabel()
         self.number.setObjectName("muted")
         self.number.setAlignment(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
         self.number.setMinimumWidth(self.number.fontMetrics().horizontalAdvance("99.5 %"))
-        self.automatic = QPushButton("Auto")
+        self.automatic = QPushButton(tr("Auto"))
         self.automatic.setObjectName("small")
         self.automatic.setFocusPolicy(Qt.FocusPolicy.TabFocus)
-        self.automatic.setToolTip("Back to the threshold that was found in the picture")
+        self.automatic.setToolTip(tr("Back to the threshold that was found in the picture"))
         caption.setBuddy(self.slider)
         row = QHBoxLayout(self)
         row.setContentsMargins(0, 0, 0, 0)

@@ -17,6 +17,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui import icons
 from kirigami_studio.gui.panels.axis_button import AxisButton
 from kirigami_studio.gui.panels.card import tool_button
@@ -32,30 +33,30 @@ from kirigami_studio.target.figures import FEWEST_CORNERS, MOST_CORNERS, NARROWE
 
 #: Tool, icon, tooltip; None for a gap.
 TOOLS: tuple[tuple[Tool, str, str] | None, ...] = (
-    (Tool.POINTS, "points", "Move points (N). Select, drag, Delete; handles bend the lines."),
-    (Tool.POSE, "pose", "Move, resize and rotate (V). Drag the target or the handles around it."),
+    (Tool.POINTS, "points", tr("Move points (N). Select, drag, Delete; handles bend the lines.")),
+    (Tool.POSE, "pose", tr("Move, resize and rotate (V). Drag the target or the handles around it.")),
     None,
-    (Tool.FREEHAND, "draw", "Draw freehand (D). One stroke; it is smoothed and closed."),
-    (Tool.POLYGON, "polygon", "Draw a polygon (P). Click corners, Enter closes."),
-    (Tool.RECTANGLE, "rectangle", "Draw a rectangle (R). Shift makes a square."),
-    (Tool.ELLIPSE, "ellipse", "Draw an ellipse (O). Shift makes a circle."),
-    (Tool.REGULAR, "regular", "Draw a regular polygon (G). Shift keeps it regular."),
-    (Tool.STAR, "star", "Draw a star (S). Shift keeps it regular."),
-    (Tool.TEXT, "text", "Draw text (X). Its letters are moved together."),
+    (Tool.FREEHAND, "draw", tr("Draw freehand (D). One stroke; it is smoothed and closed.")),
+    (Tool.POLYGON, "polygon", tr("Draw a polygon (P). Click corners, Enter closes.")),
+    (Tool.RECTANGLE, "rectangle", tr("Draw a rectangle (R). Shift makes a square.")),
+    (Tool.ELLIPSE, "ellipse", tr("Draw an ellipse (O). Shift makes a circle.")),
+    (Tool.REGULAR, "regular", tr("Draw a regular polygon (G). Shift keeps it regular.")),
+    (Tool.STAR, "star", tr("Draw a star (S). Shift keeps it regular.")),
+    (Tool.TEXT, "text", tr("Draw text (X). Its letters are moved together.")),
 )
 #: Mode, icon, tooltip.
 MODES = (
-    (Combine.REPLACE, "replace", "New (=). What is drawn replaces the target."),
-    (Combine.ADD, "add", "Add (+). What is drawn joins the target."),
-    (Combine.SUBTRACT, "subtract", "Take away (-). What is drawn is cut off the target."),
+    (Combine.REPLACE, "replace", tr("New (=). What is drawn replaces the target.")),
+    (Combine.ADD, "add", tr("Add (+). What is drawn joins the target.")),
+    (Combine.SUBTRACT, "subtract", tr("Take away (-). What is drawn is cut off the target.")),
 )
 MIRRORS = (
-    ("left", "Keep &left half"),
-    ("right", "Keep &right half"),
-    ("top", "Keep &top half"),
-    ("bottom", "Keep &bottom half"),
-    ("across", "Flip left and right"),
-    ("over", "Flip top and bottom"),
+    ("left", tr("Keep &left half")),
+    ("right", tr("Keep &right half")),
+    ("top", tr("Keep &top half")),
+    ("bottom", tr("Keep &bottom half")),
+    ("across", tr("Flip left and right")),
+    ("over", tr("Flip top and bottom")),
 )
 
 
@@ -80,13 +81,13 @@ class ToolStrip(QWidget):
         row.addWidget(_rule())
         self._add_modes(row)
         row.addWidget(_rule())
-        self.mirror = self._button("mirror", "mirror", "Mirror. Reflect one half of the target, or flip it.")
+        self.mirror = self._button("mirror", "mirror", tr("Mirror. Reflect one half of the target, or flip it."))
         self.mirror.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)
         menu = QMenu(self)
         for how, text in MIRRORS:
             menu.addAction(text).triggered.connect(lambda _=False, how=how: self.mirror_wanted.emit(how))
         self.mirror.setMenu(menu)
-        self.grid = self._button("grid", "grid", "Snap to the grid (Ctrl+Shift+G). Ctrl held suspends it.", True)
+        self.grid = self._button("grid", "grid", tr("Snap to the grid (Ctrl+Shift+G). Ctrl held suspends it."), True)
         self.grid.setChecked(easel.snapping)
         self.grid.toggled.connect(self.grid_switched)
         self.axis = AxisButton(easel)
@@ -95,10 +96,10 @@ class ToolStrip(QWidget):
         row.addWidget(self.axis)
         row.addWidget(self.grid)
         row.addStretch(1)
-        self.finish = QPushButton("Done")
+        self.finish = QPushButton(tr("Done"))
         self.finish.setObjectName("small")
         self.finish.setFocusPolicy(Qt.FocusPolicy.TabFocus)
-        self.finish.setToolTip("Leave the editor (E, or Esc)")
+        self.finish.setToolTip(tr("Leave the editor (E, or Esc)"))
         self.finish.clicked.connect(self.done)
         row.addWidget(self.finish)
         self.options = ToolOptions(easel)
@@ -167,28 +168,28 @@ class ToolOptions(QWidget):
         self.corners = QSpinBox()
         self.corners.setRange(FEWEST_CORNERS, MOST_CORNERS)
         self.corners.setValue(easel.corners)
-        self.corners.setAccessibleName("Number of corners or tips")
-        self.corners.setToolTip("Corners of the polygon, tips of the star")
+        self.corners.setAccessibleName(tr("Number of corners or tips"))
+        self.corners.setToolTip(tr("Corners of the polygon, tips of the star"))
         self.waist = QDoubleSpinBox()
         self.waist.setRange(100 * NARROWEST_WAIST, 100 * WIDEST_WAIST)
         self.waist.setDecimals(0)
         self.waist.setSuffix(" %")
         self.waist.setValue(100 * easel.waist)
-        self.waist.setAccessibleName("Waist of the star")
-        self.waist.setToolTip("How far its inner corners are from the middle, as a share of its tips")
+        self.waist.setAccessibleName(tr("Waist of the star"))
+        self.waist.setToolTip(tr("How far its inner corners are from the middle, as a share of its tips"))
         for number in (self.corners, self.waist):
             number_field(number)
         self.text = QLineEdit(easel.text)
-        self.text.setAccessibleName("Text to draw")
-        self.text.setPlaceholderText("Text")
+        self.text.setAccessibleName(tr("Text to draw"))
+        self.text.setPlaceholderText(tr("Text"))
         self.text.setMaxLength(24)
         self.text.setMaximumWidth(150)
         self.nodes, self.pose, self.font_ = NodeOptions(easel), PoseOptions(easel), FontOptions(easel)
         self._parts: list[tuple[frozenset[Tool], tuple[QWidget, ...]]] = []
         for tools, caption, field in (
-            (frozenset({Tool.REGULAR, Tool.STAR}), "&Corners", self.corners),
-            (frozenset({Tool.STAR}), "Wai&st", self.waist),
-            (frozenset({Tool.TEXT}), "Te&xt", self.text),
+            (frozenset({Tool.REGULAR, Tool.STAR}), tr("&Corners"), self.corners),
+            (frozenset({Tool.STAR}), tr("Wai&st"), self.waist),
+            (frozenset({Tool.TEXT}), tr("Te&xt"), self.text),
         ):
             label = QLabel(caption)
             label.setObjectName("muted")

@@ -12,6 +12,7 @@ from PySide6.QtCore import QLineF, QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QPainter, QPen, QPolygonF
 
 from kirigami_studio.fabricate.cut_plan import CutPlan
+from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.scene.frame import Frame
 from kirigami_studio.gui.theme import Palette
 
@@ -76,9 +77,14 @@ class Connectors:
         """What a person reads about one hinge."""
         hinges = self.plan.hinges
         if self.removed[hinge]:
-            return f"Hinge {hinge}: no connector, cut through"
+            return tr("Hinge {hinge}: no connector, cut through", hinge=hinge)
         asked, finished = hinges.requested_mm[hinge], hinges.finished_mm[hinge]
-        return f"Hinge {hinge}: asked for {asked:.3f} mm, finished {finished:.3f} mm"
+        return tr(
+            "Hinge {hinge}: asked for {asked:.3f} mm, finished {finished:.3f} mm",
+            hinge=hinge,
+            asked=asked,
+            finished=finished,
+        )
 
     def nearest(self, place: QPointF, frame: Frame) -> int | None:
         """The hinge under a pixel, if any."""

@@ -11,6 +11,7 @@ from PySide6.QtCore import QPointF, Qt
 from PySide6.QtGui import QColor, QPainter, QPainterPath, QPen
 
 from kirigami_studio.evaluate.score import Score
+from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.scene.posed import PosedDesign
 from kirigami_studio.gui.theme import Palette
 
@@ -23,9 +24,9 @@ COLLAPSED_SHARE = 1e-6
 class FaultKind(Enum):
     """What is wrong at a place; the value is the sentence for it."""
 
-    INVERTED = "inverted or collapsed panel"
-    CONTACT = "first contact while deploying"
-    CROSSING = "the sheet overlaps itself here"
+    INVERTED = tr("inverted or collapsed panel")
+    CONTACT = tr("first contact while deploying")
+    CROSSING = tr("the sheet overlaps itself here")
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,6 +9,7 @@ import numpy.typing as npt
 
 from kirigami_studio.fabricate.cut_plan import CutPlan, Layer
 from kirigami_studio.fabricate.slits import SHEET_EDGE
+from kirigami_studio.foundation.words import tr
 
 #: The part of all connectors that counts as being at short or at long cuts.
 QUARTER = 0.25
@@ -40,10 +41,10 @@ def hinges_of_long_cuts(plan: CutPlan) -> frozenset[int]:
 
 #: Menu text, tooltip, rule.
 RULES: tuple[tuple[str, str, Callable[[CutPlan], frozenset[int]]], ...] = (
-    ("&All connectors", "Select every connector of the sheet", every_hinge),
-    ("&Edge connectors", "Select the connectors beside the sheet's edge", edge_hinges),
-    ("At &short cuts", "Select the quarter of the connectors with the shortest cuts", hinges_of_short_cuts),
-    ("At &long cuts", "Select the quarter of the connectors with the longest cuts", hinges_of_long_cuts),
+    (tr("&All connectors"), tr("Select every connector of the sheet"), every_hinge),
+    (tr("&Edge connectors"), tr("Select the connectors beside the sheet's edge"), edge_hinges),
+    (tr("At &short cuts"), tr("Select the quarter of the connectors with the shortest cuts"), hinges_of_short_cuts),
+    (tr("At &long cuts"), tr("Select the quarter of the connectors with the longest cuts"), hinges_of_long_cuts),
 )
 
 

@@ -7,6 +7,7 @@ import math
 from PySide6.QtCore import QLineF, QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QPainter, QPen
 
+from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.theme import Palette
 
 #: The bar is as long as this (pixels) at most.
@@ -22,7 +23,7 @@ def round_length(longest: float) -> float:
 
 def readable_mm(length: float) -> str:
     """A length without needless digits."""
-    return f"{length:g} mm"
+    return tr("{length:g} mm", length=length)
 
 
 def paint_scale_bar(painter: QPainter, scale: float, right_end: QPointF, palette: Palette) -> None:

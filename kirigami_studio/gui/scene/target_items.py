@@ -10,6 +10,7 @@ import numpy.typing as npt
 from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QBrush, QColor, QPainter, QPen
 
+from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.scene.frame import Frame
 from kirigami_studio.gui.scene.mismatch_items import stripes
 from kirigami_studio.gui.scene.paths import line_path
@@ -64,7 +65,12 @@ def paint_proposal(painter: QPainter, points: FloatArray, palette: Palette) -> N
 
 def paint_size(painter: QPainter, pointer: QPointF, size: tuple[float, float], palette: Palette) -> None:
     """Write width and height (mm) on a label beside the pointer."""
-    paint_label(painter, pointer, f"{size[0]:.4g} \N{MULTIPLICATION SIGN} {size[1]:.4g} mm", palette)
+    paint_label(
+        painter,
+        pointer,
+        tr("{size:.4g} \N{MULTIPLICATION SIGN} {size_2:.4g} mm", size=size[0], size_2=size[1]),
+        palette,
+    )
 
 
 def paint_label(painter: QPainter, pointer: QPointF, text: str, palette: Palette) -> None:

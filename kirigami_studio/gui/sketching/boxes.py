@@ -9,6 +9,7 @@ import numpy.typing as npt
 from PySide6.QtGui import QFont, QFontMetricsF, QPainter, QPainterPath
 
 from kirigami_studio.foundation.errors import TargetError
+from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.scene.frame import Frame
 from kirigami_studio.gui.scene.target_items import paint_proposal, paint_size
 from kirigami_studio.gui.sketching.easel import Easel, SketchTool, Spot
@@ -86,7 +87,7 @@ class FigureTool(BoxTool):
     def __init__(self, easel: Easel, kind: Figure) -> None:
         super().__init__(easel)
         self._kind = kind
-        self.hint = f"Drag a box for the {kind.value}. Shift keeps it regular, Ctrl leaves the grid."
+        self.hint = tr("Drag a box for the {value}. Shift keeps it regular, Ctrl leaves the grid.", value=kind.value)
 
     @property
     def name(self) -> str:
@@ -99,7 +100,7 @@ class FigureTool(BoxTool):
 class TextTool(BoxTool):
     """A word whose letters hang together."""
 
-    hint = "Type the text above, then drag a box for it. Letters are moved together: a sheet is one piece."
+    hint = tr("Type the text above, then drag a box for it. Letters are moved together: a sheet is one piece.")
 
     @property
     def name(self) -> str:

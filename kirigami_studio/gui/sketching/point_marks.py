@@ -8,6 +8,7 @@ import numpy as np
 from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QPainter, QPen
 
+from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.scene.frame import Frame
 from kirigami_studio.gui.scene.target_items import paint_label, paint_proposal
 from kirigami_studio.gui.theme import Palette
@@ -57,7 +58,9 @@ def paint_marks(painter: QPainter, frame: Frame, palette: Palette, marks: Marks)
     if marks.told is not None:
         place = anchors.places[marks.told]
         x, y = frame.to_pixels(place).tolist()
-        paint_label(painter, QPointF(x, y), f"{place[0]:.4g}, {place[1]:.4g} mm", palette)
+        paint_label(
+            painter, QPointF(x, y), tr("{place:.4g}, {place_2:.4g} mm", place=place[0], place_2=place[1]), palette
+        )
     if marks.field is not None:
         fill = QColor(palette.accent)
         fill.setAlpha(28)

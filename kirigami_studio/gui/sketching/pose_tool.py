@@ -174,7 +174,12 @@ class PoseTool(SketchTool):
         x, y = frame.to_pixels(np.array([high[0], high[1]])).tolist()
         if grip == WHOLE:
             middle = 0.5 * (low + high)
-            paint_label(painter, QPointF(x, y), f"{middle[0]:.4g}, {middle[1]:.4g} mm", palette)
+            paint_label(
+                painter,
+                QPointF(x, y),
+                tr("{middle:.4g}, {middle_2:.4g} mm", middle=middle[0], middle_2=middle[1]),
+                palette,
+            )
         elif grip == TURN:
             paint_label(painter, QPointF(x, y), f"{math.degrees(self._angle):+.1f}°", palette)
         else:

@@ -8,6 +8,7 @@ import numpy as np
 from PySide6.QtCore import QPointF, Qt
 from PySide6.QtGui import QKeyEvent, QPainter
 
+from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.scene.frame import Frame
 from kirigami_studio.gui.scene.target_items import paint_sketch
 from kirigami_studio.gui.sketching.easel import Easel, Place, SketchTool, Spot
@@ -28,7 +29,7 @@ PLAIN = Mirror()
 class Freehand(SketchTool):
     """One stroke; it is smoothed and closes itself."""
 
-    hint = "Draw the silhouette in one stroke; it closes itself when you let go."
+    hint = tr("Draw the silhouette in one stroke; it closes itself when you let go.")
 
     def __init__(self, easel: Easel) -> None:
         super().__init__(easel)
@@ -74,7 +75,7 @@ def stroke_of(points: np.ndarray[tuple[int, ...], np.dtype[np.float64]], mirror:
 class Corners(SketchTool):
     """A polygon, click by click."""
 
-    hint = "Click the corners; close with Enter or a click on the first one. Backspace takes back."
+    hint = tr("Click the corners; close with Enter or a click on the first one. Backspace takes back.")
 
     def __init__(self, easel: Easel) -> None:
         super().__init__(easel)

@@ -30,9 +30,9 @@ from kirigami_studio.gui.views.hinge_gestures import HingeGestures, adds
 
 #: Layers in a person's words, for the legend.
 LAYER_NAMES = {
-    Layer.RELIEF: "relief ends",
+    Layer.RELIEF: tr("relief ends"),
     Layer.SLITS: "slits",
-    Layer.EDGE_SLITS: "edge slits",
+    Layer.EDGE_SLITS: tr("edge slits"),
     Layer.OUTLINE: "outline",
 }
 #: Narrower than this (pixels) the legend leaves the outline out.
@@ -41,9 +41,10 @@ ROOM_FOR_OUTLINE = 480
 CLOSE_UP = 6.0
 #: Distance (pixels) from a problem's mark that still takes a click.
 PROBLEM_REACH = 11.0
-HINT = (
-    "Wheel: zoom. Drag: move. Click a connector: select; Shift-click or Shift-drag: select more. "
-    "Drag it to size (Alt: fine), or type a width; double-click or Delete cuts through, double-click brings back."
+HINT = tr(
+    "Wheel: zoom. Drag: move. Click a connector: select; Shift-click or Shift-drag: "
+    "select more. Drag it to size (Alt: fine), or type a width; double-click or Delete "
+    "cuts through, double-click brings back."
 )
 
 
@@ -78,7 +79,7 @@ class CutView(Canvas):
         self.gestures.changed.connect(self._tell_selection)
         self.setObjectName("cutView")
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
-        self.setAccessibleName("Cut preview")
+        self.setAccessibleName(tr("Cut preview"))
         self.setAccessibleDescription(HINT)
         self.setMouseTracking(True)
 
@@ -133,7 +134,7 @@ class CutView(Canvas):
     # drawing -------------------------------------------------------------------------------------------------------
 
     def empty_state(self) -> tuple[str, str, str]:
-        return "trim", "No cuts yet", "The cut plan of the chosen design appears here."
+        return "trim", tr("No cuts yet"), tr("The cut plan of the chosen design appears here.")
 
     def scene_bounds(self) -> Bounds | None:
         return None if self._drawing is None else self._drawing.bounds
@@ -213,8 +214,12 @@ class CutView(Canvas):
         if CutOverlay.CONNECTORS in self._overlays and len(self._connectors):
             low, high = self._connectors.span_mm
             one = not self._connectors.varied
-            widths = f"{low:.2f} mm" if one else f"{low:.2f}\N{EN DASH}{high:.2f} mm"
-            chips.append(Chip(self.palette_.widths[:1] if one else self.palette_.widths, f"connectors {widths}"))
+            widths = tr("{low:.2f} mm", low=low) if one else tr("{low:.2f}\N{EN DASH}{high:.2f} mm", low=low, high=high)
+            chips.append(
+                Chip(
+                    self.palette_.widths[:1] if one else self.palette_.widths, tr("connectors {widths}", widths=widths)
+                )
+            )
         return chips
 
     # gestures ------------------------------------------------------------------------------------------------------

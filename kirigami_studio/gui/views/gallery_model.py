@@ -107,7 +107,7 @@ class GalleryModel(QAbstractListModel):
     def _described(self, entry: Entry) -> str:
         lines = [described(entry.candidate, self.number_of(entry.candidate))]
         if entry.rise > 0:
-            lines.append(f"Polishing has raised sIoU by {100 * entry.rise:.2f} points so far")
+            lines.append(tr("Polishing has raised sIoU by {rise:.2f} points so far", rise=100 * entry.rise))
         mark = self.mark_of(entry.candidate)
         if mark is not Mark.NONE:
             lines.append(tr("Pinned") if mark is Mark.PINNED else tr("Rejected"))
@@ -257,9 +257,18 @@ def described(candidate: Candidate, rank: int) -> str:
     """Tell everything about a candidate in words, for tooltips and screen readers."""
     score = candidate.score
     lines = [
-        f"Design {rank}: sIoU {100 * score.siou:.2f} % (exact IoU {100 * score.iou_exact:.2f} %)",
-        f"Gain over the uniform sheet: {100 * score.siou_gain:+.2f} points (uniform {100 * score.uniform_siou:.2f} %)",
-        f"Total variation (TV) of the ratios: {score.tv:.3f}",
+        tr(
+            "Design {rank}: sIoU {siou:.2f} % (exact IoU {iou_exact:.2f} %)",
+            rank=rank,
+            siou=100 * score.siou,
+            iou_exact=100 * score.iou_exact,
+        ),
+        tr(
+            "Gain over the uniform sheet: {siou_gain:+.2f} points (uniform {uniform_siou:.2f} %)",
+            siou_gain=100 * score.siou_gain,
+            uniform_siou=100 * score.uniform_siou,
+        ),
+        tr("Total variation (TV) of the ratios: {tv:.3f}", tv=score.tv),
         *trimming(candidate),
         motion(candidate),
         *came_from(candidate),
@@ -286,16 +295,23 @@ def trimming(candidate: Candidate) -> list[str]:
     trim = candidate.trim
     if trim is None:
         return []
-    share = f"{100 * trim.removed_share:.1f} % of the sheet is cut off"
-    return [f"Trimmed: IoU {100 * trim.iou:.2f} % ({100 * trim.untrimmed_iou:.2f} % before the cut); {share}"]
+    share = tr("{removed_share:.1f} % of the sheet is cut off", removed_share=100 * trim.removed_share)
+    return [
+        tr(
+            "Trimmed: IoU {iou:.2f} % ({untrimmed_iou:.2f} % before the cut); {share}",
+            iou=100 * trim.iou,
+            untrimmed_iou=100 * trim.untrimmed_iou,
+            share=share,
+        )
+    ]
 
 
 def motion(candidate: Candidate) -> str:
     """Tell how far the sheet opens before it touches itself."""
     score = candidate.score
     if score.contact is None:
-        return f"Opens from 180° to {math.degrees(score.phi):.1f}° without contact"
-    return f"Touches itself while opening, at {math.degrees(score.contact.phi):.1f}°"
+        return tr("Opens from 180° to {phi:.1f}° without contact", phi=math.degrees(score.phi))
+    return tr("Touches itself while opening, at {phi:.1f}°", phi=math.degrees(score.contact.phi))
 
 
 def problems(candidate: Candidate) -> list[str]:
@@ -303,10 +319,12 @@ def problems(candidate: Candidate) -> list[str]:
     score = candidate.score
     found = []
     if score.n_invalid:
-        found.append(f"{score.n_invalid} invalid panel(s) or void(s).")
+        found.append(tr("{n_invalid} invalid panel(s) or void(s).", n_invalid=score.n_invalid))
     if score.contact is not None:
         x, y = score.contact.where
-        found.append(f"The first contact is near ({x:.2f}, {y:.2f}) unit cells.")
+        found.append(tr("The first contact is near ({x:.2f}, {y:.2f}) unit cells.", x=x, y=y))
     if not score.feasible and not found:
-        found.append(f"Panels overlap by {100 * score.overlap_ratio:.2f} % of their area.")
+        found.append(
+            tr("Panels overlap by {overlap_ratio:.2f} % of their area.", overlap_ratio=100 * score.overlap_ratio)
+        )
     return found

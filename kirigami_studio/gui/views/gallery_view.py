@@ -46,10 +46,10 @@ class GalleryView(QListView):
         self.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
         self.setMouseTracking(True)
         self.setObjectName("gallery")
-        self.setAccessibleName("Candidate designs, best first")
+        self.setAccessibleName(tr("Candidate designs, best first"))
         self._telling = True
         self._marked: Candidate | None = None
-        self._hint = ("No designs yet", "Candidates appear here, best first, while they are generated.")
+        self._hint = (tr("No designs yet"), tr("Candidates appear here, best first, while they are generated."))
         self.selectionModel().currentChanged.connect(self._tell)
 
     def set_palette(self, palette: Palette) -> None:

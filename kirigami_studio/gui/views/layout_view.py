@@ -13,7 +13,7 @@ from PySide6.QtGui import QPainter
 from PySide6.QtWidgets import QWidget
 
 from kirigami_studio.evaluate.score import Score
-from kirigami_studio.foundation.words import tr_n
+from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.gui.scene.chips import Chip, legend_boxes, paint_caption, paint_legend
 from kirigami_studio.gui.scene.colour_scale import ColourScale, opening_scale, paint_colour_bars, ratio_scale
 from kirigami_studio.gui.scene.fault_items import (
@@ -99,13 +99,13 @@ class LayoutView(Canvas):
         self._scales: list[ColourScale] = []
         self._areas: Mismatch | None = None
         self._faults: tuple[Fault, ...] = ()
-        self._hint = ("generate", "No design yet", "Choose a target on the left, then press Generate (Ctrl+G).")
+        self._hint = ("generate", tr("No design yet"), tr("Choose a target on the left, then press Generate (Ctrl+G)."))
         self._caption = ""
         self.frames_painted = 0
         self.voids = VoidGestures(self, self._void_shapes)
         self.setObjectName("layoutView")
-        self.setAccessibleName("Layout of the chosen design")
-        self.setToolTip("Wheel: zoom. Drag: move. Double-click: show everything.")
+        self.setAccessibleName(tr("Layout of the chosen design"))
+        self.setToolTip(tr("Wheel: zoom. Drag: move. Double-click: show everything."))
 
     @property
     def phi(self) -> float:
@@ -303,7 +303,9 @@ class LayoutView(Canvas):
             lengths += [(part.size, frame.to_pixels(part.ends(panels))) for part in self._small]
         taken: list[QRectF] = []
         for length, ends in lengths:
-            paint_dimension(painter, ends, f"{length * self.mm_per_unit:.2f} mm", self.palette_, taken)
+            paint_dimension(
+                painter, ends, tr("{mm_per_unit:.2f} mm", mm_per_unit=length * self.mm_per_unit), self.palette_, taken
+            )
 
     def _paint_comparison(self, painter: QPainter, frame: Frame, nodes: npt.NDArray[np.float64]) -> None:
         self._areas = None

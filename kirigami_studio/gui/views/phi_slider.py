@@ -41,7 +41,7 @@ class PhiSlider(QSlider):
         self.setMinimumHeight(44)
         self.setMouseTracking(True)
         self.setObjectName("phiSlider")
-        self.setAccessibleName("Deployment angle")
+        self.setAccessibleName(tr("Deployment angle"))
         self._say_legend()
         self.valueChanged.connect(lambda value: self.phi_changed.emit(self.phi))
         self.valueChanged.connect(lambda _: self._tell_value())

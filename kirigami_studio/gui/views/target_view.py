@@ -17,6 +17,7 @@ from PySide6.QtGui import (
 )
 from PySide6.QtWidgets import QWidget
 
+from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.jobs.steps import Picture
 from kirigami_studio.gui.scene.frame import Bounds, Frame
 from kirigami_studio.gui.scene.target_items import (
@@ -85,8 +86,8 @@ class TargetView(Canvas):
         self.setAcceptDrops(True)
         self.setMouseTracking(True)
         self.setObjectName("targetView")
-        self.setAccessibleName("Target silhouette")
-        self.setToolTip("The shape that the sheet shall show. Drop a PNG, JPG, SVG, DXF or JSON file here.")
+        self.setAccessibleName(tr("Target silhouette"))
+        self.setToolTip(tr("The shape that the sheet shall show. Drop a PNG, JPG, SVG, DXF or JSON file here."))
 
     @property
     def outline(self) -> Outline | None:
@@ -166,7 +167,11 @@ class TargetView(Canvas):
         self._board = Bounds(tight.left - room, tight.bottom - room, tight.right + room, tight.top + room)
 
     def empty_state(self) -> tuple[str, str, str]:
-        return "target", "No target yet", "Drop an image, SVG or DXF here,\nchoose one from the library, or draw."
+        return (
+            "target",
+            tr("No target yet"),
+            tr("Drop an image, SVG or DXF here,\nchoose one from the library, or draw."),
+        )
 
     def minimumSizeHint(self) -> QSize:  # noqa: N802 - Qt's name
         """Lower than other canvases: in a low window with a message the settings below need the room."""
