@@ -6,38 +6,25 @@ import math
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QObject, Qt, QUrl
-from PySide6.QtGui import QDesktopServices, QGuiApplication
+from PySide6.QtGui import QGuiApplication
 from PySide6.QtWidgets import QAbstractButton, QComboBox
 
 from kirigami_studio.foundation.resources import resource
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.actions import insert_menu
+from kirigami_studio.gui.beside import Beside
 from kirigami_studio.gui.controller import Controller
-from kirigami_studio.gui.dialogs.files import FileChoosers, FileQuestions
 from kirigami_studio.gui.dressing import Dressing
-from kirigami_studio.gui.jobs.steps import Exported
 from kirigami_studio.gui.messages import Message, Tone
 from kirigami_studio.gui.panels.picture_menu import PictureMenu
 from kirigami_studio.gui.panels.recent_menu import RecentMenu
 from kirigami_studio.gui.pasting import Pasting
 from kirigami_studio.gui.picturing import Picturing
 from kirigami_studio.gui.shell import Shell
-from kirigami_studio.gui.tour import Tour
 from kirigami_studio.gui.views.layout_view import USUAL, Overlay
 from kirigami_studio.gui.views.target_view import Tool
 from kirigami_studio.target.combining import Combine
-
-if TYPE_CHECKING:
-    from kirigami_studio.fabricate.material import Material
-    from kirigami_studio.gui.dialogs.export_report import ExportReport
-    from kirigami_studio.gui.dialogs.guide import GuideWindow
-    from kirigami_studio.gui.dialogs.material_editor import MaterialEditor
-    from kirigami_studio.gui.dialogs.shortcut_sheet import ShortcutSheet
-    from kirigami_studio.gui.dialogs.silhouette_picker import SilhouettePicker
-    from kirigami_studio.gui.panels.history_list import HistoryList
 
 OVERLAY_ACTIONS = {
     "show_target": Overlay.TARGET,
@@ -51,24 +38,14 @@ OVERLAY_ACTIONS = {
 }
 
 
-class Commands(QObject):
+class Commands(Beside):
     """Carries out the window's actions; asks for files and guards unsaved work."""
 
     def __init__(self, window: Shell, controller: Controller) -> None:
-        super().__init__(window)
-        self.window = window
-        self.controller = controller
-        self.files: FileQuestions = FileChoosers(window)
-        self.guide: GuideWindow | None = None
-        self.picker: SilhouettePicker | None = None
-        self.report: ExportReport | None = None
-        self.materials: MaterialEditor | None = None
-        self.history: HistoryList | None = None
+        super().__init__(window, controller)
         self.recent = RecentMenu(window, controller.filing.recent, self.take_file)
         insert_menu(window, "save", self.recent)
-        self.shortcuts: ShortcutSheet | None = None
         self.dressing = Dressing(window, controller.preferring)
-        self.tour = Tour(window, controller)
         self.pasting = Pasting(self)
         self.pasting.file_wanted.connect(self.take_file)
         self.pasting.message.connect(controller.message)
@@ -80,7 +57,7 @@ class Commands(QObject):
         insert_menu(window, "animation", self.pictures)
         self.picturing.message.connect(controller.message)
         self.picturing.status.connect(controller.status)
-        controller.filing.stocking.stocked.connect(self._take_materials)
+        controller.filing.stocking.stocked.connect(self.take_materials)
         self._closing = self._quit_when_saved = False
         controller.saved.connect(lambda _: self._saved())
         controller.filing.storing.failed.connect(self._stay)
@@ -214,103 +191,6 @@ class Commands(QObject):
         if folder is not None:
             self.controller.export_all(folder, self._name())
 
-    def show_materials(self) -> None:
-        """Open the material editor, or bring it to the front."""
-        from kirigami_studio.gui.dialogs.material_editor import MaterialEditor
-
-        key = self.controller.document.fabrication.material
-        if self.materials is None:
-            self.materials = MaterialEditor(self.window, key)
-            self.materials.stock_changed.connect(self._take_materials)
-            self.materials.coupon_wanted.connect(self.export_coupon)
-        self.materials.choose(key)
-        self.materials.show()
-        self.materials.raise_()
-        self.materials.activateWindow()
-
-    def _take_materials(self, key: str) -> None:
-        self.window.fabrication.reload_materials()
-        self.controller.replan()
-
-    def export_coupon(self, material: Material) -> None:
-        """Write the calibration coupon of a material in a place of the user's choice."""
-        path = self.files.export(f"coupon-{material.key}.dxf")
-        if path is not None:
-            self.controller.cutting.export_coupon(material, path, self.controller.document.fabrication)
-
-    def show_report(self, exported: Exported) -> None:
-        """Show what two readers found in a written cut file, in the place of an earlier report."""
-        from kirigami_studio.gui.dialogs.export_report import ExportReport
-
-        self.close_report()
-        if not exported.verifications:
-            return
-        self.report = ExportReport(self.window, exported.verifications, self.window.palette_)
-        self.report.folder_wanted.connect(show_in_folder)
-        self.report.show()
-
-    def close_report(self) -> None:
-        """Close the report, if there is one."""
-        if self.report is not None:
-            self.report.close()
-            self.report.deleteLater()
-            self.report = None
-
-    def close_dialogs(self) -> None:
-        """The window is closing: what stands beside it goes with it."""
-        self.tour.end()
-        self.close_report()
-        for dialog in (self.materials, self.guide, self.history, self.shortcuts):
-            if dialog is not None:
-                dialog.close()
-
-    def show_history(self) -> None:
-        """Open the list of all steps, or bring it to the front."""
-        from kirigami_studio.gui.panels.history_list import HistoryList
-
-        if self.history is None:
-            self.history = HistoryList(self.window)
-            self.history.step_wanted.connect(self.controller.go_to)
-            self.controller.document_changed.connect(self._update_history)
-        self.history.show()
-        self._update_history()
-        self.history.raise_()
-        self.history.activateWindow()
-
-    def _update_history(self) -> None:
-        if self.history is not None and self.history.isVisible():
-            self.history.show_history(self.controller.history)
-
-    def show_library(self) -> None:
-        """Open the popup with the library's silhouettes."""
-        from kirigami_studio.gui.dialogs.silhouette_picker import SilhouettePicker
-
-        self.picker = SilhouettePicker(self.window, self.window.palette_)
-        self.picker.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
-        self.picker.chosen.connect(self.controller.targeting.open)
-        self.picker.show_below(self.window.target.buttons["library"])
-
-    def show_guide(self) -> None:
-        """Open the guide, or bring it to the front."""
-        from kirigami_studio.gui.dialogs.guide import GuideWindow
-
-        if self.guide is None:
-            self.guide = GuideWindow(self.window)
-        self.guide.show()
-        self.guide.raise_()
-        self.guide.activateWindow()
-
-    def show_shortcuts(self) -> None:
-        """Open the sheet of keys and gestures, or bring it to the front."""
-        from kirigami_studio.gui.dialogs.shortcut_sheet import ShortcutSheet
-
-        if self.shortcuts is None:
-            self.shortcuts = ShortcutSheet(self.window)
-        self.shortcuts.show()
-        self.shortcuts.raise_()
-        self.shortcuts.activateWindow()
-        self.shortcuts.search.setFocus()
-
     def open_sample(self) -> None:
         """Open the bundled project; it is saved elsewhere."""
         self.controller.open_project(resource("examples", "heart.kiri"))
@@ -397,9 +277,3 @@ class Commands(QObject):
             return self.controller.path.stem
         target = self.controller.document.target
         return target.name if target is not None else "untitled"
-
-
-def show_in_folder(path: Path) -> None:
-    """Let the desktop show the folder that a written file lies in, or a written folder itself."""
-    folder = path if path.is_dir() else path.parent
-    QDesktopServices.openUrl(QUrl.fromLocalFile(str(folder)))

@@ -15,6 +15,18 @@ from kirigami_studio.gui.panels.cut_bar import CutBar
 from kirigami_studio.gui.panels.cuts_page import CutsPage
 from kirigami_studio.gui.panels.deployment_bar import DeploymentBar
 from kirigami_studio.gui.panels.plots_panel import PlotsPanel
+from kirigami_studio.gui.panels.stage_words import (
+    BEFORE,
+    CUTS,
+    NEVER_DRAWN,
+    NEVER_POLISHED,
+    OVERLAYS,
+    PLOTS,
+    TRIM,
+    TRIMMING,
+    UNTRIM,
+    scores_told,
+)
 from kirigami_studio.gui.panels.void_bar import VoidBar
 from kirigami_studio.gui.theme import Palette
 from kirigami_studio.gui.views.fault_tour import FaultTour
@@ -22,23 +34,6 @@ from kirigami_studio.gui.views.gallery_model import Entry, described
 from kirigami_studio.gui.views.layout_view import USUAL, LayoutView, Overlay
 from kirigami_studio.target.outline import Outline
 
-OVERLAYS = (
-    (Overlay.TARGET, "target", tr("Show the target's outline (T).")),
-    (
-        Overlay.MISMATCH,
-        "mismatch",
-        tr("Show missing and extra area near the target angle (M). Orange stripes: missing; dark stripes: extra."),
-    ),
-    (Overlay.FAULTS, "fault", tr("Mark inverted panels and the first contact (F).")),
-)
-BEFORE = tr("Before polish: show the design as the generator drew it (B).")
-NEVER_POLISHED = tr("Before polish (B). Nothing to compare: polishing has not changed this design.")
-NEVER_DRAWN = tr("Before polish (B). Nothing to compare: this design was not drawn by the generator.")
-TRIM = tr("Trim to target (Ctrl+T). Cuts the edge panels along the target; every hinge keeps its material.")
-UNTRIM = tr("Trim to target (Ctrl+T). Press again to bring back what was cut off.")
-TRIMMING = tr("Trim to target: at work. Press again, or Esc, to stop.")
-CUTS = tr("Cuts: show the cut plan as it will burn (C).")
-PLOTS = tr("Plots: match, area, size and gaps at every angle (J).")
 #: A stage at least this wide (pixels) has its plots at the side, a narrower one below.
 WIDE = 640
 #: Pixels between the title and the numbers at least.
@@ -298,23 +293,8 @@ class StagePanel(Card):
             return self.cuts.summary
         if self.comparing:
             return self.compare.summary
-        if self._entry is None:
-            return ()
-        score, trim = self._entry.candidate.score, self._entry.candidate.trim
-        siou = f"{100 * score.siou:.1f} %"
-        if self._drawn is not None:
-            before = f"{100 * self._drawn.candidate.score.siou:.1f} %"
-            return tr("before polish: sIoU {before}  ·  after: {siou}", before=before, siou=siou), tr(
-                "before {before}  ·  after {siou}", before=before, siou=siou
-            )
-        if trim is not None:
-            trimmed = f"{100 * trim.iou:.1f} %"
-            return tr("sIoU {siou}  ·  trimmed IoU {trimmed}", siou=siou, trimmed=trimmed), tr(
-                "{siou}  ·  trimmed {trimmed}", siou=siou, trimmed=trimmed
-            )
-        return tr(
-            "sIoU {siou}   gain {siou_gain:+.1f}   TV {tv:.2f}", siou=siou, siou_gain=100 * score.siou_gain, tv=score.tv
-        ), tr("sIoU {siou}", siou=siou)
+        drawn = None if self._drawn is None else self._drawn.candidate
+        return () if self._entry is None else scores_told(self._entry.candidate, drawn)
 
     def _fit_numbers(self) -> None:
         """Put the longest text that fits into the header; none fits beside many buttons in a narrow stage."""
