@@ -152,9 +152,9 @@ class Wiring(QObject):
 
     def _show_history(self) -> None:
         history, actions = self.controller.history, self.window.actions_
-        for name, label in (("undo", history.undo_label), ("redo", history.redo_label)):
+        steps = (("undo", tr("Undo"), history.undo_label), ("redo", tr("Redo"), history.redo_label))
+        for name, word, label in steps:
             actions[name].setEnabled(label is not None)
-            word = name.capitalize()
             actions[name].setText(f"&{word}" if label is None else f"&{word} {label[0].lower()}{label[1:]}")
             keys = actions[name].shortcut().toString()
             actions[name].setToolTip(f"{word} ({keys})" if label is None else f"{word}: {label} ({keys})")
@@ -180,7 +180,7 @@ class Wiring(QObject):
             self.window.facts.clear()
             return
         field, score = entry.candidate.field, entry.candidate.score
-        kind = "feasible" if score.feasible else tr("not feasible")
+        kind = tr("feasible") if score.feasible else tr("not feasible")
         grid = tr("{rows} \N{MULTIPLICATION SIGN} {columns} voids", rows=field.rows, columns=field.columns)
         facts = [grid, tr("exact IoU {iou_exact:.1f} %", iou_exact=100 * score.iou_exact), kind]
         if entry.candidate.trim is not None:

@@ -283,7 +283,8 @@ class FabricationPanel(Card):
         unfolded = (
             tr("trimmed, {removed_share:.1f} % cut off", removed_share=100 * removed_share) if removed_share else ""
         )
-        self._summaries = (unfolded, f"{texts['size']}  ·  {'trimmed' if removed_share else texts['slits'] + ' cuts'}")
+        kind = tr("trimmed") if removed_share else tr("{count} cuts", count=texts["slits"])
+        self._summaries = (unfolded, f"{texts['size']}  ·  {kind}")
         share = tr(
             "{removed_share:.1f} % of the sheet is cut off along the target; the cut file has that edge",
             removed_share=100 * removed_share,

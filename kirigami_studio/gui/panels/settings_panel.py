@@ -72,19 +72,32 @@ class SettingsPanel(Card):
         super().__init__(tr("Design"), parent)
         tip = tr("Voids from {}. More voids follow the target more closely but are smaller ({} to {}).")
         self.rows = _whole(
-            "rows", SMALLEST_GRID, LARGEST_GRID, tip.format(tr("top to bottom"), SMALLEST_GRID, LARGEST_GRID)
+            "rows",
+            tr("Rows"),
+            SMALLEST_GRID,
+            LARGEST_GRID,
+            tip.format(tr("top to bottom"), SMALLEST_GRID, LARGEST_GRID),
         )
         self.columns = _whole(
-            "columns", SMALLEST_GRID, LARGEST_GRID, tip.format(tr("left to right"), SMALLEST_GRID, LARGEST_GRID)
+            "columns",
+            tr("Columns"),
+            SMALLEST_GRID,
+            LARGEST_GRID,
+            tip.format(tr("left to right"), SMALLEST_GRID, LARGEST_GRID),
         )
         self.candidates = _whole(
             "candidates",
+            tr("Candidates"),
             1,
             LARGEST_K,
             tr("Number of designs to generate and compare (1 to {largest_k}).", largest_k=LARGEST_K),
         )
         self.seed = _whole(
-            "seed", 0, LARGEST_SEED, tr("Start of the random numbers: the same seed gives the same designs.")
+            "seed",
+            tr("Seed"),
+            0,
+            LARGEST_SEED,
+            tr("Start of the random numbers: the same seed gives the same designs."),
         )
         self.angle = QDoubleSpinBox()
         self.angle.setObjectName("targetAngle")
@@ -233,12 +246,12 @@ def _choice(name: str, told: str) -> QComboBox:
     return box
 
 
-def _whole(name: str, low: int, high: int, tip: str) -> QSpinBox:
+def _whole(name: str, told: str, low: int, high: int, tip: str) -> QSpinBox:
     box = QSpinBox()
     box.setObjectName(name)
     box.setRange(low, high)
     box.setToolTip(tip)
-    box.setAccessibleName(name.capitalize())
+    box.setAccessibleName(told)
     return box
 
 
