@@ -12,9 +12,11 @@ from pathlib import Path
 import ezdxf
 import numpy as np
 import pytest
+from hand_gestures import middle_of, turn
 from PySide6.QtCore import QPoint, QPointF, Qt
 from pytestqt.qtbot import QtBot
 
+from kirigami_studio.evaluate.candidate import Origin
 from kirigami_studio.gui.application import create_window
 from kirigami_studio.gui.main_window import MainWindow
 from kirigami_studio.gui.messages import Tone
@@ -105,6 +107,29 @@ class Sitting:
         assert np.ptp(stage.design.nodes(view.phi) - exact, axis=0) == pytest.approx(0.0, abs=1e-9)
         assert self.document is before
 
+    def edit_by_hand(self) -> None:
+        """H, the wheel over a void, L; the exact layout follows at once, the score a moment later."""
+        view, before = self.window.stage.view, self.document.candidate
+        assert before is not None
+        self.key(Qt.Key.Key_H)
+        void, place = (2, 3), middle_of(view, (2, 3))
+        self.bot.mouseMove(view, place)
+        turn(view, place, 2)
+        self.until(lambda: self.document.candidate is not None and self.document.candidate.origin is Origin.EDITED)
+        after = self.document.candidate
+        assert after is not None and self.document.chosen == 1
+        changed = np.argwhere(after.field.ratio != before.field.ratio).tolist()
+        assert changed == [list(void)] and after.field.ratio[void] > before.field.ratio[void]
+        exact = after.score.transform.apply(deploy(after.field).nodes(after.score.phi))
+        shown = view.design
+        assert shown is not None and np.ptp(shown.nodes(after.score.phi) - exact, axis=0) == pytest.approx(
+            0.0, abs=1e-9
+        )
+        self.key(Qt.Key.Key_L)
+        assert self.document.locked == {void}
+        self.key(Qt.Key.Key_H)
+        self.until(lambda: self.window.fabrication.export.isEnabled() and not self.window.controller.board.busy)
+
     def set_connectors(self) -> None:
         """Show the cuts, click on a connector, type its width, Return; then put another one off with Delete."""
         page = self.window.stage.cuts
@@ -175,6 +200,7 @@ def test_that_a_whole_sitting_ends_where_it_began(
     at_work.generate()
     at_work.choose()
     at_work.scrub()
+    at_work.edit_by_hand()
     at_work.set_connectors()
     files.answer = tmp_path / "egg.dxf"  # type: ignore[attr-defined]
     at_work.export(tmp_path / "egg.dxf")
@@ -185,7 +211,7 @@ def test_that_a_whole_sitting_ends_where_it_began(
     at_work.come_back()
     steps = at_work.undo_everything()
     assert window.controller.document == start and window.gallery.view.model_.rowCount() == 0
-    assert len(steps) >= 7 and len(set(steps)) >= 6
+    assert len(steps) >= 9 and len(set(steps)) >= 8
     at_work.redo_everything()
     assert window.controller.document == kept and not window.controller.history.unsaved
     until(lambda: not window.controller.board.busy and window.fabrication.export.isEnabled())
