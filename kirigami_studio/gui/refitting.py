@@ -2,40 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from functools import partial
-
-from PySide6.QtCore import QObject, Signal
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.jobs import hand_steps
-from kirigami_studio.gui.jobs.board import Board, Ears
 from kirigami_studio.gui.messages import Message, Tone
-from kirigami_studio.gui.shelf import Shelf
+from kirigami_studio.gui.one_design import OneDesign
 from kirigami_studio.project import hand_edits
-from kirigami_studio.project.document import Document
 
 
-class Refitting(QObject):
+class Refitting(OneDesign):
     """Fits at most one design at a time, off the window's thread, and proposes the edit that it leads to."""
 
-    busy_changed = Signal(bool)
-    edited = Signal(object)  #: Edit
-    failed = Signal(str, str)  #: sentence, trace
-    message = Signal(object)  #: Message
-    status = Signal(str)
-
-    def __init__(self, board: Board, shelf: Shelf, document: Callable[[], Document], parent: QObject) -> None:
-        super().__init__(parent)
-        self._board, self._shelf, self._document = board, shelf, document
-        self._job: int | None = None
-        self._candidate: Candidate | None = None
-
-    @property
-    def busy(self) -> bool:
-        """Whether a design is being fitted."""
-        return self._job is not None
+    stopped = tr("Fitting stopped; nothing was changed.")
 
     def start(self) -> None:
         """Fit the chosen design by what the settings prefer."""
@@ -47,35 +27,13 @@ class Refitting(QObject):
         if len(document.locked) == candidate.field.ratio.size:
             self.message.emit(Message(tr("Every void is locked; unlock those that the fit may change."), Tone.HINT))
             return
-        self.stop()
         work = partial(hand_steps.refitting, candidate, target, document.settings.prefer, document.locked)
-        # The report is the end: what the worker says afterwards may come when the next fit has begun.
-        ears = Ears(self._take, on_failed=self._fail)
-        self._candidate = candidate
-        self._job = self._board.start(tr("fitting the design"), work, ears)
-        self.busy_changed.emit(True)
-        self.status.emit(tr("Fitting {design} … Esc stops.", design=self._name()))
+        self.begin(tr("fitting the design"), candidate, work)
+        self.status.emit(tr("Fitting {design} … Esc stops.", design=self.name()))
 
-    def cancel(self) -> None:
-        """Stop because the user says so."""
-        self.stop()
-        self.status.emit(tr("Fitting stopped; nothing was changed."))
-
-    def stop(self) -> None:
-        """Forget what is still being fitted."""
-        if self._job is not None:
-            self._board.abandon(self._job)
-            self._over()
-
-    def stop_unless(self, candidate: Candidate | None) -> None:
-        """Go on only while this design is the one on the stage."""
-        if candidate != self._candidate:
-            self.stop()
-
-    def _take(self, report: object) -> None:
-        before = self._candidate
-        self._over()
-        if not isinstance(report, hand_steps.Refitted) or before is None:
+    def take(self, before: Candidate, report: object) -> None:
+        """The worker has made something of the design."""
+        if not isinstance(report, hand_steps.Refitted):
             return
         after = report.decoded.candidate
         numbers = {"before": 100 * before.score.siou, "after": 100 * after.score.siou}
@@ -88,21 +46,8 @@ class Refitting(QObject):
             self.message.emit(Message(told, Tone.HINT, actions=actions))
 
     def _replace(self, before: Candidate, report: hand_steps.Refitted) -> None:
-        after, label = report.decoded.candidate, tr("Fit {design}", design=self._name())
+        after, label = report.decoded.candidate, tr("Fit {design}", design=self.name())
         edit = hand_edits.take_changed(self._document(), before, after, label)
         if edit is not None:
             self._shelf.put(after, report.decoded.deployment)
             self.edited.emit(edit)
-
-    def _name(self) -> str:
-        chosen = self._document().chosen
-        return tr("the design") if chosen is None else tr("design {number}", number=chosen + 1)
-
-    def _fail(self, sentence: str, trace: str) -> None:
-        self._over()
-        self.failed.emit(sentence, trace)
-
-    def _over(self) -> None:
-        if self._job is not None:
-            self._job = self._candidate = None
-            self.busy_changed.emit(False)

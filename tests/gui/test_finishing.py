@@ -63,6 +63,7 @@ def trimmed(studio: MainWindow, qtbot: QtBot, until: Until) -> MainWindow:
 def test_that_before_shows_the_design_as_it_was_drawn_and_after_brings_it_back(
     studio: MainWindow, designs: Document, qtbot: QtBot, until: Until
 ) -> None:
+    studio.resize(1800, 900)  # room for the whole sentence beside the buttons
     after = studio.stage.view.grab().toImage()
     qtbot.keyClick(studio, Qt.Key.Key_B)
     until(lambda: studio.stage.showing_before)

@@ -68,6 +68,7 @@ def test_that_space_plays_and_pauses(designed: MainWindow, qtbot: QtBot, until: 
 
 
 def test_that_space_still_presses_the_focused_button(designed: MainWindow, qtbot: QtBot) -> None:
+    designed.resize(1440, 900)  # in a narrow stage the button gives way
     button = designed.stage.toggles[Overlay.TARGET]
     button.setFocus()
     qtbot.keyClick(button, Qt.Key.Key_Space)
