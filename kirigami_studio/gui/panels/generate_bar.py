@@ -62,8 +62,11 @@ class GenerateBar(QWidget):
 
     def show_progress(self, done: int, total: int, message: str) -> None:
         """A run moves on; the bar is indefinite until the first design is there."""
+        # A progress bar repaints at once, and all that waits for paint in the window with it; so it only asks for paint.
+        self.progress.setUpdatesEnabled(False)
         self.progress.setRange(0, total if done else 0)
         self.progress.setValue(done)
+        self.progress.setUpdatesEnabled(True)
         self.says.setText(message)
 
     def show_idle(self) -> None:
