@@ -48,10 +48,11 @@ run: setup
 	  QT_QPA_PLATFORM=offscreen $(BIN)/python -m kirigami_studio.gui.offscreen_session --out out; \
 	fi
 
-# File by file in two processes of one thread each; what watches a clock afterwards, alone.
+# What watches a clock, alone; then everything else, file by file in two processes of one thread each.
 test: lint
-	OMP_NUM_THREADS=1 QT_QPA_PLATFORM=offscreen $(BIN)/python -m pytest -n 2 --dist loadfile -m "not clock"
+	@sh packaging/system_libraries.sh tests
 	QT_QPA_PLATFORM=offscreen $(BIN)/python -m pytest -m clock
+	OMP_NUM_THREADS=1 QT_QPA_PLATFORM=offscreen $(BIN)/python -m pytest -n 2 --dist loadfile -m "not clock"
 
 quick: setup
 	HYPOTHESIS_PROFILE=quick $(BIN)/python -m pytest -p no:pytest-qt -p no:benchmark \

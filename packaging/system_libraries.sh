@@ -1,6 +1,7 @@
 #!/bin/sh
 # Qt's wheels bring everything but a few libraries of the system.  Look for them; install them where that is possible
 # without asking, else say in one sentence what is missing.  Never fails: the command line works without a window.
+# With the word "tests", also look for the display and the hands that some tests use; those are skipped without them.
 set -u
 [ "$(uname)" = Linux ] || exit 0
 
@@ -18,14 +19,19 @@ for pair in libEGL.so.1:libegl1 libGL.so.1:libgl1 libxkbcommon.so.0:libxkbcommon
         *) missing="$missing ${pair##*:}" ;;
     esac
 done
+if [ "${1:-}" = tests ]; then
+    for pair in Xvfb:xvfb xdotool:xdotool; do
+        command -v "${pair%%:*}" >/dev/null 2>&1 || missing="$missing ${pair##*:}"
+    done
+fi
 [ -n "$missing" ] || exit 0
 
 if [ "$(id -u)" = 0 ] && command -v apt-get >/dev/null 2>&1; then
-    echo "Installing Qt's system libraries:$missing"
+    echo "Installing what the window needs:$missing"
     apt-get update -q >/dev/null 2>&1
     # shellcheck disable=SC2086  # a list of package names
     DEBIAN_FRONTEND=noninteractive apt-get install -yq --no-install-recommends $missing xvfb >/dev/null 2>&1 && exit 0
 fi
-echo "The window needs system libraries that are missing here ($(echo "$missing" | sed 's/^ //; s/ /, /g'));" \
+echo "The window${1:+ and its $1} need what is missing here ($(echo "$missing" | sed 's/^ //; s/ /, /g'));" \
      "on Debian or Ubuntu run: sudo apt-get install$missing xvfb"
 exit 0
