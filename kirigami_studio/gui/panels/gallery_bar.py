@@ -231,7 +231,7 @@ def _orders() -> tuple[tuple[Order, str, str], ...]:
         (Order.TV, tr("By evenness"), tr("The lowest total variation (TV) of the ratios first.")),
         (
             Order.PANEL,
-            tr("By smallest panel"),
+            tr("By panel size"),
             tr("The sheet whose smallest panel edge or neck is largest first, in mm at the sheet's width."),
         ),
         (Order.NEWEST, tr("By newest"), tr("Designs that the last run has added first; they carry a dot.")),
