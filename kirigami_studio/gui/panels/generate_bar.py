@@ -62,7 +62,7 @@ class GenerateBar(QWidget):
 
     def show_progress(self, done: int, total: int, message: str) -> None:
         """A run moves on; the bar is indefinite until the first design is there."""
-        # A progress bar repaints at once, and all that waits for paint in the window with it; so it only asks for paint.
+        # A progress bar paints at once, and all that waits for paint in the window with it; so it only asks for it.
         self.progress.setUpdatesEnabled(False)
         self.progress.setRange(0, total if done else 0)
         self.progress.setValue(done)
