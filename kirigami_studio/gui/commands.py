@@ -223,6 +223,8 @@ class Commands(Beside):
 
     def guard(self, purpose: str, then: Callable[[], None]) -> None:
         """Do something that forgets the document; with unsaved changes ask in the message bar first."""
+        if self.controller.hand.postpones(lambda: self.guard(purpose, then)):
+            return
         if not self.controller.history.unsaved:
             then()
             return
@@ -262,7 +264,8 @@ class Commands(Beside):
 
     def _saved(self) -> None:
         if self._quit_when_saved:
-            self._quit()
+            self._quit_when_saved = False
+            self.window.close()  # which asks again if the work went on while the file was written
 
     def _stay(self) -> None:
         """The project could not be saved: a later save is no wish to quit."""

@@ -28,7 +28,7 @@ class Controller(Workbench):
         untouched = self.document == self.preferring.new_document()
         self.preferring.load(path)
         if untouched:
-            self.history.restart(self.preferring.new_document())
+            self._restart(self.preferring.new_document())
             self.show()
 
     def warm_up(self) -> None:
@@ -174,7 +174,7 @@ class Controller(Workbench):
         """Forget everything and start empty."""
         self.stop_design()
         self.path = None
-        self.history.restart(self.preferring.new_document())
+        self._restart(self.preferring.new_document())
         self.show()
         self.status.emit(tr("New project. Choose or draw a target."))
 

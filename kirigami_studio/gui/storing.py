@@ -36,11 +36,12 @@ class Storing(QObject):
         self._picture_of = picture_of
         self._folder: tempfile.TemporaryDirectory[str] | None = None
         self._count = 0
+        self._project = 0  # how many projects were on the window before this one
 
     def save(self, document: Document, path: Path) -> None:
         """Write a project file."""
         self.status.emit(tr("Saving {name} …", name=path.name))
-        ears = Ears(partial(self._saved, document), on_failed=self.failed.emit)
+        ears = Ears(partial(self._saved, document, self._project), on_failed=self.failed.emit)
         steps = partial(project_steps.saving, document, self._picture_of(document.target), path)
         self._board.start(tr("saving {name}", name=path.name), steps, ears)
 
@@ -52,6 +53,10 @@ class Storing(QObject):
             tr("opening {name}", name=path.name), partial(project_steps.loading, path, self.place()), ears
         )
 
+    def begin(self) -> None:
+        """Another project is on the window: a file that is still being written is not where that one lives."""
+        self._project += 1
+
     def place(self) -> Path:
         """A folder for the picture of one project; it lasts as long as the session."""
         if self._folder is None:
@@ -60,11 +65,13 @@ class Storing(QObject):
         self._count += 1
         return Path(self._folder.name) / f"{PASTED}{self._count}"
 
-    def _saved(self, document: Document, report: object) -> None:
+    def _saved(self, document: Document, project: int, report: object) -> None:
         if isinstance(report, Left):
             self.message.emit(Message(report.sentence, Tone.WARNING))
-        elif isinstance(report, Path):
+        elif isinstance(report, Path) and project == self._project:
             self.saved.emit(report, document)
+        elif isinstance(report, Path):
+            self.status.emit(tr("Saved {path}.", path=report))
 
     def _opened(self, path: Path, report: object) -> None:
         if isinstance(report, Left):

@@ -176,7 +176,7 @@ class Workbench(QObject):
     def _opened(self, path: Path, document: Document) -> None:
         self.stop_design()
         self.path = None if path.is_relative_to(resource_root()) else path  # a bundled one is saved elsewhere
-        self.history.restart(document)
+        self._restart(document)
         self.opened.emit(path)
         self.show()
         self.status.emit(tr("Opened {path}.", path=path))
@@ -188,8 +188,13 @@ class Workbench(QObject):
     def _recovered(self, document: Document, path: Path | None) -> None:
         self.stop_design()
         self.path = path
-        self.history.restart(document, saved=False)
+        self._restart(document, saved=False)
         self.show()
+
+    def _restart(self, document: Document, saved: bool = True) -> None:
+        """Another project begins."""
+        self.filing.storing.begin()
+        self.history.restart(document, saved)
 
     def stop_design(self) -> None:
         """Another document comes: what is still on its way belongs to the old one."""
@@ -201,7 +206,7 @@ class Workbench(QObject):
     # telling the views ---------------------------------------------------------------------------------------------
 
     def _begin(self, document: Document) -> None:
-        self.history.restart(document)
+        self._restart(document)
         self.show()
 
     def _replace(self, edit: Edit) -> None:

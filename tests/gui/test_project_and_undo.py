@@ -98,6 +98,40 @@ def test_that_a_new_project_asks_before_it_forgets(designed: MainWindow) -> None
     assert designed.controller.document == Document()
 
 
+def test_that_work_that_went_on_while_the_file_was_written_is_asked_about_before_quitting(
+    designed: MainWindow, until: Until
+) -> None:
+    designed.actions_["next"].trigger()
+    assert not designed.close()
+    dict(designed.messages.messages[-1].actions)["Save and quit"]()
+    designed.controller.change_fabrication(width_mm=77.0)  # before the worker has written
+    until(lambda: not designed.controller.board.busy)
+    assert designed.isVisible() and designed.controller.history.unsaved
+    assert [label for label, _ in designed.messages.messages[-1].actions] == ["Save and quit", "Quit without saving"]
+
+
+def test_that_a_file_still_being_written_is_not_taken_for_the_place_of_the_next_project(
+    designed: MainWindow, project_file: Path, until: Until, tmp_path: Path
+) -> None:
+    controller = designed.controller
+    controller.save(tmp_path / "old.kiri")
+    controller.new_project()
+    until(lambda: not controller.board.busy)
+    assert (tmp_path / "old.kiri").exists()
+    assert controller.path is None, "Save would have put the new project over the old one"
+    controller.save(tmp_path / "new.kiri")
+    until(lambda: controller.path == tmp_path / "new.kiri")
+
+
+def test_that_a_gesture_which_waits_for_its_score_is_unsaved_work(designed: MainWindow, until: Until) -> None:
+    controller = designed.controller
+    controller.hand.nudge(frozenset({(1, 1)}), 0.02)
+    designed.actions_["new"].trigger()
+    until(lambda: not controller.hand.busy)
+    assert controller.document.candidates and controller.history.unsaved
+    assert "unsaved changes" in designed.messages.messages[-1].sentence
+
+
 def test_that_undo_names_its_step_and_every_shortcut_reaches_it(heart: MainWindow, qtbot: QtBot) -> None:
     assert heart.actions_["undo"].text().replace("&", "") == "Undo set target heart"
     qtbot.keyClick(heart, Qt.Key.Key_Z, CONTROL)
