@@ -245,6 +245,9 @@ class Recovering(QObject):
         path = leftover.note.path if leftover.note is not None else ""
         self.recovered.emit(document, Path(path) if path else None)
         self.status.emit(tr("Recovered {name}; it is not saved yet.", name=_called(leftover)))
+        if self._job is not None:  # what it keeps was given up, and says nothing about what was recovered
+            self._board.abandon(self._job)
+            self._job = None
         self._keep()
 
     def _not_recovered(self, leftover: Leftover, sentence: str, trace: str) -> None:

@@ -179,6 +179,27 @@ def test_that_recovering_asks_before_it_takes_the_place_of_unsaved_work(
     assert designed.controller.path is None and designed.controller.history.unsaved
 
 
+def test_that_recovered_work_stays_until_it_is_kept_itself_not_the_work_before_it(
+    designed: MainWindow, designs: Document, folder: Path, until: Until
+) -> None:
+    left = folder / "other.kiri"
+    recovery.keep(edits.choose(designs, 2).document, Note("other", "", recovery.now(), 1), left)
+    recovering = designed.controller.filing.recovering
+    recovering.use(folder)
+    until(lambda: len(asked(designed)) == 1)
+    kept: list[tuple[Document, bool]] = []
+    recovering.kept.connect(lambda document: kept.append((document, left.exists())))
+    recovering.quiet_ms = 0
+
+    dict(asked(designed)[0].actions)["Recover"]()
+    designed.controller.change_fabrication(width_mm=88.0)
+    recovering._keep()  # as the timer does, while the recovered work is being read
+    until(lambda: not left.exists())
+    own = recovering.file
+    assert own is not None and store.load(own).chosen == 2
+    assert [document.chosen for document, _ in kept] == [2]
+
+
 @pytest.mark.parametrize("obstacle", ["folder", "file"])
 def test_that_a_place_that_cannot_be_written_is_told_once_and_the_work_goes_on(
     obstacle: str, heart: MainWindow, folder: Path, until: Until
