@@ -79,6 +79,6 @@ def recognised(text: str) -> tuple[str, str] | None:
         return ".svg", f'<svg xmlns="http://www.w3.org/2000/svg"><path d={quoteattr(text)}/></svg>'
     try:
         points = json.loads(text)
-    except ValueError:
+    except (ValueError, RecursionError):
         return None
     return (".json", text) if isinstance(points, list | dict) else None

@@ -13,6 +13,7 @@ from PySide6.QtWidgets import QApplication
 
 from kirigami_studio.gui.main_window import MainWindow
 from kirigami_studio.gui.messages import Tone
+from kirigami_studio.gui.pasting import recognised
 
 Until = Callable[[Callable[[], bool]], None]
 SVG = """<svg xmlns="http://www.w3.org/2000/svg" width="40mm" height="20mm" viewBox="0 0 40 20">
@@ -103,3 +104,7 @@ def test_that_a_text_dropped_on_the_target_is_taken_like_a_pasted_one(window: Ma
     QApplication.sendEvent(window.target.view, QDropEvent(QPointF(place), copy, mime, left, plain))
     until(lambda: window.controller.document.target is not None)
     assert len(window.controller.document.target.points) == 4  # type: ignore[union-attr]
+
+
+def test_that_text_nested_beyond_reason_is_no_target() -> None:
+    assert recognised("[" * 100_000) is None
