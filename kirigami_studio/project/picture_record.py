@@ -54,7 +54,7 @@ class TracedPicture:
     size: tuple[int, int]
 
     def __post_init__(self) -> None:
-        if Path(self.name).name != self.name or Path(self.name).suffix.lower() not in EXTENSIONS:
+        if "\0" in self.name or Path(self.name).name != self.name or Path(self.name).suffix.lower() not in EXTENSIONS:
             raise ProjectError(f"{self.name[:60]!r} is no name of a picture ({', '.join(EXTENSIONS)})")
         if len(self.content) > LARGEST_PICTURE:
             megabytes = len(self.content) / 2**20

@@ -169,7 +169,7 @@ def test_that_a_recovered_project_brings_its_photo(
     assert own is not None and store.load_all(own).picture == opened.picture
 
 
-@pytest.mark.parametrize("fault", ["missing", "no picture", "too large", "no number"])
+@pytest.mark.parametrize("fault", ["missing", "no picture", "no name", "too large", "no number"])
 def test_that_a_photo_that_cannot_be_read_is_left_out_with_a_sentence(
     fault: str, window: MainWindow, traced_project: Path, until: Until
 ) -> None:
@@ -178,6 +178,8 @@ def test_that_a_photo_that_cannot_be_read_is_left_out_with_a_sentence(
             del members["picture.png"]
         elif fault == "no picture":
             members["picture.json"] = members["picture.json"].replace(b"two greys.png", b"../../evil.png")
+        elif fault == "no name":
+            members["picture.json"] = members["picture.json"].replace(b"two greys.png", rb"two\u0000greys.png")
         elif fault == "too large":
             members["picture.png"] += bytes(picture_record.LARGEST_PICTURE)
         else:
