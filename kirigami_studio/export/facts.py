@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 
 from kirigami_studio import __version__
 from kirigami_studio.export.profile import Profile
 from kirigami_studio.fabricate.cut_plan import CutPlan
 from kirigami_studio.fabricate.joints import joint_count
+
+#: What some kind of file cannot have in a name.
+NOT_IN_NAMES = re.compile(r"[^A-Z0-9_]")
+#: Stands for a character that some kind of file cannot hold.
+REPLACEMENT = "\N{REPLACEMENT CHARACTER}"
 
 
 def facts_of(plan: CutPlan, profile: Profile) -> dict[str, str]:
@@ -29,7 +35,12 @@ def facts_of(plan: CutPlan, profile: Profile) -> dict[str, str]:
 
 def origin_facts(origin: Mapping[str, str]) -> dict[str, str]:
     """Where a design comes from, under names that no fact about the cutting has."""
-    return {f"FROM_{name.upper()}": " ".join(text.split()) for name, text in sorted(origin.items())}
+    return {f"FROM_{NOT_IN_NAMES.sub('_', name.upper())}": _one_line(text) for name, text in sorted(origin.items())}
+
+
+def _one_line(text: str) -> str:
+    """The text as every kind of file can hold it; names of files may have characters that XML or UTF-8 cannot."""
+    return "".join(letter if letter.isprintable() else REPLACEMENT for letter in " ".join(text.split()))
 
 
 def _deliberate(plan: CutPlan) -> dict[str, str]:

@@ -134,3 +134,10 @@ def test_that_a_plan_without_a_history_says_nothing_of_one(job: ExportJob, tmp_p
     export(replace(job, provenance={}), tmp_path / "cut.dxf")
     export(replace(job, provenance={}), tmp_path / "preview.png")
     assert b"FROM_" not in (tmp_path / "cut.dxf").read_bytes() and png_texts(tmp_path / "preview.png") == {}
+
+
+def test_that_a_name_which_no_file_can_hold_does_not_stop_the_export(job: ExportJob, tmp_path: Path) -> None:
+    strange = {"target": "bell\x07 and \udcff of a disk in another code", "mödel\n": "\ud800"}
+    assert export_all(replace(job, provenance=strange), tmp_path).ok
+    assert "FROM_TARGET bell\ufffd and \ufffd of" in (tmp_path / "cut.svg").read_text(encoding="utf-8")
+    export(replace(job, provenance=strange), tmp_path / "motion.gif")
