@@ -28,10 +28,12 @@ class HandWiring(QObject):
         self._refresh()
 
     def _connect(self) -> None:
-        gestures, hand, bar, controller = self.gestures, self.hand, self.bar, self.controller
+        window, gestures, hand, bar, controller = self.window, self.gestures, self.hand, self.bar, self.controller
         gestures.hovered.connect(self._tell)
         gestures.selection_changed.connect(lambda _: self._refresh())
         gestures.nudged.connect(hand.nudge)
+        for begun in (gestures.pull_begun, gestures.vertex_begun):  # the drag is at the angle that was seen
+            begun.connect(lambda *_: window.stage.deployment.play.setChecked(False))
         gestures.pull_begun.connect(hand.begin_pull)
         gestures.pulled.connect(hand.pull)
         gestures.vertex_begun.connect(hand.begin_vertex)
@@ -50,9 +52,9 @@ class HandWiring(QObject):
         controller.refitting.busy_changed.connect(self._show_fitting)
         controller.run.started.connect(lambda _: self._refresh())
         controller.run.ended.connect(lambda _: self._refresh())
-        self.window.stage.switches_changed.connect(self._refresh)
-        actions = self.window.actions_
-        actions["hand"].triggered.connect(self.window.stage.hand.click)
+        window.stage.switches_changed.connect(self._refresh)
+        actions = window.actions_
+        actions["hand"].triggered.connect(window.stage.hand.click)
         actions["lock"].triggered.connect(self.toggle_lock)
         actions["lock_all"].triggered.connect(lambda: hand.lock_all(True))
         actions["unlock_all"].triggered.connect(lambda: hand.lock_all(False))

@@ -253,3 +253,13 @@ def test_that_closing_the_window_first_finishes_what_the_hand_has_begun(by_hand:
     assert not by_hand.close()
     settle(by_hand, until)
     assert chosen(by_hand).origin is Origin.EDITED and by_hand.isVisible()
+
+
+def test_that_playing_stops_when_something_is_taken_hold_of(by_hand: MainWindow, until: Until) -> None:
+    view, play = by_hand.stage.view, by_hand.stage.deployment.play
+    play.setChecked(True)
+    start = vertex_at(view, 3)
+    drag(view, start, start + QPoint(12, 3), let_go=False)
+    assert not play.isChecked()
+    QTest.mouseRelease(view, LEFT, NONE, start + QPoint(12, 3))
+    settle(by_hand, until)
