@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import gc
+import weakref
 from PySide6.QtCore import QObject, Qt
 from PySide6.QtWidgets import QWidget
 from pytestqt.qtbot import QtBot
 
+from kirigami_studio.gui.jobs import importing
 from kirigami_studio.gui.warm_up import WarmUp
 
 
@@ -48,3 +51,15 @@ def test_that_it_waits_while_a_job_runs(qtbot: QtBot) -> None:
     WarmUp(lambda: calls.append(len(asked)), busy, owner, rest_ms=10)
     qtbot.waitUntil(lambda: bool(calls), timeout=5000)
     assert calls == [3]
+
+
+def test_that_garbage_is_collected_after_the_rooms_are_imported() -> None:
+    class Loop:
+        def __init__(self) -> None:
+            self.itself = self
+
+    importing.import_exporters()
+    gone = weakref.ref(Loop())
+    importing.import_exporters()  # as every export does
+    gc.collect()
+    assert gone() is None

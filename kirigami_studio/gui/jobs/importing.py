@@ -4,6 +4,8 @@ Python code gives the interpreter's lock away every few milliseconds; three thin
 a large library, a collection of garbage among hundreds of thousands of objects that imports have made, and the
 collections that come later and look at all of them again.  Measured with ``tests/performance/test_held_up.py``: 315 ms
 while the generator was loaded and 170 to 200 ms in later collections, without what is done here.
+
+Each room is imported once: what is garbage at that moment is never collected, so this must not be done at every job.
 """
 
 from __future__ import annotations
@@ -11,6 +13,7 @@ from __future__ import annotations
 import gc
 from collections.abc import Iterator
 from contextlib import contextmanager
+from functools import cache
 
 
 @contextmanager
@@ -26,18 +29,21 @@ def quietly() -> Iterator[None]:
             gc.enable()
 
 
+@cache
 def import_pictures() -> None:
     """What reads pictures."""
     with quietly():
         from kirigami_studio.target import read_image as _read_image  # noqa: F401
 
 
+@cache
 def import_exporters() -> None:
     """What writes files, and reads them back."""
     with quietly():
         from kirigami_studio.export import verification as _verification  # noqa: F401
 
 
+@cache
 def import_generator() -> None:
     """What draws designs, torch included."""
     with quietly():
