@@ -317,6 +317,8 @@ class HandEditing(QObject):
         )
         if not after.score.feasible:
             told = tr("{told} The design is not feasible now.", told=told)
+        if before.trim is not None:
+            told = tr("{told} Its trim is off; trim it again when you are done.", told=told)
         self.status.emit(told)
 
     def _fail(self, sentence: str, trace: str) -> None:

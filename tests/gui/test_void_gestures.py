@@ -236,7 +236,7 @@ def test_that_a_trim_goes_with_the_first_change_and_comes_back_with_undo(by_hand
     trimmed = chosen(by_hand)
     turn(by_hand.stage.view, middle_of(by_hand.stage.view, (1, 2)), 1)
     settle(by_hand, until)
-    assert chosen(by_hand).trim is None
+    assert chosen(by_hand).trim is None and "trim is off" in by_hand.says.text()
     by_hand.actions_["undo"].trigger()
     assert chosen(by_hand) == trimmed
 
