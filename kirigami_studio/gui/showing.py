@@ -34,6 +34,7 @@ class Showing(QObject):
         self._stage: Entry | None = None
         self._preview: Candidate | None = None
         self._best_of_run: Entry | None = None
+        self._decoding = 0  # number of the job
 
     @property
     def stage(self) -> Entry | None:
@@ -49,6 +50,7 @@ class Showing(QObject):
 
     def begin_run(self, kept: tuple[Candidate, ...] = (), stays: bool = False) -> None:
         """Make room for new designs beside those that are kept; ``stays`` leaves the chosen one on the stage."""
+        self._board.abandon(self._decoding)  # the document is shown again when the run is over
         self._preview, self._best_of_run = self._document.candidate if stays else None, None
         self.gallery_reset.emit(tuple(replace(self._shelf.entry(candidate), kept=True) for candidate in kept))
 
@@ -78,7 +80,7 @@ class Showing(QObject):
         missing = self._shelf.missing(document.candidates)
         if missing:
             ears = Ears(self._decoded, self._ready, on_failed=self.failed.emit)
-            self._board.start(tr("decoding the designs"), partial(steps.decoding, missing), ears)
+            self._decoding = self._board.start(tr("decoding the designs"), partial(steps.decoding, missing), ears)
         else:
             self._ready()
 

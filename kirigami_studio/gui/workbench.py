@@ -210,12 +210,23 @@ class Workbench(QObject):
         self.show()
 
     def _replace(self, edit: Edit) -> None:
+        before = self.document
+        shows_run = self.running
         self.stop_design()
         self.apply(edit)
+        self._show_after_run(shows_run, before)
 
     def _adjust(self, edit: Edit) -> None:
+        before = self.document
+        shows_run = self.running
         self.run.abandon()
         self.apply(edit)
+        self._show_after_run(shows_run, before)
+
+    def _show_after_run(self, shows_run: bool, before: Document) -> None:
+        """A run was given up for an edit that has changed nothing: its designs must not stay in sight."""
+        if shows_run and self.document is before:
+            self.showing.show(before)
 
     def apply(self, edit: Edit) -> None:
         """Make an edit part of the history and show what it changed."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from pathlib import Path
 
 import pytest
 from PySide6.QtCore import Qt
@@ -42,6 +43,39 @@ def test_that_generating_fills_the_gallery_best_first_and_is_one_undo_step(
     assert heart.controller.document == before and heart.gallery.view.model_.rowCount() == 0
     heart.actions_["redo"].trigger()
     assert heart.controller.document.candidates == found
+
+
+@pytest.mark.torch
+def test_that_a_run_given_up_for_the_same_target_leaves_nothing_in_sight(heart: MainWindow, until: Until) -> None:
+    heart.settings.candidates.setValue(400)
+    before = heart.controller.document
+    heart.actions_["generate"].trigger()
+    until(lambda: heart.gallery.view.model_.rowCount() > 2)
+    heart.controller.targeting.open("heart")
+    until(lambda: not heart.controller.running)
+    assert heart.controller.document is before
+    assert heart.gallery.view.model_.rowCount() == 0 and heart.controller.stage is None
+
+
+@pytest.mark.torch
+def test_that_designs_still_being_decoded_do_not_mix_with_those_of_a_run(
+    window: MainWindow, project_file: Path, until: Until
+) -> None:
+    controller, view = window.controller, window.gallery.view
+    shown: list[int] = []
+
+    def generate_at_once(said: str) -> None:
+        if said.startswith("Opened"):  # the designs are being decoded from now on
+            assert controller.document.candidates and controller.stage is None
+            controller.change_settings(k=2)
+            controller.change_settings(polish=0)
+            controller.showing.gallery_reset.connect(lambda _: shown.append(view.model_.rowCount()))
+            controller.generate()
+
+    controller.status.connect(generate_at_once)
+    controller.open_project(project_file)
+    until(lambda: not controller.running and controller.stage is not None)
+    assert shown == [0, 2]
 
 
 @pytest.mark.torch
