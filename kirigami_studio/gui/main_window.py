@@ -32,7 +32,7 @@ class MainWindow(Shell):
 
     def closeEvent(self, event: QCloseEvent) -> None:  # noqa: N802 - Qt's name
         if self.commands.may_close():
-            self.stage.deployment.play.setChecked(False)
+            self.stage.player.play.setChecked(False)
             self.commands.close_dialogs()
             self.hide()  # the worker may be deep in an import: let it end out of sight
             self.controller.close()

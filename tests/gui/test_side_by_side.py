@@ -154,3 +154,11 @@ def test_that_the_comparison_ends_with_its_design(designed: MainWindow, qtbot: Q
 def test_that_the_chosen_card_is_not_compared_with_itself(designed: MainWindow, qtbot: QtBot) -> None:
     compare(designed, qtbot, 0)
     assert not designed.stage.comparing and "itself" in designed.messages.messages[-1].sentence
+
+
+@pytest.mark.parametrize("page", ["compare", "cuts"])
+def test_that_closing_ends_what_plays_on_every_page(page: str, designed: MainWindow) -> None:
+    designed.actions_[page].trigger()
+    designed.stage.player.play.setChecked(True)
+    assert designed.stage.player is not designed.stage.deployment and designed.stage.player.play.isChecked()
+    # the fixture closes the window and looks for timers
