@@ -38,6 +38,8 @@ if TYPE_CHECKING:
 PAUSE_MS = 250
 #: Steps that one place of the mouse gets, one at a time so that a newer place comes first.
 MOST_STEPS = 4
+#: Voids of the largest sheet whose outline follows the hand: a step takes 0.07 s with 24 x 24 voids, with 40 x 40 0.6 s.
+MOST_VOIDS = 600
 
 
 @dataclass(frozen=True, slots=True)
@@ -183,6 +185,10 @@ class HandEditing(QObject):
         field, document = self.field, self._document()
         if field is None or phi >= math.pi:
             self.status.emit(tr("The flat sheet is a rectangle whatever the ratios; open it to move its outline."))
+            return
+        if field.ratio.size > MOST_VOIDS:
+            told = tr("The outline of so many voids cannot follow the hand; pull single voids, or fit again (Ctrl+F).")
+            self.status.emit(told)
             return
         held = np.zeros(field.ratio.shape, dtype=np.bool_)
         for void in document.locked:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -25,10 +26,14 @@ from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 from pytestqt.qtbot import QtBot
 
-from kirigami_studio.evaluate.candidate import Origin
+from kirigami_studio.evaluate.candidate import Candidate, Origin
 from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.gui.main_window import MainWindow
 from kirigami_studio.lattice.deployment import deploy
+from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.project import edits, store
+from kirigami_studio.project.document import Document
+from kirigami_studio.target import silhouettes
 
 
 def test_that_pointing_at_a_void_tells_its_facts_even_outside_the_mode(designed: MainWindow) -> None:
@@ -263,3 +268,20 @@ def test_that_playing_stops_when_something_is_taken_hold_of(by_hand: MainWindow,
     assert not play.isChecked()
     QTest.mouseRelease(view, LEFT, NONE, start + QPoint(12, 3))
     settle(by_hand, until)
+
+
+def test_that_the_outline_of_a_sheet_too_large_to_follow_is_refused_at_once(
+    window: MainWindow, until: Until, tmp_path: Path
+) -> None:
+    target, field = silhouettes.load("heart"), RatioField.from_log10(np.zeros((25, 25)))
+    large = Candidate(field, evaluate(deploy(field), target, 0.0), seed=1, index=0)
+    start = edits.set_target(Document(), target).document
+    store.save(edits.set_candidates(start, [large], {}).document, tmp_path / "large.kiri")
+    window.controller.open_project(tmp_path / "large.kiri")
+    until(lambda: window.controller.stage is not None)
+    hand = window.controller.hand
+    hand.begin_vertex(0, OPEN)
+    assert "cannot follow the hand" in window.says.text()
+    hand.move_vertex((0.5, 0.5))
+    hand.let_go()
+    assert not hand.busy
