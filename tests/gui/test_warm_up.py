@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gc
 import weakref
+
 from PySide6.QtCore import QObject, Qt
 from PySide6.QtWidgets import QWidget
 from pytestqt.qtbot import QtBot
