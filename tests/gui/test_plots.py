@@ -191,3 +191,14 @@ def test_that_the_charts_follow_the_theme_and_open_plots_are_remembered(plotted:
     assert not plotted.stage.plots.isVisible()
     plotted.stage.restore(state)
     assert plotted.stage.plots.isVisible() and plotted.actions_["plots"].isChecked()
+
+
+@pytest.mark.parametrize("width", [250, 400])
+def test_that_the_numbers_above_a_curve_are_never_cut_off(plotted: MainWindow, width: int) -> None:
+    for chart in plotted.stage.plots.charts:
+        chart.resize(width, chart.height())
+        assert chart.numbers.text()
+        assert chart.numbers.sizeHint().width() <= width
+    last = plotted.stage.plots.charts[0]
+    assert last.nearest is not None
+    assert (f"{last.nearest[0]:.1f}°" in last.numbers.text()) == (width == 400), "the angle goes first"

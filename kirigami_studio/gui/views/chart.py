@@ -10,8 +10,8 @@ import numpy as np
 import numpy.typing as npt
 import pyqtgraph
 from PySide6.QtCore import QEvent, QObject, Qt, Signal
-from PySide6.QtGui import QColor, QPen
-from PySide6.QtWidgets import QLabel, QVBoxLayout, QWidget
+from PySide6.QtGui import QColor, QPen, QResizeEvent, QTextDocument
+from PySide6.QtWidgets import QLabel, QSizePolicy, QVBoxLayout, QWidget
 
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.theme import LIGHT, Palette
@@ -49,6 +49,7 @@ class Chart(QWidget):
         self.setAccessibleName(f"{title}, {unit}")
         self.numbers = QLabel()
         self.numbers.setTextFormat(Qt.TextFormat.RichText)
+        self.numbers.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
         # Moves that follow each other closely must not be dropped: the last one says where the line is to stay.
         pg.setConfigOptions(mouseRateLimit=0)
         self.plot: Any = pg.PlotWidget()
@@ -147,14 +148,35 @@ class Chart(QWidget):
             self.dots.setData([], [])
             return
         degrees, values = read
-        parts = []
-        for name, colour, sign, value in zip(self._names, self._colours(), ("━", "┅"), values, strict=False):
-            number = _readable(value, self._unit)
-            parts.append(f'<span style="color:{colour}">{sign}</span> {name} <b>{number}</b>')
-        muted = f'<span style="color:{self._palette.muted}">{degrees:.1f}°</span>'
-        self.numbers.setText("&nbsp; ".join([*parts, muted]))
+        self.numbers.setText(self._told(degrees, values))
         known = [value for value in values if math.isfinite(value)]
         self.dots.setData([degrees] * len(known), known)
+
+    def _told(self, degrees: float, values: tuple[float, ...]) -> str:
+        """The numbers in the longest way that the chart has room for; the angle stands beside the slider too."""
+        muted = f'<span style="color:{self._palette.muted}">{degrees:.1f}°</span>'
+        text = ""
+        for decimals, tail in ((2, [muted]), (2, []), (1, []), (0, [])):
+            parts = []
+            for name, colour, sign, value in zip(self._names, self._colours(), ("━", "┅"), values, strict=False):
+                number = _readable(value, self._unit, decimals)
+                parts.append(f'<span style="color:{colour}">{sign}</span> {name} <b>{number}</b>')
+            text = "&nbsp; ".join([*parts, *tail])
+            if self._breadth(text) <= self.width():
+                break
+        return text
+
+    def _breadth(self, text: str) -> float:
+        """Pixels that the numbers take in one line."""
+        page = QTextDocument()
+        page.setDocumentMargin(0.0)
+        page.setDefaultFont(self.numbers.font())
+        page.setHtml(text)
+        return page.idealWidth()
+
+    def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802 - Qt's name
+        super().resizeEvent(event)
+        self._write()
 
     def _click(self, event: Any) -> None:
         if event.button() == Qt.MouseButton.LeftButton and not event.isAccepted():
@@ -182,7 +204,7 @@ def _pen(colour: str, width: float, style: Qt.PenStyle) -> QPen:
     return pen
 
 
-def _readable(value: float, unit: str) -> str:
+def _readable(value: float, unit: str, decimals: int) -> str:
     if not math.isfinite(value):
         return tr("none")
-    return f"{value:.0f} {unit}" if abs(value) >= 1000 else f"{value:.2f} {unit}"
+    return f"{value:.0f} {unit}" if abs(value) >= 1000 else f"{value:.{decimals}f} {unit}"
