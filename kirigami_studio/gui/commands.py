@@ -123,6 +123,13 @@ class Commands(Beside):
             actions[name].setChecked(overlay in USUAL)
             actions[name].toggled.connect(partial(window.stage.set_overlay, overlay))
             window.stage.overlay_menu.addAction(actions[name])
+        window.target.editing_changed.connect(self._give_mode_keys)
+        self._give_mode_keys(window.target.editing)
+
+    def _give_mode_keys(self, editing: bool) -> None:
+        """The keys of adding and taking away hold on the board only: elsewhere + and - change a ratio."""
+        for name in ("mode_new", "mode_add", "mode_subtract"):
+            self.window.actions_[name].setEnabled(editing)
 
     def _take_tool(self, tool: Tool, _: bool = False) -> None:
         if self.window.target.strip.buttons[tool].isEnabled():

@@ -164,11 +164,14 @@ class Shell(QMainWindow):
         if editing:
             self._sizes_before = sizes
             self.columns.setSizes([sizes[0] + sizes[1], 0, sizes[2]])
+            self.target.view.setFocus()  # hiding what has the focus would hand it to the gallery's list of orders
         self.stage.setVisible(not editing)
         self.settings.setVisible(not editing)
         if not editing:
             self.columns.setSizes(self._sizes_before)
             self._share_width()
+            if self.target.view.hasFocus() or self.focusWidget() is None:
+                self.stage.view.setFocus()
 
     def _keep_columns(self) -> None:
         self._laid_out = True

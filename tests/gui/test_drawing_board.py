@@ -113,6 +113,23 @@ def test_that_escape_puts_the_tool_away_and_then_leaves_the_editor(board: MainWi
     assert not board.target.editing
 
 
+def test_that_the_board_has_the_keys_as_soon_as_it_opens(heart: MainWindow, qtbot: QtBot) -> None:
+    heart.stage.view.setFocus()
+    heart.actions_["edit_target"].trigger()
+    assert heart.focusWidget() is heart.target.view
+    qtbot.keyClick(heart.focusWidget(), Qt.Key.Key_Escape)
+    assert not heart.target.editing and heart.focusWidget() is heart.stage.view
+
+
+def test_that_plus_and_minus_belong_to_the_board_only_while_it_is_open(heart: MainWindow, qtbot: QtBot) -> None:
+    for key in (Qt.Key.Key_Plus, Qt.Key.Key_Minus, Qt.Key.Key_Equal):
+        qtbot.keyClick(heart.stage.view, key)
+        assert not heart.target.editing
+    heart.actions_["edit_target"].trigger()
+    heart.actions_["mode_add"].trigger()
+    assert heart.target.strip.modes[Combine.ADD].isChecked()
+
+
 def test_that_leaving_the_editor_says_what_comes_next(plate: MainWindow, qtbot: QtBot) -> None:
     use(plate, Tool.POSE)
     assert plate.says.text().startswith("Drag a square")
