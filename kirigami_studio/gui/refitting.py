@@ -44,10 +44,13 @@ class Refitting(OneDesign):
             told = tr("The fit found nothing better: sIoU {after:.2f} % after {before:.2f} %.", **numbers)
             actions = ((tr("Take it anyway"), partial(self._replace, before, report)),)
             self.message.emit(Message(told, Tone.HINT, actions=actions))
+            self.status.emit(tr("Fitted; the design stays as it was."))
 
     def _replace(self, before: Candidate, report: hand_steps.Refitted) -> None:
         after, label = report.decoded.candidate, tr("Fit {design}", design=self.name())
         edit = hand_edits.take_changed(self._document(), before, after, label)
-        if edit is not None:
-            self._shelf.put(after, report.decoded.deployment)
-            self.edited.emit(edit)
+        if edit is None:
+            self.status.emit(tr("The design has changed since that fit; press Fit again (Ctrl+F)."))
+            return
+        self._shelf.put(after, report.decoded.deployment)
+        self.edited.emit(edit)

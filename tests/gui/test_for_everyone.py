@@ -7,13 +7,14 @@ from collections.abc import Callable
 
 import pytest
 from PySide6.QtCore import QPoint, QRect, Qt
-from PySide6.QtGui import QAccessible
+from PySide6.QtGui import QAccessible, QKeySequence
 from PySide6.QtWidgets import (
     QAbstractButton,
     QAbstractItemView,
     QAbstractSpinBox,
     QApplication,
     QComboBox,
+    QLabel,
     QLineEdit,
     QPlainTextEdit,
     QSlider,
@@ -193,3 +194,12 @@ def test_that_the_focus_shows_on_every_control_that_tab_reaches(
             invisible.append(focused.objectName() or focused.metaObject().className())
     assert len(seen) > 20
     assert invisible == []
+
+
+def test_that_alt_and_a_letter_of_a_menu_open_the_menu_and_nothing_else(window: MainWindow) -> None:
+    menus = {QKeySequence.mnemonic(action.text()) for action in window.menuBar().actions()}
+    assert len(menus) == len(window.menuBar().actions())
+    captions = [label for label in window.findChildren(QLabel) if label.buddy() is not None]
+    texts = [caption.text() for caption in captions] + [one.text() for one in window.findChildren(QAbstractButton)]
+    assert any("&" in text for text in texts)
+    assert [text for text in texts if "&" in text and QKeySequence.mnemonic(text) in menus] == []

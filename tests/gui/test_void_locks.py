@@ -152,20 +152,26 @@ def test_that_fit_again_improves_the_design_and_holds_what_is_locked(
     assert chosen(by_hand) == before
 
 
+def fit_in_vain(window: MainWindow, until: Until) -> None:
+    """Fit a single free ratio until no better one is found."""
+    controller = window.controller
+    controller.hand.lock_all(True)
+    controller.hand.lock(frozenset({(1, 1)}), False)  # a single ratio is soon as good as it gets
+    for _ in range(12):
+        held = chosen(window)
+        controller.refitting.start()
+        until(lambda: not controller.refitting.busy)
+        if chosen(window) == held:
+            break
+    assert chosen(window) == held
+
+
 def test_that_a_fit_that_finds_nothing_better_is_taken_only_when_asked(
     by_hand: MainWindow,
     until: Until,
 ) -> None:
     controller = by_hand.controller
-    controller.hand.lock_all(True)
-    controller.hand.lock(frozenset({(1, 1)}), False)  # a single ratio is soon as good as it gets
-    for _ in range(12):
-        held = chosen(by_hand)
-        controller.refitting.start()
-        until(lambda: not controller.refitting.busy)
-        if chosen(by_hand) == held:
-            break
-    assert chosen(by_hand) == held
+    fit_in_vain(by_hand, until)
     message = by_hand.messages.messages[-1]
     assert message.sentence.startswith("The fit found nothing better")
     message.actions[0][1]()
@@ -205,3 +211,25 @@ def test_that_there_is_nothing_to_edit_without_a_design_or_before_its_polish(hea
     heart.actions_["refit"].trigger()
     heart.controller.refitting.start()
     assert "Choose a finished design first" in heart.messages.messages[-1].sentence
+
+
+def test_that_a_fit_that_is_out_of_date_says_so_instead_of_doing_nothing(by_hand: MainWindow, until: Until) -> None:
+    controller, messages = by_hand.controller, by_hand.messages
+    fit_in_vain(by_hand, until)
+    assert "stays as it was" in by_hand.says.text()
+    ((label, act),) = messages.messages[-1].actions
+    assert label == "Take it anyway"
+    controller.hand.set_ratio(frozenset({(1, 1)}), 2.0)
+    controller.hand.commit()
+    until(lambda: not controller.hand.busy)
+    before = controller.document
+    act()
+    assert controller.document == before and "has changed since" in by_hand.says.text()
+
+
+def test_that_no_ratio_is_shown_while_no_void_is_selected(by_hand: MainWindow) -> None:
+    bar, gestures = by_hand.stage.voids, by_hand.stage.view.voids
+    gestures.select(frozenset())
+    assert bar.ratio.text() == "x \N{EN DASH}" and not bar.ratio.isEnabled()
+    gestures.select(frozenset({(1, 1)}))
+    assert bar.ratio.text() == f"x {bar.ratio.value():.4f}" and bar.ratio.isEnabled()

@@ -89,8 +89,8 @@ class MoreOptions(QWidget):
         table.addLayout(captioned(tr("&Order"), self.order, self.order), 0, 2, 1, 2)
         table.addLayout(captioned(tr("&Tabs"), self.tabs, self.tabs), 1, 0)
         table.addLayout(captioned(tr("Tab, mm"), self.tab_mm, self.tab_mm), 1, 1)
-        table.addLayout(captioned(tr("DXF &version"), self.dxf_version, self.dxf_version), 1, 2, 1, 2)
-        table.addLayout(captioned(tr("Mac&hine profile"), self.profile, self.profile), 2, 0, 1, 4)
+        table.addLayout(captioned(tr("D&XF version"), self.dxf_version, self.dxf_version), 1, 2, 1, 2)
+        table.addLayout(captioned(tr("Machine profile"), self.profile, self.profile), 2, 0, 1, 4)
         for column in range(4):
             table.setColumnStretch(column, 1)
         whole = QVBoxLayout(self)
