@@ -249,3 +249,24 @@ def test_that_a_double_click_cuts_a_connector_through_and_brings_it_back(
 def test_that_a_drag_stays_within_the_widths_that_there_are(fine: bool, way: float, width: float) -> None:
     held = HingeDrag(0, QPointF(0.0, 0.0), 0.4)
     assert held.width_at(QPointF(way, 0.0), fine) == pytest.approx(width, abs=1e-9)
+
+
+def test_that_ctrl_a_selects_every_connector_while_they_are_shown(cutting: MainWindow, qtbot: QtBot) -> None:
+    page = cutting.stage.cuts
+    every = frozenset(range(len(page._plan.hinges))) if page._plan is not None else frozenset()
+    page.view.setFocus()
+    qtbot.keyClick(page.view, Qt.Key.Key_A, Qt.KeyboardModifier.ControlModifier)
+    assert every and page.view.selected == every
+
+
+def test_that_a_connector_that_is_cut_through_is_called_so(cutting: MainWindow, qtbot: QtBot, until: Until) -> None:
+    page = cutting.stage.cuts
+    first, second = lonely(page, 2)
+    page.view.gestures.select(frozenset({first}))
+    qtbot.keyClick(page.view, Qt.Key.Key_Delete)
+    until(lambda: page.hinges.says.text() == f"Connector {first}: cut through")
+    assert not page.hinges.remove.isEnabled() and page.hinges.reset.isEnabled()
+    page.view.gestures.select(frozenset({first, second}))
+    assert page.hinges.says.text() == "2 connectors, 1 cut through" and page.hinges.remove.isEnabled()
+    cutting.actions_["undo"].trigger()
+    until(lambda: page.hinges.says.text() == "2 connectors")

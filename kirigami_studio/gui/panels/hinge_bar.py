@@ -84,7 +84,8 @@ class HingeBar(QWidget):
         self.rules.setEnabled(plan is not None)
         for part in (self.width_mm, self.remove, self.reset):
             part.setEnabled(bool(hinges) and plan is not None)
-        self.says.set_texts(*_told(hinges))
+        cut = hinges & set(plan.options.removed) if plan is not None else frozenset()
+        self.says.set_texts(*_told(hinges, len(cut)))
         self._fit()
         if plan is not None:
             there = [hinge for hinge in sorted(hinges) if hinge not in plan.options.removed]
@@ -94,6 +95,7 @@ class HingeBar(QWidget):
         if plan is not None and hinges:
             own = {hinge for hinge, _ in plan.options.hinge_mm} | set(plan.options.removed)
             self.reset.setEnabled(bool(own & hinges))
+            self.remove.setEnabled(cut != hinges)
 
     def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802 - Qt's name
         super().resizeEvent(event)
@@ -126,9 +128,12 @@ class HingeBar(QWidget):
             self.selected.emit(rule(self._plan))
 
 
-def _told(hinges: frozenset[int]) -> tuple[str, ...]:
+def _told(hinges: frozenset[int], cut: int) -> tuple[str, ...]:
+    """What the row says of the selected connectors, ``cut`` of them cut through; longest first."""
     if not hinges:
         return (tr("No connector selected"), tr("None"))
     if len(hinges) == 1:
-        return (tr("Connector {hinges}", hinges=min(hinges)), f"{min(hinges)}")
-    return (tr("{count} connectors", count=len(hinges)), f"{len(hinges)}")
+        named, short = tr("Connector {hinges}", hinges=min(hinges)), f"{min(hinges)}"
+        return (tr("{connector}: cut through", connector=named), named, short) if cut else (named, short)
+    named, short = tr("{count} connectors", count=len(hinges)), f"{len(hinges)}"
+    return (tr("{connectors}, {cut} cut through", connectors=named, cut=cut), named, short) if cut else (named, short)

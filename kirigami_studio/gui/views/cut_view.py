@@ -6,7 +6,7 @@ from enum import Enum
 
 import numpy as np
 from PySide6.QtCore import QEvent, QPointF, QRectF, Qt, Signal
-from PySide6.QtGui import QColor, QHelpEvent, QKeyEvent, QMouseEvent, QPainter, QPen, QPixmap
+from PySide6.QtGui import QColor, QHelpEvent, QKeyEvent, QKeySequence, QMouseEvent, QPainter, QPen, QPixmap
 from PySide6.QtWidgets import QToolTip, QWidget
 
 from kirigami_studio.fabricate.checks import Problem
@@ -43,7 +43,7 @@ CLOSE_UP = 6.0
 PROBLEM_REACH = 11.0
 HINT = tr(
     "Wheel: zoom. Drag: move. Click a connector: select; Shift-click or Shift-drag: "
-    "select more. Drag it to size (Alt: fine), or type a width; double-click or Delete "
+    "select more, Ctrl+A: all. Drag it to size (Alt: fine), or type a width; double-click or Delete "
     "cuts through, double-click brings back."
 )
 
@@ -288,6 +288,8 @@ class CutView(Canvas):
         return HINT if hinge is None else self._connectors.described(hinge)
 
     def _wants(self, event: QKeyEvent) -> bool:
+        if event.matches(QKeySequence.StandardKey.SelectAll):
+            return True
         keys = (Qt.Key.Key_Delete, Qt.Key.Key_Backspace, Qt.Key.Key_Escape)
         return bool(self.selected) and (event.key() in keys or _starts_number(event))
 
@@ -295,6 +297,9 @@ class CutView(Canvas):
         key = event.key()
         if key in (Qt.Key.Key_Left, Qt.Key.Key_Right) and self._connectors is not None:
             self.gestures.walk(1 if key == Qt.Key.Key_Right else -1)
+        elif event.matches(QKeySequence.StandardKey.SelectAll):
+            if self._connectors is not None and CutOverlay.CONNECTORS in self._overlays:
+                self.gestures.select(frozenset(range(len(self._connectors))))
         elif not self.selected:
             super().keyPressEvent(event)
         elif key in (Qt.Key.Key_Delete, Qt.Key.Key_Backspace):
