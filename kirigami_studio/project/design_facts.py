@@ -5,11 +5,13 @@ from __future__ import annotations
 import math
 import re
 
-from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.evaluate.candidate import Candidate, Origin
 from kirigami_studio.project.document import Document
 
 #: What stands between the values of several runs in one project.
 BETWEEN = re.compile(r"[,;]\s*")
+#: What a run knows only of designs that were drawn near another one.
+OF_RESAMPLED = ("near", "nearness")
 
 
 def design_facts(document: Document, candidate: Candidate) -> dict[str, str]:
@@ -17,9 +19,12 @@ def design_facts(document: Document, candidate: Candidate) -> dict[str, str]:
 
     What the project knows of its run or runs is repeated, except that the model and its hash are those that this
     candidate was drawn with; a hash that the project does not know is left out rather than taken from another model.
+    A design that was not drawn near another one does not name the one that those of another run were drawn near.
     """
     facts = dict(document.provenance)
     models, digests = (_parts(facts.pop(name, "")) for name in ("model", "model_sha256"))
+    if candidate.origin in (Origin.SAMPLED, Origin.SEARCHED):
+        facts = {name: text for name, text in facts.items() if name not in OF_RESAMPLED}
     variant = candidate.variant or (models[0] if len(models) == 1 else "")
     by_model = dict(zip(models, digests, strict=True)) if len(models) == len(digests) else {}
     if variant:

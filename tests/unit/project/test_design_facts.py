@@ -35,3 +35,12 @@ def test_that_the_only_model_of_a_project_is_that_of_a_candidate_which_does_not_
     silent = replace(candidates[0], variant="")
     facts = design_facts(replace(document, candidates=(silent,), chosen=0, marks=(), provenance=known), silent)
     assert (facts["model"], facts["model_sha256"]) == ("balanced", "aa")
+
+
+def test_that_only_a_design_drawn_near_another_one_names_that_one(document: Document) -> None:
+    first, second = document.candidates[:2]
+    both = (replace(first, origin=Origin.RESAMPLED), replace(second, origin=Origin.SAMPLED), *document.candidates[2:])
+    joined = replace(document, candidates=both, provenance={"near": "5e5e", "nearness": "0.6"})
+    near, free = design_facts(joined, both[0]), design_facts(joined, both[1])
+    assert (near["near"], near["nearness"]) == ("5e5e", "0.6")
+    assert "near" not in free and "nearness" not in free
