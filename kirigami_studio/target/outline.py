@@ -114,10 +114,6 @@ class Outline:
         """Return the same shape under another name."""
         return replace(self, name=name)
 
-    def noted(self, *notes: str) -> Outline:
-        """Return the same shape with more notes."""
-        return replace(self, notes=(*self.notes, *notes))
-
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Outline) and np.array_equal(self.points, other.points)
 

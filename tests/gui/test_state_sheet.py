@@ -10,8 +10,9 @@ from PIL import Image
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
+from kirigami_studio.gui.board_states import LARGE, SIZES
 from kirigami_studio.gui.contact_sheet import contact_sheets
-from kirigami_studio.gui.state_sheet import LARGE, SIZES, StateSheet
+from kirigami_studio.gui.state_sheet import StateSheet
 
 
 @pytest.fixture
