@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 import shapely
 from PySide6.QtCore import QPoint, QSize, Qt
-from PySide6.QtGui import QColor
+from PySide6.QtGui import QColor, QFontMetrics, QImage, QPainter
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
@@ -19,7 +19,8 @@ from kirigami_studio.fabricate.panel_sizes import edges_of, necks_of, panels_in_
 from kirigami_studio.gui.commands import OVERLAY_ACTIONS
 from kirigami_studio.gui.main_window import MainWindow
 from kirigami_studio.gui.scene.boundary_gap import boundary_gap
-from kirigami_studio.gui.scene.colour_scale import ratio_scale
+from kirigami_studio.gui.scene.chips import Chip, legend_boxes, paint_legend
+from kirigami_studio.gui.scene.colour_scale import opening_scale, paint_colour_bars, ratio_scale
 from kirigami_studio.gui.scene.fault_items import FaultKind, crossing_place
 from kirigami_studio.gui.scene.posed import PosedDesign
 from kirigami_studio.gui.scene.void_numbers import heat_tiles, quad_areas
@@ -224,3 +225,18 @@ def test_that_no_fault_kind_is_without_words() -> None:
     from kirigami_studio.gui.views.fault_tour import _words
 
     assert all(_words(kind) for kind in FaultKind)
+
+
+def test_that_labels_and_colour_bars_stay_inside_a_narrow_view(qtbot: QtBot) -> None:
+    width = 150
+    picture = QImage(width, 200, QImage.Format.Format_RGB32)
+    picture.fill(0xFFFF00FF)
+    painter = QPainter(picture)
+    chips = [Chip(LIGHT.text, "off 0.18 mm, at most 2.06 mm"), Chip(LIGHT.extra, "extra")]
+    boxes = legend_boxes(chips, QFontMetrics(painter.font()), width, 200.0)
+    assert all(box.left() > 0 and box.right() < width for box in boxes)
+    paint_legend(painter, chips, boxes, LIGHT)
+    paint_colour_bars(painter, [opening_scale(218.0, LIGHT)], width - 10.0, 10.0, LIGHT)
+    painter.end()
+    for edge in (0, 1, width - 2, width - 1):
+        assert {picture.pixel(edge, y) for y in range(200)} == {0xFFFF00FF}, "something reaches over the edge"

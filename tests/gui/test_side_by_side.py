@@ -162,3 +162,13 @@ def test_that_closing_ends_what_plays_on_every_page(page: str, designed: MainWin
     designed.stage.player.play.setChecked(True)
     assert designed.stage.player is not designed.stage.deployment and designed.stage.player.play.isChecked()
     # the fixture closes the window and looks for timers
+
+
+def test_that_a_narrow_side_names_its_design_in_fewer_words(designed: MainWindow) -> None:
+    designed.actions_["compare"].trigger()
+    QApplication.processEvents()
+    side = designed.stage.compare.left
+    side.resize(400, side.height())
+    assert side.title.text() == "Design 1, chosen"
+    side.resize(side.title.fontMetrics().horizontalAdvance("Design 1, chose") + 40, side.height())
+    assert side.title.text() == "Design 1"

@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from PySide6.QtCore import QPointF, QSize, Qt, Signal
-from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QLabel, QSizePolicy, QToolButton, QVBoxLayout, QWidget
+from PySide6.QtGui import QResizeEvent
+from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QLabel, QToolButton, QVBoxLayout, QWidget
 
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui import icons
-from kirigami_studio.gui.panels.card import tool_button
+from kirigami_studio.gui.panels.card import FittingLabel, tool_button
 from kirigami_studio.gui.panels.deployment_bar import DeploymentBar
 from kirigami_studio.gui.scene.frame import Bounds
 from kirigami_studio.gui.selecting import differences, least_panel
@@ -51,9 +52,9 @@ class Side(QWidget):
 
     def __init__(self, name: str, told: str, button: QToolButton) -> None:
         super().__init__()
-        self.title = QLabel()
+        self.title = FittingLabel()
         self.title.setObjectName("number")
-        self.title.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
+        self._button = button
         self.view = ComparedView()
         self.view.setObjectName(name)
         self.view.setAccessibleName(told)
@@ -76,7 +77,8 @@ class Side(QWidget):
             self.values.append(value)
             self.gaps.append(gap)
         head = QHBoxLayout()
-        head.addWidget(self.title, 1)
+        head.addWidget(self.title)
+        head.addStretch(1)
         head.addWidget(button)
         column_ = QVBoxLayout(self)
         column_.setContentsMargins(0, 0, 0, 0)
@@ -84,6 +86,18 @@ class Side(QWidget):
         column_.addLayout(head)
         column_.addWidget(self.view, 1)
         column_.addLayout(self._grid)
+
+    def name(self, *titles: str) -> None:
+        """Show the longest of these titles that there is room for."""
+        self.title.set_texts(*titles)
+        self._fit()
+
+    def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802 - Qt's name
+        super().resizeEvent(event)
+        self._fit()
+
+    def _fit(self) -> None:
+        self.title.fit(self.width() - self._button.sizeHint().width() - 12)
 
     def tell(self, values: Sequence[str], gaps: Sequence[str]) -> None:
         """Show the numbers of this design, and by how much they are above or below the other's."""
@@ -164,15 +178,14 @@ class ComparePage(QWidget):
 
     def _show_side(self, side: Side, one: tuple[Entry, int] | None, target: Outline | None) -> None:
         if one is None:
-            side.title.setText("")
+            side.name("")
             side.view.set_hint("compare", tr("Nothing to compare with"), tr("Ctrl+click a card of the gallery."))
             side.view.show_design(None, None, None)
             return
         entry, number = one
         chosen = side is self.left
-        side.title.setText(
-            tr("Design {number}, chosen", number=number) if chosen else tr("Design {number}", number=number)
-        )
+        alone = tr("Design {number}", number=number)
+        side.name(*((tr("Design {number}, chosen", number=number), alone) if chosen else (alone,)))
         candidate = entry.candidate
         # Contacts are known of the field that was scored; the one fitted for trimming is free of them.
         scored = candidate.trim is None or candidate.trim.field == candidate.field

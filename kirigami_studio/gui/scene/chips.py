@@ -50,7 +50,7 @@ def legend_boxes(
     x, y, end = INSET, bottom - height - INSET, width - INSET - kept_free
     boxes = []
     for chip in chips:
-        breadth = chip.width(metrics)
+        breadth = min(chip.width(metrics), width - 2 * INSET)
         if x > INSET and x + breadth > end:
             x, y, end = INSET, y - height - 6.0, width - INSET
         boxes.append(QRectF(x, y, breadth, height))
@@ -69,7 +69,11 @@ def paint_legend(painter: QPainter, chips: list[Chip], boxes: list[QRectF], pale
             painter.drawRoundedRect(QRectF(x + number * SWATCH, y, SWATCH, SWATCH), 2, 2)
         painter.setPen(QColor(palette.text))
         after = 17.0 + SWATCH * len(chip.colours)
-        painter.drawText(box.adjusted(after, 0, 0, 0), int(Qt.AlignmentFlag.AlignVCenter), chip.text)
+        room = box.adjusted(after, 0, 0, 0)
+        text = chip.text
+        if box.width() < chip.width(painter.fontMetrics()):
+            text = painter.fontMetrics().elidedText(text, Qt.TextElideMode.ElideRight, round(room.width() - 4.0))
+        painter.drawText(room, int(Qt.AlignmentFlag.AlignVCenter), text)
 
 
 def paint_caption(painter: QPainter, text: str, width: float, palette: Palette) -> None:

@@ -22,6 +22,8 @@ SHADES = 64
 RATIO_ENDS = (1.2, 1.5, 2.0, 3.0, 5.0, 10.0, 30.0, 100.0, 1000.0, 1e4, 1e6)
 #: Sizes of a bar, pixels.
 BAR_WIDTH, BAR_HEIGHT, PADDING = 150.0, 9.0, 10.0
+#: Pixels left of a bar that stay free.
+MARGIN = 6.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,12 +87,14 @@ def paint_colour_bars(painter: QPainter, scales: list[ColourScale], right: float
     """Draw the bars below each other; ``right`` and ``top`` are pixels of the upper right corner."""
     metrics = painter.fontMetrics()
     for scale in scales:
-        width = max(BAR_WIDTH, metrics.horizontalAdvance(scale.title)) + 2 * PADDING
+        wanted = max(BAR_WIDTH, metrics.horizontalAdvance(scale.title)) + 2 * PADDING
+        width = min(wanted, right - MARGIN)  # a narrow view gets narrow bars
         height = 2 * metrics.height() + BAR_HEIGHT + 14.0
         box = QRectF(right - width, top, width, height)
         paint_chip(painter, box, palette)
         painter.setPen(QColor(palette.text))
-        painter.drawText(QRectF(box.left() + PADDING, top + 4.0, width, metrics.height()), 0, scale.title)
+        title = metrics.elidedText(scale.title, Qt.TextElideMode.ElideRight, round(width - 2 * PADDING))
+        painter.drawText(QRectF(box.left() + PADDING, top + 4.0, width, metrics.height()), 0, title)
         bar = QRectF(box.left() + PADDING, top + metrics.height() + 7.0, width - 2 * PADDING, BAR_HEIGHT)
         gradient = QLinearGradient(bar.topLeft(), bar.topRight())
         for index, colour in enumerate(scale.colours):
