@@ -5,6 +5,7 @@ from __future__ import annotations
 from PySide6.QtCore import QObject
 from PySide6.QtGui import QAction
 
+from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.commands import OVERLAY_ACTIONS, Commands
 from kirigami_studio.gui.controller import Controller
@@ -12,7 +13,7 @@ from kirigami_studio.gui.gallery_wiring import GalleryWiring
 from kirigami_studio.gui.hand_wiring import HandWiring
 from kirigami_studio.gui.jobs.steps import Planned
 from kirigami_studio.gui.lost_designs import LostDesigns
-from kirigami_studio.gui.messages import Tone
+from kirigami_studio.gui.messages import Message, Tone
 from kirigami_studio.gui.reshaping import Reshaping
 from kirigami_studio.gui.shell import Shell
 from kirigami_studio.gui.sizing import Sizing
@@ -30,6 +31,7 @@ class Wiring(QObject):
         self.controller = controller
         self.commands = commands
         self.reshaping = Reshaping(window.target.view.easel, lambda: controller.document, self)
+        self._slips: list[Message] = []
         self.lost = LostDesigns(controller.history, self)
         self.gallery = GalleryWiring(window, controller, self)
         self.sizing = Sizing(self)
@@ -90,7 +92,8 @@ class Wiring(QObject):
         window.target.refine.refined.connect(reshaping.refine)
         window.target.refine.size_wanted.connect(reshaping.resize)
         reshaping.edited.connect(controller.targeting.reshape)
-        reshaping.refused.connect(controller.refuse)
+        reshaping.edited.connect(lambda _: self._forget_slips())
+        reshaping.refused.connect(self._refuse)
         reshaping.previewed.connect(window.target.view.show_preview)
         controller.document_changed.connect(self.lost.follow)
         self.lost.message.connect(window.messages.add)
@@ -98,6 +101,16 @@ class Wiring(QObject):
         self.lost.undo_wanted.connect(controller.undo)
         reshaping.restarted.connect(window.target.refine.restart)
         controller.run.started.connect(lambda _: window.target.set_editing(False))
+
+    def _refuse(self, error: KirigamiError) -> None:
+        """A shape could not be made; the sentence is of use until one can."""
+        self._slips.append(Message(str(error), Tone.ERROR))
+        self.controller.refuse(error)
+
+    def _forget_slips(self) -> None:
+        for slip in self._slips:
+            self.window.messages.drop(slip)
+        self._slips.clear()
 
     def _connect_controller(self) -> None:
         window, controller = self.window, self.controller

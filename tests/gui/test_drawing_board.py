@@ -444,3 +444,23 @@ def test_that_the_hint_goes_with_the_target(plate: MainWindow) -> None:
     assert plate.target.view.reach is None and not plate.target.reach.isVisible()
     plate.actions_["undo"].trigger()
     assert plate.target.reach.isVisible()
+
+
+def test_that_a_slip_is_forgotten_once_a_shape_can_be_made(plate: MainWindow) -> None:
+    use(plate, Tool.RECTANGLE)
+    plate.target.strip.set_mode(Combine.ADD)
+    drag(plate, (60, 60), (70, 70))
+    assert "lies beside the target" in plate.messages.messages[-1].sentence
+    drag(plate, (0, 0), (40, 10))
+    assert plate.messages.messages == ()
+
+
+def test_that_one_stroke_is_called_freehand_in_the_history(board: MainWindow) -> None:
+    use(board, Tool.FREEHAND)
+    view = board.target.view
+    places = [pixel(board, (40 * math.cos(step / 6), 40 * math.sin(step / 6))) for step in range(38)]
+    send(view, QEvent.Type.MouseButtonPress, *places[0], LEFT, PLAIN)
+    for place in places:
+        send(view, QEvent.Type.MouseMove, *place, LEFT, PLAIN)
+    send(view, QEvent.Type.MouseButtonRelease, *places[-1], NONE, PLAIN)
+    assert board.controller.history.undo_label == "Draw freehand"

@@ -29,6 +29,8 @@ BOARD = Bounds(-0.5 * BOARD_MM, -0.5 * BOARD_MM, 0.5 * BOARD_MM, 0.5 * BOARD_MM)
 CLOSEST_LINES = 14.0
 #: Placed outlines that are remembered, so that undo puts a target back where it was.
 CAPACITY = 256
+#: What a target is called that was drawn in one stroke.
+FREEHAND = "drawing"
 SHIFT, ALT = Qt.KeyboardModifier.ShiftModifier, Qt.KeyboardModifier.AltModifier
 #: Arrow keys move by the first, with Shift by the second, with Alt by the third, mm.
 NUDGE_MM, FAR_MM, NEAR_MM = 1.0, 10.0, 0.1
@@ -177,7 +179,7 @@ class Easel(QObject):
 def _told(how: Combine, name: str) -> str:
     """A drawn shape as it follows the word Undo."""
     if how is Combine.REPLACE:
-        return tr("Draw {name}", name=name)
+        return tr("Draw freehand") if name == FREEHAND else tr("Draw {name}", name=name)
     return tr("Add {name}", name=name) if how is Combine.ADD else tr("Take away {name}", name=name)
 
 

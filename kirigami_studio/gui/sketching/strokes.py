@@ -11,7 +11,7 @@ from PySide6.QtGui import QKeyEvent, QPainter
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.scene.frame import Frame
 from kirigami_studio.gui.scene.target_items import paint_sketch
-from kirigami_studio.gui.sketching.easel import Easel, Place, SketchTool, Spot
+from kirigami_studio.gui.sketching.easel import FREEHAND, Easel, Place, SketchTool, Spot
 from kirigami_studio.gui.theme import Palette
 from kirigami_studio.target.mirroring import Mirror
 from kirigami_studio.target.placed import Placed
@@ -46,7 +46,7 @@ class Freehand(SketchTool):
         points, mirror = np.array([spot.free for spot in self._spots]), self.easel.mirror
         self.drop()
         if len(points) > 1:
-            self.easel.draw(lambda: stroke_of(points, mirror), "drawing")
+            self.easel.draw(lambda: stroke_of(points, mirror), FREEHAND)
 
     def drop(self) -> None:
         self._spots = []
