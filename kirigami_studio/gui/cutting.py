@@ -111,7 +111,7 @@ def told(path: Path, made: steps.Planned) -> Message:
         trimmed = tr(", trimmed outline") if made.removed_share else ""
         sentence = tr(
             "{name} was written and read back: {count} cuts{trimmed}, no fault.",
-            name=path.name,
+            name=tr("Folder “{name}”", name=path.name) if path.is_dir() else path.name,
             count=len(plan.paths),
             trimmed=trimmed,
         )

@@ -28,6 +28,7 @@ class Gesture:
 def gestures() -> tuple[Gesture, ...]:
     """The gestures that every view takes, and those of each."""
     anywhere, board, cuts, numbers = tr("Every drawing"), tr("Drawing board"), tr("Cuts"), tr("Numbers and angle")
+    hand, gallery = tr("Edit by hand"), tr("Candidates")
     return (
         Gesture(anywhere, tr("Wheel"), tr("Zoom at the pointer")),
         Gesture(anywhere, tr("Drag"), tr("Move the picture")),
@@ -37,9 +38,21 @@ def gestures() -> tuple[Gesture, ...]:
         Gesture(board, tr("Drag a point"), tr("Move it; arrow keys move it by small steps, with Shift by large ones")),
         Gesture(board, tr("Double-click on the outline"), tr("Add a point there")),
         Gesture(board, tr("Shift at the knob"), tr("Turn in steps of 15°")),
+        Gesture(board, tr("[ and ] with points"), tr("Walk over the points; Ctrl+A selects all, Delete removes")),
+        Gesture(
+            hand, tr("Wheel or + and -"), tr("Change the ratio of the void; finely with Shift (wheel) or Alt (keys)")
+        ),
+        Gesture(hand, tr("Drag a void"), tr("Pull its ratio; Esc takes the drag back")),
+        Gesture(hand, tr("Drag a corner of the outline"), tr("The outline follows as far as it can")),
+        Gesture(hand, tr("Alt-click on a void"), tr("Lock or unlock it")),
+        Gesture(hand, tr("Arrow keys"), tr("Walk to the next void")),
+        Gesture(gallery, tr("Ctrl-click on a card"), tr("Compare it with the chosen design")),
+        Gesture(gallery, tr("Delete"), tr("Reject the chosen design; Undo takes it back")),
         Gesture(cuts, tr("Click on a connector"), tr("Select it; type its width in mm, or press Delete")),
         Gesture(cuts, tr("Shift-click"), tr("Select one more, or one less")),
-        Gesture(cuts, tr("Shift-drag"), tr("Select what is inside the box")),
+        Gesture(cuts, tr("Shift-drag"), tr("Select what is inside the box; Ctrl+A selects all")),
+        Gesture(cuts, tr("Drag a connector"), tr("Make it wider or narrower; Alt: finely")),
+        Gesture(cuts, tr("Double-click on a connector"), tr("Cut it through, or bring it back")),
         Gesture(numbers, tr("Arrow keys"), tr("One step; with Page Up and Page Down ten")),
     )
 
@@ -74,7 +87,7 @@ class ShortcutSheet(QWidget):
         self._fill(commands)
         self.search.textChanged.connect(self._filter)
         self._filter("")
-        self.resize(580, 640)
+        self.resize(720, 640)
 
     def _fill(self, commands: Iterable[Command]) -> None:
         for command in commands:

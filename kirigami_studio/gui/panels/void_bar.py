@@ -93,9 +93,8 @@ class VoidBar(QWidget):
         self.all.setEnabled(ratio is not None)
         self.refit.setEnabled(ratio is not None)
         with QSignalBlocker(self.ratio):
-            self.ratio.setSpecialValueText(
-                "" if ready else "x \N{EN DASH}"
-            )  # shown at the smallest value: nothing is selected
+            # It is shown in the place of the smallest value, at which the field rests while nothing is selected.
+            self.ratio.setSpecialValueText("" if ready else "x \N{EN DASH}")
             self.ratio.setValue(ratio if ready and ratio is not None else self.ratio.minimum())
         self.says.set_texts(*_told(voids, locked))
         self._fit()
