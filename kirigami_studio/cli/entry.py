@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Sequence
+from pathlib import Path
 
 from kirigami_studio.cli.parser import build_parser
 from kirigami_studio.foundation.errors import KirigamiError, UsageError
@@ -15,11 +16,15 @@ WORKER_FLAG = "--worker"
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run one command; returns the exit code (argparse itself exits with 2 on unknown words)."""
-    if list(sys.argv[1:] if argv is None else argv) == [WORKER_FLAG]:
+    words = list(sys.argv[1:] if argv is None else argv)
+    if words == [WORKER_FLAG]:
         from kirigami_studio.pipeline.worker import serve
 
         return serve()
-    arguments = build_parser().parse_args(argv)
+    # A file manager opens a file with the program by its name alone; no command has a dot.
+    shown = words if len(words) == 1 and Path(words[0]).suffix and Path(words[0]).is_file() else []
+    arguments = build_parser().parse_args([] if shown else words)
+    arguments.shown = shown
     try:
         code = int(arguments.run(arguments))
         sys.stdout.flush()

@@ -325,7 +325,8 @@ def build_parser() -> argparse.ArgumentParser:
     """Build the parser from the table."""
     parser = argparse.ArgumentParser(
         prog="kirigami-studio",
-        description="From a silhouette to a cutter-ready kirigami sheet. Without a command the window opens.",
+        description="From a silhouette to a cutter-ready kirigami sheet. Without a command the window opens, with the "
+        "project or target that is named.",
     )
     parser.add_argument("--version", action="version", version=f"kirigami-studio {__version__}")
     parser.set_defaults(run=open_window)
@@ -359,10 +360,10 @@ def _add(commands: Any, name: str, about: str, examples: Iterable[str]) -> argpa
 
 
 def open_window(arguments: argparse.Namespace) -> int:
-    """Open the studio; Qt is loaded here and not before."""
+    """Open the studio, with a project or a target if one is named; Qt is loaded here and not before."""
     from kirigami_studio.gui.application import run
 
-    return run([])
+    return run(["kirigami-studio", *arguments.shown])
 
 
 def _late(place: str) -> Callable[[argparse.Namespace], int]:

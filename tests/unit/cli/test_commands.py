@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -331,3 +332,14 @@ def test_that_a_folder_that_cannot_be_written_is_refused_before_any_work(
         code, sentence = refusal(capsys, "design", "heart", "--k", "1", "--out", out)
         assert code == 1
         assert "taken" in sentence
+
+
+def test_that_a_file_without_a_command_is_one_to_open_in_the_window(tmp_path: Path) -> None:
+    target = tmp_path / "leaf.svg"
+    target.write_text("<svg/>", encoding="utf-8")
+    hidden = {"DISPLAY", "WAYLAND_DISPLAY", "QT_QPA_PLATFORM"}
+    env = {name: value for name, value in os.environ.items() if name not in hidden}
+    for words, said in (([str(target)], "no display to open the window on"), ([f"{target}x"], "invalid choice")):
+        command = [sys.executable, "-m", "kirigami_studio", *words]
+        done = subprocess.run(command, env=env, capture_output=True, text=True, timeout=60, check=False)
+        assert said in done.stderr and done.returncode == (1 if "display" in said else 2)
