@@ -23,7 +23,7 @@ from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.gui.hand_pull import LARGEST, SMALLEST, Pull
 from kirigami_studio.gui.jobs import hand_steps
 from kirigami_studio.gui.jobs.board import Board, Ears
-from kirigami_studio.gui.jobs.steps import Decoded
+from kirigami_studio.gui.jobs.steps import Decoded, finished_field
 from kirigami_studio.gui.scene.posed import PosedDesign
 from kirigami_studio.gui.shelf import Shelf
 from kirigami_studio.lattice.deployment import deploy
@@ -89,7 +89,7 @@ class HandEditing(QObject):
     def field(self) -> RatioField | None:
         """The ratios as they are seen."""
         candidate = self._document().candidate
-        return self._field if self._field is not None else None if candidate is None else candidate.field
+        return self._field if self._field is not None else None if candidate is None else finished_field(candidate)
 
     def postpones(self, wish: Callable[[], object]) -> bool:
         """Whether a wish must wait until all gestures are in the document; it is then carried out by itself."""
@@ -255,7 +255,7 @@ class HandEditing(QObject):
         if self._open is not None and self._open != label:
             self.commit()
         if self._base is None:
-            self._base, self._last = candidate, candidate.field
+            self._base, self._last = candidate, finished_field(candidate)
         self._field, self._open = field, label
         self._show_draft()
 
@@ -266,7 +266,9 @@ class HandEditing(QObject):
             return None
         if self._field is None and candidate.trim is None:
             return self._shelf.entry(candidate).design
-        return PosedDesign(deploy(self.field), candidate.score.transform, candidate.score.phi)
+        seen = candidate.score if candidate.trim is None else candidate.trim
+        pose = candidate.score.transform if candidate.trim is None else candidate.trim.pose
+        return PosedDesign(deploy(self.field), pose, seen.phi)
 
     def _show_draft(self) -> None:
         design = self._design()

@@ -239,9 +239,12 @@ def test_that_a_trim_goes_with_the_first_change_and_comes_back_with_undo(by_hand
     by_hand.controller.trim(True)
     until(lambda: chosen(by_hand).trim is not None)
     trimmed = chosen(by_hand)
+    assert trimmed.trim is not None and by_hand.stage.view.design.deployment.field == trimmed.trim.field
     turn(by_hand.stage.view, middle_of(by_hand.stage.view, (1, 2)), 1)
     settle(by_hand, until)
     assert chosen(by_hand).trim is None and "trim is off" in by_hand.says.text()
+    seen, now = trimmed.trim.field.ratio, chosen(by_hand).field.ratio  # what was seen is what was changed
+    assert np.argwhere(now != seen).tolist() == [[1, 2]] and now[1, 2] > seen[1, 2]
     by_hand.actions_["undo"].trigger()
     assert chosen(by_hand) == trimmed
 

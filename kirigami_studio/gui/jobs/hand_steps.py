@@ -43,8 +43,9 @@ def scoring(candidate: Candidate, field: RatioField, target: Outline, cancel: Ca
     from kirigami_studio.pipeline.threads import one_blas_thread
 
     deployment = deploy(field)
+    pose = candidate.score.transform if candidate.trim is None else candidate.trim.pose
     with one_blas_thread():
-        score = evaluate_near(deployment, target, candidate.score.phi, candidate.score.transform)
+        score = evaluate_near(deployment, target, candidate.score.phi, pose)
     changed = replace(candidate, field=field, score=score, polished=False, trim=None, origin=Origin.EDITED)
     yield Decoded(changed, deployment)
 
