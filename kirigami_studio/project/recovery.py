@@ -87,7 +87,7 @@ def read_note(path: Path) -> Note:
             content = stream.read(LONGEST_NOTE)
     except OSError as error:
         raise ProjectError(f"The kept work {path} cannot be read: {error.strerror or error}.") from error
-    except (KeyError, ValueError, RuntimeError, zipfile.BadZipFile, NotImplementedError) as error:
+    except (KeyError, ValueError, RuntimeError, zipfile.BadZipFile) as error:
         raise ProjectError(f"The kept work {path} is damaged ({str(error)[:80]}).") from error
     try:
         record = Record(read_json(content, NOTE), NOTE)
