@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from PIL import Image, ImageDraw
 from PySide6.QtCore import QThread, QTimer
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
@@ -143,3 +144,15 @@ def by_hand(designed: MainWindow) -> MainWindow:
     designed.actions_["hand"].trigger()
     assert designed.stage.hand.isChecked() and designed.stage.voids.isVisible()
     return designed
+
+
+@pytest.fixture
+def photo(tmp_path: Path) -> Path:
+    """A dark disc (grey 0.2) with a lighter ear (grey 0.6) on light paper."""
+    page = Image.new("L", (120, 100), 240)
+    draw = ImageDraw.Draw(page)
+    draw.ellipse((10, 40, 60, 70), fill=150)
+    draw.ellipse((40, 20, 100, 80), fill=50)
+    path = tmp_path / "two greys.png"
+    page.save(path)
+    return path

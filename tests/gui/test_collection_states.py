@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
+from shown_sheets import shown
 
 from kirigami_studio.gui.offscreen_session import click
 from kirigami_studio.gui.state_sheet import StateSheet
@@ -23,14 +23,7 @@ class OneOfEach(StateSheet):
 
 @pytest.fixture
 def sheet(qtbot: QtBot, tmp_path: Path) -> Iterator[StateSheet]:
-    made = OneOfEach(tmp_path)
-    with qtbot.waitExposed(made.window):
-        made.window.show()
-    yield made
-    made.window.controller.history.mark_saved()
-    assert made.window.close()
-    made.window.deleteLater()
-    QApplication.processEvents()
+    yield from shown(OneOfEach(tmp_path), qtbot)
 
 
 @pytest.mark.torch

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 from PIL import Image
-from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
+from shown_sheets import shown
 
 from kirigami_studio.gui.board_states import LARGE, SIZES
 from kirigami_studio.gui.contact_sheet import contact_sheets
@@ -17,14 +17,7 @@ from kirigami_studio.gui.state_sheet import StateSheet
 
 @pytest.fixture
 def sheet(qtbot: QtBot, tmp_path: Path) -> Iterator[StateSheet]:
-    made = StateSheet(tmp_path)
-    with qtbot.waitExposed(made.window):
-        made.window.show()
-    yield made
-    made.window.controller.history.mark_saved()
-    assert made.window.close()
-    made.window.deleteLater()
-    QApplication.processEvents()
+    yield from shown(StateSheet(tmp_path), qtbot)
 
 
 def test_that_each_size_and_theme_gets_its_picture(sheet: StateSheet, tmp_path: Path) -> None:

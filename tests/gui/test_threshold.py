@@ -7,7 +7,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from PIL import Image, ImageDraw
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
@@ -22,29 +21,17 @@ Until = Callable[[Callable[[], bool]], None]
 
 
 @pytest.fixture
-def picture(tmp_path: Path) -> Path:
-    """A dark disc (grey 0.2) with a lighter ear (grey 0.6) on light paper."""
-    page = Image.new("L", (120, 100), 240)
-    draw = ImageDraw.Draw(page)
-    draw.ellipse((10, 40, 60, 70), fill=150)
-    draw.ellipse((40, 20, 100, 80), fill=50)
-    path = tmp_path / "two greys.png"
-    page.save(path)
-    return path
-
-
-@pytest.fixture
-def traced(window: MainWindow, picture: Path, until: Until) -> MainWindow:
-    window.controller.targeting.open(str(picture))
+def traced(window: MainWindow, photo: Path, until: Until) -> MainWindow:
+    window.controller.targeting.open(str(photo))
     until(lambda: window.target.threshold.isVisible())
     return window
 
 
-def test_that_a_picture_starts_at_its_automatic_threshold(traced: MainWindow, picture: Path) -> None:
+def test_that_a_picture_starts_at_its_automatic_threshold(traced: MainWindow, photo: Path) -> None:
     shown = traced.target.threshold
-    assert shown.slider.value() == round(200 * automatic_threshold(picture))
+    assert shown.slider.value() == round(200 * automatic_threshold(photo))
     assert not shown.automatic.isEnabled()
-    assert traced.controller.document.target == read_image(picture)
+    assert traced.controller.document.target == read_image(photo)
 
 
 def test_that_a_library_silhouette_has_no_threshold(heart: MainWindow) -> None:
@@ -52,7 +39,7 @@ def test_that_a_library_silhouette_has_no_threshold(heart: MainWindow) -> None:
 
 
 def test_that_the_contour_follows_and_one_drag_undoes_at_once(
-    traced: MainWindow, picture: Path, until: Until, qtbot: QtBot
+    traced: MainWindow, photo: Path, until: Until, qtbot: QtBot
 ) -> None:
     bar, controller = traced.target.threshold, traced.controller
     before = controller.document.target
@@ -60,33 +47,31 @@ def test_that_the_contour_follows_and_one_drag_undoes_at_once(
     for value in range(100, 161):
         bar.slider.setValue(value)
     bar.slider.setSliderDown(False)
-    until(lambda: controller.document.target == read_image(picture, 0.8))
+    until(lambda: controller.document.target == read_image(photo, 0.8))
     until(lambda: not controller.board.busy)
     assert bar.slider.value() == 160 and bar.number.text() == "80.0 %"
     assert controller.history.undo_label == "Change threshold"
     qtbot.keyClick(traced, Qt.Key.Key_Z, Qt.KeyboardModifier.ControlModifier)
     assert controller.document.target == before
-    assert bar.slider.value() == round(200 * automatic_threshold(picture))
+    assert bar.slider.value() == round(200 * automatic_threshold(photo))
 
 
-def test_that_each_key_press_is_a_step_of_its_own(traced: MainWindow, picture: Path, until: Until) -> None:
+def test_that_each_key_press_is_a_step_of_its_own(traced: MainWindow, photo: Path, until: Until) -> None:
     bar, controller = traced.target.threshold, traced.controller
     for value in (150, 160):
         bar.slider.setValue(value)
-        until(lambda value=value: controller.document.target == read_image(picture, value / 200))  # type: ignore[misc]
+        until(lambda value=value: controller.document.target == read_image(photo, value / 200))  # type: ignore[misc]
         until(lambda: not controller.board.busy)
     controller.undo()
-    assert controller.document.target == read_image(picture, 0.75)
+    assert controller.document.target == read_image(photo, 0.75)
 
 
-def test_that_auto_brings_the_found_threshold_back(
-    traced: MainWindow, picture: Path, until: Until, qtbot: QtBot
-) -> None:
+def test_that_auto_brings_the_found_threshold_back(traced: MainWindow, photo: Path, until: Until, qtbot: QtBot) -> None:
     bar, controller = traced.target.threshold, traced.controller
     bar.slider.setValue(160)
     until(lambda: bar.automatic.isEnabled() and not controller.board.busy)
     qtbot.mouseClick(bar.automatic, Qt.MouseButton.LeftButton)
-    until(lambda: controller.document.target == read_image(picture))
+    until(lambda: controller.document.target == read_image(photo))
     assert not bar.automatic.isEnabled()
 
 
@@ -109,9 +94,9 @@ def test_that_a_new_target_ends_the_tracing_of_the_old_one(traced: MainWindow, u
 
 
 def test_that_a_drawing_wins_over_a_file_that_is_still_being_read(
-    window: MainWindow, picture: Path, until: Until
+    window: MainWindow, photo: Path, until: Until
 ) -> None:
-    window.controller.targeting.open(str(picture))
+    window.controller.targeting.open(str(photo))
     corners = np.array([[0.0, 0.0], [3.0, 0.0], [1.0, 2.0]])
     window.wiring.reshaping.take(Change("Draw polygon", lambda: Placed.from_ring(corners, "polygon")))
     until(lambda: not window.controller.board.busy)
@@ -119,11 +104,11 @@ def test_that_a_drawing_wins_over_a_file_that_is_still_being_read(
 
 
 def test_that_the_contour_lies_on_the_picture_and_the_picture_lies_still(
-    traced: MainWindow, picture: Path, until: Until
+    traced: MainWindow, photo: Path, until: Until
 ) -> None:
     view, controller = traced.target.view, traced.controller
     under = view.underlay
-    assert under is not None and under.path == picture and under.size == (120, 100)
+    assert under is not None and under.path == photo and under.size == (120, 100)
     traced.target.set_editing(True)
     QApplication.processEvents()
 
@@ -138,7 +123,7 @@ def test_that_the_contour_lies_on_the_picture_and_the_picture_lies_still(
     assert box()[1:] == pytest.approx([100 - 81, 101, 100 - 20], abs=0.6) and box()[0] == pytest.approx(40, abs=2)
     before = view.frame()
     traced.target.threshold.slider.setValue(160)
-    until(lambda: controller.document.target == read_image(picture, 0.8))
+    until(lambda: controller.document.target == read_image(photo, 0.8))
     assert view.underlay is under and view.frame() == before
     assert box() == pytest.approx([10, 100 - 81, 101, 100 - 20], abs=1)
 

@@ -9,7 +9,6 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from PIL import Image, ImageDraw
 
 from kirigami_studio.fabricate.material import library
 from kirigami_studio.fabricate.material_copies import changed_copy, delete_copy, save_copy
@@ -102,18 +101,6 @@ def test_that_an_impossible_material_in_a_project_is_refused(entry: str, value: 
 
 
 # the photo -------------------------------------------------------------------------------------------------------
-
-
-@pytest.fixture
-def photo(tmp_path: Path) -> Path:
-    """A dark disc with a lighter ear on light paper."""
-    page = Image.new("L", (120, 100), 240)
-    draw = ImageDraw.Draw(page)
-    draw.ellipse((10, 40, 60, 70), fill=150)
-    draw.ellipse((40, 20, 100, 80), fill=50)
-    path = tmp_path / "two greys.png"
-    page.save(path)
-    return path
 
 
 @pytest.fixture

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from PySide6.QtCore import QPoint, Qt, Signal
-from PySide6.QtGui import QKeyEvent
+from PySide6.QtGui import QKeyEvent, QPalette
 from PySide6.QtWidgets import QLabel, QListWidget, QListWidgetItem, QVBoxLayout, QWidget
 
 from kirigami_studio.foundation.words import tr, tr_n
@@ -53,8 +53,8 @@ class HistoryList(QWidget):
             font.setBold(row == history.position)
             font.setItalic(row > history.position)
             item.setFont(font)
-            colour = self.palette().placeholderText() if row > history.position else self.palette().text()
-            item.setForeground(colour)
+            group = QPalette.ColorGroup.Disabled if row > history.position else QPalette.ColorGroup.Active
+            item.setForeground(self.palette().brush(group, QPalette.ColorRole.Text))
             item.setToolTip(tr("Undone; a click does it again.") if row > history.position else "")
         self.steps.scrollToItem(self.steps.item(history.position))
         undone = len(history.steps) - history.position
