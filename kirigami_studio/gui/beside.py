@@ -106,7 +106,7 @@ class Beside(QObject):
 
     def _update_history(self) -> None:
         if self.history is not None and self.history.isVisible():
-            self.history.show_history(self.controller.history)
+            self.history.show_history(self.controller.history, self.window.palette_)
 
     def show_library(self) -> None:
         """Open the popup with the library's silhouettes."""

@@ -313,7 +313,7 @@ class StateSheet(BoardStates):
                 self.picture(f"menu-{name}-{palette.name}", menu)
                 menu.close()
             if commands.history is not None:
-                commands.history.show_history(window.controller.history)
+                commands.history.show_history(window.controller.history, palette)
                 self.picture(f"history-{palette.name}", commands.history)
         window.controller.go_to(len(window.controller.history.steps))
         if commands.history is not None:

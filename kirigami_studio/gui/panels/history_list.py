@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from PySide6.QtCore import QPoint, Qt, Signal
-from PySide6.QtGui import QKeyEvent, QPalette
+from PySide6.QtGui import QColor, QKeyEvent
 from PySide6.QtWidgets import QLabel, QListWidget, QListWidgetItem, QVBoxLayout, QWidget
 
 from kirigami_studio.foundation.words import tr, tr_n
+from kirigami_studio.gui.theme import Palette
 from kirigami_studio.project.history import History
 
 #: Pixels.
@@ -40,7 +41,7 @@ class HistoryList(QWidget):
         # Over the stage's upper right corner: beside the candidates, off the target and the menus.
         self.move(parent.mapToGlobal(QPoint(round(0.74 * parent.width()) - WIDTH, 120)))
 
-    def show_history(self, history: History) -> None:
+    def show_history(self, history: History, palette: Palette) -> None:
         """List the steps of a history."""
         names = (tr("Start"), *history.steps)
         if [self.steps.item(row).text() for row in range(self.steps.count())] != list(names):
@@ -53,8 +54,7 @@ class HistoryList(QWidget):
             font.setBold(row == history.position)
             font.setItalic(row > history.position)
             item.setFont(font)
-            group = QPalette.ColorGroup.Disabled if row > history.position else QPalette.ColorGroup.Active
-            item.setForeground(self.palette().brush(group, QPalette.ColorRole.Text))
+            item.setForeground(QColor(palette.muted if row > history.position else palette.text))
             item.setToolTip(tr("Undone; a click does it again.") if row > history.position else "")
         self.steps.scrollToItem(self.steps.item(history.position))
         undone = len(history.steps) - history.position
