@@ -27,6 +27,10 @@ NO_DISPLAY = tr(
     "--help), or play a session without one: python -m "
     "kirigami_studio.gui.offscreen_session --out out."
 )
+#: Seconds after which a thread that computes in Python lets another one go on that waits for the interpreter.  With
+#: Python's own 5 ms the window stood still for 50 to 160 ms while the worker trimmed a design: a worker that often lets
+#: go for a moment wakes the window each time, too late, and each time the wait begins anew.
+SWITCH_INTERVAL = 0.0005
 #: Where distributions keep fonts; the off-screen platform does not ask fontconfig.
 FONT_FOLDERS = ("/usr/share/fonts/truetype/dejavu", "/usr/share/fonts/TTF", "/usr/share/fonts/dejavu")
 
@@ -37,6 +41,7 @@ def create_application(argv: list[str]) -> QApplication:
     if isinstance(existing, QApplication):
         return existing
     faults.log_qt_messages()
+    sys.setswitchinterval(SWITCH_INTERVAL)
     if os.environ.get("QT_QPA_PLATFORM") == "offscreen" and "QT_QPA_FONTDIR" not in os.environ:
         folder = next((folder for folder in FONT_FOLDERS if Path(folder).is_dir()), None)
         if folder is not None:

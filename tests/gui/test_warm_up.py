@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import gc
+import subprocess
+import sys
 import weakref
 
+import pytest
 from PySide6.QtCore import QObject, Qt
 from PySide6.QtWidgets import QWidget
 from pytestqt.qtbot import QtBot
@@ -64,3 +67,24 @@ def test_that_garbage_is_collected_after_the_rooms_are_imported() -> None:
     importing.import_exporters()  # as every export does
     gc.collect()
     assert gone() is None
+
+
+IMPORTED = """
+import sys
+from kirigami_studio.gui.jobs import importing, steps
+from kirigami_studio.pipeline.request import Request
+from kirigami_studio.target import silhouettes
+request = Request(silhouettes.load("heart"), (4, 4), k=2, polish=1, trim=True)
+importing.import_generator()
+before = set(sys.modules)
+assert "torch" in before
+for event in steps.generating(request, lambda: False):
+    pass
+print(sorted(set(sys.modules) - before))
+"""
+
+
+@pytest.mark.torch
+def test_that_a_run_imports_nothing_after_the_generator_was_imported() -> None:
+    done = subprocess.run([sys.executable, "-c", IMPORTED], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"

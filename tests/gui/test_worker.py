@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import threading
+import time
 from collections.abc import Callable, Iterator
+from itertools import pairwise
 
 import pytest
-from PySide6.QtCore import QThread
+from PySide6.QtCore import QEventLoop, QThread, QTimer
 from pytestqt.qtbot import QtBot
 
 from kirigami_studio.foundation.errors import TargetError
@@ -106,3 +108,47 @@ def test_that_an_abandoned_job_is_no_longer_heard(board: Board, until: Until) ->
     go.set()
     until(lambda: not board.busy)
     assert heard == []
+
+
+def test_that_the_window_lives_between_reports_that_come_all_at_once(board: Board, until: Until) -> None:
+    ticks: list[int] = []
+    heard: list[int] = []
+    timer = QTimer()
+    timer.setInterval(0)
+    timer.timeout.connect(lambda: ticks.append(len(heard)))
+
+    def hear(report: object) -> None:
+        time.sleep(0.004)
+        heard.append(len(heard))
+
+    done: list[bool] = []
+    board.start("counting", lambda cancel: iter(range(50)), Ears(hear, lambda: done.append(True)))
+    time.sleep(0.3)  # the worker has said it all
+    timer.start()
+    until(lambda: bool(done))
+    timer.stop()
+    assert len(heard) == 50
+    turns = sorted(set(ticks) | {0, 50})
+    assert max(after - before for before, after in pairwise(turns)) <= 5
+
+
+def test_that_a_dialog_opened_by_a_report_hears_the_next_ones(board: Board, until: Until) -> None:
+    heard: list[object] = []
+    dialog = QEventLoop()
+    times_out = QTimer(dialog)
+    times_out.setSingleShot(True)
+    times_out.timeout.connect(lambda: dialog.exit(1))
+    closed_by: list[int] = []
+
+    def hear(report: object) -> None:
+        heard.append(report)
+        if report == 0:
+            times_out.start(10_000)
+            closed_by.append(dialog.exec())
+        if report == 2:
+            dialog.exit(0)
+
+    board.start("asking", lambda cancel: iter(range(3)), Ears(hear))
+    until(lambda: not board.busy and bool(closed_by))
+    times_out.stop()
+    assert heard == [0, 1, 2] and closed_by == [0]

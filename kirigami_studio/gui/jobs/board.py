@@ -3,12 +3,19 @@
 from __future__ import annotations
 
 import itertools
+import time
+from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 
-from PySide6.QtCore import QObject, QThread, Signal, Slot
+from PySide6.QtCore import QObject, QThread, QTimer, Signal, Slot
 
 from kirigami_studio.gui.jobs.worker import Job, Steps, Worker
+
+#: Seconds of telling in one turn of the event loop: reports of many designs come all at once, and between two turns the
+#: window takes what was clicked and typed meanwhile.
+TURN = 0.01
 
 
 def _ignore(*_: object) -> None:
@@ -34,6 +41,11 @@ class Board(QObject):
         super().__init__(parent)
         self._numbers = itertools.count(1)
         self._open: dict[int, tuple[Job, Ears]] = {}
+        self._heard: deque[Callable[[], None]] = deque()
+        self._turn = QTimer(self)
+        self._turn.setSingleShot(True)
+        self._turn.setInterval(0)
+        self._turn.timeout.connect(self._tell)
         self._thread = QThread(self)
         self._thread.setObjectName("kirigami-worker")
         self._worker = Worker()
@@ -73,25 +85,44 @@ class Board(QObject):
         for job, _ in self._open.values():
             job.flag.set()
         self._open.clear()
+        self._heard.clear()
+        self._turn.stop()
         self._thread.quit()
         self._thread.wait()
 
     @Slot(int, object)
     def _report(self, number: int, report: object) -> None:
-        if number in self._open:
-            self._open[number][1].on_report(report)
+        self._hear(number, partial(self._pass_on, number, report))
 
     @Slot(int)
     def _finish(self, number: int) -> None:
-        self._close_job(number, lambda ears: ears.on_finished())
+        self._hear(number, partial(self._close_job, number, lambda ears: ears.on_finished()))
 
     @Slot(int)
     def _cancel(self, number: int) -> None:
-        self._close_job(number, lambda ears: ears.on_cancelled())
+        self._hear(number, partial(self._close_job, number, lambda ears: ears.on_cancelled()))
 
     @Slot(int, str, str)
     def _fail(self, number: int, sentence: str, trace: str) -> None:
-        self._close_job(number, lambda ears: ears.on_failed(sentence, trace))
+        self._hear(number, partial(self._close_job, number, lambda ears: ears.on_failed(sentence, trace)))
+
+    def _hear(self, number: int, word: Callable[[], None]) -> None:
+        """Keep what the worker says until it is told, in the order in which it was said."""
+        if number in self._open:
+            self._heard.append(word)
+            self._turn.start()
+
+    @Slot()
+    def _tell(self) -> None:
+        end = time.perf_counter() + TURN
+        while self._heard and time.perf_counter() < end:
+            word = self._heard.popleft()
+            self._turn.start()  # not after it: a word may open a dialog, which hears on
+            word()
+
+    def _pass_on(self, number: int, report: object) -> None:
+        if number in self._open:
+            self._open[number][1].on_report(report)
 
     def _close_job(self, number: int, tell: Callable[[Ears], None]) -> None:
         if number not in self._open:

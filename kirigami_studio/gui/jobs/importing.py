@@ -50,4 +50,5 @@ def import_generator() -> None:
         from kirigami_studio.generator.libraries import map_libraries
 
         map_libraries()
+        from kirigami_studio.generator import sampler as _sampler  # noqa: F401
         from kirigami_studio.pipeline import run as _run  # noqa: F401

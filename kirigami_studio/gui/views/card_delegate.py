@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+import time
 from enum import Enum
 
 from PySide6.QtCore import QModelIndex, QPersistentModelIndex, QPoint, QPointF, QRect, QRectF, QSize, Qt
@@ -37,6 +39,8 @@ BUTTON = 24
 DOT = 7
 #: Opacity of a rejected design's picture.
 DIMMED = 0.3
+#: Seconds in which new pictures are drawn at a time; a large window shows dozens of cards, a large design takes 7 ms.
+DRAWING = 0.03
 Index = QModelIndex | QPersistentModelIndex
 
 
@@ -59,6 +63,13 @@ class CardDelegate(QStyledItemDelegate):
         self.hovered: CardButton | None = None  #: the button there
         self.compared: Candidate | None = None  #: the design that is compared with the chosen one
         self._pictures: dict[tuple[PosedDesign, int, float, str], QPixmap] = {}
+        self._drawn_until = math.inf
+        self.owing = False  #: whether cards were painted without their pictures since :meth:`begin`
+
+    def begin(self) -> None:
+        """The view starts painting: some pictures may be drawn, the rest at its next turn."""
+        self._drawn_until = math.inf
+        self.owing = False
 
     def forget_pictures(self) -> None:
         """Drop all thumbnails; they are painted again when needed."""
@@ -90,9 +101,9 @@ class CardDelegate(QStyledItemDelegate):
         self._paint_back(painter, card, state)
         picture = picture_of(card)
         painter.setOpacity(DIMMED if mark is Mark.REJECTED else 1.0)
-        painter.drawPixmap(
-            picture.topLeft(), self._picture(design, picture.size(), painter.device().devicePixelRatio())
-        )
+        drawn = self._picture(design, picture.size(), painter.device().devicePixelRatio())
+        if drawn is not None:
+            painter.drawPixmap(picture.topLeft(), drawn)
         painter.setOpacity(1.0)
         self._paint_number(painter, card, index.data(NUMBER_ROLE), mark, index.data(FRESH_ROLE))
         rise: float = index.data(RISE_ROLE)
@@ -116,9 +127,15 @@ class CardDelegate(QStyledItemDelegate):
         painter.setPen(QPen(QColor(edge), 2.0 if chosen else 1.0))
         painter.drawRoundedRect(QRectF(card).adjusted(1, 1, -1, -1), 8, 8)
 
-    def _picture(self, design: PosedDesign, size: QSize, ratio: float) -> QPixmap:
+    def _picture(self, design: PosedDesign, size: QSize, ratio: float) -> QPixmap | None:
+        """The design's picture, None where it has to wait for the view's next turn."""
         key = (design, size.width(), ratio, self.palette_.name)
         if key not in self._pictures:
+            now = time.perf_counter()
+            if now > self._drawn_until:
+                self.owing = True
+                return None
+            self._drawn_until = min(self._drawn_until, now + DRAWING)
             self._pictures[key] = candidate_pixmap(design, self.target, size, ratio, self.palette_)
         return self._pictures[key]
 

@@ -1,0 +1,46 @@
+"""Pictures of cards are drawn a few at a time, so that a large gallery does not hold the window up."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from kirigami_studio.gui.main_window import MainWindow
+from kirigami_studio.gui.views import card_delegate
+
+Until = Callable[[Callable[[], bool]], None]
+
+
+def test_that_cards_wait_for_their_pictures_and_get_them(
+    window: MainWindow, project_file: Path, until: Until, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    drawn: list[int] = []
+    owed: list[bool] = []
+    draw, cards = card_delegate.candidate_pixmap, window.gallery.view.cards
+    begin = cards.begin
+
+    def counted(*arguments: object) -> object:
+        drawn.append(len(owed))
+        return draw(*arguments)  # type: ignore[arg-type]
+
+    def begun() -> None:
+        owed.append(cards.owing)
+        begin()
+
+    monkeypatch.setattr(card_delegate, "DRAWING", 0.0)
+    monkeypatch.setattr(card_delegate, "candidate_pixmap", counted)
+    monkeypatch.setattr(cards, "begin", begun)
+    window.controller.open_project(project_file)
+    until(lambda: len(drawn) == 3)
+    assert len(set(drawn)) == 3  # one in each painting
+    until(lambda: not cards.owing)
+    assert True in owed
+
+
+def test_that_no_card_waits_in_a_usual_window(designed: MainWindow, until: Until) -> None:
+    view = designed.gallery.view
+    until(lambda: not view.cards.owing and len(view.cards._pictures) == 3)
+    picture = view.viewport().grab()
+    assert not view.cards.owing and picture.width() == view.viewport().width()
