@@ -78,8 +78,8 @@ demo: setup
 	$(BIN)/kirigami-studio design heart --k 8 --out out/heart
 
 states: setup
-	QT_QPA_PLATFORM=offscreen $(BIN)/python -m kirigami_studio.gui.state_sheet --out out/states
-	QT_QPA_PLATFORM=offscreen $(BIN)/python -m kirigami_studio.gui.state_sheet --out out/states-200 --scale 2
+	QT_QPA_PLATFORM=offscreen $(BIN)/python -m kirigami_studio.gui.states.state_sheet --out out/states
+	QT_QPA_PLATFORM=offscreen $(BIN)/python -m kirigami_studio.gui.states.state_sheet --out out/states-200 --scale 2
 
 # What translators start from: every sentence of the program, without places, so that it changes with the words alone.
 messages: setup

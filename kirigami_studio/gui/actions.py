@@ -8,8 +8,8 @@ from PySide6.QtGui import QAction, QKeySequence
 from PySide6.QtWidgets import QMainWindow, QMenu
 
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui import icons
-from kirigami_studio.gui.theme import Palette
+from kirigami_studio.gui.look import icons
+from kirigami_studio.gui.look.theme import Palette
 
 
 @dataclass(frozen=True, slots=True)

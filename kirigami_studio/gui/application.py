@@ -12,8 +12,9 @@ from PySide6.QtGui import QFont, QFontDatabase, QGuiApplication
 from PySide6.QtWidgets import QApplication
 
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui import faults, theme
+from kirigami_studio.gui import faults
 from kirigami_studio.gui.controller import Controller
+from kirigami_studio.gui.look import theme
 from kirigami_studio.gui.main_window import MainWindow
 from kirigami_studio.gui.warm_up import WarmUp
 

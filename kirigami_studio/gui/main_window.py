@@ -6,8 +6,8 @@ from PySide6.QtGui import QCloseEvent, QDragEnterEvent, QDropEvent
 
 from kirigami_studio.gui.commands import Commands
 from kirigami_studio.gui.controller import Controller
+from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.shell import Shell
-from kirigami_studio.gui.theme import Palette
 from kirigami_studio.gui.wiring import Wiring
 
 

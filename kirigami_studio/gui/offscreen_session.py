@@ -19,10 +19,10 @@ from PySide6.QtWidgets import QApplication, QWidget
 
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.gui.application import create_application, create_window
+from kirigami_studio.gui.look.theme import DARK, LIGHT
 from kirigami_studio.gui.main_window import MainWindow
 from kirigami_studio.gui.messages import Tone
 from kirigami_studio.gui.shell import FIRST
-from kirigami_studio.gui.theme import DARK, LIGHT
 
 DESIGNS = 8
 #: Seconds until a step that does not happen is given up; the first run loads the generator.

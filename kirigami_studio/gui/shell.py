@@ -20,7 +20,9 @@ from PySide6.QtWidgets import (
 
 from kirigami_studio.foundation.resources import resource
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui import actions, theme
+from kirigami_studio.gui import actions
+from kirigami_studio.gui.look import theme
+from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.panels.fabrication_panel import FabricationPanel
 from kirigami_studio.gui.panels.gallery_panel import GalleryPanel
 from kirigami_studio.gui.panels.generate_bar import GenerateBar
@@ -28,7 +30,6 @@ from kirigami_studio.gui.panels.message_bar import MessageBar
 from kirigami_studio.gui.panels.settings_panel import SettingsPanel
 from kirigami_studio.gui.panels.stage_panel import StagePanel
 from kirigami_studio.gui.panels.target_panel import TargetPanel
-from kirigami_studio.gui.theme import Palette
 
 SMALLEST = QSize(1000, 640)
 FIRST = QSize(1440, 900)

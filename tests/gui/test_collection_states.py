@@ -10,7 +10,7 @@ from pytestqt.qtbot import QtBot
 from shown_sheets import shown
 
 from kirigami_studio.gui.offscreen_session import click
-from kirigami_studio.gui.state_sheet import StateSheet
+from kirigami_studio.gui.states.state_sheet import StateSheet
 from kirigami_studio.project.document import Mark
 
 

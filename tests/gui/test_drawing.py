@@ -10,14 +10,14 @@ from PySide6.QtCore import QPointF, QRectF, QSize
 from PySide6.QtGui import QColor, QImage
 from PySide6.QtWidgets import QApplication
 
-from kirigami_studio.gui import icons
 from kirigami_studio.gui.actions import COMMANDS
+from kirigami_studio.gui.look import icons
+from kirigami_studio.gui.look.theme import DARK, LIGHT, PALETTES, Palette, style_sheet
 from kirigami_studio.gui.scene.fault_items import FaultKind, contact_place, faults, inverted_panels
 from kirigami_studio.gui.scene.frame import Bounds, Frame
 from kirigami_studio.gui.scene.mismatch_items import mismatch
 from kirigami_studio.gui.scene.posed import PosedDesign
 from kirigami_studio.gui.scene.thumbnail import candidate_pixmap
-from kirigami_studio.gui.theme import DARK, LIGHT, PALETTES, Palette, style_sheet
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.project.document import Document
 

@@ -16,9 +16,9 @@ from pytestqt.qtbot import QtBot
 from kirigami_studio.export.verification import Finding, Verification
 from kirigami_studio.foundation.errors import ProjectError
 from kirigami_studio.gui.dialogs.export_report import ExportReport, as_text, told_findings, verdict
+from kirigami_studio.gui.look.theme import LIGHT
 from kirigami_studio.gui.main_window import MainWindow
 from kirigami_studio.gui.messages import Tone
-from kirigami_studio.gui.theme import LIGHT
 from kirigami_studio.project import preferences
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.preferences import Preferences

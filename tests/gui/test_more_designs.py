@@ -10,11 +10,11 @@ from PySide6.QtCore import Qt
 from pytestqt.qtbot import QtBot
 
 from kirigami_studio.evaluate.candidate import Candidate, Origin
-from kirigami_studio.gui.collecting import next_seed
+from kirigami_studio.gui.designs.collecting import next_seed
+from kirigami_studio.gui.designs.selecting import Order
 from kirigami_studio.gui.jobs.adding_steps import adding
 from kirigami_studio.gui.main_window import MainWindow
 from kirigami_studio.gui.messages import Tone
-from kirigami_studio.gui.selecting import Order
 from kirigami_studio.gui.views.gallery_model import FRESH_ROLE
 from kirigami_studio.pipeline.events import Finished
 from kirigami_studio.pipeline.rank import ranked

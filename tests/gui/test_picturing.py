@@ -16,8 +16,8 @@ from PySide6.QtWidgets import QWidget
 from pytestqt.qtbot import QtBot
 
 from kirigami_studio.export.svg_reading import read_with_svgelements
+from kirigami_studio.gui.files.picturing import Picturing
 from kirigami_studio.gui.main_window import MainWindow
-from kirigami_studio.gui.picturing import Picturing
 from kirigami_studio.gui.views.canvas import Canvas
 
 Until = Callable[[Callable[[], bool]], None]

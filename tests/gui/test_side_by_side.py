@@ -12,8 +12,8 @@ from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
 from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.gui.designs.selecting import least_panel
 from kirigami_studio.gui.main_window import MainWindow
-from kirigami_studio.gui.selecting import least_panel
 from kirigami_studio.gui.views.layout_view import Overlay
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.project.document import Document

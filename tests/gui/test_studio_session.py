@@ -18,9 +18,9 @@ from pytestqt.qtbot import QtBot
 
 from kirigami_studio.evaluate.candidate import Origin
 from kirigami_studio.gui.application import create_window
+from kirigami_studio.gui.look.theme import LIGHT
 from kirigami_studio.gui.main_window import MainWindow
 from kirigami_studio.gui.messages import Tone
-from kirigami_studio.gui.theme import LIGHT
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.project.document import Document
 

@@ -20,10 +20,10 @@ from PySide6.QtWidgets import (
 )
 
 from kirigami_studio.foundation.words import tr, tr_n
-from kirigami_studio.gui import icons
+from kirigami_studio.gui.look import icons
+from kirigami_studio.gui.look.readable import UNKNOWN, readable_length, readable_range
+from kirigami_studio.gui.look.theme import DARK, LIGHT, Palette
 from kirigami_studio.gui.panels.card import ElidedLabel
-from kirigami_studio.gui.readable import UNKNOWN, readable_length, readable_range
-from kirigami_studio.gui.theme import DARK, LIGHT, Palette
 
 if TYPE_CHECKING:
     from kirigami_studio.export.verification import Finding, Verification

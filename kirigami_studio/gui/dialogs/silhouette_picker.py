@@ -7,8 +7,8 @@ from PySide6.QtGui import QGuiApplication, QIcon, QKeyEvent
 from PySide6.QtWidgets import QFrame, QLabel, QLineEdit, QListView, QListWidget, QListWidgetItem, QVBoxLayout, QWidget
 
 from kirigami_studio.foundation.words import tr
+from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.scene.thumbnail import target_pixmap
-from kirigami_studio.gui.theme import Palette
 from kirigami_studio.target import silhouettes
 
 PICTURE = QSize(64, 64)

@@ -6,10 +6,10 @@ from PySide6.QtGui import QAction, QActionGroup
 from PySide6.QtWidgets import QMenu, QToolButton, QWidget
 
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui import icons
+from kirigami_studio.gui.look import icons
+from kirigami_studio.gui.look.theme import LIGHT, Palette
 from kirigami_studio.gui.panels.card import TOOL_ICON
 from kirigami_studio.gui.sketching.easel import Easel
-from kirigami_studio.gui.theme import LIGHT, Palette
 from kirigami_studio.target.mirroring import Axis
 
 

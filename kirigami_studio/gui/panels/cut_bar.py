@@ -6,11 +6,11 @@ from PySide6.QtCore import QElapsedTimer, Qt, QTimer, Signal
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QSlider, QWidget
 
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui import icons
+from kirigami_studio.gui.look import icons
+from kirigami_studio.gui.look.readable import readable_length, readable_time
+from kirigami_studio.gui.look.theme import LIGHT, Palette
 from kirigami_studio.gui.panels.card import tool_button
-from kirigami_studio.gui.readable import readable_length, readable_time
 from kirigami_studio.gui.scene.cut_steps import CutSteps
-from kirigami_studio.gui.theme import LIGHT, Palette
 
 #: Seconds in which a whole job is played, however long it takes to cut.
 PLAY_SECONDS = 12.0

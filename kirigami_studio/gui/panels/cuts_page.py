@@ -8,14 +8,14 @@ from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QToolButton, QVBoxLayout, QWidget
 
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui import icons
+from kirigami_studio.gui.look import icons
+from kirigami_studio.gui.look.readable import readable_size
+from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.panels.card import tool_button
 from kirigami_studio.gui.panels.cut_bar import CutBar
 from kirigami_studio.gui.panels.hinge_bar import HingeBar
 from kirigami_studio.gui.panels.problem_list import ProblemList
-from kirigami_studio.gui.readable import readable_size
 from kirigami_studio.gui.scene.cut_steps import cut_steps
-from kirigami_studio.gui.theme import Palette
 from kirigami_studio.gui.views.cut_view import CutOverlay, CutView
 
 if TYPE_CHECKING:

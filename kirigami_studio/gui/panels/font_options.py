@@ -7,10 +7,10 @@ from PySide6.QtGui import QFont
 from PySide6.QtWidgets import QFontComboBox, QHBoxLayout, QWidget
 
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui import icons
+from kirigami_studio.gui.look import icons
+from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.panels.card import tool_button
 from kirigami_studio.gui.sketching.easel import Easel
-from kirigami_studio.gui.theme import Palette
 
 
 class FontOptions(QWidget):

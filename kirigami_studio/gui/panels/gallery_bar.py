@@ -20,11 +20,11 @@ from PySide6.QtWidgets import (
 )
 
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui import icons
+from kirigami_studio.gui.designs.selecting import Order, Selection
+from kirigami_studio.gui.look import icons
+from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.panels.card import tool_button
 from kirigami_studio.gui.panels.number_field import number_field
-from kirigami_studio.gui.selecting import Order, Selection
-from kirigami_studio.gui.theme import Palette
 from kirigami_studio.lattice.ratio_field import RatioField
 
 #: Nearness at the two ends of the slider, and where it starts.

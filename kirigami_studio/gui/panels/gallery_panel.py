@@ -7,10 +7,10 @@ from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QWidget
 
 from kirigami_studio.foundation.words import tr
+from kirigami_studio.gui.designs.selecting import Selection, counted
+from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.panels.card import INSET, Card, FittingLabel
 from kirigami_studio.gui.panels.gallery_bar import GalleryBar
-from kirigami_studio.gui.selecting import Selection, counted
-from kirigami_studio.gui.theme import Palette
 from kirigami_studio.gui.views.gallery_view import GalleryView
 
 

@@ -6,8 +6,8 @@ from PySide6.QtCore import QSize, Qt, Signal
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QProgressBar, QPushButton, QVBoxLayout, QWidget
 
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui import icons
-from kirigami_studio.gui.theme import Palette
+from kirigami_studio.gui.look import icons
+from kirigami_studio.gui.look.theme import Palette
 
 
 class GenerateBar(QWidget):

@@ -8,11 +8,11 @@ from PySide6.QtWidgets import QDoubleSpinBox, QHBoxLayout, QMenu, QToolButton, Q
 
 from kirigami_studio.fabricate.cut_plan import CutPlan
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui import icons
+from kirigami_studio.gui.look import icons
+from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.panels.card import FittingLabel, tool_button
 from kirigami_studio.gui.panels.number_field import number_field
 from kirigami_studio.gui.scene.hinge_rules import RULES
-from kirigami_studio.gui.theme import Palette
 
 WIDTH_TIP = tr("Finished width of the selected connectors, mm (0.02 to 20).")
 

@@ -7,7 +7,7 @@ from PySide6.QtGui import QColor, QKeyEvent
 from PySide6.QtWidgets import QLabel, QListWidget, QListWidgetItem, QVBoxLayout, QWidget
 
 from kirigami_studio.foundation.words import tr, tr_n
-from kirigami_studio.gui.theme import Palette
+from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.project.history import History
 
 #: Pixels.

@@ -18,10 +18,10 @@ from PySide6.QtWidgets import (
 )
 
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui import icons
+from kirigami_studio.gui.look import icons
+from kirigami_studio.gui.look.theme import LIGHT, Palette
 from kirigami_studio.gui.messages import Message, Tone
 from kirigami_studio.gui.panels.card import tool_button
-from kirigami_studio.gui.theme import LIGHT, Palette
 
 #: Lines of details that are shown without scrolling.
 MOST_LINES = 9

@@ -8,9 +8,9 @@ from PySide6.QtWidgets import QComboBox, QDoubleSpinBox, QGridLayout, QSizePolic
 from kirigami_studio.export.profile import PROFILES
 from kirigami_studio.fabricate.options import MOST_TABS, ConnectorStyle, CutOrder
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui import icons
+from kirigami_studio.gui.look import icons
+from kirigami_studio.gui.look.theme import LIGHT, Palette
 from kirigami_studio.gui.panels.card import captioned, compact, tool_button
-from kirigami_studio.gui.theme import LIGHT, Palette
 from kirigami_studio.project.settings import FabricationSettings
 
 TOOLTIP = Qt.ItemDataRole.ToolTipRole

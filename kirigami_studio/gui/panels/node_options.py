@@ -5,10 +5,10 @@ from __future__ import annotations
 from PySide6.QtWidgets import QHBoxLayout, QToolButton, QWidget
 
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui import icons
+from kirigami_studio.gui.look import icons
+from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.panels.card import tool_button
 from kirigami_studio.gui.sketching.easel import Easel
-from kirigami_studio.gui.theme import Palette
 from kirigami_studio.target.nodes import Kind
 
 

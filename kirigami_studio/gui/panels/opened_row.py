@@ -7,10 +7,10 @@ from PySide6.QtWidgets import QHBoxLayout, QWidget
 
 from kirigami_studio.evaluate.opened_size import OpenedSize
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui import icons
+from kirigami_studio.gui.look import icons
+from kirigami_studio.gui.look.readable import TIMES
+from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.panels.card import ElidedLabel, tool_button
-from kirigami_studio.gui.readable import TIMES
-from kirigami_studio.gui.theme import Palette
 
 
 class OpenedRow(QWidget):

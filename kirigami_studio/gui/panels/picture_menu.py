@@ -10,7 +10,7 @@ from PySide6.QtGui import QActionGroup
 from PySide6.QtWidgets import QMenu, QWidget
 
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui.picturing import SCALES, Picturing
+from kirigami_studio.gui.files.picturing import SCALES, Picturing
 
 
 class PictureMenu(QMenu):

@@ -7,10 +7,10 @@ from PySide6.QtGui import QAction, QActionGroup
 from PySide6.QtWidgets import QMenu, QToolButton, QWidget
 
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui import icons
+from kirigami_studio.gui.designs.playing import SPEEDS, PlayMode
+from kirigami_studio.gui.look import icons
+from kirigami_studio.gui.look.theme import LIGHT, Palette
 from kirigami_studio.gui.panels.card import TOOL_ICON
-from kirigami_studio.gui.playing import SPEEDS, PlayMode
-from kirigami_studio.gui.theme import LIGHT, Palette
 
 MODE_ICONS = {PlayMode.SWING: "swing", PlayMode.LOOP: "loop", PlayMode.ONCE: "once"}
 TIMES = "\N{MULTIPLICATION SIGN}"

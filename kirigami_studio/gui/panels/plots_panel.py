@@ -13,9 +13,9 @@ from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QButtonGroup, QHBoxLayout, QLabel, QSizePolicy, QToolButton, QVBoxLayout, QWidget
 
 from kirigami_studio.foundation.words import tr
+from kirigami_studio.gui.designs.plotting import Curves
 from kirigami_studio.gui.jobs.plot_steps import ANGLES, Reading
-from kirigami_studio.gui.plotting import Curves
-from kirigami_studio.gui.theme import LIGHT, Palette
+from kirigami_studio.gui.look.theme import LIGHT, Palette
 
 if TYPE_CHECKING:
     from kirigami_studio.gui.views.chart import Chart

@@ -7,8 +7,8 @@ from PySide6.QtWidgets import QListWidget, QListWidgetItem, QWidget
 
 from kirigami_studio.fabricate.checks import Problem, Severity
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui import icons
-from kirigami_studio.gui.theme import LIGHT, Palette
+from kirigami_studio.gui.look import icons
+from kirigami_studio.gui.look.theme import LIGHT, Palette
 
 #: Lines that are shown without scrolling.
 MOST_LINES = 3

@@ -10,7 +10,7 @@ from PySide6.QtGui import QAction
 from PySide6.QtWidgets import QLabel, QMenu, QWidget, QWidgetAction
 
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui.recent_files import RecentFiles
+from kirigami_studio.gui.files.recent_files import RecentFiles
 from kirigami_studio.project.recent import Recent
 
 

@@ -6,11 +6,11 @@ from PySide6.QtCore import QSignalBlocker, Signal
 from PySide6.QtWidgets import QDoubleSpinBox, QHBoxLayout, QLabel, QSlider, QWidget
 
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui import icons
+from kirigami_studio.gui.look import icons
+from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.panels.card import tool_button
 from kirigami_studio.gui.panels.groove_slider import GrooveSlider
 from kirigami_studio.gui.panels.number_field import number_field
-from kirigami_studio.gui.theme import Palette
 from kirigami_studio.target.placed import LARGEST_MM, Placed
 
 #: Slider steps from nothing to most.

@@ -8,7 +8,8 @@ from PySide6.QtWidgets import QMenu, QSplitter, QStackedWidget, QToolButton, QVB
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui import icons
+from kirigami_studio.gui.look import icons
+from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.panels.card import INSET, Card, FittingLabel, tool_button
 from kirigami_studio.gui.panels.compare_page import ComparePage
 from kirigami_studio.gui.panels.cut_bar import CutBar
@@ -28,7 +29,6 @@ from kirigami_studio.gui.panels.stage_words import (
     scores_told,
 )
 from kirigami_studio.gui.panels.void_bar import VoidBar
-from kirigami_studio.gui.theme import Palette
 from kirigami_studio.gui.views.fault_tour import FaultTour
 from kirigami_studio.gui.views.gallery_model import Entry, described
 from kirigami_studio.gui.views.layout_view import USUAL, LayoutView, Overlay

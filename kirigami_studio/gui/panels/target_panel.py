@@ -6,13 +6,13 @@ from PySide6.QtCore import QSize, Signal
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QSizePolicy, QWidget
 
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui import icons
 from kirigami_studio.gui.jobs.steps import Picture
+from kirigami_studio.gui.look import icons
+from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.panels.card import Card, ElidedLabel, muted_label, tool_button
 from kirigami_studio.gui.panels.refine_bar import RefineBar
 from kirigami_studio.gui.panels.threshold_bar import ThresholdBar
 from kirigami_studio.gui.panels.tool_strip import ToolStrip
-from kirigami_studio.gui.theme import Palette
 from kirigami_studio.gui.views.target_view import TargetView, Tool
 from kirigami_studio.target.outline import Outline
 from kirigami_studio.target.reach import reach_of, told

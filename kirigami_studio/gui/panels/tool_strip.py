@@ -18,7 +18,8 @@ from PySide6.QtWidgets import (
 )
 
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui import icons
+from kirigami_studio.gui.look import icons
+from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.panels.axis_button import AxisButton
 from kirigami_studio.gui.panels.card import tool_button
 from kirigami_studio.gui.panels.font_options import FontOptions
@@ -26,7 +27,6 @@ from kirigami_studio.gui.panels.node_options import NodeOptions
 from kirigami_studio.gui.panels.number_field import number_field
 from kirigami_studio.gui.panels.pose_options import PoseOptions
 from kirigami_studio.gui.sketching.easel import Easel
-from kirigami_studio.gui.theme import Palette
 from kirigami_studio.gui.views.target_view import Tool
 from kirigami_studio.target.combining import Combine
 from kirigami_studio.target.figures import FEWEST_CORNERS, MOST_CORNERS, NARROWEST_WAIST, WIDEST_WAIST

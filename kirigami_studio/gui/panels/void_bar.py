@@ -7,11 +7,11 @@ from PySide6.QtGui import QKeyEvent, QResizeEvent
 from PySide6.QtWidgets import QDoubleSpinBox, QHBoxLayout, QMenu, QToolButton, QWidget
 
 from kirigami_studio.foundation.words import tr, tr_n
-from kirigami_studio.gui import icons
-from kirigami_studio.gui.hand_pull import LARGEST, SMALLEST
+from kirigami_studio.gui.designs.hand_pull import LARGEST, SMALLEST
+from kirigami_studio.gui.look import icons
+from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.panels.card import FittingLabel, tool_button
 from kirigami_studio.gui.panels.number_field import number_field
-from kirigami_studio.gui.theme import Palette
 from kirigami_studio.project.document import Void
 
 

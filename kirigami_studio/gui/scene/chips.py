@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from PySide6.QtCore import QRectF, Qt
 from PySide6.QtGui import QColor, QFontMetrics, QPainter
 
-from kirigami_studio.gui.theme import Palette
+from kirigami_studio.gui.look.theme import Palette
 
 INSET = 14.0
 GAP = 8.0

@@ -11,8 +11,8 @@ from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QLinearGradient, QPainter, QPen
 
 from kirigami_studio.foundation.words import tr
+from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.scene.chips import paint_chip
-from kirigami_studio.gui.theme import Palette
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -12,8 +12,8 @@ from PySide6.QtGui import QColor, QPainter, QPainterPath, QPen
 
 from kirigami_studio.evaluate.score import Score
 from kirigami_studio.foundation.words import tr
+from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.scene.posed import PosedDesign
-from kirigami_studio.gui.theme import Palette
 
 FloatArray = npt.NDArray[np.float64]
 

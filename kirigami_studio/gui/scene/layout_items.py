@@ -9,8 +9,8 @@ import numpy.typing as npt
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QColor, QPainter, QPen
 
+from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.scene.paths import line_path, quad_paths
-from kirigami_studio.gui.theme import Palette
 
 FloatArray = npt.NDArray[np.float64]
 

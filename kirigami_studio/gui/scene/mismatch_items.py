@@ -13,12 +13,12 @@ from PySide6.QtCore import QPointF, Qt
 from PySide6.QtGui import QBrush, QColor, QPainter, QPen, QPixmap
 
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui.readable import readable_area
+from kirigami_studio.gui.look.readable import readable_area
+from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.scene.boundary_gap import BoundaryGap, boundary_gap
 from kirigami_studio.gui.scene.chips import Chip
 from kirigami_studio.gui.scene.frame import Frame
 from kirigami_studio.gui.scene.paths import area_path
-from kirigami_studio.gui.theme import Palette
 
 if TYPE_CHECKING:
     from shapely.geometry.base import BaseGeometry

@@ -8,7 +8,7 @@ from PySide6.QtCore import QLineF, QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QPainter, QPen
 
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui.theme import Palette
+from kirigami_studio.gui.look.theme import Palette
 
 #: The bar is as long as this (pixels) at most.
 LONGEST = 90.0

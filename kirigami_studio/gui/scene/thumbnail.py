@@ -5,11 +5,11 @@ from __future__ import annotations
 from PySide6.QtCore import QRectF, QSize, Qt
 from PySide6.QtGui import QPainter, QPixmap
 
+from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.scene.frame import Bounds, Frame
 from kirigami_studio.gui.scene.layout_items import paint_panels, turning_left
 from kirigami_studio.gui.scene.posed import PosedDesign
 from kirigami_studio.gui.scene.target_items import paint_target_line, paint_target_shape
-from kirigami_studio.gui.theme import Palette
 from kirigami_studio.target.outline import Outline
 
 MARGIN = 6.0

@@ -9,7 +9,7 @@ from enum import Enum
 from PySide6.QtCore import QLineF, QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QPainter, QPainterPath, QPen
 
-from kirigami_studio.gui.theme import Palette
+from kirigami_studio.gui.look.theme import Palette
 
 #: Pixels that a contact's stretch is high, and that its stripes are apart.
 CONTACT_HEIGHT, STRIPE = 9.0, 6.0

@@ -8,11 +8,11 @@ import numpy as np
 from PySide6.QtCore import QPointF, QRectF, QSizeF, Qt
 from PySide6.QtGui import QBrush, QColor, QPainter, QPen
 
+from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.scene.chips import paint_chip
 from kirigami_studio.gui.scene.mismatch_items import stripes
 from kirigami_studio.gui.scene.paths import line_path
 from kirigami_studio.gui.scene.void_shapes import VoidShapes
-from kirigami_studio.gui.theme import Palette
 from kirigami_studio.project.document import Void
 
 #: Edge length (pixels) of a handle on a vertex, and of the one that is meant.

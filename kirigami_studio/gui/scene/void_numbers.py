@@ -7,9 +7,9 @@ import numpy.typing as npt
 from PySide6.QtCore import QLineF, QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QFont, QFontMetricsF, QPainter, QPen
 
+from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.scene.colour_scale import ColourScale
 from kirigami_studio.gui.scene.paths import quad_paths
-from kirigami_studio.gui.theme import Palette
 
 FloatArray = npt.NDArray[np.float64]
 

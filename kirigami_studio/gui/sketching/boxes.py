@@ -10,11 +10,11 @@ from PySide6.QtGui import QFont, QFontMetricsF, QPainter, QPainterPath
 
 from kirigami_studio.foundation.errors import TargetError
 from kirigami_studio.foundation.words import tr
+from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.scene.frame import Frame
 from kirigami_studio.gui.scene.target_items import paint_proposal, paint_size
 from kirigami_studio.gui.sketching.easel import Easel, SketchTool, Spot
 from kirigami_studio.gui.sketching.strokes import distance
-from kirigami_studio.gui.theme import Palette
 from kirigami_studio.target.figure_nodes import placed_figure
 from kirigami_studio.target.figures import Box, Figure
 from kirigami_studio.target.lettering import lettered

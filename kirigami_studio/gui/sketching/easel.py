@@ -12,8 +12,8 @@ from PySide6.QtCore import QObject, QPointF, Qt, Signal
 from PySide6.QtGui import QKeyEvent, QPainter
 
 from kirigami_studio.foundation.words import tr
+from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.scene.frame import Bounds, Frame
-from kirigami_studio.gui.theme import Palette
 from kirigami_studio.target.combining import Combine
 from kirigami_studio.target.figures import USUAL_WAIST
 from kirigami_studio.target.mirroring import Axis, Mirror, mirrored

@@ -9,9 +9,9 @@ from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QPainter, QPen
 
 from kirigami_studio.foundation.words import tr
+from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.scene.frame import Frame
 from kirigami_studio.gui.scene.target_items import paint_label, paint_proposal
-from kirigami_studio.gui.theme import Palette
 from kirigami_studio.target.anchors import Anchors
 from kirigami_studio.target.nodes import Kind
 

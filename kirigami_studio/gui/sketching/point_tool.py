@@ -12,11 +12,11 @@ from PySide6.QtGui import QKeyEvent, QPainter
 
 from kirigami_studio.foundation.errors import TargetError
 from kirigami_studio.foundation.words import tr, tr_n
+from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.scene.frame import Frame
 from kirigami_studio.gui.sketching.easel import Change, Easel, SketchTool, Spot
 from kirigami_studio.gui.sketching.point_marks import Marks, paint_marks
 from kirigami_studio.gui.sketching.strokes import distance
-from kirigami_studio.gui.theme import Palette
 from kirigami_studio.target.anchors import INTO, OUT, Anchors, with_anchors
 from kirigami_studio.target.contour import FloatArray
 from kirigami_studio.target.nodes import Kind

@@ -11,11 +11,11 @@ from PySide6.QtGui import QColor, QKeyEvent, QPainter, QPen
 
 from kirigami_studio.foundation.errors import TargetError
 from kirigami_studio.foundation.words import tr
+from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.scene.frame import Frame
 from kirigami_studio.gui.scene.target_items import paint_label, paint_proposal, paint_size
 from kirigami_studio.gui.sketching.easel import Change, Easel, Place, SketchTool, Spot
 from kirigami_studio.gui.sketching.strokes import distance
-from kirigami_studio.gui.theme import Palette
 from kirigami_studio.target.placed import Placed
 
 REACH = 11.0

@@ -9,10 +9,10 @@ from PySide6.QtCore import QPointF, Qt
 from PySide6.QtGui import QKeyEvent, QPainter
 
 from kirigami_studio.foundation.words import tr
+from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.scene.frame import Frame
 from kirigami_studio.gui.scene.target_items import paint_sketch
 from kirigami_studio.gui.sketching.easel import FREEHAND, Easel, Place, SketchTool, Spot
-from kirigami_studio.gui.theme import Palette
 from kirigami_studio.target.mirroring import Mirror
 from kirigami_studio.target.placed import Placed
 

@@ -7,7 +7,7 @@ from PySide6.QtGui import QColor, QKeyEvent, QPainter, QPainterPath, QPaintEvent
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QPushButton, QVBoxLayout, QWidget
 
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui.theme import LIGHT, Palette
+from kirigami_studio.gui.look.theme import LIGHT, Palette
 
 ARROW = 11
 WIDTH = 330

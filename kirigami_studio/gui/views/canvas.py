@@ -12,9 +12,9 @@ from PySide6.QtCore import QPointF, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QColor, QFont, QMouseEvent, QPainter, QPaintEvent, QPen, QPixmap, QResizeEvent, QWheelEvent
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
-from kirigami_studio.gui import icons
+from kirigami_studio.gui.look import icons
+from kirigami_studio.gui.look.theme import LIGHT, Palette
 from kirigami_studio.gui.scene.frame import Bounds, Frame
-from kirigami_studio.gui.theme import LIGHT, Palette
 
 MARGIN = 28.0
 ZOOM_STEP = 1.2

@@ -14,7 +14,7 @@ from PySide6.QtGui import QColor, QPen, QResizeEvent, QTextDocument
 from PySide6.QtWidgets import QLabel, QSizePolicy, QVBoxLayout, QWidget
 
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui.theme import LIGHT, Palette
+from kirigami_studio.gui.look.theme import LIGHT, Palette
 
 pg: Any = pyqtgraph  # it has types for a part of itself only
 

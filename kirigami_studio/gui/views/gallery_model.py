@@ -11,8 +11,8 @@ from PySide6.QtCore import QAbstractListModel, QModelIndex, QObject, QPersistent
 
 from kirigami_studio.evaluate.candidate import Candidate, Origin
 from kirigami_studio.foundation.words import tr
+from kirigami_studio.gui.designs.selecting import Selection, Shown, arranged, least_panel, told_value
 from kirigami_studio.gui.scene.posed import PosedDesign
-from kirigami_studio.gui.selecting import Selection, Shown, arranged, least_panel, told_value
 from kirigami_studio.pipeline.rank import rank_key
 from kirigami_studio.project.document import Mark
 
@@ -51,8 +51,8 @@ class Entry:
 class GalleryModel(QAbstractListModel):
     """The designs in the order of the document, or of the ranking while a run goes on; rows are those that are shown.
 
-    Which ones are shown, and in which order, is a :class:`~kirigami_studio.gui.selecting.Selection`; the number of a
-    design is its place among all of them, whatever is shown.
+    Which ones are shown, and in which order, is a :class:`~kirigami_studio.gui.designs.selecting.Selection`; the number
+    of a design is its place among all of them, whatever is shown.
     """
 
     arranged = Signal()  #: what is shown, or its order, has changed

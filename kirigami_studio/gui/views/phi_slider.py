@@ -9,8 +9,8 @@ from PySide6.QtGui import QColor, QMouseEvent, QPainter, QPaintEvent, QPen
 from PySide6.QtWidgets import QSlider, QWidget
 
 from kirigami_studio.foundation.words import tr
+from kirigami_studio.gui.look.theme import LIGHT, Palette
 from kirigami_studio.gui.scene.track_items import MarkKind, Stretch, WayMark, paint_mark, paint_stretch, stretches
-from kirigami_studio.gui.theme import LIGHT, Palette
 
 #: Slider steps per degree.
 RESOLUTION = 10

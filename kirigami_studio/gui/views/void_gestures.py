@@ -11,6 +11,7 @@ from functools import partial
 from PySide6.QtCore import QEvent, QObject, QPointF, QRectF, Qt, Signal, SignalInstance
 from PySide6.QtGui import QContextMenuEvent, QKeyEvent, QMouseEvent, QPainter, QWheelEvent
 
+from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.scene.void_items import (
     paint_band,
     paint_handles,
@@ -19,7 +20,6 @@ from kirigami_studio.gui.scene.void_items import (
     paint_marked,
 )
 from kirigami_studio.gui.scene.void_shapes import VoidShapes
-from kirigami_studio.gui.theme import Palette
 from kirigami_studio.gui.views.canvas import Canvas
 from kirigami_studio.gui.views.void_keys import Step, step_of
 from kirigami_studio.project.document import Void

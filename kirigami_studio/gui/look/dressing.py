@@ -5,8 +5,8 @@ from __future__ import annotations
 from PySide6.QtCore import QObject
 from PySide6.QtGui import QGuiApplication
 
-from kirigami_studio.gui import theme
-from kirigami_studio.gui.preferring import Preferring
+from kirigami_studio.gui.look import theme
+from kirigami_studio.gui.look.preferring import Preferring
 from kirigami_studio.gui.shell import Shell
 
 SYSTEM = "system"

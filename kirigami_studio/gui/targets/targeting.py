@@ -10,8 +10,8 @@ from PySide6.QtCore import QObject, Signal
 
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.jobs.board import Board
-from kirigami_studio.gui.reading import Reading
-from kirigami_studio.gui.tracing import Tracing
+from kirigami_studio.gui.targets.reading import Reading
+from kirigami_studio.gui.targets.tracing import Tracing
 from kirigami_studio.project import edits
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.edits import Edit

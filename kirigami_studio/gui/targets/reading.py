@@ -10,7 +10,7 @@ from PySide6.QtCore import QObject, Signal
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.jobs import steps
 from kirigami_studio.gui.jobs.board import Board, Ears
-from kirigami_studio.gui.tracing import Tracing
+from kirigami_studio.gui.targets.tracing import Tracing
 from kirigami_studio.target.outline import Outline
 
 

@@ -7,12 +7,12 @@ from pathlib import Path
 
 from PySide6.QtCore import QObject, Signal
 
+from kirigami_studio.gui.cuts.stocking import Stocking
+from kirigami_studio.gui.files.recent_files import RecentFiles
+from kirigami_studio.gui.files.recovering import Recovering, Work
+from kirigami_studio.gui.files.storing import Storing
 from kirigami_studio.gui.jobs.board import Board
-from kirigami_studio.gui.recent_files import RecentFiles
-from kirigami_studio.gui.recovering import Recovering, Work
-from kirigami_studio.gui.stocking import Stocking
-from kirigami_studio.gui.storing import Storing
-from kirigami_studio.gui.targeting import Targeting
+from kirigami_studio.gui.targets.targeting import Targeting
 from kirigami_studio.project.document import Document
 
 

@@ -20,12 +20,12 @@ from PySide6.QtCore import QObject, QTimer, Signal
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.words import tr, tr_n
-from kirigami_studio.gui.hand_pull import LARGEST, SMALLEST, Pull
+from kirigami_studio.gui.designs.hand_pull import LARGEST, SMALLEST, Pull
+from kirigami_studio.gui.designs.shelf import Shelf
 from kirigami_studio.gui.jobs import hand_steps
 from kirigami_studio.gui.jobs.board import Board, Ears
 from kirigami_studio.gui.jobs.steps import Decoded, finished_field
 from kirigami_studio.gui.scene.posed import PosedDesign
-from kirigami_studio.gui.shelf import Shelf
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.project import hand_edits

@@ -10,7 +10,7 @@ from PySide6.QtCore import QObject, Signal
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.foundation.words import tr, tr_n
-from kirigami_studio.gui.design_run import request_of
+from kirigami_studio.gui.designs.design_run import request_of
 from kirigami_studio.gui.messages import Message, Tone
 from kirigami_studio.pipeline.events import Result
 from kirigami_studio.pipeline.rank import rank_key, ranked

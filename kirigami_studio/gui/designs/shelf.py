@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections import OrderedDict
 
 from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.gui.designs.selecting import least_panel
 from kirigami_studio.gui.jobs.steps import finished_field
 from kirigami_studio.gui.scene.posed import PosedDesign
-from kirigami_studio.gui.selecting import least_panel
 from kirigami_studio.gui.views.gallery_model import Entry
 from kirigami_studio.lattice.deployment import Deployment, deploy
 

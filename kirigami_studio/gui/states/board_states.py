@@ -9,10 +9,10 @@ from PIL import Image, ImageDraw
 from PySide6.QtCore import QPointF, QSize
 from PySide6.QtWidgets import QApplication
 
+from kirigami_studio.gui.look.theme import DARK, LIGHT
 from kirigami_studio.gui.offscreen_session import Session, SessionError
 from kirigami_studio.gui.sketching.easel import Change, Spot
 from kirigami_studio.gui.sketching.point_tool import PointTool
-from kirigami_studio.gui.theme import DARK, LIGHT
 from kirigami_studio.gui.views.target_view import Tool
 from kirigami_studio.target.combining import Combine, combined
 from kirigami_studio.target.figure_nodes import placed_figure

@@ -9,7 +9,7 @@ from PySide6.QtGui import QColor, QIcon, QImage, QPainter, QPixmap
 from PySide6.QtSvg import QSvgRenderer
 
 from kirigami_studio.foundation.resources import resource
-from kirigami_studio.gui.theme import Palette
+from kirigami_studio.gui.look.theme import Palette
 
 #: Edge lengths (pixels) that are rendered: 16, 20 and 24 at 100 %, 200 % and 300 % scale.
 SIZES = (16, 20, 24, 32, 40, 48, 60, 72)

@@ -9,10 +9,10 @@ from PySide6.QtCore import QObject, Signal
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.words import tr
+from kirigami_studio.gui.designs.shelf import Shelf
 from kirigami_studio.gui.jobs import steps
 from kirigami_studio.gui.jobs.adding_steps import adding
 from kirigami_studio.gui.jobs.board import Board, Ears
-from kirigami_studio.gui.shelf import Shelf
 from kirigami_studio.pipeline.events import CandidateFound, CandidateImproved, Finished, Progress, Started
 from kirigami_studio.pipeline.provenance import provenance
 from kirigami_studio.pipeline.rank import rank_key

@@ -10,12 +10,12 @@ from pathlib import Path
 from PySide6.QtCore import QObject, Signal
 
 from kirigami_studio.foundation.words import tr
+from kirigami_studio.gui.files.pasting import PASTED
 from kirigami_studio.gui.jobs import project_steps
 from kirigami_studio.gui.jobs.board import Board, Ears
 from kirigami_studio.gui.jobs.project_steps import Left, Project
 from kirigami_studio.gui.jobs.steps import Picture
 from kirigami_studio.gui.messages import Message, Tone
-from kirigami_studio.gui.pasting import PASTED
 from kirigami_studio.project.document import Document
 from kirigami_studio.target.outline import Outline
 

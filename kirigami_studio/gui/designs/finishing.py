@@ -7,9 +7,9 @@ from functools import partial
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.words import tr
+from kirigami_studio.gui.designs.one_design import OneDesign
 from kirigami_studio.gui.jobs import steps
 from kirigami_studio.gui.messages import Message, Tone
-from kirigami_studio.gui.one_design import OneDesign
 from kirigami_studio.project import edits
 
 

@@ -1,7 +1,7 @@
 """One picture of every state of the window, in every size and both themes, to be looked at.
 
-``python -m kirigami_studio.gui.state_sheet --out out/states`` writes them, and a page of small ones for every size and
-theme; ``--scale 2`` draws them for a high-resolution screen.
+``python -m kirigami_studio.gui.states.state_sheet --out out/states`` writes them, and a page of small ones for every
+size and theme; ``--scale 2`` draws them for a high-resolution screen.
 """
 
 from __future__ import annotations
@@ -13,12 +13,12 @@ from pathlib import Path
 from PySide6.QtCore import QEvent, QPoint
 from PySide6.QtWidgets import QApplication
 
-from kirigami_studio.gui.board_states import LONG_NAME, SIZES, BoardStates
-from kirigami_studio.gui.contact_sheet import contact_sheets
+from kirigami_studio.gui.designs.selecting import Order
+from kirigami_studio.gui.look.theme import DARK, LIGHT
 from kirigami_studio.gui.messages import Message, Tone
 from kirigami_studio.gui.offscreen_session import DESIGNS, SessionError, click, hover, main
-from kirigami_studio.gui.selecting import Order
-from kirigami_studio.gui.theme import DARK, LIGHT
+from kirigami_studio.gui.states.board_states import LONG_NAME, SIZES, BoardStates
+from kirigami_studio.gui.states.contact_sheet import contact_sheets
 from kirigami_studio.gui.views.card_delegate import CardButton, button_boxes
 from kirigami_studio.gui.views.cut_view import CutOverlay
 from kirigami_studio.gui.views.layout_view import Overlay

@@ -8,9 +8,9 @@ from PySide6.QtCore import QObject, Signal
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.words import tr
+from kirigami_studio.gui.designs.shelf import Shelf
 from kirigami_studio.gui.jobs.board import Board, Ears
 from kirigami_studio.gui.jobs.worker import Steps
-from kirigami_studio.gui.shelf import Shelf
 from kirigami_studio.project.document import Document
 
 
