@@ -192,3 +192,22 @@ def test_that_there_must_be_designs_to_add_to(heart: MainWindow) -> None:
 def test_that_the_next_seed_is_the_first_that_no_design_has(designs: Document) -> None:
     assert next_seed(designs) == 0
     assert next_seed(replace(designs, settings=replace(designs.settings, seed=7))) == 8
+
+
+@pytest.mark.torch
+def test_that_a_run_begun_at_once_after_another_is_not_ended_by_it(drawn: MainWindow, until: Until) -> None:
+    controller = drawn.controller
+    ends: list[bool] = []
+
+    def again(completed: bool) -> None:
+        ends.append(completed)
+        if len(ends) == 1:
+            controller.change_settings(seed=6)
+            drawn.actions_["generate"].trigger()
+
+    controller.run.completed.connect(lambda *_: again(True))
+    controller.run.ended.connect(lambda completed: None if completed else again(False))
+    controller.change_settings(seed=5)
+    drawn.actions_["generate"].trigger()
+    until(lambda: len(ends) == 2 and not controller.running)
+    assert ends == [True, True] and {one.seed for one in controller.document.candidates} == {6}

@@ -38,6 +38,7 @@ class DesignRun(QObject):
         self._board = board
         self._shelf = shelf
         self._number: int | None = None
+        self._begun = 0  # runs until now
         self._digest = ""
         self._asked = 0
         self._sampled: dict[int, float] = {}  # sIoU of each candidate when it was found
@@ -55,7 +56,8 @@ class DesignRun(QObject):
         self._asked = request.k
         self._sampled.clear()
         self._now.clear()
-        ears = Ears(self._report, self._finish, self._cancel, self._fail)
+        self._begun += 1
+        ears = Ears(self._report, partial(self._finish, self._begun), self._cancel, self._fail)
         work = partial(steps.generating, request) if others is None else partial(adding, request, others)
         self._number = self._board.start(tr("generating designs"), work, ears)
         self.started.emit(request.k)
@@ -113,8 +115,9 @@ class DesignRun(QObject):
                 )
             )
 
-    def _finish(self) -> None:
-        if self.running:  # the generator ended without a result
+    def _finish(self, run: int) -> None:
+        """The generator has ended; its result came before, and after that perhaps the next run."""
+        if self.running and run == self._begun:  # it ended without a result
             self._over(completed=False)
 
     def _cancel(self) -> None:
