@@ -12,6 +12,7 @@ from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.designs.shelf import Shelf
 from kirigami_studio.gui.jobs import steps
 from kirigami_studio.gui.jobs.board import Board, Ears
+from kirigami_studio.gui.jobs.slot import Slot
 from kirigami_studio.target.outline import Outline
 
 #: Drawn states that are kept.
@@ -26,10 +27,9 @@ class Comparing(QObject):
 
     def __init__(self, board: Board, shelf: Shelf, parent: QObject) -> None:
         super().__init__(parent)
-        self._board = board
         self._shelf = shelf
         self._drawn: OrderedDict[tuple[Candidate, Outline], Candidate] = OrderedDict()
-        self._job: int | None = None
+        self._slot = Slot(board)
 
     def look_up(self, candidate: Candidate, target: Outline | None) -> None:
         """Tell how a candidate was drawn, at once when that is known."""
@@ -40,14 +40,12 @@ class Comparing(QObject):
         if before is not None:
             self.known.emit(candidate, self._shelf.entry(before))
             return
-        ears = Ears(partial(self._take, candidate, target), self._end, self._end, self._fail)
-        self._job = self._board.start(tr("scoring the drawn design"), partial(steps.comparing, candidate, target), ears)
+        ears = Ears(partial(self._take, candidate, target), on_failed=self.failed.emit)
+        self._slot.start(tr("scoring the drawn design"), partial(steps.comparing, candidate, target), ears)
 
     def stop(self) -> None:
         """Forget what is still being scored."""
-        if self._job is not None:
-            self._board.abandon(self._job)
-            self._job = None
+        self._slot.stop()
 
     def _take(self, candidate: Candidate, target: Outline, report: object) -> None:
         if isinstance(report, steps.Decoded):
@@ -56,10 +54,3 @@ class Comparing(QObject):
             while len(self._drawn) > CAPACITY:
                 self._drawn.popitem(last=False)
             self.known.emit(candidate, self._shelf.entry(report.candidate))
-
-    def _end(self) -> None:
-        self._job = None
-
-    def _fail(self, sentence: str, trace: str) -> None:
-        self._job = None
-        self.failed.emit(sentence, trace)

@@ -13,6 +13,7 @@ from kirigami_studio.gui.designs.shelf import Shelf
 from kirigami_studio.gui.jobs import steps
 from kirigami_studio.gui.jobs.adding_steps import adding
 from kirigami_studio.gui.jobs.board import Board, Ears
+from kirigami_studio.gui.jobs.slot import Slot
 from kirigami_studio.pipeline.events import CandidateFound, CandidateImproved, Finished, Progress, Started
 from kirigami_studio.pipeline.provenance import provenance
 from kirigami_studio.pipeline.rank import rank_key
@@ -35,10 +36,8 @@ class DesignRun(QObject):
 
     def __init__(self, board: Board, shelf: Shelf, parent: QObject) -> None:
         super().__init__(parent)
-        self._board = board
+        self._slot = Slot(board)
         self._shelf = shelf
-        self._number: int | None = None
-        self._begun = 0  # runs until now
         self._digest = ""
         self._asked = 0
         self._sampled: dict[int, float] = {}  # sIoU of each candidate when it was found
@@ -46,7 +45,7 @@ class DesignRun(QObject):
 
     @property
     def running(self) -> bool:
-        return self._number is not None
+        return self._slot.busy
 
     def start(self, request: Request, others: tuple[Candidate, ...] | None = None) -> None:
         """Begin; the caller has made sure that nothing runs.
@@ -56,21 +55,19 @@ class DesignRun(QObject):
         self._asked = request.k
         self._sampled.clear()
         self._now.clear()
-        self._begun += 1
-        ears = Ears(self._report, partial(self._finish, self._begun), self._cancel, self._fail)
+        ears = Ears(self._report, partial(self._over, completed=False), self._cancel, self._fail)
         work = partial(steps.generating, request) if others is None else partial(adding, request, others)
-        self._number = self._board.start(tr("generating designs"), work, ears)
+        self._slot.start(tr("generating designs"), work, ears)
         self.started.emit(request.k)
 
     def cancel(self) -> None:
         """Ask it to stop at its next candidate."""
-        if self._number is not None:
-            self._board.cancel(self._number)
+        self._slot.cancel()
 
     def abandon(self) -> None:
         """Stop it and forget what it would still say."""
-        if self._number is not None:
-            self._board.abandon(self._number)
+        if self.running:
+            self._slot.stop()
             self._over(completed=False)
 
     def _report(self, report: object) -> None:
@@ -85,6 +82,7 @@ class DesignRun(QObject):
             entry, number = self._shelf.entry(report.candidate), report.candidate.index
             self.found.emit(replace(entry, rise=entry.candidate.score.siou - self._sampled[number]))
         elif isinstance(report, Finished):
+            self._slot.stop()  # the result is the end
             self._over(completed=True)
             self.completed.emit(report.result, provenance(report.result.request, self._digest))
         elif isinstance(report, steps.ModelFound):
@@ -115,11 +113,6 @@ class DesignRun(QObject):
                 )
             )
 
-    def _finish(self, run: int) -> None:
-        """The generator has ended; its result came before, and after that perhaps the next run."""
-        if self.running and run == self._begun:  # it ended without a result
-            self._over(completed=False)
-
     def _cancel(self) -> None:
         self._over(completed=False)
         self.cancelled.emit()
@@ -129,7 +122,6 @@ class DesignRun(QObject):
         self.failed.emit(sentence, trace)
 
     def _over(self, completed: bool) -> None:
-        self._number = None
         self.ended.emit(completed)
 
 

@@ -10,6 +10,7 @@ from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.designs.shelf import Shelf
 from kirigami_studio.gui.jobs.board import Board, Ears
+from kirigami_studio.gui.jobs.slot import Slot
 from kirigami_studio.gui.jobs.worker import Steps
 from kirigami_studio.project.document import Document
 
@@ -28,14 +29,14 @@ class OneDesign(QObject):
 
     def __init__(self, board: Board, shelf: Shelf, document: Callable[[], Document], parent: QObject) -> None:
         super().__init__(parent)
-        self._board, self._shelf, self._document = board, shelf, document
-        self._job: int | None = None
+        self._shelf, self._document = shelf, document
+        self._slot = Slot(board)
         self._candidate: Candidate | None = None
 
     @property
     def busy(self) -> bool:
         """Whether a design is being worked on."""
-        return self._job is not None
+        return self._slot.busy
 
     def cancel(self) -> None:
         """Stop because the user says so."""
@@ -44,8 +45,8 @@ class OneDesign(QObject):
 
     def stop(self) -> None:
         """Forget what is still being made."""
-        if self._job is not None:
-            self._board.abandon(self._job)
+        if self.busy:
+            self._slot.stop()
             self._over()
 
     def stop_unless(self, candidate: Candidate | None) -> None:
@@ -61,8 +62,7 @@ class OneDesign(QObject):
         """Start a job on a design; ``name`` follows the word "while"."""
         self.stop()
         self._candidate = candidate
-        # The report is the end: what the worker says afterwards may come when the next job has begun.
-        self._job = self._board.start(name, work, Ears(self._take, on_failed=self._fail))
+        self._slot.start(name, work, Ears(self._take, self._over, self._over, self._fail))
         self.busy_changed.emit(True)
 
     def name(self) -> str:
@@ -72,7 +72,7 @@ class OneDesign(QObject):
 
     def _take(self, report: object) -> None:
         before = self._candidate
-        self._over()
+        self.stop()  # the report is the end
         if before is not None:
             self.take(before, report)
 
@@ -81,6 +81,5 @@ class OneDesign(QObject):
         self.failed.emit(sentence, trace)
 
     def _over(self) -> None:
-        if self._job is not None:
-            self._job = self._candidate = None
-            self.busy_changed.emit(False)
+        self._candidate = None
+        self.busy_changed.emit(False)

@@ -12,6 +12,7 @@ from PySide6.QtCore import QObject, Signal
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.jobs.board import Board, Ears
 from kirigami_studio.gui.jobs.plot_steps import Reading, plotting
+from kirigami_studio.gui.jobs.slot import Slot
 from kirigami_studio.gui.scene.posed import PosedDesign
 from kirigami_studio.target.outline import Outline
 
@@ -40,17 +41,16 @@ class Plotting(QObject):
 
     def __init__(self, board: Board, parent: QObject) -> None:
         super().__init__(parent)
-        self._board = board
         self._design: PosedDesign | None = None
         self._target: Outline | None = None
         self._wanted = False
-        self._job: int | None = None
+        self._slot = Slot(board)
         self._known: OrderedDict[tuple[PosedDesign, Outline | None], Curves] = OrderedDict()
 
     @property
     def busy(self) -> bool:
         """Whether a design is being read."""
-        return self._job is not None
+        return self._slot.busy
 
     def show(self, design: PosedDesign | None, target: Outline | None) -> None:
         """Another design, or none, is on the stage."""
@@ -78,21 +78,18 @@ class Plotting(QObject):
         self.grown.emit(begun)
         while len(self._known) > CAPACITY:
             self._known.popitem(last=False)
-        ears = Ears(self._take, self._end, on_failed=self._fail)
-        self._job = self._board.start(tr("reading the curves"), partial(plotting, design, self._target), ears)
+        ears = Ears(self._take, self._end, on_failed=self.failed.emit)
+        self._slot.start(tr("reading the curves"), partial(plotting, design, self._target), ears)
 
     def stop(self) -> None:
         """Read no further."""
-        if self._job is not None:
-            self._board.abandon(self._job)
-            self._job = None
+        self._slot.stop()
 
     def _take(self, report: object) -> None:
         if isinstance(report, tuple):
             self._grow(report, complete=False)
 
     def _end(self) -> None:
-        self._job = None
         self._grow((), complete=True)
 
     def _grow(self, more: tuple[Reading, ...], complete: bool) -> None:
@@ -102,7 +99,3 @@ class Plotting(QObject):
         together = sorted(self._known[key].readings + more, key=lambda reading: -reading.phi)
         self._known[key] = replace(self._known[key], readings=tuple(together), complete=complete)
         self.grown.emit(self._known[key])
-
-    def _fail(self, sentence: str, trace: str) -> None:
-        self._job = None
-        self.failed.emit(sentence, trace)

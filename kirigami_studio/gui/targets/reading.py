@@ -10,6 +10,7 @@ from PySide6.QtCore import QObject, Signal
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.jobs import steps
 from kirigami_studio.gui.jobs.board import Board, Ears
+from kirigami_studio.gui.jobs.slot import Slot
 from kirigami_studio.gui.targets.tracing import Tracing
 from kirigami_studio.target.outline import Outline
 
@@ -22,26 +23,21 @@ class Reading(QObject):
 
     def __init__(self, board: Board, tracing: Tracing, parent: QObject) -> None:
         super().__init__(parent)
-        self._board = board
         self._tracing = tracing
-        self._job: int | None = None
+        self._slot = Slot(board)
         self.source = ""  #: of the target that was read last
         self._picture: steps.Picture | None = None
 
     def start(self, source: str, first: bool) -> None:
         """Read a file, or a silhouette of the library by name."""
         self.stop()
-        ears = Ears(partial(self._take, source, first), self._end, on_failed=self._fail)
-        self._job = self._board.start(
-            tr("reading {name}", name=Path(source).name), partial(steps.reading_target, source), ears
-        )
+        ears = Ears(partial(self._take, source, first), on_failed=self.failed.emit)
+        self._slot.start(tr("reading {name}", name=Path(source).name), partial(steps.reading_target, source), ears)
 
     def stop(self) -> None:
         """Forget what is still being read: something else took its place."""
         self._picture = None
-        if self._job is not None:
-            self._board.abandon(self._job)
-            self._job = None
+        self._slot.stop()
 
     def _take(self, source: str, first: bool, report: object) -> None:
         if isinstance(report, steps.Picture):
@@ -51,10 +47,3 @@ class Reading(QObject):
                 self._tracing.remember(report, self._picture)
             self.source = source
             self.read.emit(report, first)
-
-    def _end(self) -> None:
-        self._job = None
-
-    def _fail(self, sentence: str, trace: str) -> None:
-        self._job = None
-        self.failed.emit(sentence, trace)

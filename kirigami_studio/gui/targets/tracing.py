@@ -12,6 +12,7 @@ from PySide6.QtCore import QObject, Signal
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.jobs import steps
 from kirigami_studio.gui.jobs.board import Board, Ears
+from kirigami_studio.gui.jobs.slot import Slot
 from kirigami_studio.gui.jobs.steps import Picture
 from kirigami_studio.target.outline import Outline
 
@@ -31,9 +32,8 @@ class Tracing(QObject):
 
     def __init__(self, board: Board, parent: QObject) -> None:
         super().__init__(parent)
-        self._board = board
         self._pictures: OrderedDict[Outline, Picture] = OrderedDict()
-        self._job: int | None = None
+        self._slot = Slot(board)
         self._wanted: Picture | None = None
         self._drag_over = False
 
@@ -51,7 +51,7 @@ class Tracing(QObject):
     def retrace(self, picture: Picture, threshold: float | None) -> None:
         """Trace a picture at another threshold (0 black .. 1 white), None for the automatic one."""
         self._wanted = replace(picture, threshold=picture.automatic if threshold is None else threshold)
-        if self._job is None:
+        if not self._slot.busy:
             self._start(self._wanted)
 
     def end_drag(self) -> None:
@@ -62,15 +62,11 @@ class Tracing(QObject):
     def stop(self) -> None:
         """Forget what is still being traced: the target is another one now."""
         self._wanted, self._drag_over = None, False
-        if self._job is not None:
-            self._board.abandon(self._job)
-            self._job = None
+        self._slot.stop()
 
     def _start(self, picture: Picture) -> None:
         ears = Ears(partial(self._take, picture), partial(self._go_on, picture), on_failed=partial(self._fail, picture))
-        self._job = self._board.start(
-            tr("tracing {name}", name=picture.path.name), partial(steps.tracing, picture), ears
-        )
+        self._slot.start(tr("tracing {name}", name=picture.path.name), partial(steps.tracing, picture), ears)
 
     def _take(self, picture: Picture, report: object) -> None:
         # By its shape, not by its type: the reader is imported in the worker, which takes a while.
@@ -85,13 +81,12 @@ class Tracing(QObject):
 
     def _go_on(self, done: Picture) -> None:
         """Trace again when the slider has moved on in the meantime."""
-        self._job = None
         if self._wanted is not None and self._wanted != done:
             self._start(self._wanted)
         else:
             self._settle()
 
     def _settle(self) -> None:
-        if self._drag_over and self._job is None:
+        if self._drag_over and not self._slot.busy:
             self._drag_over = False
             self.settled.emit()
