@@ -15,9 +15,9 @@ from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.actions import insert_menu
 from kirigami_studio.gui.beside import Beside
 from kirigami_studio.gui.controller import Controller
+from kirigami_studio.gui.dressing import Dressing
 from kirigami_studio.gui.files.pasting import Pasting
 from kirigami_studio.gui.files.picturing import Picturing
-from kirigami_studio.gui.look.dressing import Dressing
 from kirigami_studio.gui.messages import Message, Tone
 from kirigami_studio.gui.panels.picture_menu import PictureMenu
 from kirigami_studio.gui.panels.recent_menu import RecentMenu

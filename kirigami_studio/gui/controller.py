@@ -10,7 +10,7 @@ from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.designs.collecting import Plan
-from kirigami_studio.gui.files.file_kinds import kind_of
+from kirigami_studio.gui.file_kinds import kind_of
 from kirigami_studio.gui.jobs import steps
 from kirigami_studio.gui.jobs.board import Ears
 from kirigami_studio.gui.messages import Message, Tone

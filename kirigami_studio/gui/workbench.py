@@ -17,6 +17,7 @@ from kirigami_studio.gui.cuts.fabricating import Fabricating
 from kirigami_studio.gui.designs.collecting import Collecting
 from kirigami_studio.gui.designs.comparing import Comparing
 from kirigami_studio.gui.designs.design_run import DesignRun
+from kirigami_studio.gui.designs.entry import Entry
 from kirigami_studio.gui.designs.finishing import Finishing
 from kirigami_studio.gui.designs.hand_editing import HandEditing
 from kirigami_studio.gui.designs.marking import Marking
@@ -31,7 +32,6 @@ from kirigami_studio.gui.jobs.board import Board
 from kirigami_studio.gui.look.preferring import Preferring
 from kirigami_studio.gui.messages import Message, Tone
 from kirigami_studio.gui.targets.targeting import Targeting
-from kirigami_studio.gui.views.gallery_model import Entry
 from kirigami_studio.pipeline.events import Result
 from kirigami_studio.project.design_facts import design_facts
 from kirigami_studio.project.document import Document

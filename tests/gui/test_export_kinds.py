@@ -11,7 +11,7 @@ from pytestqt.qtbot import QtBot
 
 from kirigami_studio.export.registry import exporters
 from kirigami_studio.gui.dialogs.files import follow_filter
-from kirigami_studio.gui.files.file_kinds import FILE_KINDS, kind_of
+from kirigami_studio.gui.file_kinds import FILE_KINDS, kind_of
 from kirigami_studio.gui.main_window import MainWindow
 from kirigami_studio.gui.messages import Tone
 

@@ -12,9 +12,10 @@ from pytestqt.modeltest import ModelTester
 from pytestqt.qtbot import QtBot
 
 from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.gui.designs.entry import Entry
 from kirigami_studio.gui.designs.selecting import Order, Selection, least_panel
 from kirigami_studio.gui.main_window import MainWindow
-from kirigami_studio.gui.views.gallery_model import NUMBER_ROLE, VALUE_ROLE, Entry, GalleryModel
+from kirigami_studio.gui.views.gallery_model import NUMBER_ROLE, VALUE_ROLE, GalleryModel
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.pipeline.variety import distances
 from kirigami_studio.project.document import Document, Mark

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections import OrderedDict
 
 from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.gui.designs.entry import Entry
 from kirigami_studio.gui.designs.selecting import least_panel
 from kirigami_studio.gui.jobs.steps import finished_field
 from kirigami_studio.gui.scene.posed import PosedDesign
-from kirigami_studio.gui.views.gallery_model import Entry
 from kirigami_studio.lattice.deployment import Deployment, deploy
 
 #: Designs kept; one of 10 x 10 voids takes about 15 kB.

@@ -9,10 +9,10 @@ from PySide6.QtCore import QObject, Signal
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.words import tr
+from kirigami_studio.gui.designs.entry import Entry, same_sample
 from kirigami_studio.gui.designs.shelf import Shelf
 from kirigami_studio.gui.jobs import steps
 from kirigami_studio.gui.jobs.board import Board, Ears
-from kirigami_studio.gui.views.gallery_model import Entry, same_sample
 from kirigami_studio.pipeline.rank import rank_key
 from kirigami_studio.project.document import Document
 

@@ -8,7 +8,7 @@ from typing import Protocol
 from PySide6.QtWidgets import QFileDialog, QWidget
 
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui.files.file_kinds import FILE_KINDS, kind_of
+from kirigami_studio.gui.file_kinds import FILE_KINDS, kind_of
 
 TARGET_FILTER = tr("Targets (*.png *.jpg *.jpeg *.bmp *.svg *.dxf *.json);;All files (*)")
 PROJECT_FILTER = tr("Kirigami Studio projects (*.kiri)")

@@ -16,7 +16,7 @@ from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.trimming import KEEP, LARGEST_KEEP
 from kirigami_studio.foundation.errors import Cancelled, ExportError, UsageError
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui.files.file_kinds import kind_of
+from kirigami_studio.gui.file_kinds import kind_of
 from kirigami_studio.gui.jobs import importing
 from kirigami_studio.gui.jobs.worker import Cancel
 from kirigami_studio.lattice.deployment import Deployment, deploy

@@ -1,1 +1,1 @@
-"""How the window looks: palettes, icons, readable numbers, preferences."""
+"""How the window looks: palettes, icons, readable numbers, what the user prefers."""

@@ -9,13 +9,13 @@ from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QLabel, QToolButton, QVBoxLayout, QWidget
 
 from kirigami_studio.foundation.words import tr
+from kirigami_studio.gui.designs.entry import Entry
 from kirigami_studio.gui.designs.selecting import differences, least_panel
 from kirigami_studio.gui.look import icons
 from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.panels.card import FittingLabel, tool_button
 from kirigami_studio.gui.panels.deployment_bar import DeploymentBar
 from kirigami_studio.gui.scene.frame import Bounds
-from kirigami_studio.gui.views.gallery_model import Entry
 from kirigami_studio.gui.views.layout_view import LayoutView, Overlay
 from kirigami_studio.target.outline import Outline
 

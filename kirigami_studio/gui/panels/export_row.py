@@ -7,7 +7,7 @@ from PySide6.QtGui import QAction
 from PySide6.QtWidgets import QHBoxLayout, QMenu, QPushButton, QSizePolicy, QToolButton, QWidget
 
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui.files.file_kinds import FILE_KINDS
+from kirigami_studio.gui.file_kinds import FILE_KINDS
 from kirigami_studio.gui.look import icons
 from kirigami_studio.gui.look.theme import Palette
 

@@ -8,6 +8,7 @@ from PySide6.QtWidgets import QMenu, QSplitter, QStackedWidget, QToolButton, QVB
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.words import tr
+from kirigami_studio.gui.designs.entry import Entry
 from kirigami_studio.gui.look import icons
 from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.panels.card import INSET, Card, FittingLabel, tool_button
@@ -30,7 +31,7 @@ from kirigami_studio.gui.panels.stage_words import (
 )
 from kirigami_studio.gui.panels.void_bar import VoidBar
 from kirigami_studio.gui.views.fault_tour import FaultTour
-from kirigami_studio.gui.views.gallery_model import Entry, described
+from kirigami_studio.gui.views.gallery_model import described
 from kirigami_studio.gui.views.layout_view import USUAL, LayoutView, Overlay
 from kirigami_studio.target.outline import Outline
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from PySide6.QtCore import QObject, Signal
 
 from kirigami_studio.evaluate.opened_size import OpenedSize, opened_size
-from kirigami_studio.gui.views.gallery_model import Entry
+from kirigami_studio.gui.designs.entry import Entry
 from kirigami_studio.project.document import Document
 
 

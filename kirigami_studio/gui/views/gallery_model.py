@@ -5,14 +5,13 @@ from __future__ import annotations
 import bisect
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 from PySide6.QtCore import QAbstractListModel, QModelIndex, QObject, QPersistentModelIndex, Qt, Signal
 
 from kirigami_studio.evaluate.candidate import Candidate, Origin
 from kirigami_studio.foundation.words import tr
+from kirigami_studio.gui.designs.entry import Entry, same_sample
 from kirigami_studio.gui.designs.selecting import Selection, Shown, arranged, least_panel, told_value
-from kirigami_studio.gui.scene.posed import PosedDesign
 from kirigami_studio.pipeline.rank import rank_key
 from kirigami_studio.project.document import Mark
 
@@ -25,27 +24,6 @@ FRESH_ROLE = Qt.ItemDataRole.UserRole + 7  #: whether the last further run has a
 VALUE_ROLE = Qt.ItemDataRole.UserRole + 6  #: words for the number that is sorted by
 
 Index = QModelIndex | QPersistentModelIndex
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Entry:
-    """One card: a candidate with its decoded, posed design.
-
-    Attributes
-    ----------
-    candidate : Candidate
-    design : PosedDesign
-        As it is finished: trimmed if the candidate is.
-    rise : float
-        What polishing has added to its sIoU in the run that goes on.
-    kept : bool
-        Whether it was there before the run that goes on.
-    """
-
-    candidate: Candidate
-    design: PosedDesign
-    rise: float = 0.0
-    kept: bool = False
 
 
 class GalleryModel(QAbstractListModel):
@@ -242,15 +220,6 @@ def _place_of(entries: list[Entry], candidate: Candidate | None) -> int:
         if entry.candidate is candidate:
             return place
     return next((place for place, entry in enumerate(entries) if entry.candidate == candidate), -1)
-
-
-def same_sample(one: Candidate, other: Candidate) -> bool:
-    """Whether two candidates are one sample of one generator, before and after polishing."""
-    return _sample(one) == _sample(other)
-
-
-def _sample(candidate: Candidate) -> tuple[str, int, int, Origin]:
-    return candidate.variant, candidate.seed, candidate.index, candidate.origin
 
 
 def described(candidate: Candidate, rank: int) -> str:

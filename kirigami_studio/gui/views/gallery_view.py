@@ -10,10 +10,11 @@ from PySide6.QtWidgets import QAbstractItemView, QListView, QWidget
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.words import tr
+from kirigami_studio.gui.designs.entry import Entry
 from kirigami_studio.gui.designs.selecting import Selection
 from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.views.card_delegate import GAP, SMALLEST_CARD, TEXT_HEIGHT, CardButton, CardDelegate, button_at
-from kirigami_studio.gui.views.gallery_model import CANDIDATE_ROLE, Entry, GalleryModel
+from kirigami_studio.gui.views.gallery_model import CANDIDATE_ROLE, GalleryModel
 from kirigami_studio.project.document import Mark
 from kirigami_studio.target.outline import Outline
 
