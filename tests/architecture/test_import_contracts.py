@@ -28,6 +28,7 @@ class Fault:
 
 
 ONE_WAY = "Data flows one way; rooms beside each other are strangers"
+FLOORS = "The window's floors: what draws stands on what knows, both on what paints"
 FAULTS = (
     Fault("lattice", "import kirigami_studio.evaluate", ONE_WAY, "kirigami_studio.evaluate"),
     Fault("lattice", "import kirigami_studio.target", ONE_WAY, "kirigami_studio.target"),
@@ -38,6 +39,9 @@ FAULTS = (
     Fault("project", "import kirigami_studio.pipeline", ONE_WAY, "kirigami_studio.pipeline"),
     Fault("gui", "import kirigami_studio.training", ONE_WAY, "kirigami_studio.training"),
     Fault("foundation", "import kirigami_studio.lattice", ONE_WAY, "kirigami_studio.lattice"),
+    Fault("gui/designs", "import kirigami_studio.gui.views", FLOORS, "kirigami_studio.gui.views"),
+    Fault("gui/scene", "import kirigami_studio.gui.jobs", FLOORS, "kirigami_studio.gui.jobs"),
+    Fault("gui/views", "import kirigami_studio.gui.panels", FLOORS, "kirigami_studio.gui.panels"),
     Fault("evaluate", "import torch", "The exact core never reaches torch", "torch"),
     Fault("lattice", "from torch import nn", "The exact core never reaches torch", "torch"),
     Fault("project", "def load():\n    import torch", "The exact core never reaches torch", "torch"),
@@ -89,7 +93,7 @@ def planted_module(package: Path, fault: Fault) -> str:
     if room.is_dir():
         name = f"planted_{FAULTS.index(fault)}"
         (room / f"{name}.py").write_text(fault.statement + "\n")
-        return f"kirigami_studio.{fault.room}.{name}"
+        return f"kirigami_studio.{fault.room.replace('/', '.')}.{name}"
     with room.with_suffix(".py").open("a") as stream:
         stream.write("\n" + fault.statement + "\n")
     return f"kirigami_studio.{fault.room}"
