@@ -9,11 +9,29 @@ from collections.abc import Iterable
 
 from kirigami_studio.evaluate.candidate import Candidate
 
+#: The sIoU (0..1) that who prefers this gives away for a total variation (per void) that is lower by 1.
+WORTH = {"accuracy": 0.0, "balanced": 0.0, "regularity": 0.005, "calm": 0.03}
+
 
 def rank_key(candidate: Candidate) -> tuple[bool, float, float, float, int]:
     """Sorting key of one candidate; smaller is better."""
     score, trim = candidate.score, candidate.trim
     return (not score.feasible, 0.0 if trim is None else -trim.iou, -score.siou, score.tv, candidate.index)
+
+
+def improves(after: Candidate, before: Candidate, prefer: str) -> bool:
+    """Whether a fitted design may take the place of the one it came from.
+
+    A fit that prefers calm panels gives away some match; it is worth its place if what was gained in total variation
+    outweighs that.  ``prefer`` is a key of :data:`kirigami_studio.polish.regularity.PREFERENCES`.
+    """
+    worth = WORTH[prefer]
+
+    def key(candidate: Candidate) -> tuple[bool, float, float]:
+        score = candidate.score
+        return not score.feasible, worth * score.tv - score.siou, score.tv
+
+    return key(after) < key(before)
 
 
 def ranked(candidates: Iterable[Candidate]) -> tuple[Candidate, ...]:

@@ -11,7 +11,7 @@ from kirigami_studio.evaluate.trimming import KEEP
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
-from kirigami_studio.pipeline.rank import rank_key
+from kirigami_studio.pipeline.rank import improves
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.pipeline.threads import one_blas_thread
 from kirigami_studio.polish.continuation import fit_shape
@@ -91,7 +91,7 @@ def _polished(request: Request, task: Polish, stopped: Callable[[], bool]) -> An
         )
     (better,) = scored(request, [fit.field], candidate.index, candidate.origin, fitted=True)
     better = replace(better, drawn=candidate.drawn or candidate.field)
-    return Answer(better if rank_key(better) < rank_key(candidate) else None, fit.evaluations + 1)
+    return Answer(better if improves(better, candidate, request.prefer) else None, fit.evaluations + 1)
 
 
 def _searched(request: Request, task: Search, stopped: Callable[[], bool]) -> Answer:

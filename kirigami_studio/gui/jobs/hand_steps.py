@@ -55,7 +55,7 @@ def refitting(
 ) -> Iterator[Refitted]:
     """Fit a candidate on the exact geometry from its present field; locked voids keep their ratios."""
     from kirigami_studio.evaluate.staying import evaluate_near
-    from kirigami_studio.pipeline.rank import rank_key
+    from kirigami_studio.pipeline.rank import improves
     from kirigami_studio.pipeline.threads import one_blas_thread
     from kirigami_studio.polish.levenberg import polish
     from kirigami_studio.polish.regularity import PREFERENCES
@@ -81,4 +81,4 @@ def refitting(
         found = evaluate_near(deployment, target, score.phi, fit.pose)
     drawn = candidate.drawn or candidate.field
     fitted = replace(candidate, field=fit.field, score=found, polished=True, drawn=drawn, trim=None)
-    yield Refitted(Decoded(fitted, deployment), rank_key(fitted) < rank_key(replace(candidate, trim=None)))
+    yield Refitted(Decoded(fitted, deployment), improves(fitted, candidate, prefer))

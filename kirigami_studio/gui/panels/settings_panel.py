@@ -48,9 +48,9 @@ POLISH = (
 #: What a fit prefers among nearly equal matches: name of the preference, label, what it means.
 PREFER = (
     ("accuracy", tr("Accuracy"), tr("The closest match, whatever the panels look like.")),
-    ("balanced", tr("Balanced"), tr("The usual choice: as close, and about 30 % calmer.")),
-    ("regularity", tr("Regularity"), tr("Calmer panels, for a loss of match of about 0.1 to 0.2 %.")),
-    ("calm", tr("Calm"), tr("The calmest panels, for the largest loss of match.")),
+    ("balanced", tr("Balanced"), tr("The usual choice: nearly as close, and about 20 % calmer.")),
+    ("regularity", tr("Regularity"), tr("Panels half as restless, for 0.1 to 0.3 % of the match.")),
+    ("calm", tr("Calm"), tr("The calmest panels, for 0.5 to 1.5 % of the match.")),
 )
 SEARCH = tr(
     "Look beyond the samples, by way of easier shapes, for one more design. Costs a few "
