@@ -6,18 +6,26 @@ Damped Gauss-Newton steps on z = log10 x, on the exact outline o(z) with its exa
 
 where k runs over the other vertices: they hold on softly, so that the outline gives way around the vertex and stays as
 it is elsewhere.  Every state that is kept is physical if the start was.
+
+There are many more voids than coordinates of the outline, so the step is solved for in the outline: with R the weighted
+derivative, r the weighted gaps, c the weight of the change and d = z - start, it is
+R^T (R R^T + c I)^-1 (R d - r) - d.  R R^T is factored once for each derivative, and outlines on trial come from the
+sparse solve of :func:`deploy`.  At 24 x 24 and 48 x 48 voids a step takes 4 and 20 ms of processor time, 48 and 860 ms
+where it needs a new derivative; with the m * n normal equations and a dense solve it took 23 and 590, 65 and 1390.
 """
 
 from __future__ import annotations
+
+from dataclasses import dataclass
 
 import numpy as np
 import scipy.linalg
 
 from kirigami_studio.evaluate.feasibility import invalid_quads, path_contact
 from kirigami_studio.foundation.errors import UsageError
-from kirigami_studio.lattice.deployment import deploy
+from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.lattice.ratio_field import FloatArray, RatioField
-from kirigami_studio.lattice.topology import BoolArray
+from kirigami_studio.lattice.topology import BoolArray, IntArray
 from kirigami_studio.polish.levenberg import Z_LIMIT, check_fit, check_held
 from kirigami_studio.polish.sensitivity import OutlineModel
 
@@ -62,7 +70,8 @@ class VertexDrag:
         self._field, self._model = field, OutlineModel(field.rows, field.columns, phi)
         self._given = field.ratio
         self._start: FloatArray = field.log10.ravel()
-        self._outline = self._model.outline(self._start)
+        self._deployment = deploy(field)
+        self._outline = self._deployment.outline(phi)
         if not 0 <= vertex < len(self._outline):
             raise UsageError(f"The outline has vertices 0 to {len(self._outline) - 1}, got {vertex}.")
         self._vertex = vertex
@@ -73,12 +82,18 @@ class VertexDrag:
         self._change = CHANGE / self._start.size
         self._z, self._here = self._start, self._outline
         self._slopes: FloatArray | None = None
-        self._guarded = self._is_physical(field)
+        self._dual: _Dual | None = None
+        self._guarded = self._is_physical(self._deployment)
 
     @property
     def field(self) -> RatioField:
         """The field as it is now."""
         return self._field
+
+    @property
+    def deployment(self) -> Deployment:
+        """The exact motion of :attr:`field`."""
+        return self._deployment
 
     @property
     def place(self) -> FloatArray:
@@ -118,7 +133,7 @@ class VertexDrag:
         fresh = False
         for _ in range(steps):
             if self._slopes is None:
-                self._slopes, fresh = self._model.linearised(self._z)[1], True
+                self._slopes, self._dual, fresh = self._model.linearised(self._z)[1], None, True
             before = self.gap(place)
             moved = self._advance(place, self._slopes)
             after = self.gap(place)
@@ -135,12 +150,14 @@ class VertexDrag:
         before, step = self._cost(self._z, self._here, place), self._step(place, slopes)
         for _ in range(HALVINGS):
             z = self._moved(step)
-            outline = self._model.outline(z)
+            field = self._field_of(z)
+            deployment = deploy(field)
+            outline = deployment.outline(self._model.phi)
             if self._cost(z, outline, place) < before:
-                field = self._field_of(z)
-                physical = self._is_physical(field)
+                physical = self._is_physical(deployment)
                 if physical or not self._guarded:
                     self._z, self._here, self._field, self._guarded = z, outline, field, physical
+                    self._deployment = deployment
                     return True
             step = 0.5 * step
         return False
@@ -159,10 +176,11 @@ class VertexDrag:
         step = np.zeros_like(self._z)
         if not free.size:
             return step
-        rows = (np.sqrt(self._weight)[:, None, None] * slopes[..., free]).reshape(-1, free.size)
-        matrix = rows.T @ rows
-        matrix[np.diag_indices_from(matrix)] += self._change
-        step[free] = scipy.linalg.solve(matrix, -0.5 * gradient[free], assume_a="pos", check_finite=False)
+        root = np.sqrt(self._weight)[:, None]
+        if self._dual is None or not np.array_equal(self._dual.free, free):
+            self._dual = _Dual.of(root, slopes, free, self._change)
+        gaps = (root * self._gaps(self._here, place)).ravel()
+        step[free] = self._dual.step(gaps, (self._z - self._start)[free])
         longest = float(np.abs(step).max())
         return step * min(1.0, LONGEST_STEP / longest) if longest else step
 
@@ -177,7 +195,39 @@ class VertexDrag:
         table, start = z.reshape(self._field.ratio.shape), self._start.reshape(self._field.ratio.shape)
         return RatioField(np.where(table == start, self._given, np.power(10.0, table)))
 
-    def _is_physical(self, field: RatioField) -> bool:
+    def _is_physical(self, deployment: Deployment) -> bool:
         """Whether no quad is invalid at the angle, and the sheet opens that far without touching itself."""
-        deployment = deploy(field)
         return not invalid_quads(deployment, self._model.phi) and path_contact(deployment, self._model.phi) is None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Dual:
+    """The step's equations in the outline's coordinates, for one derivative and one set of voids.
+
+    Attributes
+    ----------
+    free : (F,) int
+        Voids that may change.
+    rows : (2 L, F) float
+        Weighted derivative of the outline.
+    factor : (2 L, 2 L) float, bool
+        Cholesky factor of rows @ rows.T + change * I.
+    """
+
+    free: IntArray
+    rows: FloatArray
+    factor: tuple[FloatArray, bool]
+
+    @classmethod
+    def of(cls, root: FloatArray, slopes: FloatArray, free: IntArray, change: float) -> _Dual:
+        """Weigh a derivative (L, 2, m * n) with ``root`` (L, 1), and factor."""
+        rows = (root[..., None] * slopes[..., free]).reshape(-1, free.size)
+        matrix = rows @ rows.T
+        matrix[np.diag_indices_from(matrix)] += change
+        return cls(free, rows, scipy.linalg.cho_factor(matrix, lower=True, overwrite_a=True, check_finite=False))
+
+    def step(self, gaps: FloatArray, changed: FloatArray) -> FloatArray:
+        """The step (F,) from the weighted gaps (2 L,) and how far the free voids' z are from the start (F,)."""
+        solved = scipy.linalg.cho_solve(self.factor, self.rows @ changed - gaps, check_finite=False)
+        step: FloatArray = self.rows.T @ solved - changed
+        return step

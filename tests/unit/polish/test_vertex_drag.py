@@ -14,7 +14,7 @@ from kirigami_studio.foundation.errors import AngleError, UsageError
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.polish.sensitivity import OutlineModel
-from kirigami_studio.polish.vertex_drag import ARRIVED, VertexDrag
+from kirigami_studio.polish.vertex_drag import ARRIVED, CHANGE, HOLD, VertexDrag
 
 GRIDS = st.tuples(st.integers(2, 7), st.integers(2, 7))
 
@@ -40,6 +40,36 @@ def test_that_the_gradient_is_the_one_of_finite_differences(phi: float) -> None:
         (drag.cost(z + step * unit, place) - drag.cost(z - step * unit, place)) / (2 * step) for unit in np.eye(20)
     ]
     assert drag.gradient(z, outline, place, slopes) == pytest.approx(np.array(numeric), rel=1e-5, abs=1e-9)
+
+
+@pytest.mark.parametrize(("grid", "phi"), [((4, 5), 0.0), ((7, 6), 0.7), ((12, 12), 1.2)])
+def test_that_the_step_is_the_one_of_the_normal_equations(grid: tuple[int, int], phi: float) -> None:
+    field, vertex = calm_field(*grid, 3), 6
+    held = np.zeros(grid, dtype=bool)
+    held[1, 1:3] = True
+    outline, slopes = OutlineModel(*grid, phi).linearised(field.log10.ravel())
+    drag = VertexDrag(field, phi, vertex, held)
+    for near in (0.01, 0.013):  # from the start, then from where z differs from it; one derivative serves both
+        z, place = drag.field.log10.ravel(), outline[vertex] + near * outward(outline, vertex)
+        free = np.flatnonzero(~held.ravel())
+        weight = np.full(len(outline), HOLD / len(outline))
+        weight[vertex] = 1.0
+        rows = (np.sqrt(weight)[:, None, None] * slopes[..., free]).reshape(-1, free.size)
+        here = deploy(drag.field).outline(phi)
+        half = 0.5 * drag.gradient(z, here, place, slopes)[free]
+        wanted = z.copy()
+        wanted[free] -= np.linalg.solve(rows.T @ rows + CHANGE / z.size * np.eye(free.size), half)
+        assert np.abs(wanted - z).max() < 0.25  # a step that is not shortened
+        drag.move(place, steps=1)
+        assert drag.field.log10.ravel() == pytest.approx(wanted, abs=2e-9)
+
+
+def test_that_the_motion_at_hand_is_the_one_of_the_field() -> None:
+    field = calm_field(5, 4, 8)
+    drag = VertexDrag(field, 0.4, 3)
+    assert np.array_equal(drag.deployment.outline(0.4), deploy(field).outline(0.4))
+    found = drag.move(drag.place + 0.1)
+    assert found != field and np.array_equal(drag.deployment.outline(0.4), deploy(found).outline(0.4))
 
 
 @settings(max_examples=25, deadline=None)
