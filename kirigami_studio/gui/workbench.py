@@ -122,6 +122,7 @@ class Workbench(QObject):
     def close(self) -> None:
         """Stop all work; the window is going away."""
         self.cutting.close()
+        self.hand.close()
         self.board.close()
         self.filing.close()
 

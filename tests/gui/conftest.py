@@ -86,7 +86,7 @@ def window(qtbot: QtBot, files: PathAnswers) -> Iterator[MainWindow]:
     yield made
     made.controller.history.mark_saved()
     assert made.close()
-    assert not threads[0].isRunning()
+    assert not any(thread.isRunning() for thread in made.findChildren(QThread))
     assert [timer for timer in made.findChildren(QTimer) if timer.isActive()] == []
     made.deleteLater()
     QApplication.processEvents()

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -26,14 +25,10 @@ from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 from pytestqt.qtbot import QtBot
 
-from kirigami_studio.evaluate.candidate import Candidate, Origin
+from kirigami_studio.evaluate.candidate import Origin
 from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.gui.main_window import MainWindow
 from kirigami_studio.lattice.deployment import deploy
-from kirigami_studio.lattice.ratio_field import RatioField
-from kirigami_studio.project import edits, store
-from kirigami_studio.project.document import Document
-from kirigami_studio.target import silhouettes
 
 
 def test_that_pointing_at_a_void_tells_its_facts_even_outside_the_mode(designed: MainWindow) -> None:
@@ -223,11 +218,11 @@ def test_that_undo_in_the_middle_of_a_drag_ends_it_and_takes_it_back(by_hand: Ma
     assert view.design is not None and view.design.deployment.field == before.field
 
 
-def test_that_escape_takes_a_drag_back_without_a_step(by_hand: MainWindow) -> None:
+def test_that_escape_takes_a_drag_back_without_a_step(by_hand: MainWindow, until: Until) -> None:
     view, before = by_hand.stage.view, chosen(by_hand)
     for start in (middle_of(view, (1, 2)), vertex_at(view, 4)):
         drag(view, start, start + QPoint(6, 6), let_go=False)
-        assert view.design is not None and view.design.deployment.field != before.field
+        until(lambda: view.design is not None and view.design.deployment.field != before.field)
         QTest.keyClick(view, Qt.Key.Key_Escape)
         QTest.mouseMove(view, start + QPoint(9, 9))
         QTest.mouseRelease(view, LEFT, NONE, start + QPoint(9, 9))
@@ -271,20 +266,3 @@ def test_that_playing_stops_when_something_is_taken_hold_of(by_hand: MainWindow,
     assert not play.isChecked()
     QTest.mouseRelease(view, LEFT, NONE, start + QPoint(12, 3))
     settle(by_hand, until)
-
-
-def test_that_the_outline_of_a_sheet_too_large_to_follow_is_refused_at_once(
-    window: MainWindow, until: Until, tmp_path: Path
-) -> None:
-    target, field = silhouettes.load("heart"), RatioField.from_log10(np.zeros((25, 25)))
-    large = Candidate(field, evaluate(deploy(field), target, 0.0), seed=1, index=0)
-    start = edits.set_target(Document(), target).document
-    store.save(edits.set_candidates(start, [large], {}).document, tmp_path / "large.kiri")
-    window.controller.open_project(tmp_path / "large.kiri")
-    until(lambda: window.controller.stage is not None)
-    hand = window.controller.hand
-    hand.begin_vertex(0, OPEN)
-    assert "cannot follow the hand" in window.says.text()
-    hand.move_vertex((0.5, 0.5))
-    hand.let_go()
-    assert not hand.busy

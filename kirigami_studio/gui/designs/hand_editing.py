@@ -1,9 +1,11 @@
 """Changing the chosen design by hand: what is seen follows the hand at once, the document takes each gesture scored.
 
-A gesture makes a draft: another ratio field, decoded exactly in the window's thread and shown in the place of the
-design.  When the gesture ends, the worker scores the draft; with the score comes one named edit.  Gestures that follow
-meanwhile go on from the draft and wait for their turn, so that each becomes a step of its own.  Undo, save and the like
-wait for the last score.
+A gesture makes a draft: another ratio field, decoded exactly and shown in the place of the design.  When the gesture
+ends, the worker scores the draft; with the score comes one named edit.  Gestures that follow meanwhile go on from the
+draft and wait for their turn, so that each becomes a step of its own.  Undo, save and the like wait for the last score.
+
+A vertex of the outline follows the hand in a thread of its own (:mod:`outline_drag`) and may still be on its way when
+the hand has let go: what the hand does next is carried out when it has arrived.
 """
 
 from __future__ import annotations
@@ -12,8 +14,8 @@ import math
 from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import partial
-from typing import TYPE_CHECKING
+from functools import partial, wraps
+from typing import Concatenate, ParamSpec
 
 import numpy as np
 from PySide6.QtCore import QObject, QTimer, Signal
@@ -21,9 +23,11 @@ from PySide6.QtCore import QObject, QTimer, Signal
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.gui.designs.hand_pull import LARGEST, SMALLEST, Pull
+from kirigami_studio.gui.designs.outline_drag import OutlineDrag
 from kirigami_studio.gui.designs.shelf import Shelf
 from kirigami_studio.gui.jobs import hand_steps
 from kirigami_studio.gui.jobs.board import Board, Ears
+from kirigami_studio.gui.jobs.drag_steps import Followed, Grasp
 from kirigami_studio.gui.jobs.steps import Decoded, finished_field
 from kirigami_studio.gui.scene.posed import PosedDesign
 from kirigami_studio.lattice.deployment import deploy
@@ -31,15 +35,23 @@ from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.project import hand_edits
 from kirigami_studio.project.document import Document, Void
 
-if TYPE_CHECKING:
-    from kirigami_studio.polish.vertex_drag import VertexDrag
-
 #: Milliseconds after the last notch of the wheel, or the last press of a key, that end the gesture.
 PAUSE_MS = 250
-#: Steps that one place of the mouse gets, one at a time so that a newer place comes first.
-MOST_STEPS = 4
-#: Most voids of a sheet whose outline follows the hand: a step takes 70 ms with 24 x 24 voids, 600 ms with 40 x 40.
-MOST_VOIDS = 600
+
+
+P = ParamSpec("P")
+Gesture = Callable[Concatenate["HandEditing", P], None]
+
+
+def _in_turn(gesture: Gesture[P]) -> Gesture[P]:
+    """Carry a gesture out at once, or when the outline has arrived that the hand has let go of before."""
+
+    @wraps(gesture)
+    def take(hand: HandEditing, /, *args: P.args, **kwargs: P.kwargs) -> None:
+        if not hand.defers(partial(take, hand, *args, **kwargs)):
+            gesture(hand, *args, **kwargs)
+
+    return take
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,20 +82,22 @@ class HandEditing(QObject):
         self._job: int | None = None
         self._wishes: list[Callable[[], object]] = []
         self._pull: Pull | None = None
-        self._drag: VertexDrag | None = None
-        self._goal: tuple[float, float] | None = None
-        self._phi, self._steps = 0.0, 0
+        self._outline = OutlineDrag(self)
+        self._outline.followed.connect(self._follow)
+        self._outline.ended.connect(self._arrive)
+        self._outline.failed.connect(self._fail)
+        self._grasped: Candidate | None = None  # the document's design since a vertex was taken hold of
+        self._seen: PosedDesign | None = None  # the draft, where the outline's thread has decoded it
+        self._later: deque[Callable[[], None]] = deque()
         self._pause = QTimer(self, singleShot=True, interval=PAUSE_MS)
         self._pause.timeout.connect(self.commit)
-        self._next = QTimer(self, singleShot=True, interval=0)
-        self._next.timeout.connect(self._follow_vertex)
 
     # what is there -------------------------------------------------------------------------------------------------
 
     @property
     def busy(self) -> bool:
         """Whether a gesture is under way or waits for its score."""
-        return self._base is not None
+        return self._base is not None or self._outline.active
 
     @property
     def field(self) -> RatioField | None:
@@ -93,24 +107,35 @@ class HandEditing(QObject):
 
     def postpones(self, wish: Callable[[], object]) -> bool:
         """Whether a wish must wait until all gestures are in the document; it is then carried out by itself."""
+        self.commit()
         if not self.busy:
             return False
         self._wishes.append(wish)
-        self.commit()
         return True
+
+    def defers(self, act: Callable[[], None]) -> bool:
+        """Whether an act of the hand must wait until the outline has arrived; it is then carried out by itself."""
+        if self._outline.arriving:
+            self._later.append(act)
+        return self._outline.arriving
 
     def stop(self) -> None:
         """Another document comes: forget what belongs to the old one."""
         if self._job is not None:
             self._board.abandon(self._job)
-        self._next.stop()
         self._waiting.clear()
         self._wishes.clear()
-        self._pull, self._drag, self._goal = None, None, None
+        self._later.clear()
+        self._put_down()
         self._over()
+
+    def close(self) -> None:
+        """The window is going away."""
+        self._outline.close()
 
     # ratios --------------------------------------------------------------------------------------------------------
 
+    @_in_turn
     def nudge(self, voids: frozenset[Void], step: float) -> None:
         """Change the log10 of ratios by ``step``."""
         free = self._free(voids)
@@ -118,6 +143,7 @@ class HandEditing(QObject):
             self._change({void: float(self.field.ratio[void]) * math.pow(10.0, step) for void in free})
             self._pause.start()
 
+    @_in_turn
     def set_ratio(self, voids: frozenset[Void], ratio: float) -> None:
         """Give voids a ratio, as typed."""
         free = self._free(voids)
@@ -125,6 +151,7 @@ class HandEditing(QObject):
             self._change(dict.fromkeys(free, ratio))
             self._pause.start()
 
+    @_in_turn
     def begin_pull(self, void: Void, place: tuple[float, float], phi: float) -> None:
         """Take hold of a void at a place in the world."""
         self._begin_drag()
@@ -132,6 +159,7 @@ class HandEditing(QObject):
         if self._free(frozenset({void})) and design is not None:
             self._pull = Pull.of(design, void, place, phi)
 
+    @_in_turn
     def pull(self, place: tuple[float, float]) -> None:
         """The hand has moved to a place in the world; the void follows."""
         if self._pull is not None:
@@ -177,66 +205,69 @@ class HandEditing(QObject):
 
     # the outline ---------------------------------------------------------------------------------------------------
 
+    @_in_turn
     def begin_vertex(self, vertex: int, phi: float) -> None:
         """Take hold of a vertex of the outline at the angle that is shown."""
-        from kirigami_studio.polish.vertex_drag import VertexDrag
-
         self._begin_drag()
-        field, document = self.field, self._document()
-        if field is None or phi >= math.pi:
+        design, document = self._design(), self._document()
+        if design is None or phi >= math.pi:
             self.status.emit(tr("The flat sheet is a rectangle whatever the ratios; open it to move its outline."))
             return
-        if field.ratio.size > MOST_VOIDS:
-            told = tr("The outline of so many voids cannot follow the hand; pull single voids, or fit again (Ctrl+F).")
-            self.status.emit(told)
-            return
-        held = np.zeros(field.ratio.shape, dtype=np.bool_)
+        held = np.zeros(design.deployment.field.ratio.shape, dtype=np.bool_)
         for void in document.locked:
             held[void] = True
-        self._drag, self._phi = VertexDrag(field, phi, vertex, held), phi
+        self._grasped = document.candidate
+        self._outline.begin(Grasp(design, phi, vertex, held))
 
+    @_in_turn
     def move_vertex(self, place: tuple[float, float]) -> None:
         """The hand has moved to a place in the world; the newest place wins."""
-        if self._drag is not None:
-            self._goal, self._steps = place, 0
-            if not self._next.isActive():
-                self._next.start()
+        self._outline.move(place)
 
-    def _follow_vertex(self) -> None:
-        """One step towards the newest place; more follow while they bring the vertex nearer."""
-        from kirigami_studio.polish.vertex_drag import ARRIVED
-
-        drag, goal, design = self._drag, self._goal, self._design()
-        if drag is None or goal is None or design is None:
+    def _follow(self, found: Followed) -> None:
+        """The outline has come a step nearer to the hand."""
+        if self._document().candidate != self._grasped:  # something else has changed the design meanwhile
+            self._put_down()
+            self._arrive()
             return
-        place = design.to_layout(goal, self._phi)
-        before = drag.field
-        self._draft(drag.move(place, steps=1), tr("Move outline"))
-        self._steps += 1
-        if drag.gap(place) <= ARRIVED:
+        self._seen = found.design
+        self._draft(found.design.deployment.field, tr("Move outline"))
+        if found.arrived:
             self.status.emit(tr("The outline follows the hand."))
-        elif self._steps < MOST_STEPS:
-            self._next.start()
-        elif drag.field is before:
+        elif found.stuck:
             self.status.emit(tr("The outline does not reach that far: ratios, locks or matter stand in the way."))
+
+    def _arrive(self) -> None:
+        """The outline is where the hand has let go of it; now comes what the hand has done since."""
+        later, self._later = self._later, deque()
+        self.commit()
+        for act in later:
+            act()
+        if not self.busy:
+            self._over()
 
     def _begin_drag(self) -> None:
         self.commit()
-        self._pull, self._drag, self._goal = None, None, None
+        self._put_down()
 
+    def _put_down(self) -> None:
+        """Nothing is in the hand."""
+        self._pull = None
+        self._outline.stop()
+
+    @_in_turn
     def let_go(self) -> None:
-        """The hand has let go: the gesture is complete."""
-        if self._next.isActive():
-            self._next.stop()
-            self._follow_vertex()
-            self._next.stop()
-        self.commit()
+        """The hand has let go: the gesture is complete, for an outline when it has arrived."""
+        if self._outline.active:
+            self._outline.let_go()
+        else:
+            self.commit()
 
+    @_in_turn
     def take_back(self) -> None:
         """The gesture under way never was."""
-        self._next.stop()
         self._pause.stop()
-        self._pull, self._drag, self._goal = None, None, None
+        self._put_down()
         if self._open is None:
             return
         self._field, self._open = self._last, None
@@ -266,6 +297,8 @@ class HandEditing(QObject):
             return None
         if self._field is None and candidate.trim is None:
             return self._shelf.entry(candidate).design
+        if self._seen is not None and self._seen.deployment.field is self._field:
+            return self._seen
         seen = candidate.score if candidate.trim is None else candidate.trim
         pose = candidate.score.transform if candidate.trim is None else candidate.trim.pose
         return PosedDesign(deploy(self.field), pose, seen.phi)
@@ -277,9 +310,10 @@ class HandEditing(QObject):
 
     def commit(self) -> None:
         """The gesture is complete; what follows is another one."""
+        if self._outline.arriving:  # it becomes complete by itself
+            return
         self._pause.stop()
-        self._next.stop()
-        self._pull, self._drag, self._goal = None, None, None
+        self._put_down()
         if self._open is None or self._field is None:
             return
         gesture, self._open = _Gesture(self._field, self._open), None
@@ -309,7 +343,7 @@ class HandEditing(QObject):
             self._restore()
             return
         self._shelf.put(report.candidate, report.deployment)
-        self._base = report.candidate
+        self._base = self._grasped = report.candidate
         self.edited.emit(edit)
         self._tell_score(gesture, before, report.candidate)
         if self._waiting or self._open is not None:
@@ -347,7 +381,7 @@ class HandEditing(QObject):
     def _over(self) -> None:
         """Nothing is under way any more; wishes that waited for this are carried out."""
         self._pause.stop()
-        self._base = self._field = self._last = self._open = self._job = None
+        self._base = self._field = self._last = self._open = self._job = self._seen = None
         wishes, self._wishes = self._wishes, []
         self.settled.emit()
         for wish in wishes:

@@ -33,11 +33,11 @@ class Ears:
 
 
 class Board(QObject):
-    """Owns the worker thread; :meth:`close` ends it."""
+    """Owns a worker thread, which ``name`` names; :meth:`close` ends it."""
 
     idle = Signal()
 
-    def __init__(self, parent: QObject | None = None) -> None:
+    def __init__(self, parent: QObject | None = None, name: str = "kirigami-worker") -> None:
         super().__init__(parent)
         self._numbers = itertools.count(1)
         self._open: dict[int, tuple[Job, Ears]] = {}
@@ -47,7 +47,7 @@ class Board(QObject):
         self._turn.setInterval(0)
         self._turn.timeout.connect(self._tell)
         self._thread = QThread(self)
-        self._thread.setObjectName("kirigami-worker")
+        self._thread.setObjectName(name)
         self._worker = Worker()
         self._worker.moveToThread(self._thread)
         self._worker.reported.connect(self._report)

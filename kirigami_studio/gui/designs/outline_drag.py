@@ -1,0 +1,105 @@
+"""A vertex of the outline in the hand: the window says where it is wanted, a thread of its own brings it there.
+
+Steps are taken in a thread that gestures have to themselves, not in the one of long work: there a plan of cuts, a fit
+or a trim is one step that may last seconds, and the vertex would stand still so long.  Nor are they taken in the
+window's thread when they are cheap: the first step of a drag never is, because it needs a derivative.  The thread is
+made at the first drag and ends with the window.
+
+While a step is being taken, only the newest place is kept; what it has made is shown when it is finished, and only the
+newest where there are several.  When the hand has let go, steps go on until the last place is reached; then the drag
+has ended.
+"""
+
+from __future__ import annotations
+
+from PySide6.QtCore import QObject, Signal
+
+from kirigami_studio.foundation.words import tr
+from kirigami_studio.gui.jobs.board import Board, Ears
+from kirigami_studio.gui.jobs.drag_steps import Followed, Follower, Grasp
+
+
+class OutlineDrag(QObject):
+    """At most one drag at a time; owns the thread of gestures."""
+
+    followed = Signal(object)  #: Followed
+    ended = Signal()  #: the hand has let go and the last place is reached
+    failed = Signal(str, str)  #: sentence, trace
+
+    def __init__(self, parent: QObject) -> None:
+        super().__init__(parent)
+        self._board: Board | None = None
+        self._follower: Follower | None = None
+        self._shown: Followed | None = None
+        self._held = False
+        self._job: int | None = None
+
+    @property
+    def active(self) -> bool:
+        """Whether a vertex is held or still on its way."""
+        return self._follower is not None
+
+    @property
+    def arriving(self) -> bool:
+        """Whether the hand has let go and the vertex is still on its way."""
+        return self.active and not self._held
+
+    def begin(self, grasp: Grasp) -> None:
+        """Take hold of a vertex."""
+        self.stop()
+        self._follower, self._held = Follower(grasp), True
+
+    def move(self, place: tuple[float, float]) -> None:
+        """The hand has moved to a place in the world."""
+        if self._follower is not None and self._held:
+            self._follower.want(place)
+            self._go_on()
+
+    def let_go(self) -> None:
+        """The hand has let go; :attr:`ended` follows when the vertex has arrived."""
+        if self._follower is not None:
+            self._held = False
+            self._follower.let_go()
+            self._go_on()
+
+    def stop(self) -> None:
+        """Forget the drag; nothing more is told about it."""
+        if self._job is not None and self._board is not None:
+            self._board.abandon(self._job)
+        self._job = self._follower = self._shown = None
+        self._held = False
+
+    def close(self) -> None:
+        """Stop, and wait for the thread to end: at most one step."""
+        self.stop()
+        if self._board is not None:
+            self._board.close()
+
+    def _go_on(self) -> None:
+        follower = self._follower
+        if follower is None or self._job is not None:
+            return
+        if follower.waiting:
+            if self._board is None:
+                self._board = Board(self, "kirigami-gestures")
+            ears = Ears(self._show, self._finish, on_failed=self._fail)
+            self._job = self._board.start(tr("moving the outline"), follower.steps, ears)
+        elif not self._held:
+            self.stop()
+            self.ended.emit()
+
+    def _show(self, _: object) -> None:
+        """A step is finished; what it has made may have been shown already, with what came before it."""
+        newest = None if self._follower is None else self._follower.newest
+        if newest is not None and newest is not self._shown:
+            self._shown = newest
+            self.followed.emit(newest)
+
+    def _finish(self) -> None:
+        self._job = None
+        self._go_on()
+
+    def _fail(self, sentence: str, trace: str) -> None:
+        self._job = None
+        self.stop()
+        self.failed.emit(sentence, trace)

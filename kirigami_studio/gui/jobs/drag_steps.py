@@ -1,0 +1,135 @@
+"""What the gesture thread does while a vertex of the outline is held: step after step towards the newest place.
+
+A :class:`Follower` is written to by the window and read by the worker, without a lock: a place is one attribute that is
+replaced as a whole, and so is the newest result.  Places that were replaced before a step began are never looked at.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from kirigami_studio.gui.jobs.worker import Cancel
+from kirigami_studio.gui.scene.posed import PosedDesign
+from kirigami_studio.lattice.topology import BoolArray
+
+if TYPE_CHECKING:
+    from kirigami_studio.polish.vertex_drag import VertexDrag
+
+#: Most steps towards one place: two or three bring a vertex one cell further; at the edge of its reach they are short.
+MOST_STEPS = 100
+#: Seconds that the vertex is given to arrive after the hand has let go.
+LAST_WAY = 1.5
+#: A step that brings the vertex less than this (unit cells) nearer has not helped.
+NEARER = 1e-3
+#: Steps in a row that do not help before the vertex is as near as it gets: the second has a new derivative.
+IN_VAIN = 2
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Grasp:
+    """A vertex as it was taken hold of.
+
+    Attributes
+    ----------
+    design : PosedDesign
+        As it was seen; its pose is kept for the whole drag.
+    phi : float, radians, in [0, pi)
+        Angle that was seen.
+    vertex : int
+        Number in ``Deployment.outline(phi)``.
+    held : (m, n) bool
+        Voids that are locked.
+    """
+
+    design: PosedDesign
+    phi: float
+    vertex: int
+    held: BoolArray
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Followed:
+    """The design after a step.
+
+    Attributes
+    ----------
+    design : PosedDesign
+    arrived : bool
+        Whether the vertex is where the hand wanted it when the step began.
+    stuck : bool
+        Whether it comes no nearer: ratios, locks or matter stand in the way.
+    """
+
+    design: PosedDesign
+    arrived: bool
+    stuck: bool
+
+
+class Follower:
+    """Brings one vertex after the hand.
+
+    Attributes
+    ----------
+    newest : Followed or None
+        What the last finished step has made.
+    """
+
+    def __init__(self, grasp: Grasp) -> None:
+        self._grasp = grasp
+        self._drag: VertexDrag | None = None
+        self._wanted: tuple[int, tuple[float, float]] = (0, (0.0, 0.0))
+        self._served = 0
+        self._end = math.inf
+        self.newest: Followed | None = None
+
+    def want(self, place: tuple[float, float]) -> None:
+        """The hand is at a place (x, y) in the world now."""
+        self._wanted = (self._wanted[0] + 1, place)
+
+    def let_go(self) -> None:
+        """The place that is wanted now is the last; the vertex goes there, or as far as it gets in the time it has."""
+        self._end = time.monotonic() + LAST_WAY
+
+    @property
+    def waiting(self) -> bool:
+        """Whether there is a place for which not all has been done."""
+        return self._wanted[0] != self._served
+
+    def steps(self, cancel: Cancel) -> Iterator[Followed]:
+        """Take steps until the newest place is reached, or as nearly as it can be."""
+        number = taken = in_vain = 0
+        while self.waiting and not cancel():
+            newest, place = self._wanted
+            if newest != number:
+                number, taken, in_vain = newest, 0, 0
+            found, gain = self._step(place)
+            taken, in_vain = taken + 1, 0 if gain >= NEARER else in_vain + 1
+            late = time.monotonic() > self._end
+            stuck = not found.arrived and (in_vain == IN_VAIN or taken == MOST_STEPS or late)
+            if found.arrived or stuck:
+                self._served = number
+            self.newest = Followed(found.design, found.arrived, stuck)
+            yield self.newest
+
+    def _step(self, place: tuple[float, float]) -> tuple[Followed, float]:
+        """One step towards a place in the world, and how much nearer (unit cells) it has brought the vertex."""
+        from kirigami_studio.pipeline.threads import one_blas_thread
+        from kirigami_studio.polish.vertex_drag import ARRIVED, VertexDrag
+
+        grasp = self._grasp
+        before = grasp.design if self.newest is None else self.newest.design
+        with one_blas_thread():
+            if self._drag is None:
+                field = grasp.design.deployment.field
+                self._drag = VertexDrag(field, grasp.phi, grasp.vertex, grasp.held)
+            drag = self._drag
+            wanted = before.to_layout(place, grasp.phi)
+            gap = drag.gap(wanted)
+            drag.move(wanted, steps=1)
+            design = PosedDesign(drag.deployment, grasp.design.pose, grasp.design.phi_target)
+            left = drag.gap(design.to_layout(place, grasp.phi))  # the design keeps its middle, so that places shift
+        return Followed(design, left <= ARRIVED, stuck=False), gap - left
