@@ -11,12 +11,13 @@ import numpy as np
 import pytest
 from PIL import Image
 from PySide6.QtCore import QRectF, Qt
-from PySide6.QtGui import QGuiApplication, QImage, QPainter
+from PySide6.QtGui import QColor, QGuiApplication, QImage, QPainter
 from PySide6.QtWidgets import QWidget
 from pytestqt.qtbot import QtBot
 
 from kirigami_studio.export.svg_reading import read_with_svgelements
 from kirigami_studio.gui.files.picturing import Picturing
+from kirigami_studio.gui.jobs import picture_steps
 from kirigami_studio.gui.main_window import MainWindow
 from kirigami_studio.gui.views.canvas import Canvas
 
@@ -117,6 +118,31 @@ def test_that_overlays_can_be_left_out_and_stay_on_the_screen(designed: MainWind
     cuts.gestures.select(frozenset({1, 2}))
     picturing.record(cuts)
     assert cuts.selected == {1, 2}
+
+
+def test_that_a_picture_painted_in_bands_is_the_picture_painted_at_once(
+    designed: MainWindow, picturing: Picturing, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    recording = picturing.record(designed)
+    monkeypatch.setattr(picture_steps, "BAND", 10**9)
+    whole = pixels(recording.image(2))
+    monkeypatch.setattr(picture_steps, "BAND", 37 * 2 * designed.width())
+    differences = np.abs(pixels(recording.image(2)) - whole).max(axis=2)
+    # Where a curve crosses from one band to the next, its edge may be shaded a little otherwise.
+    assert (differences > 24).sum() == 0 and (differences > 0).mean() < 0.002
+
+
+def test_that_a_picture_of_the_window_shows_its_views_on_plain_ground(
+    designed: MainWindow, picturing: Picturing
+) -> None:
+    view = designed.stage.view
+    drawn, seen = pixels(picturing.record(designed).image(1)), pixels(designed.grab().toImage())
+    corner = view.mapTo(designed, view.rect().topLeft())
+    empty = np.s_[corner.y() + 8 : corner.y() + 60, corner.x() + 8 : corner.x() + 60]
+    canvas = QColor(designed.palette_.canvas).getRgb()[:3]
+    assert (drawn[empty] == canvas).all()
+    assert not (seen[empty] == canvas).all(), "the screen has its dots"
+    assert not view.picturing
 
 
 def test_that_copying_takes_the_view_in_use(designed: MainWindow, picturing: Picturing, qtbot: QtBot) -> None:

@@ -121,7 +121,14 @@ class Picturing(QObject):
             with nullcontext() if self.overlays else view.plain():
                 view.render_to(painter, view.size())
         else:
-            view.render(painter, QPoint(0, 0))
+            canvases = view.findChildren(Canvas)
+            for canvas in canvases:
+                canvas.picturing = True
+            try:
+                view.render(painter, QPoint(0, 0))
+            finally:
+                for canvas in canvases:
+                    canvas.picturing = False
 
     def _facts(self) -> Mapping[str, str]:
         """Where the design on the stage comes from."""

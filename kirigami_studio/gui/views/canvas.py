@@ -21,6 +21,8 @@ ZOOM_STEP = 1.2
 SMALLEST_ZOOM, LARGEST_ZOOM = 0.2, 60.0
 #: Distance of the background dots, pixels.
 GRID_STEP = 22
+#: Height of a row of these dots, pixels.
+DOT_ROW = 6
 ICON_EDGE = 40
 
 
@@ -199,30 +201,51 @@ class Canvas(QWidget):
         self.paint_notes(painter)
 
     def _paint_background(self, painter: QPainter) -> None:
+        if self.picturing:
+            self._paint_ground(painter)
+            return
         key = (self.width(), self.height(), self.devicePixelRatioF(), self.palette_.name)
         if self._background is None or self._background[0] != key:
             self._background = (key, self._background_picture())
         painter.drawPixmap(0, 0, self._background[1])
 
     def _background_picture(self) -> QPixmap:
-        """Border and dots; kept, because a thousand round dots take longer to draw than the sheet."""
+        """Border and dots; kept, because a thousand round dots take longer to draw than the sheet.
+
+        One row of dots is drawn and laid down as often as there are rows: a view of 1700 x 1300 has 4500 of them.
+        """
         ratio = self.devicePixelRatioF()
         picture = QPixmap(round(self.width() * ratio), round(self.height() * ratio))
         picture.setDevicePixelRatio(ratio)
         picture.fill(Qt.GlobalColor.transparent)
         painter = QPainter(picture)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        self._paint_ground(painter)
+        dots = self._row_of_dots(ratio)
+        for y in range(GRID_STEP // 2 + (self.height() % GRID_STEP) // 2, self.height() - 4, GRID_STEP):
+            painter.drawPixmap(0, y - DOT_ROW // 2, dots)
+        painter.end()
+        return picture
+
+    def _paint_ground(self, painter: QPainter) -> None:
         painter.setPen(QPen(QColor(self.palette_.border), 1.0))
         painter.setBrush(QColor(self.palette_.canvas))
         painter.drawRoundedRect(QRectF(self.rect()).adjusted(0.5, 0.5, -0.5, -0.5), 7, 7)
+
+    def _row_of_dots(self, ratio: float) -> QPixmap:
+        """The dots across the view; ``ratio`` device pixels per pixel."""
+        row = QPixmap(round(self.width() * ratio), math.ceil(DOT_ROW * ratio))
+        row.setDevicePixelRatio(ratio)
+        row.fill(Qt.GlobalColor.transparent)
+        painter = QPainter(row)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         pen = QPen(QColor(self.palette_.grid), 2.0)
         pen.setCapStyle(Qt.PenCapStyle.RoundCap)
         painter.setPen(pen)
         columns = range(GRID_STEP // 2 + (self.width() % GRID_STEP) // 2, self.width() - 4, GRID_STEP)
-        rows = range(GRID_STEP // 2 + (self.height() % GRID_STEP) // 2, self.height() - 4, GRID_STEP)
-        painter.drawPoints([QPointF(x, y) for x in columns for y in rows])
+        painter.drawPoints([QPointF(x, DOT_ROW // 2) for x in columns])
         painter.end()
-        return picture
+        return row
 
     def _paint_empty(self, painter: QPainter) -> None:
         name, headline, hint = self.empty_state()
