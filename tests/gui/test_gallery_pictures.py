@@ -44,3 +44,18 @@ def test_that_no_card_waits_in_a_usual_window(designed: MainWindow, until: Until
     until(lambda: not view.cards.owing and len(view.cards._pictures) == 3)
     picture = view.viewport().grab()
     assert not view.cards.owing and picture.width() == view.viewport().width()
+
+
+def test_that_pictures_outlive_a_change_and_go_with_their_designs(designed: MainWindow, until: Until) -> None:
+    cards = designed.gallery.view.cards
+    until(lambda: not cards.owing and len(cards._pictures) == 3)
+    before = dict(cards._pictures)
+    designed.actions_["pin"].trigger()
+    designed.actions_["next"].trigger()
+    designed.actions_["undo"].trigger()
+    assert cards._pictures == before
+    designed.controller.targeting.open("star")
+    until(
+        lambda: designed.controller.document.target is not None and designed.controller.document.target.name == "star"
+    )
+    assert not cards._pictures.keys() & before.keys()

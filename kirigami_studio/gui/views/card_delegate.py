@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import time
+from collections.abc import Collection
 from enum import Enum
 
 from PySide6.QtCore import QModelIndex, QPersistentModelIndex, QPoint, QPointF, QRect, QRectF, QSize, Qt
@@ -40,7 +41,7 @@ DOT = 7
 #: Opacity of a rejected design's picture.
 DIMMED = 0.3
 #: Seconds in which new pictures are drawn at a time; a large window shows dozens of cards, a large design takes 7 ms.
-DRAWING = 0.03
+DRAWING = 0.015
 Index = QModelIndex | QPersistentModelIndex
 
 
@@ -71,9 +72,10 @@ class CardDelegate(QStyledItemDelegate):
         self._drawn_until = math.inf
         self.owing = False
 
-    def forget_pictures(self) -> None:
-        """Drop all thumbnails; they are painted again when needed."""
-        self._pictures.clear()
+    def forget_pictures(self, kept: Collection[PosedDesign] = ()) -> None:
+        """Drop all thumbnails but those of some designs; they are painted again when needed."""
+        staying = set(kept)
+        self._pictures = {key: picture for key, picture in self._pictures.items() if key[0] in staying}
 
     def helpEvent(  # noqa: N802 - Qt's name
         self, event: QHelpEvent, view: QAbstractItemView, option: QStyleOptionViewItem, index: Index

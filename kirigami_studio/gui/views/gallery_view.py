@@ -74,9 +74,10 @@ class GalleryView(QListView):
         return tr("No design passes the filter"), tr("Click here to show everything.")
 
     def show_entries(self, entries: list[Entry], target: Outline | None) -> None:
-        """Show other candidates."""
+        """Show other candidates; those that were there keep their pictures, unless the target is another one."""
+        same = target == self.cards.target
         self.cards.target = target
-        self.cards.forget_pictures()
+        self.cards.forget_pictures([entry.design for entry in entries] if same else ())
         self._telling = False
         self.model_.replace(entries)
         self._telling = True
