@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+from PIL import Image
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
+from kirigami_studio.gui.jobs.steps import Picture, reading_target
 from kirigami_studio.gui.main_window import MainWindow
 from kirigami_studio.gui.sketching.easel import Change
 from kirigami_studio.gui.views.target_view import Tool
@@ -163,3 +166,15 @@ def test_that_a_picture_goes_along_when_its_contour_is_moved_and_enlarged(
     for _ in range(3):
         traced.actions_["undo"].trigger()
     assert view.underlay.corner == pytest.approx(corner) and view.easel.placed.size == pytest.approx((width, height))
+
+
+def test_that_the_worker_reduces_a_large_photo_for_drawing(tmp_path: Path) -> None:
+    path = tmp_path / "large.png"
+    grey = np.full((1200, 2400), 230, dtype=np.uint8)
+    grey[300:900, 600:1800] = 20
+    Image.fromarray(grey).save(path)
+    picture = next(iter(reading_target(str(path), lambda: False)))
+    assert isinstance(picture, Picture) and picture.seen is not None
+    assert (picture.seen.width(), picture.seen.height()) == (1600, 800)
+    assert picture.traced is not None and picture.traced.picture == (2400, 1200)
+    assert picture == replace(picture, seen=None), "what is drawn does not make it another picture"

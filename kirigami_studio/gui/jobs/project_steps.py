@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from kirigami_studio.foundation.errors import ProjectError
 from kirigami_studio.foundation.words import tr
+from kirigami_studio.gui.jobs.picture_reading import reduced_picture
 from kirigami_studio.gui.jobs.steps import Picture
 from kirigami_studio.gui.jobs.worker import Cancel
 from kirigami_studio.project.document import Document
@@ -101,4 +102,5 @@ def laid_out(opened: Opened, folder: Path) -> Picture | None:
     folder.mkdir(parents=True, exist_ok=True)
     path = folder / kept.name
     path.write_bytes(kept.content)
-    return Picture(path, kept.automatic, kept.threshold, Traced(target, kept.scale, kept.centre, kept.size))
+    traced = Traced(target, kept.scale, kept.centre, kept.size)
+    return Picture(path, kept.automatic, kept.threshold, traced, reduced_picture(path))

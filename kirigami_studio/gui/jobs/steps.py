@@ -18,6 +18,7 @@ from kirigami_studio.foundation.errors import Cancelled, ExportError, UsageError
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.file_kinds import kind_of
 from kirigami_studio.gui.jobs import importing
+from kirigami_studio.gui.jobs.picture_reading import reduced_picture
 from kirigami_studio.gui.jobs.worker import Cancel
 from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.lattice.ratio_field import RatioField
@@ -27,6 +28,8 @@ from kirigami_studio.project.settings import FabricationSettings
 from kirigami_studio.target.outline import Outline
 
 if TYPE_CHECKING:
+    from PySide6.QtGui import QImage
+
     from kirigami_studio.export.exporter import ExportJob
     from kirigami_studio.export.verification import Verification
     from kirigami_studio.fabricate.checks import Report
@@ -117,13 +120,14 @@ class Loaded:
 class Picture:
     """A picture that a target is traced from; grey levels run from 0 (black) to 1 (white).
 
-    ``traced`` says where the target lies in it.
+    ``traced`` says where the target lies in it, ``seen`` is the picture reduced for drawing.
     """
 
     path: Path
     automatic: float
     threshold: float
     traced: Traced | None = None
+    seen: QImage | None = field(default=None, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -213,7 +217,7 @@ def reading_target(source: str, cancel: Cancel) -> Iterator[Picture | Outline]:
 
         level = automatic_threshold(path)
         traced = trace_image(path)
-        yield Picture(path, level, level, traced)
+        yield Picture(path, level, level, traced, reduced_picture(path))
         yield traced.outline
     else:
         yield read_target(source)

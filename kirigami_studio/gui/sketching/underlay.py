@@ -6,8 +6,8 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QPointF, QRectF, QSize, Qt
-from PySide6.QtGui import QImage, QImageReader, QPainter
+from PySide6.QtCore import QPointF, QRectF
+from PySide6.QtGui import QImage, QPainter
 
 from kirigami_studio.gui.scene.frame import Frame
 from kirigami_studio.target.placed import Placed
@@ -15,8 +15,6 @@ from kirigami_studio.target.placed import Placed
 if TYPE_CHECKING:
     from kirigami_studio.target.read_image import Traced
 
-#: Longer side of the picture as it is kept for drawing, pixels.
-LARGEST_SIDE = 1600
 #: How much of the picture shines through.
 OPACITY = 0.5
 
@@ -44,11 +42,8 @@ class Underlay:
     size: tuple[int, int]
 
     @classmethod
-    def under(cls, placed: Placed, path: Path, traced: Traced) -> Underlay | None:
-        """Lay a picture under the target that was traced from it; None when it cannot be shown any more."""
-        image = _reduced(path)
-        if image is None:
-            return None
+    def under(cls, placed: Placed, path: Path, image: QImage, traced: Traced) -> Underlay:
+        """Lay a picture under the target that was traced from it."""
         return cls(path, image, (0.0, 0.0), 1.0, traced.picture).laid_under(placed, traced)
 
     def laid_under(self, placed: Placed, traced: Traced) -> Underlay:
@@ -72,13 +67,3 @@ class Underlay:
         painter.setRenderHint(QPainter.RenderHint.SmoothPixmapTransform)
         painter.drawImage(QRectF(QPointF(left, bottom - height), QPointF(left + width, bottom)), self.image)
         painter.restore()
-
-
-def _reduced(path: Path) -> QImage | None:
-    reader = QImageReader(str(path))
-    reader.setAutoTransform(True)
-    size = reader.size()
-    if size.isValid() and max(size.width(), size.height()) > LARGEST_SIDE:
-        reader.setScaledSize(size.scaled(QSize(LARGEST_SIDE, LARGEST_SIDE), Qt.AspectRatioMode.KeepAspectRatio))
-    image = reader.read()
-    return None if image.isNull() else image

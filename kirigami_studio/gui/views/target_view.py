@@ -120,8 +120,9 @@ class TargetView(Canvas):
             under = None
         self._outline, self._preview, self.reach = outline, None, None
         self.easel.placed = drawn or (None if outline is None else Placed.on_board(outline))
-        if under is None and picture is not None and traced is not None and self.easel.placed is not None:
-            under = Underlay.under(self.easel.placed, picture.path, traced)
+        seen = None if picture is None else picture.seen
+        if under is None and picture is not None and seen is not None and traced is not None and self.easel.placed:
+            under = Underlay.under(self.easel.placed, picture.path, seen, traced)
         self.underlay = under
         if drawn is None or not self._editing:
             self._choose_board()
