@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from PySide6.QtCore import Qt, Signal
+from PySide6.QtCore import Qt, QTimer, Signal
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QButtonGroup, QHBoxLayout, QLabel, QSizePolicy, QToolButton, QVBoxLayout, QWidget
 
@@ -55,7 +55,11 @@ def _rows() -> tuple[_Row, ...]:
 
 
 class PlotsPanel(QWidget):
-    """Charts below each other where there is room, else one of them; nothing is drawn before the first curve comes."""
+    """Charts below each other where there is room, else one of them; nothing is drawn before the first curve comes.
+
+    Making a chart takes 30 ms and drawing its curve with its axes 15 ms, so that of charts which are new, or whose
+    curves grow, one comes in each turn of the event loop.
+    """
 
     phi_wanted = Signal(float)  #: radians
 
@@ -67,6 +71,9 @@ class PlotsPanel(QWidget):
         self._phi, self._target, self._pointed = math.pi, 0.0, -1.0
         self._rows = _rows()
         self.charts: list[Chart] = []
+        self._stale: list[int] = []  # charts whose curves are to be drawn
+        self._turn = QTimer(self, singleShot=True, interval=0)
+        self._turn.timeout.connect(self._go_on)
         self.setObjectName("plain")
         self.setAccessibleName(tr("Plots over the deployment angle"))
         self.says = QLabel()
@@ -104,19 +111,49 @@ class PlotsPanel(QWidget):
 
     @property
     def complete(self) -> bool:
-        """Whether every angle has been read."""
-        return self._curves is not None and self._curves.complete
+        """Whether every angle has been read and is seen."""
+        return self._curves is not None and self._curves.complete and not self._turn.isActive()
 
     def show_curves(self, curves: Curves | None) -> None:
         """Draw what is known so far; None when nothing is."""
+        growing = self._curves is not None and not self._curves.complete
         self._curves = curves
-        known = 0 if curves is None else len(curves.readings)
-        if known and not self.charts:
+        known = bool(curves is not None and curves.readings)
+        if known and (growing or not self._built):
+            self._stale = [*self._stale, *(row for row in range(len(self._rows)) if row not in self._stale)]
+            self._turn.start()
+        else:
+            self._stale.clear()
+            self._turn.stop()
+            self._draw()
+        self._arrange()
+
+    @property
+    def _built(self) -> bool:
+        return len(self.charts) == len(self._rows)
+
+    def _go_on(self) -> None:
+        """Make one chart, or draw one anew."""
+        if not self._built:
             self._build()
+            self._turn.start()
+            return
+        if self._stale:
+            number = self._stale.pop(0)
+            self._draw_chart(number)
+            self.charts[number].read_out(self._angle)
+        if self._stale:
+            self._turn.start()
+        else:
+            self._arrange()
+
+    def _arrange(self) -> None:
+        """Show the charts, or say why there are none."""
+        curves = self._curves
+        shown = self._built and curves is not None and bool(curves.readings)
         waiting = tr("Reading the design at {count} angles …", count=ANGLES)
-        self.says.setText("" if known else waiting if curves is not None else tr("No design yet."))
-        self.says.setVisible(not known)
-        self._draw()
+        self.says.setText("" if shown else waiting if curves is not None else tr("No design yet."))
+        self.says.setVisible(not shown)
         self._share_room()
 
     def set_sheet_width(self, width_mm: float) -> None:
@@ -151,38 +188,43 @@ class PlotsPanel(QWidget):
     def _build(self) -> None:
         from kirigami_studio.gui.views.chart import Chart  # the worker has imported what it draws with
 
-        for row in self._rows:
-            chart = Chart(row.text, row.unit, tuple(name for name, _ in row.series), row.from_zero)
-            chart.setToolTip(tr("{what}. Drag the line or click to go to an angle.", what=row.tip))
-            chart.set_palette(self._palette)
-            chart.phi_wanted.connect(self.phi_wanted)
-            chart.pointed.connect(self._point)
-            chart.set_phi(self._phi)
-            chart.set_target(self._target)
-            self._column.addWidget(chart, 1)
-            self.charts.append(chart)
+        row = self._rows[len(self.charts)]
+        chart = Chart(row.text, row.unit, tuple(name for name, _ in row.series), row.from_zero)
+        chart.setToolTip(tr("{what}. Drag the line or click to go to an angle.", what=row.tip))
+        chart.set_palette(self._palette)
+        chart.phi_wanted.connect(self.phi_wanted)
+        chart.pointed.connect(self._point)
+        chart.set_phi(self._phi)
+        chart.set_target(self._target)
+        chart.hide()
+        self._column.addWidget(chart, 1)
+        self.charts.append(chart)
 
     def _share_room(self) -> None:
         """All charts where they fit; one of them, and the choice, where they do not."""
         everything = self.height() >= len(self._rows) * CHART_HEIGHT
         self.choice.setVisible(not everything)
-        known = self._curves is not None and bool(self._curves.readings)
+        known = self._built and self._curves is not None and bool(self._curves.readings)
         last = len(self.charts) - 1
         for number, chart in enumerate(self.charts):
             chart.setVisible(known and (everything or number == self.buttons.checkedId()))
             chart.show_angles(not everything or number == last)
 
     def _draw(self) -> None:
-        if self._curves is None or not self.charts:
-            return
+        if self._curves is not None and self._built:
+            for number in range(len(self.charts)):
+                self._draw_chart(number)
+            self._read_out()
+
+    def _draw_chart(self, number: int) -> None:
         from kirigami_studio.gui.views.chart import Series
 
+        if self._curves is None:
+            return
         readings, mm = self._curves.readings, self._curves.cell_share * self._width_mm
         degrees = np.degrees([reading.phi for reading in readings])
-        for chart, row in zip(self.charts, self._rows, strict=True):
-            values = [np.array([take(reading, mm) for reading in readings]) for _, take in row.series]
-            chart.set_series(Series(degrees, tuple(values)))
-        self._read_out()
+        values = [np.array([take(reading, mm) for reading in readings]) for _, take in self._rows[number].series]
+        self.charts[number].set_series(Series(degrees, tuple(values)))
 
     def _point(self, phi: float) -> None:
         self._pointed = phi
@@ -190,6 +232,9 @@ class PlotsPanel(QWidget):
 
     def _read_out(self) -> None:
         """Say the numbers where the mouse points, or where the sheet is, at the nearest angle that was read."""
-        phi = self._pointed if self._pointed >= 0.0 else self._phi
         for chart in self.charts:
-            chart.read_out(phi)
+            chart.read_out(self._angle)
+
+    @property
+    def _angle(self) -> float:
+        return self._pointed if self._pointed >= 0.0 else self._phi
