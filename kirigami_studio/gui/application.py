@@ -14,6 +14,7 @@ from PySide6.QtWidgets import QApplication
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui import faults
 from kirigami_studio.gui.controller import Controller
+from kirigami_studio.gui.jobs import importing
 from kirigami_studio.gui.look import theme
 from kirigami_studio.gui.main_window import MainWindow
 from kirigami_studio.gui.warm_up import WarmUp
@@ -73,6 +74,7 @@ def create_window(palette: theme.Palette | None = None) -> MainWindow:
     controller = Controller()
     window = MainWindow(controller, palette or theme.system_palette())
     controller.setParent(window)
+    importing.settle()
     return window
 
 
