@@ -23,7 +23,7 @@ from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui import actions
 from kirigami_studio.gui.look import theme
 from kirigami_studio.gui.look.theme import Palette
-from kirigami_studio.gui.panels.fabrication_panel import FabricationPanel
+from kirigami_studio.gui.panels.fabrication_panel import Extent, FabricationPanel
 from kirigami_studio.gui.panels.gallery_panel import GalleryPanel
 from kirigami_studio.gui.panels.generate_bar import GenerateBar
 from kirigami_studio.gui.panels.message_bar import MessageBar
@@ -38,8 +38,8 @@ FRAME = QSize(16, 48)
 #: Least and largest first width (pixels) of the outer columns, and their share of the window in between.
 LEFT_WIDTH, RIGHT_WIDTH = (284, 340), (322, 372)
 LEFT_SHARE, RIGHT_SHARE = 0.225, 0.25
-#: Lower than this (pixels) the fabrication panel folds by itself, to leave the gallery two rows of cards.
-ROOMY_HEIGHT = 760
+#: Least height (pixels) of the window at which the fabrication panel shows as much and the gallery has two whole rows.
+ROOM_FOR = ((1000, Extent.ALL), (860, Extent.CHOICES), (0, Extent.EXPORT))
 
 
 class Shell(QMainWindow):
@@ -139,7 +139,7 @@ class Shell(QMainWindow):
     def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802 - Qt's name
         super().resizeEvent(event)
         self._share_width()
-        self.fabrication.fit(self.height() >= ROOMY_HEIGHT)
+        self.fabrication.fit(next(extent for height, extent in ROOM_FOR if self.height() >= height))
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802 - Qt's name
         """A number has no use for Space: leave it to the window, which plays."""
@@ -193,8 +193,8 @@ class Shell(QMainWindow):
             value = settings.value(key)
             if isinstance(value, QByteArray) and take(value) and key == "columns":
                 self._laid_out = True
-
         self.stage.restore(settings)
+        self.fabrication.restore(settings)
 
     def remember(self, settings: QSettings) -> None:
         """Keep size and columns for the next time."""
@@ -202,3 +202,4 @@ class Shell(QMainWindow):
         if self._laid_out:
             settings.setValue("columns", self.columns.saveState())
         self.stage.remember(settings)
+        self.fabrication.remember(settings)

@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from pathlib import Path
 
-from PySide6.QtCore import Qt
+import pytest
+from PySide6.QtCore import QSettings, Qt
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
+from kirigami_studio.gui.look.theme import LIGHT
 from kirigami_studio.gui.main_window import MainWindow
+from kirigami_studio.gui.panels.fabrication_panel import Extent
+from kirigami_studio.gui.shell import Shell
 
 Until = Callable[[Callable[[], bool]], None]
 
@@ -29,9 +34,52 @@ def test_that_the_smallest_window_shows_more_than_one_row_of_whole_cards(designe
 
 def test_that_a_roomy_window_shows_all_numbers(designed: MainWindow) -> None:
     resized(designed, 1000, 640)
-    resized(designed, 1440, 900)
+    resized(designed, 1600, 1000)
     assert not designed.fabrication.folded and designed.fabrication.numbers["slits"].isVisible()
     assert not designed.fabrication.summary.isVisible()
+    assert designed.fabrication.options.fold.isVisible()
+
+
+@pytest.mark.parametrize(
+    ("width", "height", "rows"),
+    [(1000, 640, 1.5), (1280, 720, 2.0), (1366, 768, 2.0), (1440, 900, 2.0), (1600, 1000, 2.0), (1920, 1080, 2.0)],
+)
+def test_that_the_gallery_keeps_whole_rows_of_cards(designed: MainWindow, width: int, height: int, rows: float) -> None:
+    resized(designed, width, height)
+    view = designed.gallery.view
+    assert designed.fabrication.warnings.isVisible()  # its two lines are allowed for
+    card = view.visualRect(view.model_.index(0, 0))
+    assert card.height() >= view.cards.card.height() and view.viewport().height() >= rows * card.height()
+
+
+def test_that_the_usual_window_shows_choices_and_sums_the_numbers_up(designed: MainWindow, qtbot: QtBot) -> None:
+    resized(designed, 1440, 900)
+    panel = designed.fabrication
+    shown = (panel.material, *panel.lengths.values(), panel.opened, panel.summary, panel.export)
+    assert all(part.isVisible() for part in shown)
+    assert not panel.numbers["slits"].isVisible() and not panel.options.fold.isVisible()
+    assert panel.numbers["slits"].text() in panel.summary.text()
+    said = []
+    for _ in range(3):
+        said.append(panel.fold.toolTip())
+        qtbot.mouseClick(panel.fold, Qt.MouseButton.LeftButton)
+        if panel.extent is Extent.ALL:
+            assert panel.numbers["slits"].isVisible() and panel.options.fold.isVisible()
+    assert panel.extent is Extent.CHOICES and len(set(said)) == 3
+
+
+def test_that_the_choice_of_how_much_is_shown_lasts(designed: MainWindow, qtbot: QtBot, tmp_path: Path) -> None:
+    state = QSettings(str(tmp_path / "state.ini"), QSettings.Format.IniFormat)
+    resized(designed, 1440, 900)
+    designed.remember(state)
+    assert state.value("fabrication") is None
+    qtbot.mouseClick(designed.fabrication.fold, Qt.MouseButton.LeftButton)
+    designed.remember(state)
+    again = Shell(LIGHT)
+    again.restore(state)
+    again.resize(1280, 720)
+    assert again.fabrication.extent is Extent.ALL
+    again.deleteLater()
 
 
 def test_that_the_user_decides_about_folding(designed: MainWindow, qtbot: QtBot) -> None:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from enum import Enum
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QSignalBlocker, Qt, Signal
+from PySide6.QtCore import QSettings, QSignalBlocker, Qt, Signal
 from PySide6.QtWidgets import (
     QComboBox,
     QDoubleSpinBox,
@@ -75,6 +76,22 @@ NUMBERS = (
 )
 
 
+class Extent(Enum):
+    """How much the panel shows; each is more than the one before."""
+
+    EXPORT = "export"  #: what the sheet is in the header, what is wrong, and the way to a file
+    CHOICES = "choices"  #: the material, the widths and the opened size too
+    ALL = "all"  #: the live numbers and the options too
+
+
+#: What the button does next, in the words of its tooltip.
+NEXT = {
+    Extent.EXPORT: (Extent.CHOICES, tr("Show material and widths.")),
+    Extent.CHOICES: (Extent.ALL, tr("Show cutting numbers and more options.")),
+    Extent.ALL: (Extent.EXPORT, tr("Fold material, widths and numbers away.")),
+}
+
+
 class FabricationPanel(Card):
     """Reports changed fields by name and shows the plan that they lead to."""
 
@@ -88,8 +105,8 @@ class FabricationPanel(Card):
         super().__init__(tr("Fabrication"), parent)
         self._palette: Palette = LIGHT
         self._calm = True
-        self._folded, self._by_hand = False, False
-        self._summaries = ("", "")  # unfolded, folded
+        self._extent, self._by_hand = Extent.ALL, False
+        self._summaries = ("", "")  # with the live numbers in sight, and without
         self._presets = library().materials
         self.material = QComboBox()
         self.material.setObjectName("material")
@@ -123,43 +140,59 @@ class FabricationPanel(Card):
         self.show_plan(None)
 
     def _build_fold(self) -> None:
-        """The button that folds the numbers away, and the summary that stands for them."""
+        """The button that folds parts away, and the summary that stands for the numbers."""
         self.details = QWidget()
         self.details.setObjectName("plain")
         self.summary = QLabel()
         self.summary.setObjectName("muted")
-        self.fold = tool_button("foldFabrication", tr("Fold the cutting numbers away."))
+        self.fold = tool_button("foldFabrication", tr("Show more or less of the fabrication."))
         self.header.addWidget(self.summary)
         self.header.addWidget(self.fold)
-        self.fold.clicked.connect(self._fold_by_hand)
+        self.fold.clicked.connect(self._change_by_hand)
         self.summary.hide()
 
-    def _fold_by_hand(self) -> None:
+    def _change_by_hand(self) -> None:
         self._by_hand = True
-        self._set_folded(not self._folded)
+        self._show_extent(NEXT[self._extent][0])
 
-    def fit(self, roomy: bool) -> None:
-        """Fold or unfold by the room there is, unless the user has decided."""
+    def fit(self, extent: Extent) -> None:
+        """Show as much as there is room for, unless the user has decided."""
         if not self._by_hand:
-            self._set_folded(not roomy)
+            self._show_extent(extent)
+
+    @property
+    def extent(self) -> Extent:
+        """How much is shown."""
+        return self._extent
 
     @property
     def folded(self) -> bool:
-        """Whether only the summary is shown."""
-        return self._folded
+        """Whether material and widths are folded away."""
+        return self._extent is Extent.EXPORT
 
-    def _set_folded(self, folded: bool) -> None:
-        self._folded = folded
-        self.fold.setToolTip(
-            tr("Show material, widths and cutting numbers.") if folded else tr("Fold the numbers away.")
-        )
-        self.scrolled.setVisible(not folded)
+    def _show_extent(self, extent: Extent) -> None:
+        self._extent = extent
+        self.fold.setToolTip(NEXT[extent][1])
+        self.scrolled.setVisible(extent is not Extent.EXPORT)
+        self.table.setVisible(extent is Extent.ALL)
+        self.options.setVisible(extent is Extent.ALL or self.options.fold.isChecked())  # what was opened stays
         self._show_summary()
         self._show_warning()
         self._dress_fold()
 
+    def restore(self, settings: QSettings) -> None:
+        """Show as much as the user chose the last time."""
+        if (kept := settings.value("fabrication")) in [extent.value for extent in Extent]:
+            self._by_hand = True
+            self._show_extent(Extent(kept))
+
+    def remember(self, settings: QSettings) -> None:
+        """Keep how much the user chose to see for the next time."""
+        if self._by_hand:
+            settings.setValue("fabrication", self._extent.value)
+
     def _dress_fold(self) -> None:
-        self.fold.setIcon(icons.icon("up" if self.folded else "down", self._palette))
+        self.fold.setIcon(icons.icon("down" if self._extent is Extent.ALL else "up", self._palette))
 
     def _length(
         self, field: str, label: str, low: float, high: float, step: float, digits: int, tip: str
@@ -180,7 +213,7 @@ class FabricationPanel(Card):
     def _lay_out(self) -> None:
         rows = QVBoxLayout(self.details)
         rows.setContentsMargins(0, 0, 0, 0)
-        rows.setSpacing(8)
+        rows.setSpacing(5)
         material = QHBoxLayout()
         material.setSpacing(4)
         material.addWidget(self.material, 1)
@@ -192,7 +225,10 @@ class FabricationPanel(Card):
             row.addLayout(captioned(label, self.lengths[field], self.lengths[field]), 1)
         rows.addLayout(row)
         rows.addWidget(self.opened)
-        table = QGridLayout()
+        self.table = QWidget()
+        self.table.setObjectName("plain")
+        table = QGridLayout(self.table)
+        table.setContentsMargins(0, 1, 0, 0)
         table.setHorizontalSpacing(8)
         table.setVerticalSpacing(1)
         for place, (key, label) in enumerate(NUMBERS):
@@ -205,11 +241,10 @@ class FabricationPanel(Card):
             table.addWidget(self.numbers[key], 3 * line + 1, column)
             for part in (caption, self.numbers[key]):
                 part.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
-        table.setRowMinimumHeight(2, 5)
+        table.setRowMinimumHeight(2, 3)
         for column, stretch in enumerate((12, 9, 11)):
             table.setColumnStretch(column, stretch)
-        rows.addSpacing(2)
-        rows.addLayout(table)
+        rows.addWidget(self.table)
         rows.addWidget(self.options)
         self.scrolled = ScrolledWhenShort(self.details, LEAST_DETAILS)
         self.body.addWidget(self.scrolled)
@@ -279,12 +314,12 @@ class FabricationPanel(Card):
         self._warn("\n".join(found) if found else tr("The cut check found no problem."), calm=not found)
 
     def _sum_up(self, texts: dict[str, str], removed_share: float) -> None:
-        """The header's words, folded and unfolded; that a sheet is trimmed is said in both."""
-        unfolded = (
+        """The header's words, with and without the live numbers; that a sheet is trimmed is said in both."""
+        beside_numbers = (
             tr("trimmed, {removed_share:.1f} % cut off", removed_share=100 * removed_share) if removed_share else ""
         )
         kind = tr("trimmed") if removed_share else tr("{count} cuts", count=texts["slits"])
-        self._summaries = (unfolded, f"{texts['size']}  ·  {kind}")
+        self._summaries = (beside_numbers, f"{texts['size']}  ·  {kind}")
         share = tr(
             "{removed_share:.1f} % of the sheet is cut off along the target; the cut file has that edge",
             removed_share=100 * removed_share,
@@ -293,7 +328,7 @@ class FabricationPanel(Card):
         self._show_summary()
 
     def _show_summary(self) -> None:
-        text = self._summaries[self._folded]
+        text = self._summaries[self._extent is not Extent.ALL]
         self.summary.setText(text)
         self.summary.setVisible(bool(text))
 
@@ -326,7 +361,7 @@ class FabricationPanel(Card):
 
     def _show_warning(self) -> None:
         """What is wrong stays in sight even when the numbers are folded away."""
-        self.warnings.setVisible(not (self.folded and self._calm))
+        self.warnings.setVisible(self._extent is Extent.ALL or not self._calm)
 
     def set_palette(self, palette: Palette) -> None:
         """Draw in other colours."""
