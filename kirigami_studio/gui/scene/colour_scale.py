@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
 import numpy.typing as npt
 from PySide6.QtCore import QPointF, QRectF, Qt
-from PySide6.QtGui import QColor, QLinearGradient, QPainter, QPen
+from PySide6.QtGui import QColor, QFontMetrics, QLinearGradient, QPainter, QPen
 
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.look.theme import Palette
@@ -20,6 +21,7 @@ FloatArray = npt.NDArray[np.float64]
 SHADES = 64
 #: Ends of a ratio scale that read well; the largest ratio takes the next one up.
 RATIO_ENDS = (1.2, 1.5, 2.0, 3.0, 5.0, 10.0, 30.0, 100.0, 1000.0, 1e4, 1e6)
+RATIO_TITLE, OPENING_TITLE = tr("side ratio x (log scale)"), tr("void area, mm²")
 #: Sizes of a bar, pixels.
 BAR_WIDTH, BAR_HEIGHT, PADDING = 150.0, 9.0, 10.0
 #: Pixels left of a bar that stay free.
@@ -74,28 +76,36 @@ def ratio_scale(ratio: FloatArray, palette: Palette) -> ColourScale:
     end = next((end for end in RATIO_ENDS if np.log10(end) >= most - 1e-9), RATIO_ENDS[-1])
     half = float(np.log10(end))
     ticks = ((-half, f"1/{end:g}"), (0.0, "1"), (half, f"{end:g}"))
-    return ColourScale(tr("side ratio x (log scale)"), -half, half, palette.diverging, ticks)
+    return ColourScale(RATIO_TITLE, -half, half, palette.diverging, ticks)
 
 
 def opening_scale(largest_mm2: float, palette: Palette) -> ColourScale:
     """The scale of void areas, from closed to the largest that the motion reaches."""
     ticks = tuple((share * largest_mm2, f"{share * largest_mm2:.3g}") for share in (0.0, 0.5, 1.0))
-    return ColourScale(tr("void area, mm²"), 0.0, largest_mm2, palette.sequential, ticks)
+    return ColourScale(OPENING_TITLE, 0.0, largest_mm2, palette.sequential, ticks)
+
+
+def bar_boxes(titles: Sequence[str], metrics: QFontMetrics, right: float, top: float) -> list[QRectF]:
+    """Places of bars below each other; ``right`` and ``top`` are pixels of the upper right corner."""
+    height = 2 * metrics.height() + BAR_HEIGHT + 14.0
+    boxes = []
+    for title in titles:
+        wanted = max(BAR_WIDTH, metrics.horizontalAdvance(title)) + 2 * PADDING
+        width = min(wanted, right - MARGIN)  # a narrow view gets narrow bars
+        boxes.append(QRectF(right - width, top, width, height))
+        top += height + 6.0
+    return boxes
 
 
 def paint_colour_bars(painter: QPainter, scales: list[ColourScale], right: float, top: float, palette: Palette) -> None:
     """Draw the bars below each other; ``right`` and ``top`` are pixels of the upper right corner."""
     metrics = painter.fontMetrics()
-    for scale in scales:
-        wanted = max(BAR_WIDTH, metrics.horizontalAdvance(scale.title)) + 2 * PADDING
-        width = min(wanted, right - MARGIN)  # a narrow view gets narrow bars
-        height = 2 * metrics.height() + BAR_HEIGHT + 14.0
-        box = QRectF(right - width, top, width, height)
+    for scale, box in zip(scales, bar_boxes([scale.title for scale in scales], metrics, right, top), strict=True):
         paint_chip(painter, box, palette)
         painter.setPen(QColor(palette.text))
-        title = metrics.elidedText(scale.title, Qt.TextElideMode.ElideRight, round(width - 2 * PADDING))
-        painter.drawText(QRectF(box.left() + PADDING, top + 4.0, width, metrics.height()), 0, title)
-        bar = QRectF(box.left() + PADDING, top + metrics.height() + 7.0, width - 2 * PADDING, BAR_HEIGHT)
+        title = metrics.elidedText(scale.title, Qt.TextElideMode.ElideRight, round(box.width() - 2 * PADDING))
+        painter.drawText(QRectF(box.left() + PADDING, box.top() + 4.0, box.width(), metrics.height()), 0, title)
+        bar = QRectF(box.left() + PADDING, box.top() + metrics.height() + 7.0, box.width() - 2 * PADDING, BAR_HEIGHT)
         gradient = QLinearGradient(bar.topLeft(), bar.topRight())
         for index, colour in enumerate(scale.colours):
             gradient.setColorAt(index / (len(scale.colours) - 1), QColor(colour))
@@ -103,7 +113,6 @@ def paint_colour_bars(painter: QPainter, scales: list[ColourScale], right: float
         painter.setBrush(gradient)
         painter.drawRect(bar)
         _paint_ticks(painter, scale, bar, palette)
-        top = box.bottom() + 6.0
 
 
 def _paint_ticks(painter: QPainter, scale: ColourScale, bar: QRectF, palette: Palette) -> None:

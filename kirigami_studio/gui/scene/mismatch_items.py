@@ -79,13 +79,24 @@ def mismatch(target: FloatArray, sheet: FloatArray, removed: Sequence[FloatArray
 def difference_chips(areas: Mismatch, mm_per_unit: float, palette: Palette, short: bool = False) -> list[Chip]:
     """What the legend says: both areas, and the distance of the boundaries on average and at most."""
     mm2 = areas.target_area * mm_per_unit**2
-    missing, extra = readable_area(mm2 * areas.missing_share), readable_area(mm2 * areas.extra_share)
-    off = tr("off {mean:.2f} mm, at most {most:.2f} mm",
-             mean=areas.gap.mean * mm_per_unit, most=areas.gap.greatest * mm_per_unit)  # fmt: skip
+    shares = areas.missing_share, areas.extra_share
+    return _chips(shares, mm2, (areas.gap.mean * mm_per_unit, areas.gap.greatest * mm_per_unit), palette, short)
+
+
+def usual_chips(palette: Palette, short: bool) -> list[Chip]:
+    """A legend as wide as legends usually are, to keep room for one before its numbers are known."""
+    return _chips((0.01, 0.01), 12345.0, (0.55, 5.55), palette, short)
+
+
+def _chips(
+    areas: tuple[float, float], mm2: float, off_mm: tuple[float, float], palette: Palette, short: bool
+) -> list[Chip]:
+    missing, extra = (readable_area(mm2 * share) for share in areas)
+    off = tr("off {mean:.2f} mm, at most {most:.2f} mm", mean=off_mm[0], most=off_mm[1])
     if short:
         texts = tr("missing {area}", area=missing), tr("extra {area}", area=extra)
     else:
-        shares = 100 * areas.missing_share, 100 * areas.extra_share
+        shares = 100 * areas[0], 100 * areas[1]
         texts = (
             tr("missing {share:.1f} %, {area}", share=shares[0], area=missing),
             tr("extra {share:.1f} %, {area}", share=shares[1], area=extra),

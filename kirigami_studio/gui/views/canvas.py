@@ -80,8 +80,12 @@ class Canvas(QWidget):
         if bounds is None:
             return None
         box = self.scene_box()
-        fitted = Frame.fitting(bounds, box, min(MARGIN, 0.06 * min(self.width(), self.height())))
+        fitted = Frame.fitting(bounds, box, self.margin())
         return fitted.zoomed(self._zoom, box.center()).moved(self._shift.x(), self._shift.y())
+
+    def margin(self) -> float:
+        """Pixels that stay free around the fitted scene."""
+        return min(MARGIN, 0.06 * min(self.width(), self.height()))
 
     def fit(self) -> None:
         """Show everything again."""

@@ -9,13 +9,22 @@ from enum import Enum
 import numpy as np
 import numpy.typing as npt
 from PySide6.QtCore import QPointF, QRectF
-from PySide6.QtGui import QPainter
+from PySide6.QtGui import QFontMetrics, QPainter
 from PySide6.QtWidgets import QWidget
 
 from kirigami_studio.evaluate.score import Score
 from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.gui.scene.chips import Chip, legend_boxes, paint_caption, paint_legend
-from kirigami_studio.gui.scene.colour_scale import ColourScale, opening_scale, paint_colour_bars, ratio_scale
+from kirigami_studio.gui.scene.clear_box import clear_box
+from kirigami_studio.gui.scene.colour_scale import (
+    OPENING_TITLE,
+    RATIO_TITLE,
+    ColourScale,
+    bar_boxes,
+    opening_scale,
+    paint_colour_bars,
+    ratio_scale,
+)
 from kirigami_studio.gui.scene.fault_items import (
     Fault,
     FaultKind,
@@ -27,7 +36,7 @@ from kirigami_studio.gui.scene.fault_items import (
 )
 from kirigami_studio.gui.scene.frame import Bounds, Frame
 from kirigami_studio.gui.scene.layout_items import paint_panels, turning_left
-from kirigami_studio.gui.scene.mismatch_items import Mismatch, difference_chips, mismatch, paint_mismatch
+from kirigami_studio.gui.scene.mismatch_items import Mismatch, difference_chips, mismatch, paint_mismatch, usual_chips
 from kirigami_studio.gui.scene.posed import PosedDesign
 from kirigami_studio.gui.scene.small_parts import SmallPart, smallest_parts
 from kirigami_studio.gui.scene.target_items import paint_target_line
@@ -66,6 +75,8 @@ class Overlay(Enum):
 
 #: What is shown until something else is asked for.
 USUAL = frozenset({Overlay.TARGET, Overlay.MISMATCH, Overlay.FAULTS})
+#: Overlays that a colour bar explains.
+BAR_TITLES = {Overlay.RATIOS: RATIO_TITLE, Overlay.OPENINGS: OPENING_TITLE}
 #: Width (mm) of the flat sheet until it is known.
 USUAL_WIDTH_MM = 100.0
 #: Pixels around a fault's middle that belong to its sign.
@@ -93,6 +104,7 @@ class LayoutView(Canvas):
         self._bounds: Bounds | None = None
         self._phi = math.pi
         self._overlays: frozenset[Overlay] = USUAL
+        self._wanted = USUAL  #: what was asked for, also while a plain picture is taken
         self._width_mm = USUAL_WIDTH_MM
         self._small: list[SmallPart] = []
         self._largest_opening = 0.0
@@ -177,7 +189,7 @@ class LayoutView(Canvas):
 
     def set_overlays(self, overlays: frozenset[Overlay]) -> None:
         """Choose what is drawn over the panels."""
-        self._overlays = overlays
+        self._overlays = self._wanted = overlays
         self.update()
 
     def set_sheet_width(self, width_mm: float) -> None:
@@ -245,6 +257,43 @@ class LayoutView(Canvas):
 
     def scene_bounds(self) -> Bounds | None:
         return self._bounds
+
+    def scene_box(self) -> QRectF:
+        """Beside the legends that are on, at every angle alike, so that the picture rests while the sheet moves."""
+        view, bounds = QRectF(self.rect()), self.scene_bounds()
+        if bounds is None:
+            return view
+        metrics = self.fontMetrics()
+        titles = [title for overlay, title in BAR_TITLES.items() if overlay in self._wanted]
+        legends = bar_boxes(titles, metrics, self.width() - 10.0, self._bars_top())
+        if Overlay.MISMATCH in self._wanted and self._target is not None:
+            chips = self._fitting([usual_chips(self.palette_, short) for short in (False, True)], metrics)
+            legends += legend_boxes(chips, metrics, self.width(), self.height())
+        return clear_box(bounds, view, self.margin(), legends)
+
+    def _bars_top(self) -> float:
+        return CAPTION_HEIGHT if self._caption else 10.0
+
+    def _fitting(self, ways: list[list[Chip]], metrics: QFontMetrics) -> list[Chip]:
+        """The first way of saying it that fits into one row, else the last."""
+        for chips in ways:
+            rows = {box.top() for box in legend_boxes(chips, metrics, self.width(), self.height())}
+            if len(rows) <= 1 and self.width() >= NARROW:
+                return chips
+        return ways[-1]
+
+    def legend(self, metrics: QFontMetrics) -> list[tuple[Chip, QRectF]]:
+        """What the labels at the bottom say, and where (pixels)."""
+        found = []
+        if self._faults:
+            count = len(self._faults)
+            found = [Chip(self.palette_.fault, tr_n("{count} fault", "{count} faults", count))]
+        chips = found
+        if self._areas is not None:
+            areas, mm = self._areas, self.mm_per_unit
+            ways = [difference_chips(areas, mm, self.palette_, short) + found for short in (False, True)]
+            chips = self._fitting(ways, metrics)
+        return list(zip(chips, legend_boxes(chips, metrics, self.width(), self.height()), strict=True))
 
     def paint_scene(self, painter: QPainter, frame: Frame) -> None:
         if self._design is None:
@@ -334,16 +383,9 @@ class LayoutView(Canvas):
     def paint_notes(self, painter: QPainter) -> None:
         if self._design is None:
             return
-        chips = []
-        if self._areas is not None:
-            chips += difference_chips(self._areas, self.mm_per_unit, self.palette_, self.width() < NARROW)
-        if self._faults:
-            count = len(self._faults)
-            chips.append(Chip(self.palette_.fault, tr_n("{count} fault", "{count} faults", count)))
-        boxes = legend_boxes(chips, painter.fontMetrics(), self.width(), self.height())
-        paint_legend(painter, chips, boxes, self.palette_)
+        said = self.legend(painter.fontMetrics())
+        paint_legend(painter, [chip for chip, _ in said], [box for _, box in said], self.palette_)
         if self._caption:
             paint_caption(painter, self._caption, self.width(), self.palette_)
-        top = CAPTION_HEIGHT if self._caption else 10.0
-        paint_colour_bars(painter, self._scales, self.width() - 10.0, top, self.palette_)
+        paint_colour_bars(painter, self._scales, self.width() - 10.0, self._bars_top(), self.palette_)
         self.voids.paint_label(painter, self.palette_)
