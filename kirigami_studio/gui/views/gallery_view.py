@@ -48,6 +48,9 @@ class GalleryView(QListView):
         self.setMouseTracking(True)
         self.setObjectName("gallery")
         self.setAccessibleName(tr("Candidate designs, best first"))
+        # A timer of its own: what QTimer.singleShot(0) posts is handled before the loop looks for clicks and keys.
+        self._later = QTimer(self, singleShot=True, interval=0)
+        self._later.timeout.connect(self.viewport().update)
         self._telling = True
         self._marked: Candidate | None = None
         self._hint = (tr("No designs yet"), tr("Candidates appear here, best first, while they are generated."))
@@ -201,7 +204,7 @@ class GalleryView(QListView):
         self.cards.begin()
         super().paintEvent(event)
         if self.cards.owing:
-            QTimer.singleShot(0, self, self.viewport().update)
+            self._later.start()
         if self.model_.rowCount() > 0:
             return
         painter = QPainter(self.viewport())
