@@ -59,6 +59,8 @@ class Result:
         Wall time of the run; the only part that differs between two equal requests without a budget.
     budget_ended : bool
         The time budget was used up before all was done: candidates may be unpolished or, of very many, missing.
+    repeats : int
+        Designs that were left out because the host had them already; 0 unless it has looked for them.
     """
 
     request: Request
@@ -66,6 +68,7 @@ class Result:
     forward_evaluations: int
     seconds: float
     budget_ended: bool = False
+    repeats: int = 0
 
     @property
     def best(self) -> Candidate:

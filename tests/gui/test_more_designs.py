@@ -20,6 +20,7 @@ from kirigami_studio.pipeline.events import Finished
 from kirigami_studio.pipeline.rank import ranked
 from kirigami_studio.pipeline.variety import distances
 from kirigami_studio.project.document import Document, Mark
+from kirigami_studio.project.edits import Edit
 from kirigami_studio.target import silhouettes
 
 Until = Callable[[Callable[[], bool]], None]
@@ -95,6 +96,24 @@ def test_that_designs_that_are_there_already_are_not_added_again(drawn: MainWind
     until(lambda: not controller.running)
     assert controller.document is before and tuple(shown(drawn)) == before.candidates
     assert drawn.says.text() == "Nothing new: all 3 designs were there already."
+
+
+@pytest.mark.torch
+@pytest.mark.parametrize(
+    ("staying", "told"), [(1, "2 designs added, 1 was there already, "), (2, "1 design added, 2 were there already, ")]
+)
+def test_that_designs_that_were_there_already_are_counted(
+    drawn: MainWindow, until: Until, staying: int, told: str
+) -> None:
+    controller = drawn.controller
+    whole = controller.document
+    fewer = replace(whole, candidates=whole.candidates[:staying], marks=whole.marks[:staying], chosen=0)
+    controller.history.apply(Edit("Leave some", fewer))
+    request = replace(controller.collecting.more(silhouettes.load("heart")).request, seed=0)
+    controller.run.start(request, fewer.candidates)
+    until(lambda: not controller.running)
+    assert controller.document.candidates == whole.candidates
+    assert drawn.says.text().startswith(told + "best of them sIoU ")
 
 
 @pytest.mark.torch

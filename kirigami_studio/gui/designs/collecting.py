@@ -162,9 +162,12 @@ class Collecting(QObject):
             )
         added = len(set(document.candidates) - set(before.candidates))
         if not added:
-            return tr("Nothing new: all {count} designs were there already.", count=result.request.k)
+            return tr("Nothing new: all {count} designs were there already.", count=result.repeats)
         best = tr("best of them sIoU {siou:.1f} %", siou=100 * result.best.score.siou)
-        return tr_n("{count} design added", "{count} designs added", added) + f", {best}."
+        parts = [tr_n("{count} design added", "{count} designs added", added)]
+        if result.repeats:
+            parts.append(tr_n("{count} was there already", "{count} were there already", result.repeats))
+        return ", ".join([*parts, best]) + "."
 
 
 def next_seed(document: Document) -> int:

@@ -20,7 +20,8 @@ def adding(request: Request, others: tuple[Candidate, ...], cancel: Cancel) -> I
     """
     for report in generating(request, cancel):
         if isinstance(report, Finished):
-            new = distinct(report.result.candidates, others)
-            yield Finished(replace(report.result, candidates=new))
+            found = report.result.candidates
+            new = distinct(found, others)
+            yield Finished(replace(report.result, candidates=new, repeats=len(found) - len(new)))
         else:
             yield report
