@@ -9,10 +9,13 @@ from collections.abc import Callable
 from pathlib import Path
 
 from kirigami_studio.foundation.errors import ExportError
+from kirigami_studio.foundation.files import linked_file
 
 
 def write_verified(path: Path, content: bytes, verify: Callable[[Path], None]) -> None:
     """Write ``content`` to a temporary file beside ``path``, let ``verify`` read it, then rename it.
+
+    A symbolic link at ``path`` stays; the file that it leads to is replaced.
 
     Parameters
     ----------
@@ -25,14 +28,16 @@ def write_verified(path: Path, content: bytes, verify: Callable[[Path], None]) -
     Raises
     ------
     ExportError
-        The folder cannot be written, or ``verify`` refused the file; nothing is left behind.
+        The folder cannot be written, ``path`` is a link that leads to no file, or ``verify`` refused the
+        file; nothing is left behind.
     """
     temporary: Path | None = None
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        if path.is_dir():
+        place = linked_file(path)
+        place.parent.mkdir(parents=True, exist_ok=True)
+        if place.is_dir():
             raise ExportError(f"Cannot write {path}: it is a folder. Give a file name.")
-        handle, name = tempfile.mkstemp(prefix=f".{path.stem}.", suffix=path.suffix, dir=path.parent)
+        handle, name = tempfile.mkstemp(prefix=f".{path.stem}.", suffix=path.suffix, dir=place.parent)
         temporary = Path(name)
         with os.fdopen(handle, "wb") as stream:
             stream.write(content)
@@ -40,7 +45,7 @@ def write_verified(path: Path, content: bytes, verify: Callable[[Path], None]) -
             os.fsync(stream.fileno())
         verify(temporary)
         temporary.chmod(0o644)
-        temporary.replace(path)
+        temporary.replace(place)
         temporary = None
     except OSError as error:
         reason = error.strerror or str(error)

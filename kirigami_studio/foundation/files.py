@@ -13,27 +13,55 @@ from kirigami_studio.foundation.errors import ExportError
 def write_atomically(path: Path, content: bytes) -> None:
     """Write ``content`` beside ``path``, flush it to disk, then rename it into place.
 
+    A symbolic link at ``path`` stays; the file that it leads to is replaced.
+
     Raises
     ------
     ExportError
-        The folder is missing or cannot be written, or the disk is full; an older file at ``path`` is untouched.
+        The folder is missing or cannot be written, the disk is full, or ``path`` is a link that leads to no file; an
+        older file at ``path`` is untouched.
     """
     temporary: str | None = None
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        handle, temporary = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
+        place = linked_file(path)
+        place.parent.mkdir(parents=True, exist_ok=True)
+        handle, temporary = tempfile.mkstemp(prefix=f".{place.name}.", dir=place.parent)
         with os.fdopen(handle, "wb") as stream:
             stream.write(content)
             stream.flush()
             os.fsync(stream.fileno())
         Path(temporary).chmod(0o644)
-        Path(temporary).replace(path)
+        Path(temporary).replace(place)
     except OSError as error:
         if temporary is not None:
             with contextlib.suppress(OSError):
                 Path(temporary).unlink()
         reason = error.strerror or str(error)
         raise ExportError(f"Cannot write {path}: {reason}. Choose another folder or free some space.") from error
+
+
+def linked_file(path: Path) -> Path:
+    """The file that a symbolic link leads to, over any number of links; any other path as it is.
+
+    Raises
+    ------
+    ExportError
+        The link leads to nothing, or in a circle.
+    """
+    if not path.is_symlink():
+        return path
+    try:
+        return path.resolve(strict=True)
+    except FileNotFoundError as error:
+        to = path.readlink()
+        raise ExportError(
+            f"Cannot write {path}: it is a link to {to}, and no file is there. Delete the link or give another name."
+        ) from error
+    except (OSError, RuntimeError) as error:  # RuntimeError: pathlib's word for a circle
+        raise ExportError(
+            f"Cannot write {path}: it is a link that leads to no file, perhaps in a circle. "
+            "Delete the link or give another name."
+        ) from error
 
 
 def check_folder(folder: Path) -> None:

@@ -153,3 +153,16 @@ def test_that_the_guide_opens_beside_the_work(window: MainWindow, qtbot: QtBot) 
         if action.objectName() in ("generate", "export", "save", "undo", "play", "fit", "theme", "to_flat"):
             assert shown in guide.text.toPlainText()
     guide.close()
+
+
+def test_that_saving_onto_a_link_writes_the_project_behind_it(
+    designed: MainWindow, files: object, tmp_path: Path, until: Until
+) -> None:
+    kept, link = tmp_path / "kept.kiri", tmp_path / "link.kiri"
+    kept.write_bytes(b"older")
+    link.symlink_to(kept)
+    files.answer = link  # type: ignore[attr-defined]
+    designed.actions_["next"].trigger()
+    designed.actions_["save_as"].trigger()
+    until(lambda: not designed.controller.history.unsaved)
+    assert link.is_symlink() and store.load(kept) == designed.controller.document == store.load(link)

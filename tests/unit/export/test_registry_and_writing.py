@@ -96,3 +96,19 @@ def test_that_a_refused_file_leaves_the_old_one_and_nothing_else(tmp_path: Path)
     assert list(tmp_path.iterdir()) == [goal]
     write_verified(goal, b"new", lambda written: None)
     assert goal.read_bytes() == b"new"
+
+
+@pytest.mark.parametrize("extension", [".dxf", ".svg", ".pdf", ".png", ".gif", ".lbrn2"])
+def test_that_an_export_onto_a_link_writes_the_file_behind_it(extension: str, job: ExportJob, tmp_path: Path) -> None:
+    kept = tmp_path / "kept"
+    kept.mkdir()
+    real, link = kept / f"real{extension}", tmp_path / f"out{extension}"
+    real.write_bytes(b"old")
+    link.symlink_to(real)
+    export(job, link)
+    assert link.is_symlink() and not real.is_symlink() and real.read_bytes() != b"old"
+    assert [one.name for one in kept.iterdir()] == [real.name]
+    real.unlink()
+    with pytest.raises(ExportError, match=rf"out\{extension}: it is a link to .*, and no file is there"):
+        export(job, link)
+    assert link.is_symlink() and list(kept.iterdir()) == []

@@ -49,3 +49,45 @@ def test_that_a_folder_in_the_way_is_a_sentence(tmp_path: Path) -> None:
     with pytest.raises(ExportError, match="Choose another folder"):
         write_atomically(tmp_path / "file" / "cut.dxf", b"x")
     assert sorted(entry.name for entry in tmp_path.iterdir()) == ["cut.dxf", "file"]
+
+
+def test_that_a_link_stays_and_the_file_behind_it_is_written(tmp_path: Path) -> None:
+    kept = tmp_path / "kept"
+    kept.mkdir()
+    (kept / "real.kiri").write_bytes(b"old")
+    (kept / "middle.kiri").symlink_to("real.kiri")
+    link = tmp_path / "link.kiri"
+    link.symlink_to(Path("kept") / "middle.kiri")
+    write_atomically(link, b"new")
+    assert link.is_symlink() and (kept / "middle.kiri").is_symlink()
+    assert link.read_bytes() == b"new" and not (kept / "real.kiri").is_symlink()
+    assert sorted(entry.name for entry in kept.iterdir()) == ["middle.kiri", "real.kiri"]
+    assert [entry.name for entry in tmp_path.iterdir() if entry.name.startswith(".")] == []
+
+
+def test_that_a_file_behind_a_link_survives_a_failure(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    real, link = tmp_path / "real.kiri", tmp_path / "link.kiri"
+    real.write_bytes(b"old")
+    link.symlink_to(real)
+
+    def disk_full(*_: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(os, "fsync", disk_full)
+    with pytest.raises(ExportError, match=r"link\.kiri: No space left"):
+        write_atomically(link, b"new")
+    assert real.read_bytes() == b"old" and link.is_symlink() and len(list(tmp_path.iterdir())) == 2
+
+
+def test_that_links_to_nothing_and_in_circles_are_refused_in_a_sentence(tmp_path: Path) -> None:
+    broken, one, other = (tmp_path / name for name in ("broken.kiri", "one.kiri", "other.kiri"))
+    broken.symlink_to("gone.kiri")
+    one.symlink_to(other)
+    other.symlink_to(one)
+    with pytest.raises(ExportError, match=r"broken\.kiri: it is a link to gone\.kiri, and no file is there\. Delete"):
+        write_atomically(broken, b"x")
+    with pytest.raises(
+        ExportError, match=r"one\.kiri: it is a link that leads to no file, perhaps in a circle\. Delete"
+    ):
+        write_atomically(one, b"x")
+    assert all(link.is_symlink() for link in (broken, one, other)) and len(list(tmp_path.iterdir())) == 3
