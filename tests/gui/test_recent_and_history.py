@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 from collections.abc import Callable
 from pathlib import Path
 
@@ -12,6 +14,7 @@ from PySide6.QtWidgets import QLabel, QMenu, QWidgetAction
 from pytestqt.qtbot import QtBot
 
 from kirigami_studio.foundation.errors import ProjectError
+from kirigami_studio.gui.files.recent_files import RecentFiles
 from kirigami_studio.gui.main_window import MainWindow
 from kirigami_studio.gui.panels.history_list import HistoryList
 from kirigami_studio.project import edits, recent
@@ -108,6 +111,77 @@ def test_that_a_spoilt_list_is_told_and_left_as_it_is(text: str, tmp_path: Path,
     assert "list of recent" in window.messages.messages[-1].sentence
     window.controller.filing.recent.take_project(tmp_path / "new.kiri")
     assert kept.read_text() == text
+
+
+def second_session(window: MainWindow, kept: Path) -> RecentFiles:
+    """The list as another session of the program has it."""
+    other = RecentFiles(window.controller.board, window)
+    other.load(kept)
+    return other
+
+
+def test_that_two_sessions_keep_each_others_recent_files(window: MainWindow, tmp_path: Path) -> None:
+    kept, mine = tmp_path / "recent.toml", window.controller.filing.recent
+    mine.load(kept)
+    other = second_session(window, kept)
+    mine.take_project(tmp_path / "mine.kiri")
+    other.take_project(tmp_path / "other.kiri")
+    other.take_target(str(tmp_path / "other.svg"))
+    mine.take_target(str(tmp_path / "mine.svg"))
+    projects = (str(tmp_path / "other.kiri"), str(tmp_path / "mine.kiri"))
+    targets = (str(tmp_path / "mine.svg"), str(tmp_path / "other.svg"))
+    assert recent.load(kept) == mine.present == Recent(projects, targets)
+    assert set(window.commands.recent.entries) == {*projects, *targets}
+    mine.take_project(tmp_path / "mine.kiri")
+    assert recent.load(kept).projects == projects[::-1]
+    assert [entry.name for entry in tmp_path.iterdir()] == ["recent.toml"]
+
+
+def test_that_the_menu_shows_what_another_session_has_added(window: MainWindow, tmp_path: Path, until: Until) -> None:
+    kept = tmp_path / "recent.toml"
+    window.controller.filing.recent.load(kept)
+    window.controller.filing.recent.take_project(tmp_path / "mine.kiri")
+    second_session(window, kept).take_project(tmp_path / "other.kiri")
+    menu = window.commands.recent
+    menu.aboutToShow.emit()
+    assert [action.text() for action in menu.entries.values()] == ["&1  other.kiri", "&2  mine.kiri"]
+    until(lambda: not any(action.isEnabled() for action in menu.entries.values()))
+
+
+def test_that_a_list_that_was_cleared_elsewhere_stays_cleared(window: MainWindow, tmp_path: Path) -> None:
+    kept, mine = tmp_path / "recent.toml", window.controller.filing.recent
+    mine.load(kept)
+    other = second_session(window, kept)
+    for name in ("one.kiri", "two.kiri"):
+        mine.take_project(tmp_path / name)
+    other.clear()
+    assert recent.load(kept) == Recent()
+    mine.take_project(tmp_path / "three.kiri")
+    assert recent.load(kept) == mine.present == Recent((str(tmp_path / "three.kiri"),))
+
+
+def test_that_sessions_which_write_at_once_lose_nothing(tmp_path: Path) -> None:
+    kept = tmp_path / "recent.toml"
+    script = (
+        "import sys; from pathlib import Path; from kirigami_studio.gui.files.recent_files import changed_file\n"
+        "for number in range(5):\n"
+        "    changed_file(Path(sys.argv[1]), lambda known: known.with_project(Path(f'{sys.argv[2]}{number}')))"
+    )
+    sessions = [subprocess.Popen([sys.executable, "-c", script, str(kept), f"/{name}"]) for name in "ab"]
+    assert [session.wait(60) for session in sessions] == [0, 0]
+    assert set(recent.load(kept).projects) == {f"/{name}{number}" for name in "ab" for number in range(5)}
+    assert [entry.name for entry in tmp_path.iterdir()] == ["recent.toml"]
+
+
+def test_that_a_list_that_another_program_spoilt_is_told_once_and_left(window: MainWindow, tmp_path: Path) -> None:
+    kept, mine = tmp_path / "recent.toml", window.controller.filing.recent
+    mine.load(kept)
+    kept.write_text("projects = [")
+    before = len(window.messages.messages)
+    for name in ("one.kiri", "two.kiri"):
+        mine.take_project(tmp_path / name)
+    assert len(window.messages.messages) == before + 1 and kept.read_text() == "projects = ["
+    assert [Path(path).name for path in mine.present.projects] == ["two.kiri", "one.kiri"]
 
 
 @pytest.fixture

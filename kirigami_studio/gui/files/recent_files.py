@@ -1,12 +1,15 @@
-"""Which projects and targets were used last: remembered between sessions once it is known in which file."""
+"""Which projects and targets were used last: remembered between sessions once it is known in which file.
+
+Several sessions share the file: each change is made to what the file holds at that moment, under a lock.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from functools import partial
 from pathlib import Path
 
-from PySide6.QtCore import QObject, Signal
+from PySide6.QtCore import QLockFile, QObject, Signal
 
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.foundation.words import tr
@@ -16,6 +19,11 @@ from kirigami_studio.gui.jobs.worker import Cancel
 from kirigami_studio.gui.messages import Message, Tone
 from kirigami_studio.project import recent
 from kirigami_studio.project.recent import Recent
+
+#: Milliseconds that the window waits at most for another session to write its change, which takes a few.
+PATIENCE_MS = 300
+#: Milliseconds after which the lock of a session that has died no longer counts.
+STALE_MS = 5000
 
 
 class RecentFiles(QObject):
@@ -43,37 +51,77 @@ class RecentFiles(QObject):
 
     def take_project(self, path: Path) -> None:
         """A project was opened or saved."""
-        self._change(self.present.with_project(path))
+        self._change(lambda known: known.with_project(path))
 
     def take_target(self, source: str) -> None:
         """A target was read; silhouettes of the library and pasted pictures are no files of the user's."""
         path = Path(source)
         if path.suffix and not path.parent.name.startswith(PASTED):
-            self._change(self.present.with_target(path))
+            self._change(lambda known: known.with_target(path))
 
     def clear(self) -> None:
-        """Forget all."""
-        self._change(Recent())
+        """Forget all, what other sessions have added too."""
+        self._change(lambda _: Recent())
 
     def look(self) -> None:
-        """Find out which files are missing."""
+        """Take over what other sessions have added, and find out which files are missing."""
+        self._read_again()
         paths = (*self.present.projects, *self.present.targets)
         if paths:
             ears = Ears(self.missing.emit)
             self._board.start(tr("looking for recent files"), partial(_looking, paths), ears)
 
-    def _change(self, wanted: Recent) -> None:
-        if wanted == self.present:
-            return
-        self.present = wanted
-        self.changed.emit(wanted)
+    def _change(self, change: Callable[[Recent], Recent]) -> None:
         if self._path is None:
+            self._take(change(self.present))
             return
         try:
-            recent.save(wanted, self._path)
+            self._take(changed_file(self._path, change))
         except KirigamiError as error:
             self._path = None  # once is enough
             self.message.emit(Message(str(error), Tone.WARNING))
+            self._take(change(self.present))
+
+    def _read_again(self) -> None:
+        if self._path is not None:
+            try:
+                self._take(recent.load(self._path))
+            except KirigamiError as error:
+                self._path = None
+                self.message.emit(Message(str(error), Tone.WARNING))
+
+    def _take(self, known: Recent) -> None:
+        if known != self.present:
+            self.present = known
+            self.changed.emit(known)
+
+
+def changed_file(path: Path, change: Callable[[Recent], Recent]) -> Recent:
+    """Change the list that the file holds now, whoever wrote it, and return it.
+
+    Raises
+    ------
+    ProjectError
+        The file cannot be read; it is left as it is.
+    ExportError
+        It cannot be written.
+    """
+    if not path.parent.is_dir():  # the first session of all
+        return _written(Recent(), change, path)
+    lock = QLockFile(f"{path}.lock")
+    lock.setStaleLockTime(STALE_MS)
+    lock.tryLock(PATIENCE_MS)  # without it the list is changed all the same: an entry may get lost, a session may not
+    try:
+        return _written(recent.load(path), change, path)
+    finally:
+        lock.unlock()
+
+
+def _written(known: Recent, change: Callable[[Recent], Recent], path: Path) -> Recent:
+    wanted = change(known)
+    if wanted != known:
+        recent.save(wanted, path)
+    return wanted
 
 
 def _looking(paths: tuple[str, ...], cancel: Cancel) -> Iterator[frozenset[str]]:
