@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from dataclasses import field as dataclass_field
 from enum import Enum
 
 from kirigami_studio.evaluate.score import Score
@@ -41,6 +42,9 @@ class Candidate:
     variant : str
         Generator that drew it, "" where that is not known.
     origin : Origin
+    made_with : tuple of (name, text)
+        Settings of the run that drew it, by their names in a provenance; empty where they are not known.  The same
+        design is the same whatever is known of its run: this takes no part in comparisons.
     """
 
     field: RatioField
@@ -52,3 +56,4 @@ class Candidate:
     trim: Trim | None = None
     variant: str = ""
     origin: Origin = Origin.SAMPLED
+    made_with: tuple[tuple[str, str], ...] = dataclass_field(default=(), compare=False)

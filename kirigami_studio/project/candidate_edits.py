@@ -77,8 +77,9 @@ def add_candidates(document: Document, brought: Brought, rank: RankKey, limit: i
     """
     marked = dict(zip(document.candidates, document.marks, strict=True))
     fields = {candidate.field for candidate in document.candidates}
-    added = _without_repeats(brought.candidates, fields)
-    kept = _within([*document.candidates, *added], marked, document.candidate, rank, limit)
+    added = told_of_run(_without_repeats(brought.candidates, fields), brought.provenance)
+    present = told_of_run(document.candidates, document.provenance)
+    kept = _within([*present, *added], marked, document.candidate, rank, limit)
     changed = _collected(document, kept, marked, document.candidate)
     changed = replace(changed, provenance=joined_provenance(document.provenance, brought.provenance))
     if brought.seed is not None:
@@ -93,11 +94,13 @@ def renew_candidates(document: Document, brought: Brought, rank: RankKey, chosen
 
     Pinned designs stay only where they share target, grid and angle with the new ones, which the caller has checked.
     """
-    pinned = [one for one, mark in zip(document.candidates, document.marks, strict=True) if mark is Mark.PINNED]
+    known = told_of_run(document.candidates, document.provenance)
+    pinned = [one for one, mark in zip(known, document.marks, strict=True) if mark is Mark.PINNED]
     fields = {candidate.field for candidate in pinned}
-    found = sorted([*pinned, *_without_repeats(brought.candidates, fields)], key=rank)
-    known = joined_provenance(document.provenance, brought.provenance) if pinned else brought.provenance
-    edit = set_candidates(document, found, known, brought.target)
+    fresh = told_of_run(_without_repeats(brought.candidates, fields), brought.provenance)
+    found = sorted([*pinned, *fresh], key=rank)
+    joined = joined_provenance(document.provenance, brought.provenance) if pinned else brought.provenance
+    edit = set_candidates(document, found, joined, brought.target)
     label = tr_n("Generate {count} design", "Generate {count} designs", len(brought.candidates))
     changed = _collected(edit.document, found, dict.fromkeys(pinned, Mark.PINNED), chosen or found[0])
     if brought.seed is not None:
@@ -112,6 +115,12 @@ def joined_provenance(before: Mapping[str, str], after: Mapping[str, str]) -> di
         values = [part for part in known.get(name, "").split(BETWEEN_RUNS) if part]
         known[name] = BETWEEN_RUNS.join(dict.fromkeys([*values, *value.split(BETWEEN_RUNS)]))
     return known
+
+
+def told_of_run(candidates: Iterable[Candidate], provenance: Mapping[str, str]) -> list[Candidate]:
+    """The designs with the settings of their run; those that know their own keep them."""
+    run = tuple(sorted(provenance.items()))
+    return [one if one.made_with or not run else replace(one, made_with=run) for one in candidates]
 
 
 def _without_repeats(found: Iterable[Candidate], fields: Iterable[object]) -> list[Candidate]:

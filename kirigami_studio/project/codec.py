@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import json
+from dataclasses import replace
 
 import numpy as np
 
@@ -31,6 +32,7 @@ DRAWN = "drawn.npy"
 
 def encode(document: Document) -> dict[str, bytes]:
     """Return the members of the current format; equal documents give equal bytes."""
+    runs = list(dict.fromkeys(entry.made_with for entry in document.candidates if entry.made_with))
     design = {
         "target": None if document.target is None else _outline_json(document.target),
         "settings": {
@@ -45,7 +47,8 @@ def encode(document: Document) -> dict[str, bytes]:
             "search": document.settings.search,
         },
         "fabrication": fabrication_json(document.fabrication),
-        "candidates": [_candidate_json(entry) for entry in document.candidates],
+        "candidates": [_candidate_json(entry, runs) for entry in document.candidates],
+        "runs": [dict(run) for run in runs],
         "chosen": document.chosen,
         "provenance": dict(sorted(document.provenance.items())),
         "marks": [mark.value for mark in document.marks],
@@ -78,6 +81,7 @@ def decode(members: Members) -> Document:
     records = [Record(entry, f"{DESIGN}.candidates[{k}]") for k, entry in enumerate(entries)]
     fields = _read_ratios(members, RATIOS, len(records))
     drawn = iter(_read_ratios(members, DRAWN, sum(record.flag("drawn") for record in records)))
+    runs = _runs(design.list("runs"))
     rows, columns = _whole_pair(settings, "grid")
     target = _outline(design.record("target")) if design.holds("target") else None
     return Document(
@@ -94,7 +98,10 @@ def decode(members: Members) -> Document:
             search=settings.whole("search"),
         ),
         candidates=tuple(
-            _candidate(record, field, next(drawn) if record.flag("drawn") else None, target)
+            replace(
+                _candidate(record, field, next(drawn) if record.flag("drawn") else None, target),
+                made_with=_run(record, runs),
+            )
             for record, field in zip(records, fields, strict=True)
         ),
         chosen=design.whole("chosen") if design.holds("chosen") else None,
@@ -145,7 +152,22 @@ def _table(rows: list[object], place: str) -> FloatArray:
         raise ProjectError(f"{DESIGN}.{place} is not a table of numbers") from None
 
 
-def _candidate_json(entry: Candidate) -> dict[str, object]:
+def _runs(entries: list[object]) -> list[tuple[tuple[str, str], ...]]:
+    """What designs were made with, one table for each run."""
+    by_number = Record({str(number): entry for number, entry in enumerate(entries)}, f"{DESIGN}.runs")
+    return [tuple(sorted(by_number.texts(str(number)).items())) for number in range(len(entries))]
+
+
+def _run(record: Record, runs: list[tuple[tuple[str, str], ...]]) -> tuple[tuple[str, str], ...]:
+    if not record.holds("run"):
+        return ()
+    number = record.whole("run")
+    if not 0 <= number < len(runs):
+        raise ProjectError(f"{DESIGN}: a design is of run number {number}, but {len(runs)} are told")
+    return runs[number]
+
+
+def _candidate_json(entry: Candidate, runs: list[tuple[tuple[str, str], ...]]) -> dict[str, object]:
     cut = entry.trim
     return {
         "seed": entry.seed,
@@ -153,6 +175,7 @@ def _candidate_json(entry: Candidate) -> dict[str, object]:
         "polished": entry.polished,
         "variant": entry.variant,
         "origin": entry.origin.value,
+        "run": runs.index(entry.made_with) if entry.made_with else None,
         "drawn": entry.drawn is not None,
         "score": entry.score.to_json(),
         # What was cut off follows from these; it is cut again on reading.

@@ -17,11 +17,12 @@ OF_RESAMPLED = ("near", "nearness")
 def design_facts(document: Document, candidate: Candidate) -> dict[str, str]:
     """Name to text, all that is needed to make the design again.
 
-    What the project knows of its run or runs is repeated, except that the model and its hash are those that this
-    candidate was drawn with; a hash that the project does not know is left out rather than taken from another model.
-    A design that was not drawn near another one does not name the one that those of another run were drawn near.
+    The settings are those of the run that drew the candidate.  Of designs out of projects before format 5 they are not
+    known: then what the project knows of its run or runs is repeated, except that the model and its hash are those
+    that this candidate was drawn with; a hash that the project does not know is left out rather than taken from
+    another model, and a design that was not drawn near another one names none.
     """
-    facts = dict(document.provenance)
+    facts = _run_of(document, candidate)
     models, digests = (_parts(facts.pop(name, "")) for name in ("model", "model_sha256"))
     if candidate.origin in (Origin.SAMPLED, Origin.SEARCHED):
         facts = {name: text for name, text in facts.items() if name not in OF_RESAMPLED}
@@ -43,6 +44,12 @@ def design_facts(document: Document, candidate: Candidate) -> dict[str, str]:
         "phi_degrees": f"{math.degrees(candidate.score.phi):g}",
         **({} if document.target is None else {"target": document.target.name}),
     }
+
+
+def _run_of(document: Document, candidate: Candidate) -> dict[str, str]:
+    """The settings of a candidate's run; one that has not heard of them yet is asked for in the document."""
+    known = candidate.made_with or next((one.made_with for one in document.candidates if one == candidate), ())
+    return dict(known or document.provenance)
 
 
 def _parts(text: str) -> list[str]:

@@ -43,7 +43,7 @@ class Document:
         Index of the candidate on the stage.
     fabrication : FabricationSettings
     provenance : mapping of str to str, read-only
-        Where the candidates come from: version of the program, name and hash of the model.
+        Where the candidates come from, of all runs together; each candidate knows its own run.
     marks : tuple of Mark
         One for each candidate, pinned, rejected or neither; left out, none of them has any.
     locked : frozenset of (row, column)

@@ -157,9 +157,14 @@ def _without_strange_hinges(document: Document, found: tuple[Candidate, ...]) ->
 
 def replace_candidate(document: Document, index: int, candidate: Candidate, gesture: str) -> Edit:
     """Put an improved design in the place of candidate ``index`` and choose it."""
+    return Edit(gesture, replace(document, candidates=with_candidate(document, index, candidate), chosen=index))
+
+
+def with_candidate(document: Document, index: int, candidate: Candidate) -> tuple[Candidate, ...]:
+    """The designs with ``candidate`` in the place of the one that it was made of, whose run it shares."""
     candidates = list(document.candidates)
-    candidates[index] = candidate
-    return Edit(gesture, replace(document, candidates=tuple(candidates), chosen=index))
+    candidates[index] = replace(candidate, made_with=candidate.made_with or candidates[index].made_with)
+    return tuple(candidates)
 
 
 def choose(document: Document, index: int | None) -> Edit:

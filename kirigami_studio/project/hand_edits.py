@@ -8,7 +8,7 @@ from dataclasses import replace
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.project.document import Document, Void
-from kirigami_studio.project.edits import Edit
+from kirigami_studio.project.edits import Edit, with_candidate
 
 
 def take_changed(document: Document, before: Candidate, after: Candidate, gesture: str) -> Edit | None:
@@ -18,9 +18,8 @@ def take_changed(document: Document, before: Candidate, after: Candidate, gestur
     """
     if before not in document.candidates:
         return None
-    candidates = list(document.candidates)
-    candidates[candidates.index(before)] = after
-    return Edit(gesture, replace(document, candidates=tuple(candidates)))
+    candidates = with_candidate(document, document.candidates.index(before), after)
+    return Edit(gesture, replace(document, candidates=candidates))
 
 
 def lock_voids(document: Document, voids: Iterable[Void], on: bool) -> Edit:

@@ -13,13 +13,16 @@ from kirigami_studio.foundation.errors import ProjectError
 from kirigami_studio.project.migrations.from_1 import with_preference
 from kirigami_studio.project.migrations.from_2 import with_cut_options
 from kirigami_studio.project.migrations.from_3 import with_marks
+from kirigami_studio.project.migrations.from_4 import with_runs
 
 #: The members of a project file by name; the manifest is not among them.
 Members = Mapping[str, bytes]
 Migration = Callable[[Members], Members]
 
-CURRENT_VERSION = 4
-MIGRATIONS: Mapping[int, Migration] = MappingProxyType({1: with_preference, 2: with_cut_options, 3: with_marks})
+CURRENT_VERSION = 5
+MIGRATIONS: Mapping[int, Migration] = MappingProxyType(
+    {1: with_preference, 2: with_cut_options, 3: with_marks, 4: with_runs}
+)
 
 
 def migrate(

@@ -5,8 +5,12 @@ from __future__ import annotations
 from dataclasses import replace
 
 from kirigami_studio.evaluate.candidate import Candidate, Origin
+from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.project.candidate_edits import Brought, add_candidates, renew_candidates
 from kirigami_studio.project.design_facts import design_facts
-from kirigami_studio.project.document import Document
+from kirigami_studio.project.document import Document, Mark
+from kirigami_studio.project.edits import replace_candidate
+from kirigami_studio.project.hand_edits import take_changed
 
 
 def test_that_a_candidate_tells_its_own_model_seed_and_origin(document: Document) -> None:
@@ -44,3 +48,36 @@ def test_that_only_a_design_drawn_near_another_one_names_that_one(document: Docu
     near, free = design_facts(joined, both[0]), design_facts(joined, both[1])
     assert (near["near"], near["nearness"]) == ("5e5e", "0.6")
     assert "near" not in free and "nearness" not in free
+
+
+def test_that_designs_of_several_runs_tell_the_settings_of_their_own(document: Document) -> None:
+    first = {"model": "prior", "model_sha256": "aa", "k": "3", "polish": "0", "steps": "8"}
+    second = {"model": "balanced", "model_sha256": "bb", "k": "8", "polish": "3", "steps": "4", "prefer": "regular"}
+    start = replace(document, provenance=first, marks=())
+    best = start.candidates[0]
+    new = replace(best, field=RatioField(best.field.ratio * 1.01), seed=77, variant="balanced")
+    both = add_candidates(start, Brought((new,), second), lambda one: -one.score.siou).document
+    assert both.provenance["polish"] == "0; 3"
+    for one in both.candidates:
+        facts, run = design_facts(both, one), second if one == new else first
+        assert {name: facts.get(name) for name in second} == {name: run.get(name) for name in second}
+    assert design_facts(both, new)["k"] == "8", "a design that has not been told is looked up"
+    third = add_candidates(
+        both, Brought((replace(new, seed=78, field=RatioField(best.field.ratio * 1.02)),), first), lambda one: 0
+    )
+    assert design_facts(third.document, new)["polish"] == "3"
+
+
+def test_that_changed_and_pinned_designs_keep_the_settings_of_their_run(document: Document) -> None:
+    first, second = {"model": "prior", "polish": "0"}, {"model": "balanced", "polish": "3", "prefer": "regular"}
+    best = document.candidates[0]
+    start = replace(document, provenance=first, marks=(Mark.PINNED, Mark.NONE, Mark.NONE))
+    new = replace(best, field=RatioField(best.field.ratio * 1.01), seed=77)
+    renewed = renew_candidates(start, Brought((new,), second), lambda one: -one.score.siou).document
+    assert {design_facts(renewed, one)["polish"] for one in renewed.candidates} == {"0", "3"}
+    edited = replace(best, field=RatioField(best.field.ratio * 1.02), origin=Origin.EDITED)
+    changed = take_changed(renewed, best, edited, "Change by hand")
+    assert changed is not None and design_facts(changed.document, edited)["polish"] == "0"
+    place = changed.document.candidates.index(new)
+    trimmed = replace_candidate(changed.document, place, replace(new, polished=True), "Fit again").document
+    assert design_facts(trimmed, trimmed.candidates[place])["prefer"] == "regular"

@@ -23,6 +23,7 @@ from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.polish.covering import fit_cover
 from kirigami_studio.polish.levenberg import polish
 from kirigami_studio.project import store
+from kirigami_studio.project.design_facts import design_facts
 from kirigami_studio.project.document import Document, Mark
 from kirigami_studio.project.migrations import MIGRATIONS, Members, migrate
 from kirigami_studio.project.settings import FabricationSettings
@@ -87,7 +88,7 @@ def test_that_equal_documents_give_equal_bytes(document: Document, tmp_path: Pat
 
 def test_that_the_manifest_names_format_and_versions(document: Document) -> None:
     manifest = json.loads(members_of(document)["manifest.json"])
-    assert manifest["version"] == 4
+    assert manifest["version"] == 5
     assert manifest["app_version"]
 
 
@@ -117,13 +118,21 @@ def test_that_another_kind_of_file_is_a_sentence(content: bytes, tmp_path: Path)
 
 def test_that_a_newer_project_asks_for_an_update(document: Document, tmp_path: Path) -> None:
     members = members_of(document)
-    members["manifest.json"] = members["manifest.json"].replace(b'"version": 4', b'"version": 5')
-    with pytest.raises(ProjectError, match=r"newer .*format 5.* up to 4.*update the program\.$"):
+    members["manifest.json"] = members["manifest.json"].replace(b'"version": 5', b'"version": 6')
+    with pytest.raises(ProjectError, match=r"newer .*format 6.* up to 5.*update the program\.$"):
         store.load(write_members(tmp_path / "newer.kiri", members))
 
 
+def forget_runs(design: dict[str, Any]) -> None:
+    """Leave out what came with format 5."""
+    del design["runs"]
+    for candidate in design["candidates"]:
+        del candidate["run"]
+
+
 def forget_marks(design: dict[str, Any]) -> None:
-    """Leave out what came with format 4."""
+    """Leave out what came with formats 4 and 5."""
+    forget_runs(design)
     del design["marks"], design["locked"]
     for candidate in design["candidates"]:
         del candidate["variant"], candidate["origin"]
@@ -138,12 +147,37 @@ def test_that_marks_locks_and_origins_come_back(document: Document, tmp_path: Pa
     assert store.load(tmp_path / "marked.kiri") == marked
 
 
+def test_that_the_run_of_every_design_comes_back(document: Document, tmp_path: Path) -> None:
+    runs = ((("k", "32"), ("polish", "0")), (("k", "8"), ("polish", "3")), ())
+    candidates = tuple(replace(one, made_with=run) for one, run in zip(document.candidates, runs, strict=True))
+    several = replace(document, candidates=candidates)
+    store.save(several, tmp_path / "runs.kiri")
+    opened = store.load(tmp_path / "runs.kiri")
+    assert opened == several and tuple(one.made_with for one in opened.candidates) == runs
+    store.save(opened, tmp_path / "again.kiri")
+    assert (tmp_path / "again.kiri").read_bytes() == (tmp_path / "runs.kiri").read_bytes()
+
+
+def test_that_a_project_of_the_fourth_format_tells_of_its_designs_what_it_told(
+    document: Document, tmp_path: Path
+) -> None:
+    members = members_of(replace(document, provenance={"model": "prior", "polish": "0; 3"}))
+    design = json.loads(members["design.json"])
+    forget_runs(design)
+    members["design.json"] = json.dumps(design).encode()
+    members["manifest.json"] = members["manifest.json"].replace(b'"version": 5', b'"version": 4')
+    opened = store.load(write_members(tmp_path / "old.kiri", members))
+    assert [one.made_with for one in opened.candidates] == [(), (), ()]
+    assert opened.candidates == document.candidates
+    assert design_facts(opened, opened.candidates[0])["polish"] == "0; 3"
+
+
 def test_that_a_project_of_the_third_format_has_no_marks(document: Document, tmp_path: Path) -> None:
     members = members_of(replace(document, provenance={**document.provenance, "search": "1"}))
     design = json.loads(members["design.json"])
     forget_marks(design)
     members["design.json"] = json.dumps(design).encode()
-    members["manifest.json"] = members["manifest.json"].replace(b'"version": 4', b'"version": 3')
+    members["manifest.json"] = members["manifest.json"].replace(b'"version": 5', b'"version": 3')
     opened = store.load(write_members(tmp_path / "old.kiri", members))
     assert opened.marks == (Mark.NONE,) * 3 and opened.locked == frozenset()
     assert [candidate.variant for candidate in opened.candidates] == ["prior"] * 3
@@ -182,7 +216,7 @@ def test_that_a_project_of_the_first_format_opens_with_the_usual_preferences(
         del candidate["drawn"], candidate["trim"]
     members["design.json"] = json.dumps(design).encode()
     del members["drawn.npy"]
-    members["manifest.json"] = members["manifest.json"].replace(b'"version": 4', b'"version": 1')
+    members["manifest.json"] = members["manifest.json"].replace(b'"version": 5', b'"version": 1')
     opened = store.load(write_members(tmp_path / "old.kiri", members))
     usual = replace(document.settings, prefer="balanced", search=0)
     bare = tuple(replace(candidate, drawn=None) for candidate in document.candidates)
@@ -197,7 +231,7 @@ def test_that_a_project_of_the_second_format_is_cut_as_before(document: Document
         del design["fabrication"][name]
     forget_marks(design)
     members["design.json"] = json.dumps(design).encode()
-    members["manifest.json"] = members["manifest.json"].replace(b'"version": 4', b'"version": 2')
+    members["manifest.json"] = members["manifest.json"].replace(b'"version": 5', b'"version": 2')
     assert store.load(write_members(tmp_path / "old.kiri", members)) == document
 
 
@@ -339,6 +373,10 @@ def claiming(shape: str) -> bytes:
         (edit("settings", "prefer", to=3), "must be a text, got 3"),
         (drop("drawn.npy"), "lacks drawn.npy"),
         (edit("provenance", to={"model": 3}), "table of texts"),
+        (edit("runs", to=[{"k": 3}]), "table of texts"),
+        (edit("runs", to={}), "must be a list"),
+        (edit("candidates", 1, "run", to=2), "run number 2, but 0 are told"),
+        (edit("candidates", 1, "run", to="first"), "whole number, got 'first'"),
         (edit("settings", to={}), "lacks"),
     ],
 )
