@@ -39,7 +39,8 @@ def test_that_the_session_reports_failure(tmp_path: Path, repository: Path) -> N
 
 
 def test_that_every_control_has_a_name_and_a_tooltip(designed: MainWindow) -> None:
-    kinds = ("QToolButton", "QPushButton", "QCheckBox", "QSpinBox", "QDoubleSpinBox", "QComboBox", "PhiSlider")
+    fields = ("QSpinBox", "QDoubleSpinBox", "DecimalField", "LengthField")
+    kinds = ("QToolButton", "QPushButton", "QCheckBox", "QComboBox", "PhiSlider", *fields)
     panels = (designed.target, designed.settings, designed.stage, designed.fabrication)
     nameless = [
         widget.objectName() or widget.metaObject().className()

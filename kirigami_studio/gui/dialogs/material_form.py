@@ -5,10 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from PySide6.QtCore import QSignalBlocker, Signal
-from PySide6.QtWidgets import QDoubleSpinBox, QFormLayout, QLabel, QLineEdit, QSpinBox, QWidget
+from PySide6.QtWidgets import QFormLayout, QLabel, QLineEdit, QSpinBox, QWidget
 
 from kirigami_studio.fabricate.material import Material
 from kirigami_studio.foundation.words import tr
+from kirigami_studio.gui.panels.decimal_field import DecimalField, LengthField
 from kirigami_studio.gui.panels.number_field import number_field
 
 
@@ -149,8 +150,8 @@ def _text(field: str, label: str, tip: str) -> QLineEdit:
     return line
 
 
-def _number(number: Number) -> QDoubleSpinBox:
-    box = QDoubleSpinBox()
+def _number(number: Number) -> DecimalField:
+    box = LengthField() if number.unit == "mm" else DecimalField()
     box.setObjectName(f"material_{number.field}")
     box.setRange(number.low, number.high)
     box.setSingleStep(number.step)

@@ -5,13 +5,14 @@ from __future__ import annotations
 import math
 
 from PySide6.QtCore import QElapsedTimer, QSettings, QSignalBlocker, QTimer, Signal
-from PySide6.QtWidgets import QDoubleSpinBox, QHBoxLayout, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QWidget
 
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.designs.playing import PlayMode, phase_of, phi_at
 from kirigami_studio.gui.look import icons
 from kirigami_studio.gui.look.theme import LIGHT, Palette
 from kirigami_studio.gui.panels.card import tool_button
+from kirigami_studio.gui.panels.decimal_field import DecimalField
 from kirigami_studio.gui.panels.number_field import number_field
 from kirigami_studio.gui.panels.play_options import PlayOptions
 from kirigami_studio.gui.views.phi_slider import PhiSlider
@@ -37,7 +38,7 @@ class DeploymentBar(QWidget):
         self.play = tool_button("play", tr("Play or pause the deployment (Space)."), checkable=True)
         self.options = PlayOptions()
         self.slider = PhiSlider()
-        self.number = QDoubleSpinBox()
+        self.number = DecimalField()
         self.number.setObjectName("phiNumber")
         self.number.setRange(0.0, 180.0)
         self.number.setDecimals(1)

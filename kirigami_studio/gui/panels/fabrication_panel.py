@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QSettings, QSignalBlocker, Qt, Signal
 from PySide6.QtWidgets import (
     QComboBox,
-    QDoubleSpinBox,
     QGridLayout,
     QHBoxLayout,
     QLabel,
@@ -23,6 +22,7 @@ from kirigami_studio.gui.look import icons
 from kirigami_studio.gui.look.readable import UNKNOWN, readable_length, readable_range, readable_size, readable_time
 from kirigami_studio.gui.look.theme import LIGHT, Palette
 from kirigami_studio.gui.panels.card import Card, ScrolledWhenShort, captioned, compact, muted_label, tool_button
+from kirigami_studio.gui.panels.decimal_field import LengthField
 from kirigami_studio.gui.panels.export_row import ExportRow
 from kirigami_studio.gui.panels.more_options import MoreOptions
 from kirigami_studio.gui.panels.opened_row import OpenedRow
@@ -196,8 +196,8 @@ class FabricationPanel(Card):
 
     def _length(
         self, field: str, label: str, low: float, high: float, step: float, digits: int, tip: str
-    ) -> QDoubleSpinBox:
-        box = QDoubleSpinBox()
+    ) -> LengthField:
+        box = LengthField()
         box.setObjectName(field)
         box.setRange(low, high)
         box.setSingleStep(step)

@@ -8,7 +8,6 @@ from PySide6.QtCore import QSignalBlocker, Qt, Signal
 from PySide6.QtWidgets import (
     QCheckBox,
     QComboBox,
-    QDoubleSpinBox,
     QHBoxLayout,
     QLabel,
     QPushButton,
@@ -24,6 +23,7 @@ from kirigami_studio.gui.designs.selecting import Order, Selection
 from kirigami_studio.gui.look import icons
 from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.panels.card import tool_button
+from kirigami_studio.gui.panels.decimal_field import DecimalField
 from kirigami_studio.gui.panels.number_field import number_field
 from kirigami_studio.lattice.ratio_field import RatioField
 
@@ -88,7 +88,7 @@ class GalleryBar(QWidget):
         self.pinned = _check("pinnedOnly", tr("Pinned"), tr("Show only pinned designs."))
         self.rejected = _check("showRejected", tr("Rejected"), tr("Also show rejected designs, dimmed."))
         self.pinned_first = _check("pinnedFirst", tr("Pinned first"), tr("Show pinned designs before all others."))
-        self.least = QDoubleSpinBox()
+        self.least = DecimalField()
         self.least.setObjectName("leastSiou")
         self.least.setRange(0.0, 100.0)
         self.least.setDecimals(1)

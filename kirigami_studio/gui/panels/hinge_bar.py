@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from PySide6.QtCore import QSignalBlocker, Qt, Signal
 from PySide6.QtGui import QKeyEvent, QResizeEvent
-from PySide6.QtWidgets import QDoubleSpinBox, QHBoxLayout, QMenu, QToolButton, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QMenu, QToolButton, QWidget
 
 from kirigami_studio.fabricate.cut_plan import CutPlan
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.look import icons
 from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.panels.card import FittingLabel, tool_button
+from kirigami_studio.gui.panels.decimal_field import LengthField
 from kirigami_studio.gui.panels.number_field import number_field
 from kirigami_studio.gui.scene.hinge_rules import RULES
 
@@ -46,7 +47,7 @@ class HingeBar(QWidget):
             self.choices.append(action)
         self.rules.setMenu(menu)
         self.says = FittingLabel()
-        self.width_mm = QDoubleSpinBox()
+        self.width_mm = LengthField()
         self.width_mm.setObjectName("hingeWidth")
         self.width_mm.setRange(0.02, 20.0)
         self.width_mm.setSingleStep(0.05)

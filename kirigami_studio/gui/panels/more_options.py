@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from PySide6.QtCore import QSignalBlocker, Qt, Signal
-from PySide6.QtWidgets import QComboBox, QDoubleSpinBox, QGridLayout, QSizePolicy, QSpinBox, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QComboBox, QGridLayout, QSizePolicy, QSpinBox, QVBoxLayout, QWidget
 
 from kirigami_studio.export.profile import PROFILES
 from kirigami_studio.fabricate.options import MOST_TABS, ConnectorStyle, CutOrder
@@ -11,6 +11,7 @@ from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.look import icons
 from kirigami_studio.gui.look.theme import LIGHT, Palette
 from kirigami_studio.gui.panels.card import captioned, compact, tool_button
+from kirigami_studio.gui.panels.decimal_field import LengthField
 from kirigami_studio.project.settings import FabricationSettings
 
 TOOLTIP = Qt.ItemDataRole.ToolTipRole
@@ -67,7 +68,7 @@ class MoreOptions(QWidget):
                 most_tabs=MOST_TABS,
             )
         )
-        self.tab_mm = QDoubleSpinBox()
+        self.tab_mm = LengthField()
         self.tab_mm.setObjectName("tabWidth")
         self.tab_mm.setRange(0.05, 20.0)
         self.tab_mm.setSingleStep(0.1)

@@ -6,9 +6,10 @@ import math
 from collections.abc import Callable
 
 from PySide6.QtCore import QSignalBlocker
-from PySide6.QtWidgets import QDoubleSpinBox, QHBoxLayout, QLabel, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QLabel, QWidget
 
 from kirigami_studio.foundation.words import tr
+from kirigami_studio.gui.panels.decimal_field import DecimalField, LengthField
 from kirigami_studio.gui.panels.number_field import number_field
 from kirigami_studio.gui.sketching.easel import Change, Easel
 from kirigami_studio.target.placed import LARGEST_MM, Placed
@@ -37,8 +38,8 @@ class PoseOptions(QWidget):
         self.y_.valueChanged.connect(self._move)
         self.turn.valueChanged.connect(self._turn)
 
-    def _field(self, tip: str, largest: float, digits: int, suffix: str) -> QDoubleSpinBox:
-        field = QDoubleSpinBox()
+    def _field(self, tip: str, largest: float, digits: int, suffix: str) -> DecimalField:
+        field = LengthField() if suffix == tr(" mm") else DecimalField()
         field.setRange(-largest, largest)
         field.setDecimals(digits)
         field.setSuffix(suffix)

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from PySide6.QtCore import QSignalBlocker, Signal
-from PySide6.QtWidgets import QDoubleSpinBox, QHBoxLayout, QLabel, QSlider, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QLabel, QSlider, QWidget
 
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.look import icons
 from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.panels.card import tool_button
+from kirigami_studio.gui.panels.decimal_field import LengthField
 from kirigami_studio.gui.panels.groove_slider import GrooveSlider
 from kirigami_studio.gui.panels.number_field import number_field
 from kirigami_studio.target.placed import LARGEST_MM, Placed
@@ -109,8 +110,8 @@ def _caption(text: str, buddy: QWidget) -> QLabel:
     return label
 
 
-def _length(name: str) -> QDoubleSpinBox:
-    field = QDoubleSpinBox()
+def _length(name: str) -> LengthField:
+    field = LengthField()
     field.setRange(0.1, LARGEST_MM)
     field.setDecimals(1)
     field.setSuffix(tr(" mm"))

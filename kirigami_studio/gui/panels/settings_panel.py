@@ -9,7 +9,6 @@ from PySide6.QtCore import QSignalBlocker, Qt, Signal
 from PySide6.QtWidgets import (
     QCheckBox,
     QComboBox,
-    QDoubleSpinBox,
     QHBoxLayout,
     QLabel,
     QSizePolicy,
@@ -21,6 +20,7 @@ from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.look import icons
 from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.panels.card import Card, captioned, compact, tool_button
+from kirigami_studio.gui.panels.decimal_field import DecimalField
 from kirigami_studio.lattice.ratio_field import LARGEST_GRID, SMALLEST_GRID
 from kirigami_studio.pipeline.request import LARGEST_K
 from kirigami_studio.project.settings import DesignSettings
@@ -99,7 +99,7 @@ class SettingsPanel(Card):
             LARGEST_SEED,
             tr("Start of the random numbers: the same seed gives the same designs."),
         )
-        self.angle = QDoubleSpinBox()
+        self.angle = DecimalField()
         self.angle.setObjectName("targetAngle")
         self.angle.setRange(0.0, 179.0)
         self.angle.setDecimals(1)

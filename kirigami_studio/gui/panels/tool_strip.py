@@ -5,7 +5,6 @@ from __future__ import annotations
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import (
     QButtonGroup,
-    QDoubleSpinBox,
     QFrame,
     QHBoxLayout,
     QLabel,
@@ -22,6 +21,7 @@ from kirigami_studio.gui.look import icons
 from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.panels.axis_button import AxisButton
 from kirigami_studio.gui.panels.card import tool_button
+from kirigami_studio.gui.panels.decimal_field import DecimalField
 from kirigami_studio.gui.panels.font_options import FontOptions
 from kirigami_studio.gui.panels.node_options import NodeOptions
 from kirigami_studio.gui.panels.number_field import number_field
@@ -170,7 +170,7 @@ class ToolOptions(QWidget):
         self.corners.setValue(easel.corners)
         self.corners.setAccessibleName(tr("Number of corners or tips"))
         self.corners.setToolTip(tr("Corners of the polygon, tips of the star"))
-        self.waist = QDoubleSpinBox()
+        self.waist = DecimalField()
         self.waist.setRange(100 * NARROWEST_WAIST, 100 * WIDEST_WAIST)
         self.waist.setDecimals(0)
         self.waist.setSuffix(" %")

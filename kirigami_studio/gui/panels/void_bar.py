@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from PySide6.QtCore import QSignalBlocker, Qt, Signal
 from PySide6.QtGui import QKeyEvent, QResizeEvent
-from PySide6.QtWidgets import QDoubleSpinBox, QHBoxLayout, QMenu, QToolButton, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QMenu, QToolButton, QWidget
 
 from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.gui.designs.hand_pull import LARGEST, SMALLEST
 from kirigami_studio.gui.look import icons
 from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.panels.card import FittingLabel, tool_button
+from kirigami_studio.gui.panels.decimal_field import DecimalField
 from kirigami_studio.gui.panels.number_field import number_field
 from kirigami_studio.project.document import Void
 
@@ -28,7 +29,7 @@ class VoidBar(QWidget):
         self._voids: frozenset[Void] = frozenset()
         self._fitting = False
         self.says = FittingLabel()
-        self.ratio = QDoubleSpinBox()
+        self.ratio = DecimalField()
         self.ratio.setObjectName("voidRatio")
         self.ratio.setRange(SMALLEST, LARGEST)
         self.ratio.setDecimals(4)
