@@ -93,6 +93,8 @@ class Wiring(QObject):
         window.target.refine.size_wanted.connect(reshaping.resize)
         reshaping.edited.connect(controller.targeting.reshape)
         reshaping.edited.connect(lambda _: self._forget_slips())
+        controller.targeting.reading.failed.connect(self._note_unread)
+        controller.targeting.source_read.connect(lambda _: self._forget_slips())
         reshaping.refused.connect(self._refuse)
         reshaping.previewed.connect(window.target.view.show_preview)
         controller.document_changed.connect(self.lost.follow)
@@ -106,6 +108,10 @@ class Wiring(QObject):
         """A shape could not be made; the sentence is of use until one can."""
         self._slips.append(Message(str(error), Tone.ERROR))
         self.controller.refuse(error)
+
+    def _note_unread(self, sentence: str, trace: str) -> None:
+        """A file could not be read as a target; the sentence is of use until there is another one."""
+        self._slips.append(Message(sentence, Tone.ERROR, trace))
 
     def _forget_slips(self) -> None:
         for slip in self._slips:

@@ -34,7 +34,7 @@ def read_bytes(path: Path, most_megabytes: int = 20) -> bytes:
     except (OSError, ValueError) as error:
         raise TargetError(f"{path} cannot be read: {getattr(error, 'strerror', None) or error}.") from error
     if not content:
-        raise TargetError(f"{path} is empty; save the drawing again.")
+        raise TargetError(f"{path.name} is empty; save it again from the program that made it.")
     return content
 
 

@@ -16,7 +16,7 @@ from pytestqt.qtbot import QtBot
 
 from kirigami_studio.gui.application import open_first
 from kirigami_studio.gui.main_window import MainWindow
-from kirigami_studio.gui.messages import Tone
+from kirigami_studio.gui.messages import Message, Tone
 from kirigami_studio.target import silhouettes
 
 Until = Callable[[Callable[[], bool]], None]
@@ -133,6 +133,30 @@ def test_that_messages_are_kept_until_closed_and_tell_details_on_demand(
     assert "no such thing" in QApplication.clipboard().text()
     qtbot.mouseClick(bar.shut, LEFT)
     qtbot.mouseClick(bar.shut, LEFT)
+    assert bar.messages == () and not bar.isVisible()
+
+
+def test_that_a_target_that_is_read_ends_what_was_said_of_those_that_were_not(
+    heart: MainWindow, until: Until, tmp_path: Path
+) -> None:
+    bar = heart.messages
+    bar.add(Message("The disk is full; free some space.", Tone.ERROR))
+    (tmp_path / "nothing.svg").touch()
+    for count, name in enumerate(("no such thing", str(tmp_path / "nothing.svg")), 2):
+        heart.controller.targeting.open(name)
+        until(lambda count=count: len(bar.messages) == count)  # type: ignore[misc]
+    assert bar.sentence.text().startswith("nothing.svg is empty")
+    heart.controller.targeting.open("star")
+    until(lambda: len(bar.messages) == 1)
+    assert bar.sentence.text().startswith("The disk is full")
+
+
+def test_that_several_messages_are_closed_at_once(heart: MainWindow, qtbot: QtBot) -> None:
+    bar = heart.messages
+    bar.add(Message("The first did not succeed; try again.", Tone.ERROR))
+    assert bar.isVisible() and not bar.shut_all.isVisible()
+    bar.add(Message("The second did not succeed; try again.", Tone.WARNING))
+    qtbot.mouseClick(bar.shut_all, LEFT)
     assert bar.messages == () and not bar.isVisible()
 
 

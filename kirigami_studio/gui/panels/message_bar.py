@@ -51,6 +51,10 @@ class MessageBar(QFrame):
         self.position.setObjectName("muted")
         self.next = tool_button("nextMessage", tr("Later message."))
         self.shut = tool_button("closeMessage", tr("Close this message."))
+        self.shut_all = QPushButton(tr("Close all"))
+        self.shut_all.setObjectName("link")
+        self.shut_all.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+        self.shut_all.setToolTip(tr("Close all messages."))
         self.trace = QPlainTextEdit()
         self.trace.setReadOnly(True)
         self.trace.setAccessibleName(tr("Details of the message"))
@@ -62,6 +66,7 @@ class MessageBar(QFrame):
         self.previous.clicked.connect(lambda: self._go(self._at - 1))
         self.next.clicked.connect(lambda: self._go(self._at + 1))
         self.shut.clicked.connect(self.close_message)
+        self.shut_all.clicked.connect(lambda: self.dismiss(*Tone))
         self.hide()
 
     def _lay_out(self) -> None:
@@ -70,7 +75,7 @@ class MessageBar(QFrame):
         line.addWidget(self.icon, 0, Qt.AlignmentFlag.AlignVCenter)
         line.addWidget(self.sentence, 1)
         line.addLayout(self._actions)
-        for part in (self.details, self.previous, self.position, self.next, self.copy, self.shut):
+        for part in (self.details, self.previous, self.position, self.next, self.shut_all, self.copy, self.shut):
             line.addWidget(part, 0, Qt.AlignmentFlag.AlignVCenter)
         column = QVBoxLayout(self)
         column.setContentsMargins(12, 5, 6, 5)
@@ -135,7 +140,7 @@ class MessageBar(QFrame):
         self.details.setVisible(bool(message.details))
         self.details.setChecked(False)
         several = len(self._messages) > 1
-        for part in (self.previous, self.position, self.next):
+        for part in (self.previous, self.position, self.next, self.shut_all):
             part.setVisible(several)
         self.position.setText(tr("{at} of {count}", at=self._at + 1, count=len(self._messages)))
         self.previous.setEnabled(self._at > 0)
