@@ -166,6 +166,9 @@ def test_that_the_sheet_is_cut_at_the_drawn_size_in_one_step(designed: MainWindo
     designed.target.refine.width_.setValue(140.0)
     designed.target.set_editing(False)
     assert row.link.isEnabled() and "drawn 140 " in row.text.text()
+    row.text.resize(row.text.fontMetrics().horizontalAdvance(row.text.text()) - 1, row.text.height())
+    shorter = row.text.drawn_text()
+    assert shorter.startswith("Opens ") and shorter.endswith(" mm wide, drawn 140")
     entry = designed.controller.stage
     assert entry is not None
     qtbot.mouseClick(row.link, LEFT)

@@ -57,22 +57,32 @@ def tool_button(name: str, tip: str, checkable: bool = False) -> QToolButton:
 
 
 class ElidedLabel(QLabel):
-    """Small print on one line that ends in an ellipsis where the room ends; the tooltip has it whole."""
+    """Small print on one line, shorter or with an ellipsis where the room ends; the tooltip has it whole."""
 
     def __init__(self) -> None:
         super().__init__()
         self.setObjectName("muted")
         self.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
+        self._shorter: tuple[str, ...] = ()
 
-    def setText(self, text: str) -> None:  # noqa: N802 - Qt's name
+    def setText(self, text: str, *shorter: str) -> None:  # noqa: N802 - Qt's name
+        """Say a text, or the first of its ``shorter`` versions that the room is enough for."""
+        self._shorter = shorter
         super().setText(text)
         self.setToolTip(text)
+
+    def drawn_text(self) -> str:
+        """What is drawn in the room that there is."""
+        metrics, versions = self.fontMetrics(), (self.text(), *self._shorter)
+        fitting = next((text for text in versions if metrics.horizontalAdvance(text) <= self.width()), versions[-1])
+        return metrics.elidedText(fitting, Qt.TextElideMode.ElideMiddle, self.width())
 
     def paintEvent(self, event: QPaintEvent) -> None:  # noqa: N802 - Qt's name
         painter = QPainter(self)
         painter.setPen(self.palette().color(self.foregroundRole()))
-        text = self.fontMetrics().elidedText(self.text(), Qt.TextElideMode.ElideMiddle, self.width())
-        painter.drawText(self.rect(), int(Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignLeft), text)
+        painter.drawText(
+            self.rect(), int(Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignLeft), self.drawn_text()
+        )
         painter.end()
 
 

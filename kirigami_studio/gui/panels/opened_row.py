@@ -46,7 +46,10 @@ class OpenedRow(QWidget):
             self.text.setText(tr("Opens to {opened} mm, as drawn", opened=opened))
             tip = tr("The sheet's width fits the drawn size of the target.")
         else:
-            self.text.setText(tr("Opens to {opened}, drawn {drawn} mm", opened=opened, drawn=_sides(size.drawn)))
+            self.text.setText(
+                tr("Opens to {opened}, drawn {drawn} mm", opened=opened, drawn=_sides(size.drawn)),
+                tr("Opens {opened} mm wide, drawn {drawn}", opened=_side(size.opened[0]), drawn=_side(size.drawn[0])),
+            )
             tip = tr(
                 "Cut at the drawn size: make the flat sheet {width:.1f} mm wide, so that it opens to the size in mm "
                 "that the target was drawn with.",
@@ -61,5 +64,8 @@ class OpenedRow(QWidget):
 
 
 def _sides(size: tuple[float, float]) -> str:
-    width, height = (f"{side:.0f}" if side >= 100 else f"{side:.1f}" for side in size)
-    return f"{width} {TIMES} {height}"
+    return f"{_side(size[0])} {TIMES} {_side(size[1])}"
+
+
+def _side(side: float) -> str:
+    return f"{side:.0f}" if side >= 100 else f"{side:.1f}"
