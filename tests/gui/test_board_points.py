@@ -290,3 +290,21 @@ def test_that_the_axis_goes_through_the_middle_of_a_target_that_is_opened(plate:
     until(lambda: plate.controller.document.target is not None and plate.controller.document.target.name == "heart")
     ring = placed(plate).ring
     assert easel.mirror.at == pytest.approx(tuple(0.5 * (ring.min(axis=0) + ring.max(axis=0))))
+
+
+def test_that_the_axis_goes_through_the_middle_of_a_photo_that_is_opened_and_stays_at_other_thresholds(
+    plate: MainWindow, until: Until, photo: Path
+) -> None:
+    easel, targeting = plate.target.view.easel, plate.controller.targeting
+    plate.target.set_tool(Tool.POSE)
+    drag(plate, (0, 0), (25, 10), CTRL)
+    plate.target.strip.axis.set_axis(Axis.BOTH)
+    targeting.open(str(photo))
+    until(lambda: plate.target.threshold.isVisible())
+    ring = placed(plate).ring
+    middle = tuple(0.5 * (ring.min(axis=0) + ring.max(axis=0)))
+    assert easel.mirror.at == pytest.approx(middle)
+    before = plate.controller.document.target
+    targeting.change_threshold(0.3)
+    until(lambda: plate.controller.document.target is not before)
+    assert easel.mirror.at == pytest.approx(middle)

@@ -122,8 +122,10 @@ class TargetPanel(Card):
         elsewhere = outline is None or self.view.easel.recall(outline) is None
         if elsewhere:
             self.set_tool(Tool.LOOK)
+        under = self.view.underlay
+        retraced = picture is not None and under is not None and under.path == picture.path
         self.view.show_outline(outline, picture)
-        if elsewhere and picture is None:  # the axes go through the middle of what is drawn on
+        if elsewhere and not retraced:  # the axes go through the middle of what is drawn on
             self.view.easel.set_axis(self.view.easel.mirror.axis)
         self.strip.show_target(outline is not None)
         self.refine.show_placed(self.view.easel.placed)
