@@ -1,7 +1,8 @@
 """One session through the real window in a process of its own, with the user-interface thread watched at every step.
 
 ``python tests/watched_session.py FOLDER`` prints one JSON object: step -> [wall, own, held up] in seconds, the longest
-turn of the event loop in it.  ``--block SECONDS`` adds steps that are known to hold the thread up.
+turn of the event loop in it.  ``--block SECONDS`` plays only steps that are known to hold the thread up.  Another
+session with other steps is in ``watched_tools.py``.
 """
 
 from __future__ import annotations
@@ -66,6 +67,8 @@ class Places:
 class WatchedSession:
     """Plays the steps on one window."""
 
+    rest = 0.3  #: seconds that the window lives on after each step, still watched
+
     def __init__(self, folder: Path) -> None:
         self.places = Places(folder)
         self.window: MainWindow = create_window(LIGHT)
@@ -74,17 +77,26 @@ class WatchedSession:
         self.watch = ThreadWatch()
         self.longest: dict[str, tuple[float, float, float]] = {}
 
-    def play(self, block: float) -> None:
-        """Run every step, or with ``block`` only the two that hold the thread up for so many seconds."""
-        window, controller = self.window, self.window.controller
-        window.show()
-        self.until(window.isVisible)
-        if block:
-            self.step("computing in the handler of a timer", lambda: QTimer.singleShot(0, lambda: spin(block)))
-            self.step("another thread keeps the lock", lambda: in_another_thread(block))
-            return
+    @classmethod
+    def prepare(cls, folder: Path) -> None:
+        """Write the files that the session opens."""
+        write_project(folder / "large.kiri", MANY, LARGE)
+
+    def begin(self) -> None:
+        """Show the window."""
+        self.window.show()
+        self.until(self.window.isVisible)
+
+    def block(self, seconds: float) -> None:
+        """Two steps that hold the thread up for so long."""
+        self.step("computing in the handler of a timer", lambda: QTimer.singleShot(0, lambda: spin(seconds)))
+        self.step("another thread keeps the lock", lambda: in_another_thread(seconds))
+
+    def play(self) -> None:
+        """Run every step: from the target to the files, one after the other as one works."""
+        controller = self.window.controller
         self.step(
-            "choose a target", lambda: controller.targeting.open("heart"), lambda: window.run.generate.isEnabled()
+            "choose a target", lambda: controller.targeting.open("heart"), lambda: self.window.run.generate.isEnabled()
         )
         self.set_up(16, 0, search=False)
         self.step("generate 16, loading the generator", self.generate, self.generated)
@@ -126,7 +138,7 @@ class WatchedSession:
         self.watch.begin()
         QTimer.singleShot(0, self.window, carry_out)
         self.until(lambda: bool(acted) and (happened is bool or happened()))
-        self.let_live(0.3)
+        self.let_live(self.rest)
         turn = self.watch.end()
         self.longest[name] = (turn.wall, turn.own, turn.held_up)
 
@@ -195,28 +207,32 @@ def spin(seconds: float) -> None:
         pass
 
 
-def write_large_project(path: Path) -> None:
-    """64 designs of 24 x 24 voids; one score serves them all."""
+def write_project(path: Path, designs: int, grid: tuple[int, int]) -> None:
+    """So many designs of so many voids; one score serves them all."""
     target, draw = silhouettes.load("heart"), np.random.default_rng(3)
-    fields = [RatioField.from_log10(0.05 * draw.normal(size=LARGE)) for _ in range(MANY)]
+    fields = [RatioField.from_log10(0.05 * draw.normal(size=grid)) for _ in range(designs)]
     first = Candidate(fields[0], evaluate(deploy(fields[0]), target, 0.0), seed=3, index=0)
     many = tuple(replace(first, field=field, index=index) for index, field in enumerate(fields))
     start = edits.set_target(Document(), target).document
     store.save(edits.set_candidates(start, many, {}).document, path)
 
 
-def main() -> int:
+def main(kind: type[WatchedSession]) -> int:
     """Play and print."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("folder", type=Path)
     parser.add_argument("--block", type=float, default=0.0)
     chosen = parser.parse_args()
     if not chosen.block:
-        write_large_project(chosen.folder / "large.kiri")
+        kind.prepare(chosen.folder)
     create_application(["kirigami-studio"])
-    session = WatchedSession(chosen.folder)
+    session = kind(chosen.folder)
     try:
-        session.play(chosen.block)
+        session.begin()
+        if chosen.block:
+            session.block(chosen.block)
+        else:
+            session.play()
     finally:
         session.watch.close()
         window: QWidget = session.window
@@ -227,4 +243,4 @@ def main() -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(main(WatchedSession))
