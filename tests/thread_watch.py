@@ -8,8 +8,9 @@ time between two firings is one turn of the event loop.  A turn can be long for 
 3. the machine gave the processor to somebody else, to this thread's loss or to that of the thread that holds the lock.
 
 The first two are the program's doing and count as *held up*.  The third is the neighbours' and does not: Linux counts
-for every thread how long it was ready to run but did not (``schedstat``), and that is taken off.  Where there is no
-such count, all of the time is held up.  A turn is never held up for less than the thread computed in it.
+for every thread how long it was ready to run but did not (``schedstat``), and that is taken off: the watched thread's
+own loss, and of the time in which it slept the largest loss of another thread, for which it may have waited.  Where
+there is no such count, all of the time is held up.  A turn is never held up for less than the thread computed in it.
 """
 
 from __future__ import annotations
@@ -41,6 +42,7 @@ class ThreadWatch(QObject):
 
     def __init__(self) -> None:
         super().__init__()
+        self._thread = threading.get_native_id()
         self._files: dict[int, int] = {}
         self._recounted = 0.0
         self._worst = Turn()
@@ -72,8 +74,9 @@ class ThreadWatch(QObject):
     def _turn(self) -> None:
         (wall, own, waited), self._now = self._now, self._clocks()
         wall, own = self._now[0] - wall, self._now[1] - own
-        lost = max((delay - waited.get(thread, delay) for thread, delay in self._now[2].items()), default=0.0)
-        held_up = max(own, wall - lost)
+        losses = {thread: delay - waited.get(thread, delay) for thread, delay in self._now[2].items()}
+        slept = max(0.0, wall - own - losses.pop(self._thread, 0.0))
+        held_up = own + slept - min(slept, max(losses.values(), default=0.0))
         if held_up > self._worst.held_up:
             self._worst = Turn(wall, own, held_up)
 
