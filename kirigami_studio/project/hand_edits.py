@@ -11,15 +11,18 @@ from kirigami_studio.project.document import Document, Void
 from kirigami_studio.project.edits import Edit, with_candidate
 
 
-def take_changed(document: Document, before: Candidate, after: Candidate, gesture: str) -> Edit | None:
+def take_changed(
+    document: Document, before: Candidate, after: Candidate, gesture: str, merge_key: str | None = None
+) -> Edit | None:
     """Put a changed design in the place of the one it came from; which design is chosen stays as it is.
 
-    None when the document does not hold the design any more: it was replaced while the change was being scored.
+    Gestures of one ``merge_key`` that follow one another undo together.  None when the document does not hold the
+    design any more: it was replaced while the change was being scored.
     """
     if before not in document.candidates:
         return None
     candidates = with_candidate(document, document.candidates.index(before), after)
-    return Edit(gesture, replace(document, candidates=candidates))
+    return Edit(gesture, replace(document, candidates=candidates), merge_key)
 
 
 def lock_voids(document: Document, voids: Iterable[Void], on: bool) -> Edit:

@@ -288,5 +288,6 @@ def test_that_a_follower_stops_when_asked_and_after_letting_go_when_its_time_is_
     assert list(steps) == [] and follower.waiting
     monkeypatch.setattr(drag_steps, "LAST_WAY", 0.0)
     follower.let_go()
-    (last,) = follower.steps(lambda: False)
-    assert last.stuck and not last.arrived and not follower.waiting
+    found = list(follower.steps(lambda: False))
+    assert [one.stuck for one in found] == [False] * (drag_steps.LAST_STEPS - 1) + [True]
+    assert not found[-1].arrived and not follower.waiting

@@ -27,8 +27,11 @@ from pytestqt.qtbot import QtBot
 
 from kirigami_studio.evaluate.candidate import Origin
 from kirigami_studio.evaluate.score import evaluate
+from kirigami_studio.gui.designs import hand_editing
+from kirigami_studio.gui.designs.hand_editing import JOINS_WITHIN
 from kirigami_studio.gui.main_window import MainWindow
 from kirigami_studio.lattice.deployment import deploy
+from kirigami_studio.project.edits import Edit
 
 
 def test_that_pointing_at_a_void_tells_its_facts_even_outside_the_mode(designed: MainWindow) -> None:
@@ -80,6 +83,58 @@ def test_that_the_wheel_over_a_void_changes_its_ratio_in_one_undo_step(by_hand: 
     assert chosen(by_hand) == before
     by_hand.actions_["redo"].trigger()
     assert chosen(by_hand) == after
+
+
+def test_that_notches_on_one_void_that_follow_soon_are_one_step_though_each_is_scored(
+    by_hand: MainWindow, until: Until, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert JOINS_WITHIN == 1.0
+    monkeypatch.setattr(hand_editing, "JOINS_WITHIN", 60.0)  # a slow machine is no pause of the hand
+    view, history, before = by_hand.stage.view, by_hand.controller.history, chosen(by_hand)
+    for notches in (1, 1, -3):
+        turn(view, middle_of(view, (1, 2)), notches)
+        settle(by_hand, until)
+        assert history.steps == ("Change ratio of void (1, 2)",)
+    assert ratio(by_hand, (1, 2)) == pytest.approx(before.field.ratio[1, 2] / 1.05, rel=2e-3)
+    turn(view, middle_of(view, (2, 2)), 1)
+    settle(by_hand, until)
+    turn(view, middle_of(view, (1, 2)), 1)
+    settle(by_hand, until)
+    labels = ("Change ratio of void (1, 2)", "Change ratio of void (2, 2)", "Change ratio of void (1, 2)")
+    assert history.steps == labels
+    history.go_to(0)
+    assert history.document.candidate == before
+
+
+def test_that_a_notch_after_a_pause_or_after_undo_is_a_step_of_its_own(
+    by_hand: MainWindow, until: Until, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    view, history = by_hand.stage.view, by_hand.controller.history
+    monkeypatch.setattr(hand_editing, "JOINS_WITHIN", 0.0)
+    for _ in range(2):
+        turn(view, middle_of(view, (1, 2)), 1)
+        settle(by_hand, until)
+    assert len(history.steps) == 2
+    monkeypatch.setattr(hand_editing, "JOINS_WITHIN", 60.0)
+    by_hand.actions_["undo"].trigger()
+    turn(view, middle_of(view, (1, 2)), -1)
+    settle(by_hand, until)
+    assert len(history.steps) == 2 and history.position == 2
+
+
+def test_that_notches_that_wait_for_one_score_are_scored_once(
+    by_hand: MainWindow, until: Until, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(hand_editing, "JOINS_WITHIN", 60.0)
+    view, hand, before = by_hand.stage.view, by_hand.controller.hand, ratio(by_hand, (1, 2))
+    taken: list[Edit] = []
+    hand.edited.connect(taken.append)
+    for _ in range(4):
+        turn(view, middle_of(view, (1, 2)), 1)
+        hand.commit()
+    settle(by_hand, until)
+    assert len(taken) == 2 and len(by_hand.controller.history.steps) == 1  # the first was being scored already
+    assert ratio(by_hand, (1, 2)) == pytest.approx(1.05**4 * before, rel=2e-3)
 
 
 def test_that_shift_makes_the_wheel_fine_and_the_bounds_hold(by_hand: MainWindow, until: Until) -> None:

@@ -11,6 +11,7 @@ the hand has let go: what the hand does next is carried out when it has arrived.
 from __future__ import annotations
 
 import math
+import time
 from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -21,8 +22,9 @@ import numpy as np
 from PySide6.QtCore import QObject, QTimer, Signal
 
 from kirigami_studio.evaluate.candidate import Candidate
-from kirigami_studio.foundation.words import tr, tr_n
+from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.designs.hand_pull import LARGEST, SMALLEST, Pull
+from kirigami_studio.gui.designs.hand_words import locked_sentence, ratio_label, score_sentence
 from kirigami_studio.gui.designs.outline_drag import OutlineDrag
 from kirigami_studio.gui.designs.shelf import Shelf
 from kirigami_studio.gui.jobs import hand_steps
@@ -37,6 +39,8 @@ from kirigami_studio.project.document import Document, Void
 
 #: Milliseconds after the last notch of the wheel, or the last press of a key, that end the gesture.
 PAUSE_MS = 250
+#: Seconds after a notch, or a press, within which the next one on the same voids joins its undo step, scored or not.
+JOINS_WITHIN = 1.0
 
 
 P = ParamSpec("P")
@@ -60,6 +64,7 @@ class _Gesture:
 
     field: RatioField
     label: str
+    merge_key: str | None
 
 
 class HandEditing(QObject):
@@ -78,6 +83,9 @@ class HandEditing(QObject):
         self._field: RatioField | None = None  # as it is seen
         self._last: RatioField | None = None  # as the last complete gesture left it
         self._open: str | None = None  # label of the gesture under way
+        self._turned: tuple[tuple[Void, ...], float] = ((), -math.inf)  # what the wheel or a key changed last, and when
+        self._turns = 0
+        self._key: str | None = None  # merges the gesture under way with the one before it
         self._waiting: deque[_Gesture] = deque()
         self._job: int | None = None
         self._wishes: list[Callable[[], object]] = []
@@ -137,11 +145,19 @@ class HandEditing(QObject):
 
     @_in_turn
     def nudge(self, voids: frozenset[Void], step: float) -> None:
-        """Change the log10 of ratios by ``step``."""
+        """Change the log10 of ratios by ``step``; steps that follow one another soon undo together."""
         free = self._free(voids)
         if free and self.field is not None:
-            self._change({void: float(self.field.ratio[void]) * math.pow(10.0, step) for void in free})
+            self._turns += not self._goes_on(tuple(free))
+            key = f"turn {self._turns}"
+            self._change({void: float(self.field.ratio[void]) * math.pow(10.0, step) for void in free}, key)
             self._pause.start()
+
+    def _goes_on(self, voids: tuple[Void, ...]) -> bool:
+        """Whether a notch on these voids continues the one before it."""
+        (before, when), now = self._turned, time.monotonic()
+        self._turned = voids, now
+        return voids == before and now - when <= JOINS_WITHIN
 
     @_in_turn
     def set_ratio(self, voids: frozenset[Void], ratio: float) -> None:
@@ -172,15 +188,10 @@ class HandEditing(QObject):
             return []
         free = sorted(voids - document.locked)
         if not free:
-            told = tr_n(
-                "{count} void is locked. Unlock it (L) to change its ratio.",
-                "{count} voids are locked. Unlock them (L) to change their ratios.",
-                len(voids),
-            )
-            self.status.emit(told)
+            self.status.emit(locked_sentence(len(voids)))
         return free
 
-    def _change(self, wanted: dict[Void, float]) -> None:
+    def _change(self, wanted: dict[Void, float], merge_key: str | None = None) -> None:
         """Give voids new ratios within the bounds; one that lay beyond them before may stay there."""
         field = self.field
         if field is None:
@@ -189,8 +200,8 @@ class HandEditing(QObject):
         for void, ratio in wanted.items():
             table[void] = min(max(ratio, min(SMALLEST, table[void])), max(LARGEST, table[void]))
         first = min(wanted)
-        label = _label(first, len(wanted))
-        self._draft(RatioField(table), label)
+        label = ratio_label(first, len(wanted))
+        self._draft(RatioField(table), label, merge_key)
         self.status.emit(tr("{gesture}: x {ratio:.3f}", gesture=label, ratio=float(table[first])))
 
     def lock(self, voids: frozenset[Void], on: bool) -> None:
@@ -218,6 +229,7 @@ class HandEditing(QObject):
             held[void] = True
         self._grasped = document.candidate
         self._outline.begin(Grasp(design, phi, vertex, held))
+        self.status.emit(tr("Working out how the outline can move …"))
 
     @_in_turn
     def move_vertex(self, place: tuple[float, float]) -> None:
@@ -279,7 +291,7 @@ class HandEditing(QObject):
 
     # drafts and edits ----------------------------------------------------------------------------------------------
 
-    def _draft(self, field: RatioField, label: str) -> None:
+    def _draft(self, field: RatioField, label: str, merge_key: str | None = None) -> None:
         candidate = self._document().candidate
         if candidate is None or field == self.field:
             return
@@ -287,6 +299,8 @@ class HandEditing(QObject):
             self.commit()
         if self._base is None:
             self._base, self._last = candidate, finished_field(candidate)
+        if self._open is None:
+            self._key = merge_key
         self._field, self._open = field, label
         self._show_draft()
 
@@ -316,9 +330,11 @@ class HandEditing(QObject):
         self._put_down()
         if self._open is None or self._field is None:
             return
-        gesture, self._open = _Gesture(self._field, self._open), None
+        gesture, self._open = _Gesture(self._field, self._open, self._key), None
         if gesture.field != self._last:
             self._last = gesture.field
+            if gesture.merge_key is not None and self._waiting and self._waiting[-1].merge_key == gesture.merge_key:
+                self._waiting.pop()  # it would be one step with this one
             self._waiting.append(gesture)
             self._score_next()
         elif self._job is None:  # back where it began
@@ -338,30 +354,19 @@ class HandEditing(QObject):
         before = self._base
         if not isinstance(report, Decoded) or before is None:
             return
-        edit = hand_edits.take_changed(self._document(), before, report.candidate, gesture.label)
+        edit = hand_edits.take_changed(self._document(), before, report.candidate, gesture.label, gesture.merge_key)
         if edit is None:
             self._restore()
             return
         self._shelf.put(report.candidate, report.deployment)
         self._base = self._grasped = report.candidate
         self.edited.emit(edit)
-        self._tell_score(gesture, before, report.candidate)
+        self.status.emit(score_sentence(gesture.label, before, report.candidate))
         if self._waiting or self._open is not None:
             self._show_draft()
             self._score_next()
         else:
             self._over()
-
-    def _tell_score(self, gesture: _Gesture, before: Candidate, after: Candidate) -> None:
-        gain = 100.0 * (after.score.siou - before.score.siou)
-        told = tr(
-            "{gesture}: sIoU {siou:.1f} % ({gain:+.2f}).", gesture=gesture.label, siou=100 * after.score.siou, gain=gain
-        )
-        if not after.score.feasible:
-            told = tr("{told} The design is not feasible now.", told=told)
-        if before.trim is not None:
-            told = tr("{told} Its trim is off; trim it again when you are done.", told=told)
-        self.status.emit(told)
 
     def _fail(self, sentence: str, trace: str) -> None:
         self._restore()
@@ -386,11 +391,3 @@ class HandEditing(QObject):
         self.settled.emit()
         for wish in wishes:
             wish()
-
-
-def _label(void: Void, count: int) -> str:
-    """How a change of ``count`` ratios is named; ``void`` is the only one, or one of them."""
-    if count > 1:
-        return tr_n("Change ratio of {count} void", "Change ratio of {count} voids", count)
-    row, column = void
-    return tr("Change ratio of void ({row}, {column})", row=row, column=column)

@@ -5,6 +5,9 @@ or a trim is one step that may last seconds, and the vertex would stand still so
 window's thread when they are cheap: the first step of a drag never is, because it needs a derivative.  The thread is
 made at the first drag and ends with the window.
 
+No sheet is too large.  Processor seconds until the first answer, of which half is spent once for each kind of grid, and
+for each step after it: 0.13 and 0.004 at 24 x 24 voids, 0.85 and 0.014 at 40 x 40, 5.5 and 0.03 at 64 x 64.
+
 While a step is being taken, only the newest place is kept; what it has made is shown when it is finished, and only the
 newest where there are several.  When the hand has let go, steps go on until the last place is reached; then the drag
 has ended.

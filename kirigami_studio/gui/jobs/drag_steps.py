@@ -6,7 +6,6 @@ replaced as a whole, and so is the newest result.  Places that were replaced bef
 
 from __future__ import annotations
 
-import math
 import time
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -21,8 +20,8 @@ if TYPE_CHECKING:
 
 #: Most steps towards one place: two or three bring a vertex one cell further; at the edge of its reach they are short.
 MOST_STEPS = 100
-#: Seconds that the vertex is given to arrive after the hand has let go.
-LAST_WAY = 1.5
+#: Processor seconds that the vertex is given to arrive after the hand has let go, and steps it gets in any case.
+LAST_WAY, LAST_STEPS = 1.0, 4
 #: A step that brings the vertex less than this (unit cells) nearer has not helped.
 NEARER = 1e-3
 #: Steps in a row that do not help before the vertex is as near as it gets: the second has a new derivative.
@@ -83,7 +82,7 @@ class Follower:
         self._drag: VertexDrag | None = None
         self._wanted: tuple[int, tuple[float, float]] = (0, (0.0, 0.0))
         self._served = 0
-        self._end = math.inf
+        self._last, self._spent = False, 0.0
         self.newest: Followed | None = None
 
     def want(self, place: tuple[float, float]) -> None:
@@ -92,7 +91,7 @@ class Follower:
 
     def let_go(self) -> None:
         """The place that is wanted now is the last; the vertex goes there, or as far as it gets in the time it has."""
-        self._end = time.monotonic() + LAST_WAY
+        self._last = True
 
     @property
     def waiting(self) -> bool:
@@ -106,9 +105,11 @@ class Follower:
             newest, place = self._wanted
             if newest != number:
                 number, taken, in_vain = newest, 0, 0
+            last, began = self._last, time.thread_time()
             found, gain = self._step(place)
+            self._spent += last * (time.thread_time() - began)
             taken, in_vain = taken + 1, 0 if gain >= NEARER else in_vain + 1
-            late = time.monotonic() > self._end
+            late = self._spent >= LAST_WAY and last and taken >= LAST_STEPS
             stuck = not found.arrived and (in_vain == IN_VAIN or taken == MOST_STEPS or late)
             if found.arrived or stuck:
                 self._served = number
