@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
+from PIL import Image
 from PySide6.QtCore import Qt
 from pytestqt.qtbot import QtBot
 
 from kirigami_studio.evaluate.candidate import Candidate, Origin
+from kirigami_studio.generator.weights import digest_of
 from kirigami_studio.gui.designs.collecting import next_seed
 from kirigami_studio.gui.designs.selecting import Order
 from kirigami_studio.gui.jobs.adding_steps import adding
@@ -128,6 +131,39 @@ def test_that_again_draws_on_the_designs_own_grid_with_the_chosen_model(drawn: M
     assert after.provenance["model"] == "balanced; prior"
     tips = [str(drawn.gallery.view.model_.index(row, 0).data(Qt.ItemDataRole.ToolTipRole)) for row in range(6)]
     assert sum("model prior" in tip for tip in tips) == 3
+
+
+@pytest.mark.torch
+def test_that_exports_tell_the_settings_of_the_designs_own_run(drawn: MainWindow, until: Until, tmp_path: Path) -> None:
+    controller = drawn.controller
+    for changes in ({"polish": 1}, {"k": 2}, {"prefer": "calm"}, {"variant": "prior"}):
+        controller.change_settings(**changes)
+    drawn.actions_["again"].trigger()
+    until(lambda: not controller.running)
+    assert controller.document.provenance["k"] == "3; 2"
+    told = {0: {"POLISH": "0", "K": "3", "MODEL": "balanced"}, 1: {"POLISH": "1", "K": "2", "MODEL": "prior"}}
+
+    def check(name: str) -> None:
+        for one in controller.document.candidates:
+            controller.choose(one)
+            until(lambda: drawn.fabrication.export.isEnabled())
+            path = tmp_path / f"{name}-{one.seed}-{one.index}.png"
+            controller.export(path)
+            until(path.exists)
+            with Image.open(path) as read:
+                facts = {key.removeprefix("FROM_"): text for key, text in read.text.items()}  # type: ignore[attr-defined]
+            assert {key: facts[key] for key in told[one.seed]} == told[one.seed]
+            assert facts.get("PREFER") == (None if one.seed == 0 else "calm")
+            digest = digest_of(told[one.seed]["MODEL"])
+            assert facts["MODEL_SHA256"] == digest
+
+    check("drawn")
+    controller.save(tmp_path / "two-runs.kiri")
+    until(lambda: not controller.history.unsaved)
+    drawn.actions_["new"].trigger()
+    controller.open_project(tmp_path / "two-runs.kiri")
+    until(lambda: len(controller.document.candidates) == 5 and controller.stage is not None)
+    check("opened")
 
 
 @pytest.mark.torch

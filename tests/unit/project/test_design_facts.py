@@ -52,7 +52,7 @@ def test_that_only_a_design_drawn_near_another_one_names_that_one(document: Docu
 
 def test_that_designs_of_several_runs_tell_the_settings_of_their_own(document: Document) -> None:
     first = {"model": "prior", "model_sha256": "aa", "k": "3", "polish": "0", "steps": "8"}
-    second = {"model": "balanced", "model_sha256": "bb", "k": "8", "polish": "3", "steps": "4", "prefer": "regular"}
+    second = {"model": "balanced", "model_sha256": "bb", "k": "8", "polish": "3", "steps": "4", "prefer": "calm"}
     start = replace(document, provenance=first, marks=())
     best = start.candidates[0]
     new = replace(best, field=RatioField(best.field.ratio * 1.01), seed=77, variant="balanced")
@@ -69,7 +69,7 @@ def test_that_designs_of_several_runs_tell_the_settings_of_their_own(document: D
 
 
 def test_that_changed_and_pinned_designs_keep_the_settings_of_their_run(document: Document) -> None:
-    first, second = {"model": "prior", "polish": "0"}, {"model": "balanced", "polish": "3", "prefer": "regular"}
+    first, second = {"model": "prior", "polish": "0"}, {"model": "balanced", "polish": "3", "prefer": "calm"}
     best = document.candidates[0]
     start = replace(document, provenance=first, marks=(Mark.PINNED, Mark.NONE, Mark.NONE))
     new = replace(best, field=RatioField(best.field.ratio * 1.01), seed=77)
@@ -80,4 +80,4 @@ def test_that_changed_and_pinned_designs_keep_the_settings_of_their_run(document
     assert changed is not None and design_facts(changed.document, edited)["polish"] == "0"
     place = changed.document.candidates.index(new)
     trimmed = replace_candidate(changed.document, place, replace(new, polished=True), "Fit again").document
-    assert design_facts(trimmed, trimmed.candidates[place])["prefer"] == "regular"
+    assert design_facts(trimmed, trimmed.candidates[place])["prefer"] == "calm"
