@@ -95,6 +95,17 @@ def test_that_nothing_is_read_while_the_plots_are_closed(designed: MainWindow, u
     assert not stage.plots.complete
 
 
+def test_that_charts_are_made_one_in_each_turn_and_then_drawn(designed: MainWindow, until: Until) -> None:
+    plots, made = designed.stage.plots, []
+    plots._turn.timeout.connect(lambda: made.append(len(plots.charts)))
+    designed.resize(1440, 1000)
+    designed.actions_["plots"].trigger()
+    until(lambda: plots.complete)
+    assert made[:4] == [1, 2, 3, 4] and set(made[4:]) == {4}
+    for chart in plots.charts:
+        assert len(chart.curves[0].getData()[0]) >= ANGLES and chart.nearest is not None
+
+
 def test_that_another_design_gets_curves_of_its_own_and_old_ones_are_kept(plotted: MainWindow, until: Until) -> None:
     stage, first = plotted.stage, plotted.stage.plots.charts[0].curves[0].getData()[1].copy()
     plotted.actions_["next"].trigger()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gc
+import os
 import subprocess
 import sys
 import weakref
@@ -88,3 +89,15 @@ print(sorted(set(sys.modules) - before))
 def test_that_a_run_imports_nothing_after_the_generator_was_imported() -> None:
     done = subprocess.run([sys.executable, "-c", IMPORTED], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "[]"
+
+
+def test_that_collections_leave_out_what_the_start_has_made() -> None:
+    script = (
+        "import gc; from kirigami_studio.gui.application import create_application, create_window;"
+        "create_application(['kirigami-studio']); before = gc.get_freeze_count(); window = create_window();"
+        "print(before, gc.get_freeze_count(), len(gc.get_objects())); window.close()"
+    )
+    environment = os.environ | {"QT_QPA_PLATFORM": "offscreen"}
+    done = subprocess.run([sys.executable, "-c", script], env=environment, capture_output=True, text=True, check=True)
+    before, frozen, looked_at = map(int, done.stdout.split())
+    assert before == 0 and frozen > 50 * looked_at

@@ -20,7 +20,7 @@ from kirigami_studio.gui.jobs.steps import Order, export_job, planned
 from kirigami_studio.gui.jobs.worker import Cancel
 
 #: Pixels that are painted at a time; each band costs the whole recording again, less what lies outside it.
-BAND = 2_000_000
+BAND = 1_000_000
 
 
 @dataclass(frozen=True, slots=True, eq=False)
