@@ -11,7 +11,7 @@ from PySide6.QtGui import QColor, QImage
 from PySide6.QtWidgets import QApplication
 
 from kirigami_studio.gui.actions import COMMANDS
-from kirigami_studio.gui.look import icons
+from kirigami_studio.gui.look import icons, theme
 from kirigami_studio.gui.look.theme import DARK, LIGHT, PALETTES, Palette, style_sheet
 from kirigami_studio.gui.scene.fault_items import FaultKind, contact_place, faults, inverted_panels
 from kirigami_studio.gui.scene.frame import Bounds, Frame
@@ -127,3 +127,14 @@ def test_that_every_command_has_its_icon_and_a_key_of_its_own(qapp: QApplication
         if command.icon:
             assert not icons.pixmap(command.icon, "#123456", 24).isNull()
     assert all("$" not in style_sheet(palette) for palette in PALETTES.values())
+
+
+def test_that_another_palette_dresses_the_widgets_once(qapp: QApplication, monkeypatch: pytest.MonkeyPatch) -> None:
+    calls: list[object] = []
+    theme.apply(qapp, LIGHT)
+    monkeypatch.setattr(QApplication, "setStyle", lambda *arguments: calls.append(arguments))
+    for palette in (DARK, LIGHT):
+        theme.apply(qapp, palette)
+        assert qapp.palette().window().color() == QColor(palette.window)
+        assert qapp.styleSheet() == style_sheet(palette)
+    assert not calls

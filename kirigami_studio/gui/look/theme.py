@@ -165,7 +165,9 @@ def style_sheet(palette: Palette) -> str:
 
 def apply(application: QApplication, palette: Palette) -> None:
     """Dress the whole application in one palette."""
-    if application.style().objectName() != "fusion":  # a style sheet wraps it; setting it again costs as much as that
+    # A style sheet that is on was put on below, over this very style, whose name it hides; to set the style again would
+    # dress every widget once more.
+    if not application.styleSheet() and application.style().objectName() != "fusion":
         application.setStyle("Fusion")
     application.setPalette(_qt_palette(palette))
     application.setStyleSheet(style_sheet(palette))
