@@ -22,6 +22,7 @@ from kirigami_studio.evaluate.trimming import KEEP, Trim, check_keep, trim
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.lattice.ratio_field import FloatArray, RatioField
+from kirigami_studio.lattice.topology import BoolArray
 from kirigami_studio.polish.levenberg import Fit, check_fit, polish
 from kirigami_studio.target.outline import Outline
 
@@ -61,6 +62,7 @@ def fit_cover(
     pose: Similarity | None = None,
     keep: float = KEEP,
     cancel: Callable[[], bool] = lambda: False,
+    held: BoolArray | None = None,
 ) -> Cover:
     """Fit a polished field so that its trimmed silhouette matches best.
 
@@ -77,11 +79,13 @@ def fit_cover(
         See :func:`trim`.
     cancel : callable
         Asked before every step; the best so far is returned.
+    held : (m, n) bool, optional
+        Voids whose ratio stays exactly as it is.
 
     Raises
     ------
     AngleError, UsageError
-        An angle, a number of steps or a depth that makes no sense.
+        An angle, a number of steps, a depth or a table of held voids that makes no sense.
     KirigamiError
         The field's outline crosses itself.
     """
@@ -89,7 +93,9 @@ def fit_cover(
     deployment = deploy(field)
     pose = pose or align(deployment.outline(phi), target.points)
     best = _trimmed(Fit(field, pose, 0.0, 0, 0), target, phi, keep, cancel)
-    fit = polish(field, target, phi, steps, pose=_grown(pose, GROWN), cancel=cancel, trust=TRUST, excess=EXCESS)
+    fit = polish(
+        field, target, phi, steps, pose=_grown(pose, GROWN), cancel=cancel, trust=TRUST, excess=EXCESS, held=held
+    )
     if fit.steps and path_contact(deploy(fit.field), phi) is None and not cancel():
         other = _trimmed(fit, target, phi, keep, cancel)
         if other.trim.iou > best.trim.iou:

@@ -25,6 +25,12 @@ def take_changed(
     return Edit(gesture, replace(document, candidates=candidates), merge_key)
 
 
+def moves_locked(document: Document, before: Candidate, after: Candidate) -> bool:
+    """Whether a change gives another ratio to a void that is locked now, by the ratios that are shown and cut."""
+    shown = [one.field if one.trim is None else one.trim.field for one in (before, after)]
+    return any(shown[0].ratio[void] != shown[1].ratio[void] for void in document.locked)
+
+
 def lock_voids(document: Document, voids: Iterable[Void], on: bool) -> Edit:
     """Lock voids against changes by hand, or unlock them.
 

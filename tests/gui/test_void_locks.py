@@ -227,6 +227,60 @@ def test_that_a_fit_that_is_out_of_date_says_so_instead_of_doing_nothing(by_hand
     assert controller.document == before and "has changed since" in by_hand.says.text()
 
 
+def test_that_a_fit_is_not_taken_when_voids_were_locked_since(by_hand: MainWindow, until: Until) -> None:
+    controller, messages = by_hand.controller, by_hand.messages
+    fit_in_vain(by_hand, until)
+    ((_, act),) = messages.messages[-1].actions
+    controller.hand.lock(frozenset({(1, 1)}), True)  # the one that the fit has moved
+    before = controller.document
+    act()
+    assert controller.document is before and "Voids were locked since that fit" in by_hand.says.text()
+    controller.hand.lock(frozenset({(1, 1), (2, 2)}), False)  # fewer locks than the fit has held
+    act()
+    assert chosen(by_hand).polished and controller.history.undo_label == "Fit design 1"
+    assert by_hand.says.text().startswith("Taken: sIoU ")
+
+
+def test_that_a_void_that_is_locked_during_a_fit_keeps_its_ratio(by_hand: MainWindow, until: Until) -> None:
+    controller, before = by_hand.controller, chosen(by_hand)
+    by_hand.actions_["refit"].trigger()
+    controller.hand.lock(frozenset({(1, 1)}), True)
+    until(lambda: not controller.refitting.busy)
+    assert chosen(by_hand) == before and "Voids were locked since that fit" in by_hand.says.text()
+
+
+def test_that_fit_again_trims_a_trimmed_design_again_with_what_is_locked_as_it_is_seen(
+    by_hand: MainWindow, until: Until
+) -> None:
+    controller = by_hand.controller
+    by_hand.actions_["trim"].trigger()
+    until(lambda: chosen(by_hand).trim is not None)
+    before = chosen(by_hand)
+    lock(by_hand, (0, 0), (2, 2))
+    by_hand.actions_["refit"].trigger()
+    until(lambda: not controller.refitting.busy)
+    after = chosen(by_hand)
+    assert before.trim is not None and after.trim is not None and after.field != before.field
+    assert after.score.siou > before.score.siou
+    for void in ((0, 0), (2, 2)):
+        assert after.trim.field.ratio[void] == before.trim.field.ratio[void] == after.field.ratio[void]
+    assert f"Trimmed again: IoU {100 * after.trim.iou:.1f} %" in by_hand.says.text()
+    assert by_hand.stage.view.design is not None and by_hand.stage.view.design.trim == after.trim
+    by_hand.actions_["undo"].trigger()
+    assert chosen(by_hand) == before
+
+
+def test_that_a_trim_that_cannot_be_made_again_is_said_to_be_off(by_hand: MainWindow, until: Until) -> None:
+    controller = by_hand.controller
+    by_hand.actions_["trim"].trigger()
+    until(lambda: chosen(by_hand).trim is not None)
+    controller.change_fabrication(width_mm=12.0, connector_mm=1.2)
+    by_hand.actions_["refit"].trigger()
+    until(lambda: not controller.refitting.busy)
+    assert chosen(by_hand).trim is None and chosen(by_hand).polished
+    assert "Its trim is off: Connectors of 1.2 mm leave nothing to trim" in by_hand.says.text()
+
+
 def test_that_no_ratio_is_shown_while_no_void_is_selected(by_hand: MainWindow) -> None:
     bar, gestures = by_hand.stage.voids, by_hand.stage.view.voids
     gestures.select(frozenset())

@@ -27,7 +27,8 @@ class Refitting(OneDesign):
         if len(document.locked) == candidate.field.ratio.size:
             self.message.emit(Message(tr("Every void is locked; unlock those that the fit may change."), Tone.HINT))
             return
-        work = partial(hand_steps.refitting, candidate, target, document.settings.prefer, document.locked)
+        prefer, locked, cuts = document.settings.prefer, document.locked, document.fabrication
+        work = partial(hand_steps.refitting, candidate, target, prefer, locked, cuts)
         self.begin(tr("fitting the design"), candidate, work)
         self.status.emit(tr("Fitting {design} … Esc stops.", design=self.name()))
 
@@ -38,19 +39,28 @@ class Refitting(OneDesign):
         after = report.decoded.candidate
         numbers = {"before": 100 * before.score.siou, "after": 100 * after.score.siou}
         if report.better:
-            self._replace(before, report)
-            self.status.emit(tr("Fitted again: sIoU {before:.1f} % is now {after:.1f} %.", **numbers))
+            self._replace(before, report, tr("Fitted again: sIoU {before:.1f} % is now {after:.1f} %.", **numbers))
         else:
             told = tr("The fit found nothing better: sIoU {after:.2f} % after {before:.2f} %.", **numbers)
-            actions = ((tr("Take it anyway"), partial(self._replace, before, report)),)
+            taken = tr("Taken: sIoU {after:.2f} % after {before:.2f} %.", **numbers)
+            actions = ((tr("Take it anyway"), partial(self._replace, before, report, taken)),)
             self.message.emit(Message(told, Tone.HINT, actions=actions))
             self.status.emit(tr("Fitted; the design stays as it was."))
 
-    def _replace(self, before: Candidate, report: hand_steps.Refitted) -> None:
+    def _replace(self, before: Candidate, report: hand_steps.Refitted, told: str) -> None:
+        """Propose the edit and tell of it, unless the design or its locks have changed since the fit began."""
         after, label = report.decoded.candidate, tr("Fit {design}", design=self.name())
         edit = hand_edits.take_changed(self._document(), before, after, label)
         if edit is None:
             self.status.emit(tr("The design has changed since that fit; press Fit again (Ctrl+F)."))
             return
+        if hand_edits.moves_locked(self._document(), before, after):
+            self.status.emit(tr("Voids were locked since that fit; press Fit again (Ctrl+F)."))
+            return
         self._shelf.put(after, report.decoded.deployment)
         self.edited.emit(edit)
+        if after.trim is not None:
+            told = tr("{told} Trimmed again: IoU {iou:.1f} %.", told=told, iou=100 * after.trim.iou)
+        elif report.untrimmed:
+            told = tr("{told} Its trim is off: {reason}", told=told, reason=report.untrimmed)
+        self.status.emit(told)

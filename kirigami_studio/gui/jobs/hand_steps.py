@@ -8,13 +8,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from kirigami_studio.evaluate.candidate import Candidate, Origin
-from kirigami_studio.foundation.errors import Cancelled
+from kirigami_studio.foundation.errors import Cancelled, KirigamiError
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui.jobs.steps import Decoded
+from kirigami_studio.gui.jobs.steps import Decoded, finished_field, trimming
 from kirigami_studio.gui.jobs.worker import Cancel
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.project.document import Void
+from kirigami_studio.project.settings import FabricationSettings
 from kirigami_studio.target.outline import Outline
 
 #: Accepted steps of one fit that a person asks for; most end before that because nothing more is gained.
@@ -28,13 +29,16 @@ class Refitted:
     Attributes
     ----------
     decoded : Decoded
-        The fitted design with its motion.
+        The fitted design with its motion, trimmed if the one it began with was.
     better : bool
-        Whether it ranks before the one it began with.
+        Whether it ranks before the one it began with, both untrimmed.
+    untrimmed : str
+        Why it could not be trimmed again, "" if that was not to be done or was.
     """
 
     decoded: Decoded
     better: bool
+    untrimmed: str = ""
 
 
 def scoring(candidate: Candidate, field: RatioField, target: Outline, cancel: Cancel) -> Iterator[Decoded]:
@@ -51,34 +55,45 @@ def scoring(candidate: Candidate, field: RatioField, target: Outline, cancel: Ca
 
 
 def refitting(
-    candidate: Candidate, target: Outline, prefer: str, locked: frozenset[Void], cancel: Cancel
+    candidate: Candidate,
+    target: Outline,
+    prefer: str,
+    locked: frozenset[Void],
+    settings: FabricationSettings,
+    cancel: Cancel,
 ) -> Iterator[Refitted]:
-    """Fit a candidate on the exact geometry from its present field; locked voids keep their ratios."""
+    """Fit a candidate on the exact geometry from its present field; locked voids keep the ratios that are seen.
+
+    A candidate that is trimmed is trimmed again.
+    """
     from kirigami_studio.evaluate.staying import evaluate_near
     from kirigami_studio.pipeline.rank import improves
     from kirigami_studio.pipeline.threads import one_blas_thread
     from kirigami_studio.polish.levenberg import polish
     from kirigami_studio.polish.regularity import PREFERENCES
 
-    held = np.zeros(candidate.field.ratio.shape, dtype=np.bool_)
+    table = np.zeros(candidate.field.ratio.shape, dtype=np.bool_)
     for void in locked:
-        held[void] = True
-    score = candidate.score
+        table[void] = True
+    held = table if table.any() else None
+    start = RatioField(np.where(table, finished_field(candidate).ratio, candidate.field.ratio))
+    score, stopped = candidate.score, Cancelled(tr("Fitting was stopped; nothing was changed."))
     with one_blas_thread():
-        fit = polish(
-            candidate.field,
-            target,
-            score.phi,
-            REFIT_STEPS,
-            PREFERENCES[prefer],
-            score.transform,
-            cancel,
-            held=held if held.any() else None,
-        )
+        preference = PREFERENCES[prefer]
+        fit = polish(start, target, score.phi, REFIT_STEPS, preference, score.transform, cancel, held=held)
         if cancel():
-            raise Cancelled(tr("Fitting was stopped; nothing was changed."))
+            raise stopped
         deployment = deploy(fit.field)
         found = evaluate_near(deployment, target, score.phi, fit.pose)
     drawn = candidate.drawn or candidate.field
     fitted = replace(candidate, field=fit.field, score=found, polished=True, drawn=drawn, trim=None)
-    yield Refitted(Decoded(fitted, deployment), improves(fitted, candidate, prefer))
+    better = improves(fitted, candidate, prefer)
+    made, refused = Decoded(fitted, deployment), ""
+    if candidate.trim is not None:
+        try:
+            (made,) = trimming(fitted, target, settings, cancel, held)
+        except Cancelled:
+            raise stopped from None
+        except KirigamiError as error:
+            refused = str(error)
+    yield Refitted(made, better, refused)

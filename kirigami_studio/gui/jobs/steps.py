@@ -22,6 +22,7 @@ from kirigami_studio.gui.jobs.picture_reading import reduced_picture
 from kirigami_studio.gui.jobs.worker import Cancel
 from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.lattice.topology import BoolArray
 from kirigami_studio.pipeline.events import CandidateFound, CandidateImproved, Event
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.project.settings import FabricationSettings
@@ -175,8 +176,17 @@ def comparing(candidate: Candidate, target: Outline, cancel: Cancel) -> Iterator
     yield Decoded(drawn, deployment)
 
 
-def trimming(candidate: Candidate, target: Outline, settings: FabricationSettings, cancel: Cancel) -> Iterator[Decoded]:
-    """Fit a candidate so that it covers the target, and trim it, with room for the connectors at its hinges."""
+def trimming(
+    candidate: Candidate,
+    target: Outline,
+    settings: FabricationSettings,
+    cancel: Cancel,
+    held: BoolArray | None = None,
+) -> Iterator[Decoded]:
+    """Fit a candidate so that it covers the target, and trim it, with room for the connectors at its hinges.
+
+    Voids that are ``held``, (m, n) bool, keep their ratios.
+    """
     from kirigami_studio.fabricate.trimmed_sheet import needed_keep
     from kirigami_studio.pipeline.tasks import COVER_STEPS
     from kirigami_studio.pipeline.threads import one_blas_thread
@@ -201,7 +211,7 @@ def trimming(candidate: Candidate, target: Outline, settings: FabricationSetting
         )
     with one_blas_thread():
         keep = max(KEEP, needed)
-        cover = fit_cover(candidate.field, target, score.phi, COVER_STEPS, score.transform, keep, cancel)
+        cover = fit_cover(candidate.field, target, score.phi, COVER_STEPS, score.transform, keep, cancel, held)
     if cancel():
         raise Cancelled(tr("Trimming was stopped; nothing was changed."))
     yield Decoded(replace(candidate, trim=cover.trim), deploy(cover.trim.field))

@@ -60,7 +60,7 @@ class VoidBar(QWidget):
         self.all.setMenu(menu)
         self.refit = tool_button(
             "refit",
-            tr("Fit again. Improve the match from here; locked voids stay as they are (Ctrl+F)."),
+            tr("Fit again. Improve the match from here; locked voids stay, and a trim is made anew (Ctrl+F)."),
             checkable=True,
         )
         self._lay_out()
