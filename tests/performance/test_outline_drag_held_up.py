@@ -1,0 +1,78 @@
+"""A vertex of a large sheet is dragged by 30 moves; the window is never held up for as long as one step lasts."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hand_gestures import LEFT, NONE, OPEN, shapes_of, vertex_at
+from PySide6.QtCore import QPoint, Qt, QTimer
+from PySide6.QtTest import QTest
+from pytestqt.qtbot import QtBot
+from thread_watch import ThreadWatch
+
+from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.evaluate.score import evaluate
+from kirigami_studio.gui.application import create_window
+from kirigami_studio.gui.look.theme import LIGHT
+from kirigami_studio.gui.main_window import MainWindow
+from kirigami_studio.lattice.deployment import deploy
+from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.project import edits, store
+from kirigami_studio.project.document import Document
+from kirigami_studio.target import silhouettes
+
+pytestmark = [pytest.mark.qt, pytest.mark.slow]
+
+#: Voids each way: the first step takes 0.85 s of processor time, drawing the sheet 0.05 s.
+VOIDS = 40
+MOVES, EVERY_MS, LIMIT = 30, 16, 0.3
+#: Drags, of which the best counts: a neighbour that takes the processor is no fault of the program.
+DRAGS = 3
+
+
+def test_that_the_window_goes_on_while_a_vertex_of_a_large_sheet_is_dragged(qtbot: QtBot, tmp_path: Path) -> None:
+    target, draw = silhouettes.load("heart"), np.random.default_rng(3)
+    field = RatioField.from_log10(0.03 * draw.normal(size=(VOIDS, VOIDS)))
+    design = Candidate(field, evaluate(deploy(field), target, 0.0), seed=1, index=0)
+    store.save(edits.set_candidates(edits.set_target(Document(), target).document, [design], {}).document,
+               tmp_path / "large.kiri")  # fmt: skip
+    window = create_window(LIGHT)
+    window.show()
+    window.controller.open_project(tmp_path / "large.kiri")
+    qtbot.waitUntil(lambda: window.fabrication.export.isEnabled() and not window.controller.board.busy, timeout=60_000)
+    window.stage.deployment.set_phi(OPEN)
+    window.actions_["hand"].trigger()
+    watch, longest = ThreadWatch(), []
+    for _ in range(DRAGS):
+        watch.begin()
+        drag(window, qtbot)
+        longest.append(watch.end().held_up)
+        QTest.keyClick(window.stage.view, Qt.Key.Key_Escape)
+        if longest[-1] < LIMIT:
+            break
+    print("\nlongest turns (ms): " + ", ".join(f"{1000 * turn:.0f}" for turn in longest))
+    watch.close()
+    window.controller.history.mark_saved()
+    assert window.close()
+    assert min(longest) < LIMIT
+
+
+def drag(window: MainWindow, qtbot: QtBot) -> None:
+    """Take hold of the uppermost vertex, move it by a pixel in each turn, and wait until it has followed."""
+    view = window.stage.view
+    start = vertex_at(view, int(shapes_of(view).vertices[:, 1].argmin()))
+    before, moved, timer = view.design, [0], QTimer()
+
+    def move() -> None:
+        if moved[0] == 0:
+            QTest.mousePress(view, LEFT, NONE, start)
+        QTest.mouseMove(view, start - QPoint(0, moved[0] // 4))
+        moved[0] += 1
+
+    timer.timeout.connect(move)
+    timer.start(EVERY_MS)
+    qtbot.waitUntil(lambda: moved[0] > MOVES, timeout=60_000)
+    timer.stop()
+    qtbot.waitUntil(lambda: view.design is not before, timeout=20_000)
