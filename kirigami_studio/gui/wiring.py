@@ -133,6 +133,7 @@ class Wiring(QObject):
         controller.cutting.refused.connect(self._show_refusal)
         controller.cutting.exported.connect(self.commands.show_report)
         controller.plotting.grown.connect(window.stage.plots.show_curves)
+        controller.stopped.withdrawn.connect(window.messages.drop)
         controller.variants_known.connect(window.settings.set_variants)
         controller.message.connect(window.messages.add)
         controller.status.connect(window.says.setText)

@@ -25,6 +25,7 @@ from kirigami_studio.gui.designs.plotting import Plotting
 from kirigami_studio.gui.designs.refitting import Refitting
 from kirigami_studio.gui.designs.shelf import Shelf
 from kirigami_studio.gui.designs.showing import Showing
+from kirigami_studio.gui.designs.stopped_run import StoppedRun
 from kirigami_studio.gui.files.filing import Filing
 from kirigami_studio.gui.files.recovering import Work
 from kirigami_studio.gui.jobs import steps
@@ -66,6 +67,7 @@ class Workbench(QObject):
         self.targeting = Targeting(self.board, lambda: self.document, self)
         self.preferring = Preferring(self)
         self.collecting = Collecting(lambda: self.document, self)
+        self.stopped = StoppedRun(lambda: self.document, self)
         self.marking = Marking(lambda: self.document, self)
         self.plotting = Plotting(self.board, self)
         self.filing = Filing(self.board, self._work, self.targeting, self)
@@ -77,6 +79,8 @@ class Workbench(QObject):
         self.run.completed.connect(self._take_result)
         self.run.cancelled.connect(self._run_cancelled)
         self.run.failed.connect(self._run_failed)
+        self.stopped.kept.connect(self._take_result)
+        self.document_changed.connect(self.stopped.follow)
         self.showing.settled.connect(self.plan_soon)
         self.showing.stage_changed.connect(self._forget_stage)
         self.fabricating.refused.connect(self.refuse)
@@ -94,7 +98,7 @@ class Workbench(QObject):
 
     def _parts(self) -> tuple[QObject, ...]:
         making = (self.targeting, self.collecting, self.marking, self.finishing, self.fabricating, self.cutting)
-        changing = (self.hand, self.refitting)
+        changing = (self.stopped, self.hand, self.refitting)
         return (self.showing, self.comparing, self.plotting, *making, *changing, self.preferring, self.filing)
 
     def _hear(self, part: QObject) -> None:
@@ -138,6 +142,7 @@ class Workbench(QObject):
     def _run_cancelled(self) -> None:
         self.showing.show(self.document)
         self.status.emit(tr("Generation stopped; nothing was changed."))
+        self.stopped.offer(self.run.so_far())
 
     def _run_failed(self, sentence: str, trace: str) -> None:
         self.showing.show(self.document)

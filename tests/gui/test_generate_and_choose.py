@@ -92,6 +92,64 @@ def test_that_a_cancelled_run_leaves_the_document_unchanged(heart: MainWindow, q
     assert "nothing was changed" in heart.says.text()
 
 
+def stop_early(heart: MainWindow, until: Until, count: int = 400) -> None:
+    """Begin a run of many designs and stop it by Esc after the first few."""
+    heart.settings.candidates.setValue(count)
+    heart.actions_["generate"].trigger()
+    until(lambda: heart.gallery.view.model_.rowCount() > 2)
+    heart.actions_["cancel"].trigger()
+    until(lambda: not heart.controller.running)
+
+
+@pytest.mark.torch
+def test_that_designs_of_a_stopped_run_can_be_kept_as_one_undo_step(heart: MainWindow, until: Until) -> None:
+    before = heart.controller.document
+    stop_early(heart, until)
+    (message,) = heart.messages.messages
+    ((label, keep),) = message.actions
+    assert message.tone is Tone.HINT and label == "Keep these designs"
+    keep()
+    kept = heart.controller.document
+    assert kept.candidates == ranked(kept.candidates) and 2 < len(kept.candidates) < 400
+    assert f"after {len(kept.candidates)} designs" in message.sentence
+    assert kept.provenance["model"] == "balanced" and heart.messages.messages == ()
+    until(lambda: heart.fabrication.export.isEnabled())
+    assert heart.gallery.view.model_.rowCount() == len(kept.candidates)
+    keep()  # a click that came too late
+    assert heart.controller.document is kept
+    heart.actions_["undo"].trigger()
+    assert heart.controller.document.candidates == before.candidates == ()
+
+
+@pytest.mark.torch
+def test_that_designs_of_a_stopped_run_are_offered_for_their_own_target_only(heart: MainWindow, until: Until) -> None:
+    stop_early(heart, until)
+    ((_, keep),) = heart.messages.messages[0].actions
+    heart.controller.targeting.open("star")
+    until(lambda: heart.controller.document.target.name == "star")  # type: ignore[union-attr]
+    assert heart.messages.messages == ()
+    keep()
+    assert heart.controller.document.candidates == ()
+
+
+@pytest.mark.torch
+def test_that_designs_of_a_stopped_further_run_join_those_that_are_there(heart: MainWindow, until: Until) -> None:
+    heart.settings.candidates.setValue(2)
+    heart.actions_["generate"].trigger()
+    until(lambda: not heart.controller.running)
+    first = heart.controller.document
+    heart.settings.candidates.setValue(400)
+    heart.actions_["again"].trigger()
+    until(lambda: heart.gallery.view.model_.rowCount() > len(first.candidates) + 2)
+    heart.actions_["cancel"].trigger()
+    until(lambda: not heart.controller.running)
+    assert heart.controller.document.candidates is first.candidates
+    ((_, keep),) = heart.messages.messages[-1].actions
+    keep()
+    found = heart.controller.document.candidates
+    assert set(first.candidates) < set(found) and len(found) > len(first.candidates) + 2
+
+
 @pytest.mark.torch
 def test_that_the_same_designs_again_are_no_undo_step_and_can_still_be_cut(heart: MainWindow, until: Until) -> None:
     heart.settings.candidates.setValue(1)

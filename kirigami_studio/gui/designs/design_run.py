@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from functools import partial
 
-from PySide6.QtCore import QObject, Signal
+from PySide6.QtCore import QElapsedTimer, QObject, Signal
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.words import tr
@@ -14,10 +14,11 @@ from kirigami_studio.gui.jobs import steps
 from kirigami_studio.gui.jobs.adding_steps import adding
 from kirigami_studio.gui.jobs.board import Board, Ears
 from kirigami_studio.gui.jobs.slot import Slot
-from kirigami_studio.pipeline.events import CandidateFound, CandidateImproved, Finished, Progress, Started
+from kirigami_studio.pipeline.events import CandidateFound, CandidateImproved, Finished, Progress, Result, Started
 from kirigami_studio.pipeline.provenance import provenance
-from kirigami_studio.pipeline.rank import rank_key
+from kirigami_studio.pipeline.rank import rank_key, ranked
 from kirigami_studio.pipeline.request import Request
+from kirigami_studio.pipeline.variety import distinct
 from kirigami_studio.project.settings import DesignSettings
 from kirigami_studio.target.outline import Outline
 
@@ -40,6 +41,10 @@ class DesignRun(QObject):
         self._shelf = shelf
         self._digest = ""
         self._asked = 0
+        self._request: Request | None = None
+        self._others: tuple[Candidate, ...] = ()
+        self._reports = 0
+        self._clock = QElapsedTimer()
         self._sampled: dict[int, float] = {}  # sIoU of each candidate when it was found
         self._now: dict[int, Candidate] = {}
 
@@ -52,7 +57,8 @@ class DesignRun(QObject):
 
         With ``others`` the result holds only designs that are not among them, perhaps none.
         """
-        self._asked = request.k
+        self._asked, self._request, self._others, self._reports = request.k, request, others or (), 0
+        self._clock.start()
         self._sampled.clear()
         self._now.clear()
         ears = Ears(self._report, partial(self._over, completed=False), self._cancel, self._fail)
@@ -69,6 +75,19 @@ class DesignRun(QObject):
         if self.running:
             self._slot.stop()
             self._over(completed=False)
+
+    def so_far(self) -> tuple[Result, dict[str, str]] | None:
+        """What the last run has drawn until now, as if its time had ended, and its provenance; None for nothing.
+
+        The result counts as decoded only the designs that were told of.
+        """
+        if self._request is None:
+            return None
+        candidates = distinct(ranked(tuple(self._now.values())), self._others) if self._now else ()
+        if not candidates:
+            return None
+        result = Result(self._request, candidates, self._reports, 1e-3 * self._clock.elapsed(), budget_ended=True)
+        return result, provenance(self._request, self._digest)
 
     def _report(self, report: object) -> None:
         if isinstance(report, Progress):
@@ -93,6 +112,7 @@ class DesignRun(QObject):
         improved = candidate.index in self._sampled
         self._sampled.setdefault(candidate.index, siou)
         self._now[candidate.index] = candidate
+        self._reports += 1
         best = min(self._now.values(), key=rank_key).score.siou
         if candidate.index >= self._asked:
             self.told.emit(
