@@ -118,5 +118,7 @@ def _length(name: str) -> LengthField:
     number_field(field)
     field.setKeyboardTracking(False)
     field.setAccessibleName(name)
-    field.setToolTip(tr("{name} in mm; the chain beside it keeps the proportions", name=name))
+    field.setToolTip(
+        tr("{name} in mm; 3 in or 8.5 cm may be typed too. The chain beside it keeps the proportions.", name=name)
+    )
     return field
