@@ -87,7 +87,7 @@ COMMANDS = (
         "",
         tr("Write every kind of file into one folder"),
     ),
-    Command("animation", tr("Export a&nimation …"), tr("&File"), (), "", tr("Write the deployment as a looping GIF")),
+    Command("animation", tr("Export an&imation …"), tr("&File"), (), "", tr("Write the deployment as a looping GIF")),
     Command("quit", tr("&Quit"), tr("&File"), ("Ctrl+Q",), tip=tr("Close Kirigami Studio"), gap=True),
     Command("undo", tr("&Undo"), tr("&Edit"), ("Ctrl+Z",), "undo", tr("Undo"), True),
     Command("redo", tr("&Redo"), tr("&Edit"), ("Ctrl+Y", "Ctrl+Shift+Z"), "redo", tr("Redo"), True),
@@ -107,7 +107,7 @@ COMMANDS = (
     Command(
         "copy_cuts", tr("Copy cuts as S&VG"), tr("&Edit"), ("Ctrl+Alt+C",), "", tr("Copy the cut plan as SVG in mm")
     ),
-    Command("clear", tr("&Clear target"), tr("&Edit"), (), "clear", tr("Remove the target")),
+    Command("clear", tr("Clear tar&get"), tr("&Edit"), (), "clear", tr("Remove the target")),
     Command("edit_target", tr("&Edit target"), tr("D&raw"), ("E",), "edit", tr("Open or leave the drawing board")),
     Command("points", tr("Move &points"), tr("D&raw"), ("N",), "points", tr("Drag the points of the target"), gap=True),
     Command(
@@ -136,7 +136,7 @@ COMMANDS = (
         tr("Next choice of mirror axes"),
         gap=True,
     ),
-    Command("grid", tr("Snap to &grid"), tr("D&raw"), ("Ctrl+Shift+G",), "grid", tr("Show the grid and snap to it")),
+    Command("grid", tr("Snap to g&rid"), tr("D&raw"), ("Ctrl+Shift+G",), "grid", tr("Show the grid and snap to it")),
     Command(
         "generate",
         tr("&Generate"),
@@ -176,11 +176,11 @@ COMMANDS = (
         "next", tr("&Next design"), tr("&Design"), ("Ctrl+Down", "PgDown"), "", tr("Choose the next design"), gap=True
     ),
     Command(
-        "previous", tr("&Previous design"), tr("&Design"), ("Ctrl+Up", "PgUp"), "", tr("Choose the previous design")
+        "previous", tr("P&revious design"), tr("&Design"), ("Ctrl+Up", "PgUp"), "", tr("Choose the previous design")
     ),
     Command(
         "again",
-        tr("&More designs"),
+        tr("M&ore designs"),
         tr("&Design"),
         ("Ctrl+R",),
         "again",
@@ -189,7 +189,7 @@ COMMANDS = (
     ),
     Command(
         "more_like",
-        tr("More &like this"),
+        tr("More li&ke this"),
         tr("&Design"),
         ("Ctrl+Shift+R",),
         "alike",

@@ -16,6 +16,7 @@ from PySide6.QtWidgets import (
     QComboBox,
     QLabel,
     QLineEdit,
+    QMenu,
     QPlainTextEdit,
     QSlider,
     QTextBrowser,
@@ -203,3 +204,13 @@ def test_that_alt_and_a_letter_of_a_menu_open_the_menu_and_nothing_else(window: 
     texts = [caption.text() for caption in captions] + [one.text() for one in window.findChildren(QAbstractButton)]
     assert any("&" in text for text in texts)
     assert [text for text in texts if "&" in text and QKeySequence.mnemonic(text) in menus] == []
+
+
+def test_that_one_letter_means_one_entry_in_each_menu_but_view(window: MainWindow) -> None:
+    # The view menu has more entries than letters: there a letter goes to the next entry that has it.
+    for bar_entry in window.menuBar().actions():
+        menu = bar_entry.menu()
+        assert isinstance(menu, QMenu)
+        letters = [QKeySequence.mnemonic(entry.text()).toString() for entry in menu.actions() if "&" in entry.text()]
+        if menu.title() != "&View":
+            assert len(letters) == len(set(letters)), f"{menu.title()}: {sorted(letters)}"
