@@ -11,6 +11,10 @@ from kirigami_studio.evaluate.candidate import Candidate
 
 #: The sIoU (0..1) that who prefers this gives away for a total variation (per void) that is lower by 1.
 WORTH = {"accuracy": 0.0, "balanced": 0.0, "regularity": 0.005, "calm": 0.03}
+#: The sIoU that a fit may lose at most, whatever it gains: less still counts as equal.
+MOST_LOST = 0.003
+#: What is tried where a fit has lost more than it may.
+MILDER = {"calm": "regularity"}
 
 
 def rank_key(candidate: Candidate) -> tuple[bool, float, float, float, int]:
@@ -22,8 +26,9 @@ def rank_key(candidate: Candidate) -> tuple[bool, float, float, float, int]:
 def improves(after: Candidate, before: Candidate, prefer: str) -> bool:
     """Whether a fitted design may take the place of the one it came from.
 
-    A fit that prefers calm panels gives away some match; it is worth its place if what was gained in total variation
-    outweighs that.  ``prefer`` is a key of :data:`kirigami_studio.polish.regularity.PREFERENCES`.
+    A fit that prefers calm panels gives away some match; it is worth its place if that is no more than ``MOST_LOST``
+    and what was gained in total variation outweighs it.  ``prefer`` is a key of
+    :data:`kirigami_studio.polish.regularity.PREFERENCES`.
     """
     worth = WORTH[prefer]
 
@@ -31,7 +36,8 @@ def improves(after: Candidate, before: Candidate, prefer: str) -> bool:
         score = candidate.score
         return not score.feasible, worth * score.tv - score.siou, score.tv
 
-    return key(after) < key(before)
+    kept = after.score.siou >= before.score.siou - MOST_LOST or not before.score.feasible
+    return kept and key(after) < key(before)
 
 
 def ranked(candidates: Iterable[Candidate]) -> tuple[Candidate, ...]:

@@ -11,7 +11,7 @@ from kirigami_studio.evaluate.trimming import KEEP
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
-from kirigami_studio.pipeline.rank import improves
+from kirigami_studio.pipeline.rank import MILDER, improves
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.pipeline.threads import one_blas_thread
 from kirigami_studio.polish.continuation import fit_shape
@@ -76,22 +76,26 @@ def carry_out(request: Request, task: Task, stopped: Callable[[], bool]) -> Answ
 
 
 def _polished(request: Request, task: Polish, stopped: Callable[[], bool]) -> Answer:
-    candidate = task.candidate
-    pose = candidate.score.transform
-    with one_blas_thread():
-        fit = polish(
-            candidate.field,
-            request.target,
-            request.phi,
-            task.steps,
-            PREFERENCES[request.prefer],
-            pose,
-            stopped,
-            least_panel=request.least_panel,
-        )
-    (better,) = scored(request, [fit.field], candidate.index, candidate.origin, fitted=True)
-    better = replace(better, drawn=candidate.drawn or candidate.field)
-    return Answer(better if improves(better, candidate, request.prefer) else None, fit.evaluations + 1)
+    candidate, evaluations = task.candidate, 0
+    prefer: str | None = request.prefer
+    while prefer is not None:
+        with one_blas_thread():
+            fit = polish(
+                candidate.field,
+                request.target,
+                request.phi,
+                task.steps,
+                PREFERENCES[prefer],
+                candidate.score.transform,
+                stopped,
+                least_panel=request.least_panel,
+            )
+        (better,) = scored(request, [fit.field], candidate.index, candidate.origin, fitted=True)
+        evaluations += fit.evaluations + 1
+        if improves(better, candidate, request.prefer):
+            return Answer(replace(better, drawn=candidate.drawn or candidate.field), evaluations)
+        prefer = MILDER.get(prefer)
+    return Answer(None, evaluations)
 
 
 def _searched(request: Request, task: Search, stopped: Callable[[], bool]) -> Answer:

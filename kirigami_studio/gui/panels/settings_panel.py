@@ -50,7 +50,7 @@ PREFER = (
     ("accuracy", tr("Accuracy"), tr("The closest match, whatever the panels look like.")),
     ("balanced", tr("Balanced"), tr("The usual choice: nearly as close, and about 20 % calmer.")),
     ("regularity", tr("Regularity"), tr("A third less TV than balanced, for 0.1 to 0.2 % of the match.")),
-    ("calm", tr("Calm"), tr("Half the TV or less, for 0.5 to 1.4 % of the match.")),
+    ("calm", tr("Calm"), tr("About half the TV of balanced, for 0.2 to 0.9 % of the match.")),
 )
 SEARCH = tr(
     "Look beyond the samples, by way of easier shapes, for one more design. Costs a few "
