@@ -8,13 +8,11 @@ import numpy as np
 
 from kirigami_studio.benchmark.generator_suite import bootstrap_interval
 from kirigami_studio.evaluate.score import Score
+from kirigami_studio.pipeline.rank import MOST_LOST
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.pipeline.run import best_of
 from kirigami_studio.polish.regularity import PREFERENCES
 from kirigami_studio.target.outline import Outline
-
-#: Loss of sIoU that still counts as equal.
-EQUAL = 0.003
 
 
 def measure_regularity(
@@ -47,7 +45,7 @@ def measure_regularity(
         figures[name] = _line(scores)
         if name != "unpolished":
             pairs = zip(scores, found["unpolished"], strict=True)
-            calmer = [now.siou >= before.siou - EQUAL and now.tv <= before.tv for now, before in pairs]
+            calmer = [now.siou >= before.siou - MOST_LOST and now.tv <= before.tv for now, before in pairs]
             figures[name] |= {"calmer_at_equal_siou": float(np.mean(calmer))}  # type: ignore[operator]
     return figures
 

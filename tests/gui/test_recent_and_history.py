@@ -165,7 +165,7 @@ def test_that_sessions_which_write_at_once_lose_nothing(tmp_path: Path) -> None:
     script = (
         "import sys; from pathlib import Path; from kirigami_studio.gui.files.recent_files import changed_file\n"
         "for number in range(5):\n"
-        "    changed_file(Path(sys.argv[1]), lambda known: known.with_project(Path(f'{sys.argv[2]}{number}')))"
+        "    changed_file(Path(sys.argv[1]), lambda known: known.with_project(Path(f'{sys.argv[2]}{number}')), 10_000)"
     )
     sessions = [subprocess.Popen([sys.executable, "-c", script, str(kept), f"/{name}"]) for name in "ab"]
     assert [session.wait(60) for session in sessions] == [0, 0]

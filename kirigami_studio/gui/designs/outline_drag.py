@@ -20,6 +20,7 @@ from PySide6.QtCore import QObject, Signal
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.jobs.board import Board, Ears
 from kirigami_studio.gui.jobs.drag_steps import Followed, Follower, Grasp
+from kirigami_studio.gui.jobs.slot import Slot
 
 
 class OutlineDrag(QObject):
@@ -32,10 +33,10 @@ class OutlineDrag(QObject):
     def __init__(self, parent: QObject) -> None:
         super().__init__(parent)
         self._board: Board | None = None
+        self._slot: Slot | None = None
         self._follower: Follower | None = None
         self._shown: Followed | None = None
         self._held = False
-        self._job: int | None = None
 
     @property
     def active(self) -> bool:
@@ -67,9 +68,9 @@ class OutlineDrag(QObject):
 
     def stop(self) -> None:
         """Forget the drag; nothing more is told about it."""
-        if self._job is not None and self._board is not None:
-            self._board.abandon(self._job)
-        self._job = self._follower = self._shown = None
+        if self._slot is not None:
+            self._slot.stop()
+        self._follower = self._shown = None
         self._held = False
 
     def close(self) -> None:
@@ -80,13 +81,14 @@ class OutlineDrag(QObject):
 
     def _go_on(self) -> None:
         follower = self._follower
-        if follower is None or self._job is not None:
+        if follower is None or (self._slot is not None and self._slot.busy):
             return
         if follower.waiting:
-            if self._board is None:
+            if self._slot is None:
                 self._board = Board(self, "kirigami-gestures")
-            ears = Ears(self._show, self._finish, on_failed=self._fail)
-            self._job = self._board.start(tr("moving the outline"), follower.steps, ears)
+                self._slot = Slot(self._board)
+            ears = Ears(self._show, self._go_on, on_failed=self._fail)
+            self._slot.start(tr("moving the outline"), follower.steps, ears)
         elif not self._held:
             self.stop()
             self.ended.emit()
@@ -98,11 +100,6 @@ class OutlineDrag(QObject):
             self._shown = newest
             self.followed.emit(newest)
 
-    def _finish(self) -> None:
-        self._job = None
-        self._go_on()
-
     def _fail(self, sentence: str, trace: str) -> None:
-        self._job = None
         self.stop()
         self.failed.emit(sentence, trace)

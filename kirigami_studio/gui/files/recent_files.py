@@ -20,8 +20,9 @@ from kirigami_studio.gui.messages import Message, Tone
 from kirigami_studio.project import recent
 from kirigami_studio.project.recent import Recent
 
-#: Milliseconds that the window waits at most for another session to write its change, which takes a few.
-PATIENCE_MS = 300
+#: Milliseconds that the window waits at most for another session to write its change, which takes a few: it takes no
+#: events meanwhile.
+PATIENCE_MS = 80
 #: Milliseconds after which the lock of a session that has died no longer counts.
 STALE_MS = 5000
 
@@ -96,8 +97,10 @@ class RecentFiles(QObject):
             self.changed.emit(known)
 
 
-def changed_file(path: Path, change: Callable[[Recent], Recent]) -> Recent:
+def changed_file(path: Path, change: Callable[[Recent], Recent], patience_ms: int = PATIENCE_MS) -> Recent:
     """Change the list that the file holds now, whoever wrote it, and return it.
+
+    A session that keeps the lock for longer than ``patience_ms`` may lose its entry, or this one may.
 
     Raises
     ------
@@ -110,7 +113,7 @@ def changed_file(path: Path, change: Callable[[Recent], Recent]) -> Recent:
         return _written(Recent(), change, path)
     lock = QLockFile(f"{path}.lock")
     lock.setStaleLockTime(STALE_MS)
-    lock.tryLock(PATIENCE_MS)  # without it the list is changed all the same: an entry may get lost, a session may not
+    lock.tryLock(patience_ms)  # without it the list is changed all the same
     try:
         return _written(recent.load(path), change, path)
     finally:
