@@ -30,6 +30,7 @@ from kirigami_studio.gui.designs.shelf import Shelf
 from kirigami_studio.gui.jobs import hand_steps
 from kirigami_studio.gui.jobs.board import Board, Ears
 from kirigami_studio.gui.jobs.drag_steps import Followed, Grasp
+from kirigami_studio.gui.jobs.slot import Slot
 from kirigami_studio.gui.jobs.steps import Decoded, finished_field
 from kirigami_studio.gui.scene.posed import PosedDesign
 from kirigami_studio.lattice.deployment import deploy
@@ -78,7 +79,8 @@ class HandEditing(QObject):
 
     def __init__(self, board: Board, shelf: Shelf, document: Callable[[], Document], parent: QObject) -> None:
         super().__init__(parent)
-        self._board, self._shelf, self._document = board, shelf, document
+        self._shelf, self._document = shelf, document
+        self._slot = Slot(board)
         self._base: Candidate | None = None  # as the document holds it
         self._field: RatioField | None = None  # as it is seen
         self._last: RatioField | None = None  # as the last complete gesture left it
@@ -87,7 +89,6 @@ class HandEditing(QObject):
         self._turns = 0
         self._key: str | None = None  # merges the gesture under way with the one before it
         self._waiting: deque[_Gesture] = deque()
-        self._job: int | None = None
         self._wishes: list[Callable[[], object]] = []
         self._pull: Pull | None = None
         self._outline = OutlineDrag(self)
@@ -129,8 +130,7 @@ class HandEditing(QObject):
 
     def stop(self) -> None:
         """Another document comes: forget what belongs to the old one."""
-        if self._job is not None:
-            self._board.abandon(self._job)
+        self._slot.stop()
         self._waiting.clear()
         self._wishes.clear()
         self._later.clear()
@@ -283,7 +283,7 @@ class HandEditing(QObject):
         if self._open is None:
             return
         self._field, self._open = self._last, None
-        if self._job is None:
+        if not self._slot.busy:
             self._restore()
         else:
             self._show_draft()
@@ -337,20 +337,20 @@ class HandEditing(QObject):
                 self._waiting.pop()  # it would be one step with this one
             self._waiting.append(gesture)
             self._score_next()
-        elif self._job is None:  # back where it began
+        elif not self._slot.busy:  # back where it began
             self._restore()
 
     def _score_next(self) -> None:
         target = self._document().target
-        if self._job is not None or not self._waiting or self._base is None or target is None:
+        if self._slot.busy or not self._waiting or self._base is None or target is None:
             return
         gesture = self._waiting.popleft()
         work = partial(hand_steps.scoring, self._base, gesture.field, target)
         ears = Ears(partial(self._take, gesture), on_failed=self._fail)
-        self._job = self._board.start(tr("scoring the change"), work, ears)
+        self._slot.start(tr("scoring the change"), work, ears)
 
     def _take(self, gesture: _Gesture, report: object) -> None:
-        self._job = None
+        self._slot.stop()  # the report is the end
         before = self._base
         if not isinstance(report, Decoded) or before is None:
             return
@@ -386,7 +386,7 @@ class HandEditing(QObject):
     def _over(self) -> None:
         """Nothing is under way any more; wishes that waited for this are carried out."""
         self._pause.stop()
-        self._base = self._field = self._last = self._open = self._job = self._seen = None
+        self._base = self._field = self._last = self._open = self._seen = None
         wishes, self._wishes = self._wishes, []
         self.settled.emit()
         for wish in wishes:
