@@ -31,9 +31,9 @@ from kirigami_studio.gui.panels.settings_panel import POLISH
 from kirigami_studio.gui.shell import FIRST
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.outlines import silhouettes
 from kirigami_studio.project import edits, store
 from kirigami_studio.project.document import Document
-from kirigami_studio.target import silhouettes
 
 PATIENCE = 40.0
 MANY, LARGE = 64, (24, 24)

@@ -9,10 +9,10 @@ import numpy as np
 
 from kirigami_studio.benchmark.generator_suite import SUCCESS_SIOU, bootstrap_interval
 from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.pipeline.rank import rank_key
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.pipeline.run import best_of
-from kirigami_studio.target.outline import Outline
 
 #: Names in the list of the worst.
 WORST_LISTED = 12

@@ -10,10 +10,10 @@ import numpy as np
 
 from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.generator.weights import load_model
+from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.outlines.silhouettes import load, names
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.pipeline.run import best_of, sample
-from kirigami_studio.target.outline import Outline
-from kirigami_studio.target.silhouettes import load, names
 
 #: Candidates of the timed runs.
 K = 32

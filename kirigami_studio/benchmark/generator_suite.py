@@ -8,9 +8,9 @@ import numpy as np
 import numpy.typing as npt
 
 from kirigami_studio.evaluate.score import Score
+from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.pipeline.run import best_of
-from kirigami_studio.target.outline import Outline
 
 #: The paper's success threshold on sIoU (Sec. 3.1).
 SUCCESS_SIOU = 0.85

@@ -10,10 +10,10 @@ import numpy as np
 from kirigami_studio.benchmark.generator_suite import bootstrap_interval
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.errors import UsageError
+from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.pipeline.run import best_of
 from kirigami_studio.pipeline.variety import distances, distinct
-from kirigami_studio.target.outline import Outline
 
 #: What is measured unless told otherwise: the two ends of the window's slider and their middle.
 NEARNESS = (0.1, 0.5, 0.9)

@@ -12,9 +12,9 @@ from kirigami_studio.evaluate.score import Score, evaluate
 from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.polish.continuation import fit_shape
 from kirigami_studio.polish.levenberg import Fit, polish
-from kirigami_studio.target.outline import Outline
 
 
 def measure_polish(

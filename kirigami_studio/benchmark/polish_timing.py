@@ -10,6 +10,8 @@ import numpy as np
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.outlines.silhouettes import load
 from kirigami_studio.pipeline.pool import Pool, worker_count
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.pipeline.run import run, sample
@@ -20,8 +22,6 @@ from kirigami_studio.polish.levenberg import SAMPLES, polish
 from kirigami_studio.polish.objective import Objective
 from kirigami_studio.polish.regularity import Regularity, RegularTerms
 from kirigami_studio.polish.sensitivity import OutlineModel
-from kirigami_studio.target.outline import Outline
-from kirigami_studio.target.silhouettes import load
 
 #: Candidates and steps of the timed run.
 K, STEPS = 32, 10

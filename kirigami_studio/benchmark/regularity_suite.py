@@ -8,11 +8,11 @@ import numpy as np
 
 from kirigami_studio.benchmark.generator_suite import bootstrap_interval
 from kirigami_studio.evaluate.score import Score
+from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.pipeline.rank import MOST_LOST
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.pipeline.run import best_of
 from kirigami_studio.polish.regularity import PREFERENCES
-from kirigami_studio.target.outline import Outline
 
 
 def measure_regularity(

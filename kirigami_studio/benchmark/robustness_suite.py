@@ -19,11 +19,11 @@ from kirigami_studio.evaluate.score import Score
 from kirigami_studio.evaluate.silhouette import MASK_SIZE, rasterise
 from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.lattice.ratio_field import FloatArray
+from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.outlines.read_image import outline_of_mask
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.pipeline.run import best_of, sample
 from kirigami_studio.pipeline.tasks import scored
-from kirigami_studio.target.outline import Outline
-from kirigami_studio.target.read_image import outline_of_mask
 
 
 @dataclass(frozen=True, slots=True)

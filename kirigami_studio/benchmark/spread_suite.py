@@ -13,11 +13,11 @@ from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.generator.sampler import draw_fields, one_pose, pose_angle
 from kirigami_studio.generator.weights import load_model
 from kirigami_studio.lattice.ratio_field import FloatArray, RatioField
+from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.pipeline.rank import ranked
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.pipeline.tasks import scored
 from kirigami_studio.pipeline.variety import ALIKE, distances
-from kirigami_studio.target.outline import Outline
 
 #: How candidates see the target: as the program shows it to them, or all in the same pose, so that noise alone differs.
 POSES: dict[str, Callable[[int], float]] = {"own_poses": pose_angle, "one_pose": one_pose}

@@ -13,10 +13,10 @@ from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.foundation.files import write_atomically
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.outlines.read_image import outline_of_mask
+from kirigami_studio.outlines.silhouettes import load, names
 from kirigami_studio.pipeline.request import POLISH_STEPS
-from kirigami_studio.target.outline import Outline
-from kirigami_studio.target.read_image import outline_of_mask
-from kirigami_studio.target.silhouettes import load, names
 
 #: Samples and targets of a family where ``--k`` and ``--count`` do not say.
 SPREAD_K, SPREAD_TARGETS, ROBUSTNESS_TARGETS = 32, 50, 100

@@ -23,6 +23,7 @@ from kirigami_studio.foundation.errors import Cancelled, FabricationError
 from kirigami_studio.foundation.files import check_folder, write_atomically
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.pipeline.events import Finished, Progress, Result
 from kirigami_studio.pipeline.provenance import provenance
 from kirigami_studio.pipeline.request import POLISH_STEPS, Request
@@ -33,7 +34,6 @@ from kirigami_studio.project.document import Document
 from kirigami_studio.project.material_record import material_for
 from kirigami_studio.project.settings import DesignSettings, FabricationSettings
 from kirigami_studio.project.store import save
-from kirigami_studio.target.outline import Outline
 
 
 def design(arguments: argparse.Namespace) -> int:

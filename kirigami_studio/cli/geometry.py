@@ -25,7 +25,7 @@ from kirigami_studio.foundation.errors import AngleError, RatioError, UsageError
 from kirigami_studio.foundation.files import write_atomically
 from kirigami_studio.lattice.deployment import check_phi, deploy
 from kirigami_studio.lattice.ratio_field import RatioField
-from kirigami_studio.target.outline import Outline
+from kirigami_studio.outlines.outline import Outline
 
 
 def decode(arguments: argparse.Namespace) -> int:

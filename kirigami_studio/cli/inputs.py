@@ -17,10 +17,10 @@ import numpy.typing as npt
 
 from kirigami_studio.foundation.errors import GridError, KirigamiError, RatioError, TargetError, UsageError
 from kirigami_studio.lattice.ratio_field import RatioField
-from kirigami_studio.target.outline import Outline
-from kirigami_studio.target.read import read_target, target_files
-from kirigami_studio.target.read_image import outline_of_mask, read_image
-from kirigami_studio.target.silhouettes import names
+from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.outlines.read import read_target, target_files
+from kirigami_studio.outlines.read_image import outline_of_mask, read_image
+from kirigami_studio.outlines.silhouettes import names
 
 LARGEST_FILE = 512 * 1024 * 1024
 IMAGE_SUFFIXES = (".png", ".jpg", ".jpeg", ".bmp")

@@ -10,7 +10,7 @@ from kirigami_studio.cli.console import print_json, say
 
 def targets(arguments: argparse.Namespace) -> int:
     """List the library silhouettes."""
-    from kirigami_studio.target.silhouettes import names
+    from kirigami_studio.outlines.silhouettes import names
 
     return _listing(arguments, "targets", names())
 

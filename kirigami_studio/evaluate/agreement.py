@@ -13,7 +13,7 @@ from kirigami_studio.evaluate.alignment import align_many
 from kirigami_studio.evaluate.boundary import as_plane
 from kirigami_studio.evaluate.silhouette import Frame, filled_in_frame, rasterise_in_frame
 from kirigami_studio.evaluate.similarity import FloatArray, Similarity
-from kirigami_studio.target.outline import Outline
+from kirigami_studio.outlines.outline import Outline
 
 
 @dataclass(frozen=True, slots=True)

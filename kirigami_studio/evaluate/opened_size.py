@@ -9,7 +9,7 @@ import numpy as np
 from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.lattice.deployment import Deployment
-from kirigami_studio.target.outline import Outline
+from kirigami_studio.outlines.outline import Outline
 
 #: Sizes this near (relative) are one size: a hundredth of a millimetre in 100.
 SAME_SIZE = 1e-4

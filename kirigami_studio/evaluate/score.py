@@ -16,7 +16,7 @@ from kirigami_studio.evaluate.similarity import FloatArray, Similarity
 from kirigami_studio.evaluate.soundness import Soundness, soundness_of_many
 from kirigami_studio.lattice.deployment import Deployment, check_phi, deploy
 from kirigami_studio.lattice.ratio_field import RatioField
-from kirigami_studio.target.outline import Outline
+from kirigami_studio.outlines.outline import Outline
 
 
 @dataclass(frozen=True, slots=True)

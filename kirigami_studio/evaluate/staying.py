@@ -21,7 +21,7 @@ from kirigami_studio.evaluate.outline_batch import OutlineBatch
 from kirigami_studio.evaluate.score import Score, evaluate
 from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.lattice.deployment import Deployment
-from kirigami_studio.target.outline import Outline
+from kirigami_studio.outlines.outline import Outline
 
 #: Turns below this (radians) are what any change brings about.
 SAME_TURN = 0.1

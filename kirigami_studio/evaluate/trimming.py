@@ -32,7 +32,7 @@ from kirigami_studio.foundation.errors import Cancelled, KirigamiError, UsageErr
 from kirigami_studio.lattice.deployment import Deployment, check_phi
 from kirigami_studio.lattice.ratio_field import RatioField, frozen
 from kirigami_studio.lattice.topology import BoolArray
-from kirigami_studio.target.outline import Outline
+from kirigami_studio.outlines.outline import Outline
 
 #: Depth (unit cells) of the material that stays at every hinge unless something else is asked for.
 KEEP = 0.15

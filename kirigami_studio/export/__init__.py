@@ -9,5 +9,5 @@ profile
 verified
     Written beside the goal, read back, compared with what was meant, and only then renamed into place.
 
-May import ``fabricate``, ``evaluate``, ``lattice``, ``target`` and ``foundation``; ezdxf only in the ``dxf`` modules.
+May import ``fabricate``, ``evaluate``, ``lattice``, ``outlines`` and ``foundation``; ezdxf only in the ``dxf`` modules.
 """

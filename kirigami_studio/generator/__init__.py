@@ -11,5 +11,5 @@ Euler steps
 variant
     One bundled set of weights, e.g. ``prior``.
 
-May import ``lattice``, ``target`` and ``foundation``; torch is welcome here.
+May import ``lattice``, ``outlines`` and ``foundation``; torch is welcome here.
 """

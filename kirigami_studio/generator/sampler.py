@@ -19,7 +19,7 @@ from kirigami_studio.generator.velocity import Code
 from kirigami_studio.generator.weights import Model
 from kirigami_studio.lattice.ratio_field import FloatArray, RatioField
 from kirigami_studio.lattice.resize import resize_fields
-from kirigami_studio.target.outline import Outline
+from kirigami_studio.outlines.outline import Outline
 
 #: Candidates drawn together, always this many: rounding in matrix products depends on the batch size, and nearest-point
 #: feedback can turn a rounding difference into a visible one.

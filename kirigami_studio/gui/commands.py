@@ -24,7 +24,7 @@ from kirigami_studio.gui.panels.recent_menu import RecentMenu
 from kirigami_studio.gui.shell import Shell
 from kirigami_studio.gui.views.layout_view import USUAL, Overlay
 from kirigami_studio.gui.views.target_view import Tool
-from kirigami_studio.target.combining import Combine
+from kirigami_studio.outlines.combining import Combine
 
 OVERLAY_ACTIONS = {
     "show_target": Overlay.TARGET,

@@ -15,9 +15,9 @@ from kirigami_studio.gui.jobs import steps
 from kirigami_studio.gui.jobs.board import Ears
 from kirigami_studio.gui.messages import Message, Tone
 from kirigami_studio.gui.workbench import Workbench
+from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project import edits
 from kirigami_studio.project.edits import FabricationChange, SettingsChange
-from kirigami_studio.target.outline import Outline
 
 
 class Controller(Workbench):

@@ -10,7 +10,7 @@ from kirigami_studio.gui.controller import Controller
 from kirigami_studio.gui.designs.entry import Entry
 from kirigami_studio.gui.messages import Message, Tone
 from kirigami_studio.gui.shell import Shell
-from kirigami_studio.target.outline import Outline
+from kirigami_studio.outlines.outline import Outline
 
 
 class SideBySide(QObject):

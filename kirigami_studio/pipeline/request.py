@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from kirigami_studio.evaluate.trimming import KEEP, check_keep
 from kirigami_studio.foundation.errors import AngleError, UsageError
 from kirigami_studio.lattice.ratio_field import RatioField, check_grid
+from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.polish.panel_size import check_least
 from kirigami_studio.polish.regularity import PREFERENCES
-from kirigami_studio.target.outline import Outline
 
 LARGEST_K = 1024
 LARGEST_STEPS = 64

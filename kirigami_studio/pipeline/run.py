@@ -11,6 +11,7 @@ from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.foundation.errors import Cancelled
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.pipeline.dispatch import answers, gains
 from kirigami_studio.pipeline.events import (
     CandidateFound,
@@ -27,7 +28,6 @@ from kirigami_studio.pipeline.request import Request
 from kirigami_studio.pipeline.tasks import Answer, Finish, Polish, Search, Task, scored
 from kirigami_studio.pipeline.variety import worth_a_fit
 from kirigami_studio.pipeline.watch import Watch
-from kirigami_studio.target.outline import Outline
 
 #: Candidates scored in one batch.
 SCORED_TOGETHER = 32

@@ -11,6 +11,7 @@ from kirigami_studio.evaluate.trimming import KEEP
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.pipeline.rank import MILDER, improves
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.pipeline.threads import one_blas_thread
@@ -18,7 +19,6 @@ from kirigami_studio.polish.continuation import fit_shape
 from kirigami_studio.polish.covering import fit_cover
 from kirigami_studio.polish.levenberg import polish
 from kirigami_studio.polish.regularity import PREFERENCES
-from kirigami_studio.target.outline import Outline
 
 #: Steps of the fit before trimming.
 COVER_STEPS = 12

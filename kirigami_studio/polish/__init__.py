@@ -7,5 +7,5 @@ similarity transform that carries the layout to the target and is fitted along w
 easier shapes that a search fits on its way to the target; a field is *lifted* when it is carried to another
 grid; a *cover* is a fit that may stick out of the target because it will be trimmed.
 
-May import ``evaluate``, ``lattice``, ``target`` and ``foundation``.
+May import ``evaluate``, ``lattice``, ``outlines`` and ``foundation``.
 """

@@ -9,7 +9,7 @@ import numpy as np
 from scipy.spatial import KDTree
 
 from kirigami_studio.lattice.ratio_field import FloatArray
-from kirigami_studio.target.outline import Outline
+from kirigami_studio.outlines.outline import Outline
 
 #: Boundary pieces that nearest-point queries choose from; the pieces beside the one found are searched as well.
 SEARCH_PIECES = 1024

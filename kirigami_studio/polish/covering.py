@@ -23,8 +23,8 @@ from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.lattice.ratio_field import FloatArray, RatioField
 from kirigami_studio.lattice.topology import BoolArray
+from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.polish.levenberg import Fit, check_fit, polish
-from kirigami_studio.target.outline import Outline
 
 #: Weight of what sticks out.  Found on 12 drawn shapes at 10 x 10: 0.1 covers better than 0.03 or 0.01, which let the
 #: layout grow until its hinges are outside.

@@ -22,13 +22,13 @@ from kirigami_studio.foundation.errors import AngleError, UsageError
 from kirigami_studio.lattice.deployment import check_phi, deploy
 from kirigami_studio.lattice.ratio_field import FloatArray, RatioField
 from kirigami_studio.lattice.topology import BoolArray
+from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.polish.boundary_target import BoundaryTarget
 from kirigami_studio.polish.objective import POSE, TRUST, Look, Objective, Quadratic
 from kirigami_studio.polish.panel_size import check_least
 from kirigami_studio.polish.regularity import Regularity, RegularTerms
 from kirigami_studio.polish.sensitivity import OutlineModel
 from kirigami_studio.polish.symmetry import Symmetry
-from kirigami_studio.target.outline import Outline
 
 #: Even samples of the target boundary.
 SAMPLES = 256

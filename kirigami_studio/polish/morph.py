@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import shapely
 
 from kirigami_studio.evaluate.similarity import Similarity
-from kirigami_studio.target.outline import Outline
+from kirigami_studio.outlines.outline import Outline
 
 #: Vertices of a thickened shape may move by this (unit-area lengths): round corners need no more.
 ACCURACY = 0.002

@@ -21,7 +21,7 @@ import shapely
 
 from kirigami_studio.lattice.deployment import ZIPPED_BELOW
 from kirigami_studio.lattice.ratio_field import FloatArray
-from kirigami_studio.target.outline import Outline
+from kirigami_studio.outlines.outline import Outline
 
 #: A shape is symmetric when it shares this much of its area with its turned or flipped self: a hand-drawn heart is not.
 LEAST_OVERLAP = 0.985

@@ -9,9 +9,9 @@ from typing import Any
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.errors import ProjectError
 from kirigami_studio.foundation.words import tr, tr_n
+from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.document import Document, Mark
 from kirigami_studio.project.edits import Edit, set_candidates
-from kirigami_studio.target.outline import Outline
 
 #: Designs that a project collects at most; one run may bring as many.
 LARGEST_COLLECTION = 1024

@@ -16,13 +16,13 @@ from kirigami_studio.evaluate.trimming import Trim, trim
 from kirigami_studio.foundation.errors import ProjectError
 from kirigami_studio.lattice.deployment import check_phi, deploy
 from kirigami_studio.lattice.ratio_field import FloatArray, RatioField
+from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.document import Document, Mark, Void
 from kirigami_studio.project.fabrication_record import fabrication_json, fabrication_of
 from kirigami_studio.project.json_record import Record, one_of, read_json
 from kirigami_studio.project.migrations import Members
 from kirigami_studio.project.nodes_record import nodes_json, nodes_of
 from kirigami_studio.project.settings import DesignSettings
-from kirigami_studio.target.outline import Outline
 
 DESIGN = "design.json"
 RATIOS = "ratios.npy"

@@ -9,8 +9,8 @@ from types import MappingProxyType
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.errors import ProjectError
+from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.settings import DesignSettings, FabricationSettings
-from kirigami_studio.target.outline import Outline
 
 #: A void by its row and column.
 Void = tuple[int, int]

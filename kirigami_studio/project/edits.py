@@ -9,9 +9,9 @@ from typing import TypedDict, Unpack
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions, CutOrder
 from kirigami_studio.foundation.words import tr, tr_n
+from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.settings import FabricationSettings
-from kirigami_studio.target.outline import Outline
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from kirigami_studio.foundation.errors import ProjectError
+from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.edits import Edit
-from kirigami_studio.target.outline import Outline
 
 #: Steps that are kept; a document of 32 candidates at 10 x 10 is about 40 kB.
 LONGEST_HISTORY = 200

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from kirigami_studio.foundation.errors import ProjectError
+from kirigami_studio.outlines.nodes import Kind, Nodes
 from kirigami_studio.project.json_record import Record, one_of
-from kirigami_studio.target.nodes import Kind, Nodes
 
 
 def nodes_json(nodes: Nodes) -> dict[str, object]:

@@ -18,7 +18,7 @@ from shapely.affinity import rotate, scale, translate
 
 from kirigami_studio.foundation.errors import TargetError
 from kirigami_studio.lattice.ratio_field import FloatArray
-from kirigami_studio.target.outline import Outline
+from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.training.glyphs import glyph
 
 #: Stretch of a shape along an axis of its own choice: aspect 0.6 to 1.6.

@@ -38,9 +38,9 @@ from kirigami_studio.generator.sampler import BATCH, draw_fields, pose_angle
 from kirigami_studio.generator.weights import load_model
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.outlines.editing import resampled
+from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.polish.levenberg import polish
-from kirigami_studio.target.editing import resampled
-from kirigami_studio.target.outline import Outline
 from kirigami_studio.training.drawn_shapes import drawn_shape
 
 Float32Array = npt.NDArray[np.float32]

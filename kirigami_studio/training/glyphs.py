@@ -10,7 +10,7 @@ from numpy.random import Generator
 from PIL import Image, ImageDraw, ImageFont
 
 from kirigami_studio.lattice.ratio_field import FloatArray
-from kirigami_studio.target.read_image import outline_of_mask
+from kirigami_studio.outlines.read_image import outline_of_mask
 
 FACES = ("Vera.ttf", "VeraBd.ttf", "VeraIt.ttf", "VeraBI.ttf")
 #: One solid piece each.  L and T are left out because silhouettes of the library show them, and 7 with them: what the

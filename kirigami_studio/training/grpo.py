@@ -38,7 +38,7 @@ from kirigami_studio.generator.flow import integrate
 from kirigami_studio.generator.pose import square_pose
 from kirigami_studio.generator.velocity import Code
 from kirigami_studio.generator.weights import Model
-from kirigami_studio.target.outline import Outline
+from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.training.checkpoint import Checkpoint
 from kirigami_studio.training.corpus import Corpus
 from kirigami_studio.training.fields import Z_LIMIT, mixed_fields

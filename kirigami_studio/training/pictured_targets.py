@@ -12,7 +12,7 @@ from kirigami_studio.evaluate.silhouette import Frame, rasterise
 from kirigami_studio.foundation.errors import TargetError
 from kirigami_studio.generator.conditioning import contour_points, normalised
 from kirigami_studio.lattice.ratio_field import FloatArray
-from kirigami_studio.target.trace import trace
+from kirigami_studio.outlines.trace import trace
 
 #: Fewest and most pixels along the longer side.
 PIXELS = 48, 256

@@ -25,7 +25,7 @@ from kirigami_studio.evaluate.soundness import soundness_of_many
 from kirigami_studio.foundation.errors import RatioError, UsageError
 from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.lattice.ratio_field import FloatArray, RatioField
-from kirigami_studio.target.outline import Outline
+from kirigami_studio.outlines.outline import Outline
 
 REWARDS = ("accuracy", "regularity", "balanced")
 #: Weights of the penalties (paper, Table of settings and Sec. "RL for accuracy").

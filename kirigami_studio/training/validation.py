@@ -17,7 +17,7 @@ from kirigami_studio.generator.pose import square_pose
 from kirigami_studio.generator.velocity import Velocity
 from kirigami_studio.lattice.batched import BatchedLattice
 from kirigami_studio.lattice.ratio_field import FloatArray, RatioField
-from kirigami_studio.target.editing import resampled
+from kirigami_studio.outlines.editing import resampled
 from kirigami_studio.training.corpus import zero_outline
 from kirigami_studio.training.drawn_shapes import drawn_shape
 from kirigami_studio.training.fields import Z_LIMIT, sobol_fields, structured_fields

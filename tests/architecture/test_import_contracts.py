@@ -31,7 +31,7 @@ ONE_WAY = "Data flows one way; rooms beside each other are strangers"
 FLOORS = "The window's floors: what draws stands on what knows, both on what paints"
 FAULTS = (
     Fault("lattice", "import kirigami_studio.evaluate", ONE_WAY, "kirigami_studio.evaluate"),
-    Fault("lattice", "import kirigami_studio.target", ONE_WAY, "kirigami_studio.target"),
+    Fault("lattice", "import kirigami_studio.outlines", ONE_WAY, "kirigami_studio.outlines"),
     Fault("evaluate", "import kirigami_studio.fabricate", ONE_WAY, "kirigami_studio.fabricate"),
     Fault("generator", "import kirigami_studio.evaluate", ONE_WAY, "kirigami_studio.evaluate"),
     Fault("polish", "import kirigami_studio.export", ONE_WAY, "kirigami_studio.export"),
@@ -56,8 +56,8 @@ FAULTS = (
     Fault("project", "from PySide6 import QtCore", "Only the window knows Qt", "PySide6"),
     Fault("export", "import pyqtgraph", "Only the window knows Qt", "pyqtgraph"),
     Fault("cli", "import PySide6", "Only the window knows Qt", "PySide6"),
-    Fault("fabricate", "import ezdxf", "DXF is spoken in export.dxf and target.read_dxf only", "ezdxf"),
-    Fault("target", "import ezdxf.math", "DXF is spoken in export.dxf and target.read_dxf only", "ezdxf"),
+    Fault("fabricate", "import ezdxf", "DXF is spoken in export.dxf and outlines.read_dxf only", "ezdxf"),
+    Fault("outlines", "import ezdxf.math", "DXF is spoken in export.dxf and outlines.read_dxf only", "ezdxf"),
     Fault("foundation", "import scipy", "The ground floor stands on numpy at most", "scipy"),
 )
 

@@ -12,7 +12,7 @@ import pytest
 PACKAGE = Path(__file__).resolve().parents[2] / "kirigami_studio"
 KNOWS_TORCH = {"kirigami_studio.lattice.batched", "kirigami_studio.lattice.batched_slopes"}
 pytestmark = pytest.mark.slow
-CORE = ("foundation", "lattice", "target", "evaluate", "fabricate", "export", "project")
+CORE = ("foundation", "lattice", "outlines", "evaluate", "fabricate", "export", "project")
 LOADED = """
 import importlib, json, sys
 for name in {names!r}:

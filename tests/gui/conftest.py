@@ -20,10 +20,10 @@ from kirigami_studio.gui.look.theme import LIGHT
 from kirigami_studio.gui.main_window import MainWindow
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.outlines import silhouettes
 from kirigami_studio.pipeline.rank import ranked
 from kirigami_studio.project import edits, store
 from kirigami_studio.project.document import Document
-from kirigami_studio.target import silhouettes
 
 #: Said by the off-screen platform itself about what it lacks.
 PLATFORM_SAYS = "This plugin does not support"

@@ -15,9 +15,9 @@ from kirigami_studio.gui.main_window import MainWindow
 from kirigami_studio.gui.messages import Message
 from kirigami_studio.gui.sketching.easel import Change
 from kirigami_studio.gui.views.target_view import Tool
-from kirigami_studio.target.combining import Combine
-from kirigami_studio.target.figure_nodes import placed_figure
-from kirigami_studio.target.figures import Box, Figure
+from kirigami_studio.outlines.combining import Combine
+from kirigami_studio.outlines.figure_nodes import placed_figure
+from kirigami_studio.outlines.figures import Box, Figure
 from tests.gui.test_board_points import ALT, CTRL, LEFT, NONE, PLAIN, SHIFT, drag, placed, send, undo_label
 
 Until = Callable[[Callable[[], bool]], None]

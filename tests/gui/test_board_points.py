@@ -16,12 +16,12 @@ from kirigami_studio.gui.main_window import MainWindow
 from kirigami_studio.gui.sketching.easel import Change
 from kirigami_studio.gui.sketching.point_tool import PointTool
 from kirigami_studio.gui.views.target_view import Tool
-from kirigami_studio.target.anchors import OUT
-from kirigami_studio.target.figure_nodes import placed_figure
-from kirigami_studio.target.figures import Box, Figure
-from kirigami_studio.target.mirroring import Axis
-from kirigami_studio.target.nodes import Kind
-from kirigami_studio.target.placed import Placed
+from kirigami_studio.outlines.anchors import OUT
+from kirigami_studio.outlines.figure_nodes import placed_figure
+from kirigami_studio.outlines.figures import Box, Figure
+from kirigami_studio.outlines.mirroring import Axis
+from kirigami_studio.outlines.nodes import Kind
+from kirigami_studio.outlines.placed import Placed
 
 Until = Callable[[Callable[[], bool]], None]
 Place = tuple[float, float]

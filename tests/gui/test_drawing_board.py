@@ -17,9 +17,9 @@ from kirigami_studio.gui.messages import Tone
 from kirigami_studio.gui.sketching.point_tool import PointTool
 from kirigami_studio.gui.sketching.pose_tool import TURN, PoseTool
 from kirigami_studio.gui.views.target_view import DRAWING, Tool
-from kirigami_studio.target import silhouettes
-from kirigami_studio.target.combining import Combine
-from kirigami_studio.target.placed import Placed
+from kirigami_studio.outlines import silhouettes
+from kirigami_studio.outlines.combining import Combine
+from kirigami_studio.outlines.placed import Placed
 
 Until = Callable[[Callable[[], bool]], None]
 LEFT, NONE = Qt.MouseButton.LeftButton, Qt.MouseButton.NoButton

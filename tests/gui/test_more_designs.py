@@ -19,12 +19,12 @@ from kirigami_studio.gui.jobs.adding_steps import adding
 from kirigami_studio.gui.main_window import MainWindow
 from kirigami_studio.gui.messages import Tone
 from kirigami_studio.gui.views.gallery_model import FRESH_ROLE
+from kirigami_studio.outlines import silhouettes
 from kirigami_studio.pipeline.events import Finished
 from kirigami_studio.pipeline.rank import ranked
 from kirigami_studio.pipeline.variety import distances
 from kirigami_studio.project.document import Document, Mark
 from kirigami_studio.project.edits import Edit
-from kirigami_studio.target import silhouettes
 
 Until = Callable[[Callable[[], bool]], None]
 LEFT = Qt.MouseButton.LeftButton

@@ -22,9 +22,9 @@ from kirigami_studio.gui.main_window import MainWindow
 from kirigami_studio.gui.scene.posed import PosedDesign
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.outlines import silhouettes
 from kirigami_studio.project import edits, store
 from kirigami_studio.project.document import Document
-from kirigami_studio.target import silhouettes
 
 LABEL = "Move outline"
 #: Voids each way of a sheet whose first step takes long enough that the test is ahead of it.

@@ -23,7 +23,7 @@ from kirigami_studio.gui.main_window import MainWindow
 from kirigami_studio.gui.scene.posed import PosedDesign
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
-from kirigami_studio.target import silhouettes
+from kirigami_studio.outlines import silhouettes
 
 Until = Callable[[Callable[[], bool]], None]
 #: Seconds in which the curves of a 10 x 10 design are complete; an idle core takes a third of a second.

@@ -16,7 +16,7 @@ from kirigami_studio.gui.scene.posed import PosedDesign
 from kirigami_studio.gui.views.layout_view import USUAL, LayoutView, Overlay
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
-from kirigami_studio.target import silhouettes
+from kirigami_studio.outlines import silhouettes
 
 #: Milliseconds of processor time that a hand on the slider waits for a picture with everything shown.
 LONGEST_MS = 100.0

@@ -17,7 +17,7 @@ from pytestqt.qtbot import QtBot
 from kirigami_studio.gui.application import open_first
 from kirigami_studio.gui.main_window import MainWindow
 from kirigami_studio.gui.messages import Message, Tone
-from kirigami_studio.target import silhouettes
+from kirigami_studio.outlines import silhouettes
 
 Until = Callable[[Callable[[], bool]], None]
 LEFT = Qt.MouseButton.LeftButton

@@ -17,8 +17,8 @@ from kirigami_studio.gui.jobs.steps import Picture, reading_target
 from kirigami_studio.gui.main_window import MainWindow
 from kirigami_studio.gui.sketching.easel import Change
 from kirigami_studio.gui.views.target_view import Tool
-from kirigami_studio.target.placed import Placed
-from kirigami_studio.target.read_image import automatic_threshold, read_image
+from kirigami_studio.outlines.placed import Placed
+from kirigami_studio.outlines.read_image import automatic_threshold, read_image
 
 Until = Callable[[Callable[[], bool]], None]
 

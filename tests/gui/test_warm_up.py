@@ -74,7 +74,7 @@ IMPORTED = """
 import sys
 from kirigami_studio.gui.jobs import importing, steps
 from kirigami_studio.pipeline.request import Request
-from kirigami_studio.target import silhouettes
+from kirigami_studio.outlines import silhouettes
 request = Request(silhouettes.load("heart"), (4, 4), k=2, polish=1, trim=True)
 importing.import_generator()
 before = set(sys.modules)

@@ -15,9 +15,9 @@ from kirigami_studio.fabricate.material_copies import changed_copy, delete_copy,
 from kirigami_studio.gui.controller import Controller
 from kirigami_studio.gui.main_window import MainWindow
 from kirigami_studio.gui.messages import Message
+from kirigami_studio.outlines.read_image import automatic_threshold, read_image
 from kirigami_studio.project import edits, picture_record, recovery, store
 from kirigami_studio.project.document import Document
-from kirigami_studio.target.read_image import automatic_threshold, read_image
 
 Until = Callable[[Callable[[], bool]], None]
 

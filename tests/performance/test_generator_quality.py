@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from kirigami_studio.benchmark.generator_suite import measure_generator
-from kirigami_studio.target.read_image import outline_of_mask
+from kirigami_studio.outlines.read_image import outline_of_mask
 from kirigami_studio.training.dataset import SPLITS, generate_split
 
 pytestmark = pytest.mark.torch

@@ -8,9 +8,9 @@ import pytest
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.pipeline.run import best_of
-from kirigami_studio.target.outline import Outline
 from kirigami_studio.training.dataset import SPLITS, generate_split
 
 pytestmark = pytest.mark.torch

@@ -8,10 +8,10 @@ import numpy as np
 from stopwatch import fastest
 
 from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.outlines.silhouettes import load
 from kirigami_studio.pipeline.threads import one_blas_thread
 from kirigami_studio.polish.levenberg import polish
 from kirigami_studio.polish.sensitivity import OutlineModel
-from kirigami_studio.target.silhouettes import load
 
 
 def test_that_the_derivative_costs_a_small_part_of_central_differences() -> None:

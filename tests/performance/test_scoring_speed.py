@@ -10,7 +10,7 @@ from kirigami_studio.evaluate.score import evaluate, evaluate_many
 from kirigami_studio.evaluate.soundness import soundness_of_many
 from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.lattice.ratio_field import RatioField
-from kirigami_studio.target.silhouettes import load
+from kirigami_studio.outlines.silhouettes import load
 
 BATCH = 32
 

@@ -10,12 +10,12 @@ from lattice_strategies import grids, ratio_fields
 
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.outlines.silhouettes import load
 from kirigami_studio.polish.boundary_target import BoundaryTarget
 from kirigami_studio.polish.levenberg import SAMPLES, polish
 from kirigami_studio.polish.objective import Objective
 from kirigami_studio.polish.regularity import Regularity, RegularTerms
 from kirigami_studio.polish.sensitivity import OutlineModel
-from kirigami_studio.target.silhouettes import load
 
 STEP = 1e-6
 

@@ -12,6 +12,7 @@ from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.gui.designs.design_run import request_of
 from kirigami_studio.gui.messages import Message, Tone
+from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.pipeline.events import Result
 from kirigami_studio.pipeline.rank import rank_key, ranked
 from kirigami_studio.pipeline.request import Request
@@ -19,7 +20,6 @@ from kirigami_studio.project import candidate_edits
 from kirigami_studio.project.candidate_edits import Brought
 from kirigami_studio.project.document import Document, Mark
 from kirigami_studio.project.edits import Edit
-from kirigami_studio.target.outline import Outline
 
 #: Angles closer than this (radians) are one.
 SAME_ANGLE = 1e-9

@@ -13,7 +13,7 @@ from kirigami_studio.gui.designs.shelf import Shelf
 from kirigami_studio.gui.jobs import steps
 from kirigami_studio.gui.jobs.board import Board, Ears
 from kirigami_studio.gui.jobs.slot import Slot
-from kirigami_studio.target.outline import Outline
+from kirigami_studio.outlines.outline import Outline
 
 #: Drawn states that are kept.
 CAPACITY = 256

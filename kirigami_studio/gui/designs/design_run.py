@@ -14,13 +14,13 @@ from kirigami_studio.gui.jobs import steps
 from kirigami_studio.gui.jobs.adding_steps import adding
 from kirigami_studio.gui.jobs.board import Board, Ears
 from kirigami_studio.gui.jobs.slot import Slot
+from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.pipeline.events import CandidateFound, CandidateImproved, Finished, Progress, Result, Started
 from kirigami_studio.pipeline.provenance import provenance
 from kirigami_studio.pipeline.rank import rank_key, ranked
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.pipeline.variety import distinct
 from kirigami_studio.project.settings import DesignSettings
-from kirigami_studio.target.outline import Outline
 
 
 class DesignRun(QObject):

@@ -14,7 +14,7 @@ from kirigami_studio.gui.jobs.board import Board, Ears
 from kirigami_studio.gui.jobs.plot_steps import Reading, plotting
 from kirigami_studio.gui.jobs.slot import Slot
 from kirigami_studio.gui.scene.posed import PosedDesign
-from kirigami_studio.target.outline import Outline
+from kirigami_studio.outlines.outline import Outline
 
 #: Curves that are kept.
 CAPACITY = 64

@@ -9,9 +9,9 @@ from PySide6.QtCore import QObject, Signal
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.words import tr_n
 from kirigami_studio.gui.messages import Message, Tone
+from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.pipeline.events import Result
 from kirigami_studio.project.document import Document
-from kirigami_studio.target.outline import Outline
 
 
 class StoppedRun(QObject):

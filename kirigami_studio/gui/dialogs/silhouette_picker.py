@@ -9,7 +9,7 @@ from PySide6.QtWidgets import QFrame, QLabel, QLineEdit, QListView, QListWidget,
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.scene.thumbnail import target_pixmap
-from kirigami_studio.target import silhouettes
+from kirigami_studio.outlines import silhouettes
 
 PICTURE = QSize(64, 64)
 NAME_ROLE = Qt.ItemDataRole.UserRole

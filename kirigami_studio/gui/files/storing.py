@@ -16,8 +16,8 @@ from kirigami_studio.gui.jobs.board import Board, Ears
 from kirigami_studio.gui.jobs.project_steps import Left, Project
 from kirigami_studio.gui.jobs.steps import Picture
 from kirigami_studio.gui.messages import Message, Tone
+from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.document import Document
-from kirigami_studio.target.outline import Outline
 
 
 class Storing(QObject):

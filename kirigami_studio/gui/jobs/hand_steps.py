@@ -14,9 +14,9 @@ from kirigami_studio.gui.jobs.steps import Decoded, finished_field, trimming
 from kirigami_studio.gui.jobs.worker import Cancel
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.document import Void
 from kirigami_studio.project.settings import FabricationSettings
-from kirigami_studio.target.outline import Outline
 
 #: Accepted steps of one fit that a person asks for; most end before that because nothing more is gained.
 REFIT_STEPS = 20

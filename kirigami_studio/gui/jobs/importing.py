@@ -42,7 +42,7 @@ def settle() -> None:
 def import_pictures() -> None:
     """What reads pictures."""
     with quietly():
-        from kirigami_studio.target import read_image as _read_image  # noqa: F401
+        from kirigami_studio.outlines import read_image as _read_image  # noqa: F401
 
 
 @cache

@@ -11,7 +11,7 @@ import numpy as np
 from kirigami_studio.gui.jobs.worker import Cancel
 from kirigami_studio.gui.scene.posed import PosedDesign
 from kirigami_studio.lattice.deployment import ZIPPED_BELOW, rotate
-from kirigami_studio.target.outline import Outline
+from kirigami_studio.outlines.outline import Outline
 
 #: Angles from pi to 0, evenly; the target angle comes in addition.
 ANGLES = 61

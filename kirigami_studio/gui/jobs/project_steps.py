@@ -12,9 +12,9 @@ from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.jobs.picture_reading import reduced_picture
 from kirigami_studio.gui.jobs.steps import Picture
 from kirigami_studio.gui.jobs.worker import Cancel
+from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.picture_record import LARGEST_PICTURE, TracedPicture
-from kirigami_studio.target.outline import Outline
 
 if TYPE_CHECKING:
     from kirigami_studio.project.store import Opened
@@ -94,7 +94,7 @@ def stored(picture: Picture | None) -> TracedPicture | None:
 
 def laid_out(opened: Opened, folder: Path) -> Picture | None:
     """The picture of a project as a file that can be traced again; None if it keeps none."""
-    from kirigami_studio.target.read_image import Traced
+    from kirigami_studio.outlines.read_image import Traced
 
     kept, target = opened.picture, opened.document.target
     if kept is None or not isinstance(target, Outline):

@@ -23,10 +23,10 @@ from kirigami_studio.gui.jobs.worker import Cancel
 from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.topology import BoolArray
+from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.pipeline.events import CandidateFound, CandidateImproved, Event
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.project.settings import FabricationSettings
-from kirigami_studio.target.outline import Outline
 
 if TYPE_CHECKING:
     from PySide6.QtGui import QImage
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from kirigami_studio.fabricate.checks import Report
     from kirigami_studio.fabricate.cut_plan import CutPlan
     from kirigami_studio.fabricate.material import Material
-    from kirigami_studio.target.read_image import Traced
+    from kirigami_studio.outlines.read_image import Traced
 
 #: Extensions of targets that are traced at a threshold.
 PICTURES = (".png", ".jpg", ".jpeg", ".bmp")
@@ -219,11 +219,11 @@ def trimming(
 
 def reading_target(source: str, cancel: Cancel) -> Iterator[Picture | Outline]:
     """Read a file or a library silhouette; a picture tells first which threshold it is read at."""
-    from kirigami_studio.target.read import read_target
+    from kirigami_studio.outlines.read import read_target
 
     path = Path(source)
     if path.suffix.lower() in PICTURES:
-        from kirigami_studio.target.read_image import automatic_threshold, trace_image
+        from kirigami_studio.outlines.read_image import automatic_threshold, trace_image
 
         level = automatic_threshold(path)
         traced = trace_image(path)
@@ -235,7 +235,7 @@ def reading_target(source: str, cancel: Cancel) -> Iterator[Picture | Outline]:
 
 def tracing(picture: Picture, cancel: Cancel) -> Iterator[Traced]:
     """Trace a picture at its threshold."""
-    from kirigami_studio.target.read_image import trace_image
+    from kirigami_studio.outlines.read_image import trace_image
 
     yield trace_image(picture.path, picture.threshold)
 

@@ -10,7 +10,7 @@ from kirigami_studio.gui.look import icons
 from kirigami_studio.gui.look.theme import LIGHT, Palette
 from kirigami_studio.gui.panels.card import TOOL_ICON
 from kirigami_studio.gui.sketching.easel import Easel
-from kirigami_studio.target.mirroring import Axis
+from kirigami_studio.outlines.mirroring import Axis
 
 
 class AxisButton(QToolButton):

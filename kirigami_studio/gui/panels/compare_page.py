@@ -17,7 +17,7 @@ from kirigami_studio.gui.panels.card import FittingLabel, tool_button
 from kirigami_studio.gui.panels.deployment_bar import DeploymentBar
 from kirigami_studio.gui.scene.frame import Bounds
 from kirigami_studio.gui.views.layout_view import LayoutView, Overlay
-from kirigami_studio.target.outline import Outline
+from kirigami_studio.outlines.outline import Outline
 
 #: Figures after the point of the numbers that can be subtracted, row by row.
 DIGITS = (1, 1, 2, 2)

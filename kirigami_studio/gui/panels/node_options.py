@@ -9,7 +9,7 @@ from kirigami_studio.gui.look import icons
 from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.panels.card import tool_button
 from kirigami_studio.gui.sketching.easel import Easel
-from kirigami_studio.target.nodes import Kind
+from kirigami_studio.outlines.nodes import Kind
 
 
 class NodeOptions(QWidget):

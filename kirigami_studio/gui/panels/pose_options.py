@@ -12,7 +12,7 @@ from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.panels.decimal_field import DecimalField, LengthField
 from kirigami_studio.gui.panels.number_field import number_field
 from kirigami_studio.gui.sketching.easel import Change, Easel
-from kirigami_studio.target.placed import LARGEST_MM, Placed
+from kirigami_studio.outlines.placed import LARGEST_MM, Placed
 
 
 class PoseOptions(QWidget):
@@ -75,7 +75,7 @@ class PoseOptions(QWidget):
             self._change(tr("Move target"), lambda: placed.moved((x, y)))
 
     def _turn(self, degrees: float) -> None:
-        from kirigami_studio.target.refining import turned
+        from kirigami_studio.outlines.refining import turned
 
         placed = self._easel.placed
         if placed is not None and degrees:

@@ -12,7 +12,7 @@ from kirigami_studio.gui.panels.card import tool_button
 from kirigami_studio.gui.panels.decimal_field import LengthField
 from kirigami_studio.gui.panels.groove_slider import GrooveSlider
 from kirigami_studio.gui.panels.number_field import number_field
-from kirigami_studio.target.placed import LARGEST_MM, Placed
+from kirigami_studio.outlines.placed import LARGEST_MM, Placed
 
 #: Slider steps from nothing to most.
 STEPS = 100

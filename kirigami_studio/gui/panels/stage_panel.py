@@ -33,7 +33,7 @@ from kirigami_studio.gui.panels.void_bar import VoidBar
 from kirigami_studio.gui.views.fault_tour import FaultTour
 from kirigami_studio.gui.views.gallery_model import described
 from kirigami_studio.gui.views.layout_view import USUAL, LayoutView, Overlay
-from kirigami_studio.target.outline import Outline
+from kirigami_studio.outlines.outline import Outline
 
 #: A stage at least this wide (pixels) has its plots at the side, a narrower one below.
 WIDE = 640

@@ -14,8 +14,8 @@ from kirigami_studio.gui.panels.refine_bar import RefineBar
 from kirigami_studio.gui.panels.threshold_bar import ThresholdBar
 from kirigami_studio.gui.panels.tool_strip import ToolStrip
 from kirigami_studio.gui.views.target_view import TargetView, Tool
-from kirigami_studio.target.outline import Outline
-from kirigami_studio.target.reach import reach_of, told
+from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.outlines.reach import reach_of, told
 
 #: Tool button name, icon, tooltip, whether it stays down.
 BUTTONS = (

@@ -28,8 +28,8 @@ from kirigami_studio.gui.panels.number_field import number_field
 from kirigami_studio.gui.panels.pose_options import PoseOptions
 from kirigami_studio.gui.sketching.easel import Easel
 from kirigami_studio.gui.views.target_view import Tool
-from kirigami_studio.target.combining import Combine
-from kirigami_studio.target.figures import FEWEST_CORNERS, MOST_CORNERS, NARROWEST_WAIST, WIDEST_WAIST
+from kirigami_studio.outlines.combining import Combine
+from kirigami_studio.outlines.figures import FEWEST_CORNERS, MOST_CORNERS, NARROWEST_WAIST, WIDEST_WAIST
 
 #: Tool, icon, tooltip; None for a gap.
 TOOLS: tuple[tuple[Tool, str, str] | None, ...] = (

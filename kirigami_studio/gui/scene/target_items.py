@@ -15,7 +15,7 @@ from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.scene.frame import Frame
 from kirigami_studio.gui.scene.mismatch_items import stripes
 from kirigami_studio.gui.scene.paths import line_path
-from kirigami_studio.target.mirroring import Axis, Mirror
+from kirigami_studio.outlines.mirroring import Axis, Mirror
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -10,7 +10,7 @@ from kirigami_studio.gui.scene.frame import Bounds, Frame
 from kirigami_studio.gui.scene.layout_items import paint_panels, turning_left
 from kirigami_studio.gui.scene.posed import PosedDesign
 from kirigami_studio.gui.scene.target_items import paint_target_line, paint_target_shape
-from kirigami_studio.target.outline import Outline
+from kirigami_studio.outlines.outline import Outline
 
 MARGIN = 6.0
 

@@ -15,10 +15,10 @@ from kirigami_studio.gui.scene.frame import Frame
 from kirigami_studio.gui.scene.target_items import paint_proposal, paint_size
 from kirigami_studio.gui.sketching.easel import Easel, SketchTool, Spot
 from kirigami_studio.gui.sketching.strokes import distance
-from kirigami_studio.target.figure_nodes import placed_figure
-from kirigami_studio.target.figures import Box, Figure
-from kirigami_studio.target.lettering import lettered
-from kirigami_studio.target.placed import Placed
+from kirigami_studio.outlines.figure_nodes import placed_figure
+from kirigami_studio.outlines.figures import Box, Figure
+from kirigami_studio.outlines.lettering import lettered
+from kirigami_studio.outlines.placed import Placed
 
 FloatArray = npt.NDArray[np.float64]
 

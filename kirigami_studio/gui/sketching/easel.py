@@ -14,11 +14,11 @@ from PySide6.QtGui import QKeyEvent, QPainter
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.scene.frame import Bounds, Frame
-from kirigami_studio.target.combining import Combine
-from kirigami_studio.target.figures import USUAL_WAIST
-from kirigami_studio.target.mirroring import Axis, Mirror, mirrored
-from kirigami_studio.target.outline import Outline
-from kirigami_studio.target.placed import BOARD_MM, Placed
+from kirigami_studio.outlines.combining import Combine
+from kirigami_studio.outlines.figures import USUAL_WAIST
+from kirigami_studio.outlines.mirroring import Axis, Mirror, mirrored
+from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.outlines.placed import BOARD_MM, Placed
 
 FloatArray = npt.NDArray[np.float64]
 Place = tuple[float, float]

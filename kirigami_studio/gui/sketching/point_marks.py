@@ -12,8 +12,8 @@ from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.scene.frame import Frame
 from kirigami_studio.gui.scene.target_items import paint_label, paint_proposal
-from kirigami_studio.target.anchors import Anchors
-from kirigami_studio.target.nodes import Kind
+from kirigami_studio.outlines.anchors import Anchors
+from kirigami_studio.outlines.nodes import Kind
 
 #: Half the side of a point's mark and the radius of a handle's end, pixels.
 MARK, KNOB = 4.5, 3.5

@@ -17,10 +17,10 @@ from kirigami_studio.gui.scene.frame import Frame
 from kirigami_studio.gui.sketching.easel import Change, Easel, SketchTool, Spot
 from kirigami_studio.gui.sketching.point_marks import Marks, paint_marks
 from kirigami_studio.gui.sketching.strokes import distance
-from kirigami_studio.target.anchors import INTO, OUT, Anchors, with_anchors
-from kirigami_studio.target.contour import FloatArray
-from kirigami_studio.target.nodes import Kind
-from kirigami_studio.target.placed import Placed
+from kirigami_studio.outlines.anchors import INTO, OUT, Anchors, with_anchors
+from kirigami_studio.outlines.contour import FloatArray
+from kirigami_studio.outlines.nodes import Kind
+from kirigami_studio.outlines.placed import Placed
 
 #: A click this near (pixels) takes a point or a handle, or sets a point on the line.
 REACH = 9.0

@@ -16,7 +16,7 @@ from kirigami_studio.gui.scene.frame import Frame
 from kirigami_studio.gui.scene.target_items import paint_label, paint_proposal, paint_size
 from kirigami_studio.gui.sketching.easel import Change, Easel, Place, SketchTool, Spot
 from kirigami_studio.gui.sketching.strokes import distance
-from kirigami_studio.target.placed import Placed
+from kirigami_studio.outlines.placed import Placed
 
 REACH = 11.0
 HANDLE = 4.5
@@ -101,7 +101,7 @@ class PoseTool(SketchTool):
         return target.moved((x, y))
 
     def _turned(self, target: Placed, spot: Spot) -> Placed:
-        from kirigami_studio.target.refining import turned
+        from kirigami_studio.outlines.refining import turned
 
         start, now = self._knob(target) - np.array(target.centre), np.array(spot.free) - target.centre
         angle = math.atan2(now[1], now[0]) - math.atan2(start[1], start[0])
@@ -110,7 +110,7 @@ class PoseTool(SketchTool):
         return turned(target, self._angle)
 
     def _stretched(self, target: Placed, spot: Spot) -> Placed:
-        from kirigami_studio.target.refining import stretched
+        from kirigami_studio.outlines.refining import stretched
 
         side_x, side_y = self._grip or (0, 0)
         low, high = _box(target)

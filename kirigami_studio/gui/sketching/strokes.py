@@ -13,8 +13,8 @@ from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.scene.frame import Frame
 from kirigami_studio.gui.scene.target_items import paint_sketch
 from kirigami_studio.gui.sketching.easel import FREEHAND, Easel, Place, SketchTool, Spot
-from kirigami_studio.target.mirroring import Mirror
-from kirigami_studio.target.placed import Placed
+from kirigami_studio.outlines.mirroring import Mirror
+from kirigami_studio.outlines.placed import Placed
 
 #: A click this near (pixels) to the first corner closes the polygon.
 CLOSING_REACH = 10.0
@@ -63,7 +63,7 @@ def stroke_of(points: np.ndarray[tuple[int, ...], np.dtype[np.float64]], mirror:
 
     SciPy is loaded at the first one, not when the window opens.
     """
-    from kirigami_studio.target.refining import stroked
+    from kirigami_studio.outlines.refining import stroked
 
     whole = mirror.completed(points)
     if whole is None:

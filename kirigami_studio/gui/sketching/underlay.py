@@ -10,10 +10,10 @@ from PySide6.QtCore import QPointF, QRectF
 from PySide6.QtGui import QImage, QPainter
 
 from kirigami_studio.gui.scene.frame import Frame
-from kirigami_studio.target.placed import Placed
+from kirigami_studio.outlines.placed import Placed
 
 if TYPE_CHECKING:
-    from kirigami_studio.target.read_image import Traced
+    from kirigami_studio.outlines.read_image import Traced
 
 #: How much of the picture shines through.
 OPACITY = 0.5

@@ -14,11 +14,11 @@ from kirigami_studio.gui.offscreen_session import Session, SessionError
 from kirigami_studio.gui.sketching.easel import Change, Spot
 from kirigami_studio.gui.sketching.point_tool import PointTool
 from kirigami_studio.gui.views.target_view import Tool
-from kirigami_studio.target.combining import Combine, combined
-from kirigami_studio.target.figure_nodes import placed_figure
-from kirigami_studio.target.figures import Box, Figure, figure
-from kirigami_studio.target.mirroring import Axis
-from kirigami_studio.target.placed import Placed
+from kirigami_studio.outlines.combining import Combine, combined
+from kirigami_studio.outlines.figure_nodes import placed_figure
+from kirigami_studio.outlines.figures import Box, Figure, figure
+from kirigami_studio.outlines.mirroring import Axis
+from kirigami_studio.outlines.placed import Placed
 
 SIZES = (QSize(1000, 640), QSize(1280, 720), QSize(1440, 900))
 #: A large screen, for the states that look different there.

@@ -12,7 +12,7 @@ from kirigami_studio.gui.jobs import steps
 from kirigami_studio.gui.jobs.board import Board, Ears
 from kirigami_studio.gui.jobs.slot import Slot
 from kirigami_studio.gui.targets.tracing import Tracing
-from kirigami_studio.target.outline import Outline
+from kirigami_studio.outlines.outline import Outline
 
 
 class Reading(QObject):

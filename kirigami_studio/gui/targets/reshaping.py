@@ -10,9 +10,9 @@ from PySide6.QtCore import QObject, Signal
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.sketching.easel import Change, Easel
+from kirigami_studio.outlines.placed import Placed
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.edits import Edit, without_designs
-from kirigami_studio.target.placed import Placed
 
 #: What the sliders do, by their names.
 REFINEMENTS = {"simplify": tr("Simplify target"), "smooth": tr("Smooth target")}
@@ -69,7 +69,7 @@ class Reshaping(QObject):
             self.take(Change(REFINEMENTS[kind], lambda: made))
 
     def _refined(self, kind: str, strength: float) -> Placed | None:
-        from kirigami_studio.target import refining
+        from kirigami_studio.outlines import refining
 
         placed = self._easel.placed
         if self._base is None or placed is not self._result or kind != self._kind:
@@ -91,7 +91,7 @@ class Reshaping(QObject):
 
     def resize(self, width_mm: float, height_mm: float) -> None:
         """Give the target another real size; its middle stays."""
-        from kirigami_studio.target.refining import stretched
+        from kirigami_studio.outlines.refining import stretched
 
         placed = self._easel.placed
         if placed is not None:
@@ -104,8 +104,8 @@ class Reshaping(QObject):
 
     def mirror(self, how: str) -> None:
         """Reflect: ``left``, ``right``, ``top`` or ``bottom`` keeps that half; ``across`` and ``over`` turn all."""
-        from kirigami_studio.target.combining import Half, symmetric
-        from kirigami_studio.target.refining import stretched
+        from kirigami_studio.outlines.combining import Half, symmetric
+        from kirigami_studio.outlines.refining import stretched
 
         placed = self._easel.placed
         if placed is None:

@@ -12,10 +12,10 @@ from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.jobs.board import Board
 from kirigami_studio.gui.targets.reading import Reading
 from kirigami_studio.gui.targets.tracing import Tracing
+from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project import edits
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.edits import Edit
-from kirigami_studio.target.outline import Outline
 
 
 class Targeting(QObject):

@@ -14,10 +14,10 @@ from kirigami_studio.gui.jobs import steps
 from kirigami_studio.gui.jobs.board import Board, Ears
 from kirigami_studio.gui.jobs.slot import Slot
 from kirigami_studio.gui.jobs.steps import Picture
-from kirigami_studio.target.outline import Outline
+from kirigami_studio.outlines.outline import Outline
 
 if TYPE_CHECKING:
-    from kirigami_studio.target.read_image import Traced
+    from kirigami_studio.outlines.read_image import Traced
 
 #: Outlines whose picture is remembered, so that undo brings its threshold back too.
 CAPACITY = 256

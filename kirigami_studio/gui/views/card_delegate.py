@@ -26,8 +26,8 @@ from kirigami_studio.gui.views.gallery_model import (
     RISE_ROLE,
     VALUE_ROLE,
 )
+from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.document import Mark
-from kirigami_studio.target.outline import Outline
 
 SMALLEST_CARD = 132
 TEXT_HEIGHT = 58

@@ -15,8 +15,8 @@ from kirigami_studio.gui.designs.selecting import Selection
 from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.views.card_delegate import GAP, SMALLEST_CARD, TEXT_HEIGHT, CardButton, CardDelegate, button_at
 from kirigami_studio.gui.views.gallery_model import CANDIDATE_ROLE, GalleryModel
+from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.document import Mark
-from kirigami_studio.target.outline import Outline
 
 #: Room that is always kept for the scroll bar, so that cards do not jump when it appears.
 SCROLL_BAR = 14

@@ -52,7 +52,7 @@ from kirigami_studio.gui.scene.void_numbers import (
 from kirigami_studio.gui.scene.void_shapes import VoidShapes, steady
 from kirigami_studio.gui.views.canvas import Canvas
 from kirigami_studio.gui.views.void_gestures import VoidGestures
-from kirigami_studio.target.outline import Outline
+from kirigami_studio.outlines.outline import Outline
 
 #: Radians around the target angle within which sheet and target are compared; elsewhere a difference means nothing.
 COMPARED_WITHIN = math.radians(12.0)

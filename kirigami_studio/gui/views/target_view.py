@@ -35,11 +35,11 @@ from kirigami_studio.gui.sketching.pose_tool import PoseTool
 from kirigami_studio.gui.sketching.strokes import Corners, Freehand
 from kirigami_studio.gui.sketching.underlay import Underlay
 from kirigami_studio.gui.views.canvas import Canvas
-from kirigami_studio.target.combining import Combine
-from kirigami_studio.target.figures import Figure
-from kirigami_studio.target.outline import Outline
-from kirigami_studio.target.placed import Placed
-from kirigami_studio.target.reach import Reach
+from kirigami_studio.outlines.combining import Combine
+from kirigami_studio.outlines.figures import Figure
+from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.outlines.placed import Placed
+from kirigami_studio.outlines.reach import Reach
 
 #: Room around the target on the board while it is edited, as a share of its size.
 ROOM = 0.2

@@ -15,10 +15,10 @@ from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.outlines.silhouettes import load
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.polish.levenberg import polish
 from kirigami_studio.polish.regularity import PREFERENCES
-from kirigami_studio.target.silhouettes import load
 
 pytestmark = pytest.mark.torch
 

@@ -10,7 +10,7 @@ import pytest
 from kirigami_studio.benchmark.generation_timing import generation_timings
 from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.generator.weights import load_model
-from kirigami_studio.target.silhouettes import load
+from kirigami_studio.outlines.silhouettes import load
 
 pytestmark = pytest.mark.torch
 

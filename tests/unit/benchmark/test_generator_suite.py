@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from kirigami_studio.benchmark.generator_suite import bootstrap_interval, measure_generator
-from kirigami_studio.target.silhouettes import load
+from kirigami_studio.outlines.silhouettes import load
 
 pytestmark = pytest.mark.torch
 

@@ -6,7 +6,7 @@ import pytest
 
 from kirigami_studio.benchmark.nearness_suite import FIGURES, measure_nearness
 from kirigami_studio.foundation.errors import UsageError
-from kirigami_studio.target.silhouettes import load
+from kirigami_studio.outlines.silhouettes import load
 
 
 @pytest.mark.torch

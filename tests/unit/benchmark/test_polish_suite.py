@@ -13,8 +13,8 @@ from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.outlines.silhouettes import load
 from kirigami_studio.polish.levenberg import polish
-from kirigami_studio.target.silhouettes import load
 
 
 def test_that_a_plain_measurement_repeats_what_the_fits_say() -> None:

@@ -13,9 +13,9 @@ from kirigami_studio.evaluate.alignment import align
 from kirigami_studio.evaluate.score import exact_iou
 from kirigami_studio.evaluate.silhouette import rasterise
 from kirigami_studio.foundation.errors import UsageError
-from kirigami_studio.target.outline import Outline
-from kirigami_studio.target.read_image import outline_of_mask
-from kirigami_studio.target.silhouettes import load
+from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.outlines.read_image import outline_of_mask
+from kirigami_studio.outlines.silhouettes import load
 
 pytestmark = pytest.mark.torch
 

@@ -20,8 +20,8 @@ from kirigami_studio.generator import weights
 from kirigami_studio.generator.network import VelocityNetwork
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.outlines.silhouettes import load
 from kirigami_studio.pipeline.variety import turns
-from kirigami_studio.target.silhouettes import load
 
 pytestmark = pytest.mark.torch
 

@@ -16,10 +16,10 @@ from kirigami_studio.export.profile import PROFILES
 from kirigami_studio.fabricate.options import CutOptions
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.settings import DesignSettings, FabricationSettings
 from kirigami_studio.project.store import save
-from kirigami_studio.target.outline import Outline
 
 
 @pytest.fixture

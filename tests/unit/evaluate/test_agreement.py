@@ -12,7 +12,7 @@ from kirigami_studio.evaluate.silhouette import Frame, filled_in_frame, rasteris
 from kirigami_studio.evaluate.similarity import FloatArray, Similarity
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
-from kirigami_studio.target.silhouettes import load
+from kirigami_studio.outlines.silhouettes import load
 
 
 @pytest.fixture(scope="module")

@@ -14,7 +14,7 @@ from kirigami_studio.evaluate.similarity import FloatArray, Similarity
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
-from kirigami_studio.target import silhouettes
+from kirigami_studio.outlines import silhouettes
 
 
 def iou(laid: FloatArray, fixed: FloatArray) -> float:

@@ -12,7 +12,7 @@ from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
-from kirigami_studio.target import silhouettes
+from kirigami_studio.outlines import silhouettes
 
 
 @pytest.mark.parametrize("phi", [0.0, 0.6])

@@ -15,8 +15,8 @@ from kirigami_studio.evaluate.siou import mask_siou
 from kirigami_studio.foundation.errors import AngleError
 from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.lattice.ratio_field import RatioField
-from kirigami_studio.target import silhouettes
-from kirigami_studio.target.outline import Outline
+from kirigami_studio.outlines import silhouettes
+from kirigami_studio.outlines.outline import Outline
 
 
 def random_deployment(seed: int, phi_spread: float = 1.0) -> Deployment:

@@ -12,7 +12,7 @@ from kirigami_studio.evaluate.silhouette import rasterise
 from kirigami_studio.evaluate.similarity import FloatArray, Similarity
 from kirigami_studio.evaluate.siou import mask_siou
 from kirigami_studio.foundation.errors import KirigamiError
-from kirigami_studio.target import silhouettes
+from kirigami_studio.outlines import silhouettes
 
 
 def test_that_good_matches_score_as_the_released_evaluator_does(oracles: Mapping[str, np.ndarray]) -> None:

@@ -14,8 +14,8 @@ from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.evaluate.staying import STAY, align_near, evaluate_near
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
-from kirigami_studio.target.outline import Outline
-from kirigami_studio.target.silhouettes import load
+from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.outlines.silhouettes import load
 
 
 def turned(one: Similarity, other: Similarity) -> float:

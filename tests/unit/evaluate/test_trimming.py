@@ -16,7 +16,7 @@ from kirigami_studio.evaluate.trimming import KEEP, Trim, trim
 from kirigami_studio.foundation.errors import AngleError, Cancelled, UsageError
 from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.lattice.ratio_field import RatioField
-from kirigami_studio.target.outline import Outline
+from kirigami_studio.outlines.outline import Outline
 
 GRID = 1e-9
 

@@ -24,7 +24,7 @@ from kirigami_studio.fabricate.slits import cut_table
 from kirigami_studio.fabricate.trimmed_sheet import needed_keep
 from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.lattice.ratio_field import RatioField
-from kirigami_studio.target.outline import Outline
+from kirigami_studio.outlines.outline import Outline
 
 WIDTH_MM = 200.0
 MATERIALS = list(presets())

@@ -17,8 +17,8 @@ from kirigami_studio.generator.weights import Model, load_model
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.resize import resize_fields
-from kirigami_studio.target.outline import Outline
-from kirigami_studio.target.silhouettes import load
+from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.outlines.silhouettes import load
 from kirigami_studio.training.growth import grown_state
 
 pytestmark = pytest.mark.torch

@@ -26,7 +26,7 @@ from kirigami_studio.generator.weights import (
     variants,
 )
 from kirigami_studio.lattice.deployment import deploy
-from kirigami_studio.target.silhouettes import load
+from kirigami_studio.outlines.silhouettes import load
 
 pytestmark = pytest.mark.torch
 SMALL = NetworkShape(4, 4, 32, 64, 2, 16, 24, 32, 48)

@@ -12,12 +12,12 @@ import pytest
 from kirigami_studio.evaluate.candidate import Candidate, Origin
 from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.outlines.silhouettes import load
 from kirigami_studio.pipeline.provenance import provenance
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.pipeline.run import best_of, lying
 from kirigami_studio.pipeline.variety import distances
-from kirigami_studio.target.outline import Outline
-from kirigami_studio.target.silhouettes import load
 
 pytestmark = pytest.mark.torch
 NEARNESS = (0.1, 0.5, 0.9)

@@ -11,11 +11,11 @@ from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.outlines import silhouettes
 from kirigami_studio.pipeline.rank import MOST_LOST, WORTH, improves, rank_key
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.pipeline.run import best_of
 from kirigami_studio.polish.regularity import PREFERENCES
-from kirigami_studio.target import silhouettes
 
 
 @pytest.fixture(scope="module")

@@ -12,12 +12,12 @@ import pytest
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.errors import AngleError, Cancelled, GridError, UsageError
 from kirigami_studio.generator.weights import load_model
+from kirigami_studio.outlines.silhouettes import load
 from kirigami_studio.pipeline.events import CandidateFound, CandidateImproved, Finished, Progress, Started
 from kirigami_studio.pipeline.pool import Pool
 from kirigami_studio.pipeline.rank import ranked
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.pipeline.run import best_of, decodings, run
-from kirigami_studio.target.silhouettes import load
 
 pytestmark = pytest.mark.torch
 

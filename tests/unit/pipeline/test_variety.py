@@ -13,9 +13,9 @@ from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.score import evaluate, exact_iou
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.outlines.silhouettes import load
 from kirigami_studio.pipeline.variety import ALIKE, DUPLICATE, distances, distinct, turns, worth_a_fit
-from kirigami_studio.target.outline import Outline
-from kirigami_studio.target.silhouettes import load
 
 
 def random_field(seed: int, rows: int = 6, columns: int = 6) -> RatioField:

@@ -7,9 +7,9 @@ import pytest
 import shapely
 
 from kirigami_studio.lattice.ratio_field import FloatArray
+from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.outlines.silhouettes import load
 from kirigami_studio.polish.boundary_target import NORMAL_LENGTH, BoundaryTarget, unit_normals
-from kirigami_studio.target.outline import Outline
-from kirigami_studio.target.silhouettes import load
 
 
 def pieces_of(target: Outline) -> tuple[FloatArray, FloatArray, FloatArray]:

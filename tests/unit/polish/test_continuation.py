@@ -9,11 +9,11 @@ from kirigami_studio.evaluate.score import exact_iou
 from kirigami_studio.foundation.errors import AngleError, GridError, UsageError
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.outlines.silhouettes import load
 from kirigami_studio.polish import continuation
 from kirigami_studio.polish.continuation import KEPT, fit_shape, lifted
 from kirigami_studio.polish.levenberg import Fit, polish
-from kirigami_studio.target.outline import Outline
-from kirigami_studio.target.silhouettes import load
 
 
 def iou(fit: Fit, target: Outline, phi: float = 0.0) -> float:

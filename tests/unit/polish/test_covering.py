@@ -11,6 +11,7 @@ from kirigami_studio.evaluate.trimming import trim
 from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.polish.boundary_target import BoundaryTarget
 from kirigami_studio.polish.covering import fit_cover
 from kirigami_studio.polish.levenberg import Fit, polish
@@ -18,7 +19,6 @@ from kirigami_studio.polish.objective import Objective
 from kirigami_studio.polish.one_sided import outer_hinges
 from kirigami_studio.polish.regularity import Regularity, RegularTerms
 from kirigami_studio.polish.sensitivity import OutlineModel
-from kirigami_studio.target.outline import Outline
 
 
 @pytest.fixture(scope="module")

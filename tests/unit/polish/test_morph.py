@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 import shapely
 
+from kirigami_studio.outlines.silhouettes import load
 from kirigami_studio.polish.morph import ACCURACY, thickened
-from kirigami_studio.target.silhouettes import load
 
 
 @pytest.mark.parametrize("name", ["letter-l", "crescent", "puzzle", "butterfly"])

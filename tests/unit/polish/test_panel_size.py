@@ -12,10 +12,10 @@ from kirigami_studio.evaluate.score import exact_iou
 from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.outlines.silhouettes import load
 from kirigami_studio.polish.levenberg import polish
 from kirigami_studio.polish.panel_size import panel_sizes
 from kirigami_studio.polish.sensitivity import OutlineModel
-from kirigami_studio.target.silhouettes import load
 
 
 def random_field(rows: int, columns: int, seed: int = 3) -> RatioField:

@@ -12,11 +12,11 @@ from kirigami_studio.evaluate.score import exact_iou
 from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import FloatArray, RatioField
+from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.outlines.silhouettes import load
 from kirigami_studio.polish.continuation import fit_shape
 from kirigami_studio.polish.levenberg import polish
 from kirigami_studio.polish.symmetry import Symmetry, mirror_axis, shared_symmetries
-from kirigami_studio.target.outline import Outline
-from kirigami_studio.target.silhouettes import load
 
 
 def outline_of(z: FloatArray, phi: float) -> Outline:

@@ -12,9 +12,9 @@ from kirigami_studio.evaluate.feasibility import Contact
 from kirigami_studio.evaluate.score import Score
 from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.settings import DesignSettings, FabricationSettings
-from kirigami_studio.target.outline import Outline
 
 
 @pytest.fixture

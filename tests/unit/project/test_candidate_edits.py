@@ -10,6 +10,7 @@ import pytest
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.errors import ProjectError
 from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.candidate_edits import (
     Brought,
     add_candidates,
@@ -19,7 +20,6 @@ from kirigami_studio.project.candidate_edits import (
 )
 from kirigami_studio.project.codec import decode, encode
 from kirigami_studio.project.document import Document, Mark
-from kirigami_studio.target.outline import Outline
 
 
 def rank(candidate: Candidate) -> float:

@@ -11,9 +11,9 @@ from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.foundation.errors import ProjectError
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.outlines.silhouettes import load
 from kirigami_studio.project import edits, hand_edits
 from kirigami_studio.project.document import Document, Mark
-from kirigami_studio.target.silhouettes import load
 
 
 @pytest.fixture(scope="module")

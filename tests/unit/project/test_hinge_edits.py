@@ -13,10 +13,10 @@ from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions
 from kirigami_studio.foundation.errors import FabricationError
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.outlines import silhouettes
 from kirigami_studio.project import edits, hinge_edits
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.history import History
-from kirigami_studio.target import silhouettes
 
 
 def options_of(document: Document) -> CutOptions:

@@ -6,10 +6,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project import edits
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.history import History
-from kirigami_studio.target.outline import Outline
 
 
 def test_that_undo_and_redo_walk_through_the_very_documents(

@@ -13,14 +13,14 @@ import numpy as np
 import pytest
 
 from kirigami_studio.foundation.errors import ProjectError
+from kirigami_studio.outlines.anchors import Anchors, with_anchors
+from kirigami_studio.outlines.figures import Box, Figure, figure
+from kirigami_studio.outlines.nodes import Kind
+from kirigami_studio.outlines.placed import Placed
 from kirigami_studio.project import store
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.edits import Edit
 from kirigami_studio.project.history import History
-from kirigami_studio.target.anchors import Anchors, with_anchors
-from kirigami_studio.target.figures import Box, Figure, figure
-from kirigami_studio.target.nodes import Kind
-from kirigami_studio.target.placed import Placed
 
 
 @pytest.fixture

@@ -20,6 +20,7 @@ from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions, CutOrd
 from kirigami_studio.foundation.errors import ExportError, ProjectError
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.polish.covering import fit_cover
 from kirigami_studio.polish.levenberg import polish
 from kirigami_studio.project import store
@@ -27,7 +28,6 @@ from kirigami_studio.project.design_facts import design_facts
 from kirigami_studio.project.document import Document, Mark
 from kirigami_studio.project.migrations import MIGRATIONS, Members, migrate
 from kirigami_studio.project.settings import FabricationSettings
-from kirigami_studio.target.outline import Outline
 
 Change = Callable[[dict[str, bytes]], None]
 

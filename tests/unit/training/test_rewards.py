@@ -13,7 +13,7 @@ from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.lattice.deployment import Deployment, deploy, rotate
 from kirigami_studio.lattice.ratio_field import FloatArray, RatioField, frozen
-from kirigami_studio.target.outline import Outline
+from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.training.rewards import REWARDS, Reward, Verdict, judge, judge_sheets
 
 GOOD = Verdict(0.9, 0.8, 0, 0.0, has_layout=True, feasible=True)

@@ -1,0 +1,127 @@
+"""A drawn ring joined with the target: added to it, taken from it, or its half reflected."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from enum import Enum
+
+import numpy as np
+import numpy.typing as npt
+import shapely
+from shapely.geometry import Polygon
+from shapely.geometry.base import BaseGeometry
+
+from kirigami_studio.foundation.errors import TargetError
+from kirigami_studio.outlines.contour import FloatArray, as_contour, tidy
+from kirigami_studio.outlines.pieces import WORTH_SAYING, enclosed, largest_piece
+from kirigami_studio.outlines.placed import Placed
+
+#: Vertices are snapped to this share of the target's size: edges that were drawn onto each other leave no slivers.
+SNAP = 1e-7
+#: Less of the target than this must not stay, or nothing that could be cut is left.
+LEAST_LEFT = 0.01
+
+
+class Combine(Enum):
+    """What happens with a ring that is drawn while there is a target."""
+
+    REPLACE = "new"
+    ADD = "add"
+    SUBTRACT = "subtract"
+
+
+class Half(Enum):
+    """The half of a target that is kept and reflected onto the other."""
+
+    LEFT = "left"
+    RIGHT = "right"
+    TOP = "top"
+    BOTTOM = "bottom"
+
+
+def combined(target: Placed | None, ring: npt.ArrayLike, how: Combine, name: str, notes: Iterable[str] = ()) -> Placed:
+    """Join a drawn ring with the target.
+
+    Parameters
+    ----------
+    target : Placed or None
+        Without one the ring becomes the target.
+    ring : (L, 2) float, mm
+    how : Combine
+    name : str
+        Of the new target where the ring replaces the old one; follows "The" in sentences.
+    notes : iterable of str
+        What was changed when the ring was made.
+
+    Raises
+    ------
+    TargetError
+        The ring is no shape, touches nothing of the target, leaves nothing of it, changes nothing or would cut a hole.
+    """
+    drawn = Placed.from_ring(ring, name, notes)
+    if how is Combine.REPLACE or target is None:
+        return drawn
+    old, new = target.polygon, drawn.polygon
+    if old.intersection(new).area <= WORTH_SAYING * min(old.area, new.area):
+        verb = "added to" if how is Combine.ADD else "taken from"
+        raise TargetError(f"The {name} lies beside the target and cannot be {verb} it; draw it so that both overlap.")
+    join = shapely.union if how is Combine.ADD else shapely.difference
+    region = join(old, new, grid_size=SNAP * target.scale)
+    if how is Combine.SUBTRACT:
+        _refuse_holes(old, new, name)
+        if region.area < LEAST_LEFT * old.area:
+            raise TargetError(f"The {name} would take away the whole target; draw it smaller, or clear the target.")
+    kept, left_out = largest_piece(region)
+    if Polygon(kept).symmetric_difference(old).area <= WORTH_SAYING * old.area:
+        raise TargetError(f"The {name} changes nothing: it lies inside the target; draw it across the edge.")
+    return target.reshaped(tidy(as_contour(kept)), (*notes, *left_out))
+
+
+def _refuse_holes(old: Polygon, new: Polygon, name: str) -> None:
+    if old.contains_properly(new):
+        raise TargetError(f"The {name} would cut a hole, which a sheet cannot show; draw it across the target's edge.")
+
+
+def symmetric(target: Placed, half: Half) -> Placed:
+    """Reflect one half about the middle of the target's box.
+
+    Raises
+    ------
+    TargetError
+        The half has no area, or the halves hang together in a point only.
+    """
+    kept = _side_of(target, half)
+    pieces = enclosed(kept)
+    if not pieces:
+        raise TargetError(f"The {half.value} half of the target is empty; choose the other one.")
+    turned = shapely.transform(kept, lambda points: _reflected(points, target, half))
+    ring, notes = largest_piece(shapely.union_all([kept, turned], grid_size=SNAP * target.scale))
+    return target.reshaped(_without_middle(tidy(as_contour(ring))), notes)
+
+
+def _side_of(target: Placed, half: Half) -> BaseGeometry:
+    polygon = target.polygon
+    left, bottom, right, top = polygon.bounds
+    x, y = 0.5 * (left + right), 0.5 * (bottom + top)
+    sides = {
+        Half.LEFT: (left, bottom, x, top),
+        Half.RIGHT: (x, bottom, right, top),
+        Half.TOP: (left, y, right, top),
+        Half.BOTTOM: (left, bottom, right, y),
+    }
+    return polygon.intersection(shapely.box(*sides[half]))
+
+
+def _reflected(points: FloatArray, target: Placed, half: Half) -> FloatArray:
+    left, bottom, right, top = target.polygon.bounds
+    if half in (Half.LEFT, Half.RIGHT):
+        return np.column_stack([left + right - points[:, 0], points[:, 1]])
+    return np.column_stack([points[:, 0], bottom + top - points[:, 1]])
+
+
+def _without_middle(ring: FloatArray) -> FloatArray:
+    """Drop vertices on a straight edge, such as those where the halves were cut from each other."""
+    before, after = ring - np.roll(ring, 1, axis=0), np.roll(ring, -1, axis=0) - ring
+    cross = np.abs(before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0])
+    bent = cross > 10.0 * SNAP * np.linalg.norm(before, axis=1) * np.linalg.norm(after, axis=1)
+    return ring[bent] if np.sum(bent) >= 3 else ring

@@ -1,0 +1,137 @@
+"""Loose lines -> closed regions: ends that meet are joined, small gaps bridged, open contours named."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+import shapely
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import cKDTree
+from shapely.geometry import LineString
+from shapely.geometry.base import BaseGeometry
+
+from kirigami_studio.foundation.errors import TargetError
+from kirigami_studio.outlines.contour import FloatArray
+
+#: Ends nearer than this share of the drawing's size are one point: the rounding of coordinates in a file.
+SAME_END = 1e-6
+
+
+class Gap(NamedTuple):
+    """Two loose ends: their distance and the point midway, in source units."""
+
+    width: float
+    x: float
+    y: float
+
+
+def join(chains: Sequence[FloatArray], widest_gap: float, unit: str = "") -> tuple[BaseGeometry, tuple[str, ...]]:
+    """Return the regions that lines enclose together.
+
+    Parameters
+    ----------
+    chains : sequence of (P, 2) float, source units
+        Lines in any order and direction; a closed one repeats its first vertex at the end.
+    widest_gap : float
+        Gaps between loose ends up to this share of the drawing's size are bridged by a straight line.
+    unit : str
+        Of the coordinates, for the sentences.
+
+    Returns
+    -------
+    region : shapely geometry
+        Union of all faces, faces inside faces left as they are.
+    notes : tuple of str
+        Bridged gaps and lines left out.
+
+    Raises
+    ------
+    TargetError
+        The lines enclose nothing, or an open contour surrounds what they enclose; the sentence gives
+        the widest gap that keeps it open.
+    """
+    chains = [chain for chain in chains if len(chain) >= 2 and np.ptp(chain, axis=0).any()]
+    if not chains:
+        raise TargetError("The drawing holds no lines; draw one closed contour.")
+    corners = np.concatenate(chains)
+    size = float(np.max(np.ptp(corners, axis=0)))
+    chains, loose = _meeting(chains, SAME_END * size)
+    gaps = _gaps(loose)
+    bridged = [gap for gap in gaps if gap.length <= widest_gap * size]
+    lines = shapely.unary_union([*(LineString(chain) for chain in chains), *bridged])
+    faces, cuts, dangles, invalid = shapely.polygonize_full([lines])
+    region = shapely.unary_union(shapely.get_parts(faces))
+    left_over = shapely.line_merge(shapely.unary_union([cuts, dangles, invalid]))
+    open_lines = [line for line in shapely.get_parts(left_over) if line.length > SAME_END * size]
+    wide = [_described(gap) for gap in gaps if gap.length > widest_gap * size]
+    if region.is_empty or _surrounds(open_lines, region):
+        raise TargetError(_open_contour(wide, widest_gap * size, unit))
+    notes = []
+    if bridged:
+        widest = _described(max(bridged, key=lambda gap: gap.length))
+        count = "A gap was" if len(bridged) == 1 else f"{len(bridged)} gaps were"
+        notes.append(
+            f"{count} closed, the widest {widest.width:.3g}{_spaced(unit)} near ({widest.x:.4g}, {widest.y:.4g})."
+        )
+    if inner := sum(len(face.interiors) for face in shapely.get_parts(faces)):
+        notes.append(f"Contours inside the outer one were left out ({inner}).")
+    if open_lines:
+        notes.append(f"Open lines that enclose nothing were left out ({len(open_lines)}).")
+    return region, tuple(notes)
+
+
+def _meeting(chains: Sequence[FloatArray], tolerance: float) -> tuple[list[FloatArray], FloatArray]:
+    """Make ends within ``tolerance`` coincide; return the chains and the ends that meet no other, (E, 2)."""
+    ends = np.array([(chain[0], chain[-1]) for chain in chains]).reshape(-1, 2)
+    pairs = cKDTree(ends).query_pairs(tolerance, output_type="ndarray")
+    links = coo_array((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(len(ends), len(ends)))
+    count, group = connected_components(links, directed=False)
+    members = np.bincount(group, minlength=count)
+    centre = np.column_stack([np.bincount(group, ends[:, axis], count) / members for axis in (0, 1)])
+    met = centre[group].reshape(-1, 2, 2)
+    joined = [np.concatenate([[first], chain[1:-1], [last]]) for chain, (first, last) in zip(chains, met, strict=True)]
+    return joined, ends[members[group] == 1]
+
+
+def _gaps(loose: FloatArray) -> list[LineString]:
+    """Bridges between loose ends, each end used once, nearest pairs first."""
+    if len(loose) < 2:
+        return []
+    neighbours = min(len(loose), 6)
+    distance, partner = (np.asarray(found) for found in cKDTree(loose).query(loose, k=neighbours))
+    order = np.argsort(distance, axis=None)
+    used: set[int] = set()
+    bridges = []
+    for one, other in zip((order // neighbours).tolist(), partner.ravel()[order].tolist(), strict=True):
+        if one != other and one not in used and other not in used:
+            used |= {one, other}
+            bridges.append(LineString(loose[[one, other]]))
+    return bridges
+
+
+def _described(bridge: LineString) -> Gap:
+    middle = bridge.interpolate(0.5, normalized=True)
+    return Gap(bridge.length, middle.x, middle.y)
+
+
+def _surrounds(open_lines: Sequence[BaseGeometry], region: BaseGeometry) -> bool:
+    """Whether the box of one open line contains everything that is closed: then the contour itself is open."""
+    closed = shapely.box(*region.bounds)
+    return any(shapely.box(*line.bounds).contains_properly(closed) for line in open_lines)
+
+
+def _open_contour(gaps: Sequence[Gap], bridged: float, unit: str) -> str:
+    if not gaps:
+        return "The lines do not form a closed contour; draw one closed line around the shape."
+    gap = max(gaps)
+    return (
+        f"The contour is open: a gap of {gap.width:.4g}{_spaced(unit)} near ({gap.x:.4g}, {gap.y:.4g}), wider than the "
+        f"{bridged:.3g}{_spaced(unit)} that are closed automatically; join the ends there."
+    )
+
+
+def _spaced(unit: str) -> str:
+    return f" {unit}" if unit else ""

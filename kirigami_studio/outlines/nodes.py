@@ -1,0 +1,95 @@
+"""Which vertices of an outline are points that a person drew, and which handles bend the lines between them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+
+import numpy as np
+import numpy.typing as npt
+
+from kirigami_studio.foundation.errors import TargetError
+from kirigami_studio.outlines.contour import FloatArray
+
+IntArray = npt.NDArray[np.int64]
+BoolArray = npt.NDArray[np.bool_]
+
+#: Fewest nodes that enclose an area.
+FEWEST_NODES = 3
+
+
+class Kind(Enum):
+    """How the line passes a node.
+
+    Both handles of a corner go their own ways; at a smooth node they lie on one line, at a symmetric one they are also
+    of one length; an automatic node sets its handles by its neighbours.
+    """
+
+    CORNER = "corner"
+    SMOOTH = "smooth"
+    SYMMETRIC = "symmetric"
+    AUTO = "auto"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Nodes:
+    """The nodes of one outline, in its order and its frame.
+
+    Attributes
+    ----------
+    at : (K,) int
+        Index of each node's vertex, rising all the way round; at most one step goes past the last vertex.
+    kinds : tuple of K Kind
+    handles : (K, 2, 2) float, units of the outline
+        From each node to its handle towards the node before, and to that towards the next; zero where there is none.
+    kept : (K,) bool
+        Whether the line from a node to the next keeps vertices of its own, traced or read, instead of following
+        the handles.
+
+    Raises
+    ------
+    TargetError
+        Fewer than three nodes, indices that do not rise, tables of other sizes, or numbers that are not finite.
+    """
+
+    at: IntArray
+    kinds: tuple[Kind, ...]
+    handles: FloatArray
+    kept: BoolArray
+
+    def __post_init__(self) -> None:
+        count = len(self.at)
+        shapes = (self.at.shape, len(self.kinds), self.handles.shape, self.kept.shape)
+        if count < FEWEST_NODES or shapes != ((count,), count, (count, 2, 2), (count,)):
+            raise TargetError(f"Nodes of an outline must be {FEWEST_NODES} or more in tables of one length.")
+        falls = int(np.sum(np.diff(self.at, append=self.at[:1]) <= 0))
+        if falls != 1 or self.at.min() < 0:
+            raise TargetError("Nodes of an outline must follow each other in its order.")
+        if not np.isfinite(self.handles).all():
+            raise TargetError("Handles of an outline must be finite numbers.")
+        for table in (self.at, self.handles, self.kept):
+            table.setflags(write=False)
+
+    def mapped(self, matrix: FloatArray, vertices: int) -> Nodes:
+        """The nodes after every point ``p`` became ``p @ matrix`` (2, 2).
+
+        A reflection turns the order of the ``vertices`` of the outline round, to keep it counter-clockwise.
+        """
+        handles = self.handles @ matrix
+        if np.linalg.det(matrix) >= 0:
+            return Nodes(self.at, self.kinds, handles, self.kept)
+        return Nodes(
+            (vertices - 1 - self.at)[::-1].copy(),
+            self.kinds[::-1],
+            handles[::-1, ::-1].copy(),
+            np.roll(self.kept[::-1], -1),
+        )
+
+    def _parts(self) -> tuple[bytes, tuple[Kind, ...], bytes, bytes]:
+        return self.at.tobytes(), self.kinds, self.handles.tobytes(), self.kept.tobytes()
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Nodes) and self._parts() == other._parts()
+
+    def __hash__(self) -> int:
+        return hash(self._parts())

@@ -1,0 +1,135 @@
+"""The one value of this room: a closed, simple, oriented, centred silhouette of unit area."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+from shapely.geometry import Polygon
+
+from kirigami_studio.foundation.errors import TargetError
+from kirigami_studio.outlines.contour import (
+    FloatArray,
+    area_and_centroid,
+    as_contour,
+    tidy,
+    unit_frame,
+)
+from kirigami_studio.outlines.crossings import untangled
+from kirigami_studio.outlines.nodes import Nodes
+
+#: Deviation of area and centroid that construction tolerates: float64 rounding over 10^5 vertices stays below it.
+NORMALISATION_TOLERANCE = 1e-9
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Outline:
+    """A target silhouette in its normal frame.
+
+    Two outlines are equal when their vertices are: name, notes, place and nodes do not change what a generator sees.
+
+    Attributes
+    ----------
+    points : (L, 2) float
+        Vertices of a simple polygon, counter-clockwise, y up, first vertex not repeated, area
+        centroid at the origin, area 1 (dimensionless); read-only.
+    name : str
+        Name shown to the user.
+    notes : tuple of str
+        What was changed on the way from the source, one sentence each.
+    size : (float, float) or None
+        Width and height in ``unit`` before normalising.
+    unit : str
+        Unit of ``size``: "mm", "px", or "" when the source has none.
+    place : (x, y) float or None, mm
+        Where its area centroid lies on the drawing board, y up; None for one that was not drawn there.
+    nodes : Nodes or None
+        Its points and handles, when it was drawn with them.
+
+    Raises
+    ------
+    TargetError
+        ``points`` is not such a polygon; ``from_points`` makes one from raw vertices.
+    """
+
+    points: FloatArray
+    name: str = "target"
+    notes: tuple[str, ...] = ()
+    size: tuple[float, float] | None = None
+    unit: str = ""
+    place: tuple[float, float] | None = None
+    nodes: Nodes | None = None
+
+    def __post_init__(self) -> None:
+        # Adding 0.0 turns -0.0 into 0.0, so equal outlines also have equal bytes, hence equal hashes.
+        points = as_contour(self.points) + 0.0
+        area, centroid = area_and_centroid(points)
+        if abs(area - 1.0) > NORMALISATION_TOLERANCE or np.max(np.abs(centroid)) > NORMALISATION_TOLERANCE:
+            raise TargetError(
+                f"An outline must be counter-clockwise with area 1 around the origin, got signed area {area:.6g} "
+                f"around ({centroid[0]:.6g}, {centroid[1]:.6g}); build it with Outline.from_points."
+            )
+        if not Polygon(points).is_valid:
+            raise TargetError("An outline must not touch or cross itself; build it with Outline.from_points.")
+        if self.nodes is not None and int(self.nodes.at.max()) >= len(points):
+            raise TargetError(f"An outline of {len(points)} vertices has no vertex {int(self.nodes.at.max())}.")
+        points.setflags(write=False)
+        object.__setattr__(self, "points", points)
+        object.__setattr__(self, "notes", tuple(self.notes))
+
+    @classmethod
+    def from_points(
+        cls, points: npt.ArrayLike, name: str = "target", notes: Iterable[str] = (), unit: str = ""
+    ) -> Outline:
+        """Clean, orient, centre and normalise raw vertices (y up).
+
+        Parameters
+        ----------
+        points : (L, 2) float, in ``unit``
+            Vertices in order; either orientation, the first may be repeated at the end.
+        name, notes, unit
+            Kept on the outline; what had to be repaired is added to ``notes``.
+
+        Raises
+        ------
+        TargetError
+            Not an (L, 2) table of finite numbers, fewer than three different vertices, no area, or a
+            contour that crosses itself so much that no single shape is meant.
+        """
+        contour = tidy(as_contour(points))
+        ring, origin, span = unit_frame(contour)
+        ring, repairs = untangled(ring, origin, span)
+        width, height = np.ptp(ring, axis=0) * span
+        return cls(_normalised(ring), name, (*notes, *repairs), (float(width), float(height)), unit)
+
+    @property
+    def polygon(self) -> Polygon:
+        """The same shape as a shapely polygon."""
+        return Polygon(self.points)
+
+    def renamed(self, name: str) -> Outline:
+        """Return the same shape under another name."""
+        return replace(self, name=name)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Outline) and np.array_equal(self.points, other.points)
+
+    def __hash__(self) -> int:
+        return hash(self.points.tobytes())
+
+    def __reduce__(self) -> tuple[type[Outline], tuple[Any, ...]]:
+        # Through the constructor: numpy forgets the read-only flag when it unpickles.
+        return Outline, (self.points, self.name, self.notes, self.size, self.unit, self.place, self.nodes)
+
+
+def _normalised(ring: FloatArray) -> FloatArray:
+    """Orient counter-clockwise, centre and scale to area 1; the second pass removes the rounding of the first."""
+    for _ in range(2):
+        area, centroid = area_and_centroid(ring)
+        ring = (ring - centroid) / np.sqrt(abs(area))
+        if area < 0:
+            ring = ring[::-1]
+    return ring

@@ -1,0 +1,153 @@
+"""An outline at its place on the drawing board: the frame in which shapes are drawn, added and taken away."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+from shapely.geometry import Polygon
+
+from kirigami_studio.foundation.errors import TargetError
+from kirigami_studio.outlines.contour import FloatArray, area_and_centroid, as_contour, tidy, unit_frame
+from kirigami_studio.outlines.crossings import untangled
+from kirigami_studio.outlines.nodes import Nodes
+from kirigami_studio.outlines.outline import Outline
+
+#: Longer side (mm) that an outline without a real size is given on the board.
+BOARD_MM = 100.0
+LARGEST_MM = 10_000.0
+
+
+@dataclass(frozen=True, slots=True)
+class Placed:
+    """An outline, its size in mm and where it lies.
+
+    Attributes
+    ----------
+    outline : Outline
+    scale : float, mm
+        Length on the board of one unit of the outline.
+    centre : (x, y) float, mm
+        Where the outline's area centroid lies, y up.
+
+    Raises
+    ------
+    TargetError
+        A scale that is not above 0, or numbers that are not finite.
+    """
+
+    outline: Outline
+    scale: float
+    centre: tuple[float, float] = (0.0, 0.0)
+
+    def __post_init__(self) -> None:
+        numbers = (self.scale, *self.centre)
+        if not all(math.isfinite(number) for number in numbers) or self.scale <= 0:
+            raise TargetError(f"A target needs a size above 0 mm and a place, got {self.scale:g} mm at {self.centre}.")
+
+    @classmethod
+    def on_board(cls, outline: Outline) -> Placed:
+        """Where it was drawn, else in the middle of the board; in its own size if known in mm, else 100 mm long."""
+        span = np.ptp(outline.points, axis=0)
+        if outline.size is not None and outline.unit == "mm":
+            scale = outline.size[0] / float(span[0])
+        else:
+            scale = BOARD_MM / float(np.max(span))
+        if outline.place is not None:
+            return cls(outline, scale, outline.place)
+        low, high = outline.points.min(axis=0), outline.points.max(axis=0)
+        x, y = (-0.5 * scale * (low + high)).tolist()
+        return cls(outline, scale, (x, y))
+
+    @classmethod
+    def from_ring(cls, ring: npt.ArrayLike, name: str, notes: Iterable[str] = ()) -> Placed:
+        """Make raw vertices an outline that lies where they do.
+
+        Parameters
+        ----------
+        ring : (L, 2) float, mm, y up
+
+        Raises
+        ------
+        TargetError
+            As :meth:`Outline.from_points`, or larger than 10 m.
+        """
+        contour, origin, span = unit_frame(tidy(as_contour(ring)))
+        clean, repairs = untangled(contour, origin, span)
+        clean = clean * span + origin
+        length = float(np.max(np.ptp(clean, axis=0)))
+        if length > LARGEST_MM:
+            raise TargetError(f"A target may be {LARGEST_MM:g} mm long at most, got {length:.5g} mm; draw it smaller.")
+        area, centroid = area_and_centroid(clean)
+        place = (float(centroid[0]), float(centroid[1]))
+        outline = replace(Outline.from_points(clean, name, (*notes, *repairs), "mm"), place=place)
+        return cls(outline, math.sqrt(abs(area)), place)
+
+    @property
+    def ring(self) -> FloatArray:
+        """(L, 2) float, mm: the outline's vertices on the board."""
+        return self.outline.points * self.scale + self.centre
+
+    @property
+    def polygon(self) -> Polygon:
+        """The same as a shapely polygon, mm."""
+        return Polygon(self.ring)
+
+    @property
+    def size(self) -> tuple[float, float]:
+        """Width and height, mm."""
+        width, height = (self.scale * np.ptp(self.outline.points, axis=0)).tolist()
+        return width, height
+
+    def reshaped(self, ring: npt.ArrayLike, notes: Iterable[str] = ()) -> Placed:
+        """The same target with other vertices (L, 2), mm; what was said of the old ones no longer holds."""
+        return Placed.from_ring(ring, self.outline.name, notes)
+
+    def mapped(self, matrix: npt.ArrayLike, shift: npt.ArrayLike) -> Placed:
+        """The same target with every point ``p`` (mm) at ``p @ matrix + shift``; its nodes and handles go along.
+
+        Raises
+        ------
+        TargetError
+            As :meth:`from_ring`.
+        """
+        linear = np.asarray(matrix, dtype=np.float64)
+        made = self.reshaped(self.ring @ linear + np.asarray(shift, dtype=np.float64))
+        nodes, count = self.outline.nodes, len(self.outline.points)
+        if nodes is None or len(made.outline.points) != count:
+            return made
+        return made.with_nodes(nodes.mapped(linear * (self.scale / made.scale), count))
+
+    def with_nodes(self, nodes: Nodes | None) -> Placed:
+        """The same target with other nodes."""
+        return replace(self, outline=replace(self.outline, nodes=nodes))
+
+    def moved(self, by: tuple[float, float]) -> Placed:
+        """The same target elsewhere on the board, ``by`` mm: the very same shape, so that its designs stay right.
+
+        Raises
+        ------
+        TargetError
+            A way that is not finite.
+        """
+        return self._put(1.0, (self.centre[0] + by[0], self.centre[1] + by[1]))
+
+    def enlarged(self, factor: float, fixed: tuple[float, float]) -> Placed:
+        """The very same shape ``factor`` times as large; the place ``fixed``, mm, stays.
+
+        Raises
+        ------
+        TargetError
+            A factor that is not above 0, or not finite.
+        """
+        x, y = (stay + factor * (own - stay) for own, stay in zip(self.centre, fixed, strict=True))
+        return self._put(factor, (x, y))
+
+    def _put(self, factor: float, centre: tuple[float, float]) -> Placed:
+        there = Placed(self.outline, factor * self.scale, centre)
+        known = self.outline.size if self.outline.unit == "mm" else None
+        size = there.size if known is None else (factor * known[0], factor * known[1])
+        return replace(there, outline=replace(self.outline, place=centre, size=size, unit="mm"))

@@ -1,0 +1,231 @@
+"""Pictures -> Outline: threshold, largest piece, sub-pixel contour."""
+
+from __future__ import annotations
+
+import io
+import math
+import warnings
+from collections.abc import Callable
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+from PIL import Image, ImageOps, UnidentifiedImageError
+from skimage import filters
+
+from kirigami_studio.foundation.errors import TargetError
+from kirigami_studio.outlines.contour import FloatArray
+from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.outlines.source_file import decoding, read_bytes
+from kirigami_studio.outlines.trace import trace
+
+#: Larger pictures are refused: decoding them takes gigabytes.
+MOST_PIXELS = 100_000_000
+
+#: Larger pictures are averaged down to this side; the shape is judged on far fewer pixels.
+WORKING_SIDE = 2048
+
+#: Grey range (of 0..1) below which a picture is blank; JPEG noise on white paper stays below.
+LEAST_CONTRAST = 0.06
+
+#: scikit-image carries no types; the annotation states what is used of it.
+threshold_otsu: Callable[[FloatArray], float] = filters.threshold_otsu
+
+FORMATS = ("PNG", "JPEG", "BMP")
+MOST_MEGABYTES = 200
+
+
+class Levels(NamedTuple):
+    """A picture reduced to one number a pixel.
+
+    Attributes
+    ----------
+    grey : (H, W) float, 0 black or transparent .. 1 white or opaque
+    reduction : int
+        Source pixels along the side of one pixel of ``grey``.
+    is_alpha : bool
+        ``grey`` is the alpha channel: the shape is where it is high, whatever the border says.
+    size : (width, height) int
+        Of the source, turned upright; pixels at its lower and right edge may share a pixel of ``grey`` with nothing.
+    """
+
+    grey: FloatArray
+    reduction: int
+    is_alpha: bool
+    size: tuple[int, int]
+
+
+class Traced(NamedTuple):
+    """An outline and where it lies in its picture.
+
+    Attributes
+    ----------
+    outline : Outline
+    scale : float, source pixels
+        Length in the picture of one unit of the outline.
+    centre : (x, y) float, source pixels
+        The outline's centroid, from the picture's lower left corner, y up.
+    picture : (width, height) int, source pixels
+        As the picture is looked at, turned upright.
+    """
+
+    outline: Outline
+    scale: float
+    centre: tuple[float, float]
+    picture: tuple[int, int]
+
+
+def read_image(path: str | Path, threshold: float | None = None) -> Outline:
+    """Outline of a picture, see :func:`trace_image`; ``size`` in source pixels."""
+    return trace_image(path, threshold).outline
+
+
+def trace_image(path: str | Path, threshold: float | None = None) -> Traced:
+    """Outline of the largest dark shape on light paper, light shape on dark ground, or opaque shape.
+
+    Parameters
+    ----------
+    path : str or Path
+        PNG, JPG or BMP with 1 to 100 million pixels, any colour mode.
+    threshold : float, optional
+        Grey level 0 (black) .. 1 (white) that separates shape and ground; default ``automatic_threshold``.
+
+    Returns
+    -------
+    Traced
+        Its outline's ``size`` is in source pixels.
+
+    Raises
+    ------
+    TargetError
+        Not such a picture, blank, noise only, or ``threshold`` leaves no shape.
+    """
+    path = Path(path)
+    content = read_bytes(path, MOST_MEGABYTES)
+    with decoding(path, "a picture (PNG, JPG or BMP)"):
+        levels = _levels(content)
+        level = _automatic(levels.grey) if threshold is None else _checked(threshold)
+        ink = levels.grey - level if _shape_is_high(levels, level) else level - levels.grey
+        if not np.any(ink > 0) or np.all(ink > 0):
+            raise TargetError(f"At the threshold {level:.2f} the picture is all one colour; try another threshold.")
+        ring, notes = trace(ink)
+        outline = Outline.from_points(ring * levels.reduction, name=path.stem, notes=notes, unit="px")
+        return _in_picture(outline, (ring + 0.5) * levels.reduction, levels)
+
+
+def _in_picture(outline: Outline, ring: FloatArray, levels: Levels) -> Traced:
+    """Where an outline lies: its box is that of the ring (L, 2), source pixels, also where a loop was dropped."""
+    width = outline.size[0] if outline.size is not None else float(np.ptp(ring[:, 0]))
+    scale = width / float(np.ptp(outline.points[:, 0]))
+    x, y = (ring.min(axis=0) - scale * outline.points.min(axis=0)).tolist()
+    below = levels.grey.shape[0] * levels.reduction - levels.size[1]  # the last row of grey may reach out below
+    return Traced(outline, scale, (x, y - below), levels.size)
+
+
+def automatic_threshold(path: str | Path) -> float:
+    """Grey level in 0..1 that ``read_image`` uses by default: Otsu's, moved midway between the two class means.
+
+    Raises
+    ------
+    TargetError
+        Not a picture, or blank.
+    """
+    path = Path(path)
+    content = read_bytes(path, MOST_MEGABYTES)
+    with decoding(path, "a picture (PNG, JPG or BMP)"):
+        return _automatic(_levels(content).grey)
+
+
+def outline_of_mask(mask: npt.NDArray[np.bool_], name: str) -> Outline:
+    """Outline of the largest piece of a mask; row 0 is the top.
+
+    Parameters
+    ----------
+    mask : (H, W) bool
+        True inside the shape.
+
+    Raises
+    ------
+    TargetError
+        Not a two-dimensional mask, or no shape in it.
+    """
+    mask = np.asarray(mask)
+    if mask.ndim != 2 or mask.size == 0:
+        raise TargetError(f"A mask must have shape (height, width), got {mask.shape}.")
+    if not mask.any():
+        raise TargetError("The mask is empty; it must be true inside the shape.")
+    ring, notes = trace(np.where(mask, 0.5, -0.5))
+    return Outline.from_points(ring, name=name, notes=notes, unit="px")
+
+
+def _levels(content: bytes) -> Levels:
+    """Decode a picture, pick the channel that holds the shape and reduce it to the working size."""
+    with warnings.catch_warnings():
+        # Pillow warns from 89 Mpixel on; the limit here is the sentence below.
+        warnings.simplefilter("ignore", Image.DecompressionBombWarning)
+        try:
+            image = Image.open(io.BytesIO(content), formats=FORMATS)
+        except Image.DecompressionBombError:
+            raise TargetError("The picture has far too many pixels; save it with at most 10000 x 10000.") from None
+        except UnidentifiedImageError:
+            # Pillow's own words name the object in memory and not the file.
+            raise ValueError("no such picture begins like this") from None
+        width, height = image.size
+        if width * height > MOST_PIXELS:
+            raise TargetError(
+                f"The picture has {width} x {height} pixels, more than {MOST_PIXELS // 10**6} million; save it smaller."
+            )
+        image.load()
+    channel, is_alpha = _channel(ImageOps.exif_transpose(image))
+    reduction = math.ceil(max(width, height) / WORKING_SIDE)
+    grey = np.asarray(channel.reduce(reduction) if reduction > 1 else channel, dtype=np.float64)
+    if channel.mode == "L":
+        return Levels(grey / 255.0, reduction, is_alpha, channel.size)
+    # 16- and 32-bit pictures seldom use their whole range: black and white are what they contain.
+    lowest, highest = float(np.min(grey)), float(np.max(grey))
+    return Levels((grey - lowest) / max(highest - lowest, 1e-12), reduction, is_alpha, channel.size)
+
+
+def _channel(image: Image.Image) -> tuple[Image.Image, bool]:
+    """The one channel that holds the shape (mode L, or F for deep pictures), and whether it is the alpha channel."""
+    if image.mode.startswith(("I", "F")):
+        return image.convert("F"), False
+    if not image.has_transparency_data:
+        return image.convert("L"), False
+    coloured = image.convert("RGBA")
+    alpha = coloured.getchannel("A")
+    opacity = np.asarray(alpha, dtype=np.float64)
+    if np.mean(_border(opacity) < 128) > 0.5 and np.any(opacity >= 128):
+        return alpha, True
+    paper = Image.new("RGBA", coloured.size, "white")
+    return Image.alpha_composite(paper, coloured).convert("L"), False
+
+
+def _border(grey: FloatArray) -> FloatArray:
+    """Values of the outermost pixels."""
+    return np.concatenate([grey[0], grey[-1], grey[1:-1, 0], grey[1:-1, -1]])
+
+
+def _shape_is_high(levels: Levels, level: float) -> bool:
+    """The border is ground: where most of it lies above the level, the shape is what lies below."""
+    return levels.is_alpha or bool(np.mean(_border(levels.grey) > level) < 0.5)
+
+
+def _automatic(grey: FloatArray) -> float:
+    contrast = float(np.ptp(grey))
+    if contrast < LEAST_CONTRAST:
+        raise TargetError(
+            f"The picture is blank: its grey levels differ by {100 * contrast:.1f} % only; "
+            "draw a dark shape on light paper."
+        )
+    otsu = float(threshold_otsu(grey))
+    above = grey > otsu
+    # On clean two-level pictures Otsu sits on one of the levels; midway, sub-pixel contours are unbiased.
+    return (float(np.mean(grey[above])) + float(np.mean(grey[~above]))) / 2.0
+
+
+def _checked(threshold: float) -> float:
+    if isinstance(threshold, bool) or not isinstance(threshold, int | float) or not 0.0 < threshold < 1.0:
+        raise TargetError(f"The threshold must lie between 0 (black) and 1 (white), got {threshold!r}.")
+    return float(threshold)

@@ -1,0 +1,127 @@
+"""A placed target made smoother or simpler by a strength, turned and stretched."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import numpy.typing as npt
+import shapely
+from scipy.ndimage import gaussian_filter1d
+from shapely.geometry import Polygon
+
+from kirigami_studio.foundation.errors import TargetError
+from kirigami_studio.outlines.contour import FloatArray, area_and_centroid
+from kirigami_studio.outlines.editing import STROKE_ERROR, resampled, smoothed_stroke
+from kirigami_studio.outlines.placed import LARGEST_MM, Placed
+
+#: Error (share of the root of the area) of the strongest simplification.
+COARSEST = 0.25
+#: Standard deviation of the strongest smoothing, as a share of the perimeter.
+SMOOTHEST = 0.06
+#: Points along the outline that smoothing works on.
+SAMPLES = 720
+#: Sides shorter than this (mm) are no target.
+SMALLEST_MM = 0.1
+
+
+def stroked(points: npt.ArrayLike, name: str = "drawing") -> Placed:
+    """Turn a hand-drawn stroke (P, 2), mm, into a target in its place: tremor smoothed, corners kept, ends joined.
+
+    Raises
+    ------
+    TargetError
+        Too short, without area, or crossing itself so that no single shape is meant.
+    """
+    ring, notes = smoothed_stroke(points)
+    drawn = Placed.from_ring(ring, name, notes)
+    return drawn.reshaped(_thinned(drawn.polygon, STROKE_ERROR * drawn.scale), drawn.outline.notes)
+
+
+def simplified(target: Placed, strength: float) -> Placed:
+    """Drop vertices; ``strength`` 0 keeps all, 1 leaves a few corners.
+
+    Raises
+    ------
+    TargetError
+        A strength outside 0..1.
+    """
+    tolerance = COARSEST * _checked(strength, "simplifying") ** 2 * target.scale
+    if tolerance == 0.0:
+        return target
+    ring = _thinned(target.polygon, tolerance)
+    return target.reshaped(ring) if 3 <= len(ring) < len(target.outline.points) else target
+
+
+def smoothed(target: Placed, strength: float) -> Placed:
+    """Round corners and calm edges; the area stays; ``strength`` 0 changes nothing.
+
+    Raises
+    ------
+    TargetError
+        A strength outside 0..1, or the smooth outline crosses itself.
+    """
+    sigma = SMOOTHEST * _checked(strength, "smoothing") ** 2 * SAMPLES
+    if sigma == 0.0:
+        return target
+    samples = resampled(target.ring, SAMPLES)
+    calm: FloatArray = gaussian_filter1d(samples, sigma, axis=0, mode="wrap")
+    area, centroid = area_and_centroid(calm)
+    if area <= 0:
+        raise TargetError("Smoothed this much, nothing of the target is left; smooth it less.")
+    grown = (calm - centroid) * (target.scale / math.sqrt(area)) + target.centre
+    return target.reshaped(_thinned(target.reshaped(grown).polygon, STROKE_ERROR * target.scale))
+
+
+def turned(target: Placed, angle: float) -> Placed:
+    """Turn counter-clockwise by ``angle`` radians about the area centroid.
+
+    Raises
+    ------
+    TargetError
+        An angle that is not finite.
+    """
+    if not math.isfinite(angle):
+        raise TargetError(f"The angle of rotation must be a finite number, got {angle}.")
+    cos, sin = math.cos(angle), math.sin(angle)
+    matrix = np.array([[cos, sin], [-sin, cos]])
+    centre = np.array(target.centre)
+    return target.mapped(matrix, centre - centre @ matrix)
+
+
+def stretched(target: Placed, factors: tuple[float, float], fixed: tuple[float, float] | None = None) -> Placed:
+    """Stretch along x and y.
+
+    Parameters
+    ----------
+    target : Placed
+    factors : (x, y) float
+        Negative ones reflect.
+    fixed : (x, y) float, mm, optional
+        The place that stays; the centroid unless given.
+
+    Raises
+    ------
+    TargetError
+        The result would be flat, or larger than 10 m.
+    """
+    width, height = (abs(factor) * side for factor, side in zip(factors, target.size, strict=True))
+    if not all(math.isfinite(side) and SMALLEST_MM <= side <= LARGEST_MM for side in (width, height)):
+        raise TargetError(
+            f"A target must be {SMALLEST_MM:g} to {LARGEST_MM:g} mm wide and high, got {width:.4g} x {height:.4g} mm."
+        )
+    if factors[0] > 0 and math.isclose(*factors, rel_tol=1e-9):
+        return target.enlarged(factors[0], target.centre if fixed is None else fixed)
+    stay = np.array(target.centre if fixed is None else fixed)
+    return target.mapped(np.diag(factors), stay * (1.0 - np.array(factors)))
+
+
+def _thinned(polygon: Polygon, tolerance: float) -> FloatArray:
+    """Vertices (L, 2) of a simplified polygon; none when nothing is left of it."""
+    return shapely.get_coordinates(polygon.simplify(tolerance))[:-1]
+
+
+def _checked(strength: float, doing: str) -> float:
+    if not (isinstance(strength, int | float) and 0.0 <= strength <= 1.0):
+        raise TargetError(f"The strength of {doing} lies between 0 and 1, got {strength!r}.")
+    return float(strength)

@@ -1,0 +1,81 @@
+"""The named silhouettes that ship with the program."""
+
+from __future__ import annotations
+
+import difflib
+import json
+from dataclasses import dataclass
+from functools import cache
+
+from kirigami_studio.foundation.errors import TargetError
+from kirigami_studio.foundation.resources import resource
+from kirigami_studio.outlines.outline import Outline
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """One line of the library list.
+
+    Attributes
+    ----------
+    name : str
+        What ``load`` and the command line take, e.g. "six-point-star".
+    title : str
+        For menus, e.g. "Six-point star".
+    about : str
+        One sentence: what makes the shape easy or hard.
+    """
+
+    name: str
+    title: str
+    about: str
+
+
+@cache
+def names() -> tuple[str, ...]:
+    """Names of all bundled silhouettes, in alphabetical order."""
+    return tuple(sorted(path.stem for path in resource("silhouettes").glob("*.json")))
+
+
+@cache
+def _stored(name: str) -> tuple[Entry, Outline]:
+    path = resource("silhouettes", f"{name}.json")
+    try:
+        stored = json.loads(path.read_text(encoding="utf-8"))
+        entry = Entry(stored["name"], stored["title"], stored["about"])
+        points = stored["points"]
+    except (OSError, ValueError, KeyError, TypeError):
+        raise TargetError(f"The bundled silhouette {path} is damaged; install Kirigami Studio again.") from None
+    return entry, Outline.from_points(points, name=entry.name)
+
+
+def entry(name: str) -> Entry:
+    """Title and description of a silhouette; raises like ``load``."""
+    return _stored(known(name))[0]
+
+
+def load(name: str) -> Outline:
+    """Return a bundled silhouette by name; upper case, blanks and underscores are forgiven.
+
+    Raises
+    ------
+    TargetError
+        No silhouette has this name; the nearest names are in the sentence.
+    """
+    return _stored(known(name))[1]
+
+
+def known(name: str) -> str:
+    """Return the exact name of a bundled silhouette.
+
+    Raises
+    ------
+    TargetError
+        As ``load``.
+    """
+    wanted = "-".join(name.strip().lower().replace("_", " ").split())
+    if wanted in names():
+        return wanted
+    near = difflib.get_close_matches(wanted, names(), n=3, cutoff=0.5)
+    hint = f"did you mean {' or '.join(near)}?" if near else f"the library has {', '.join(names())}."
+    raise TargetError(f"There is no file and no library silhouette called {name[:80]!r}; {hint}")

@@ -1,0 +1,100 @@
+"""An ink field -> one ring: largest piece, holes filled, contour at level 0 with sub-pixel precision."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import numpy.typing as npt
+import shapely
+from scipy import ndimage
+from shapely.geometry import Polygon
+from skimage import measure
+
+from kirigami_studio.foundation.errors import TargetError
+from kirigami_studio.outlines.contour import FloatArray
+
+#: scikit-image carries no types; the annotation states what is used of it.
+find_contours: Callable[[FloatArray, float], list[FloatArray]] = measure.find_contours
+
+#: Blur before contouring, pixels: removes the staircase of a hard mask, rounds corners by under half a pixel.
+BLUR = 0.7
+
+#: Error in pixels that simplification may add, and the number of vertices it aims at.
+MOST_ERROR = 0.25
+AIMED_VERTICES = 400
+
+#: A shape of fewer pixels has no form that could be followed.
+LEAST_PIXELS = 16
+
+#: A picture is noise when it falls into more pieces than this and none holds half of the ink.
+MOST_SPECKS = 20
+
+
+def trace(ink: FloatArray) -> tuple[FloatArray, tuple[str, ...]]:
+    """Return the boundary of the largest piece.
+
+    Parameters
+    ----------
+    ink : (H, W) float
+        Above 0 inside the shape, below 0 outside, row 0 on top.  Where it varies smoothly over an edge
+        (anti-aliasing) the contour follows between pixels.
+
+    Returns
+    -------
+    ring : (L, 2) float, pixels, y up
+        One pixel of ink is a square of side 1; the bottom left pixel is centred at (0, 0).
+    notes : tuple of str
+        What was left out and filled.
+
+    Raises
+    ------
+    TargetError
+        Nothing but specks.
+    """
+    piece, notes = _main_piece(ink > 0)
+    solid = ndimage.binary_fill_holes(piece)
+    if (filled := 1 - np.sum(piece) / np.sum(solid)) > 0:
+        notes = (*notes, f"Holes were filled ({100 * filled:.2g} % of the area).")
+    highest = float(np.max(np.abs(ink)))
+    field = np.where(solid & ~piece, highest, ink)
+    field[~solid & (ink > 0)] = -highest
+    margin = 4  # Wider than the blur: shapes that touch the border close half a pixel outside.
+    field = ndimage.gaussian_filter(np.pad(field, margin, constant_values=-highest), BLUR, mode="nearest")
+    contours = [ring[:-1] for ring in find_contours(field, 0.0) if len(ring) > 4]
+    if not contours:
+        raise TargetError("The shape is thinner than a pixel; use a larger or bolder picture.")
+    ring = max(contours, key=lambda ring: Polygon(ring).area) - margin
+    points = np.column_stack([ring[:, 1], ink.shape[0] - 1 - ring[:, 0]])
+    return _simplified(points), notes
+
+
+def _main_piece(mask: npt.NDArray[np.bool_]) -> tuple[npt.NDArray[np.bool_], tuple[str, ...]]:
+    """Largest edge-connected piece of a mask, with a sentence on the others."""
+    labels = np.asarray(ndimage.label(mask)[0])
+    sizes = np.bincount(labels.ravel())[1:]
+    main = int(np.argmax(sizes))
+    total, largest = int(np.sum(sizes)), int(sizes[main])
+    if len(sizes) > MOST_SPECKS and largest < 0.5 * total:
+        raise TargetError(
+            f"The picture shows {len(sizes)} specks and no shape that holds half of them; "
+            "use a cleaner picture or another threshold."
+        )
+    if largest < LEAST_PIXELS:
+        raise TargetError(f"The largest shape has {largest} pixels only; use a picture of at least 64 x 64 pixels.")
+    piece: npt.NDArray[np.bool_] = labels == main + 1
+    if len(sizes) == 1:
+        return piece, ()
+    others = "1 island was" if len(sizes) == 2 else f"{len(sizes) - 1} islands were"
+    share = 100 * (1 - largest / total)
+    return piece, (f"Only the largest shape is kept: {others} left out ({share:.2g} % of the area).",)
+
+
+def _simplified(points: FloatArray) -> FloatArray:
+    """Drop vertices until ``AIMED_VERTICES`` remain or the error reaches ``MOST_ERROR`` pixels."""
+    polygon, simpler = Polygon(points), points
+    for error in (0.05, 0.1, 0.15, 0.2, MOST_ERROR):
+        simpler = shapely.get_coordinates(polygon.simplify(error))[:-1]
+        if len(simpler) <= AIMED_VERTICES:
+            break
+    return simpler

@@ -1,0 +1,197 @@
+"""DXF drawings become outlines: every kind of entity, joined."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from shapely.geometry import LineString, Point
+
+from kirigami_studio.foundation.errors import TargetError
+from kirigami_studio.outlines import silhouettes
+from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.outlines.read_dxf import read_dxf
+
+DISC = Outline.from_points(np.asarray(Point(0, 0).buffer(1, quad_segs=256).exterior.coords))
+SQUARE = [(0, 0), (10, 0), (10, 10), (0, 10)]
+
+
+def box_outline(width: float, height: float) -> Outline:
+    return Outline.from_points([[0, 0], [width, 0], [width, height], [0, height]])
+
+
+def slot(space, _drawing) -> None:
+    space.add_line((0, 0), (10, 0))
+    space.add_line((0, 4), (10, 4))
+    space.add_arc((10, 2), 2, -90, 90)
+    space.add_arc((0, 2), 2, 90, 270)
+
+
+def half_ellipse_and_line(space, _drawing) -> None:
+    space.add_ellipse((0, 0), (10, 0), 0.5, 0, np.pi)
+    space.add_line((-10, 0), (10, 0))
+
+
+def splines(space, _drawing) -> None:
+    # Two quarter-disc-like halves by splines through many points of a circle.
+    for start in (0, np.pi):
+        angle = np.linspace(start, start + np.pi, 40)
+        space.add_spline([(10 * np.cos(a), 10 * np.sin(a), 0) for a in angle])
+
+
+def nested_block(space, drawing) -> None:
+    inner = drawing.blocks.new("INNER")
+    inner.add_lwpolyline([(0, 0), (4, 0), (4, 1), (0, 1)], close=True)
+    drawing.blocks.new("OUTER").add_blockref("INNER", (1, 1), {"xscale": 2, "yscale": 4})
+    space.add_blockref("OUTER", (5, 5))
+
+
+def square_with_gap(gap: float):
+    def draw(space, _drawing) -> None:
+        space.add_lwpolyline([(0, gap), (0, 10), (10, 10), (10, 0)])
+        space.add_line((0, 0), (10, 0))
+
+    return draw
+
+
+SLOT = Outline.from_points(np.asarray(LineString([(0, 2), (10, 2)]).buffer(2, quad_segs=256).exterior.coords))
+HALF = Outline.from_points([(10 * np.cos(a), 5 * np.sin(a)) for a in np.linspace(0, np.pi, 2000)])
+
+
+@pytest.mark.parametrize(
+    ("draw", "expected"),
+    [
+        (lambda space, _: space.add_circle((5, 5), 3), DISC),
+        (lambda space, _: space.add_ellipse((5, 5), (3, 0), 1.0), DISC),
+        (lambda space, _: space.add_lwpolyline(SQUARE, close=True), box_outline(1, 1)),
+        (lambda space, _: space.add_lwpolyline([*SQUARE, SQUARE[0]]), box_outline(1, 1)),
+        (lambda space, _: space.add_lwpolyline([(0, 0, 1), (9, 0, 1)], format="xyb", close=True), DISC),
+        (lambda space, _: space.add_polyline2d(SQUARE, close=True), box_outline(1, 1)),
+        (lambda space, _: space.add_polyline3d([(*p, 3) for p in SQUARE], close=True), box_outline(1, 1)),
+        (slot, SLOT),
+        (half_ellipse_and_line, HALF),
+        (splines, DISC),
+        (nested_block, box_outline(2, 1)),
+        (square_with_gap(0.0), box_outline(1, 1)),
+    ],
+)
+def test_that_every_kind_of_line_becomes_the_outline(draw, expected, dxf, iou) -> None:
+    outline = read_dxf(dxf(draw))
+    assert iou(outline, expected) > 0.999
+    assert outline.notes == ()
+    assert outline.unit == "mm"
+
+
+def test_that_thousands_of_shuffled_lines_are_joined(dxf, iou) -> None:
+    heart = silhouettes.load("heart")
+    fine = np.asarray(heart.polygon.segmentize(0.002).exterior.coords) * 100
+
+    def draw(space, _drawing) -> None:
+        for index in np.random.default_rng(0).permutation(len(fine) - 1):
+            ends = (fine[index], fine[index + 1]) if index % 2 else (fine[index + 1], fine[index])
+            space.add_line(*(tuple(np.round(end, 6)) for end in ends))
+
+    outline = read_dxf(dxf(draw))
+    assert iou(outline, heart) > 0.999
+    assert len(outline.points) <= 1000
+
+
+@pytest.mark.parametrize(("units", "size", "unit"), [(4, 2.0, "mm"), (1, 50.8, "mm"), (6, 2000.0, "mm"), (0, 2.0, "")])
+def test_that_the_size_follows_insunits(units, size, unit, dxf) -> None:
+    outline = read_dxf(dxf(lambda space, _: space.add_circle((5, 5), 1), units=units))
+    assert outline.size == pytest.approx((size, size), rel=1e-6)
+    assert outline.unit == unit
+
+
+def test_that_a_file_without_header_has_no_unit(tmp_path) -> None:
+    path = tmp_path / "bare.dxf"
+    tags = "0 SECTION 2 ENTITIES 0 CIRCLE 8 0 10 0.0 20 0.0 40 5.0 0 ENDSEC 0 EOF"
+    path.write_text("\n".join(tags.split()) + "\n")
+    outline = read_dxf(path)
+    assert (outline.size, outline.unit) == (pytest.approx((10, 10)), "")
+
+
+def test_that_binary_files_are_read(dxf, iou) -> None:
+    assert iou(read_dxf(dxf(slot, fmt="bin")), SLOT) > 0.999
+
+
+def test_that_a_file_without_its_end_is_repaired_and_said(dxf, iou) -> None:
+    path = dxf(slot)
+    path.write_bytes(path.read_bytes()[:-200])
+    outline = read_dxf(path)
+    assert iou(outline, SLOT) > 0.999
+    assert "repaired while reading" in outline.notes[0]
+
+
+def test_that_a_small_gap_is_closed_and_said(dxf, iou) -> None:
+    outline = read_dxf(dxf(square_with_gap(0.04)))
+    assert iou(outline, box_outline(1, 1)) > 0.999
+    assert "0.04 mm near (0, 0.02)" in outline.notes[0]
+
+
+@pytest.mark.parametrize("decoration", [lambda space: None, lambda space: space.add_circle((5, 5), 2)])
+def test_that_a_wide_gap_is_named_even_around_a_closed_hole(decoration, dxf) -> None:
+    def draw(space, drawing) -> None:
+        square_with_gap(1.0)(space, drawing)
+        decoration(space)
+
+    with pytest.raises(TargetError, match=r"gap of 1 mm near \(0, 0\.5\)"):
+        read_dxf(dxf(draw))
+
+
+def test_that_inner_contours_and_stray_lines_are_left_out_and_said(dxf, iou) -> None:
+    def draw(space, drawing) -> None:
+        square_with_gap(0.0)(space, drawing)
+        space.add_circle((5, 5), 2)
+        space.add_line((2, 2), (2.5, 2.5))
+        space.add_circle((30, 5), 1)
+
+    outline = read_dxf(dxf(draw))
+    assert iou(outline, box_outline(1, 1)) > 0.999
+    assert [
+        word for word in ("inside the outer", "Open lines", "1 smaller piece") if word in " ".join(outline.notes)
+    ] == [
+        "inside the outer",
+        "Open lines",
+        "1 smaller piece",
+    ]
+
+
+@pytest.mark.parametrize("switch", ["off", "freeze"])
+def test_that_hidden_layers_are_ignored(switch, dxf, iou) -> None:
+    def draw(space, drawing) -> None:
+        getattr(drawing.layers.add("Guides"), switch)()
+        space.add_lwpolyline([(0, 0), (90, 0), (90, 90)], close=True, dxfattribs={"layer": "GUIDES"})
+        space.add_circle((5, 5), 3)
+
+    assert iou(read_dxf(dxf(draw)), DISC) > 0.999
+
+
+def endless_block(space, drawing) -> None:
+    block = drawing.blocks.new("A")
+    block.add_blockref("A", (1, 0))
+    space.add_blockref("A", (0, 0))
+
+
+def wide_array(space, drawing) -> None:
+    drawing.blocks.new("A").add_circle((0, 0), 1)
+    count = {"row_count": 1000, "column_count": 1000, "row_spacing": 1, "column_spacing": 1}
+    space.add_blockref("A", (0, 0), count)
+
+
+@pytest.mark.parametrize(
+    ("draw", "word"),
+    [
+        (lambda space, _: None, "no lines in model space"),
+        (lambda space, _: space.add_text("hello"), "convert the text to lines"),
+        (lambda space, _: space.add_line((0, 0), (5, 5)), "open"),
+        (lambda space, _: space.add_line((3, 3), (3, 3)), "one point"),
+        (lambda space, _: space.add_circle((0, 0), 0), "no length"),
+        (lambda space, _: space.add_lwpolyline([(0, 0), (9, 9), (9, 0), (0, 9)], close=True), "near (4.5, 4.5)"),
+        (endless_block, "16 deep"),
+        (wide_array, "1000000 times"),
+    ],
+)
+def test_that_what_has_no_outline_is_refused_with_advice(draw, word, dxf) -> None:
+    with pytest.raises(TargetError, match=r"^drawing\.dxf: ") as caught:
+        read_dxf(dxf(draw))
+    assert word in str(caught.value)
