@@ -13,8 +13,8 @@ from shapely.geometry.base import BaseGeometry
 
 from kirigami_studio.fabricate.cut_plan import CutPath, CutPlan, Layer
 from kirigami_studio.fabricate.slits import SHEET_EDGE, cut_table
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.lattice.deployment import Deployment
-from kirigami_studio.lattice.ratio_field import FloatArray
 
 Kept = Sequence[FloatArray | None]
 #: Chord tolerance (mm) of the independent flattening.

@@ -23,9 +23,9 @@ OPEN = math.radians(100.0)
 
 
 def shapes_of(view: LayoutView) -> VoidShapes:
-    frame = view.frame()
-    assert view.design is not None and frame is not None
-    return VoidShapes.of(view.design, view.phi, frame)
+    transform = view.transform()
+    assert view.design is not None and transform is not None
+    return VoidShapes.of(view.design, view.phi, transform)
 
 
 def middle_of(view: LayoutView, void: Void) -> QPoint:

@@ -176,14 +176,14 @@ class WatchedSession:
         return not controller.running and self.planned()
 
     def planned(self) -> bool:
-        return self.window.fabrication.export.isEnabled() and not self.window.controller.board.busy
+        return self.window.fabrication.export.isEnabled() and not self.window.controller.queue.busy
 
     def shown(self, designs: int) -> bool:
         return self.window.gallery.view.model_.rowCount() == designs
 
     def told(self) -> bool:
         """An export has said how it went."""
-        return bool(self.window.messages.messages) and not self.window.controller.board.busy
+        return bool(self.window.messages.messages) and not self.window.controller.queue.busy
 
     def scrub(self) -> None:
         """Move the slider all the way, one step in each turn."""

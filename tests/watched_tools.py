@@ -72,7 +72,7 @@ class WatchedTools(WatchedSession):
     def many_designs(self) -> None:
         """128 designs, undone and redone."""
         self.step("choose a target in a large window", lambda: self.window.controller.targeting.open("star"))
-        self.until(lambda: self.window.run.generate.isEnabled() and not self.window.controller.board.busy)
+        self.until(lambda: self.window.run.generate.isEnabled() and not self.window.controller.queue.busy)
         self.set_up(DESIGNS, 0, search=False)
         self.step(f"generate {DESIGNS} designs", self.generate, self.generated)
         for _ in range(10):
@@ -147,8 +147,8 @@ class WatchedTools(WatchedSession):
         """A large photo and its threshold."""
         bar, controller = self.window.target.threshold, self.window.controller
         opened = lambda: controller.targeting.open(str(self.folder / "photo.png"))  # noqa: E731
-        self.step("open a large photo", opened, lambda: bar.isVisible() and not controller.board.busy)
-        self.step("move its threshold", self.move_threshold, lambda: not controller.board.busy)
+        self.step("open a large photo", opened, lambda: bar.isVisible() and not controller.queue.busy)
+        self.step("move its threshold", self.move_threshold, lambda: not controller.queue.busy)
         self.step("lay it on the drawing board", lambda: self.press("edit_target"))
         self.press("edit_target")
 

@@ -14,7 +14,7 @@ from kirigami_studio.benchmark.design_suite import Made
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.export.exporter import ExportJob
 from kirigami_studio.export.palette import PAPER
-from kirigami_studio.export.picture import Frame, draw_polygons
+from kirigami_studio.export.picture import PictureFrame, draw_polygons
 from kirigami_studio.foundation.files import write_atomically
 
 #: Size of one picture and of its lines of text, pixels.
@@ -60,4 +60,4 @@ def _tiles(one: Made) -> list[tuple[Image.Image, tuple[str, str]]]:
 def _drawn(candidate: Candidate, one: Made) -> Image.Image:
     job = ExportJob.of(candidate, one.target.points)
     panels = job.placed_panels(job.phi)
-    return draw_polygons(panels, Frame.around([*panels, one.target.points], TILE), one.target.points)
+    return draw_polygons(panels, PictureFrame.around([*panels, one.target.points], TILE), one.target.points)

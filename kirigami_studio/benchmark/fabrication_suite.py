@@ -21,9 +21,10 @@ from kirigami_studio.fabricate.options import CutOptions, CutOrder
 from kirigami_studio.fabricate.ordering import in_cutting_order
 from kirigami_studio.fabricate.slits import cut_table
 from kirigami_studio.fabricate.timing import travel_lengths
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import FabricationError
 from kirigami_studio.lattice.deployment import Deployment, deploy
-from kirigami_studio.lattice.ratio_field import FloatArray, RatioField
+from kirigami_studio.lattice.ratio_field import RatioField
 
 TIMED_GRIDS = ((10, 10), (24, 24))
 ORDERED_GRIDS = ((12, 12), (20, 20), (25, 24))

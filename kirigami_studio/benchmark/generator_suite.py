@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 import numpy as np
-import numpy.typing as npt
 
 from kirigami_studio.evaluate.score import Score
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.pipeline.run import best_of
@@ -82,7 +82,7 @@ def score_figures(scores: Sequence[Sequence[Score]]) -> dict[str, object]:
     }
 
 
-def bootstrap_interval(values: npt.NDArray[np.float64], seed: int = 0) -> tuple[float, float]:
+def bootstrap_interval(values: FloatArray, seed: int = 0) -> tuple[float, float]:
     """95 % bootstrap interval of the mean over targets."""
     rng = np.random.default_rng(seed)
     means = values[rng.integers(len(values), size=(BOOTSTRAP_DRAWS, len(values)))].mean(axis=1)
@@ -90,9 +90,7 @@ def bootstrap_interval(values: npt.NDArray[np.float64], seed: int = 0) -> tuple[
     return float(low), float(high)
 
 
-def bootstrap_ratio_interval(
-    values: npt.NDArray[np.float64], reference: npt.NDArray[np.float64], seed: int = 0
-) -> tuple[float, float]:
+def bootstrap_ratio_interval(values: FloatArray, reference: FloatArray, seed: int = 0) -> tuple[float, float]:
     """95 % bootstrap interval of the ratio of two means over the same targets, which are drawn in pairs."""
     rng = np.random.default_rng(seed)
     drawn = rng.integers(len(values), size=(BOOTSTRAP_DRAWS, len(values)))

@@ -16,9 +16,10 @@ from kirigami_studio.benchmark.generator_suite import SUCCESS_SIOU, bootstrap_in
 from kirigami_studio.benchmark.variants_suite import difference
 from kirigami_studio.evaluate.boundary import as_plane, as_points, resampled
 from kirigami_studio.evaluate.score import Score
-from kirigami_studio.evaluate.silhouette import MASK_SIZE, rasterise
+from kirigami_studio.evaluate.silhouette import rasterise
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import UsageError
-from kirigami_studio.lattice.ratio_field import FloatArray
+from kirigami_studio.foundation.paper import MASK_SIZE
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.read_image import outline_of_mask
 from kirigami_studio.pipeline.request import Request

@@ -9,10 +9,11 @@ import numpy as np
 from kirigami_studio.benchmark.generator_suite import bootstrap_interval, bootstrap_ratio_interval
 from kirigami_studio.benchmark.variants_suite import REFERENCE, difference, with_reference
 from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.generator.sampler import draw_fields, one_pose, pose_angle
 from kirigami_studio.generator.weights import load_model
-from kirigami_studio.lattice.ratio_field import FloatArray, RatioField
+from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.pipeline.rank import ranked
 from kirigami_studio.pipeline.request import Request

@@ -15,8 +15,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import minimum_spanning_tree
 from scipy.spatial import cKDTree
 
-from kirigami_studio.lattice.ratio_field import FloatArray
-from kirigami_studio.lattice.topology import IntArray
+from kirigami_studio.foundation.arrays import FloatArray, IntArray
 
 #: Moves to so many nearest ends are priced while prices are sought; the bound itself looks at all moves.
 NEIGHBOURS = 12

@@ -8,8 +8,8 @@ import numpy as np
 
 from kirigami_studio.benchmark.generator_suite import SUCCESS_SIOU, bootstrap_interval, score_figures
 from kirigami_studio.evaluate.score import Score
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import UsageError
-from kirigami_studio.lattice.ratio_field import FloatArray
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.pipeline.run import best_of

@@ -28,7 +28,7 @@ from kirigami_studio.pipeline.events import Finished, Progress, Result
 from kirigami_studio.pipeline.provenance import provenance
 from kirigami_studio.pipeline.request import POLISH_STEPS, Request
 from kirigami_studio.pipeline.run import run
-from kirigami_studio.project.candidate_edits import told_of_run
+from kirigami_studio.project.candidate_edits import format_run
 from kirigami_studio.project.design_facts import design_facts
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.material_record import material_for
@@ -153,7 +153,7 @@ def document_of(result: Result, fabrication: FabricationSettings) -> Document:
         request.search,
     )
     source = provenance(request, digest_of(request.variant))
-    candidates = tuple(told_of_run(result.candidates, source))
+    candidates = tuple(format_run(result.candidates, source))
     return Document(request.target, settings, candidates, 0, fabrication, source)
 
 

@@ -24,7 +24,7 @@ from kirigami_studio.fabricate.material import default_material, find_material
 from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions, CutOrder
 from kirigami_studio.fabricate.slits import cut_table
 from kirigami_studio.foundation.errors import ExportError, FabricationError, ProjectError, UsageError
-from kirigami_studio.project.cutting import plan_of, target_angle
+from kirigami_studio.project.cutting import plan_of
 from kirigami_studio.project.design_facts import design_facts
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.settings import FabricationSettings
@@ -46,7 +46,7 @@ def checked_plan(candidate: Candidate, fabrication: FabricationSettings) -> tupl
         The plan cannot be made, or the sheet would not survive it.
     """
     plan = plan_of(candidate, fabrication)
-    report = check_plan(plan, phi=target_angle(candidate))
+    report = check_plan(plan, phi=candidate.final_phi)
     for problem in report.problems:
         if problem.severity is Severity.ERROR:
             raise FabricationError(problem.text)

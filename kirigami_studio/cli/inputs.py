@@ -15,6 +15,7 @@ from typing import Generic, TypeVar
 import numpy as np
 import numpy.typing as npt
 
+from kirigami_studio.foundation.arrays import BoolArray, FloatArray
 from kirigami_studio.foundation.errors import GridError, KirigamiError, RatioError, TargetError, UsageError
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.outlines.outline import Outline
@@ -169,7 +170,7 @@ def _field_of(values: object, name: str) -> RatioField:
         raise RatioError(f"{name}: {error}") from error
 
 
-def read_mask(path: Path) -> npt.NDArray[np.bool_]:
+def read_mask(path: Path) -> BoolArray:
     """Read a mask image as a bool array; what is brighter than half of its brightest pixel is inside.
 
     Files with the values 0 and 1, 0 and 255, or 16 bits all say the same.
@@ -190,10 +191,10 @@ def read_mask(path: Path) -> npt.NDArray[np.bool_]:
     return _inside(grey)
 
 
-def _inside(levels: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
+def _inside(levels: FloatArray) -> BoolArray:
     """What lies above half of the highest level; of a bool mask or 0 and 1, what is set."""
     highest = max(float(levels.max(initial=0.0)), 0.0)
-    inside: npt.NDArray[np.bool_] = levels > 0.5 * highest
+    inside: BoolArray = levels > 0.5 * highest
     return inside
 
 

@@ -6,13 +6,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 import shapely
 
 from kirigami_studio.evaluate.alignment import align_many
 from kirigami_studio.evaluate.boundary import as_plane
-from kirigami_studio.evaluate.silhouette import Frame, filled_in_frame, rasterise_in_frame
-from kirigami_studio.evaluate.similarity import FloatArray, Similarity
+from kirigami_studio.evaluate.silhouette import RasterFrame, filled_in_frame, rasterise_in_frame
+from kirigami_studio.evaluate.similarity import Similarity
+from kirigami_studio.foundation.arrays import BoolArray, FloatArray, IntArray
 from kirigami_studio.outlines.outline import Outline
 
 
@@ -29,7 +29,7 @@ def agreement_of_many(shapes: Sequence[FloatArray], outline: Outline) -> list[Ag
     """Align shapes (L, 2) with equal numbers of vertices and measure them."""
     transforms = align_many(shapes, outline.points)
     laid = np.stack([transform.apply(shape) for transform, shape in zip(transforms, shapes, strict=True)])
-    found = zip(drawn_ious(laid, outline.points), exact_ious(laid, outline), transforms, strict=True)
+    found = zip(raster_ious(laid, outline.points), exact_ious(laid, outline), transforms, strict=True)
     return [Agreement(float(drawn), float(exact), transform) for drawn, exact, transform in found]
 
 
@@ -42,9 +42,9 @@ def exact_ious(laid: FloatArray, outline: Outline) -> FloatArray:
     return np.asarray(common / (shapely.area(shapes) + outline.polygon.area - common), dtype=np.float64)
 
 
-def drawn_ious(laid: FloatArray, target: FloatArray) -> FloatArray:
+def raster_ious(laid: FloatArray, target: FloatArray) -> FloatArray:
     """The same on 128 x 128 pixels around the target, continued so far that nothing is cut off: (B,)."""
-    frame = Frame.around(target)
+    frame = RasterFrame.around(target)
     masks, (row, column) = filled_in_frame(as_plane(laid), frame)
     still = rasterise_in_frame(target, frame)
     window = masks[:, row : row + frame.rows, column : column + frame.columns]
@@ -52,5 +52,5 @@ def drawn_ious(laid: FloatArray, target: FloatArray) -> FloatArray:
     return np.asarray(common / (_count(masks) + np.count_nonzero(still) - common), dtype=np.float64)
 
 
-def _count(masks: npt.NDArray[np.bool_]) -> npt.NDArray[np.intp]:
+def _count(masks: BoolArray) -> IntArray:
     return np.asarray(np.count_nonzero(masks, axis=(1, 2)))

@@ -20,10 +20,11 @@ import numpy.typing as npt
 
 from kirigami_studio.evaluate.alignment_target import CYCLE, AlignmentTarget, alignment_target
 from kirigami_studio.evaluate.ascent import ascend, intersections
-from kirigami_studio.evaluate.boundary import PlaneArray, resampled
+from kirigami_studio.evaluate.boundary import resampled
 from kirigami_studio.evaluate.finish import Placement, finished
 from kirigami_studio.evaluate.outline_batch import OutlineBatch
-from kirigami_studio.evaluate.similarity import FloatArray, Similarity
+from kirigami_studio.evaluate.similarity import Similarity
+from kirigami_studio.foundation.arrays import ComplexArray, FloatArray
 
 __all__ = ["Similarity", "align", "align_many"]
 
@@ -100,20 +101,20 @@ def align_many(moving: Sequence[npt.ArrayLike], fixed: npt.ArrayLike) -> list[Si
     return found
 
 
-def _places(index: int, climbed: tuple[PlaneArray, PlaneArray, FloatArray], margin: float) -> list[Placement]:
+def _places(index: int, climbed: tuple[ComplexArray, ComplexArray, FloatArray], margin: float) -> list[Placement]:
     """Places of one outline within ``margin`` of its best IoU."""
     factor, shift, iou = (values[index] for values in climbed)
     near = np.flatnonzero(iou >= iou.max() - margin)
     return [Placement(complex(factor[slot]), complex(shift[slot]), float(iou[slot])) for slot in near]
 
 
-def _best(count: int, iou: FloatArray, factor: PlaneArray, shift: PlaneArray) -> tuple[PlaneArray, PlaneArray]:
+def _best(count: int, iou: FloatArray, factor: ComplexArray, shift: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
     """The ``count`` best places of every outline, (B, count) each; of equal ones those that are turned less."""
     order = np.argsort(TURN_PENALTY * np.abs(np.angle(factor)) / np.pi - iou, axis=1, kind="stable")[:, :count]
     return np.take_along_axis(factor, order, axis=1), np.take_along_axis(shift, order, axis=1)
 
 
-def _starts(outlines: OutlineBatch, target: AlignmentTarget) -> PlaneArray:
+def _starts(outlines: OutlineBatch, target: AlignmentTarget) -> ComplexArray:
     """The best distinct start rotations of every outline: (B, KEPT_STARTS) complex of modulus 1."""
     count = len(outlines.axis)
     ring = np.tile(np.exp(2j * np.pi * np.arange(RING) / RING), (count, 1))
@@ -132,7 +133,7 @@ def _starts(outlines: OutlineBatch, target: AlignmentTarget) -> PlaneArray:
     return kept
 
 
-def _procrustes(vertices: PlaneArray, target: AlignmentTarget) -> PlaneArray:
+def _procrustes(vertices: ComplexArray, target: AlignmentTarget) -> ComplexArray:
     """Closed-form rotations at the best cyclic shifts of the boundary correspondence: (B, CYCLIC_STARTS) complex.
 
     With both boundaries resampled by arc length, sum(conj(z_j) w_(j+k)) has the best rotation of shift k as its phase

@@ -19,7 +19,6 @@ from scipy.spatial import cKDTree
 from shapely.geometry.base import BaseGeometry
 
 from kirigami_studio.evaluate.boundary import (
-    PlaneArray,
     as_plane,
     as_points,
     checked_polygon,
@@ -28,7 +27,8 @@ from kirigami_studio.evaluate.boundary import (
     scan_crossings,
     spread,
 )
-from kirigami_studio.evaluate.similarity import FloatArray, Similarity
+from kirigami_studio.evaluate.similarity import Similarity
+from kirigami_studio.foundation.arrays import ComplexArray, FloatArray
 
 _Number = TypeVar("_Number", np.float64, np.complex128)
 
@@ -78,10 +78,10 @@ class AlignmentTarget:
     ring: shapely.LinearRing
     area: float
     axis: float
-    spectrum: PlaneArray
+    spectrum: ComplexArray
     corner: complex
     step: float
-    table: PlaneArray
+    table: ComplexArray
     stretch: FloatArray
 
     @classmethod
@@ -124,15 +124,15 @@ class AlignmentTarget:
             stretch=stretch,
         )
 
-    def lookup(self, places: PlaneArray) -> PlaneArray:
+    def lookup(self, places: ComplexArray) -> ComplexArray:
         """F + i depth at any places (x + iy), bilinear between lattice points, constant beyond the lattice."""
         return self._between(self.table, places)
 
-    def stretch_at(self, places: PlaneArray) -> FloatArray:
+    def stretch_at(self, places: ComplexArray) -> FloatArray:
         """F alone, which costs half as much."""
         return self._between(self.stretch, places)
 
-    def _between(self, table: npt.NDArray[_Number], places: PlaneArray) -> npt.NDArray[_Number]:
+    def _between(self, table: npt.NDArray[_Number], places: ComplexArray) -> npt.NDArray[_Number]:
         u = np.clip((places.real - self.corner.real) / self.step, 0.0, LATTICE - 1.000001)
         v = np.clip((places.imag - self.corner.imag) / self.step, 0.0, LATTICE - 1.000001)
         column, place = u.astype(np.intp), v.astype(np.intp)
@@ -153,7 +153,7 @@ class AlignmentTarget:
         return lower
 
 
-def _stretch(plane: PlaneArray, corner: complex, step: float) -> FloatArray:
+def _stretch(plane: ComplexArray, corner: complex, step: float) -> FloatArray:
     """F at every lattice point, averaged over one step of height: (193, 193) float."""
     fine = step / SCAN_LINES
     bottom = corner.imag + fine * (0.5 - 0.5 * SCAN_LINES)
@@ -169,7 +169,7 @@ def _stretch(plane: PlaneArray, corner: complex, step: float) -> FloatArray:
     return averaged
 
 
-def _depth(plane: PlaneArray, polygon: BaseGeometry, corner: complex, step: float) -> FloatArray:
+def _depth(plane: ComplexArray, polygon: BaseGeometry, corner: complex, step: float) -> FloatArray:
     """Signed distance to the outline at every lattice point, positive inside: (193, 193) float.
 
     The nearest of many boundary samples names the edge; the distance to that edge is then exact.

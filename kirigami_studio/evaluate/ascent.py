@@ -8,9 +8,8 @@ import numpy as np
 from numpy import newaxis
 
 from kirigami_studio.evaluate.alignment_target import AlignmentTarget
-from kirigami_studio.evaluate.boundary import PlaneArray
 from kirigami_studio.evaluate.outline_batch import Boundaries
-from kirigami_studio.evaluate.similarity import FloatArray
+from kirigami_studio.foundation.arrays import ComplexArray, FloatArray
 
 #: Share of the band's weight that every boundary point keeps, so that no direction is left without curvature.
 LEAST_WEIGHT = 0.1
@@ -23,7 +22,7 @@ LONGEST_STEP = 0.2
 
 
 def overlap(
-    outlines: Boundaries, target: AlignmentTarget, factor: PlaneArray, shift: PlaneArray
+    outlines: Boundaries, target: AlignmentTarget, factor: ComplexArray, shift: ComplexArray
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Tabulated intersection and union areas (B, S), and depth of the boundary points (B, S, Q).
 
@@ -39,7 +38,7 @@ def overlap(
     return intersection, np.abs(factor) ** 2 + 1.0 - intersection, found.imag
 
 
-def intersections(outlines: Boundaries, target: AlignmentTarget, rotation: PlaneArray) -> FloatArray:
+def intersections(outlines: Boundaries, target: AlignmentTarget, rotation: ComplexArray) -> FloatArray:
     """Tabulated intersection areas under plain rotations (B, S), complex numbers of modulus 1: (B, S)."""
     length = target.stretch_at(rotation[..., newaxis] * outlines.points[:, newaxis])
     length *= (rotation[..., newaxis] * outlines.steps[:, newaxis]).imag
@@ -49,10 +48,10 @@ def intersections(outlines: Boundaries, target: AlignmentTarget, rotation: Plane
 def ascend(
     outlines: Boundaries,
     target: AlignmentTarget,
-    factor: PlaneArray,
-    shift: PlaneArray,
+    factor: ComplexArray,
+    shift: ComplexArray,
     bands: Sequence[float],
-) -> tuple[PlaneArray, PlaneArray, FloatArray]:
+) -> tuple[ComplexArray, ComplexArray, FloatArray]:
     """Climb from every start (B, S); returns the best factor, shift and tabulated IoU found, each (B, S).
 
     Parameters
@@ -87,7 +86,7 @@ def ascend(
 def _newton_step(
     outlines: Boundaries,
     target: AlignmentTarget,
-    factor: PlaneArray,
+    factor: ComplexArray,
     intersection: FloatArray,
     union: FloatArray,
     depth: FloatArray,

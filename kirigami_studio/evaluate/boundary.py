@@ -7,11 +7,10 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
-from kirigami_studio.evaluate.similarity import FloatArray
+from kirigami_studio.foundation.arrays import ComplexArray, FloatArray, IntArray
 from kirigami_studio.foundation.errors import KirigamiError
 
-PlaneArray = npt.NDArray[np.complex128]
-IndexArray = npt.NDArray[np.intp]
+IndexArray = IntArray
 
 #: Area below this part of the squared extent cannot be told from a line: a thousand rounding errors of the sum.
 FLAT = 1e-13
@@ -59,24 +58,24 @@ def checked_polygons(outlines: Sequence[npt.ArrayLike]) -> FloatArray:
     return np.stack([checked_polygon(outline) for outline in outlines])
 
 
-def as_plane(points: FloatArray) -> PlaneArray:
+def as_plane(points: FloatArray) -> ComplexArray:
     """Points (..., 2) as complex numbers (...)."""
-    plane: PlaneArray = points[..., 0] + 1j * points[..., 1]
+    plane: ComplexArray = points[..., 0] + 1j * points[..., 1]
     return plane
 
 
-def as_points(plane: PlaneArray) -> FloatArray:
+def as_points(plane: ComplexArray) -> FloatArray:
     """Complex numbers (...) as points (..., 2)."""
     return np.stack([plane.real, plane.imag], axis=-1)
 
 
-def moments(plane: PlaneArray) -> tuple[float, complex, float]:
+def moments(plane: ComplexArray) -> tuple[float, complex, float]:
     """Signed area, centroid and direction (radians) of the longer principal axis of a closed polygon (L,)."""
     area, centroid, axis = moments_of_many(plane[np.newaxis])
     return float(area[0]), complex(centroid[0]), float(axis[0])
 
 
-def moments_of_many(planes: PlaneArray) -> tuple[FloatArray, PlaneArray, FloatArray]:
+def moments_of_many(planes: ComplexArray) -> tuple[FloatArray, ComplexArray, FloatArray]:
     """The same for several polygons (B, L) at once: (B,) each; without area the mean of the vertices and axis 0."""
     origin = planes.mean(axis=-1)
     p = planes - origin[:, np.newaxis]
@@ -92,16 +91,16 @@ def moments_of_many(planes: PlaneArray) -> tuple[FloatArray, PlaneArray, FloatAr
     return area, origin + centre, axis
 
 
-def resampled(plane: PlaneArray, count: int) -> PlaneArray:
+def resampled(plane: ComplexArray, count: int) -> ComplexArray:
     """``count`` points at equal arc length along a closed polygon (L,), starting at its first vertex."""
     closed = np.append(plane, plane[0])
     length = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(closed)))])
     places = length[-1] * np.arange(count) / count
-    points: PlaneArray = np.interp(places, length, closed)
+    points: ComplexArray = np.interp(places, length, closed)
     return points
 
 
-def edge_parts(planes: PlaneArray, spare: int) -> tuple[PlaneArray, PlaneArray]:
+def edge_parts(planes: ComplexArray, spare: int) -> tuple[ComplexArray, ComplexArray]:
     """Cut the edges of closed polygons (..., L) into L + ``spare`` parts of similar length.
 
     Returns
@@ -127,7 +126,7 @@ def spread(count: IndexArray) -> tuple[IndexArray, IndexArray]:
 
 
 def scan_crossings(
-    plane: PlaneArray, first: float, spacing: float, lines: int
+    plane: ComplexArray, first: float, spacing: float, lines: int
 ) -> tuple[IndexArray, FloatArray, IndexArray]:
     """Where horizontal lines cross a closed polygon.
 
@@ -151,7 +150,7 @@ def scan_crossings(
 
 
 def scan_crossings_of_many(
-    planes: PlaneArray, first: float, spacing: float, lines: tuple[int, int]
+    planes: ComplexArray, first: float, spacing: float, lines: tuple[int, int]
 ) -> tuple[IndexArray, FloatArray, IndexArray, IndexArray]:
     """The same for closed polygons (B, L) and the lines k of a half-open range; last comes the edge, B L in all."""
     ahead = np.roll(planes, -1, axis=-1).ravel()

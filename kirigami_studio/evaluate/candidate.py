@@ -7,6 +7,7 @@ from dataclasses import field as dataclass_field
 from enum import Enum
 
 from kirigami_studio.evaluate.score import Score
+from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.evaluate.trimming import Trim
 from kirigami_studio.lattice.ratio_field import RatioField
 
@@ -35,7 +36,7 @@ class Candidate:
         Its place in that run's sampling order.
     polished : bool
         Whether a fit on the exact geometry has improved it after sampling.
-    drawn : RatioField or None
+    sampled_field : RatioField or None
         The field as it was sampled, where a fit has improved it.
     trim : Trim or None
         The same design fitted to cover the target and trimmed, where that was asked for; its score is its own.
@@ -52,8 +53,23 @@ class Candidate:
     seed: int
     index: int
     polished: bool = False
-    drawn: RatioField | None = None
+    sampled_field: RatioField | None = None
     trim: Trim | None = None
     variant: str = ""
     origin: Origin = Origin.SAMPLED
     made_with: tuple[tuple[str, str], ...] = dataclass_field(default=(), compare=False)
+
+    @property
+    def final_field(self) -> RatioField:
+        """The ratios that are shown and cut: those that were fitted for trimming, if the candidate is trimmed."""
+        return self.field if self.trim is None else self.trim.field
+
+    @property
+    def final_pose(self) -> Similarity:
+        """Where the final field's layout lies on the target."""
+        return self.score.transform if self.trim is None else self.trim.pose
+
+    @property
+    def final_phi(self) -> float:
+        """Angle (radians) at which the final field shows the target."""
+        return self.score.phi if self.trim is None else self.trim.phi

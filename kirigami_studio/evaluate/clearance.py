@@ -16,9 +16,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from kirigami_studio.evaluate.boundary import IndexArray, PlaneArray
+from kirigami_studio.evaluate.boundary import IndexArray
 from kirigami_studio.evaluate.crossing import TOUCH
-from kirigami_studio.evaluate.similarity import FloatArray
+from kirigami_studio.foundation.arrays import BoolArray, ComplexArray, FloatArray
 
 #: Less deep than this (unit cells) is certainly a touch: rounding is far smaller.
 CERTAIN = 0.5 * TOUCH
@@ -30,10 +30,8 @@ ROUNDING = 0.02
 #: Pairs of edges looked at together: few enough for the processor's cache.
 PAIRS_AT_ONCE = 30_000
 
-BoolArray = npt.NDArray[np.bool_]
 
-
-def stays_clear(even: PlaneArray, odd: PlaneArray, phi: float, samples: int) -> BoolArray:
+def stays_clear(even: ComplexArray, odd: ComplexArray, phi: float, samples: int) -> BoolArray:
     """Whether no two edges of an outline cross deeper than a touch between the compact sheet and ``phi``.
 
     Parameters
@@ -59,7 +57,7 @@ def stays_clear(even: PlaneArray, odd: PlaneArray, phi: float, samples: int) -> 
 class _Way:
     """The motion of some outlines from theta = 0 to ``last``."""
 
-    def __init__(self, even: PlaneArray, odd: PlaneArray, last: float) -> None:
+    def __init__(self, even: ComplexArray, odd: ComplexArray, last: float) -> None:
         self.even, self.odd, self.last = even, odd, last
         self.even_edge = np.roll(even, -1, axis=1) - even
         self.odd_edge = np.roll(odd, -1, axis=1) - odd
@@ -114,7 +112,7 @@ class _Distances:
     """Signed distances of both ends of one edge from the line through another: ``mean + Im(s wave)``, (2, K) each."""
 
     mean: FloatArray
-    wave: PlaneArray
+    wave: ComplexArray
 
     def keep_aside(self, last: float) -> BoolArray:
         """Whether both ends stay on one side of the line from theta = 0 to ``last``, touches included: (K,)."""

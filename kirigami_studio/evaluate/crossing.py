@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from kirigami_studio.evaluate.boundary import PlaneArray
+from kirigami_studio.foundation.arrays import ComplexArray
 
 #: Crossings less deep than this (unit cells) are touches: rounding moves nodes by 1e-13, hinges that close exactly
 #: at phi = 0 or pi meet to within that.
 TOUCH = 1e-9
 
 
-def deepest_crossing(plane: PlaneArray) -> complex | None:
+def deepest_crossing(plane: ComplexArray) -> complex | None:
     """Return the place of the deepest proper crossing of two edges, or None.
 
     Two edges cross properly when the ends of each lie on both sides of the other; the smallest of these four distances

@@ -10,12 +10,11 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 import shapely
 
-from kirigami_studio.evaluate.boundary import PlaneArray, as_plane, as_points
+from kirigami_studio.evaluate.boundary import as_plane, as_points
 from kirigami_studio.evaluate.crossing import deepest_crossing
-from kirigami_studio.evaluate.similarity import FloatArray
+from kirigami_studio.foundation.arrays import BoolArray, ComplexArray, FloatArray
 from kirigami_studio.lattice.deployment import ZIPPED_BELOW, Deployment, check_phi
 
 #: Largest overlap ratio that still counts as feasible (paper, tau_ov).
@@ -62,7 +61,7 @@ def invalid_quads(deployment: Deployment, phi: float) -> int:
     return int(np.count_nonzero(bad_quads(as_plane(quads_that_count(deployment, phi)))))
 
 
-def bad_quads(corners: PlaneArray) -> npt.NDArray[np.bool_]:
+def bad_quads(corners: ComplexArray) -> BoolArray:
     """Which of the quads (..., 4), x + iy in unit cells, are collapsed, inverted or cross themselves: (...) bool."""
     a, b, c, d = np.moveaxis(corners, -1, 0)
     area = 0.5 * (np.conj(c - a) * (d - b)).imag
@@ -109,14 +108,14 @@ def path_contact(deployment: Deployment, phi_target: float) -> Contact | None:
     return None
 
 
-def outline_path(deployment: Deployment, angles: FloatArray) -> PlaneArray:
+def outline_path(deployment: Deployment, angles: FloatArray) -> ComplexArray:
     """Outlines at several angles at once: (A, L) complex, unit cells, edge hinges included.
 
     ``P(phi) = R(-a) U + R(+a) V`` with 2a = pi - phi, for the outline's nodes only.
     """
     nodes = deployment.topology.outline_nodes
     turn = np.exp(0.5j * (math.pi - angles))[:, np.newaxis]
-    path: PlaneArray = np.conj(turn) * as_plane(deployment.even_part[nodes]) + turn * as_plane(
+    path: ComplexArray = np.conj(turn) * as_plane(deployment.even_part[nodes]) + turn * as_plane(
         deployment.odd_part[nodes]
     )
     return path
@@ -142,11 +141,11 @@ def quads_that_count(deployment: Deployment, phi: float) -> FloatArray:
     return np.concatenate([panels, deployment.voids(phi).reshape(-1, 4, 2)])
 
 
-def _edges_cross(a: PlaneArray, b: PlaneArray, c: PlaneArray, d: PlaneArray) -> npt.NDArray[np.bool_]:
+def _edges_cross(a: ComplexArray, b: ComplexArray, c: ComplexArray, d: ComplexArray) -> BoolArray:
     """Whether segments ab and cd cross properly, one by one."""
     return np.asarray((_side(a, b, c) * _side(a, b, d) < 0.0) & (_side(c, d, a) * _side(c, d, b) < 0.0))
 
 
-def _side(a: PlaneArray, b: PlaneArray, p: PlaneArray) -> FloatArray:
+def _side(a: ComplexArray, b: ComplexArray, p: ComplexArray) -> FloatArray:
     side: FloatArray = (np.conj(b - a) * (p - a)).imag
     return side

@@ -9,7 +9,8 @@ import numpy as np
 import shapely
 
 from kirigami_studio.evaluate.alignment_target import AlignmentTarget
-from kirigami_studio.evaluate.boundary import PlaneArray, as_points, edge_parts
+from kirigami_studio.evaluate.boundary import as_points, edge_parts
+from kirigami_studio.foundation.arrays import ComplexArray
 
 #: Above this IoU every boundary point has its partner next to it, and nearest-point steps converge to a copy.
 NEAR_COPY = 0.98
@@ -37,7 +38,7 @@ class Placement:
     iou: float
 
 
-def finished(vertices: PlaneArray, target: AlignmentTarget, places: Sequence[Placement]) -> Placement:
+def finished(vertices: ComplexArray, target: AlignmentTarget, places: Sequence[Placement]) -> Placement:
     """Choose among places of an outline (L,) complex, in its normal frame.
 
     The first one unless it is a near-copy of the target: then all of them slide, and the best by exact IoU is chosen.
@@ -51,7 +52,7 @@ def finished(vertices: PlaneArray, target: AlignmentTarget, places: Sequence[Pla
     return min(ties, key=lambda place: abs(np.angle(place.factor)))
 
 
-def slid(vertices: PlaneArray, target: AlignmentTarget, place: Placement) -> Placement:
+def slid(vertices: ComplexArray, target: AlignmentTarget, place: Placement) -> Placement:
     """Move a near-copy so that its boundary points meet the tangents at their nearest target points.
 
     Least squares in the normal direction only, as in point-to-line registration.  Never worse by exact IoU, which the
@@ -79,7 +80,7 @@ def slid(vertices: PlaneArray, target: AlignmentTarget, place: Placement) -> Pla
     return end if end.iou > start.iou else start
 
 
-def exact_iou(vertices: PlaneArray, target: AlignmentTarget, factor: complex, shift: complex) -> float:
+def exact_iou(vertices: ComplexArray, target: AlignmentTarget, factor: complex, shift: complex) -> float:
     """IoU of the polygons themselves, laid at ``factor * p + shift``."""
     polygon = shapely.Polygon(as_points(factor * vertices + shift))
     shape = polygon if polygon.is_valid else shapely.make_valid(polygon)

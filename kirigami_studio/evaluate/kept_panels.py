@@ -16,8 +16,8 @@ import shapely
 from shapely.geometry import LineString, MultiPolygon, Polygon
 from shapely.geometry.base import BaseGeometry
 
-from kirigami_studio.evaluate.similarity import FloatArray
-from kirigami_studio.lattice.topology import BoolArray, IntArray, topology
+from kirigami_studio.foundation.arrays import BoolArray, FloatArray, IntArray
+from kirigami_studio.lattice.topology import topology
 
 GeometryArray = npt.NDArray[np.object_]
 

@@ -10,9 +10,10 @@ from scipy.ndimage import affine_transform, map_coordinates, uniform_filter
 from skimage.measure import approximate_polygon, find_contours
 
 from kirigami_studio.evaluate.boundary import as_plane, moments
-from kirigami_studio.evaluate.silhouette import MASK_SIZE, MaskArray
-from kirigami_studio.evaluate.similarity import FloatArray, Similarity
+from kirigami_studio.evaluate.similarity import Similarity
+from kirigami_studio.foundation.arrays import BoolArray, FloatArray
 from kirigami_studio.foundation.errors import KirigamiError
+from kirigami_studio.foundation.paper import MASK_SIZE
 
 #: Contours are thinned to this deviation in pixels: half the staircase of a slanted edge.
 CONTOUR_TOLERANCE = 0.5
@@ -85,9 +86,9 @@ class FittedMask:
         return self.area, self.coverage.shape, self.coverage.tobytes()
 
     @property
-    def filled(self) -> MaskArray:
+    def filled(self) -> BoolArray:
         """Foreground pixels."""
-        filled: MaskArray = self.coverage >= 0.5
+        filled: BoolArray = self.coverage >= 0.5
         return filled
 
     @property
@@ -140,7 +141,7 @@ class FittedMask:
         return complex(column.mean() + 0.5, self.coverage.shape[0] - 0.5 - row.mean())
 
 
-def foreground(mask: npt.ArrayLike, name: str = "mask") -> MaskArray:
+def foreground(mask: npt.ArrayLike, name: str = "mask") -> BoolArray:
     """Threshold a 2-D mask at half of its range (1 for booleans and 0/1, 255 beyond that).
 
     Raises
@@ -158,7 +159,7 @@ def foreground(mask: npt.ArrayLike, name: str = "mask") -> MaskArray:
     if not np.isfinite(values).all():
         row, column = np.argwhere(~np.isfinite(values))[0]
         raise KirigamiError(f"The {name} holds {values[row, column]} at row {row}, column {column}; use 0 and 1.")
-    filled: MaskArray = values >= (0.5 if values.max() <= 1.0 else 127.5)
+    filled: BoolArray = values >= (0.5 if values.max() <= 1.0 else 127.5)
     if not filled.any():
         raise KirigamiError(
             f"The {name} is empty: no pixel of its {values.shape[0]} x {values.shape[1]} is foreground."

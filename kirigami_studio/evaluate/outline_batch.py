@@ -8,14 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from kirigami_studio.evaluate.boundary import (
-    PlaneArray,
-    as_plane,
-    checked_polygons,
-    edge_parts,
-    moments_of_many,
-)
-from kirigami_studio.evaluate.similarity import FloatArray, Similarity
+from kirigami_studio.evaluate.boundary import as_plane, checked_polygons, edge_parts, moments_of_many
+from kirigami_studio.evaluate.similarity import Similarity
+from kirigami_studio.foundation.arrays import ComplexArray, FloatArray
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -30,8 +25,8 @@ class Boundaries:
         Those parts as vectors.
     """
 
-    points: PlaneArray
-    steps: PlaneArray
+    points: ComplexArray
+    steps: ComplexArray
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -48,7 +43,7 @@ class OutlineBatch:
         Source frame -> normal frame.
     """
 
-    vertices: PlaneArray
+    vertices: ComplexArray
     axis: FloatArray
     to_normal: tuple[Similarity, ...]
 

@@ -14,9 +14,8 @@ import shapely
 
 from kirigami_studio.evaluate.boundary import as_plane
 from kirigami_studio.evaluate.crossing import deepest_crossing
-from kirigami_studio.evaluate.similarity import FloatArray
+from kirigami_studio.foundation.arrays import BoolArray, FloatArray
 from kirigami_studio.lattice.deployment import Deployment
-from kirigami_studio.lattice.topology import BoolArray
 
 #: Shorter lines (unit cells) are touches of edges that close as they are meant to; rounding is far smaller.
 TOUCHING = 1e-7

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from kirigami_studio.evaluate.similarity import FloatArray
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.lattice.ratio_field import RatioField
 
 

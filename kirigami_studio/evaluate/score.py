@@ -12,8 +12,9 @@ from kirigami_studio.evaluate.agreement import Agreement, agreement_of_many, exa
 from kirigami_studio.evaluate.boundary import checked_polygon
 from kirigami_studio.evaluate.feasibility import Contact
 from kirigami_studio.evaluate.regularity import log_variation, total_variation
-from kirigami_studio.evaluate.similarity import FloatArray, Similarity
+from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.evaluate.soundness import Soundness, soundness_of_many
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.lattice.deployment import Deployment, check_phi, deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.outlines.outline import Outline

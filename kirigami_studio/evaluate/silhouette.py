@@ -7,27 +7,17 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from kirigami_studio.evaluate.boundary import (
-    PlaneArray,
-    as_plane,
-    checked_polygon,
-    scan_crossings,
-    scan_crossings_of_many,
-)
-from kirigami_studio.evaluate.similarity import FloatArray
+from kirigami_studio.evaluate.boundary import as_plane, checked_polygon, scan_crossings, scan_crossings_of_many
+from kirigami_studio.foundation.arrays import BoolArray, ComplexArray, FloatArray
 from kirigami_studio.foundation.errors import KirigamiError
-
-MaskArray = npt.NDArray[np.bool_]
-
-#: Pixels each way of the paper's masks.
-MASK_SIZE = 128
+from kirigami_studio.foundation.paper import MASK_SIZE
 
 #: Larger masks would not fit into memory on an ordinary machine.
 LARGEST_MASK = 8192
 
 
 @dataclass(frozen=True, slots=True)
-class Frame:
+class RasterFrame:
     """Where the pixels of a mask lie in the plane; row 0 on top, y up.
 
     Attributes
@@ -46,20 +36,20 @@ class Frame:
     columns: int
 
     @classmethod
-    def around(cls, polygon: FloatArray, size: int = MASK_SIZE) -> Frame:
+    def around(cls, polygon: FloatArray, size: int = MASK_SIZE) -> RasterFrame:
         """The square frame that the longer side of the polygon's bounding box fills, centred on its midpoint."""
         low, high = polygon.min(axis=0), polygon.max(axis=0)
         side = float((high - low).max())
         centre = 0.5 * (low + high)
         return cls(float(centre[0]) - 0.5 * side, float(centre[1]) + 0.5 * side, side / size, size, size)
 
-    def covering(self, polygon: FloatArray) -> Frame:
+    def covering(self, polygon: FloatArray) -> RasterFrame:
         """The same pixels, continued so far that the polygon (L, 2) lies inside as well."""
         low, high = polygon.min(axis=0), polygon.max(axis=0)
         before = max(0, _pixels(self.left - low[0], self.pixel)), max(0, _pixels(high[1] - self.top, self.pixel))
         right, bottom = self.left + self.columns * self.pixel, self.top - self.rows * self.pixel
         after = max(0, _pixels(high[0] - right, self.pixel)), max(0, _pixels(bottom - low[1], self.pixel))
-        return Frame(
+        return RasterFrame(
             self.left - before[0] * self.pixel,
             self.top + before[1] * self.pixel,
             self.pixel,
@@ -72,7 +62,7 @@ def _pixels(length: float, pixel: float) -> int:
     return int(np.ceil(length / pixel))
 
 
-def rasterise(polygon: npt.ArrayLike, size: int = MASK_SIZE) -> MaskArray:
+def rasterise(polygon: npt.ArrayLike, size: int = MASK_SIZE) -> BoolArray:
     """Fill a polygon into a square mask.
 
     Parameters
@@ -95,10 +85,10 @@ def rasterise(polygon: npt.ArrayLike, size: int = MASK_SIZE) -> MaskArray:
     points = checked_polygon(polygon)
     if isinstance(size, bool) or not isinstance(size, int | np.integer) or not 2 <= size <= LARGEST_MASK:
         raise KirigamiError(f"The mask size must be a whole number from 2 to {LARGEST_MASK} pixels, got {size!r}.")
-    return rasterise_in_frame(points, Frame.around(points, int(size)))
+    return rasterise_in_frame(points, RasterFrame.around(points, int(size)))
 
 
-def rasterise_in_frame(polygon: npt.ArrayLike, frame: Frame) -> MaskArray:
+def rasterise_in_frame(polygon: npt.ArrayLike, frame: RasterFrame) -> BoolArray:
     """Fill a polygon into a given frame, so that several shapes share their pixels.
 
     Pixels whose centre has a winding number other than 0 are filled: a sheet that overlaps itself is still filled.
@@ -107,7 +97,7 @@ def rasterise_in_frame(polygon: npt.ArrayLike, frame: Frame) -> MaskArray:
     ----------
     polygon : (L, 2) float
         Parts outside the frame are cut off.
-    frame : Frame
+    frame : RasterFrame
 
     Returns
     -------
@@ -119,11 +109,11 @@ def rasterise_in_frame(polygon: npt.ArrayLike, frame: Frame) -> MaskArray:
     column = np.ceil((crossing - frame.left) / frame.pixel - 0.5).astype(np.intp)
     change = np.zeros((frame.rows, frame.columns + 1), dtype=np.intp)
     np.add.at(change, (frame.rows - 1 - line, np.clip(column, 0, frame.columns)), downward)
-    filled: MaskArray = np.cumsum(change[:, :-1], axis=1) != 0
+    filled: BoolArray = np.cumsum(change[:, :-1], axis=1) != 0
     return filled
 
 
-def filled_in_frame(planes: PlaneArray, frame: Frame) -> tuple[MaskArray, tuple[int, int]]:
+def filled_in_frame(planes: ComplexArray, frame: RasterFrame) -> tuple[BoolArray, tuple[int, int]]:
     """Fill several polygons into the pixels of one frame, continued so far that nothing is cut off.
 
     The pixels of a polygon do not depend on the others: it is the same as ``rasterise_in_frame`` one by one.
@@ -132,7 +122,7 @@ def filled_in_frame(planes: PlaneArray, frame: Frame) -> tuple[MaskArray, tuple[
     ----------
     planes : (B, L) complex
         Vertices x + iy of closed polygons that cover more than a line.
-    frame : Frame
+    frame : RasterFrame
 
     Returns
     -------
@@ -153,5 +143,5 @@ def filled_in_frame(planes: PlaneArray, frame: Frame) -> tuple[MaskArray, tuple[
     rows, columns = below + frame.rows + above, left + frame.columns + right
     change = np.zeros((count, rows, columns + 1), dtype=np.int8)
     np.add.at(change, (edge // length, above + frame.rows - 1 - line, np.clip(left + column, 0, columns)), downward)
-    filled: MaskArray = np.cumsum(change[..., :-1], axis=2, dtype=np.int8) != 0
+    filled: BoolArray = np.cumsum(change[..., :-1], axis=2, dtype=np.int8) != 0
     return filled, (above, left)

@@ -20,7 +20,8 @@ from scipy.optimize import fmin
 from kirigami_studio.evaluate.alignment import align
 from kirigami_studio.evaluate.boundary import checked_polygon
 from kirigami_studio.evaluate.mask import FittedMask
-from kirigami_studio.evaluate.similarity import FloatArray, Similarity
+from kirigami_studio.evaluate.similarity import Similarity
+from kirigami_studio.foundation.arrays import FloatArray
 
 #: Pixels beyond the canvas that do not count.  Silhouettes fill their image, so even good matches lose a pixel or two
 #: there, and the paper's numbers do not see them: with 3 all reference values on good matches are met within 0.0075

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from kirigami_studio.evaluate.boundary import PlaneArray, as_plane
+from kirigami_studio.evaluate.boundary import as_plane
 from kirigami_studio.evaluate.clearance import stays_clear
 from kirigami_studio.evaluate.feasibility import (
     PATH_ANGLES,
@@ -19,6 +19,7 @@ from kirigami_studio.evaluate.feasibility import (
     overlap_ratio,
     path_contact,
 )
+from kirigami_studio.foundation.arrays import ComplexArray
 from kirigami_studio.lattice.deployment import ZIPPED_BELOW, Deployment
 
 
@@ -58,12 +59,12 @@ class _Sheets:
         self.even = as_plane(np.stack([deployment.even_part for deployment in deployments]))
         self.odd = as_plane(np.stack([deployment.odd_part for deployment in deployments]))
 
-    def quads(self, phi: float) -> PlaneArray:
+    def quads(self, phi: float) -> ComplexArray:
         """The quads that count at an angle, see ``feasibility.quads_that_count``: (B, Q, 4) complex."""
         tables = self.deployments[0].topology
         nodes = tables.panel_nodes.reshape(-1, 4)
         if ZIPPED_BELOW < phi < math.pi - ZIPPED_BELOW:
             nodes = np.concatenate([nodes, tables.void_nodes.reshape(-1, 4)])
         turn = cmath.exp(0.5j * (math.pi - phi))
-        places: PlaneArray = (turn.conjugate() * self.even + turn * self.odd)[:, nodes]
+        places: ComplexArray = (turn.conjugate() * self.even + turn * self.odd)[:, nodes]
         return places

@@ -12,7 +12,7 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
-from kirigami_studio.evaluate.agreement import Agreement, drawn_ious, exact_ious
+from kirigami_studio.evaluate.agreement import Agreement, exact_ious, raster_ious
 from kirigami_studio.evaluate.alignment import STAGES
 from kirigami_studio.evaluate.alignment_target import alignment_target
 from kirigami_studio.evaluate.ascent import ascend
@@ -20,6 +20,7 @@ from kirigami_studio.evaluate.finish import Placement, slid
 from kirigami_studio.evaluate.outline_batch import OutlineBatch
 from kirigami_studio.evaluate.score import Score, evaluate
 from kirigami_studio.evaluate.similarity import Similarity
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.lattice.deployment import Deployment
 from kirigami_studio.outlines.outline import Outline
 
@@ -70,7 +71,7 @@ def align_near(moving: npt.ArrayLike, fixed: npt.ArrayLike, pose: Similarity) ->
     return target.to_source.compose(Similarity.from_complex(place.factor, place.shift)).compose(to_normal)
 
 
-def _agreement_near(shape: npt.NDArray[np.float64], outline: Outline, pose: Similarity) -> Agreement:
+def _agreement_near(shape: FloatArray, outline: Outline, pose: Similarity) -> Agreement:
     transform = align_near(shape, outline.points, pose)
     laid = transform.apply(shape)[np.newaxis]
-    return Agreement(float(drawn_ious(laid, outline.points)[0]), float(exact_ious(laid, outline)[0]), transform)
+    return Agreement(float(raster_ious(laid, outline.points)[0]), float(exact_ious(laid, outline)[0]), transform)

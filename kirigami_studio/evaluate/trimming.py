@@ -17,7 +17,7 @@ import shapely
 from shapely.geometry import Polygon
 from shapely.geometry.base import BaseGeometry
 
-from kirigami_studio.evaluate.boundary import PlaneArray, as_plane, as_points
+from kirigami_studio.evaluate.boundary import as_plane, as_points
 from kirigami_studio.evaluate.kept_panels import (
     GRID,
     EdgePanels,
@@ -27,11 +27,11 @@ from kirigami_studio.evaluate.kept_panels import (
     polygons,
     with_pockets,
 )
-from kirigami_studio.evaluate.similarity import FloatArray, Similarity
+from kirigami_studio.evaluate.similarity import Similarity
+from kirigami_studio.foundation.arrays import BoolArray, ComplexArray, FloatArray
 from kirigami_studio.foundation.errors import Cancelled, KirigamiError, UsageError
 from kirigami_studio.lattice.deployment import Deployment, check_phi
 from kirigami_studio.lattice.ratio_field import RatioField, frozen
-from kirigami_studio.lattice.topology import BoolArray
 from kirigami_studio.outlines.outline import Outline
 
 #: Depth (unit cells) of the material that stays at every hinge unless something else is asked for.
@@ -172,19 +172,19 @@ def _iou(shared: float, sheet: float, target: float, kept: KeptPanels) -> float:
     return float(both / (target + sheet - float(kept.removed.sum()) - both))
 
 
-def _turn(even: BoolArray, phi: float) -> PlaneArray:
+def _turn(even: BoolArray, phi: float) -> ComplexArray:
     """By what panels turn on the way from the compact sheet, as complex factors."""
     half = 0.5 * (math.pi - phi)
-    turn: PlaneArray = np.exp(1j * np.where(even, -half, half))
+    turn: ComplexArray = np.exp(1j * np.where(even, -half, half))
     return turn
 
 
-def _brought_back(deployment: Deployment, panels: EdgePanels, phi: float, points: FloatArray) -> PlaneArray:
+def _brought_back(deployment: Deployment, panels: EdgePanels, phi: float, points: FloatArray) -> ComplexArray:
     """Points (T, 2) of the layout's frame at ``phi``, carried to the compact sheet with each edge panel: (E, T)."""
     anchors = panels.corners[:, 0]
     start, end = as_plane(deployment.nodes(phi))[anchors], as_plane(deployment.compact)[anchors]
     back = np.conj(_turn(panels.even, phi))
-    carried: PlaneArray = (as_plane(points) - start[:, None]) * back[:, None] + end[:, None]
+    carried: ComplexArray = (as_plane(points) - start[:, None]) * back[:, None] + end[:, None]
     return carried
 
 

@@ -12,10 +12,10 @@ from PIL import Image
 
 from kirigami_studio.export.exporter import ExportJob
 from kirigami_studio.export.facts import origin_facts
-from kirigami_studio.export.picture import Frame, draw_polygons
+from kirigami_studio.export.picture import PictureFrame, draw_polygons
 from kirigami_studio.export.verified import write_verified
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import ExportError
-from kirigami_studio.lattice.ratio_field import FloatArray
 
 FRAMES = 40
 FRAME_MS = 50
@@ -86,7 +86,7 @@ def _pictures(job: ExportJob, frames: int, longest: int) -> list[Image.Image]:
     """All frames in one constant frame box and one palette."""
     poses = [job.placed_panels(float(angle)) for angle in frame_angles(job.phi, frames)]
     clouds = [np.concatenate(panels) for panels in poses]
-    box = Frame.around(clouds if job.target is None else [*clouds, job.target], longest)
+    box = PictureFrame.around(clouds if job.target is None else [*clouds, job.target], longest)
     drawn = [draw_polygons(panels, box, job.target) for panels in poses]
     # Open and closed states together show every colour.
     sample = Image.new("RGB", (box.pixels[0], 2 * box.pixels[1]))

@@ -17,9 +17,9 @@ from ezdxf._options import options
 from ezdxf.document import Drawing
 from ezdxf.filemanagement import new
 
-from kirigami_studio.export.drawn_file import DrawnFile, bent_otherwise
 from kirigami_studio.export.dxf_reading import read_with_ezdxf
 from kirigami_studio.export.facts import facts_of
+from kirigami_studio.export.file_content import FileContent, bent_otherwise
 from kirigami_studio.export.profile import DEFAULT_PROFILE, Profile, find_profile
 from kirigami_studio.export.strokes import Stroke, extent, layer_colours, strokes_of
 from kirigami_studio.export.verified import write_verified
@@ -203,7 +203,7 @@ def check_marked(path: Path, strokes: Sequence[Stroke], marks: Mapping[str, int]
 
 
 def _first_difference(
-    content: DrawnFile, strokes: Sequence[Stroke], size: tuple[float, float], version: str
+    content: FileContent, strokes: Sequence[Stroke], size: tuple[float, float], version: str
 ) -> str | None:
     if version != "R12" and content.unit != units.MM:
         return f"its unit is {content.unit} instead of 4 (mm)"

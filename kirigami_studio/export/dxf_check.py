@@ -13,7 +13,7 @@ import shapely
 from shapely.geometry import LineString, Polygon
 from shapely.geometry.base import BaseGeometry
 
-from kirigami_studio.export.dxf_content import DrawnPath, DxfContent, read_content
+from kirigami_studio.export.dxf_content import DxfContent, FilePath, read_content
 from kirigami_studio.export.outline_tabs import tabbed_outline
 from kirigami_studio.export.placement import placement_problems
 from kirigami_studio.fabricate.checks import OVERLAP_TOLERANCE_MM, Problem, Severity
@@ -147,7 +147,7 @@ def _size_problems(bounds: tuple[float, float]) -> list[Problem]:
     ]
 
 
-def _double_problems(paths: Sequence[DrawnPath], twice: Overlap) -> list[Problem]:
+def _double_problems(paths: Sequence[FilePath], twice: Overlap) -> list[Problem]:
     seen: Counter[tuple[tuple[float, float], ...]] = Counter()
     for drawn in paths:
         points = np.round(drawn.points / SAME_POINT_MM).astype(np.int64)
@@ -172,7 +172,7 @@ def _double_problems(paths: Sequence[DrawnPath], twice: Overlap) -> list[Problem
     return problems
 
 
-def _find_outline(paths: Sequence[DrawnPath], problems: list[Problem]) -> Polygon | None:
+def _find_outline(paths: Sequence[FilePath], problems: list[Problem]) -> Polygon | None:
     """Return the area inside the outline; note when it is open, crosses itself or is missing.
 
     The outline is what the OUTLINE layer holds; in a foreign file, the largest closed contour, be it one path or a
@@ -198,7 +198,7 @@ def _find_outline(paths: Sequence[DrawnPath], problems: list[Problem]) -> Polygo
     return outline
 
 
-def _chains(paths: Sequence[DrawnPath]) -> list[LineString]:
+def _chains(paths: Sequence[FilePath]) -> list[LineString]:
     """Join lines whose ends meet, each piece of line used once."""
     snapped = shapely.set_precision(shapely.multilinestrings([LineString(drawn.points) for drawn in paths]), 1e-6)
     merged = shapely.line_merge(shapely.union_all(snapped))
@@ -248,7 +248,7 @@ def _physics(
     return pieces, ligament.width_mm
 
 
-def _loose_discs(inner: Sequence[DrawnPath]) -> list[Problem]:
+def _loose_discs(inner: Sequence[FilePath]) -> list[Problem]:
     """Closed cuts inside the outline, beside relief holes and slots: what they enclose falls out."""
     closed = [Polygon(drawn.points) for drawn in inner if drawn.closed and drawn.layer != Layer.RELIEF.value
               and len(drawn.points) > 3]  # fmt: skip
@@ -270,7 +270,7 @@ def _loose_discs(inner: Sequence[DrawnPath]) -> list[Problem]:
 
 
 def _inner_cuts(
-    inner: Sequence[DrawnPath], facts: Mapping[str, str], problems: list[Problem]
+    inner: Sequence[FilePath], facts: Mapping[str, str], problems: list[Problem]
 ) -> tuple[list[LineString], set[tuple[int, int]]]:
     """All cuts but the outline, and which of them meet on purpose.
 

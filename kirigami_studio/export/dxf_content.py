@@ -19,8 +19,8 @@ from ezdxf.lldxf.const import DXFError
 from ezdxf.path import make_path
 
 from kirigami_studio.fabricate.checks import Problem, Severity
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import ExportError
-from kirigami_studio.lattice.ratio_field import FloatArray
 
 #: Largest file that is read (bytes); a 64 x 64 design is below 2 MB.
 LARGEST_FILE = 100_000_000
@@ -48,7 +48,7 @@ RISKY_CURVES = frozenset({"ELLIPSE", "SPLINE"})
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class DrawnPath:
+class FilePath:
     """One curve of the file.
 
     Attributes
@@ -71,7 +71,7 @@ class DxfContent:
 
     Attributes
     ----------
-    paths : list of DrawnPath
+    paths : list of FilePath
     unit : str
         Name of the file's unit, "none" when it has none.
     layers : tuple of str
@@ -81,7 +81,7 @@ class DxfContent:
     problems : list of Problem
     """
 
-    paths: list[DrawnPath] = field(default_factory=list)
+    paths: list[FilePath] = field(default_factory=list)
     unit: str = "none"
     layers: tuple[str, ...] = ()
     facts: dict[str, str] = field(default_factory=dict)
@@ -199,7 +199,7 @@ def _add_path(content: DxfContent, entity: DXFEntity, factor: float) -> None:
         content.problems.append(Problem(f"The {name} has no length; remove it.", Severity.ERROR, where))
         return
     closed = _is_closed(entity)
-    content.paths.append(DrawnPath(_met(points) if closed else points, layer, closed))
+    content.paths.append(FilePath(_met(points) if closed else points, layer, closed))
 
 
 def _met(points: FloatArray) -> FloatArray:

@@ -10,13 +10,13 @@ from ezdxf.entities.lwpolyline import LWPolyline
 from ezdxf.entities.polyline import Polyline
 from ezdxf.filemanagement import readfile
 
-from kirigami_studio.export.drawn_file import DrawnFile
 from kirigami_studio.export.dxf_content import PARSER_FAULTS
+from kirigami_studio.export.file_content import FileContent
 from kirigami_studio.export.strokes import Stroke
 from kirigami_studio.foundation.errors import ExportError
 
 
-def read_with_ezdxf(path: Path) -> DrawnFile:
+def read_with_ezdxf(path: Path) -> FileContent:
     """Read a DXF's header, layers and polylines.
 
     Raises
@@ -34,7 +34,7 @@ def read_with_ezdxf(path: Path) -> DrawnFile:
     return _content(document)
 
 
-def _content(document: Drawing) -> DrawnFile:
+def _content(document: Drawing) -> FileContent:
     strokes, others = [], []
     for entity in document.modelspace():
         if isinstance(entity, LWPolyline):
@@ -51,7 +51,7 @@ def _content(document: Drawing) -> DrawnFile:
         strokes.append(Stroke(table[:, :2], closed, entity.dxf.layer, entity.dxf.color, bulges))
     corner = document.header.get("$EXTMAX")
     old = document.dxfversion == "AC1009"
-    return DrawnFile(
+    return FileContent(
         reader="ezdxf",
         strokes=tuple(strokes),
         unit=None if old else int(document.header.get("$INSUNITS", 0)),

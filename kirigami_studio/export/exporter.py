@@ -16,9 +16,9 @@ from kirigami_studio.evaluate.trimming import Trim
 from kirigami_studio.export.paper import NO_PAPER
 from kirigami_studio.export.profile import DEFAULT_PROFILE
 from kirigami_studio.fabricate.cut_plan import CutPlan
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import ExportError
 from kirigami_studio.lattice.deployment import Deployment, deploy, signed_area
-from kirigami_studio.lattice.ratio_field import FloatArray
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -62,10 +62,8 @@ class ExportJob:
     @classmethod
     def of(cls, candidate: Candidate, target: FloatArray | None, plan: CutPlan | None = None) -> ExportJob:
         """The job of a candidate as it is finished: trimmed if it is."""
-        trim, score = candidate.trim, candidate.score
-        if trim is None:
-            return cls(deploy(candidate.field), score.phi, plan, target, score.transform)
-        return cls(deploy(trim.field), trim.phi, plan, target, trim.pose, trim=trim)
+        motion = deploy(candidate.final_field)
+        return cls(motion, candidate.final_phi, plan, target, candidate.final_pose, trim=candidate.trim)
 
     @property
     def required_plan(self) -> CutPlan:

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
-from kirigami_studio.export.drawn_file import DrawnFile
+from kirigami_studio.export.file_content import FileContent
 from kirigami_studio.export.strokes import Stroke
 from kirigami_studio.foundation.errors import ExportError
 
@@ -32,7 +32,7 @@ class _Entity:
         return next((value for number, value in self.pairs if number == code), otherwise)
 
 
-def read_group_codes(path: Path) -> DrawnFile:
+def read_group_codes(path: Path) -> FileContent:
     """Read a DXF's header, layers and polylines.
 
     Raises
@@ -56,7 +56,7 @@ def read_group_codes(path: Path) -> DrawnFile:
     unit = header.get("$INSUNITS", {}).get(70)
     corner = header.get("$EXTMAX", {})
     others = tuple(entity.kind for entity in entities if entity.kind not in ("LWPOLYLINE", "POLYLINE"))
-    return DrawnFile(
+    return FileContent(
         reader="the group-code reader",
         strokes=strokes,
         unit=None if unit is None else int(unit),

@@ -21,8 +21,8 @@ from kirigami_studio.export.strokes import layer_colours, strokes_of
 from kirigami_studio.export.verified import write_verified
 from kirigami_studio.fabricate.bulges import arc_of
 from kirigami_studio.fabricate.cut_plan import CutPath, CutPlan, Layer
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import ExportError
-from kirigami_studio.lattice.ratio_field import FloatArray
 
 #: Numbers of the palette: magenta, red, green, blue, as in the DXF profile.
 PALETTE_NUMBER = {Layer.RELIEF: 7, Layer.SLITS: 2, Layer.EDGE_SLITS: 3, Layer.OUTLINE: 1}

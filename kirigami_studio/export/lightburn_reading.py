@@ -8,8 +8,8 @@ from xml.etree import ElementTree
 
 import numpy as np
 
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import ExportError
-from kirigami_studio.lattice.ratio_field import FloatArray
 
 #: Chords that a Bezier curve of a quarter turn is measured with; they miss 3e-5 of it.
 CHORDS = 64

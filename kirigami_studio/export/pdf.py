@@ -28,8 +28,8 @@ from kirigami_studio.export.pdf_reading import Page, read_pages
 from kirigami_studio.export.profile import find_profile
 from kirigami_studio.export.verified import write_verified
 from kirigami_studio.fabricate.cut_plan import CutPlan
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import ExportError
-from kirigami_studio.lattice.ratio_field import FloatArray
 
 RULER_MM = 50.0
 CUT_LINE_MM = 0.1

@@ -9,8 +9,8 @@ from pathlib import Path
 
 import numpy as np
 
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import ExportError
-from kirigami_studio.lattice.ratio_field import FloatArray
 
 MM_PER_POINT = 25.4 / 72.0
 _BOX = re.compile(rb"/MediaBox \[ 0 0 ([\d.]+) ([\d.]+) \]")

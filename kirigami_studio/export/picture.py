@@ -9,14 +9,14 @@ import numpy as np
 from PIL import Image, ImageDraw
 
 from kirigami_studio.export import palette
-from kirigami_studio.lattice.ratio_field import FloatArray
+from kirigami_studio.foundation.arrays import FloatArray
 
 #: Pictures are drawn this many times larger and then reduced.
 SUPERSAMPLING = 3
 
 
 @dataclass(frozen=True, slots=True)
-class Frame:
+class PictureFrame:
     """Which part of the plane a picture shows.
 
     Attributes
@@ -33,7 +33,7 @@ class Frame:
     pixels: tuple[int, int]
 
     @classmethod
-    def around(cls, clouds: Sequence[FloatArray], longest: int, margin: float = 0.05) -> Frame:
+    def around(cls, clouds: Sequence[FloatArray], longest: int, margin: float = 0.05) -> PictureFrame:
         """Fit all points (each (P, 2)) into a picture whose longer side has ``longest`` pixels."""
         points = np.concatenate([cloud.reshape(-1, 2) for cloud in clouds])
         extent = np.ptp(points, axis=0)
@@ -52,7 +52,7 @@ class Frame:
         return list(zip(x.tolist(), y.tolist(), strict=True))
 
 
-def draw_polygons(polygons: Sequence[FloatArray], frame: Frame, target: FloatArray | None = None) -> Image.Image:
+def draw_polygons(polygons: Sequence[FloatArray], frame: PictureFrame, target: FloatArray | None = None) -> Image.Image:
     """Draw panels, each (P, 2), over a target outline (L, 2); the target's outline is repeated on top."""
     factor = SUPERSAMPLING
     size = (frame.pixels[0] * factor, frame.pixels[1] * factor)

@@ -8,7 +8,7 @@ import numpy as np
 import shapely
 from shapely.geometry import LineString, Polygon
 
-from kirigami_studio.export.dxf_content import DrawnPath
+from kirigami_studio.export.dxf_content import FilePath
 from kirigami_studio.fabricate.checks import Problem, Severity
 from kirigami_studio.fabricate.cut_plan import Layer
 
@@ -18,7 +18,7 @@ REACH_MM = 1.0
 TOUCH_MM = 1e-3
 
 
-def placement_problems(paths: Sequence[DrawnPath], outline: Polygon | None) -> list[Problem]:
+def placement_problems(paths: Sequence[FilePath], outline: Polygon | None) -> list[Problem]:
     """List cuts outside the outline, slits that cross it, coordinates below the origin, and cuts after the outline."""
     problems: list[Problem] = []
     low = np.concatenate([drawn.points for drawn in paths]).min(axis=0)

@@ -12,7 +12,7 @@ from PIL.PngImagePlugin import PngInfo
 
 from kirigami_studio.export.exporter import ExportJob
 from kirigami_studio.export.facts import origin_facts
-from kirigami_studio.export.picture import Frame, draw_polygons
+from kirigami_studio.export.picture import PictureFrame, draw_polygons
 from kirigami_studio.export.verified import write_verified
 from kirigami_studio.foundation.errors import ExportError
 
@@ -64,4 +64,4 @@ def preview(job: ExportJob, longest: int = LONGEST_SIDE) -> Image.Image:
     """Draw the layout at the target angle over the target."""
     panels = job.placed_panels(job.phi)
     clouds = panels if job.target is None else [*panels, job.target]
-    return draw_polygons(panels, Frame.around(clouds, longest), job.target)
+    return draw_polygons(panels, PictureFrame.around(clouds, longest), job.target)

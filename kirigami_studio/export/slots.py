@@ -15,8 +15,8 @@ from shapely.geometry import LineString, Polygon
 from kirigami_studio.fabricate.cut_plan import DECIMALS, CutPath, CutPlan, Layer
 from kirigami_studio.fabricate.finished_sheet import DUST_MM2
 from kirigami_studio.fabricate.tabs import joined_ring
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import ExportError
-from kirigami_studio.lattice.ratio_field import FloatArray
 
 #: Corners of the outline are kept sharp up to this many times half the kerf.
 MITRE_LIMIT = 5.0

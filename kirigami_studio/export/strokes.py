@@ -11,7 +11,7 @@ from kirigami_studio.export.profile import Profile
 from kirigami_studio.export.slots import slot_contours
 from kirigami_studio.fabricate.bulges import CHORD_MM, flattened
 from kirigami_studio.fabricate.cut_plan import DECIMALS, CutPlan
-from kirigami_studio.lattice.ratio_field import FloatArray
+from kirigami_studio.foundation.arrays import FloatArray
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -18,8 +18,8 @@ from kirigami_studio.export.profile import BLUE, GREEN, MAGENTA, RED, WHITE, Pro
 from kirigami_studio.export.strokes import Stroke, extent, strokes_of
 from kirigami_studio.export.verified import write_verified
 from kirigami_studio.fabricate.cut_plan import DECIMALS, CutPlan
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import ExportError
-from kirigami_studio.lattice.ratio_field import FloatArray
 
 NAMESPACE = "http://www.w3.org/2000/svg"
 #: Line width (mm) of cut lines; laser drivers take anything thinner than 0.1 mm as a line to cut.

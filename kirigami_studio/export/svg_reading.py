@@ -13,7 +13,7 @@ import numpy as np
 from svgelements import SVG, Arc, Close, Group, Line, Move
 from svgelements import Path as SvgPath
 
-from kirigami_studio.export.drawn_file import MILLIMETRES, DrawnFile
+from kirigami_studio.export.file_content import MILLIMETRES, FileContent
 from kirigami_studio.export.strokes import Stroke
 from kirigami_studio.export.svg import ACI_COLOUR, NAMESPACE
 from kirigami_studio.foundation.errors import ExportError
@@ -29,7 +29,7 @@ _WORDS = re.compile(r"[MLAZ]|-?\d+(?:\.\d+)?(?:e-?\d+)?")
 Row = tuple[float, float, float]
 
 
-def read_with_svgelements(path: Path) -> DrawnFile:
+def read_with_svgelements(path: Path) -> FileContent:
     """Read a cut SVG with svgelements, which knows units, inheritance and arcs.
 
     Raises
@@ -49,10 +49,10 @@ def read_with_svgelements(path: Path) -> DrawnFile:
     except (OSError, ElementTree.ParseError, AttributeError, ValueError, TypeError, ZeroDivisionError) as error:
         raise ExportError(f"{path} is not a readable SVG: {error}. Export it again.") from error
     unit = MILLIMETRES if abs(scale - 1.0) < SAME_SCALE else 0
-    return DrawnFile("svgelements", strokes, unit, (width, height), _layers(strokes))
+    return FileContent("svgelements", strokes, unit, (width, height), _layers(strokes))
 
 
-def read_with_xml(path: Path) -> DrawnFile:
+def read_with_xml(path: Path) -> FileContent:
     """Read a cut SVG as XML; path data may hold the words M, L, A and Z only.
 
     Raises
@@ -78,7 +78,7 @@ def read_with_xml(path: Path) -> DrawnFile:
         for element in root.iter()
         if element.tag not in {f"{{{NAMESPACE}}}{known}" for known in ("svg", "g", "path", "title", "desc")}
     )
-    return DrawnFile("the XML reader", strokes, MILLIMETRES if millimetres else 0, size, _layers(strokes), others)
+    return FileContent("the XML reader", strokes, MILLIMETRES if millimetres else 0, size, _layers(strokes), others)
 
 
 def _millimetres(side: str) -> float:

@@ -6,8 +6,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from kirigami_studio.export.drawn_file import MILLIMETRES, DrawnFile, bent_otherwise, largest_shift, one_drawing
 from kirigami_studio.export.dxf_reading import read_with_ezdxf
+from kirigami_studio.export.file_content import MILLIMETRES, FileContent, bent_otherwise, largest_shift, one_drawing
 from kirigami_studio.export.file_physics import Physics, file_physics
 from kirigami_studio.export.group_codes import read_group_codes
 from kirigami_studio.export.layer_files import by_layer, layer_folder, layer_paths
@@ -19,7 +19,7 @@ from kirigami_studio.fabricate.cut_plan import CutPlan
 from kirigami_studio.fabricate.sheet_checks import WIDTH_TOLERANCE_MM
 from kirigami_studio.foundation.errors import ExportError
 
-Reader = Callable[[Path], DrawnFile]
+Reader = Callable[[Path], FileContent]
 #: Stands in a sentence for the name of who read the file.
 READER = "{reader}"
 
@@ -138,7 +138,7 @@ def _judged(
     profile: Profile,
     version: str,
     strokes: Sequence[Stroke],
-    contents: Sequence[DrawnFile],
+    contents: Sequence[FileContent],
     kind: Format,
 ) -> Verification:
     physics = file_physics(contents[-1].strokes, plan, profile)
@@ -160,7 +160,7 @@ def _judged(
     )
 
 
-def _agreed(contents: Sequence[DrawnFile], strokes: Sequence[Stroke], version: str, kind: Format) -> list[Finding]:
+def _agreed(contents: Sequence[FileContent], strokes: Sequence[Stroke], version: str, kind: Format) -> list[Finding]:
     """Each finding once where all readers agree to the letter, else once for each reader by its name."""
     told = zip(*(_reader_findings(content, strokes, version, kind) for content in contents), strict=True)
     found: list[Finding] = []
@@ -175,7 +175,7 @@ def _agreed(contents: Sequence[DrawnFile], strokes: Sequence[Stroke], version: s
     return found
 
 
-def _reader_findings(content: DrawnFile, strokes: Sequence[Stroke], version: str, kind: Format) -> list[Finding]:
+def _reader_findings(content: FileContent, strokes: Sequence[Stroke], version: str, kind: Format) -> list[Finding]:
     """Everything that one reader can compare; the sentences have a place for its name."""
     found = [_unit_finding(content, version), _count_finding(content, strokes), _layer_finding(content, strokes)]
     shift = largest_shift(content.strokes, strokes)
@@ -196,7 +196,7 @@ def _reader_findings(content: DrawnFile, strokes: Sequence[Stroke], version: str
     return found
 
 
-def _size_finding(content: DrawnFile, strokes: Sequence[Stroke], kind: Format) -> Finding:
+def _size_finding(content: FileContent, strokes: Sequence[Stroke], kind: Format) -> Finding:
     width, height = extent(strokes)
     if content.extent is None:
         return Finding("The file's size is missing in its header for {reader}.", False)
@@ -205,14 +205,14 @@ def _size_finding(content: DrawnFile, strokes: Sequence[Stroke], kind: Format) -
     return Finding(f"{text}, planned are {width:.3f} x {height:.3f} mm.", right)
 
 
-def _unit_finding(content: DrawnFile, version: str) -> Finding:
+def _unit_finding(content: FileContent, version: str) -> Finding:
     if version == "R12" and content.unit is None:
         return Finding("There is no unit in the file for {reader}: import it as mm.", True, warning=True)
     text = f"The file's unit is {'mm' if content.unit == MILLIMETRES else content.unit} for {{reader}}."
     return Finding(text, content.unit == MILLIMETRES)
 
 
-def _count_finding(content: DrawnFile, strokes: Sequence[Stroke]) -> Finding:
+def _count_finding(content: FileContent, strokes: Sequence[Stroke]) -> Finding:
     closed = sum(stroke.closed for stroke in content.strokes)
     open_ = len(content.strokes) - closed
     right = [stroke.closed for stroke in content.strokes] == [stroke.closed for stroke in strokes]
@@ -224,7 +224,7 @@ def _count_finding(content: DrawnFile, strokes: Sequence[Stroke]) -> Finding:
     return Finding(text, right and not content.others)
 
 
-def _layer_finding(content: DrawnFile, strokes: Sequence[Stroke]) -> Finding:
+def _layer_finding(content: FileContent, strokes: Sequence[Stroke]) -> Finding:
     meant = layer_colours(strokes)
     listed = {name: colour for name, colour in content.layers.items() if name in meant}
     right = listed == meant and [(stroke.layer, stroke.colour) for stroke in content.strokes] == [

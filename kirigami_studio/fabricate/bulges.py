@@ -7,7 +7,7 @@ import math
 import numpy as np
 from shapely.geometry import LineString
 
-from kirigami_studio.lattice.ratio_field import FloatArray
+from kirigami_studio.foundation.arrays import FloatArray
 
 #: Largest distance (mm) between an arc and the chords that stand for it.
 CHORD_MM = 0.005

@@ -17,9 +17,8 @@ import numpy as np
 
 from kirigami_studio.fabricate.lengths import check_length
 from kirigami_studio.fabricate.slits import SHEET_EDGE, CutTable
+from kirigami_studio.foundation.arrays import BoolArray, FloatArray, IntArray
 from kirigami_studio.foundation.errors import FabricationError
-from kirigami_studio.lattice.ratio_field import FloatArray
-from kirigami_studio.lattice.topology import BoolArray, IntArray
 
 #: A cut shorter than this (mm), or than twice the kerf, is a burned dot and separates nothing.
 SHORTEST_CUT_MM = 0.1

@@ -26,8 +26,8 @@ from kirigami_studio.fabricate.kerf import OVERCUT_MM, outline_path
 from kirigami_studio.fabricate.lengths import check_length
 from kirigami_studio.fabricate.material import Material
 from kirigami_studio.fabricate.ordering import in_cutting_order
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import FabricationError
-from kirigami_studio.lattice.ratio_field import FloatArray
 
 SIZE_MM = (60.0, 40.0)
 COMB_SLITS, FINGER_MM, FINGER_LENGTH_MM = 10, 1.5, 10.0

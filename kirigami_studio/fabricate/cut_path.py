@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from kirigami_studio.fabricate.bulges import flattened
-from kirigami_studio.lattice.ratio_field import FloatArray
+from kirigami_studio.foundation.arrays import FloatArray
 
 
 class Layer(Enum):

@@ -28,9 +28,9 @@ from kirigami_studio.fabricate.seats import seats
 from kirigami_studio.fabricate.slits import SHEET_EDGE, CutTable, cut_table, sheet_lines
 from kirigami_studio.fabricate.tabs import joined_ring, tabbed
 from kirigami_studio.fabricate.trimmed_sheet import CutPiece, kept_area, trimmed_cuts
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import FabricationError
 from kirigami_studio.lattice.deployment import Deployment
-from kirigami_studio.lattice.ratio_field import FloatArray
 
 SMALLEST_SHEET_MM = 5.0
 LARGEST_SHEET_MM = 3000.0

@@ -22,7 +22,7 @@ import numpy as np
 
 from kirigami_studio.fabricate.options import ConnectorStyle
 from kirigami_studio.fabricate.seats import Seat
-from kirigami_studio.lattice.ratio_field import FloatArray
+from kirigami_studio.foundation.arrays import FloatArray
 
 #: Half-angles (degrees) of an arc, from the one that is wanted to the least that still makes a pad.
 HALF_ANGLES = (45.0, 35.0, 25.0)

@@ -12,7 +12,7 @@ import shapely
 from shapely.geometry import Polygon
 from shapely.geometry.base import BaseGeometry
 
-from kirigami_studio.lattice.topology import IntArray
+from kirigami_studio.foundation.arrays import FloatArray, IntArray
 
 #: A blade without kerf still parts the material: width (mm) given to such a cut.
 BLADE_MM = 2e-3
@@ -197,9 +197,7 @@ def _segments(lines: Sequence[BaseGeometry]) -> npt.NDArray[np.object_]:
     return segments
 
 
-def _shared_stretch(
-    one: npt.NDArray[np.float64], other: npt.NDArray[np.float64]
-) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
+def _shared_stretch(one: FloatArray, other: FloatArray) -> tuple[FloatArray, FloatArray]:
     """From where to where (mm along ``one``) ``other`` runs on it, both (P, 2, 2); from >= to where it does not."""
     vector = one[:, 1] - one[:, 0]
     length = np.linalg.norm(vector, axis=1)

@@ -16,7 +16,7 @@ import numpy as np
 from kirigami_studio.fabricate.cut_plan import CutPlan
 from kirigami_studio.fabricate.findings import Problem, Severity
 from kirigami_studio.fabricate.options import ConnectorStyle
-from kirigami_studio.lattice.ratio_field import FloatArray
+from kirigami_studio.foundation.arrays import FloatArray
 
 
 @dataclass(frozen=True, slots=True)

@@ -17,8 +17,8 @@ from kirigami_studio.fabricate.removal import Place, cut_through, places_of_ends
 from kirigami_studio.fabricate.seats import Seat
 from kirigami_studio.fabricate.slits import CutTable
 from kirigami_studio.fabricate.trimmed_sheet import CutPiece
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import FabricationError
-from kirigami_studio.lattice.ratio_field import FloatArray
 
 #: Styles whose slits end in a relief hole.
 HOLED = (ConnectorStyle.ROUND, ConnectorStyle.TEARDROP)

@@ -6,7 +6,7 @@ import numpy as np
 
 from kirigami_studio.fabricate.connectors import edge_directions
 from kirigami_studio.fabricate.slits import CutTable
-from kirigami_studio.lattice.ratio_field import FloatArray
+from kirigami_studio.foundation.arrays import FloatArray
 
 #: How far (mm) edge cuts run beyond the outline's centre line.
 OVERCUT_MM = 0.2

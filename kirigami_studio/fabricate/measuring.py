@@ -14,7 +14,7 @@ from shapely.geometry.base import BaseGeometry
 from kirigami_studio.fabricate.seats import Seat
 from kirigami_studio.fabricate.slits import SHEET_EDGE, CutTable
 from kirigami_studio.fabricate.trimmed_sheet import CutPiece
-from kirigami_studio.lattice.ratio_field import FloatArray
+from kirigami_studio.foundation.arrays import FloatArray
 
 #: The outline counts as the far side of a connector up to so many gaps beside it.
 BESIDE_GAPS = 3.0

@@ -15,10 +15,9 @@ import numpy as np
 
 from kirigami_studio.fabricate.cut_path import CutPath, Layer
 from kirigami_studio.fabricate.options import CutOrder
-from kirigami_studio.fabricate.routing import ComplexArray, Tour, Ways, best_ways, shortest_tour
+from kirigami_studio.fabricate.routing import Tour, Ways, best_ways, shortest_tour
 from kirigami_studio.fabricate.slits import CutTable
-from kirigami_studio.lattice.ratio_field import FloatArray
-from kirigami_studio.lattice.topology import IntArray
+from kirigami_studio.foundation.arrays import ComplexArray, FloatArray, IntArray
 
 #: For so many cuts a place counts as hot.
 STILL_HOT = 6

@@ -13,8 +13,8 @@ from kirigami_studio.fabricate.measuring import lines_by_cut
 from kirigami_studio.fabricate.seats import Seat
 from kirigami_studio.fabricate.slits import SHEET_EDGE, CutTable
 from kirigami_studio.fabricate.trimmed_sheet import CutPiece
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import FabricationError
-from kirigami_studio.lattice.ratio_field import FloatArray
 
 #: A junction nearer than this (mm) to the through cut lies on it.
 ON_CUT_MM = 1e-6

@@ -10,11 +10,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
-from kirigami_studio.lattice.topology import IntArray
+from kirigami_studio.foundation.arrays import ComplexArray, IntArray
 
-ComplexArray = npt.NDArray[np.complex128]
+ComplexArray = ComplexArray
 #: A change that saves less (mm) is rounding.
 SAVED_MM = 1e-9
 #: Longest run of paths that is lifted out of a tour and put in elsewhere.

@@ -9,7 +9,7 @@ import numpy as np
 
 from kirigami_studio.fabricate.connectors import edge_directions
 from kirigami_studio.fabricate.slits import SHEET_EDGE, CutTable
-from kirigami_studio.lattice.ratio_field import FloatArray
+from kirigami_studio.foundation.arrays import FloatArray
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -10,7 +10,7 @@ from shapely.geometry import Polygon
 from kirigami_studio.fabricate.cut_plan import CutPlan, Layer
 from kirigami_studio.fabricate.findings import Problem, Severity
 from kirigami_studio.fabricate.panel_sizes import SmallPlace, trimmed_neck_below
-from kirigami_studio.lattice.ratio_field import FloatArray
+from kirigami_studio.foundation.arrays import FloatArray
 
 #: Tolerance (mm) for finished widths; coordinates are rounded to a tenth of it.
 WIDTH_TOLERANCE_MM = 1e-3

@@ -12,9 +12,9 @@ from functools import cache
 
 import numpy as np
 
+from kirigami_studio.foundation.arrays import FloatArray, IntArray
 from kirigami_studio.lattice.deployment import Deployment
-from kirigami_studio.lattice.ratio_field import FloatArray
-from kirigami_studio.lattice.topology import IntArray, Topology, topology
+from kirigami_studio.lattice.topology import Topology, topology
 
 #: ``hinge_through`` of a cut end that rests on the sheet's edge.
 SHEET_EDGE = -1

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import FabricationError
-from kirigami_studio.lattice.ratio_field import FloatArray
 
 #: The outline may turn by this much (degrees) within a tab; anything sharper is a corner.
 CORNER = 10.0

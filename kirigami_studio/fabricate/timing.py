@@ -17,7 +17,7 @@ import numpy as np
 
 from kirigami_studio.fabricate.cut_path import CutPath
 from kirigami_studio.fabricate.material import Material
-from kirigami_studio.lattice.ratio_field import FloatArray
+from kirigami_studio.foundation.arrays import FloatArray
 
 #: Turns (radians) that a head takes without stopping: in the estimate, and at the fast end of the range.
 FLOWING_TURN, SWIFT_TURN = math.radians(10.0), math.radians(45.0)

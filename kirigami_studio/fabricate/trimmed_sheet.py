@@ -13,7 +13,6 @@ from functools import cached_property
 from itertools import product
 
 import numpy as np
-import numpy.typing as npt
 import shapely
 from shapely.geometry import LineString, Point, Polygon
 from shapely.geometry.base import BaseGeometry
@@ -21,9 +20,9 @@ from shapely.geometry.base import BaseGeometry
 from kirigami_studio.fabricate.bulges import measured_line
 from kirigami_studio.fabricate.finished_sheet import overlap_length, remaining_pieces
 from kirigami_studio.fabricate.slits import CutTable
+from kirigami_studio.foundation.arrays import BoolArray, FloatArray
 from kirigami_studio.foundation.errors import FabricationError
 from kirigami_studio.lattice.deployment import Deployment
-from kirigami_studio.lattice.ratio_field import FloatArray
 
 #: Vertices are snapped to this grid (mm), a hundredth of what plans are rounded to.
 GRID_MM = 1e-6
@@ -282,11 +281,11 @@ def _runs_along(line: LineString, outline: Polygon, overcut_mm: float) -> bool:
     return overlap_length([nearby, line]) >= GRID_MM
 
 
-def _along_gap(mouth: FloatArray, ways: FloatArray, outline: Polygon, kerf_mm: float) -> npt.NDArray[np.bool_]:
+def _along_gap(mouth: FloatArray, ways: FloatArray, outline: Polygon, kerf_mm: float) -> BoolArray:
     """Which ways (W, 2) from a mouth to the outline stay as near to it as the mouth is: the others cross material."""
     near = 1.05 * (0.5 * kerf_mm + INSIDE_MM)
     places = mouth + ways[:, None, :] * np.array([0.25, 0.5, 0.75])[:, None]
-    stay: npt.NDArray[np.bool_] = (shapely.distance(shapely.points(places), outline.exterior) <= near).all(axis=1)
+    stay: BoolArray = (shapely.distance(shapely.points(places), outline.exterior) <= near).all(axis=1)
     return stay
 
 

@@ -10,10 +10,8 @@ from dataclasses import dataclass
 
 from torch import Tensor, full
 
+from kirigami_studio.foundation.paper import LOG_RATIO_LIMIT
 from kirigami_studio.generator.velocity import Code, Velocity
-
-#: Fields stay where the training data are: x in [0.1, 10].
-Z_LIMIT = 1.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,7 +68,7 @@ def trail(network: Velocity, start: Tensor, code: Code, steps: int, head: Head |
         z = z + head.beyond
     finished = [z]
     for _ in range(corrections):
-        z = z.clamp(-Z_LIMIT, Z_LIMIT)
+        z = z.clamp(-LOG_RATIO_LIMIT, LOG_RATIO_LIMIT)
         z = z + network.correction(z, code)
         finished.append(z)
     return finished

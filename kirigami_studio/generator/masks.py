@@ -9,8 +9,7 @@ from __future__ import annotations
 import torch
 from torch import Tensor
 
-#: Pixels each way of the paper's masks.
-MASK_SIZE = 128
+from kirigami_studio.foundation.paper import MASK_SIZE
 
 
 def filled_masks(polygons: Tensor, size: int = MASK_SIZE) -> Tensor:

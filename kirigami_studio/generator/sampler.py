@@ -10,14 +10,16 @@ import numpy as np
 import torch
 from torch import Tensor
 
+from kirigami_studio.foundation.arrays import FloatArray
+from kirigami_studio.foundation.paper import LOG_RATIO_LIMIT
 from kirigami_studio.generator.conditioning import normalised, turned
-from kirigami_studio.generator.flow import Z_LIMIT, Head, integrate
+from kirigami_studio.generator.flow import Head, integrate
 from kirigami_studio.generator.pose import square_pose
 from kirigami_studio.generator.sheet import Sheet
 from kirigami_studio.generator.threads import one_torch_thread
 from kirigami_studio.generator.velocity import Code
 from kirigami_studio.generator.weights import Model
-from kirigami_studio.lattice.ratio_field import FloatArray, RatioField
+from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.resize import resize_fields
 from kirigami_studio.outlines.outline import Outline
 
@@ -104,7 +106,7 @@ def draw_fields(
                 rows, head = _near_start(near, rows, (shape.rows, shape.columns), code)
             drawn.append(integrate(model.network, rows, code, steps, head))
     z = torch.cat(drawn)[:k].double().numpy()
-    fields: FloatArray = np.clip(z.reshape(k, *grid), -Z_LIMIT, Z_LIMIT)
+    fields: FloatArray = np.clip(z.reshape(k, *grid), -LOG_RATIO_LIMIT, LOG_RATIO_LIMIT)
     return tuple(RatioField.from_log10(np.round(field, 6)) for field in fields)
 
 

@@ -14,8 +14,8 @@ import numpy as np
 import torch
 from torch import Tensor
 
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.lattice.deployment import ZIPPED_BELOW
-from kirigami_studio.lattice.ratio_field import FloatArray
 from kirigami_studio.lattice.resize import resize_fields
 
 

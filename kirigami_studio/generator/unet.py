@@ -33,8 +33,9 @@ from torch import Tensor, cat, nn, zeros_like
 from torch.nn import functional
 
 from kirigami_studio.foundation.errors import UsageError
+from kirigami_studio.foundation.paper import MASK_SIZE
 from kirigami_studio.generator.conditioning import ConditionLayout
-from kirigami_studio.generator.masks import MASK_SIZE, filled_masks
+from kirigami_studio.generator.masks import filled_masks
 from kirigami_studio.generator.sheet import Carrier, Sheet, carrier_between
 from kirigami_studio.generator.unet_blocks import Residual, SelfAttention, Stage, TimeEmbedding, zeroed
 

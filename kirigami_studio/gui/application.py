@@ -123,7 +123,7 @@ def run(argv: list[str]) -> int:
     window.commands.dressing.listen()
     window.show()
     QTimer.singleShot(0, window, lambda: open_first(window, argv[1] if len(argv) > 1 else FIRST_TARGET))
-    WarmUp(window.controller.warm_up, lambda: window.controller.board.busy, window)
+    WarmUp(window.controller.warm_up, lambda: window.controller.queue.busy, window)
     if not window.controller.preferring.present.tour_seen:
         window.controller.preferring.note_tour()
         QTimer.singleShot(0, window, window.commands.tour.start)

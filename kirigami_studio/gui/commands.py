@@ -52,7 +52,7 @@ class Commands(Beside):
         controller.filing.recovering.recover_wanted.connect(
             lambda leftover: self.guard(tr("recover another"), partial(controller.filing.recovering.recover, leftover))
         )
-        self.picturing = Picturing(window, controller.board, lambda: controller.order)
+        self.picturing = Picturing(window, controller.queue, lambda: controller.cut_request)
         self.pictures = PictureMenu(window, self.picturing, lambda proposal: self.files.picture(proposal))
         insert_menu(window, "animation", self.pictures)
         self.picturing.message.connect(controller.message)

@@ -12,7 +12,7 @@ from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.designs.collecting import Plan
 from kirigami_studio.gui.file_kinds import kind_of
 from kirigami_studio.gui.jobs import steps
-from kirigami_studio.gui.jobs.board import Ears
+from kirigami_studio.gui.jobs.queue import JobCallbacks
 from kirigami_studio.gui.messages import Message, Tone
 from kirigami_studio.gui.workbench import Workbench
 from kirigami_studio.outlines.outline import Outline
@@ -33,8 +33,8 @@ class Controller(Workbench):
 
     def warm_up(self) -> None:
         """Import in the worker what the first run needs, and learn which generators there are."""
-        ears = Ears(self._take_warmth, on_failed=self.tell_failure)
-        self.board.start(tr("loading the generator"), steps.warming, ears)
+        callbacks = JobCallbacks(self._take_warmth, on_failed=self.tell_failure)
+        self.queue.start(tr("loading the generator"), steps.warming, callbacks)
 
     def _take_warmth(self, report: object) -> None:
         if isinstance(report, tuple):
@@ -138,7 +138,7 @@ class Controller(Workbench):
         """Write the chosen design's cut file or picture; the extension says which."""
         if self.hand.postpones(lambda: self.export(path)):
             return
-        order = self.order
+        order = self.cut_request
         if order is None:
             self.message.emit(Message(tr("There is no design to export yet; generate one first."), Tone.HINT))
         else:
@@ -150,7 +150,7 @@ class Controller(Workbench):
         """Write everything that there is of the chosen design into a folder."""
         if self.hand.postpones(lambda: self.export_all(folder, name)):
             return
-        order = self.order
+        order = self.cut_request
         if order is not None:
             self.cutting.export_all(order, folder, name)
 

@@ -30,7 +30,7 @@ class Wiring(QObject):
         self.window = window
         self.controller = controller
         self.commands = commands
-        self.reshaping = Reshaping(window.target.view.easel, lambda: controller.document, self)
+        self.reshaping = Reshaping(window.target.view.context, lambda: controller.document, self)
         self._slips: list[Message] = []
         self.lost = LostDesigns(controller.history, self)
         self.gallery = GalleryWiring(window, controller, self)
@@ -86,7 +86,7 @@ class Wiring(QObject):
 
     def _connect_editor(self) -> None:
         window, controller, reshaping = self.window, self.controller, self.reshaping
-        window.target.view.easel.changed.connect(reshaping.take)
+        window.target.view.context.changed.connect(reshaping.take)
         window.target.strip.mirror_wanted.connect(reshaping.mirror)
         window.target.refine.previewed.connect(reshaping.preview)
         window.target.refine.refined.connect(reshaping.refine)

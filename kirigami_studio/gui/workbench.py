@@ -16,20 +16,20 @@ from kirigami_studio.gui.cuts.cutting import Cutting
 from kirigami_studio.gui.cuts.fabricating import Fabricating
 from kirigami_studio.gui.designs.collecting import Collecting
 from kirigami_studio.gui.designs.comparing import Comparing
+from kirigami_studio.gui.designs.design_cache import DesignCache
 from kirigami_studio.gui.designs.design_run import DesignRun
 from kirigami_studio.gui.designs.entry import Entry
-from kirigami_studio.gui.designs.finishing import Finishing
+from kirigami_studio.gui.designs.finishing import TrimJob
 from kirigami_studio.gui.designs.hand_editing import HandEditing
 from kirigami_studio.gui.designs.marking import Marking
 from kirigami_studio.gui.designs.plotting import Plotting
 from kirigami_studio.gui.designs.refitting import Refitting
-from kirigami_studio.gui.designs.shelf import Shelf
 from kirigami_studio.gui.designs.showing import Showing
 from kirigami_studio.gui.designs.stopped_run import StoppedRun
 from kirigami_studio.gui.files.filing import Filing
 from kirigami_studio.gui.files.recovering import Work
 from kirigami_studio.gui.jobs import steps
-from kirigami_studio.gui.jobs.board import Board
+from kirigami_studio.gui.jobs.queue import JobQueue
 from kirigami_studio.gui.look.preferring import Preferring
 from kirigami_studio.gui.messages import Message, Tone
 from kirigami_studio.gui.targets.targeting import Targeting
@@ -52,25 +52,25 @@ class Workbench(QObject):
 
     def __init__(self, parent: QObject | None = None) -> None:
         super().__init__(parent)
-        self.board = Board(self)
+        self.queue = JobQueue(self)
         self.history = History()
         self.path: Path | None = None
-        shelf = Shelf()
-        self.showing = Showing(self.board, shelf, self)
-        self.run = DesignRun(self.board, shelf, self)
-        self.finishing = Finishing(self.board, shelf, lambda: self.document, self)
-        self.hand = HandEditing(self.board, shelf, lambda: self.document, self)
-        self.refitting = Refitting(self.board, shelf, lambda: self.document, self)
-        self.comparing = Comparing(self.board, shelf, self)
+        cache = DesignCache()
+        self.showing = Showing(self.queue, cache, self)
+        self.run = DesignRun(self.queue, cache, self)
+        self.finishing = TrimJob(self.queue, cache, lambda: self.document, self)
+        self.hand = HandEditing(self.queue, cache, lambda: self.document, self)
+        self.refitting = Refitting(self.queue, cache, lambda: self.document, self)
+        self.comparing = Comparing(self.queue, cache, self)
         self.fabricating = Fabricating(lambda: self.document, self)
-        self.cutting = Cutting(self.board, self)
-        self.targeting = Targeting(self.board, lambda: self.document, self)
+        self.cutting = Cutting(self.queue, self)
+        self.targeting = Targeting(self.queue, lambda: self.document, self)
         self.preferring = Preferring(self)
         self.collecting = Collecting(lambda: self.document, self)
         self.stopped = StoppedRun(lambda: self.document, self)
         self.marking = Marking(lambda: self.document, self)
-        self.plotting = Plotting(self.board, self)
-        self.filing = Filing(self.board, self._work, self.targeting, self)
+        self.plotting = Plotting(self.queue, self)
+        self.filing = Filing(self.queue, self._work, self.targeting, self)
         self._connect()
 
     def _connect(self) -> None:
@@ -127,7 +127,7 @@ class Workbench(QObject):
         """Stop all work; the window is going away."""
         self.cutting.close()
         self.hand.close()
-        self.board.close()
+        self.queue.close()
         self.filing.close()
 
     # news of the parts ----------------------------------------------------------------------------------------------
@@ -161,16 +161,16 @@ class Workbench(QObject):
 
     def plan_soon(self) -> None:
         """The cuts of the design on the stage are to be planned anew."""
-        self.cutting.plan_soon(self.order)
+        self.cutting.plan_soon(self.cut_request)
 
     @property
-    def order(self) -> steps.Order | None:
+    def cut_request(self) -> steps.CutRequest | None:
         """The design on the stage and how it is to be cut."""
         stage, document = self.stage, self.document
         if stage is None:
             return None
         facts = design_facts(document, stage.candidate)
-        return steps.Order(stage.candidate, stage.design.deployment, document.target, document.fabrication, facts)
+        return steps.CutRequest(stage.candidate, stage.design.deployment, document.target, document.fabrication, facts)
 
     def _saved(self, path: Path, document: Document) -> None:
         self.path = path

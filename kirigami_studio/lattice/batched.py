@@ -16,11 +16,11 @@ import numpy as np
 import torch
 from torch import Tensor
 
+from kirigami_studio.foundation.arrays import FloatArray, IntArray
 from kirigami_studio.foundation.errors import RatioError
 from kirigami_studio.lattice.compact import barycentric_stencil
 from kirigami_studio.lattice.outline_map import even_part_of_outline
-from kirigami_studio.lattice.ratio_field import FloatArray
-from kirigami_studio.lattice.topology import IntArray, topology
+from kirigami_studio.lattice.topology import topology
 
 
 class BatchedLattice:

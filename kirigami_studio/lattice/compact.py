@@ -18,9 +18,10 @@ import numpy as np
 from scipy.sparse import csc_matrix
 from scipy.sparse.linalg import splu
 
+from kirigami_studio.foundation.arrays import FloatArray, IntArray
 from kirigami_studio.foundation.errors import UsageError
-from kirigami_studio.lattice.ratio_field import FloatArray, RatioField, frozen
-from kirigami_studio.lattice.topology import IntArray, Topology, topology
+from kirigami_studio.lattice.ratio_field import RatioField, frozen
+from kirigami_studio.lattice.topology import Topology, topology
 
 
 @cache

@@ -15,9 +15,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import AngleError
 from kirigami_studio.lattice.compact import solve_compact
-from kirigami_studio.lattice.ratio_field import FloatArray, RatioField, frozen
+from kirigami_studio.lattice.ratio_field import RatioField, frozen
 from kirigami_studio.lattice.topology import Topology, topology
 
 #: Below this angle (radians) the edge hinges count as zipped and leave the outline.

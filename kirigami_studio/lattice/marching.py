@@ -11,8 +11,9 @@ import math
 
 import numpy as np
 
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.lattice.deployment import check_phi, rotate
-from kirigami_studio.lattice.ratio_field import FloatArray, RatioField
+from kirigami_studio.lattice.ratio_field import RatioField
 
 
 def void_angle(row: int, column: int, phi: float) -> float:

@@ -6,8 +6,8 @@ from functools import lru_cache
 
 import numpy as np
 
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.lattice.deployment import even_panel_part
-from kirigami_studio.lattice.ratio_field import FloatArray
 from kirigami_studio.lattice.topology import topology
 
 #: Columns of the identity mapped at a time: keeps 64 x 64 grids below 100 MB.

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import GridError, RatioError
 
 SMALLEST_GRID = 2
@@ -14,8 +15,6 @@ LARGEST_GRID = 64
 #: Within these bounds Eq. 2 holds to 1e-8 at 24 x 24; at 10^(+-13) to 0.1, beyond them not at all (float64).
 SMALLEST_RATIO = 1e-6
 LARGEST_RATIO = 1e6
-
-FloatArray = npt.NDArray[np.float64]
 
 
 def check_grid(rows: int, columns: int) -> None:

@@ -11,7 +11,7 @@ from typing import Literal
 import numpy as np
 from scipy.interpolate import RBFInterpolator
 
-from kirigami_studio.lattice.ratio_field import FloatArray
+from kirigami_studio.foundation.arrays import FloatArray
 
 
 def resize_fields(z: FloatArray, rows: int, columns: int) -> FloatArray:

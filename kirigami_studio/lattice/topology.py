@@ -16,12 +16,9 @@ from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
-import numpy.typing as npt
 
-from kirigami_studio.lattice.ratio_field import FloatArray, check_grid
-
-IntArray = npt.NDArray[np.intp]
-BoolArray = npt.NDArray[np.bool_]
+from kirigami_studio.foundation.arrays import BoolArray, FloatArray, IntArray
+from kirigami_studio.lattice.ratio_field import check_grid
 
 
 @dataclass(frozen=True, slots=True, eq=False)

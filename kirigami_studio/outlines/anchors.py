@@ -15,10 +15,10 @@ import numpy as np
 import shapely
 from shapely.geometry import Polygon
 
+from kirigami_studio.foundation.arrays import BoolArray, FloatArray
 from kirigami_studio.foundation.errors import TargetError
 from kirigami_studio.outlines import bezier
-from kirigami_studio.outlines.contour import FloatArray
-from kirigami_studio.outlines.nodes import FEWEST_NODES, BoolArray, Kind, Nodes
+from kirigami_studio.outlines.nodes import FEWEST_NODES, Kind, Nodes
 from kirigami_studio.outlines.placed import Placed
 from kirigami_studio.outlines.polylines import apart, nearest, turns, weights
 

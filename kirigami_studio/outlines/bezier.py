@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from kirigami_studio.outlines.contour import FloatArray
+from kirigami_studio.foundation.arrays import FloatArray
 
 #: Vertices of a curve between two points.
 CURVE_VERTICES = 15

@@ -11,8 +11,9 @@ import shapely
 from shapely.geometry import Polygon
 from shapely.geometry.base import BaseGeometry
 
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import TargetError
-from kirigami_studio.outlines.contour import FloatArray, as_contour, tidy
+from kirigami_studio.outlines.contour import as_contour, tidy
 from kirigami_studio.outlines.pieces import WORTH_SAYING, enclosed, largest_piece
 from kirigami_studio.outlines.placed import Placed
 

@@ -7,9 +7,8 @@ import numpy.typing as npt
 import shapely
 from shapely.geometry import Polygon
 
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import TargetError
-
-FloatArray = npt.NDArray[np.float64]
 
 #: More vertices than any drawing needs; the bound keeps repair and scoring from running for minutes.
 MOST_VERTICES = 50_000

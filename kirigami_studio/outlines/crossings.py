@@ -6,8 +6,9 @@ import numpy as np
 import shapely
 from shapely.geometry import LinearRing, LineString, Polygon
 
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import TargetError
-from kirigami_studio.outlines.contour import SMALLEST_AREA, FloatArray, tidy
+from kirigami_studio.outlines.contour import SMALLEST_AREA, tidy
 
 #: The largest piece of a self-crossing contour must hold this share of the area to be what was meant.
 CLEARLY_MEANT = 0.9

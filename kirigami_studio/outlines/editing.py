@@ -9,8 +9,9 @@ import numpy as np
 import numpy.typing as npt
 from scipy.ndimage import gaussian_filter1d
 
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import TargetError
-from kirigami_studio.outlines.contour import FloatArray, as_contour, tidy
+from kirigami_studio.outlines.contour import as_contour, tidy
 from kirigami_studio.outlines.outline import Outline
 
 #: Samples along a freehand stroke: one per pixel of a stroke that a hand can draw on a screen, roughly.

@@ -8,8 +8,8 @@ from enum import Enum
 
 import numpy as np
 
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import TargetError
-from kirigami_studio.outlines.contour import FloatArray
 
 #: Vertices of an ellipse: its area is within 0.02 % of the true one.
 ELLIPSE_VERTICES = 180

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import svgelements as untyped_svgelements
 
-from kirigami_studio.outlines.contour import FloatArray
+from kirigami_studio.foundation.arrays import FloatArray
 
 #: The library's calls carry no types; its values are checked here instead.
 svgelements: Any = untyped_svgelements

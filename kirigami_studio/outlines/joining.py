@@ -13,8 +13,8 @@ from scipy.spatial import cKDTree
 from shapely.geometry import LineString
 from shapely.geometry.base import BaseGeometry
 
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import TargetError
-from kirigami_studio.outlines.contour import FloatArray
 
 #: Ends nearer than this share of the drawing's size are one point: the rounding of coordinates in a file.
 SAME_END = 1e-6

@@ -13,8 +13,8 @@ from shapely.affinity import translate
 from shapely.geometry import Polygon
 from shapely.geometry.base import BaseGeometry
 
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import TargetError
-from kirigami_studio.outlines.contour import FloatArray
 from kirigami_studio.outlines.figures import Box
 from kirigami_studio.outlines.pieces import largest_piece
 

@@ -12,10 +12,10 @@ import shapely
 from shapely.geometry import Polygon, box
 from shapely.geometry.base import BaseGeometry
 
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import TargetError
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.outlines.combining import SNAP, Combine, combined
-from kirigami_studio.outlines.contour import FloatArray
 from kirigami_studio.outlines.pieces import largest_piece
 from kirigami_studio.outlines.placed import LARGEST_MM, Placed
 

@@ -10,14 +10,9 @@ import numpy as np
 import numpy.typing as npt
 from shapely.geometry import Polygon
 
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import TargetError
-from kirigami_studio.outlines.contour import (
-    FloatArray,
-    area_and_centroid,
-    as_contour,
-    tidy,
-    unit_frame,
-)
+from kirigami_studio.outlines.contour import area_and_centroid, as_contour, tidy, unit_frame
 from kirigami_studio.outlines.crossings import untangled
 from kirigami_studio.outlines.nodes import Nodes
 

@@ -7,8 +7,8 @@ import shapely
 from shapely.geometry import Polygon
 from shapely.geometry.base import BaseGeometry
 
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import TargetError
-from kirigami_studio.outlines.contour import FloatArray
 from kirigami_studio.outlines.crossings import CLEARLY_MEANT
 
 #: Shares of the area below this are rounding or noding slivers and not worth a sentence.

@@ -15,8 +15,8 @@ import shapely
 from shapely.geometry import Polygon
 from shapely.geometry.base import BaseGeometry
 
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import TargetError
-from kirigami_studio.outlines.contour import FloatArray
 from kirigami_studio.outlines.outline import Outline
 
 #: Narrower than this many panels is marked.  Found with fits of 20 drawn shapes (8 x 8 and 12 x 12 voids, 6 samples

@@ -17,8 +17,9 @@ from ezdxf.filemanagement import readfile
 from ezdxf.lldxf.const import DXFError
 from ezdxf.path import make_path
 
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import TargetError
-from kirigami_studio.outlines.contour import FloatArray, thinned
+from kirigami_studio.outlines.contour import thinned
 from kirigami_studio.outlines.joining import join
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.pieces import largest_piece

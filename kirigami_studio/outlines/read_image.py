@@ -10,12 +10,11 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 from PIL import Image, ImageOps, UnidentifiedImageError
 from skimage import filters
 
+from kirigami_studio.foundation.arrays import BoolArray, FloatArray
 from kirigami_studio.foundation.errors import TargetError
-from kirigami_studio.outlines.contour import FloatArray
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.source_file import decoding, read_bytes
 from kirigami_studio.outlines.trace import trace
@@ -137,7 +136,7 @@ def automatic_threshold(path: str | Path) -> float:
         return _automatic(_levels(content).grey)
 
 
-def outline_of_mask(mask: npt.NDArray[np.bool_], name: str) -> Outline:
+def outline_of_mask(mask: BoolArray, name: str) -> Outline:
     """Outline of the largest piece of a mask; row 0 is the top.
 
     Parameters

@@ -14,8 +14,9 @@ import svgelements as untyped_svgelements
 from shapely.geometry import LineString, Polygon
 from shapely.geometry.base import BaseGeometry
 
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import TargetError
-from kirigami_studio.outlines.contour import FloatArray, thinned
+from kirigami_studio.outlines.contour import thinned
 from kirigami_studio.outlines.flatten import flattened
 from kirigami_studio.outlines.joining import join
 from kirigami_studio.outlines.outline import Outline

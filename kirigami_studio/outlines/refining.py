@@ -10,8 +10,9 @@ import shapely
 from scipy.ndimage import gaussian_filter1d
 from shapely.geometry import Polygon
 
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import TargetError
-from kirigami_studio.outlines.contour import FloatArray, area_and_centroid
+from kirigami_studio.outlines.contour import area_and_centroid
 from kirigami_studio.outlines.editing import STROKE_ERROR, resampled, smoothed_stroke
 from kirigami_studio.outlines.placed import LARGEST_MM, Placed
 

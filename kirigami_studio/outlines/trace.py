@@ -5,14 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-import numpy.typing as npt
 import shapely
 from scipy import ndimage
 from shapely.geometry import Polygon
 from skimage import measure
 
+from kirigami_studio.foundation.arrays import BoolArray, FloatArray
 from kirigami_studio.foundation.errors import TargetError
-from kirigami_studio.outlines.contour import FloatArray
 
 #: scikit-image carries no types; the annotation states what is used of it.
 find_contours: Callable[[FloatArray, float], list[FloatArray]] = measure.find_contours
@@ -69,7 +68,7 @@ def trace(ink: FloatArray) -> tuple[FloatArray, tuple[str, ...]]:
     return _simplified(points), notes
 
 
-def _main_piece(mask: npt.NDArray[np.bool_]) -> tuple[npt.NDArray[np.bool_], tuple[str, ...]]:
+def _main_piece(mask: BoolArray) -> tuple[BoolArray, tuple[str, ...]]:
     """Largest edge-connected piece of a mask, with a sentence on the others."""
     labels = np.asarray(ndimage.label(mask)[0])
     sizes = np.bincount(labels.ravel())[1:]
@@ -82,7 +81,7 @@ def _main_piece(mask: npt.NDArray[np.bool_]) -> tuple[npt.NDArray[np.bool_], tup
         )
     if largest < LEAST_PIXELS:
         raise TargetError(f"The largest shape has {largest} pixels only; use a picture of at least 64 x 64 pixels.")
-    piece: npt.NDArray[np.bool_] = labels == main + 1
+    piece: BoolArray = labels == main + 1
     if len(sizes) == 1:
         return piece, ()
     others = "1 island was" if len(sizes) == 2 else f"{len(sizes) - 1} islands were"

@@ -14,7 +14,7 @@ class Ready:
 
 
 @dataclass(frozen=True, slots=True)
-class Order:
+class Assignment:
     """Do task ``number`` of batch ``batch``."""
 
     batch: int

@@ -23,7 +23,7 @@ from typing import IO
 
 import kirigami_studio
 from kirigami_studio.foundation.log import topic
-from kirigami_studio.pipeline.messages import Done, Failed, Order, Ready, Report, Stop
+from kirigami_studio.pipeline.messages import Assignment, Done, Failed, Ready, Report, Stop
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.pipeline.tasks import Answer, Task
 from kirigami_studio.pipeline.worker import WORKER_FLAG
@@ -59,7 +59,7 @@ class Worker:
     """One process and the thread that listens to it."""
 
     def __init__(self, command: Sequence[str], reports: SimpleQueue[tuple[Worker, Report | None]]) -> None:
-        self.order: Order | None = None
+        self.assignment: Assignment | None = None
         self.ready = False
         self.process = _started(command)
         self._reports = reports
@@ -70,12 +70,12 @@ class Worker:
     def alive(self) -> bool:
         return self.process.poll() is None
 
-    def send(self, message: Order | Stop) -> bool:
+    def send(self, message: Assignment | Stop) -> bool:
         """Write a message; False when the worker is gone."""
-        orders = _open(self.process.stdin)
+        assignments = _open(self.process.stdin)
         try:
-            orders.write(pickle.dumps(message))
-            orders.flush()
+            assignments.write(pickle.dumps(message))
+            assignments.flush()
         except (OSError, ValueError):
             return False
         return True
@@ -173,7 +173,7 @@ class Pool:
         """Begin no more tasks of this batch, and answer those under way with the best so far, within one step."""
         self._held = True
         for worker in self.workers:
-            if worker.order is not None:
+            if worker.assignment is not None:
                 worker.send(Stop(self._batch))
 
     def close(self) -> None:
@@ -188,26 +188,26 @@ class Pool:
         self.start()
         while self.workers and (self._under_way(batch) or (waiting and not self._held)):
             for worker in self.workers:
-                if waiting and not self._held and worker.ready and worker.order is None:
+                if waiting and not self._held and worker.ready and worker.assignment is None:
                     number, task = waiting.popleft()
-                    worker.order = Order(batch, number, request, task)
-                    worker.send(worker.order)  # a dead one is noticed by its listener
+                    worker.assignment = Assignment(batch, number, request, task)
+                    worker.send(worker.assignment)  # a dead one is noticed by its listener
             try:
                 worker, report = self._reports.get(timeout=wait)
             except Empty:
                 yield None
                 continue
-            order = worker.order
+            assignment = worker.assignment
             self._note(worker, report)
-            if report is None and order is not None and order.batch == batch:
-                waiting.appendleft((order.number, order.task))
+            if report is None and assignment is not None and assignment.batch == batch:
+                waiting.appendleft((assignment.number, assignment.task))
             elif isinstance(report, Failed) and report.batch == batch:
                 raise report.error
             elif isinstance(report, Done) and report.batch == batch:
                 yield report.number, report.answer
 
     def _under_way(self, batch: int) -> bool:
-        return any(worker.order is not None and worker.order.batch == batch for worker in self.workers)
+        return any(worker.assignment is not None and worker.assignment.batch == batch for worker in self.workers)
 
     def _take_reports(self) -> None:
         """Read what came in between two batches."""
@@ -221,7 +221,7 @@ class Pool:
         if isinstance(report, Ready):
             worker.ready = True
             return
-        worker.order = None
+        worker.assignment = None
         if report is None and worker in self.workers:
             self.workers.remove(worker)
             worker.end()

@@ -93,7 +93,7 @@ def _polished(request: Request, task: Polish, stopped: Callable[[], bool]) -> An
         (better,) = scored(request, [fit.field], candidate.index, candidate.origin, fitted=True)
         evaluations += fit.evaluations + 1
         if improves(better, candidate, request.prefer):
-            return Answer(replace(better, drawn=candidate.drawn or candidate.field), evaluations)
+            return Answer(replace(better, sampled_field=candidate.sampled_field or candidate.field), evaluations)
         prefer = MILDER.get(prefer)
     return Answer(None, evaluations)
 

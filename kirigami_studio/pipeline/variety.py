@@ -12,7 +12,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from kirigami_studio.evaluate.candidate import Candidate
-from kirigami_studio.lattice.ratio_field import FloatArray, RatioField
+from kirigami_studio.foundation.arrays import FloatArray
+from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.pipeline.rank import ranked
 
 #: Nearer than this two candidates are one design: ratios that differ by under 5 % cannot be told apart on a cut sheet.

@@ -14,7 +14,7 @@ import threading
 from queue import SimpleQueue
 from typing import BinaryIO
 
-from kirigami_studio.pipeline.messages import Done, Failed, Order, Ready, Report, Stop
+from kirigami_studio.pipeline.messages import Assignment, Done, Failed, Ready, Report, Stop
 from kirigami_studio.pipeline.tasks import carry_out
 
 #: The argument that makes a frozen program be a worker.
@@ -31,15 +31,15 @@ def serve() -> int:
     threading.Thread(target=inbox.listen, name="orders", daemon=True).start()
     _say(answers, Ready())
     while True:
-        order = inbox.orders.get()
-        _say(answers, _carried_out(order, inbox))
+        assignment = inbox.assignments.get()
+        _say(answers, _carried_out(assignment, inbox))
 
 
 class _Inbox:
     """Orders in turn, and which of them are to stop."""
 
     def __init__(self, source: BinaryIO) -> None:
-        self.orders: SimpleQueue[Order] = SimpleQueue()
+        self.assignments: SimpleQueue[Assignment] = SimpleQueue()
         self.stopped_batch = -1
         self._source = source
 
@@ -52,15 +52,15 @@ class _Inbox:
             if isinstance(message, Stop):
                 self.stopped_batch = max(self.stopped_batch, message.batch)
             else:
-                self.orders.put(message)
+                self.assignments.put(message)
 
 
-def _carried_out(order: Order, inbox: _Inbox) -> Report:
+def _carried_out(assignment: Assignment, inbox: _Inbox) -> Report:
     try:
-        answer = carry_out(order.request, order.task, lambda: inbox.stopped_batch >= order.batch)
+        answer = carry_out(assignment.request, assignment.task, lambda: inbox.stopped_batch >= assignment.batch)
     except Exception as error:
-        return Failed(order.batch, order.number, error)
-    return Done(order.batch, order.number, answer)
+        return Failed(assignment.batch, assignment.number, error)
+    return Done(assignment.batch, assignment.number, answer)
 
 
 def _say(answers: BinaryIO, report: Report) -> None:

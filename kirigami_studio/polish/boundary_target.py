@@ -8,7 +8,7 @@ from functools import lru_cache
 import numpy as np
 from scipy.spatial import KDTree
 
-from kirigami_studio.lattice.ratio_field import FloatArray
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.outlines.outline import Outline
 
 #: Boundary pieces that nearest-point queries choose from; the pieces beside the one found are searched as well.

@@ -19,10 +19,10 @@ from kirigami_studio.evaluate.feasibility import path_contact
 from kirigami_studio.evaluate.kept_panels import GRID, edge_panels
 from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.evaluate.trimming import KEEP, Trim, check_keep, trim
+from kirigami_studio.foundation.arrays import BoolArray, FloatArray
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.lattice.deployment import Deployment, deploy
-from kirigami_studio.lattice.ratio_field import FloatArray, RatioField
-from kirigami_studio.lattice.topology import BoolArray
+from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.polish.levenberg import Fit, check_fit, polish
 

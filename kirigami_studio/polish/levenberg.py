@@ -18,10 +18,11 @@ import shapely
 from kirigami_studio.evaluate.alignment import align
 from kirigami_studio.evaluate.feasibility import path_contact
 from kirigami_studio.evaluate.similarity import Similarity
+from kirigami_studio.foundation.arrays import BoolArray, FloatArray
 from kirigami_studio.foundation.errors import AngleError, UsageError
+from kirigami_studio.foundation.paper import LOG_RATIO_LIMIT
 from kirigami_studio.lattice.deployment import check_phi, deploy
-from kirigami_studio.lattice.ratio_field import FloatArray, RatioField
-from kirigami_studio.lattice.topology import BoolArray
+from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.polish.boundary_target import BoundaryTarget
 from kirigami_studio.polish.objective import POSE, TRUST, Look, Objective, Quadratic
@@ -32,8 +33,6 @@ from kirigami_studio.polish.symmetry import Symmetry
 
 #: Even samples of the target boundary.
 SAMPLES = 256
-#: Bounds of z: x in [0.1, 10], as for the generator.
-Z_LIMIT = 1.0
 #: A step must lower the cost by this share, or the fit has converged.
 SMALLEST_GAIN = 1e-4
 #: Damping relative to the matrix' diagonal: where it starts and between what it stays.
@@ -157,7 +156,7 @@ def _allowed(symmetry: Symmetry | None, field: RatioField, kept: BoolArray) -> C
 
     def allowed(z: FloatArray) -> FloatArray:
         balanced = z if symmetry is None else symmetry.symmetric(z.reshape(field.rows, field.columns)).ravel()
-        return np.where(held, start, np.clip(balanced, -Z_LIMIT, Z_LIMIT))
+        return np.where(held, start, np.clip(balanced, -LOG_RATIO_LIMIT, LOG_RATIO_LIMIT))
 
     return allowed
 
@@ -250,7 +249,7 @@ class _Descent:
     def _trial(self, look: Look, model: Quadratic) -> Look:
         """Damped Gauss-Newton step with the ratios at their bounds held where the gradient pushes outwards."""
         bounds = np.full(look.state.size, np.inf)
-        bounds[:-POSE] = Z_LIMIT
+        bounds[:-POSE] = LOG_RATIO_LIMIT
         held = ((look.state >= bounds) & (model.gradient < 0)) | ((look.state <= -bounds) & (model.gradient > 0))
         free = np.flatnonzero(~(held | self._kept))
         matrix = model.hessian[np.ix_(free, free)]

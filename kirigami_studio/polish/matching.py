@@ -6,8 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from kirigami_studio.lattice.ratio_field import FloatArray
-from kirigami_studio.lattice.topology import IntArray
+from kirigami_studio.foundation.arrays import FloatArray, IntArray
 from kirigami_studio.polish.boundary_target import NORMAL_LENGTH, BoundaryTarget, unit_normals
 
 #: Where on each layout edge distances are taken.

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from kirigami_studio.lattice.ratio_field import FloatArray
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.lattice.topology import topology
 from kirigami_studio.polish.boundary_target import BoundaryTarget
 from kirigami_studio.polish.matching import EDGE_SHARES, Matching, matched

@@ -6,10 +6,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from kirigami_studio.foundation.arrays import BoolArray, FloatArray
 from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.lattice.deployment import ZIPPED_BELOW
-from kirigami_studio.lattice.ratio_field import FloatArray
-from kirigami_studio.lattice.topology import BoolArray, topology
+from kirigami_studio.lattice.topology import topology
 from kirigami_studio.polish.boundary_target import BoundaryTarget, unit_normals
 from kirigami_studio.polish.matching import Matching
 

@@ -10,9 +10,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from kirigami_studio.foundation.arrays import FloatArray, IntArray
 from kirigami_studio.foundation.errors import UsageError
-from kirigami_studio.lattice.ratio_field import FloatArray
-from kirigami_studio.lattice.topology import IntArray, topology
+from kirigami_studio.lattice.topology import topology
 
 #: Cost of one size that is too small, per square of what is missing (unit cells): a twentieth of a cell missing then
 #: weighs more than the whole mismatch of a good fit.

@@ -8,8 +8,8 @@ from functools import lru_cache
 
 import numpy as np
 
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import UsageError
-from kirigami_studio.lattice.ratio_field import FloatArray
 
 #: Differences of ratios below this count quadratically in the total variation, so that it has a curvature everywhere.
 ROUNDED = 0.05

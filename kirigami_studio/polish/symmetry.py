@@ -19,8 +19,8 @@ from enum import Enum
 import numpy as np
 import shapely
 
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.lattice.deployment import ZIPPED_BELOW
-from kirigami_studio.lattice.ratio_field import FloatArray
 from kirigami_studio.outlines.outline import Outline
 
 #: A shape is symmetric when it shares this much of its area with its turned or flipped self: a hand-drawn heart is not.

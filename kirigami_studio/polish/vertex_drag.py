@@ -22,11 +22,12 @@ import numpy as np
 import scipy.linalg
 
 from kirigami_studio.evaluate.feasibility import invalid_quads, path_contact
+from kirigami_studio.foundation.arrays import BoolArray, FloatArray, IntArray
 from kirigami_studio.foundation.errors import UsageError
+from kirigami_studio.foundation.paper import LOG_RATIO_LIMIT
 from kirigami_studio.lattice.deployment import Deployment, deploy
-from kirigami_studio.lattice.ratio_field import FloatArray, RatioField
-from kirigami_studio.lattice.topology import BoolArray, IntArray
-from kirigami_studio.polish.levenberg import Z_LIMIT, check_fit, check_held
+from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.polish.levenberg import check_fit, check_held
 from kirigami_studio.polish.sensitivity import OutlineModel
 
 #: Weight of the other vertices and of the change of z, relative to the vertex that is moved.
@@ -76,7 +77,7 @@ class VertexDrag:
             raise UsageError(f"The outline has vertices 0 to {len(self._outline) - 1}, got {vertex}.")
         self._vertex = vertex
         self._free = np.flatnonzero(~check_held(held, field).ravel())
-        self._low, self._high = np.minimum(self._start, -Z_LIMIT), np.maximum(self._start, Z_LIMIT)
+        self._low, self._high = np.minimum(self._start, -LOG_RATIO_LIMIT), np.maximum(self._start, LOG_RATIO_LIMIT)
         self._weight = np.full(len(self._outline), HOLD / len(self._outline))
         self._weight[vertex] = 1.0
         self._change = CHANGE / self._start.size

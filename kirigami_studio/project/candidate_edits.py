@@ -77,8 +77,8 @@ def add_candidates(document: Document, brought: Brought, rank: RankKey, limit: i
     """
     marked = dict(zip(document.candidates, document.marks, strict=True))
     fields = {candidate.field for candidate in document.candidates}
-    added = told_of_run(_without_repeats(brought.candidates, fields), brought.provenance)
-    present = told_of_run(document.candidates, document.provenance)
+    added = format_run(_without_repeats(brought.candidates, fields), brought.provenance)
+    present = format_run(document.candidates, document.provenance)
     kept = _within([*present, *added], marked, document.candidate, rank, limit)
     changed = _collected(document, kept, marked, document.candidate)
     changed = replace(changed, provenance=joined_provenance(document.provenance, brought.provenance))
@@ -94,10 +94,10 @@ def renew_candidates(document: Document, brought: Brought, rank: RankKey, chosen
 
     Pinned designs stay only where they share target, grid and angle with the new ones, which the caller has checked.
     """
-    known = told_of_run(document.candidates, document.provenance)
+    known = format_run(document.candidates, document.provenance)
     pinned = [one for one, mark in zip(known, document.marks, strict=True) if mark is Mark.PINNED]
     fields = {candidate.field for candidate in pinned}
-    fresh = told_of_run(_without_repeats(brought.candidates, fields), brought.provenance)
+    fresh = format_run(_without_repeats(brought.candidates, fields), brought.provenance)
     found = sorted([*pinned, *fresh], key=rank)
     joined = joined_provenance(document.provenance, brought.provenance) if pinned else brought.provenance
     edit = set_candidates(document, found, joined, brought.target)
@@ -117,7 +117,7 @@ def joined_provenance(before: Mapping[str, str], after: Mapping[str, str]) -> di
     return known
 
 
-def told_of_run(candidates: Iterable[Candidate], provenance: Mapping[str, str]) -> list[Candidate]:
+def format_run(candidates: Iterable[Candidate], provenance: Mapping[str, str]) -> list[Candidate]:
     """The designs with the settings of their run; those that know their own keep them."""
     run = tuple(sorted(provenance.items()))
     return [one if one.made_with or not run else replace(one, made_with=run) for one in candidates]

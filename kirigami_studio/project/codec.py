@@ -13,9 +13,10 @@ from kirigami_studio.evaluate.feasibility import Contact
 from kirigami_studio.evaluate.score import Score
 from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.evaluate.trimming import Trim, trim
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import ProjectError
 from kirigami_studio.lattice.deployment import check_phi, deploy
-from kirigami_studio.lattice.ratio_field import FloatArray, RatioField
+from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.document import Document, Mark, Void
 from kirigami_studio.project.fabrication_record import fabrication_json, fabrication_of
@@ -55,7 +56,7 @@ def encode(document: Document) -> dict[str, bytes]:
         "locked": [list(void) for void in sorted(document.locked)],
     }
     members = {DESIGN: json.dumps(design, indent=1, allow_nan=False).encode()}
-    drawn = [entry.drawn for entry in document.candidates if entry.drawn is not None]
+    drawn = [entry.sampled_field for entry in document.candidates if entry.sampled_field is not None]
     for name, fields in ((RATIOS, [entry.field for entry in document.candidates]), (DRAWN, drawn)):
         if fields:
             stream = io.BytesIO()
@@ -176,7 +177,7 @@ def _candidate_json(entry: Candidate, runs: list[tuple[tuple[str, str], ...]]) -
         "variant": entry.variant,
         "origin": entry.origin.value,
         "run": runs.index(entry.made_with) if entry.made_with else None,
-        "drawn": entry.drawn is not None,
+        "drawn": entry.sampled_field is not None,
         "score": entry.score.to_json(),
         # What was cut off follows from these; it is cut again on reading.
         "trim": None
@@ -192,7 +193,7 @@ def _candidate(record: Record, field: RatioField, drawn: RatioField | None, targ
         seed=record.whole("seed"),
         index=record.whole("index"),
         polished=record.flag("polished"),
-        drawn=drawn,
+        sampled_field=drawn,
         trim=_trim(record.record("trim"), target) if record.holds("trim") and target is not None else None,
         variant=record.text("variant"),
         origin=one_of(Origin, record.text("origin")),

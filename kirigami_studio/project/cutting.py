@@ -26,7 +26,7 @@ def plan_of(candidate: Candidate, settings: FabricationSettings, deployment: Dep
     """
     trim = candidate.trim
     return plan_cuts(
-        deployment or deploy(candidate.field if trim is None else trim.field),
+        deployment or deploy(candidate.final_field),
         width_mm=settings.width_mm,
         connector_mm=settings.connector_mm,
         kerf_mm=settings.kerf_mm,
@@ -34,8 +34,3 @@ def plan_of(candidate: Candidate, settings: FabricationSettings, deployment: Dep
         options=settings.options,
         kept=None if trim is None else trim.kept,
     )
-
-
-def target_angle(candidate: Candidate) -> float:
-    """Angle (radians) that a finished design is opened to."""
-    return candidate.score.phi if candidate.trim is None else candidate.trim.phi

@@ -27,7 +27,7 @@ def take_changed(
 
 def moves_locked(document: Document, before: Candidate, after: Candidate) -> bool:
     """Whether a change gives another ratio to a void that is locked now, by the ratios that are shown and cut."""
-    shown = [one.field if one.trim is None else one.trim.field for one in (before, after)]
+    shown = [one.final_field for one in (before, after)]
     return any(shown[0].ratio[void] != shown[1].ratio[void] for void in document.locked)
 
 

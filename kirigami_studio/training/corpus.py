@@ -10,10 +10,10 @@ import torch
 from numpy.random import Generator
 from torch import Tensor
 
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.generator.conditioning import normalised
 from kirigami_studio.generator.sheet import Sheet
 from kirigami_studio.lattice.batched import BatchedLattice
-from kirigami_studio.lattice.ratio_field import FloatArray
 
 FieldSampler = Callable[[int, int, int, Generator], FloatArray]
 

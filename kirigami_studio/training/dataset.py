@@ -14,25 +14,25 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-import numpy.typing as npt
 import torch
 from numpy.random import Generator
 from scipy.ndimage import binary_fill_holes, label
 
 from kirigami_studio.evaluate.feasibility import TAU_OVERLAP, invalid_quads, overlap_ratio
 from kirigami_studio.evaluate.silhouette import rasterise
+from kirigami_studio.foundation.arrays import BoolArray, FloatArray
 from kirigami_studio.foundation.errors import KirigamiError, UsageError
 from kirigami_studio.foundation.files import write_atomically
+from kirigami_studio.foundation.paper import MASK_SIZE
 from kirigami_studio.lattice.batched import BatchedLattice
 from kirigami_studio.lattice.deployment import deploy
-from kirigami_studio.lattice.ratio_field import FloatArray, RatioField
+from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.training.corpus import zero_outline
 from kirigami_studio.training.fields import sobol_fields, structured_fields
 
 FAMILIES = ("sobol", "structured")
 #: Split sizes of the paper (Appendix "Dataset generation") and the seed offsets that keep splits independent.
 SPLITS = {"train": (5000, 0), "validation": (500, 1), "test": (500, 2)}
-MASK_SIZE = 128
 #: A mask that fills less or more of its 128 x 128 image than this is no silhouette (digest: 3-97 %).
 FILL_RANGE = (0.03, 0.97)
 VERIFIED_SAMPLES = 128
@@ -53,7 +53,7 @@ class Split:
     """
 
     ratios: FloatArray
-    masks: npt.NDArray[np.bool_]
+    masks: BoolArray
     about: dict[str, object]
 
     def save(self, path: Path) -> None:
@@ -88,7 +88,7 @@ def generate_split(
         raise UsageError(f"A data set needs at least 1 sample, got {count}.")
     discarded: Counter[str] = Counter()
     ratios: list[FloatArray] = []
-    masks: list[npt.NDArray[np.bool_]] = []
+    masks: list[BoolArray] = []
     lattice = BatchedLattice(*grid, dtype=torch.float64)
     for fields in _batches(family, grid, seed):
         outlines = zero_outline(lattice, torch.tensor(fields)).numpy()
@@ -143,7 +143,7 @@ def _batches(family: str, grid: tuple[int, int], seed: int) -> Iterator[FloatArr
     raise UsageError(f"Unknown family '{family}'; choose one of {', '.join(FAMILIES)}.")
 
 
-def _fault(field: RatioField, mask: npt.NDArray[np.bool_]) -> str | None:
+def _fault(field: RatioField, mask: BoolArray) -> str | None:
     """Why the protocol discards this design, or None."""
     deployment = deploy(field)
     if invalid_quads(deployment, 0.0):

@@ -16,8 +16,8 @@ from numpy.random import Generator
 from shapely import BufferCapStyle, BufferJoinStyle, Polygon
 from shapely.affinity import rotate, scale, translate
 
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import TargetError
-from kirigami_studio.lattice.ratio_field import FloatArray
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.training.glyphs import glyph
 

@@ -16,10 +16,9 @@ from numpy.random import Generator
 from scipy.ndimage import map_coordinates
 from scipy.stats import qmc
 
-from kirigami_studio.lattice.ratio_field import FloatArray
+from kirigami_studio.foundation.arrays import FloatArray
+from kirigami_studio.foundation.paper import LOG_RATIO_LIMIT
 
-#: Bounds of z: x in [0.1, 10] (paper, Appendix "Dataset generation").
-Z_LIMIT = 1.0
 #: Interpolation of coarse grids: linear, quadratic or cubic.
 SPLINE_ORDERS: tuple[Literal[1, 2, 3], ...] = (1, 2, 3)
 
@@ -31,12 +30,12 @@ def sobol_fields(count: int, rows: int, columns: int, seed: int, skip: int = 0) 
         engine.fast_forward(skip)
     # Sobol points keep their balance in blocks of a power of two.
     points: FloatArray = engine.random(1 << (count - 1).bit_length())[:count]
-    return (2.0 * points - 1.0).reshape(count, rows, columns) * Z_LIMIT
+    return (2.0 * points - 1.0).reshape(count, rows, columns) * LOG_RATIO_LIMIT
 
 
 def uniform_fields(count: int, rows: int, columns: int, rng: Generator) -> FloatArray:
     """Independent uniform z: what a Sobol sequence in 100 dimensions looks like at training counts."""
-    return rng.uniform(-Z_LIMIT, Z_LIMIT, (count, rows, columns))
+    return rng.uniform(-LOG_RATIO_LIMIT, LOG_RATIO_LIMIT, (count, rows, columns))
 
 
 def structured_fields(count: int, rows: int, columns: int, rng: Generator) -> FloatArray:
@@ -58,7 +57,7 @@ def mixed_fields(count: int, rows: int, columns: int, rng: Generator) -> FloatAr
     smooth = structured_fields(count, rows, columns, rng)
     rough = uniform_fields(count, rows, columns, rng)
     amount = rng.uniform(0.05, 0.8, (count, 1, 1))
-    both = np.clip(smooth + amount * rough, -Z_LIMIT, Z_LIMIT)
+    both = np.clip(smooth + amount * rough, -LOG_RATIO_LIMIT, LOG_RATIO_LIMIT)
     pick = share[:, None, None]
     return np.where(pick < 0.45, smooth, np.where(pick < 0.75, rough, both))
 
@@ -122,6 +121,6 @@ def _to_range(fields: FloatArray, rng: Generator) -> FloatArray:
     """Map each field linearly to a random interval inside [-1, 1]."""
     low = fields.min(axis=(1, 2), keepdims=True)
     span = np.maximum(fields.max(axis=(1, 2), keepdims=True) - low, 1e-12)
-    half = rng.uniform(0.05, 0.95, (len(fields), 1, 1)) * Z_LIMIT
-    centre = rng.uniform(-1, 1, (len(fields), 1, 1)) * np.minimum(Z_LIMIT - half, 0.6)
+    half = rng.uniform(0.05, 0.95, (len(fields), 1, 1)) * LOG_RATIO_LIMIT
+    centre = rng.uniform(-1, 1, (len(fields), 1, 1)) * np.minimum(LOG_RATIO_LIMIT - half, 0.6)
     return centre + half * (2 * (fields - low) / span - 1)

@@ -13,12 +13,13 @@ import numpy as np
 import torch
 from torch import Tensor
 
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import UsageError
+from kirigami_studio.foundation.paper import LOG_RATIO_LIMIT
 from kirigami_studio.generator.conditioning import normalised
 from kirigami_studio.lattice.batched import BatchedLattice
-from kirigami_studio.lattice.ratio_field import FloatArray
 from kirigami_studio.training.corpus import zero_outline
-from kirigami_studio.training.fields import Z_LIMIT, turned_quarters
+from kirigami_studio.training.fields import turned_quarters
 from kirigami_studio.training.fitted_fields import FittedFields
 
 #: Largest standard deviation by which fields of exact pairs are moved.  A tenth of a decade moves outlines by about a
@@ -78,7 +79,7 @@ class FittedBatches:
         z = _turned_fields(self.fits.z[picked].astype(np.float64), turns)
         half = count // 2
         moves = rng.uniform(0.0, LARGEST_MOVE, (half, 1, 1)) * rng.standard_normal(z[:half].shape)
-        moved = self._tensor(np.clip(z[:half] + moves, -Z_LIMIT, Z_LIMIT))
+        moved = self._tensor(np.clip(z[:half] + moves, -LOG_RATIO_LIMIT, LOG_RATIO_LIMIT))
         with torch.no_grad():
             achieved = normalised(zero_outline(self.lattice, moved))
         requested = _turned_points(self.fits.requested[picked[half:]].astype(np.float64), turns[half:])

@@ -32,6 +32,7 @@ import torch
 from torch import Tensor
 
 from kirigami_studio.foundation.errors import ModelError, UsageError
+from kirigami_studio.foundation.paper import LOG_RATIO_LIMIT
 from kirigami_studio.generator.backbones import Network
 from kirigami_studio.generator.conditioning import turned
 from kirigami_studio.generator.flow import integrate
@@ -41,7 +42,7 @@ from kirigami_studio.generator.weights import Model
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.training.checkpoint import Checkpoint
 from kirigami_studio.training.corpus import Corpus
-from kirigami_studio.training.fields import Z_LIMIT, mixed_fields
+from kirigami_studio.training.fields import mixed_fields
 from kirigami_studio.training.learner import CHECKPOINT, Learner, logged, opened
 from kirigami_studio.training.rewards import Reward, Verdict, judge
 
@@ -300,7 +301,7 @@ class _Run:
             code = self.network.code(seen).repeated(group)
             noise = self._normal((len(seen) * group, math.prod(self.grid))) * self.z_scale
             z = integrate(self.network, noise, code, self.settings.rollout_steps)
-        return z.clamp(-Z_LIMIT, Z_LIMIT).view(len(seen), group, -1)
+        return z.clamp(-LOG_RATIO_LIMIT, LOG_RATIO_LIMIT).view(len(seen), group, -1)
 
     def _judged(self, designs: Tensor, outlines: list[Outline]) -> list[list[Verdict]]:
         """The evaluator's word on every design; each counts as one environment call."""

@@ -8,10 +8,10 @@ import numpy as np
 import torch
 from torch import Tensor
 
-from kirigami_studio.evaluate.silhouette import Frame, rasterise
+from kirigami_studio.evaluate.silhouette import RasterFrame, rasterise
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import TargetError
 from kirigami_studio.generator.conditioning import contour_points, normalised
-from kirigami_studio.lattice.ratio_field import FloatArray
 from kirigami_studio.outlines.trace import trace
 
 #: Fewest and most pixels along the longer side.
@@ -49,7 +49,7 @@ def _redrawn(polygon: FloatArray, size: int, angle: float) -> FloatArray:
     c, s = math.cos(angle), math.sin(angle)
     there = np.array([[c, s], [-s, c]])
     placed = polygon @ there
-    frame = Frame.around(placed, size)
+    frame = RasterFrame.around(placed, size)
     try:
         ring, _ = trace(np.where(rasterise(placed, size), 0.5, -0.5))
     except TargetError:

@@ -22,9 +22,10 @@ from kirigami_studio.evaluate.agreement import agreement_of_many
 from kirigami_studio.evaluate.feasibility import TAU_OVERLAP
 from kirigami_studio.evaluate.regularity import total_variation
 from kirigami_studio.evaluate.soundness import soundness_of_many
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import RatioError, UsageError
 from kirigami_studio.lattice.deployment import Deployment, deploy
-from kirigami_studio.lattice.ratio_field import FloatArray, RatioField
+from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.outlines.outline import Outline
 
 REWARDS = ("accuracy", "regularity", "balanced")

@@ -18,8 +18,9 @@ import torch
 from torch import Tensor
 
 from kirigami_studio.foundation.errors import ModelError
+from kirigami_studio.foundation.paper import LOG_RATIO_LIMIT
 from kirigami_studio.generator.conditioning import normalised
-from kirigami_studio.generator.flow import Z_LIMIT, integrate, trail
+from kirigami_studio.generator.flow import integrate, trail
 from kirigami_studio.generator.network import NetworkShape, VelocityNetwork
 from kirigami_studio.generator.sheet import Sheet
 from kirigami_studio.generator.weights import Model
@@ -231,7 +232,9 @@ class AlignRun:
         anchored = slice(0, None, settings.anchored_every)
         with torch.no_grad():
             code = targets.code(self.prior, sheet, preference).picked(anchored)
-            reference = integrate(self.prior, noise[anchored], code, settings.sampling_steps).clamp(-Z_LIMIT, Z_LIMIT)
+            reference = integrate(self.prior, noise[anchored], code, settings.sampling_steps).clamp(
+                -LOG_RATIO_LIMIT, LOG_RATIO_LIMIT
+            )
         anchor = (z[anchored] - reference).square().mean()
         loss = self._loss(terms, anchor, preference) + EARLY_WEIGHT * early
         self.learner.learn(loss, settings.average_decay, LARGEST_GRADIENT)

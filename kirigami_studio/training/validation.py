@@ -10,17 +10,19 @@ import torch
 from torch import Tensor
 
 from kirigami_studio.evaluate.regularity import total_variation
+from kirigami_studio.foundation.arrays import FloatArray
+from kirigami_studio.foundation.paper import LOG_RATIO_LIMIT
 from kirigami_studio.generator.backbones import Network
 from kirigami_studio.generator.conditioning import normalised, turned
 from kirigami_studio.generator.flow import integrate
 from kirigami_studio.generator.pose import square_pose
 from kirigami_studio.generator.velocity import Velocity
 from kirigami_studio.lattice.batched import BatchedLattice
-from kirigami_studio.lattice.ratio_field import FloatArray, RatioField
+from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.outlines.editing import resampled
 from kirigami_studio.training.corpus import zero_outline
 from kirigami_studio.training.drawn_shapes import drawn_shape
-from kirigami_studio.training.fields import Z_LIMIT, sobol_fields, structured_fields
+from kirigami_studio.training.fields import sobol_fields, structured_fields
 from kirigami_studio.training.preference_loss import total_variation as batched_variation
 
 #: Seed of the fields that training watches; the test splits of ``dataset`` use others.
@@ -57,7 +59,9 @@ def _sampled(network: Velocity, seen: Tensor, lattice: BatchedLattice, steps: in
     """Outlines of one sample for each target as seen."""
     generator = torch.Generator().manual_seed(seed)
     noise = torch.randn((len(seen), lattice.rows * lattice.columns), generator=generator) * network.shape.z_scale
-    drawn = integrate(network, noise.to(seen.device), network.code(seen), steps).clamp(-Z_LIMIT, Z_LIMIT)
+    drawn = integrate(network, noise.to(seen.device), network.code(seen), steps).clamp(
+        -LOG_RATIO_LIMIT, LOG_RATIO_LIMIT
+    )
     return normalised(zero_outline(lattice, drawn.view(-1, lattice.rows, lattice.columns)))
 
 
@@ -110,7 +114,7 @@ def group_figures(
         code = network.code(turned(targets, -square_pose(targets)), preference=asked).repeated(samples)
         generator = torch.Generator().manual_seed(0)
         noise = torch.randn((count * samples, rows * columns), generator=generator) * network.shape.z_scale
-        drawn = integrate(network, noise.to(device), code, steps).clamp(-Z_LIMIT, Z_LIMIT)
+        drawn = integrate(network, noise.to(device), code, steps).clamp(-LOG_RATIO_LIMIT, LOG_RATIO_LIMIT)
     designs = drawn.cpu().double().view(count, samples, rows, columns)
     variation = [total_variation(RatioField.from_log10(z)) for z in designs.flatten(0, 1).numpy()]
     return {"spread": float(designs.std(dim=1).mean()), "tv": float(np.mean(variation))}
@@ -146,7 +150,7 @@ def preference_figures(
             for preference in preferences:
                 asked = torch.full((count,), preference, device=device)
                 code = network.code(seen, preference=asked).repeated(samples)
-                z = integrate(network, noise, code, steps).clamp(-Z_LIMIT, Z_LIMIT)
+                z = integrate(network, noise, code, steps).clamp(-LOG_RATIO_LIMIT, LOG_RATIO_LIMIT)
                 made = normalised(zero_outline(lattice, z.view(-1, rows, columns)))
                 variation = batched_variation(torch.pow(10.0, z.view(-1, rows, columns)))
                 figures[f"{family}_iou_{preference:g}"] = float(

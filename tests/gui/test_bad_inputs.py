@@ -137,7 +137,7 @@ def test_that_each_bad_file_gets_one_clear_sentence_and_loses_nothing(
         if name == "locked.json" and os.access(path, os.R_OK):
             continue  # whoever runs this may read every file
         drop(designed, path)
-        until(lambda: bool(designed.messages.messages) and not designed.controller.board.busy)
+        until(lambda: bool(designed.messages.messages) and not designed.controller.queue.busy)
         (message,) = designed.messages.messages
         assert message.tone is Tone.ERROR and word in message.sentence, f"{name}: {message.sentence}"
         judge(message.sentence.replace(str(path), name))

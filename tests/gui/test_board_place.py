@@ -13,7 +13,7 @@ from pytestqt.qtbot import QtBot
 
 from kirigami_studio.gui.main_window import MainWindow
 from kirigami_studio.gui.messages import Message
-from kirigami_studio.gui.sketching.easel import Change
+from kirigami_studio.gui.sketching.sketch_context import Change
 from kirigami_studio.gui.views.target_view import Tool
 from kirigami_studio.outlines.combining import Combine
 from kirigami_studio.outlines.figure_nodes import placed_figure
@@ -42,7 +42,7 @@ def bounds(window: MainWindow) -> tuple[float, float, float, float]:
 
 
 def test_that_a_drag_inside_moves_the_target_by_the_grid_and_ctrl_frees_it(plate: MainWindow) -> None:
-    step = plate.target.view.easel.step
+    step = plate.target.view.context.step
     drag(plate, (5, 5), (5 + 2.2 * step, 5 - 0.9 * step))
     assert undo_label(plate) == "Move target"
     assert bounds(plate) == pytest.approx((-20 + 2 * step, -10 - step, 20 + 2 * step, 10 - step))
@@ -206,4 +206,4 @@ def test_that_family_weight_and_slant_change_the_letters(window: MainWindow, qtb
     )
     if other is not None:
         family.setCurrentText(other)
-        assert window.target.view.easel.family == family.currentFont().family()
+        assert window.target.view.context.family == family.currentFont().family()

@@ -13,8 +13,8 @@ from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
 from kirigami_studio.gui.main_window import MainWindow
-from kirigami_studio.gui.sketching.easel import Change
 from kirigami_studio.gui.sketching.point_tool import PointTool
+from kirigami_studio.gui.sketching.sketch_context import Change
 from kirigami_studio.gui.views.target_view import Tool
 from kirigami_studio.outlines.anchors import OUT
 from kirigami_studio.outlines.figure_nodes import placed_figure
@@ -36,9 +36,9 @@ PLAIN, SHIFT, CTRL, ALT = (
 
 def send(window: MainWindow, kind: QEvent.Type, place: Place, held: Qt.MouseButton, keys: Qt.KeyboardModifier) -> None:
     view = window.target.view
-    frame = view.frame()
-    assert frame is not None
-    spot = QPointF(*frame.to_pixels(np.array(place)).tolist())
+    transform = view.transform()
+    assert transform is not None
+    spot = QPointF(*transform.to_pixels(np.array(place)).tolist())
     button = NONE if kind is QEvent.Type.MouseMove else LEFT
     QApplication.sendEvent(view, QMouseEvent(kind, spot, view.mapToGlobal(spot), button, held, keys))
 
@@ -59,7 +59,7 @@ def click(window: MainWindow, place: Place, keys: Qt.KeyboardModifier = PLAIN) -
 
 
 def placed(window: MainWindow) -> Placed:
-    found = window.target.view.easel.placed
+    found = window.target.view.context.placed
     assert found is not None
     return found
 
@@ -225,12 +225,12 @@ def test_that_points_are_the_same_after_undo_other_tools_and_the_project_file(
 
 def test_that_with_a_mirror_the_image_of_a_point_goes_the_mirrored_way(plate: MainWindow) -> None:
     plate.actions_["axis"].trigger()
-    assert plate.target.view.easel.mirror.axis is Axis.UPRIGHT and plate.target.strip.axis.isChecked()
+    assert plate.target.view.context.mirror.axis is Axis.UPRIGHT and plate.target.strip.axis.isChecked()
     drag(plate, (20, 10), (30, 20))
     assert corners(plate) == {(-20, -10), (20, -10), (30, 20), (-30, 20)}
     for _ in range(3):
         plate.actions_["axis"].trigger()
-    assert plate.target.view.easel.mirror.axis is Axis.NONE
+    assert plate.target.view.context.mirror.axis is Axis.NONE
     drag(plate, (30, 20), (20, 10))
     assert corners(plate) == {(-20, -10), (20, -10), (20, 10), (-30, 20)}
 
@@ -281,21 +281,21 @@ def test_that_drawn_shapes_and_strokes_are_mirrored_in_one_step(plate: MainWindo
 
 
 def test_that_the_axis_goes_through_the_middle_of_a_target_that_is_opened(plate: MainWindow, until: Until) -> None:
-    easel = plate.target.view.easel
+    context = plate.target.view.context
     plate.target.set_tool(Tool.POSE)
     drag(plate, (0, 0), (25, 10), CTRL)
     plate.target.strip.axis.set_axis(Axis.BOTH)
-    assert easel.mirror.at == pytest.approx((25, 10))
+    assert context.mirror.at == pytest.approx((25, 10))
     plate.controller.targeting.open("heart")
     until(lambda: plate.controller.document.target is not None and plate.controller.document.target.name == "heart")
     ring = placed(plate).ring
-    assert easel.mirror.at == pytest.approx(tuple(0.5 * (ring.min(axis=0) + ring.max(axis=0))))
+    assert context.mirror.at == pytest.approx(tuple(0.5 * (ring.min(axis=0) + ring.max(axis=0))))
 
 
 def test_that_the_axis_goes_through_the_middle_of_a_photo_that_is_opened_and_stays_at_other_thresholds(
     plate: MainWindow, until: Until, photo: Path
 ) -> None:
-    easel, targeting = plate.target.view.easel, plate.controller.targeting
+    context, targeting = plate.target.view.context, plate.controller.targeting
     plate.target.set_tool(Tool.POSE)
     drag(plate, (0, 0), (25, 10), CTRL)
     plate.target.strip.axis.set_axis(Axis.BOTH)
@@ -303,8 +303,8 @@ def test_that_the_axis_goes_through_the_middle_of_a_photo_that_is_opened_and_sta
     until(lambda: plate.target.threshold.isVisible())
     ring = placed(plate).ring
     middle = tuple(0.5 * (ring.min(axis=0) + ring.max(axis=0)))
-    assert easel.mirror.at == pytest.approx(middle)
+    assert context.mirror.at == pytest.approx(middle)
     before = plate.controller.document.target
     targeting.change_threshold(0.3)
     until(lambda: plate.controller.document.target is not before)
-    assert easel.mirror.at == pytest.approx(middle)
+    assert context.mirror.at == pytest.approx(middle)

@@ -31,9 +31,9 @@ def cutting(designed: MainWindow, qtbot: QtBot) -> MainWindow:
 
 
 def place(page: CutsPage, hinge: int) -> QPoint:
-    frame = page.view.frame()
-    assert frame is not None and page._plan is not None
-    return QPointF(*frame.to_pixels(page._plan.hinges.position[hinge]).tolist()).toPoint()
+    transform = page.view.transform()
+    assert transform is not None and page._plan is not None
+    return QPointF(*transform.to_pixels(page._plan.hinges.position[hinge]).tolist()).toPoint()
 
 
 def lonely(page: CutsPage, count: int) -> list[int]:
@@ -63,10 +63,10 @@ def test_that_clicks_select_one_connector_or_more(cutting: MainWindow, qtbot: Qt
 
 def test_that_a_band_selects_what_is_inside(cutting: MainWindow, qtbot: QtBot) -> None:
     page = cutting.stage.cuts
-    frame = page.view.frame()
-    assert frame is not None and page._plan is not None
+    transform = page.view.transform()
+    assert transform is not None and page._plan is not None
     low, high = np.array([12.0, 12.0]), np.array([61.0, 55.0])
-    start, stop = (QPointF(*frame.to_pixels(corner).tolist()).toPoint() for corner in (low, high))
+    start, stop = (QPointF(*transform.to_pixels(corner).tolist()).toPoint() for corner in (low, high))
     qtbot.mousePress(page.view, LEFT, SHIFT, start)
     qtbot.mouseMove(page.view, stop)
     page.view.gestures.move(QPointF(stop))
@@ -74,17 +74,17 @@ def test_that_a_band_selects_what_is_inside(cutting: MainWindow, qtbot: QtBot) -
     qtbot.mouseRelease(page.view, LEFT, SHIFT, stop)
     inside = np.all((page._plan.hinges.position > low) & (page._plan.hinges.position < high), axis=1)
     assert page.view.selected == set(np.flatnonzero(inside).tolist()) and page.view.gestures.band is None
-    assert page.view.frame() == frame
+    assert page.view.transform() == transform
 
 
 def test_that_a_drag_without_shift_moves_the_picture_and_keeps_the_selection(cutting: MainWindow, qtbot: QtBot) -> None:
     page = cutting.stage.cuts
     page.view.gestures.select(frozenset({2}))
-    before = page.view.frame()
+    before = page.view.transform()
     qtbot.mousePress(page.view, LEFT, pos=QPoint(4, 4))
     qtbot.mouseMove(page.view, QPoint(40, 30))
     qtbot.mouseRelease(page.view, LEFT, pos=QPoint(40, 30))
-    assert page.view.selected == {2} and page.view.frame() != before
+    assert page.view.selected == {2} and page.view.transform() != before
 
 
 def test_that_a_typed_width_reaches_the_plan_and_undoes_in_one_step(
@@ -141,10 +141,10 @@ def test_that_delete_without_a_selection_changes_nothing(cutting: MainWindow, qt
 def test_that_zero_still_fits_while_nothing_is_selected(cutting: MainWindow, qtbot: QtBot) -> None:
     view = cutting.stage.cuts.view
     view.setFocus()
-    before = view.frame()
+    before = view.transform()
     view.zoom(2.0)
     qtbot.keyClick(view, Qt.Key.Key_0)
-    assert view.frame() == before
+    assert view.transform() == before
 
 
 def test_that_escape_forgets_the_selection_and_arrows_walk(cutting: MainWindow, qtbot: QtBot) -> None:
@@ -237,12 +237,14 @@ def test_that_a_double_click_cuts_a_connector_through_and_brings_it_back(
 ) -> None:
     page = cutting.stage.cuts
     (hinge,) = lonely(page, 1)
-    frame = page.view.frame()
+    transform = page.view.transform()
     for removed in ((hinge,), ()):
         qtbot.mouseDClick(page.view, LEFT, pos=place(page, hinge))
         assert fabrication(cutting).options.removed == removed
         until(lambda removed=removed: page._plan is not None and page._plan.options.removed == removed)  # type: ignore[misc]
-    assert page.view.frame() == frame, "a double click beside all connectors shows everything, one on them does not"
+    assert page.view.transform() == transform, (
+        "a double click beside all connectors shows everything, one on them does not"
+    )
 
 
 @pytest.mark.parametrize(("fine", "way", "width"), [(False, 1e5, 20.0), (False, -1e5, 0.02), (True, 70.0, 0.429)])

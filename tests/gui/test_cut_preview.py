@@ -54,9 +54,9 @@ def show(qtbot: QtBot, plan: CutPlan, size: tuple[int, int] = (700, 700)) -> Cut
 
 def burnt(image: QImage, view: CutView, place: tuple[float, float], along: tuple[float, float]) -> int:
     """Pixels across a cut at a place (mm) that are not the sheet's colour."""
-    frame = view.frame()
-    assert frame is not None
-    x, y = frame.to_pixels(np.array(place)).tolist()
+    transform = view.transform()
+    assert transform is not None
+    x, y = transform.to_pixels(np.array(place)).tolist()
     normal = np.array([along[1], along[0]]) / np.hypot(*along)  # the picture's y axis points down
     sheet = QColor(LIGHT.cut_sheet)
     shifts = np.arange(-30, 31)
@@ -79,20 +79,20 @@ def test_that_a_cut_is_drawn_as_wide_as_it_burns(qtbot: QtBot, kerf: float) -> N
     plan = plan_of(3, 3, kerf_mm=kerf, connector_mm=1.0)
     view = show(qtbot, plan)
     view.set_overlays(frozenset())
-    frame = view.frame()
-    assert frame is not None
+    transform = view.transform()
+    assert transform is not None
     path = plan.on_layer(Layer.SLITS)[4]
     along = path.points[-1] - path.points[0]
     beside_the_junctions = path.points[0] + 0.3 * along
     found = burnt(view.grab().toImage(), view, tuple(beside_the_junctions), tuple(along))
-    assert found == pytest.approx(kerf * frame.scale, abs=2.0)
+    assert found == pytest.approx(kerf * transform.scale, abs=2.0)
 
 
 def test_that_the_cut_of_a_blade_is_still_seen(qtbot: QtBot) -> None:
     plan = plan_of(3, 3, kerf_mm=0.0, connector_mm=1.0)
     view = show(qtbot, plan)
-    frame = view.frame()
-    assert frame is not None and CutDrawing(plan).pen_width(frame) == THINNEST
+    transform = view.transform()
+    assert transform is not None and CutDrawing(plan).pen_width(transform) == THINNEST
     view.set_overlays(frozenset())
     path = plan.on_layer(Layer.SLITS)[4]
     along = path.points[-1] - path.points[0]
@@ -150,16 +150,16 @@ def test_that_a_problem_in_the_list_leads_to_its_place_and_back(
     cutting.controller.change_fabrication(connector_mm=0.03)
     until(lambda: page.problems.isVisible())
     assert page.problems.item(0).text().startswith("Warning: ")
-    before = page.view.frame()
+    before = page.view.transform()
     page.problems.setCurrentRow(0)
-    frame = page.view.frame()
+    transform = page.view.transform()
     planned = check_plan(page.view._drawing.plan)  # type: ignore[union-attr]
-    assert before is not None and frame is not None and frame.scale > 3.0 * before.scale
-    place = frame.to_pixels(np.array(planned.problems[0].where))
+    assert before is not None and transform is not None and transform.scale > 3.0 * before.scale
+    place = transform.to_pixels(np.array(planned.problems[0].where))
     assert place == pytest.approx([page.view.scene_box().center().x(), page.view.scene_box().center().y()], abs=1.0)
     page.problems.setCurrentRow(-1)
     page.view.fit()
-    spot = page.view.frame().to_pixels(np.array(planned.problems[0].where))  # type: ignore[union-attr]
+    spot = page.view.transform().to_pixels(np.array(planned.problems[0].where))  # type: ignore[union-attr]
     qtbot.mouseClick(page.view, LEFT, pos=QPointF(*spot.tolist()).toPoint())
     assert page.problems.currentRow() == 0
 
@@ -192,8 +192,8 @@ def test_that_an_arc_is_drawn_bent_where_it_can_be_seen(qtbot: QtBot, width: int
     alone = replace(plan, paths=(arc, plan.paths[-1]))
     drawing, view = CutDrawing(alone), show(qtbot, alone, (width, width))
     assert drawing.largest_arc == pytest.approx(0.5)
-    frame = view.frame()
-    assert frame is not None and (drawing.largest_arc * frame.scale >= SEEN) is bent
+    transform = view.transform()
+    assert transform is not None and (drawing.largest_arc * transform.scale >= SEEN) is bent
     view.set_overlays(frozenset())
     if bent:
         assert burnt(view.grab().toImage(), view, (8.5, 14.5), (1.0, 0.0)) >= 1
@@ -223,8 +223,8 @@ def test_that_every_step_of_a_large_job_is_drawn(qtbot: QtBot, benchmark: Benchm
 
 def test_that_the_wheel_and_zero_work_as_in_the_layout(cutting: MainWindow, qtbot: QtBot) -> None:
     view = cutting.stage.cuts.view
-    before = view.frame()
+    before = view.transform()
     view.zoom(3.0, QPointF(QPoint(50, 60)))
-    assert view.frame() != before
+    assert view.transform() != before
     qtbot.keyClick(cutting, Qt.Key.Key_0)
-    assert view.frame() == before
+    assert view.transform() == before

@@ -14,10 +14,10 @@ from kirigami_studio.gui.actions import COMMANDS
 from kirigami_studio.gui.look import icons, theme
 from kirigami_studio.gui.look.theme import DARK, LIGHT, PALETTES, Palette, style_sheet
 from kirigami_studio.gui.scene.fault_items import FaultKind, contact_place, faults, inverted_panels
-from kirigami_studio.gui.scene.frame import Bounds, Frame
 from kirigami_studio.gui.scene.mismatch_items import mismatch
 from kirigami_studio.gui.scene.posed import PosedDesign
 from kirigami_studio.gui.scene.thumbnail import candidate_pixmap
+from kirigami_studio.gui.scene.view_transform import Bounds, ViewTransform
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.project.document import Document
 
@@ -46,11 +46,11 @@ def posed(designs: Document) -> PosedDesign:
 
 
 def test_that_a_frame_maps_there_and_back_with_y_up() -> None:
-    frame = Frame.fitting(Bounds(-1, -2, 3, 2), QRectF(0, 0, 400, 300), margin=10)
-    x, y = frame.to_pixels(np.array([3.0, 2.0]))
-    assert frame.to_world(QPointF(x, y)) == pytest.approx((3.0, 2.0))
-    assert frame.to_pixels(np.array([0.0, 2.0]))[1] == pytest.approx(10)
-    assert frame.to_pixels(np.array([0.0, -2.0]))[1] == pytest.approx(290)
+    transform = ViewTransform.fitting(Bounds(-1, -2, 3, 2), QRectF(0, 0, 400, 300), margin=10)
+    x, y = transform.to_pixels(np.array([3.0, 2.0]))
+    assert transform.to_world(QPointF(x, y)) == pytest.approx((3.0, 2.0))
+    assert transform.to_pixels(np.array([0.0, 2.0]))[1] == pytest.approx(10)
+    assert transform.to_pixels(np.array([0.0, -2.0]))[1] == pytest.approx(290)
 
 
 def test_that_a_posed_design_lies_on_its_target_and_turns_about_its_middle(posed: PosedDesign) -> None:

@@ -56,14 +56,14 @@ def double_click(window: MainWindow, place: tuple[float, float]) -> None:
 
 
 def pixel(window: MainWindow, place: tuple[float, float]) -> tuple[float, float]:
-    frame = window.target.view.frame()
-    assert frame is not None
-    x, y = frame.to_pixels(np.array(place)).tolist()
+    transform = window.target.view.transform()
+    assert transform is not None
+    x, y = transform.to_pixels(np.array(place)).tolist()
     return x, y
 
 
 def placed(window: MainWindow) -> Placed:
-    found = window.target.view.easel.placed
+    found = window.target.view.context.placed
     assert found is not None
     return found
 
@@ -203,7 +203,7 @@ def test_that_shift_makes_a_square(board: MainWindow) -> None:
 
 
 def test_that_the_grid_catches_corners_and_ctrl_suspends_it(board: MainWindow) -> None:
-    step = board.target.view.easel.step
+    step = board.target.view.context.step
     use(board, Tool.RECTANGLE)
     drag(board, (0.2 * step, 0.2 * step), (4.3 * step, 3.2 * step))
     assert placed(board).size == pytest.approx((4 * step, 3 * step))
@@ -253,10 +253,10 @@ def test_that_a_hole_is_refused_with_a_sentence_and_nothing_changes(plate: MainW
 
 
 def test_that_the_board_stays_still_while_shapes_are_added(plate: MainWindow) -> None:
-    before = plate.target.view.frame()
+    before = plate.target.view.transform()
     use(plate, Tool.ELLIPSE, Combine.ADD)
     drag(plate, (10, 0), (30, 30))
-    assert plate.target.view.frame() == before
+    assert plate.target.view.transform() == before
 
 
 # points -----------------------------------------------------------------------------------------------------

@@ -15,7 +15,7 @@ from pytestqt.qtbot import QtBot
 
 from kirigami_studio.export.verification import Finding, Verification
 from kirigami_studio.foundation.errors import ProjectError
-from kirigami_studio.gui.dialogs.export_report import ExportReport, as_text, told_findings, verdict
+from kirigami_studio.gui.dialogs.export_report import ExportReport, as_text, format_findings, verdict
 from kirigami_studio.gui.look.theme import LIGHT
 from kirigami_studio.gui.main_window import MainWindow
 from kirigami_studio.gui.messages import Tone
@@ -82,7 +82,7 @@ def test_that_the_verdict_is_said_in_words(report: Verification, said: str) -> N
 
 
 def test_that_a_bad_finding_comes_first_with_its_own_word_and_symbol(qtbot: QtBot, designed: MainWindow) -> None:
-    assert [line[:2] for line in told_findings(BAD)] == [("Bad", "fault"), ("Note", "warning"), ("Good", "check")]
+    assert [line[:2] for line in format_findings(BAD)] == [("Bad", "fault"), ("Note", "warning"), ("Good", "check")]
     dialog = ExportReport(designed, (BAD,), LIGHT)
     assert dialog.findings.item(0).text() == "Bad: Two lines are missing."
     good = ExportReport(designed, (GOOD,), LIGHT)

@@ -35,7 +35,7 @@ def polished(designs: Document) -> Document:
     assert target is not None
     fit = polish(first.field, target, 0.0, 8, pose=first.score.transform)
     better = replace(
-        first, field=fit.field, score=evaluate(deploy(fit.field), target, 0.0), polished=True, drawn=first.field
+        first, field=fit.field, score=evaluate(deploy(fit.field), target, 0.0), polished=True, sampled_field=first.field
     )
     assert better.score.siou > first.score.siou
     return replace(designs, candidates=(better, *designs.candidates[1:]))
@@ -189,7 +189,7 @@ def test_that_another_choice_forgets_the_trim_that_was_on_its_way(
     qtbot.mouseClick(studio.stage.trim, LEFT)
     studio.actions_["next"].trigger()
     assert not studio.controller.finishing.busy and not studio.stage.trim.isChecked()
-    until(lambda: not studio.controller.board.busy)
+    until(lambda: not studio.controller.queue.busy)
     assert all(candidate.trim is None for candidate in studio.controller.document.candidates)
     assert studio.controller.document.chosen == 1
 
@@ -203,5 +203,5 @@ def test_that_trimming_can_be_stopped(studio: MainWindow, qtbot: QtBot, until: U
     else:
         qtbot.keyClick(studio, Qt.Key.Key_Escape)
     assert not studio.controller.finishing.busy and not studio.stage.trim.isChecked()
-    until(lambda: not studio.controller.board.busy)
+    until(lambda: not studio.controller.queue.busy)
     assert studio.controller.document is before and "stopped" in studio.says.text()

@@ -13,7 +13,7 @@ from PySide6.QtWidgets import QApplication
 from kirigami_studio.gui.main_window import MainWindow
 from kirigami_studio.gui.scene.clear_box import AWAY, clear_box
 from kirigami_studio.gui.scene.colour_scale import bar_boxes
-from kirigami_studio.gui.scene.frame import Bounds, Frame
+from kirigami_studio.gui.scene.view_transform import Bounds, ViewTransform
 from kirigami_studio.gui.views.canvas import Canvas
 from kirigami_studio.gui.views.layout_view import USUAL, LayoutView, Overlay
 
@@ -23,9 +23,9 @@ COLOURED = (frozenset(), frozenset({Overlay.RATIOS}), frozenset({Overlay.RATIOS,
 
 def drawn(view: LayoutView, phi: float) -> QRectF:
     """Pixels around sheet and target at an angle."""
-    design, frame, target = view.design, view.frame(), view._target
-    assert design is not None and frame is not None and target is not None
-    points = frame.to_pixels(np.concatenate([design.nodes(phi), target.points]))
+    design, transform, target = view.design, view.transform(), view._target
+    assert design is not None and transform is not None and target is not None
+    points = transform.to_pixels(np.concatenate([design.nodes(phi), target.points]))
     (left, top), (right, bottom) = points.min(axis=0).tolist(), points.max(axis=0).tolist()
     return QRectF(QPointF(left, top), QPointF(right, bottom))
 
@@ -81,15 +81,15 @@ def test_that_the_picture_rests_while_legends_come_and_go_with_the_angle(designe
     for phi in (0.0, 0.1, 1.5, math.pi):
         designed.stage.deployment.set_phi(phi)
         view.grab()
-        frames.append(view.frame())
+        frames.append(view.transform())
     assert len(set(frames)) == 1
 
 
 def test_that_a_plain_picture_shows_what_the_screen_shows(designed: MainWindow) -> None:
     view = fill(designed, (1440, 700))
-    before = view.frame()
+    before = view.transform()
     with view.plain():
-        assert view.frame() == before
+        assert view.transform() == before
 
 
 def test_that_both_sides_of_a_comparison_are_fitted_alike(designed: MainWindow) -> None:
@@ -115,4 +115,4 @@ def test_that_a_legend_takes_the_side_that_costs_the_picture_least() -> None:
     assert beside.right() - 20.0 == pytest.approx(narrow.left() - AWAY) and beside.top() == view.top()
     assert clear_box(tall, QRectF(0, 0, 90, 90), 5.0, [QRectF(0, 30, 90, 60)]) == QRectF(0, 0, 90, 90)
     for bounds in (wide, tall, square):
-        assert Frame.fitting(bounds, clear_box(bounds, view, 20.0, [corner]), 20.0).scale > 0.0
+        assert ViewTransform.fitting(bounds, clear_box(bounds, view, 20.0, [corner]), 20.0).scale > 0.0

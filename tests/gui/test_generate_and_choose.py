@@ -173,7 +173,7 @@ def test_that_another_target_ends_the_run_for_the_old_one(heart: MainWindow, unt
     heart.controller.targeting.open("star")
     until(lambda: heart.controller.document.target is not None and heart.controller.document.target.name == "star")
     assert not heart.controller.running
-    until(lambda: not heart.controller.board.busy)
+    until(lambda: not heart.controller.queue.busy)
     assert heart.controller.document.candidates == () and heart.gallery.view.model_.rowCount() == 0
 
 

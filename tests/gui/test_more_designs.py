@@ -14,7 +14,7 @@ from pytestqt.qtbot import QtBot
 from kirigami_studio.evaluate.candidate import Candidate, Origin
 from kirigami_studio.generator.weights import digest_of
 from kirigami_studio.gui.designs.collecting import next_seed
-from kirigami_studio.gui.designs.selecting import Order
+from kirigami_studio.gui.designs.selecting import SortOrder
 from kirigami_studio.gui.jobs.adding_steps import adding
 from kirigami_studio.gui.main_window import MainWindow
 from kirigami_studio.gui.messages import Tone
@@ -74,7 +74,7 @@ def test_that_again_adds_designs_of_the_next_seed_and_keeps_choice_and_marks(
     model = drawn.gallery.view.model_
     assert [model.index(row, 0).data(FRESH_ROLE) for row in range(6)] == [one.seed == 1 for one in after.candidates]
     box = drawn.gallery.bar.order
-    box.setCurrentIndex(box.findData(Order.NEWEST))
+    box.setCurrentIndex(box.findData(SortOrder.NEWEST))
     box.activated.emit(box.currentIndex())
     assert [one.seed for one in shown(drawn)] == [1, 1, 1, 0, 0, 0]
     assert shown(drawn)[:3] == [one for one in after.candidates if one.seed == 1]

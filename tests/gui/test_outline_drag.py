@@ -16,8 +16,8 @@ from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.gui.jobs import drag_steps
-from kirigami_studio.gui.jobs.board import Board, Ears
 from kirigami_studio.gui.jobs.drag_steps import Follower, Grasp
+from kirigami_studio.gui.jobs.queue import JobCallbacks, JobQueue
 from kirigami_studio.gui.main_window import MainWindow
 from kirigami_studio.gui.scene.posed import PosedDesign
 from kirigami_studio.lattice.deployment import deploy
@@ -72,8 +72,8 @@ def let_go(window: MainWindow, place: QPoint) -> None:
 
 def gestures_done(window: MainWindow) -> bool:
     """Whether the thread of gestures has nothing left to say."""
-    boards = window.controller.hand.findChildren(Board)
-    return bool(boards) and not any(board.busy for board in boards)
+    queues = window.controller.hand.findChildren(JobQueue)
+    return bool(queues) and not any(queue.busy for queue in queues)
 
 
 def seen(window: MainWindow) -> RatioField:
@@ -96,9 +96,9 @@ def test_that_the_last_place_is_reached_after_letting_go_and_all_of_it_is_one_st
     assert seen(large) == before.field and large.controller.hand.busy
     settle(large, until)
     vertices = [design.outline(design.nodes(OPEN), OPEN)[vertex] for design in drafts]
-    frame = view.frame()
-    assert frame is not None
-    assert np.hypot(*(frame.to_pixels(np.array(vertices[-1])) - (place.x(), place.y()))) <= 2.0
+    transform = view.transform()
+    assert transform is not None
+    assert np.hypot(*(transform.to_pixels(np.array(vertices[-1])) - (place.x(), place.y()))) <= 2.0
     assert large.controller.history.undo_label == LABEL and chosen(large).field == drafts[-1].deployment.field
     large.actions_["undo"].trigger()
     assert chosen(large) == before and large.controller.history.undo_label is None
@@ -112,7 +112,7 @@ def test_that_the_outline_follows_while_the_worker_is_in_a_long_step(by_hand: Ma
         begun.set()
         yield go_on.wait(60.0)
 
-    by_hand.controller.board.start("waiting", long_step, Ears())
+    by_hand.controller.queue.start("waiting", long_step, JobCallbacks())
     until(begun.is_set)
     place = take(by_hand, vertex, *UP)
     until(lambda: (vertex_at(view, vertex) - place).manhattanLength() <= 2)
@@ -207,7 +207,7 @@ def test_that_a_project_that_is_opened_during_a_drag_gets_nothing_of_it(
     QTest.mouseMove(large.stage.view, place + QPoint(0, -4))
     until(lambda: gestures_done(large))
     let_go(large, place)
-    until(lambda: controller.stage is not None and not controller.board.busy)
+    until(lambda: controller.stage is not None and not controller.queue.busy)
     assert controller.document == designs and not controller.history.unsaved and not controller.hand.busy
     assert designs.candidate is not None and seen(large) == designs.candidate.field
 

@@ -172,19 +172,19 @@ def test_that_a_fault_is_brought_to_the_middle_by_key_and_by_click(designed: Mai
     stage.view.show_design(entry.design, score, designed.controller.document.target)
     qtbot.keyClick(designed, Qt.Key.Key_F3)
     assert stage.view.phi == pytest.approx(0.9, abs=math.radians(0.051))
-    frame = stage.view.frame()
-    assert frame is not None
-    there = frame.to_pixels(np.array(stage.view.find_faults()[0].where))
+    transform = stage.view.transform()
+    assert transform is not None
+    there = transform.to_pixels(np.array(stage.view.find_faults()[0].where))
     assert there == pytest.approx([stage.view.width() / 2, stage.view.height() / 2], abs=1.0)
     assert "1 of 1" in designed.says.text() and "contact" in designed.says.text()
     stage.fit()
     stage.view.grab()
-    frame = stage.view.frame()
-    assert frame is not None
-    spot = frame.to_pixels(np.array(stage.view.faults[0].where)).round().astype(int).tolist()
+    transform = stage.view.transform()
+    assert transform is not None
+    spot = transform.to_pixels(np.array(stage.view.faults[0].where)).round().astype(int).tolist()
     qtbot.mouseClick(stage.view, LEFT, pos=QPoint(*spot))
-    zoomed = stage.view.frame()
-    assert zoomed is not None and zoomed.scale > 3 * frame.scale
+    zoomed = stage.view.transform()
+    assert zoomed is not None and zoomed.scale > 3 * transform.scale
 
 
 def test_that_a_design_without_faults_says_so(designed: MainWindow, qtbot: QtBot) -> None:

@@ -69,7 +69,7 @@ def test_that_a_picture_is_pasted_and_its_threshold_can_be_moved(window: MainWin
     assert window.target.threshold.isVisible()
     before = window.controller.document.target
     window.target.threshold.slider.setValue(180)
-    until(lambda: not window.controller.board.busy)
+    until(lambda: not window.controller.queue.busy)
     assert window.controller.document.target is not None and before is not None
 
 

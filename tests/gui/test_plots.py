@@ -91,7 +91,7 @@ def test_that_nothing_is_read_while_the_plots_are_closed(designed: MainWindow, u
     assert plotting_.busy and stage.plots.isVisible()
     designed.actions_["plots"].trigger()
     assert not plotting_.busy and not stage.plots.isVisible()
-    until(lambda: not designed.controller.board.busy)
+    until(lambda: not designed.controller.queue.busy)
     assert not stage.plots.complete
 
 

@@ -105,7 +105,7 @@ def test_that_work_that_went_on_while_the_file_was_written_is_asked_about_before
     assert not designed.close()
     dict(designed.messages.messages[-1].actions)["Save and quit"]()
     designed.controller.change_fabrication(width_mm=77.0)  # before the worker has written
-    until(lambda: not designed.controller.board.busy)
+    until(lambda: not designed.controller.queue.busy)
     assert designed.isVisible() and designed.controller.history.unsaved
     assert [label for label, _ in designed.messages.messages[-1].actions] == ["Save and quit", "Quit without saving"]
 
@@ -116,7 +116,7 @@ def test_that_a_file_still_being_written_is_not_taken_for_the_place_of_the_next_
     controller = designed.controller
     controller.save(tmp_path / "old.kiri")
     controller.new_project()
-    until(lambda: not controller.board.busy)
+    until(lambda: not controller.queue.busy)
     assert (tmp_path / "old.kiri").exists()
     assert controller.path is None, "Save would have put the new project over the old one"
     controller.save(tmp_path / "new.kiri")

@@ -115,7 +115,7 @@ def test_that_a_spoilt_list_is_told_and_left_as_it_is(text: str, tmp_path: Path,
 
 def second_session(window: MainWindow, kept: Path) -> RecentFiles:
     """The list as another session of the program has it."""
-    other = RecentFiles(window.controller.board, window)
+    other = RecentFiles(window.controller.queue, window)
     other.load(kept)
     return other
 

@@ -216,7 +216,7 @@ def test_that_a_place_that_cannot_be_written_is_told_once_and_the_work_goes_on(
     for width in (88.0, 89.0, 90.0):
         heart.controller.change_fabrication(width_mm=width)
         heart.controller.end_drag()
-        until(lambda: not heart.controller.board.busy and not recovering.waiting)
+        until(lambda: not heart.controller.queue.busy and not recovering.waiting)
     told = [one for one in heart.messages.messages if "cannot be kept" in one.sentence]
     assert len(told) == 1 and told[0].tone is Tone.WARNING
     assert heart.controller.document.fabrication.width_mm == 90.0
@@ -253,5 +253,5 @@ def test_that_saving_counts_for_what_was_written_not_for_what_came_after(designe
     controller.save(path)
     controller.end_drag()
     controller.change_fabrication(width_mm=99.0)  # before the worker has written
-    until(lambda: not controller.board.busy)
+    until(lambda: not controller.queue.busy)
     assert controller.history.unsaved and store.load(path).fabrication.width_mm == 88.0

@@ -13,7 +13,7 @@ from pytestqt.qtbot import QtBot
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.gui.designs.entry import Entry
-from kirigami_studio.gui.designs.selecting import Order, Selection, least_panel
+from kirigami_studio.gui.designs.selecting import Selection, SortOrder, least_panel
 from kirigami_studio.gui.main_window import MainWindow
 from kirigami_studio.gui.views.gallery_model import NUMBER_ROLE, VALUE_ROLE, GalleryModel
 from kirigami_studio.lattice.deployment import deploy
@@ -27,29 +27,29 @@ def shown(window: MainWindow) -> list[Candidate]:
     return [entry.candidate for entry in window.gallery.view.model_.entries]
 
 
-def sort_by(window: MainWindow, order: Order) -> None:
+def sort_by(window: MainWindow, order: SortOrder) -> None:
     box = window.gallery.bar.order
     box.setCurrentIndex(box.findData(order))
     box.activated.emit(box.currentIndex())
 
 
 def test_that_cards_are_sorted_by_what_was_asked(designed: MainWindow, designs: Document) -> None:
-    for order in Order:
+    for order in SortOrder:
         check_order(designed, designs, order)
 
 
-def check_order(designed: MainWindow, designs: Document, order: Order) -> None:
+def check_order(designed: MainWindow, designs: Document, order: SortOrder) -> None:
     before = designed.controller.document
     sort_by(designed, order)
     chosen = designs.candidates[0].field
     values = {
-        Order.RANK: lambda one: designs.candidates.index(one),
-        Order.SIOU: lambda one: -one.score.siou,
-        Order.GAIN: lambda one: -one.score.siou_gain,
-        Order.TV: lambda one: one.score.tv,
-        Order.PANEL: lambda one: -least_panel(deploy(one.field)),
-        Order.NEWEST: lambda one: designs.candidates.index(one),
-        Order.UNLIKE: lambda one: -float(distances(chosen, [one.field])[0]),
+        SortOrder.RANK: lambda one: designs.candidates.index(one),
+        SortOrder.SIOU: lambda one: -one.score.siou,
+        SortOrder.GAIN: lambda one: -one.score.siou_gain,
+        SortOrder.TV: lambda one: one.score.tv,
+        SortOrder.PANEL: lambda one: -least_panel(deploy(one.field)),
+        SortOrder.NEWEST: lambda one: designs.candidates.index(one),
+        SortOrder.UNLIKE: lambda one: -float(distances(chosen, [one.field])[0]),
     }[order]
     assert shown(designed) == sorted(designs.candidates, key=values)
     assert designed.controller.document is before and not designed.controller.history.unsaved
@@ -81,7 +81,7 @@ def test_that_cards_tell_the_number_they_are_sorted_by_at_the_sheets_width(
 ) -> None:
     model = designed.gallery.view.model_
     assert model.data(model.index(0, 0), VALUE_ROLE) == f"TV {designs.candidates[0].score.tv:.2f}"
-    sort_by(designed, Order.PANEL)
+    sort_by(designed, SortOrder.PANEL)
     designed.controller.change_fabrication(width_mm=250.0)
     sizes = [250.0 * least_panel(deploy(one.field)) for one in shown(designed)]
     told = [model.data(model.index(row, 0), VALUE_ROLE) for row in range(3)]
@@ -91,12 +91,12 @@ def test_that_cards_tell_the_number_they_are_sorted_by_at_the_sheets_width(
 
 
 def test_that_unlike_stays_with_its_design_until_it_is_asked_for_again(designed: MainWindow, designs: Document) -> None:
-    sort_by(designed, Order.UNLIKE)
+    sort_by(designed, SortOrder.UNLIKE)
     first = shown(designed)
     assert first[-1] == designs.candidates[0] and "design 1" in designed.gallery.bar.order.currentText()
     designed.controller.choose(designs.candidates[2])
     assert shown(designed) == first
-    sort_by(designed, Order.UNLIKE)
+    sort_by(designed, SortOrder.UNLIKE)
     assert shown(designed)[-1] == designs.candidates[2] and "design 3" in designed.gallery.bar.order.currentText()
 
 
@@ -144,9 +144,9 @@ def test_that_infeasible_designs_can_be_left_out(qtbot: QtBot, qtmodeltester: Mo
     assert model.rowCount() == 3
 
 
-@pytest.mark.parametrize("order", list(Order))
+@pytest.mark.parametrize("order", list(SortOrder))
 def test_that_designs_that_arrive_one_by_one_lie_as_if_sorted_at_once(
-    qtbot: QtBot, qtmodeltester: ModelTester, designs: Document, order: Order
+    qtbot: QtBot, qtmodeltester: ModelTester, designs: Document, order: SortOrder
 ) -> None:
     grown, whole = GalleryModel(), GalleryModel()
     qtmodeltester.check(grown)

@@ -71,22 +71,22 @@ def test_that_zoom_and_place_of_one_view_are_those_of_the_other(designed: MainWi
     compare(designed, qtbot, 1)
     left, right = (side.view for side in designed.stage.compare.sides)
     QApplication.processEvents()
-    assert left.size() == right.size() and left.frame() == right.frame()
+    assert left.size() == right.size() and left.transform() == right.transform()
     place = QPointF(40.0, 60.0)
     still, none = Qt.MouseButton.NoButton, Qt.KeyboardModifier.NoModifier
     wheel = QWheelEvent(
         place, right.mapToGlobal(place), QPoint(), QPoint(0, 240), still, none, Qt.ScrollPhase.NoScrollPhase, False
     )
-    before = left.frame()
+    before = left.transform()
     QApplication.sendEvent(right, wheel)
-    assert left.frame() == right.frame() != before
-    before = left.frame()
+    assert left.transform() == right.transform() != before
+    before = left.transform()
     qtbot.mousePress(left, LEFT, pos=QPoint(50, 50))
     qtbot.mouseMove(left, QPoint(75, 42))
     qtbot.mouseRelease(left, LEFT, pos=QPoint(75, 42))
-    assert left.frame() == right.frame() != before
+    assert left.transform() == right.transform() != before
     qtbot.keyClick(designed, Qt.Key.Key_0)
-    assert left.frame() == right.frame()
+    assert left.transform() == right.transform()
 
 
 def test_that_one_slider_moves_both_and_playing_goes_on(designed: MainWindow, qtbot: QtBot, until: Until) -> None:

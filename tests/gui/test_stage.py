@@ -117,7 +117,7 @@ def test_that_the_mismatch_is_not_drawn_far_from_the_target_angle(designed: Main
 def test_that_the_wheel_zooms_about_the_pointer_and_zero_fits(designed: MainWindow, qtbot: QtBot) -> None:
     view = designed.stage.view
     place = QPointF(120, 150)
-    before = view.frame()
+    before = view.transform()
     assert before is not None
     none = Qt.MouseButton.NoButton
     wheel = QWheelEvent(
@@ -125,11 +125,11 @@ def test_that_the_wheel_zooms_about_the_pointer_and_zero_fits(designed: MainWind
         Qt.ScrollPhase.NoScrollPhase, False,
     )  # fmt: skip
     QApplication.sendEvent(view, wheel)
-    after = view.frame()
+    after = view.transform()
     assert after is not None and after.scale == pytest.approx(1.44 * before.scale)
     assert after.to_world(place) == pytest.approx(before.to_world(place))
     qtbot.keyClick(designed, Qt.Key.Key_0)
-    assert view.frame() == before
+    assert view.transform() == before
 
 
 def test_that_the_theme_changes_every_drawing(designed: MainWindow) -> None:

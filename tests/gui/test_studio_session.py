@@ -89,7 +89,7 @@ class Sitting:
         view = self.window.gallery.view
         self.bot.mouseClick(view.viewport(), LEFT, pos=view.visualRect(view.model_.index(1, 0)).center())
         assert self.document.chosen == 1 and self.window.stage.title.text() == "Design 2"
-        self.until(lambda: self.window.fabrication.export.isEnabled() and not self.window.controller.board.busy)
+        self.until(lambda: self.window.fabrication.export.isEnabled() and not self.window.controller.queue.busy)
 
     def scrub(self) -> None:
         """Drag the slider from the target to the flat sheet and half the way back; the drawing follows exactly."""
@@ -128,18 +128,18 @@ class Sitting:
         self.key(Qt.Key.Key_L)
         assert self.document.locked == {void}
         self.key(Qt.Key.Key_H)
-        self.until(lambda: self.window.fabrication.export.isEnabled() and not self.window.controller.board.busy)
+        self.until(lambda: self.window.fabrication.export.isEnabled() and not self.window.controller.queue.busy)
 
     def set_connectors(self) -> None:
         """Show the cuts, click on a connector, type its width, Return; then put another one off with Delete."""
         page = self.window.stage.cuts
         self.bot.mouseClick(self.window.stage.cuts_switch, LEFT)
-        plan, frame = page._plan, page.view.frame()
-        assert plan is not None and frame is not None
+        plan, transform = page._plan, page.view.transform()
+        assert plan is not None and transform is not None
         at = plan.hinges.position
         apart = np.linalg.norm(at[:, None] - at[None], axis=2) + 1e9 * np.eye(len(at))
         first, second = np.argsort(-apart.min(axis=1))[:2].tolist()
-        self.bot.mouseClick(page.view, LEFT, pos=QPointF(*frame.to_pixels(at[first]).tolist()).toPoint())
+        self.bot.mouseClick(page.view, LEFT, pos=QPointF(*transform.to_pixels(at[first]).tolist()).toPoint())
         assert page.view.selected == {first}
         width = page.hinges.width_mm
         width.setFocus()
@@ -147,7 +147,7 @@ class Sitting:
         self.bot.keyClicks(width, "0.3")
         self.bot.keyClick(width, Qt.Key.Key_Return)
         assert self.document.fabrication.options.hinge_mm == ((first, 0.3),)
-        self.bot.mouseClick(page.view, LEFT, pos=QPointF(*frame.to_pixels(at[second]).tolist()).toPoint())
+        self.bot.mouseClick(page.view, LEFT, pos=QPointF(*transform.to_pixels(at[second]).tolist()).toPoint())
         self.bot.keyClick(page.view, Qt.Key.Key_Delete)
         assert self.document.fabrication.options.removed == (second,)
         self.until(lambda: page._plan is not None and page._plan.options == self.document.fabrication.options)
@@ -214,7 +214,7 @@ def test_that_a_whole_sitting_ends_where_it_began(
     assert len(steps) >= 9 and len(set(steps)) >= 8
     at_work.redo_everything()
     assert window.controller.document == kept and not window.controller.history.unsaved
-    until(lambda: not window.controller.board.busy and window.fabrication.export.isEnabled())
+    until(lambda: not window.controller.queue.busy and window.fabrication.export.isEnabled())
 
 
 def reopened(path: Path, until: Until) -> Document:

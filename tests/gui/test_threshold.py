@@ -15,7 +15,7 @@ from pytestqt.qtbot import QtBot
 
 from kirigami_studio.gui.jobs.steps import Picture, reading_target
 from kirigami_studio.gui.main_window import MainWindow
-from kirigami_studio.gui.sketching.easel import Change
+from kirigami_studio.gui.sketching.sketch_context import Change
 from kirigami_studio.gui.views.target_view import Tool
 from kirigami_studio.outlines.placed import Placed
 from kirigami_studio.outlines.read_image import automatic_threshold, read_image
@@ -51,7 +51,7 @@ def test_that_the_contour_follows_and_one_drag_undoes_at_once(
         bar.slider.setValue(value)
     bar.slider.setSliderDown(False)
     until(lambda: controller.document.target == read_image(photo, 0.8))
-    until(lambda: not controller.board.busy)
+    until(lambda: not controller.queue.busy)
     assert bar.slider.value() == 160 and bar.number.text() == "80.0 %"
     assert controller.history.undo_label == "Change threshold"
     qtbot.keyClick(traced, Qt.Key.Key_Z, Qt.KeyboardModifier.ControlModifier)
@@ -64,7 +64,7 @@ def test_that_each_key_press_is_a_step_of_its_own(traced: MainWindow, photo: Pat
     for value in (150, 160):
         bar.slider.setValue(value)
         until(lambda value=value: controller.document.target == read_image(photo, value / 200))  # type: ignore[misc]
-        until(lambda: not controller.board.busy)
+        until(lambda: not controller.queue.busy)
     controller.undo()
     assert controller.document.target == read_image(photo, 0.75)
 
@@ -72,7 +72,7 @@ def test_that_each_key_press_is_a_step_of_its_own(traced: MainWindow, photo: Pat
 def test_that_auto_brings_the_found_threshold_back(traced: MainWindow, photo: Path, until: Until, qtbot: QtBot) -> None:
     bar, controller = traced.target.threshold, traced.controller
     bar.slider.setValue(160)
-    until(lambda: bar.automatic.isEnabled() and not controller.board.busy)
+    until(lambda: bar.automatic.isEnabled() and not controller.queue.busy)
     qtbot.mouseClick(bar.automatic, Qt.MouseButton.LeftButton)
     until(lambda: controller.document.target == read_image(photo))
     assert not bar.automatic.isEnabled()
@@ -91,7 +91,7 @@ def test_that_a_new_target_ends_the_tracing_of_the_old_one(traced: MainWindow, u
         traced.target.threshold.slider.setValue(value)
     traced.controller.targeting.open("heart")
     until(lambda: traced.controller.document.target is not None and traced.controller.document.target.name == "heart")
-    until(lambda: not traced.controller.board.busy)
+    until(lambda: not traced.controller.queue.busy)
     assert traced.controller.document.target is not None and traced.controller.document.target.name == "heart"
     assert not traced.target.threshold.isVisible()
 
@@ -102,7 +102,7 @@ def test_that_a_drawing_wins_over_a_file_that_is_still_being_read(
     window.controller.targeting.open(str(photo))
     corners = np.array([[0.0, 0.0], [3.0, 0.0], [1.0, 2.0]])
     window.wiring.reshaping.take(Change("Draw polygon", lambda: Placed.from_ring(corners, "polygon")))
-    until(lambda: not window.controller.board.busy)
+    until(lambda: not window.controller.queue.busy)
     assert window.controller.document.target is not None and window.controller.document.target.name == "polygon"
 
 
@@ -117,17 +117,17 @@ def test_that_the_contour_lies_on_the_picture_and_the_picture_lies_still(
 
     def box() -> list[float]:
         """The contour's box in pixels of the picture, y up."""
-        assert view.easel.placed is not None
-        ring = (view.easel.placed.ring - under.corner) / under.pixel
+        assert view.context.placed is not None
+        ring = (view.context.placed.ring - under.corner) / under.pixel
         return [*ring.min(axis=0).tolist(), *ring.max(axis=0).tolist()]
 
     # Pillow's ellipses hold both ends: x 40..100 are the pixels from 40.0 to 101.0; rows are counted from the top.
     # On the left the lighter ear begins, into which the smoothed edge is drawn.
     assert box()[1:] == pytest.approx([100 - 81, 101, 100 - 20], abs=0.6) and box()[0] == pytest.approx(40, abs=2)
-    before = view.frame()
+    before = view.transform()
     traced.target.threshold.slider.setValue(160)
     until(lambda: controller.document.target == read_image(photo, 0.8))
-    assert view.underlay is under and view.frame() == before
+    assert view.underlay is under and view.transform() == before
     assert box() == pytest.approx([10, 100 - 81, 101, 100 - 20], abs=1)
 
 
@@ -148,24 +148,24 @@ def test_that_a_picture_goes_along_when_its_contour_is_moved_and_enlarged(
 ) -> None:
     view = traced.target.view
     traced.target.set_tool(Tool.POSE)
-    assert view.underlay is not None and view.easel.placed is not None
-    corner, start, pixel = view.underlay.corner, view.easel.placed.centre, view.underlay.pixel
+    assert view.underlay is not None and view.context.placed is not None
+    corner, start, pixel = view.underlay.corner, view.context.placed.centre, view.underlay.pixel
     qtbot.keyClick(view, Qt.Key.Key_Up, Qt.KeyboardModifier.ShiftModifier)
-    assert view.easel.placed.centre == pytest.approx((start[0], start[1] + 10))
+    assert view.context.placed.centre == pytest.approx((start[0], start[1] + 10))
     assert view.underlay.corner == pytest.approx((corner[0], corner[1] + 10))
-    width, height = view.easel.placed.size
+    width, height = view.context.placed.size
     traced.target.refine.width_.setValue(50.0)
     assert view.underlay.pixel == pytest.approx(pixel * 50.0 / width)
     before = traced.controller.document.target
     traced.target.threshold.slider.setValue(140)
     until(lambda: traced.controller.document.target is not before)
     # The new contour of the picture lies where the picture lies now.
-    assert view.easel.placed.scale == pytest.approx(
+    assert view.context.placed.scale == pytest.approx(
         view.underlay.pixel * traced.controller.targeting.tracing.picture_of(view.outline).traced.scale  # type: ignore
     )
     for _ in range(3):
         traced.actions_["undo"].trigger()
-    assert view.underlay.corner == pytest.approx(corner) and view.easel.placed.size == pytest.approx((width, height))
+    assert view.underlay.corner == pytest.approx(corner) and view.context.placed.size == pytest.approx((width, height))
 
 
 def test_that_the_worker_reduces_a_large_photo_for_drawing(tmp_path: Path) -> None:

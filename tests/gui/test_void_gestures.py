@@ -182,13 +182,13 @@ def kept_up_with(by_hand: MainWindow, until: Until, phi: float) -> float:
 
 def test_that_one_drag_is_one_undo_step_and_the_picture_keeps_its_place(by_hand: MainWindow, until: Until) -> None:
     view, before = by_hand.stage.view, chosen(by_hand)
-    frame, start = view.frame(), middle_of(view, (1, 2))
+    transform, start = view.transform(), middle_of(view, (1, 2))
     drag(view, start, start + QPoint(6, 6), let_go=False)
-    assert view.frame() == frame and view.design is not None
+    assert view.transform() == transform and view.design is not None
     assert view.design.deployment.field != before.field
     QTest.mouseRelease(view, LEFT, NONE, start + QPoint(6, 6))
     settle(by_hand, until)
-    assert view.frame() == frame
+    assert view.transform() == transform
     by_hand.actions_["undo"].trigger()
     assert chosen(by_hand) == before and by_hand.controller.history.undo_label is None
 

@@ -144,7 +144,7 @@ def test_that_fit_again_improves_the_design_and_holds_what_is_locked(
     assert by_hand.stage.voids.refit.isChecked() and by_hand.actions_["cancel"].isEnabled()
     until(lambda: not controller.refitting.busy)
     after = chosen(by_hand)
-    assert after.score.siou > before.score.siou and after.polished and after.drawn == before.field
+    assert after.score.siou > before.score.siou and after.polished and after.sampled_field == before.field
     for void in ((0, 0), (2, 2)):
         assert after.field.ratio[void] == before.field.ratio[void]
     assert controller.history.undo_label == "Fit design 1" and not by_hand.stage.voids.refit.isChecked()

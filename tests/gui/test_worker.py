@@ -12,20 +12,20 @@ from PySide6.QtCore import QEventLoop, QThread, QTimer
 from pytestqt.qtbot import QtBot
 
 from kirigami_studio.foundation.errors import TargetError
-from kirigami_studio.gui.jobs.board import Board, Ears
+from kirigami_studio.gui.jobs.queue import JobCallbacks, JobQueue
 
 Until = Callable[[Callable[[], bool]], None]
 
 
 @pytest.fixture
-def board(qtbot: QtBot) -> Iterator[Board]:
-    made = Board()
+def queue(qtbot: QtBot) -> Iterator[JobQueue]:
+    made = JobQueue()
     yield made
     made.close()
     assert all(not thread.isRunning() for thread in made.findChildren(QThread))
 
 
-def test_that_reports_arrive_in_order_in_the_window_thread(board: Board, until: Until) -> None:
+def test_that_reports_arrive_in_order_in_the_window_thread(queue: JobQueue, until: Until) -> None:
     heard: list[object] = []
     threads: set[int] = set()
 
@@ -38,13 +38,13 @@ def test_that_reports_arrive_in_order_in_the_window_thread(board: Board, until: 
         assert threading.get_ident() == threading.main_thread().ident
 
     done: list[bool] = []
-    board.start("counting", steps, Ears(hear, lambda: done.append(True)))
+    queue.start("counting", steps, JobCallbacks(hear, lambda: done.append(True)))
     until(lambda: bool(done))
     assert heard == list(range(50)) and threads != {threading.main_thread().ident}
-    assert not board.busy
+    assert not queue.busy
 
 
-def test_that_a_short_job_does_not_wait_for_a_long_one(board: Board, until: Until) -> None:
+def test_that_a_short_job_does_not_wait_for_a_long_one(queue: JobQueue, until: Until) -> None:
     order: list[str] = []
     release = threading.Event()
 
@@ -55,23 +55,23 @@ def test_that_a_short_job_does_not_wait_for_a_long_one(board: Board, until: Unti
     def short(cancel: Callable[[], bool]) -> Iterator[object]:
         yield None
 
-    board.start("long", long, Ears(on_finished=lambda: order.append("long")))
-    board.start("short", short, Ears(on_finished=lambda: (order.append("short"), release.set())[0]))
+    queue.start("long", long, JobCallbacks(on_finished=lambda: order.append("long")))
+    queue.start("short", short, JobCallbacks(on_finished=lambda: (order.append("short"), release.set())[0]))
     until(lambda: len(order) == 2)
     assert order == ["short", "long"]
 
 
-def test_that_a_cancelled_job_says_so_and_stops(board: Board, until: Until) -> None:
+def test_that_a_cancelled_job_says_so_and_stops(queue: JobQueue, until: Until) -> None:
     heard: list[str] = []
 
     def endless(cancel: Callable[[], bool]) -> Iterator[object]:
         while True:
             yield None
 
-    number = board.start("going on", endless, Ears(on_cancelled=lambda: heard.append("cancelled")))
-    board.cancel(number)
+    number = queue.start("going on", endless, JobCallbacks(on_cancelled=lambda: heard.append("cancelled")))
+    queue.cancel(number)
     until(lambda: heard == ["cancelled"])
-    assert not board.busy
+    assert not queue.busy
 
 
 @pytest.mark.parametrize(
@@ -81,19 +81,21 @@ def test_that_a_cancelled_job_says_so_and_stops(board: Board, until: Until) -> N
         (ZeroDivisionError("division by zero"), "Something unexpected went wrong while dividing: division by zero."),
     ],
 )
-def test_that_a_failure_is_a_sentence_with_a_trace(board: Board, until: Until, error: Exception, expected: str) -> None:
+def test_that_a_failure_is_a_sentence_with_a_trace(
+    queue: JobQueue, until: Until, error: Exception, expected: str
+) -> None:
     heard: list[tuple[str, str]] = []
 
     def failing(cancel: Callable[[], bool]) -> Iterator[object]:
         yield None
         raise error
 
-    board.start("dividing", failing, Ears(on_failed=lambda sentence, trace: heard.append((sentence, trace))))
+    queue.start("dividing", failing, JobCallbacks(on_failed=lambda sentence, trace: heard.append((sentence, trace))))
     until(lambda: bool(heard))
     assert heard[0][0] == expected and "failing" in heard[0][1]
 
 
-def test_that_an_abandoned_job_is_no_longer_heard(board: Board, until: Until) -> None:
+def test_that_an_abandoned_job_is_no_longer_heard(queue: JobQueue, until: Until) -> None:
     heard: list[object] = []
     started, go = threading.Event(), threading.Event()
 
@@ -102,15 +104,17 @@ def test_that_an_abandoned_job_is_no_longer_heard(board: Board, until: Until) ->
         go.wait(10)
         yield "too late"
 
-    number = board.start("slow", steps, Ears(heard.append, lambda: heard.append("done"), lambda: heard.append("stop")))
+    number = queue.start(
+        "slow", steps, JobCallbacks(heard.append, lambda: heard.append("done"), lambda: heard.append("stop"))
+    )
     assert started.wait(10)
-    board.abandon(number)
+    queue.abandon(number)
     go.set()
-    until(lambda: not board.busy)
+    until(lambda: not queue.busy)
     assert heard == []
 
 
-def test_that_the_window_lives_between_reports_that_come_all_at_once(board: Board, until: Until) -> None:
+def test_that_the_window_lives_between_reports_that_come_all_at_once(queue: JobQueue, until: Until) -> None:
     ticks: list[int] = []
     heard: list[int] = []
     timer = QTimer()
@@ -122,7 +126,7 @@ def test_that_the_window_lives_between_reports_that_come_all_at_once(board: Boar
         heard.append(len(heard))
 
     done: list[bool] = []
-    board.start("counting", lambda cancel: iter(range(50)), Ears(hear, lambda: done.append(True)))
+    queue.start("counting", lambda cancel: iter(range(50)), JobCallbacks(hear, lambda: done.append(True)))
     time.sleep(0.3)  # the worker has said it all
     timer.start()
     until(lambda: bool(done))
@@ -132,7 +136,7 @@ def test_that_the_window_lives_between_reports_that_come_all_at_once(board: Boar
     assert max(after - before for before, after in pairwise(turns)) <= 5
 
 
-def test_that_a_dialog_opened_by_a_report_hears_the_next_ones(board: Board, until: Until) -> None:
+def test_that_a_dialog_opened_by_a_report_hears_the_next_ones(queue: JobQueue, until: Until) -> None:
     heard: list[object] = []
     dialog = QEventLoop()
     times_out = QTimer(dialog)
@@ -148,7 +152,7 @@ def test_that_a_dialog_opened_by_a_report_hears_the_next_ones(board: Board, unti
         if report == 2:
             dialog.exit(0)
 
-    board.start("asking", lambda cancel: iter(range(3)), Ears(hear))
-    until(lambda: not board.busy and bool(closed_by))
+    queue.start("asking", lambda cancel: iter(range(3)), JobCallbacks(hear))
+    until(lambda: not queue.busy and bool(closed_by))
     times_out.stop()
     assert heard == [0, 1, 2] and closed_by == [0]

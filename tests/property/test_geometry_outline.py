@@ -11,8 +11,9 @@ from hypothesis import strategies as st
 from lattice_strategies import angles, corner_angles, grids, open_angles, polygon_areas, ratio_fields, signed_area
 from shapely import LinearRing, Polygon, union_all
 
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.lattice.deployment import Deployment, deploy
-from kirigami_studio.lattice.ratio_field import FloatArray, RatioField
+from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.topology import topology
 
 

@@ -11,8 +11,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from lattice_strategies import distance_signature, fit_residual, ratio_fields
 
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.lattice.deployment import Deployment, deploy
-from kirigami_studio.lattice.ratio_field import FloatArray, RatioField
+from kirigami_studio.lattice.ratio_field import RatioField
 
 Grid = st.SearchStrategy[tuple[int, int]]
 EVEN = st.sampled_from([2, 4, 6, 8])

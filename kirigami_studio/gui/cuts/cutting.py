@@ -10,7 +10,7 @@ from PySide6.QtCore import QObject, QTimer, Signal
 from kirigami_studio.fabricate.material import Material
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.jobs import steps
-from kirigami_studio.gui.jobs.board import Board, Ears
+from kirigami_studio.gui.jobs.queue import JobCallbacks, JobQueue
 from kirigami_studio.gui.messages import Message, Tone
 from kirigami_studio.project.settings import FabricationSettings
 
@@ -28,19 +28,19 @@ class Cutting(QObject):
     message = Signal(object)  #: Message
     status = Signal(str)
 
-    def __init__(self, board: Board, parent: QObject) -> None:
+    def __init__(self, queue: JobQueue, parent: QObject) -> None:
         super().__init__(parent)
-        self._board = board
+        self._queue = queue
         self._job: int | None = None
-        self._wanted: steps.Order | None = None
+        self._wanted: steps.CutRequest | None = None
         self._timer = QTimer(self)
         self._timer.setSingleShot(True)
         self._timer.setInterval(PLAN_DELAY_MS)
         self._timer.timeout.connect(self._plan)
 
-    def plan_soon(self, order: steps.Order | None) -> None:
+    def plan_soon(self, request: steps.CutRequest | None) -> None:
         """Plan this design, unless another wish comes first; None means that there is nothing to cut."""
-        self._wanted = order
+        self._wanted = request
         self._timer.start()
 
     def close(self) -> None:
@@ -49,34 +49,36 @@ class Cutting(QObject):
 
     def _plan(self) -> None:
         if self._job is not None:
-            self._board.abandon(self._job)
+            self._queue.abandon(self._job)
             self._job = None
         if self._wanted is None:
             self.planned.emit(None)
             return
         again = "" if self._wanted.candidate.trim is None else TRIM_AGAIN
-        ears = Ears(self.planned.emit, on_failed=lambda sentence, _: self.refused.emit(sentence + again))
-        self._job = self._board.start(tr("planning the cuts"), partial(steps.planning, self._wanted), ears)
+        callbacks = JobCallbacks(self.planned.emit, on_failed=lambda sentence, _: self.refused.emit(sentence + again))
+        self._job = self._queue.start(tr("planning the cuts"), partial(steps.planning, self._wanted), callbacks)
 
-    def export(self, order: steps.Order, path: Path) -> None:
+    def export(self, request: steps.CutRequest, path: Path) -> None:
         """Write a cut file or a picture, by the extension."""
         self.status.emit(tr("Writing {name} …", name=path.name))
-        ears = Ears(self._written, on_failed=self._not_written)
-        self._board.start(tr("writing {name}", name=path.name), partial(steps.exporting, order, path), ears)
+        callbacks = JobCallbacks(self._written, on_failed=self._not_written)
+        self._queue.start(tr("writing {name}", name=path.name), partial(steps.exporting, request, path), callbacks)
 
-    def export_all(self, order: steps.Order, folder: Path, name: str) -> None:
+    def export_all(self, request: steps.CutRequest, folder: Path, name: str) -> None:
         """Write everything that there is of a design into a folder."""
         self.status.emit(tr("Writing into {name} …", name=folder.name))
-        work = partial(steps.exporting_all, order, folder, name)
-        self._board.start(
-            tr("writing into {name}", name=folder.name), work, Ears(self._written, on_failed=self._not_written)
+        work = partial(steps.exporting_all, request, folder, name)
+        self._queue.start(
+            tr("writing into {name}", name=folder.name), work, JobCallbacks(self._written, on_failed=self._not_written)
         )
 
     def export_coupon(self, material: Material, path: Path, settings: FabricationSettings) -> None:
         """Write the calibration coupon of a material."""
         self.status.emit(tr("Writing {name} …", name=path.name))
         work = partial(steps.exporting_coupon, material, path, settings)
-        self._board.start(tr("writing {name}", name=path.name), work, Ears(self._written, on_failed=self._not_written))
+        self._queue.start(
+            tr("writing {name}", name=path.name), work, JobCallbacks(self._written, on_failed=self._not_written)
+        )
 
     def _written(self, report: object) -> None:
         if not isinstance(report, steps.Exported):

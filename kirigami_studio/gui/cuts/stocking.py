@@ -15,7 +15,7 @@ from kirigami_studio.project.document import Document
 from kirigami_studio.project.material_record import carried_material
 
 
-class Stocking(QObject):
+class MaterialStore(QObject):
     """Compares what a project carries with what is in stock."""
 
     stocked = Signal(str)  #: key of a material that is in stock now

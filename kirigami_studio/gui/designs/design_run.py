@@ -9,11 +9,11 @@ from PySide6.QtCore import QElapsedTimer, QObject, Signal
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui.designs.shelf import Shelf
+from kirigami_studio.gui.designs.design_cache import DesignCache
 from kirigami_studio.gui.jobs import steps
 from kirigami_studio.gui.jobs.adding_steps import adding
-from kirigami_studio.gui.jobs.board import Board, Ears
-from kirigami_studio.gui.jobs.slot import Slot
+from kirigami_studio.gui.jobs.queue import JobCallbacks, JobQueue
+from kirigami_studio.gui.jobs.slot import LatestJob
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.pipeline.events import CandidateFound, CandidateImproved, Finished, Progress, Result, Started
 from kirigami_studio.pipeline.provenance import provenance
@@ -35,10 +35,10 @@ class DesignRun(QObject):
     failed = Signal(str, str)  #: sentence, trace
     ended = Signal(bool)  #: whether it was completed; comes before the three above
 
-    def __init__(self, board: Board, shelf: Shelf, parent: QObject) -> None:
+    def __init__(self, queue: JobQueue, cache: DesignCache, parent: QObject) -> None:
         super().__init__(parent)
-        self._slot = Slot(board)
-        self._shelf = shelf
+        self._slot = LatestJob(queue)
+        self._cache = cache
         self._digest = ""
         self._asked = 0
         self._request: Request | None = None
@@ -61,9 +61,9 @@ class DesignRun(QObject):
         self._clock.start()
         self._sampled.clear()
         self._now.clear()
-        ears = Ears(self._report, partial(self._over, completed=False), self._cancel, self._fail)
+        callbacks = JobCallbacks(self._report, partial(self._over, completed=False), self._cancel, self._fail)
         work = partial(steps.generating, request) if others is None else partial(adding, request, others)
-        self._slot.start(tr("generating designs"), work, ears)
+        self._slot.start(tr("generating designs"), work, callbacks)
         self.started.emit(request.k)
 
     def cancel(self) -> None:
@@ -97,8 +97,8 @@ class DesignRun(QObject):
         elif isinstance(report, CandidateFound | CandidateImproved):
             self._take(report.candidate)
         elif isinstance(report, steps.Decoded):
-            self._shelf.put(report.candidate, report.deployment)
-            entry, number = self._shelf.entry(report.candidate), report.candidate.index
+            self._cache.put(report.candidate, report.deployment)
+            entry, number = self._cache.entry(report.candidate), report.candidate.index
             self.found.emit(replace(entry, rise=entry.candidate.score.siou - self._sampled[number]))
         elif isinstance(report, Finished):
             self._slot.stop()  # the result is the end

@@ -13,7 +13,7 @@ from kirigami_studio.gui.messages import Message, Tone
 from kirigami_studio.project import edits
 
 
-class Finishing(OneDesign):
+class TrimJob(OneDesign):
     """Trims at most one design at a time, off the window's thread, and proposes the edit that it leads to."""
 
     stopped = tr("Trimming stopped; nothing was changed.")
@@ -46,7 +46,7 @@ class Finishing(OneDesign):
         after, trim = report.candidate, report.candidate.trim
         if trim is None:
             return
-        self._shelf.put(after, report.deployment)
+        self._cache.put(after, report.deployment)
         self._replace(after, tr("Trim"))
         scores = tr(
             "Trimmed IoU {iou:.1f} %, untrimmed sIoU {siou:.1f} %", iou=100 * trim.iou, siou=100 * after.score.siou

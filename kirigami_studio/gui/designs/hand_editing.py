@@ -23,15 +23,15 @@ from PySide6.QtCore import QObject, QTimer, Signal
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.words import tr
+from kirigami_studio.gui.designs.design_cache import DesignCache
 from kirigami_studio.gui.designs.hand_pull import LARGEST, SMALLEST, Pull
 from kirigami_studio.gui.designs.hand_words import locked_sentence, ratio_label, score_sentence
 from kirigami_studio.gui.designs.outline_drag import OutlineDrag
-from kirigami_studio.gui.designs.shelf import Shelf
 from kirigami_studio.gui.jobs import hand_steps
-from kirigami_studio.gui.jobs.board import Board, Ears
 from kirigami_studio.gui.jobs.drag_steps import Followed, Grasp
-from kirigami_studio.gui.jobs.slot import Slot
-from kirigami_studio.gui.jobs.steps import Decoded, finished_field
+from kirigami_studio.gui.jobs.queue import JobCallbacks, JobQueue
+from kirigami_studio.gui.jobs.slot import LatestJob
+from kirigami_studio.gui.jobs.steps import Decoded
 from kirigami_studio.gui.scene.posed import PosedDesign
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
@@ -77,10 +77,10 @@ class HandEditing(QObject):
     failed = Signal(str, str)  #: sentence, trace
     status = Signal(str)
 
-    def __init__(self, board: Board, shelf: Shelf, document: Callable[[], Document], parent: QObject) -> None:
+    def __init__(self, queue: JobQueue, cache: DesignCache, document: Callable[[], Document], parent: QObject) -> None:
         super().__init__(parent)
-        self._shelf, self._document = shelf, document
-        self._slot = Slot(board)
+        self._cache, self._document = cache, document
+        self._slot = LatestJob(queue)
         self._base: Candidate | None = None  # as the document holds it
         self._field: RatioField | None = None  # as it is seen
         self._last: RatioField | None = None  # as the last complete gesture left it
@@ -112,7 +112,7 @@ class HandEditing(QObject):
     def field(self) -> RatioField | None:
         """The ratios as they are seen."""
         candidate = self._document().candidate
-        return self._field if self._field is not None else None if candidate is None else finished_field(candidate)
+        return self._field if self._field is not None else None if candidate is None else candidate.final_field
 
     def postpones(self, wish: Callable[[], object]) -> bool:
         """Whether a wish must wait until all gestures are in the document; it is then carried out by itself."""
@@ -298,7 +298,7 @@ class HandEditing(QObject):
         if self._open is not None and self._open != label:
             self.commit()
         if self._base is None:
-            self._base, self._last = candidate, finished_field(candidate)
+            self._base, self._last = candidate, candidate.final_field
         if self._open is None:
             self._key = merge_key
         self._field, self._open = field, label
@@ -310,12 +310,10 @@ class HandEditing(QObject):
         if candidate is None or self.field is None:
             return None
         if self._field is None and candidate.trim is None:
-            return self._shelf.entry(candidate).design
+            return self._cache.entry(candidate).design
         if self._seen is not None and self._seen.deployment.field is self._field:
             return self._seen
-        seen = candidate.score if candidate.trim is None else candidate.trim
-        pose = candidate.score.transform if candidate.trim is None else candidate.trim.pose
-        return PosedDesign(deploy(self.field), pose, seen.phi)
+        return PosedDesign(deploy(self.field), candidate.final_pose, candidate.final_phi)
 
     def _show_draft(self) -> None:
         design = self._design()
@@ -346,8 +344,8 @@ class HandEditing(QObject):
             return
         gesture = self._waiting.popleft()
         work = partial(hand_steps.scoring, self._base, gesture.field, target)
-        ears = Ears(partial(self._take, gesture), on_failed=self._fail)
-        self._slot.start(tr("scoring the change"), work, ears)
+        callbacks = JobCallbacks(partial(self._take, gesture), on_failed=self._fail)
+        self._slot.start(tr("scoring the change"), work, callbacks)
 
     def _take(self, gesture: _Gesture, report: object) -> None:
         self._slot.stop()  # the report is the end
@@ -358,7 +356,7 @@ class HandEditing(QObject):
         if edit is None:
             self._restore()
             return
-        self._shelf.put(report.candidate, report.deployment)
+        self._cache.put(report.candidate, report.deployment)
         self._base = self._grasped = report.candidate
         self.edited.emit(edit)
         self.status.emit(score_sentence(gesture.label, before, report.candidate))
@@ -379,7 +377,7 @@ class HandEditing(QObject):
         self.stop()
         candidate = self._document().candidate
         if candidate is not None:
-            self.drafted.emit(self._shelf.entry(candidate).design)
+            self.drafted.emit(self._cache.entry(candidate).design)
         for wish in wishes:
             wish()
 

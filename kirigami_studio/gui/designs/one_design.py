@@ -8,9 +8,9 @@ from PySide6.QtCore import QObject, Signal
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui.designs.shelf import Shelf
-from kirigami_studio.gui.jobs.board import Board, Ears
-from kirigami_studio.gui.jobs.slot import Slot
+from kirigami_studio.gui.designs.design_cache import DesignCache
+from kirigami_studio.gui.jobs.queue import JobCallbacks, JobQueue
+from kirigami_studio.gui.jobs.slot import LatestJob
 from kirigami_studio.gui.jobs.worker import Steps
 from kirigami_studio.project.document import Document
 
@@ -27,10 +27,10 @@ class OneDesign(QObject):
     #: What the status line says after :meth:`cancel`.
     stopped = ""
 
-    def __init__(self, board: Board, shelf: Shelf, document: Callable[[], Document], parent: QObject) -> None:
+    def __init__(self, queue: JobQueue, cache: DesignCache, document: Callable[[], Document], parent: QObject) -> None:
         super().__init__(parent)
-        self._shelf, self._document = shelf, document
-        self._slot = Slot(board)
+        self._cache, self._document = cache, document
+        self._slot = LatestJob(queue)
         self._candidate: Candidate | None = None
 
     @property
@@ -62,7 +62,7 @@ class OneDesign(QObject):
         """Start a job on a design; ``name`` follows the word "while"."""
         self.stop()
         self._candidate = candidate
-        self._slot.start(name, work, Ears(self._take, self._over, self._over, self._fail))
+        self._slot.start(name, work, JobCallbacks(self._take, self._over, self._over, self._fail))
         self.busy_changed.emit(True)
 
     def name(self) -> str:

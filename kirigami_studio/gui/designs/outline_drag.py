@@ -18,9 +18,9 @@ from __future__ import annotations
 from PySide6.QtCore import QObject, Signal
 
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui.jobs.board import Board, Ears
 from kirigami_studio.gui.jobs.drag_steps import Followed, Follower, Grasp
-from kirigami_studio.gui.jobs.slot import Slot
+from kirigami_studio.gui.jobs.queue import JobCallbacks, JobQueue
+from kirigami_studio.gui.jobs.slot import LatestJob
 
 
 class OutlineDrag(QObject):
@@ -32,8 +32,8 @@ class OutlineDrag(QObject):
 
     def __init__(self, parent: QObject) -> None:
         super().__init__(parent)
-        self._board: Board | None = None
-        self._slot: Slot | None = None
+        self._queue: JobQueue | None = None
+        self._slot: LatestJob | None = None
         self._follower: Follower | None = None
         self._shown: Followed | None = None
         self._held = False
@@ -76,8 +76,8 @@ class OutlineDrag(QObject):
     def close(self) -> None:
         """Stop, and wait for the thread to end: at most one step."""
         self.stop()
-        if self._board is not None:
-            self._board.close()
+        if self._queue is not None:
+            self._queue.close()
 
     def _go_on(self) -> None:
         follower = self._follower
@@ -85,10 +85,10 @@ class OutlineDrag(QObject):
             return
         if follower.waiting:
             if self._slot is None:
-                self._board = Board(self, "kirigami-gestures")
-                self._slot = Slot(self._board)
-            ears = Ears(self._show, self._go_on, on_failed=self._fail)
-            self._slot.start(tr("moving the outline"), follower.steps, ears)
+                self._queue = JobQueue(self, "kirigami-gestures")
+                self._slot = LatestJob(self._queue)
+            callbacks = JobCallbacks(self._show, self._go_on, on_failed=self._fail)
+            self._slot.start(tr("moving the outline"), follower.steps, callbacks)
         elif not self._held:
             self.stop()
             self.ended.emit()

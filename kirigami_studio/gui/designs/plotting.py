@@ -10,9 +10,9 @@ import numpy as np
 from PySide6.QtCore import QObject, Signal
 
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui.jobs.board import Board, Ears
 from kirigami_studio.gui.jobs.plot_steps import Reading, plotting
-from kirigami_studio.gui.jobs.slot import Slot
+from kirigami_studio.gui.jobs.queue import JobCallbacks, JobQueue
+from kirigami_studio.gui.jobs.slot import LatestJob
 from kirigami_studio.gui.scene.posed import PosedDesign
 from kirigami_studio.outlines.outline import Outline
 
@@ -39,12 +39,12 @@ class Plotting(QObject):
     grown = Signal(object)  #: Curves of the design on the stage, or None
     failed = Signal(str, str)  #: sentence, trace
 
-    def __init__(self, board: Board, parent: QObject) -> None:
+    def __init__(self, queue: JobQueue, parent: QObject) -> None:
         super().__init__(parent)
         self._design: PosedDesign | None = None
         self._target: Outline | None = None
         self._wanted = False
-        self._slot = Slot(board)
+        self._slot = LatestJob(queue)
         self._known: OrderedDict[tuple[PosedDesign, Outline | None], Curves] = OrderedDict()
 
     @property
@@ -78,8 +78,8 @@ class Plotting(QObject):
         self.grown.emit(begun)
         while len(self._known) > CAPACITY:
             self._known.popitem(last=False)
-        ears = Ears(self._take, self._end, on_failed=self.failed.emit)
-        self._slot.start(tr("reading the curves"), partial(plotting, design, self._target), ears)
+        callbacks = JobCallbacks(self._take, self._end, on_failed=self.failed.emit)
+        self._slot.start(tr("reading the curves"), partial(plotting, design, self._target), callbacks)
 
     def stop(self) -> None:
         """Read no further."""

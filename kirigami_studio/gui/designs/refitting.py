@@ -57,7 +57,7 @@ class Refitting(OneDesign):
         if hand_edits.moves_locked(self._document(), before, after):
             self.status.emit(tr("Voids were locked since that fit; press Fit again (Ctrl+F)."))
             return
-        self._shelf.put(after, report.decoded.deployment)
+        self._cache.put(after, report.decoded.deployment)
         self.edited.emit(edit)
         if after.trim is not None:
             told = tr("{told} Trimmed again: IoU {iou:.1f} %.", told=told, iou=100 * after.trim.iou)

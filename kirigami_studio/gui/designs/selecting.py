@@ -18,7 +18,7 @@ from kirigami_studio.pipeline.variety import distances
 from kirigami_studio.project.document import Mark
 
 
-class Order(Enum):
+class SortOrder(Enum):
     """What the gallery is sorted by; always from the best, the largest or the calmest on."""
 
     RANK = "rank"
@@ -36,17 +36,17 @@ class Selection:
 
     Attributes
     ----------
-    order : Order
+    order : SortOrder
     pinned_first : bool
     feasible_only, pinned_only : bool
     show_rejected : bool
     least_siou : float, 0..1
     unlike : RatioField or None
-        Design that :attr:`Order.UNLIKE` measures from; it stays while the user looks from card to card, so that the
+        Design that :attr:`SortOrder.UNLIKE` measures from; it stays while the user looks from card to card, so that the
         cards stay in their places.
     """
 
-    order: Order = Order.RANK
+    order: SortOrder = SortOrder.RANK
     pinned_first: bool = False
     feasible_only: bool = False
     pinned_only: bool = False
@@ -99,17 +99,17 @@ def arranged(designs: Sequence[Shown], selection: Selection) -> list[int]:
 def sorting_values(designs: Sequence[Shown], selection: Selection) -> list[float]:
     """By what each design is sorted; smaller comes first."""
     order = selection.order
-    if order is Order.SIOU:
+    if order is SortOrder.SIOU:
         return [-one.candidate.score.siou for one in designs]
-    if order is Order.GAIN:
+    if order is SortOrder.GAIN:
         return [-one.candidate.score.siou_gain for one in designs]
-    if order is Order.TV:
+    if order is SortOrder.TV:
         return [one.candidate.score.tv for one in designs]
-    if order is Order.PANEL:
+    if order is SortOrder.PANEL:
         return [-least_panel(one.deployment) for one in designs]
-    if order is Order.NEWEST:
+    if order is SortOrder.NEWEST:
         return [0.0 if one.fresh else 1.0 for one in designs]
-    if order is Order.UNLIKE:
+    if order is SortOrder.UNLIKE:
         return [-value for value in differences([one.candidate for one in designs], selection.unlike)]
     return [0.0] * len(designs)
 
@@ -136,11 +136,11 @@ def least_panel(deployment: Deployment) -> float:
     return min(sizes) / float(np.ptp(deployment.compact[:, 0]))
 
 
-def told_value(shown: Shown, selection: Selection, width_mm: float) -> str:
+def format_value(shown: Shown, selection: Selection, width_mm: float) -> str:
     """What a card says of the number that it is sorted by."""
-    if selection.order is Order.PANEL:
+    if selection.order is SortOrder.PANEL:
         return tr("panel {size:.1f} mm", size=width_mm * least_panel(shown.deployment))
-    if selection.order is Order.UNLIKE and selection.unlike is not None:
+    if selection.order is SortOrder.UNLIKE and selection.unlike is not None:
         return tr("differs {value:.2f}", value=differences([shown.candidate], selection.unlike)[0])
     return tr("TV {value:.2f}", value=shown.candidate.score.tv)
 

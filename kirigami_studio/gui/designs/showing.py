@@ -9,10 +9,10 @@ from PySide6.QtCore import QObject, Signal
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.words import tr
+from kirigami_studio.gui.designs.design_cache import DesignCache
 from kirigami_studio.gui.designs.entry import Entry, same_sample
-from kirigami_studio.gui.designs.shelf import Shelf
 from kirigami_studio.gui.jobs import steps
-from kirigami_studio.gui.jobs.board import Board, Ears
+from kirigami_studio.gui.jobs.queue import JobCallbacks, JobQueue
 from kirigami_studio.pipeline.rank import rank_key
 from kirigami_studio.project.document import Document
 
@@ -26,10 +26,10 @@ class Showing(QObject):
     settled = Signal()  #: the document's choice is on the stage
     failed = Signal(str, str)  #: sentence, trace
 
-    def __init__(self, board: Board, shelf: Shelf, parent: QObject) -> None:
+    def __init__(self, queue: JobQueue, cache: DesignCache, parent: QObject) -> None:
         super().__init__(parent)
-        self._board = board
-        self._shelf = shelf
+        self._queue = queue
+        self._cache = cache
         self._document = Document()
         self._stage: Entry | None = None
         self._preview: Candidate | None = None
@@ -50,14 +50,14 @@ class Showing(QObject):
 
     def begin_run(self, kept: tuple[Candidate, ...] = (), stays: bool = False) -> None:
         """Make room for new designs beside those that are kept; ``stays`` leaves the chosen one on the stage."""
-        self._board.abandon(self._decoding)  # the document is shown again when the run is over
+        self._queue.abandon(self._decoding)  # the document is shown again when the run is over
         self._preview, self._best_of_run = self._document.candidate if stays else None, None
-        self.gallery_reset.emit(tuple(replace(self._shelf.entry(candidate), kept=True) for candidate in kept))
+        self.gallery_reset.emit(tuple(replace(self._cache.entry(candidate), kept=True) for candidate in kept))
 
     def look_at(self, candidate: Candidate) -> None:
         """Put a candidate of the run on the stage."""
         self._preview = candidate
-        self._put_on_stage(self._shelf.entry(candidate))
+        self._put_on_stage(self._cache.entry(candidate))
 
     def take_found(self, entry: Entry) -> None:
         """A new or improved candidate; the best one takes the stage unless the user looks at another."""
@@ -77,10 +77,10 @@ class Showing(QObject):
     def show(self, document: Document) -> None:
         """Show the candidates of a document and the chosen one; those not seen before are decoded first."""
         self._document = document
-        missing = self._shelf.missing(document.candidates)
+        missing = self._cache.missing(document.candidates)
         if missing:
-            ears = Ears(self._decoded, self._ready, on_failed=self.failed.emit)
-            self._decoding = self._board.start(tr("decoding the designs"), partial(steps.decoding, missing), ears)
+            callbacks = JobCallbacks(self._decoded, self._ready, on_failed=self.failed.emit)
+            self._decoding = self._queue.start(tr("decoding the designs"), partial(steps.decoding, missing), callbacks)
         else:
             self._ready()
 
@@ -90,15 +90,15 @@ class Showing(QObject):
         candidate = document.candidate
         if self._preview is not None:  # chosen while a run goes on: it stays chosen when the run is done
             self._preview = candidate
-        self._put_on_stage(None if candidate is None else self._shelf.entry(candidate))
+        self._put_on_stage(None if candidate is None else self._cache.entry(candidate))
         self.settled.emit()
 
     def _decoded(self, report: object) -> None:
         if isinstance(report, steps.Decoded):
-            self._shelf.put(report.candidate, report.deployment)
+            self._cache.put(report.candidate, report.deployment)
 
     def _ready(self) -> None:
-        self.gallery_reset.emit(tuple(self._shelf.entry(candidate) for candidate in self._document.candidates))
+        self.gallery_reset.emit(tuple(self._cache.entry(candidate) for candidate in self._document.candidates))
         self.show_chosen(self._document)
 
     def _put_on_stage(self, entry: Entry | None) -> None:

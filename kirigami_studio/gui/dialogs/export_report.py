@@ -58,7 +58,7 @@ class ExportReport(QDialog):
         self.findings.setIconSize(QSize(18, 18))
         self.findings.setSelectionMode(QListWidget.SelectionMode.NoSelection)
         self.findings.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
-        self.facts = {name: QLabel() for name in told_facts(verifications[0])}
+        self.facts = {name: QLabel() for name in format_facts(verifications[0])}
         self.folder = QPushButton(tr("Show in &folder"))
         self.copy = QPushButton(tr("&Copy"))
         self.shut = QPushButton(tr("Cl&ose"))
@@ -80,10 +80,10 @@ class ExportReport(QDialog):
     def _show(self) -> None:
         self.verdict.setText(verdict(self.shown))
         self.path.setText(str(self.shown.path))
-        for name, text in told_facts(self.shown).items():
+        for name, text in format_facts(self.shown).items():
             self.facts[name].setText(text)
         self.findings.clear()
-        for word, icon, text in told_findings(self.shown):
+        for word, icon, text in format_findings(self.shown):
             item = QListWidgetItem(f"{word}: {text}")
             item.setData(Qt.ItemDataRole.UserRole, icon)
             self.findings.addItem(item)
@@ -168,7 +168,7 @@ def verdict(verification: Verification) -> str:
     return tr("Verified: what is in the file is what was planned.")
 
 
-def told_facts(verification: Verification) -> dict[str, str]:
+def format_facts(verification: Verification) -> dict[str, str]:
     """Size, pieces, length and time by what they are called."""
     width, height = verification.size_mm
     pieces = UNKNOWN if verification.pieces is None else str(verification.pieces)
@@ -180,7 +180,7 @@ def told_facts(verification: Verification) -> dict[str, str]:
     }
 
 
-def told_findings(verification: Verification) -> list[tuple[str, str, str]]:
+def format_findings(verification: Verification) -> list[tuple[str, str, str]]:
     """Word, icon and sentence of each line, the bad ones first."""
     lines = [_told(finding) for finding in verification.findings]
     lines += [(tr("Note"), "warning", text) for text in verification.warnings]
@@ -195,6 +195,6 @@ def _told(finding: Finding) -> tuple[str, str, str]:
 
 def as_text(verification: Verification) -> str:
     """The whole report, to be pasted."""
-    facts = [f"{name}: {text}" for name, text in told_facts(verification).items()]
-    lines = [f"{word}: {text}" for word, _, text in told_findings(verification)]
+    facts = [f"{name}: {text}" for name, text in format_facts(verification).items()]
+    lines = [f"{word}: {text}" for word, _, text in format_findings(verification)]
     return "\n".join([str(verification.path), verdict(verification), *facts, *lines])

@@ -7,11 +7,11 @@ from pathlib import Path
 
 from PySide6.QtCore import QObject, Signal
 
-from kirigami_studio.gui.cuts.stocking import Stocking
+from kirigami_studio.gui.cuts.stocking import MaterialStore
 from kirigami_studio.gui.files.recent_files import RecentFiles
 from kirigami_studio.gui.files.recovering import Recovering, Work
 from kirigami_studio.gui.files.storing import Storing
-from kirigami_studio.gui.jobs.board import Board
+from kirigami_studio.gui.jobs.queue import JobQueue
 from kirigami_studio.gui.targets.targeting import Targeting
 from kirigami_studio.project.document import Document
 
@@ -26,13 +26,13 @@ class Filing(QObject):
     status = Signal(str)
     failed = Signal(str, str)  #: sentence, trace
 
-    def __init__(self, board: Board, work: Callable[[], Work], targeting: Targeting, parent: QObject) -> None:
+    def __init__(self, queue: JobQueue, work: Callable[[], Work], targeting: Targeting, parent: QObject) -> None:
         super().__init__(parent)
         tracing = targeting.tracing
-        self.storing = Storing(board, tracing.picture_of, self)
-        self.recovering = Recovering(board, work, self.storing.place, self)
-        self.recent = RecentFiles(board, self)
-        self.stocking = Stocking(self)
+        self.storing = Storing(queue, tracing.picture_of, self)
+        self.recovering = Recovering(queue, work, self.storing.place, self)
+        self.recent = RecentFiles(queue, self)
+        self.stocking = MaterialStore(self)
         for message in (self.storing.message, self.recovering.message, self.recent.message, self.stocking.message):
             message.connect(self.message)
         for status in (self.storing.status, self.recovering.status, self.stocking.status):

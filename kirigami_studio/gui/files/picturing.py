@@ -13,9 +13,9 @@ from PySide6.QtWidgets import QGraphicsView, QWidget
 
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.jobs import picture_steps
-from kirigami_studio.gui.jobs.board import Board, Ears
 from kirigami_studio.gui.jobs.picture_steps import Recording
-from kirigami_studio.gui.jobs.steps import Order
+from kirigami_studio.gui.jobs.queue import JobCallbacks, JobQueue
+from kirigami_studio.gui.jobs.steps import CutRequest
 from kirigami_studio.gui.messages import Message, Tone
 from kirigami_studio.gui.views.canvas import Canvas
 from kirigami_studio.gui.views.gallery_view import GalleryView
@@ -38,12 +38,12 @@ class Picturing(QObject):
     def __init__(
         self,
         window: QWidget,
-        board: Board,
-        order: Callable[[], Order | None],
+        queue: JobQueue,
+        request: Callable[[], CutRequest | None],
     ) -> None:
         super().__init__(window)
-        self._window, self._board = window, board
-        self._order = order
+        self._window, self._queue = window, queue
+        self._request = request
         self.scale = 2
         self.overlays = True
 
@@ -70,23 +70,23 @@ class Picturing(QObject):
             steps = partial(picture_steps.writing_svg, self.svg(view), path)
         else:
             steps = partial(picture_steps.writing_png, self.record(view), self.scale, path)
-        ears = Ears(self._told_written, on_failed=self._tell_failure)
-        self._board.start(tr("writing {name}", name=path.name), steps, ears)
+        callbacks = JobCallbacks(self._told_written, on_failed=self._tell_failure)
+        self._queue.start(tr("writing {name}", name=path.name), steps, callbacks)
 
     def copy(self, view: QWidget) -> None:
         """Put a picture of a view on the clipboard."""
         steps = partial(picture_steps.drawing, self.record(view), self.scale)
-        self._board.start(tr("copying a picture"), steps, Ears(self._take_image, on_failed=self._tell_failure))
+        self._queue.start(tr("copying a picture"), steps, JobCallbacks(self._take_image, on_failed=self._tell_failure))
 
     def copy_cuts(self) -> None:
         """Put the cut plan on the clipboard as SVG in mm, for a drawing program or a laser program."""
-        order = self._order()
-        if order is None:
+        request = self._request()
+        if request is None:
             self.message.emit(Message(tr("There is no design to copy yet; generate one first."), Tone.HINT))
             return
         self.status.emit(tr("Planning the cuts to copy …"))
-        ears = Ears(self._take_cuts, on_failed=self._tell_failure)
-        self._board.start(tr("copying the cuts"), partial(picture_steps.drawing_cuts, order), ears)
+        callbacks = JobCallbacks(self._take_cuts, on_failed=self._tell_failure)
+        self._queue.start(tr("copying the cuts"), partial(picture_steps.drawing_cuts, request), callbacks)
 
     # drawing -------------------------------------------------------------------------------------------------------
 
@@ -132,8 +132,8 @@ class Picturing(QObject):
 
     def _facts(self) -> Mapping[str, str]:
         """Where the design on the stage comes from."""
-        order = self._order()
-        return {} if order is None else order.facts
+        request = self._request()
+        return {} if request is None else request.facts
 
     # news ----------------------------------------------------------------------------------------------------------
 

@@ -14,7 +14,7 @@ from PySide6.QtCore import QLockFile, QObject, Signal
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.files.pasting import PASTED
-from kirigami_studio.gui.jobs.board import Board, Ears
+from kirigami_studio.gui.jobs.queue import JobCallbacks, JobQueue
 from kirigami_studio.gui.jobs.worker import Cancel
 from kirigami_studio.gui.messages import Message, Tone
 from kirigami_studio.project import recent
@@ -34,9 +34,9 @@ class RecentFiles(QObject):
     missing = Signal(frozenset)  #: paths, str, that are not there any more
     message = Signal(object)  #: Message
 
-    def __init__(self, board: Board, parent: QObject) -> None:
+    def __init__(self, queue: JobQueue, parent: QObject) -> None:
         super().__init__(parent)
-        self._board = board
+        self._queue = queue
         self._path: Path | None = None
         self.present = Recent()
 
@@ -69,8 +69,8 @@ class RecentFiles(QObject):
         self._read_again()
         paths = (*self.present.projects, *self.present.targets)
         if paths:
-            ears = Ears(self.missing.emit)
-            self._board.start(tr("looking for recent files"), partial(_looking, paths), ears)
+            callbacks = JobCallbacks(self.missing.emit)
+            self._queue.start(tr("looking for recent files"), partial(_looking, paths), callbacks)
 
     def _change(self, change: Callable[[Recent], Recent]) -> None:
         if self._path is None:

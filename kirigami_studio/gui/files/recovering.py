@@ -13,8 +13,8 @@ from PySide6.QtCore import QDateTime, QDeadlineTimer, QLocale, QLockFile, QObjec
 
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.jobs import recovery_steps
-from kirigami_studio.gui.jobs.board import Board, Ears
 from kirigami_studio.gui.jobs.project_steps import Left, Project
+from kirigami_studio.gui.jobs.queue import JobCallbacks, JobQueue
 from kirigami_studio.gui.jobs.recovery_steps import Leftover
 from kirigami_studio.gui.jobs.steps import Picture
 from kirigami_studio.gui.messages import Message, Tone
@@ -57,9 +57,9 @@ class Recovering(QObject):
     failed = Signal(str, str)  #: sentence, trace
     status = Signal(str)
 
-    def __init__(self, board: Board, work: Callable[[], Work], place: Callable[[], Path], parent: QObject) -> None:
+    def __init__(self, queue: JobQueue, work: Callable[[], Work], place: Callable[[], Path], parent: QObject) -> None:
         super().__init__(parent)
-        self._board = board
+        self._queue = queue
         self._work, self._place = work, place
         self.quiet_ms, self.longest_ms = QUIET_MS, LONGEST_MS
         self._folder: Path | None = None
@@ -127,9 +127,11 @@ class Recovering(QObject):
             return
         path = "" if work.path is None else str(work.path.absolute())
         note = Note(_name_of(work), path, recovery.now(), os.getpid())
-        ears = Ears(self._take_kept, self._look_again, on_failed=lambda sentence, _: self._not_kept(sentence))
+        callbacks = JobCallbacks(
+            self._take_kept, self._look_again, on_failed=lambda sentence, _: self._not_kept(sentence)
+        )
         steps = partial(recovery_steps.keeping, work.document, work.picture, note, self._own)
-        self._job = self._board.start(tr("keeping the work for a recovery"), steps, ears)
+        self._job = self._queue.start(tr("keeping the work for a recovery"), steps, callbacks)
 
     def _locked(self, own: Path) -> bool:
         if self._lock is None:
@@ -168,9 +170,9 @@ class Recovering(QObject):
         if self._own is None:
             return
         if self._job is not None:  # it may be writing at this moment
-            self._board.abandon(self._job)
+            self._queue.abandon(self._job)
             self._job = None
-            self._board.start(tr("tidying up"), partial(recovery_steps.removing, self._own), Ears())
+            self._queue.start(tr("tidying up"), partial(recovery_steps.removing, self._own), JobCallbacks())
         _remove(self._own)
         self._drop_pending()
 
@@ -192,9 +194,9 @@ class Recovering(QObject):
                     self._offered[file] = lock
                     abandoned.append(file)
         if abandoned:
-            ears = Ears(self._offer, on_failed=self.failed.emit)
+            callbacks = JobCallbacks(self._offer, on_failed=self.failed.emit)
             steps = partial(recovery_steps.looking, tuple(abandoned[::-1]))
-            self._board.start(tr("looking for unsaved work"), steps, ears)
+            self._queue.start(tr("looking for unsaved work"), steps, callbacks)
 
     def _offer(self, leftover: object) -> None:
         if not isinstance(leftover, Leftover):
@@ -208,7 +210,7 @@ class Recovering(QObject):
         sentence = tr(
             "Kirigami Studio ended unexpectedly. Recover {name}, last changed {when}?",
             name=leftover.note.name,
-            when=told_time(leftover.note),
+            when=format_time(leftover.note),
         )
         recover = (tr("Recover"), lambda: self.recover_wanted.emit(leftover))
         details = leftover.note.path or tr("It was never saved.")
@@ -217,9 +219,11 @@ class Recovering(QObject):
     def recover(self, leftover: Leftover) -> None:
         """Open the kept work; its file goes once this session keeps the work itself."""
         self.status.emit(tr("Recovering {name} …", name=_called(leftover)))
-        ears = Ears(partial(self._take_recovered, leftover), on_failed=partial(self._not_recovered, leftover))
+        callbacks = JobCallbacks(
+            partial(self._take_recovered, leftover), on_failed=partial(self._not_recovered, leftover)
+        )
         steps = partial(recovery_steps.recovering, leftover, self._place())
-        self._board.start(tr("recovering {called}", called=_called(leftover)), steps, ears)
+        self._queue.start(tr("recovering {called}", called=_called(leftover)), steps, callbacks)
 
     def discard(self, leftover: Leftover) -> None:
         """Delete the kept work."""
@@ -246,7 +250,7 @@ class Recovering(QObject):
         self.recovered.emit(document, Path(path) if path else None)
         self.status.emit(tr("Recovered {name}; it is not saved yet.", name=_called(leftover)))
         if self._job is not None:  # what it keeps was given up, and says nothing about what was recovered
-            self._board.abandon(self._job)
+            self._queue.abandon(self._job)
             self._job = None
         self._keep()
 
@@ -262,7 +266,7 @@ class Recovering(QObject):
             self.leave(pending)
 
 
-def told_time(note: Note) -> str:
+def format_time(note: Note) -> str:
     """When the work was changed, as a person says it: the time alone if that was today."""
     when = QDateTime.fromSecsSinceEpoch(int(note.when.timestamp()))
     locale = QLocale()

@@ -12,8 +12,8 @@ from PySide6.QtCore import QObject, Signal
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.files.pasting import PASTED
 from kirigami_studio.gui.jobs import project_steps
-from kirigami_studio.gui.jobs.board import Board, Ears
 from kirigami_studio.gui.jobs.project_steps import Left, Project
+from kirigami_studio.gui.jobs.queue import JobCallbacks, JobQueue
 from kirigami_studio.gui.jobs.steps import Picture
 from kirigami_studio.gui.messages import Message, Tone
 from kirigami_studio.outlines.outline import Outline
@@ -30,9 +30,11 @@ class Storing(QObject):
     failed = Signal(str, str)  #: sentence, trace
     status = Signal(str)
 
-    def __init__(self, board: Board, picture_of: Callable[[Outline | None], Picture | None], parent: QObject) -> None:
+    def __init__(
+        self, queue: JobQueue, picture_of: Callable[[Outline | None], Picture | None], parent: QObject
+    ) -> None:
         super().__init__(parent)
-        self._board = board
+        self._queue = queue
         self._picture_of = picture_of
         self._folder: tempfile.TemporaryDirectory[str] | None = None
         self._count = 0
@@ -41,16 +43,16 @@ class Storing(QObject):
     def save(self, document: Document, path: Path) -> None:
         """Write a project file."""
         self.status.emit(tr("Saving {name} …", name=path.name))
-        ears = Ears(partial(self._saved, document, self._project), on_failed=self.failed.emit)
+        callbacks = JobCallbacks(partial(self._saved, document, self._project), on_failed=self.failed.emit)
         steps = partial(project_steps.saving, document, self._picture_of(document.target), path)
-        self._board.start(tr("saving {name}", name=path.name), steps, ears)
+        self._queue.start(tr("saving {name}", name=path.name), steps, callbacks)
 
     def open(self, path: Path) -> None:
         """Read a project file."""
         self.status.emit(tr("Opening {name} …", name=path.name))
-        ears = Ears(partial(self._opened, path), on_failed=self.failed.emit)
-        self._board.start(
-            tr("opening {name}", name=path.name), partial(project_steps.loading, path, self.place()), ears
+        callbacks = JobCallbacks(partial(self._opened, path), on_failed=self.failed.emit)
+        self._queue.start(
+            tr("opening {name}", name=path.name), partial(project_steps.loading, path, self.place()), callbacks
         )
 
     def begin(self) -> None:

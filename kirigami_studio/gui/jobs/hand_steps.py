@@ -10,7 +10,7 @@ import numpy as np
 from kirigami_studio.evaluate.candidate import Candidate, Origin
 from kirigami_studio.foundation.errors import Cancelled, KirigamiError
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui.jobs.steps import Decoded, finished_field, trimming
+from kirigami_studio.gui.jobs.steps import Decoded, trimming
 from kirigami_studio.gui.jobs.worker import Cancel
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
@@ -47,7 +47,7 @@ def scoring(candidate: Candidate, field: RatioField, target: Outline, cancel: Ca
     from kirigami_studio.pipeline.threads import one_blas_thread
 
     deployment = deploy(field)
-    pose = candidate.score.transform if candidate.trim is None else candidate.trim.pose
+    pose = candidate.final_pose
     with one_blas_thread():
         score = evaluate_near(deployment, target, candidate.score.phi, pose)
     changed = replace(candidate, field=field, score=score, polished=False, trim=None, origin=Origin.EDITED)
@@ -76,7 +76,7 @@ def refitting(
     for void in locked:
         table[void] = True
     held = table if table.any() else None
-    start = RatioField(np.where(table, finished_field(candidate).ratio, candidate.field.ratio))
+    start = RatioField(np.where(table, candidate.final_field.ratio, candidate.field.ratio))
     score, stopped = candidate.score, Cancelled(tr("Fitting was stopped; nothing was changed."))
     with one_blas_thread():
         preference = PREFERENCES[prefer]
@@ -85,8 +85,8 @@ def refitting(
             raise stopped
         deployment = deploy(fit.field)
         found = evaluate_near(deployment, target, score.phi, fit.pose)
-    drawn = candidate.drawn or candidate.field
-    fitted = replace(candidate, field=fit.field, score=found, polished=True, drawn=drawn, trim=None)
+    drawn = candidate.sampled_field or candidate.field
+    fitted = replace(candidate, field=fit.field, score=found, polished=True, sampled_field=drawn, trim=None)
     better = improves(fitted, candidate, prefer)
     made, refused = Decoded(fitted, deployment), ""
     if candidate.trim is not None:

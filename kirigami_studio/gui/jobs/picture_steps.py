@@ -16,7 +16,7 @@ from pathlib import Path
 from PySide6.QtCore import QSize
 from PySide6.QtGui import QColor, QImage, QPainter, QPicture
 
-from kirigami_studio.gui.jobs.steps import Order, export_job, planned
+from kirigami_studio.gui.jobs.steps import CutRequest, export_job, planned
 from kirigami_studio.gui.jobs.worker import Cancel
 
 #: Pixels that are painted at a time; each band costs the whole recording again, less what lies outside it.
@@ -91,8 +91,8 @@ def writing_svg(content: bytes, path: Path, cancel: Cancel) -> Iterator[Path]:
     yield path
 
 
-def drawing_cuts(order: Order, cancel: Cancel) -> Iterator[bytes]:
+def drawing_cuts(request: CutRequest, cancel: Cancel) -> Iterator[bytes]:
     """Plan the cuts and yield them as SVG in mm, the very bytes of an exported file."""
     from kirigami_studio.export.svg import cut_svg_bytes
 
-    yield cut_svg_bytes(export_job(order, planned(order)))
+    yield cut_svg_bytes(export_job(request, planned(request)))

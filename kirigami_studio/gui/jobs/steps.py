@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.trimming import KEEP, LARGEST_KEEP
+from kirigami_studio.foundation.arrays import BoolArray
 from kirigami_studio.foundation.errors import Cancelled, ExportError, UsageError
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.file_kinds import kind_of
@@ -21,8 +22,6 @@ from kirigami_studio.gui.jobs import importing
 from kirigami_studio.gui.jobs.picture_reading import reduced_picture
 from kirigami_studio.gui.jobs.worker import Cancel
 from kirigami_studio.lattice.deployment import Deployment, deploy
-from kirigami_studio.lattice.ratio_field import RatioField
-from kirigami_studio.lattice.topology import BoolArray
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.pipeline.events import CandidateFound, CandidateImproved, Event
 from kirigami_studio.pipeline.request import Request
@@ -89,7 +88,7 @@ class Exported:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Order:
+class CutRequest:
     """The design that is to be cut, and how.
 
     Attributes
@@ -148,18 +147,13 @@ def generating(request: Request, cancel: Cancel) -> Iterator[Event | ModelFound 
     for event in run(request, cancel):
         yield event
         if isinstance(event, CandidateFound | CandidateImproved):
-            yield Decoded(event.candidate, deploy(finished_field(event.candidate)))
+            yield Decoded(event.candidate, deploy(event.candidate.final_field))
 
 
 def decoding(candidates: tuple[Candidate, ...], cancel: Cancel) -> Iterator[Decoded]:
     """Decode the candidates of an opened project."""
     for candidate in candidates:
-        yield Decoded(candidate, deploy(finished_field(candidate)))
-
-
-def finished_field(candidate: Candidate) -> RatioField:
-    """The ratios that are shown and cut: those that were fitted for trimming, if the candidate is trimmed."""
-    return candidate.field if candidate.trim is None else candidate.trim.field
+        yield Decoded(candidate, deploy(candidate.final_field))
 
 
 def comparing(candidate: Candidate, target: Outline, cancel: Cancel) -> Iterator[Decoded]:
@@ -167,12 +161,14 @@ def comparing(candidate: Candidate, target: Outline, cancel: Cancel) -> Iterator
     from kirigami_studio.evaluate.score import evaluate
     from kirigami_studio.pipeline.threads import one_blas_thread
 
-    if candidate.drawn is None:
+    if candidate.sampled_field is None:
         return
-    deployment = deploy(candidate.drawn)
+    deployment = deploy(candidate.sampled_field)
     with one_blas_thread():
         score = evaluate(deployment, target, candidate.score.phi)
-    drawn = replace(candidate, field=candidate.drawn, score=score, polished=False, drawn=None, trim=None)
+    drawn = replace(
+        candidate, field=candidate.sampled_field, score=score, polished=False, sampled_field=None, trim=None
+    )
     yield Decoded(drawn, deployment)
 
 
@@ -240,22 +236,22 @@ def tracing(picture: Picture, cancel: Cancel) -> Iterator[Traced]:
     yield trace_image(picture.path, picture.threshold)
 
 
-def planning(order: Order, cancel: Cancel) -> Iterator[Planned]:
+def planning(request: CutRequest, cancel: Cancel) -> Iterator[Planned]:
     """Plan the cuts and check them."""
-    yield planned(order)
+    yield planned(request)
 
 
-def planned(order: Order) -> Planned:
+def planned(request: CutRequest) -> Planned:
     """Plan the cuts and check them, in one go; a trimmed design gets its trimmed outline."""
     from kirigami_studio.fabricate.checks import check_plan
-    from kirigami_studio.project.cutting import plan_of, target_angle
+    from kirigami_studio.project.cutting import plan_of
 
-    trim = order.candidate.trim
-    plan = plan_of(order.candidate, order.settings, order.deployment)
-    report = check_plan(plan, phi=target_angle(order.candidate))
+    trim = request.candidate.trim
+    plan = plan_of(request.candidate, request.settings, request.deployment)
+    report = check_plan(plan, phi=request.candidate.final_phi)
     _ = plan.times  # worked out once and kept: here, so that the window need not
     removed = 0.0 if trim is None else trim.removed_share
-    return Planned(plan, report, removed, _slots_length(plan, order.settings.profile))
+    return Planned(plan, report, removed, _slots_length(plan, request.settings.profile))
 
 
 def _slots_length(plan: CutPlan, profile: str) -> float | None:
@@ -272,18 +268,18 @@ def _slots_length(plan: CutPlan, profile: str) -> float | None:
         return None
 
 
-def exporting(order: Order, path: Path, cancel: Cancel) -> Iterator[Exported]:
+def exporting(request: CutRequest, path: Path, cancel: Cancel) -> Iterator[Exported]:
     """Write one file of the kind that its extension names; cut files are planned, checked and read back."""
     importing.import_exporters()
     from kirigami_studio.export.registry import export, find_exporter
 
     find_exporter(path)  # an unknown kind is refused before anything is planned
-    made = planned(order) if kind_of(path.suffix).cuts else None
-    written = export(export_job(order, made), path)
-    yield Exported(written, made, () if made is None else _verified(made.plan, path, order.settings))
+    made = planned(request) if kind_of(path.suffix).cuts else None
+    written = export(export_job(request, made), path)
+    yield Exported(written, made, () if made is None else _verified(made.plan, path, request.settings))
 
 
-def exporting_all(order: Order, folder: Path, name: str, cancel: Cancel) -> Iterator[Exported]:
+def exporting_all(request: CutRequest, folder: Path, name: str, cancel: Cancel) -> Iterator[Exported]:
     """Write everything that there is of a design into a folder; the cut files are read back."""
     importing.import_exporters()
     from kirigami_studio.export.export_set import export_all
@@ -292,18 +288,20 @@ def exporting_all(order: Order, folder: Path, name: str, cancel: Cancel) -> Iter
         if cancel():
             raise Cancelled(tr("Writing into {folder} was stopped; what was written before stays.", folder=folder))
 
-    made = planned(order)
-    found = export_all(export_job(order, made), folder, name, tell=stop_if_asked)
+    made = planned(request)
+    found = export_all(export_job(request, made), folder, name, tell=stop_if_asked)
     yield Exported(folder, made, found.verifications)
 
 
-def export_job(order: Order, made: Planned | None) -> ExportJob:
+def export_job(request: CutRequest, made: Planned | None) -> ExportJob:
     """What the exporters get about a design."""
     from kirigami_studio.export.exporter import ExportJob
 
-    target = None if order.target is None else order.target.points
-    job = ExportJob.of(order.candidate, target, None if made is None else made.plan)
-    return replace(job, profile=order.settings.profile, dxf_version=order.settings.dxf_version, provenance=order.facts)
+    target = None if request.target is None else request.target.points
+    job = ExportJob.of(request.candidate, target, None if made is None else made.plan)
+    return replace(
+        job, profile=request.settings.profile, dxf_version=request.settings.dxf_version, provenance=request.facts
+    )
 
 
 def exporting_coupon(

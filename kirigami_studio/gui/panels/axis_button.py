@@ -9,16 +9,16 @@ from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.look import icons
 from kirigami_studio.gui.look.theme import LIGHT, Palette
 from kirigami_studio.gui.panels.card import TOOL_ICON
-from kirigami_studio.gui.sketching.easel import Easel
+from kirigami_studio.gui.sketching.sketch_context import SketchContext
 from kirigami_studio.outlines.mirroring import Axis
 
 
 class AxisButton(QToolButton):
     """Shows the axes in use; its menu and Shift+M change them."""
 
-    def __init__(self, easel: Easel, parent: QWidget | None = None) -> None:
+    def __init__(self, context: SketchContext, parent: QWidget | None = None) -> None:
         super().__init__(parent)
-        self._easel = easel
+        self._context = context
         self._palette: Palette = LIGHT
         self.setObjectName("axis")
         self.setIconSize(TOOL_ICON)
@@ -46,11 +46,11 @@ class AxisButton(QToolButton):
             group.addAction(choice)
             self.choices[axis] = choice
         self.setMenu(menu)
-        self.choices[easel.mirror.axis].setChecked(True)
+        self.choices[context.mirror.axis].setChecked(True)
 
     def set_axis(self, axis: Axis) -> None:
         """Mirror about these axes from now on."""
-        self._easel.set_axis(axis)
+        self._context.set_axis(axis)
         self.choices[axis].setChecked(True)
         self.setChecked(axis is not Axis.NONE)
         self._dress()
@@ -58,7 +58,7 @@ class AxisButton(QToolButton):
     def cycle(self) -> None:
         """Go on to the next choice."""
         axes = list(Axis)
-        self.set_axis(axes[(axes.index(self._easel.mirror.axis) + 1) % len(axes)])
+        self.set_axis(axes[(axes.index(self._context.mirror.axis) + 1) % len(axes)])
 
     def set_palette(self, palette: Palette) -> None:
         """Draw in other colours."""
@@ -66,7 +66,7 @@ class AxisButton(QToolButton):
         self._dress()
 
     def _dress(self) -> None:
-        axis = self._easel.mirror.axis
+        axis = self._context.mirror.axis
         self.setIcon(icons.icon(f"axis-{axis.value}", self._palette))
         for choice, action in self.choices.items():
             action.setIcon(icons.icon(f"axis-{choice.value}", self._palette))

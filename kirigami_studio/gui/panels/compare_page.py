@@ -15,7 +15,7 @@ from kirigami_studio.gui.look import icons
 from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.panels.card import FittingLabel, tool_button
 from kirigami_studio.gui.panels.deployment_bar import DeploymentBar
-from kirigami_studio.gui.scene.frame import Bounds
+from kirigami_studio.gui.scene.view_transform import Bounds
 from kirigami_studio.gui.views.layout_view import LayoutView, Overlay
 from kirigami_studio.outlines.outline import Outline
 

@@ -307,8 +307,8 @@ class FabricationPanel(Card):
         }
         for key, text in texts.items():
             self.numbers[key].setText(text)
-        self.numbers["time"].setToolTip(told_times(plan.times))
-        self.numbers["length"].setToolTip(told_slots(planned))
+        self.numbers["time"].setToolTip(format_times(plan.times))
+        self.numbers["length"].setToolTip(format_slots(planned))
         self._sum_up(texts, planned.removed_share)
         found = [*(problem.text for problem in report.problems), *plan.notes]
         self._warn("\n".join(found) if found else tr("The cut check found no problem."), calm=not found)
@@ -372,7 +372,7 @@ class FabricationPanel(Card):
         self._dress_fold()
 
 
-def told_slots(planned: Planned) -> str:
+def format_slots(planned: Planned) -> str:
     """What slots cost, where the machine profile asks for them."""
     if planned.slots_mm is None:
         return ""
@@ -384,7 +384,7 @@ def told_slots(planned: Planned) -> str:
     )
 
 
-def told_times(times: CutTimes) -> str:
+def format_times(times: CutTimes) -> str:
     """What the time consists of."""
     parts = (("cutting", times.cut), ("travel", times.travel), ("switching", times.extra))
     split = ", ".join(f"{readable_time(seconds)} {word}" for word, seconds in parts)

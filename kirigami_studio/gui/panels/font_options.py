@@ -10,24 +10,24 @@ from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.look import icons
 from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.panels.card import tool_button
-from kirigami_studio.gui.sketching.easel import Easel
+from kirigami_studio.gui.sketching.sketch_context import SketchContext
 
 
 class FontOptions(QWidget):
     """Families of this computer that can be scaled; the list is filled when it is shown for the first time."""
 
-    def __init__(self, easel: Easel) -> None:
+    def __init__(self, context: SketchContext) -> None:
         super().__init__()
-        self._easel = easel
+        self._context = context
         self._row = QHBoxLayout(self)
         self._row.setContentsMargins(0, 0, 0, 0)
         self._row.setSpacing(2)
         self.family: QFontComboBox | None = None
         self.bold = tool_button("fontBold", tr("Bold letters. Sheets show thick strokes better than thin ones."), True)
         self.italic = tool_button("fontItalic", tr("Italic letters."), True)
-        self.bold.setChecked(easel.bold)
-        self.bold.toggled.connect(lambda on: setattr(easel, "bold", on))
-        self.italic.toggled.connect(lambda on: setattr(easel, "italic", on))
+        self.bold.setChecked(context.bold)
+        self.bold.toggled.connect(lambda on: setattr(context, "bold", on))
+        self.italic.toggled.connect(lambda on: setattr(context, "italic", on))
         self._row.addWidget(self.bold)
         self._row.addWidget(self.italic)
 
@@ -41,8 +41,8 @@ class FontOptions(QWidget):
         self.family.setToolTip(tr("Font of the text. Its letters are moved together until they hang in one piece."))
         self.family.setMaximumWidth(190)
         with QSignalBlocker(self.family):
-            self.family.setCurrentFont(QFont(self._easel.family) if self._easel.family else self.font())
-        self.family.currentFontChanged.connect(lambda font: setattr(self._easel, "family", font.family()))
+            self.family.setCurrentFont(QFont(self._context.family) if self._context.family else self.font())
+        self.family.currentFontChanged.connect(lambda font: setattr(self._context, "family", font.family()))
         self._row.insertWidget(0, self.family)
 
     def set_palette(self, palette: Palette) -> None:

@@ -19,7 +19,7 @@ from PySide6.QtWidgets import (
 )
 
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui.designs.selecting import Order, Selection
+from kirigami_studio.gui.designs.selecting import Selection, SortOrder
 from kirigami_studio.gui.look import icons
 from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.panels.card import tool_button
@@ -190,11 +190,11 @@ class GalleryBar(QWidget):
             button.setIcon(icons.icon(icon, palette))
 
     def _choose_order(self) -> None:
-        order: Order = self.order.currentData()
-        if order is Order.UNLIKE and self._chosen is None:
-            order = Order.RANK
+        order: SortOrder = self.order.currentData()
+        if order is SortOrder.UNLIKE and self._chosen is None:
+            order = SortOrder.RANK
             self.order.setCurrentIndex(0)
-        unlike = self._chosen if order is Order.UNLIKE else None
+        unlike = self._chosen if order is SortOrder.UNLIKE else None
         last = self.order.count() - 1
         text = tr("Unlike the chosen") if unlike is None else tr("Unlike design {number}", number=unlike[1])
         self.order.setItemText(last, text)
@@ -223,20 +223,20 @@ class GalleryBar(QWidget):
         self.alike_pane.setVisible(self.alike.isChecked())
 
 
-def _orders() -> tuple[tuple[Order, str, str], ...]:
+def _orders() -> tuple[tuple[SortOrder, str, str], ...]:
     return (
-        (Order.RANK, tr("By rank"), tr("Feasible designs first, then the highest sIoU.")),
-        (Order.SIOU, tr("By sIoU"), tr("The closest match first, feasible or not.")),
-        (Order.GAIN, tr("By gain"), tr("The largest gain over the uniform sheet first.")),
-        (Order.TV, tr("By evenness"), tr("The lowest total variation (TV) of the ratios first.")),
+        (SortOrder.RANK, tr("By rank"), tr("Feasible designs first, then the highest sIoU.")),
+        (SortOrder.SIOU, tr("By sIoU"), tr("The closest match first, feasible or not.")),
+        (SortOrder.GAIN, tr("By gain"), tr("The largest gain over the uniform sheet first.")),
+        (SortOrder.TV, tr("By evenness"), tr("The lowest total variation (TV) of the ratios first.")),
         (
-            Order.PANEL,
+            SortOrder.PANEL,
             tr("By panel size"),
             tr("The sheet whose smallest panel edge or neck is largest first, in mm at the sheet's width."),
         ),
-        (Order.NEWEST, tr("By newest"), tr("Designs that the last run has added first; they carry a dot.")),
+        (SortOrder.NEWEST, tr("By newest"), tr("Designs that the last run has added first; they carry a dot.")),
         (
-            Order.UNLIKE,
+            SortOrder.UNLIKE,
             tr("Unlike the chosen"),
             tr("The design that differs most from the one chosen now first; choose this again to start from another."),
         ),

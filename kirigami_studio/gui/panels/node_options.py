@@ -8,14 +8,14 @@ from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.look import icons
 from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.panels.card import tool_button
-from kirigami_studio.gui.sketching.easel import Easel
+from kirigami_studio.gui.sketching.sketch_context import SketchContext
 from kirigami_studio.outlines.nodes import Kind
 
 
 class NodeOptions(QWidget):
     """One button for each kind; those of the selected points are down."""
 
-    def __init__(self, easel: Easel) -> None:
+    def __init__(self, context: SketchContext) -> None:
         super().__init__()
         row = QHBoxLayout(self)
         row.setContentsMargins(0, 0, 0, 0)
@@ -31,10 +31,10 @@ class NodeOptions(QWidget):
             (Kind.AUTO, tr("Automatic (Shift+A). The neighbours of the selected points set their handles.")),
         ):
             button = tool_button(f"node{kind.value.capitalize()}", tip, checkable=True)
-            button.clicked.connect(lambda _=False, kind=kind: easel.kind_wanted.emit(kind))
+            button.clicked.connect(lambda _=False, kind=kind: context.kind_wanted.emit(kind))
             self.buttons[kind] = button
             row.addWidget(button)
-        easel.kinds_shown.connect(self.show_kinds)
+        context.kinds_shown.connect(self.show_kinds)
         self.show_kinds(frozenset())
 
     def show_kinds(self, kinds: frozenset[Kind]) -> None:

@@ -11,16 +11,16 @@ from PySide6.QtWidgets import QHBoxLayout, QLabel, QWidget
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.panels.decimal_field import DecimalField, LengthField
 from kirigami_studio.gui.panels.number_field import number_field
-from kirigami_studio.gui.sketching.easel import Change, Easel
+from kirigami_studio.gui.sketching.sketch_context import Change, SketchContext
 from kirigami_studio.outlines.placed import LARGEST_MM, Placed
 
 
 class PoseOptions(QWidget):
     """Two lengths and an angle; the steps of one visit to a field undo together."""
 
-    def __init__(self, easel: Easel) -> None:
+    def __init__(self, context: SketchContext) -> None:
         super().__init__()
-        self._easel = easel
+        self._context = context
         self._visit = 0
         row = QHBoxLayout(self)
         row.setContentsMargins(0, 0, 0, 0)
@@ -66,7 +66,7 @@ class PoseOptions(QWidget):
             self.turn.setValue(0.0)
 
     def _move(self) -> None:
-        placed = self._easel.placed
+        placed = self._context.placed
         if placed is not None:
             middle = middle_of(placed)
             # Only the field that was changed: the other one shows a rounded number.
@@ -77,12 +77,12 @@ class PoseOptions(QWidget):
     def _turn(self, degrees: float) -> None:
         from kirigami_studio.outlines.refining import turned
 
-        placed = self._easel.placed
+        placed = self._context.placed
         if placed is not None and degrees:
             self._change(tr("Rotate target"), lambda: turned(placed, math.radians(degrees)))
 
     def _change(self, gesture: str, make: Callable[[], Placed]) -> None:
-        self._easel.changed.emit(Change(gesture, make, f"typed {gesture} {self._visit}"))
+        self._context.changed.emit(Change(gesture, make, f"typed {gesture} {self._visit}"))
 
 
 def middle_of(placed: Placed) -> tuple[float, float]:

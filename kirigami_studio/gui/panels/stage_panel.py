@@ -253,7 +253,7 @@ class StagePanel(Card):
 
     def _set_switches(self) -> None:
         candidate = None if self._entry is None else self._entry.candidate
-        comparable = candidate is not None and candidate.drawn is not None
+        comparable = candidate is not None and candidate.sampled_field is not None
         trimmed = candidate is not None and candidate.trim is not None
         self.before.setEnabled(comparable)
         never = NEVER_DRAWN if candidate is not None and candidate.polished else NEVER_POLISHED

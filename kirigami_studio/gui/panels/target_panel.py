@@ -43,7 +43,7 @@ class TargetPanel(Card):
         self.view = TargetView()
         self.editing = False
         self._said = ("", "")
-        self.strip = ToolStrip(self.view.easel)
+        self.strip = ToolStrip(self.view.context)
         self.refine = RefineBar()
         self.header.addWidget(self.strip.options)
         self.buttons = {tool.value: button for tool, button in self.strip.buttons.items()}
@@ -110,7 +110,7 @@ class TargetPanel(Card):
 
     def set_snapping(self, on: bool) -> None:
         """Show the grid and snap to it, or neither."""
-        self.view.easel.snapping = on
+        self.view.context.snapping = on
         self.strip.grid.setChecked(on)
         self.view.update()
 
@@ -119,17 +119,17 @@ class TargetPanel(Card):
         self.threshold.setVisible(picture is not None)
         if picture is not None:
             self.threshold.show_levels(picture.threshold, picture.automatic)
-        elsewhere = outline is None or self.view.easel.recall(outline) is None
+        elsewhere = outline is None or self.view.context.recall(outline) is None
         if elsewhere:
             self.set_tool(Tool.LOOK)
         under = self.view.underlay
         retraced = picture is not None and under is not None and under.path == picture.path
         self.view.show_outline(outline, picture)
         if elsewhere and not retraced:  # the axes go through the middle of what is drawn on
-            self.view.easel.set_axis(self.view.easel.mirror.axis)
+            self.view.context.set_axis(self.view.context.mirror.axis)
         self.strip.show_target(outline is not None)
-        self.refine.show_placed(self.view.easel.placed)
-        self.strip.options.pose.show_placed(self.view.easel.placed)
+        self.refine.show_placed(self.view.context.placed)
+        self.strip.options.pose.show_placed(self.view.context.placed)
         self.buttons["clearTarget"].setEnabled(outline is not None)
         self.facts.setVisible(outline is not None)
         self.size_.setVisible(outline is not None)
@@ -143,7 +143,7 @@ class TargetPanel(Card):
 
     def show_reach(self, grid: tuple[int, int]) -> None:
         """Mark on the drawing, and say, what a grid (rows, columns) can hardly show of the target."""
-        placed = self.view.easel.placed
+        placed = self.view.context.placed
         reach = None if placed is None else reach_of(placed.outline, grid)
         self.view.show_reach(reach)
         known = placed is not None and placed.outline.unit == "mm"

@@ -26,7 +26,7 @@ from kirigami_studio.gui.panels.font_options import FontOptions
 from kirigami_studio.gui.panels.node_options import NodeOptions
 from kirigami_studio.gui.panels.number_field import number_field
 from kirigami_studio.gui.panels.pose_options import PoseOptions
-from kirigami_studio.gui.sketching.easel import Easel
+from kirigami_studio.gui.sketching.sketch_context import SketchContext
 from kirigami_studio.gui.views.target_view import Tool
 from kirigami_studio.outlines.combining import Combine
 from kirigami_studio.outlines.figures import FEWEST_CORNERS, MOST_CORNERS, NARROWEST_WAIST, WIDEST_WAIST
@@ -68,9 +68,9 @@ class ToolStrip(QWidget):
     grid_switched = Signal(bool)
     done = Signal()
 
-    def __init__(self, easel: Easel, parent: QWidget | None = None) -> None:
+    def __init__(self, context: SketchContext, parent: QWidget | None = None) -> None:
         super().__init__(parent)
-        self._easel = easel
+        self._context = context
         self._icons: list[tuple[QToolButton, str]] = []
         self.buttons: dict[Tool, QToolButton] = {}
         self.modes: dict[Combine, QToolButton] = {}
@@ -88,9 +88,9 @@ class ToolStrip(QWidget):
             menu.addAction(text).triggered.connect(lambda _=False, how=how: self.mirror_wanted.emit(how))
         self.mirror.setMenu(menu)
         self.grid = self._button("grid", "grid", tr("Snap to the grid (Ctrl+Shift+G). Ctrl held suspends it."), True)
-        self.grid.setChecked(easel.snapping)
+        self.grid.setChecked(context.snapping)
         self.grid.toggled.connect(self.grid_switched)
-        self.axis = AxisButton(easel)
+        self.axis = AxisButton(context)
         self.axis.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         row.addWidget(self.mirror)
         row.addWidget(self.axis)
@@ -102,7 +102,7 @@ class ToolStrip(QWidget):
         self.finish.setToolTip(tr("Leave the editor (E, or Esc)"))
         self.finish.clicked.connect(self.done)
         row.addWidget(self.finish)
-        self.options = ToolOptions(easel)
+        self.options = ToolOptions(context)
 
     def _button(self, name: str, icon: str, tip: str, checkable: bool = False) -> QToolButton:
         button = tool_button(name, tip, checkable)
@@ -128,13 +128,13 @@ class ToolStrip(QWidget):
             group.addButton(button)
             self.modes[mode] = button
             row.addWidget(button)
-        self.modes[self._easel.combine].setChecked(True)
+        self.modes[self._context.combine].setChecked(True)
 
     def set_mode(self, mode: Combine) -> None:
         """What happens with the next shape."""
-        self._easel.combine = mode
+        self._context.combine = mode
         self.modes[mode].setChecked(True)
-        self._easel.repaint.emit()
+        self._context.repaint.emit()
 
     def show_tool(self, tool: Tool) -> None:
         """Mark the tool in use and show its numbers."""
@@ -160,31 +160,31 @@ class ToolStrip(QWidget):
 class ToolOptions(QWidget):
     """Corners of a polygon, tips and waist of a star, letters of a text, kinds of points, place of the target."""
 
-    def __init__(self, easel: Easel) -> None:
+    def __init__(self, context: SketchContext) -> None:
         super().__init__()
         row = QHBoxLayout(self)
         row.setContentsMargins(8, 0, 8, 0)
         row.setSpacing(6)
         self.corners = QSpinBox()
         self.corners.setRange(FEWEST_CORNERS, MOST_CORNERS)
-        self.corners.setValue(easel.corners)
+        self.corners.setValue(context.corners)
         self.corners.setAccessibleName(tr("Number of corners or tips"))
         self.corners.setToolTip(tr("Corners of the polygon, tips of the star"))
         self.waist = DecimalField()
         self.waist.setRange(100 * NARROWEST_WAIST, 100 * WIDEST_WAIST)
         self.waist.setDecimals(0)
         self.waist.setSuffix(" %")
-        self.waist.setValue(100 * easel.waist)
+        self.waist.setValue(100 * context.waist)
         self.waist.setAccessibleName(tr("Waist of the star"))
         self.waist.setToolTip(tr("How far its inner corners are from the middle, as a share of its tips"))
         for number in (self.corners, self.waist):
             number_field(number)
-        self.text = QLineEdit(easel.text)
+        self.text = QLineEdit(context.text)
         self.text.setAccessibleName(tr("Text to draw"))
         self.text.setPlaceholderText(tr("Text"))
         self.text.setMaxLength(24)
         self.text.setMaximumWidth(150)
-        self.nodes, self.pose, self.font_ = NodeOptions(easel), PoseOptions(easel), FontOptions(easel)
+        self.nodes, self.pose, self.font_ = NodeOptions(context), PoseOptions(context), FontOptions(context)
         self._parts: list[tuple[frozenset[Tool], tuple[QWidget, ...]]] = []
         for tools, caption, field in (
             (frozenset({Tool.REGULAR, Tool.STAR}), tr("&Corners"), self.corners),
@@ -200,9 +200,9 @@ class ToolOptions(QWidget):
         for tool, options in ((Tool.POINTS, self.nodes), (Tool.POSE, self.pose), (Tool.TEXT, self.font_)):
             row.addWidget(options)
             self._parts.append((frozenset({tool}), (options,)))
-        self.corners.valueChanged.connect(lambda value: setattr(easel, "corners", value))
-        self.waist.valueChanged.connect(lambda value: setattr(easel, "waist", value / 100))
-        self.text.textChanged.connect(lambda value: setattr(easel, "text", value))
+        self.corners.valueChanged.connect(lambda value: setattr(context, "corners", value))
+        self.waist.valueChanged.connect(lambda value: setattr(context, "waist", value / 100))
+        self.text.textChanged.connect(lambda value: setattr(context, "text", value))
         self.show_tool(Tool.LOOK)
 
     def show_tool(self, tool: Tool) -> None:

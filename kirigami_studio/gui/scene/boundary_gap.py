@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
+from kirigami_studio.foundation.arrays import FloatArray
+
 if TYPE_CHECKING:
     from shapely.geometry.base import BaseGeometry
 
-FloatArray = npt.NDArray[np.float64]
 
 #: Places on each boundary at which the distance is measured, beside its corners.
 STATIONS = 256

@@ -8,7 +8,7 @@ from itertools import product
 import numpy as np
 from PySide6.QtCore import QPointF, QRectF
 
-from kirigami_studio.gui.scene.frame import Bounds, Frame
+from kirigami_studio.gui.scene.view_transform import Bounds, ViewTransform
 
 #: Pixels that stay between the picture and a legend.
 AWAY = 8.0
@@ -44,15 +44,15 @@ def clear_box(bounds: Bounds, view: QRectF, margin: float, legends: Sequence[QRe
         room = QRectF(QPointF(inner.left(), max(top, inner.top())), corner)
         if room.width() < LEAST_SHARE * view.width() or room.height() < LEAST_SHARE * view.height():
             continue
-        frame = Frame.fitting(bounds, room)
-        if frame.scale > largest and not any(legend.intersects(_shown(bounds, frame)) for legend in legends):
-            best, largest = room.adjusted(-margin, -margin, margin, margin), frame.scale
+        transform = ViewTransform.fitting(bounds, room)
+        if transform.scale > largest and not any(legend.intersects(_shown(bounds, transform)) for legend in legends):
+            best, largest = room.adjusted(-margin, -margin, margin, margin), transform.scale
     return best
 
 
-def _shown(bounds: Bounds, frame: Frame) -> QRectF:
+def _shown(bounds: Bounds, transform: ViewTransform) -> QRectF:
     """Pixels around ``bounds`` that a legend must leave free."""
     corners = np.array([(bounds.left, bounds.top), (bounds.right, bounds.bottom)])
-    (left, top), (right, bottom) = frame.to_pixels(corners).tolist()
+    (left, top), (right, bottom) = transform.to_pixels(corners).tolist()
     free = AWAY - 0.5  # the picture may come up to the distance itself
     return QRectF(QPointF(left, top), QPointF(right, bottom)).adjusted(-free, -free, free, free)

@@ -7,15 +7,13 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-import numpy.typing as npt
 from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QFontMetrics, QLinearGradient, QPainter, QPen
 
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.scene.chips import paint_chip
-
-FloatArray = npt.NDArray[np.float64]
 
 #: Shades of a scale; neighbours cannot be told apart.
 SHADES = 64

@@ -7,17 +7,14 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-import numpy.typing as npt
 from PySide6.QtCore import QLineF, QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QPainter, QPen, QPolygonF
 
 from kirigami_studio.fabricate.cut_plan import CutPlan
+from kirigami_studio.foundation.arrays import BoolArray, FloatArray, IntArray
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.look.theme import Palette
-from kirigami_studio.gui.scene.frame import Frame
-
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.intp]
+from kirigami_studio.gui.scene.view_transform import ViewTransform
 
 #: Smallest and largest radius (pixels) of a marker, its share of the usual distance between two, and how far from its
 #: middle it still takes a click.
@@ -36,7 +33,7 @@ class Connectors:
         return len(self.plan.hinges)
 
     @cached_property
-    def removed(self) -> npt.NDArray[np.bool_]:
+    def removed(self) -> BoolArray:
         """Which hinges have no connector: (H,) bool."""
         removed = np.zeros(len(self), dtype=np.bool_)
         removed[[hinge for hinge in self.plan.options.removed if hinge < len(self)]] = True
@@ -63,10 +60,10 @@ class Connectors:
         shade: IntArray = np.minimum((share * count).astype(np.intp), count - 1)
         return shade
 
-    def radius(self, frame: Frame) -> float:
+    def radius(self, transform: ViewTransform) -> float:
         """Pixels; smaller where the markers would hide the cuts."""
         width, height = self.plan.size_mm
-        apart = frame.scale * math.sqrt(width * height / max(len(self), 1))
+        apart = transform.scale * math.sqrt(width * height / max(len(self), 1))
         return min(max(SHARE * apart, RADII[0]), RADII[1])
 
     def asked_mm(self, hinge: int) -> float:
@@ -86,24 +83,24 @@ class Connectors:
             finished=finished,
         )
 
-    def nearest(self, place: QPointF, frame: Frame) -> int | None:
+    def nearest(self, place: QPointF, transform: ViewTransform) -> int | None:
         """The hinge under a pixel, if any."""
-        away = np.linalg.norm(frame.to_pixels(self.plan.hinges.position) - (place.x(), place.y()), axis=1)
+        away = np.linalg.norm(transform.to_pixels(self.plan.hinges.position) - (place.x(), place.y()), axis=1)
         hinge = int(np.argmin(away))
         return hinge if away[hinge] <= REACH else None
 
-    def within(self, box: QRectF, frame: Frame) -> frozenset[int]:
+    def within(self, box: QRectF, transform: ViewTransform) -> frozenset[int]:
         """The hinges inside a box of pixels."""
-        x, y = frame.to_pixels(self.plan.hinges.position).T
+        x, y = transform.to_pixels(self.plan.hinges.position).T
         inside = (x >= box.left()) & (x <= box.right()) & (y >= box.top()) & (y <= box.bottom())
         return frozenset(np.flatnonzero(inside).tolist())
 
 
 def paint_connectors(
-    painter: QPainter, connectors: Connectors, frame: Frame, palette: Palette, selected: frozenset[int]
+    painter: QPainter, connectors: Connectors, transform: ViewTransform, palette: Palette, selected: frozenset[int]
 ) -> None:
     """Draw a dot for each connector, a cross where one was removed, and a ring around the selected ones."""
-    pixels, radius = frame.to_pixels(connectors.plan.hinges.position), connectors.radius(frame)
+    pixels, radius = transform.to_pixels(connectors.plan.hinges.position), connectors.radius(transform)
     colours = palette.widths
     shade = connectors.shade(len(colours))
     # A rim, so that the palest width stands out from the sheet.

@@ -10,16 +10,14 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-import numpy.typing as npt
 from PySide6.QtCore import QLineF, QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QPainter, QPainterPath, QPen
 
 from kirigami_studio.fabricate.cut_plan import CutPath, CutPlan, Layer
+from kirigami_studio.foundation.arrays import BoolArray, FloatArray
 from kirigami_studio.gui.look.theme import Palette
-from kirigami_studio.gui.scene.frame import Bounds, Frame
 from kirigami_studio.gui.scene.paths import line_path
-
-FloatArray = npt.NDArray[np.float64]
+from kirigami_studio.gui.scene.view_transform import Bounds, ViewTransform
 
 #: No cut is drawn thinner than this (pixels), whatever its kerf.
 THINNEST = 1.0
@@ -60,7 +58,7 @@ class CutDrawing:
         return boxes
 
     @cached_property
-    def on_layer(self) -> dict[Layer, npt.NDArray[np.bool_]]:
+    def on_layer(self) -> dict[Layer, BoolArray]:
         """Which cuts lie on each layer that is used, in the order of cutting: (P,) bool."""
         paths = self.plan.paths
         return {layer: np.array([path.layer is layer for path in paths]) for layer in self.plan.layers}
@@ -84,9 +82,9 @@ class CutDrawing:
         width, height = self.plan.bounds_mm
         return Bounds(0.0, 0.0, width, height)
 
-    def pen_width(self, frame: Frame) -> float:
+    def pen_width(self, transform: ViewTransform) -> float:
         """Width (pixels) of a cut as it is drawn: its kerf, or the thinnest that is well seen."""
-        return max(self.plan.kerf_mm * frame.scale, THINNEST)
+        return max(self.plan.kerf_mm * transform.scale, THINNEST)
 
 
 def layer_colour(layer: Layer, palette: Palette) -> str:
@@ -99,16 +97,18 @@ def layer_colour(layer: Layer, palette: Palette) -> str:
     }[layer]
 
 
-def paint_cut_sheet(painter: QPainter, drawing: CutDrawing, frame: Frame, palette: Palette) -> None:
+def paint_cut_sheet(painter: QPainter, drawing: CutDrawing, transform: ViewTransform, palette: Palette) -> None:
     """Draw the material under the cuts."""
-    with_frame(painter, frame)
+    with_transform(painter, transform)
     painter.setPen(Qt.PenStyle.NoPen)
     painter.setBrush(QColor(palette.cut_sheet))
     painter.drawPath(drawing.sheet)
     painter.restore()
 
 
-def paint_cuts(painter: QPainter, drawing: CutDrawing, frame: Frame, palette: Palette, step: int, view: QRectF) -> None:
+def paint_cuts(
+    painter: QPainter, drawing: CutDrawing, transform: ViewTransform, palette: Palette, step: int, view: QRectF
+) -> None:
     """Draw the first ``step`` cuts, the others faintly, and the last of the first ones as the one under way.
 
     Parameters
@@ -118,12 +118,12 @@ def paint_cuts(painter: QPainter, drawing: CutDrawing, frame: Frame, palette: Pa
     view : QRectF, pixels
         What lies outside is left out.
     """
-    last, seen = len(drawing.cuts), _in_view(drawing, frame, view)
-    width = drawing.pen_width(frame) / frame.scale
-    thin = width * frame.scale * painter.device().devicePixelRatio() <= THINNEST
+    last, seen = len(drawing.cuts), _in_view(drawing, transform, view)
+    width = drawing.pen_width(transform) / transform.scale
+    thin = width * transform.scale * painter.device().devicePixelRatio() <= THINNEST
     done = np.arange(last) < (step if step == last else step - 1)
-    cuts = drawing.chords if drawing.largest_arc * frame.scale < SEEN else drawing.cuts
-    with_frame(painter, frame)
+    cuts = drawing.chords if drawing.largest_arc * transform.scale < SEEN else drawing.cuts
+    with_transform(painter, transform)
     painter.setBrush(Qt.BrushStyle.NoBrush)
     for layer, of_layer in reversed(drawing.on_layer.items()):
         painter.setPen(_pen(layer_colour(layer, palette), width))
@@ -132,23 +132,23 @@ def paint_cuts(painter: QPainter, drawing: CutDrawing, frame: Frame, palette: Pa
             _stroke(painter, [cuts[index] for index in np.flatnonzero(which)], thin)
     painter.setOpacity(1.0)
     if 0 < step < last:
-        painter.setPen(_pen(palette.current_cut, width + 3.0 / frame.scale))
+        painter.setPen(_pen(palette.current_cut, width + 3.0 / transform.scale))
         painter.drawPath(drawing.cuts[step - 1])
     painter.restore()
 
 
-def paint_travel(painter: QPainter, drawing: CutDrawing, frame: Frame, palette: Palette, step: int) -> None:
+def paint_travel(painter: QPainter, drawing: CutDrawing, transform: ViewTransform, palette: Palette, step: int) -> None:
     """Draw the moves with the beam off up to this step, dashed."""
-    moves = frame.to_pixels(drawing.travel[:step])
+    moves = transform.to_pixels(drawing.travel[:step])
     pen = QPen(QColor(palette.muted), 1.0, Qt.PenStyle.CustomDashLine)
     pen.setDashPattern([4.0, 3.0])
     painter.setPen(pen)
     painter.drawLines([QLineF(*start, *stop) for start, stop in moves.tolist()])
 
 
-def paint_start(painter: QPainter, drawing: CutDrawing, frame: Frame, palette: Palette) -> None:
+def paint_start(painter: QPainter, drawing: CutDrawing, transform: ViewTransform, palette: Palette) -> None:
     """Mark the first point of the first cut with a square, and the head's origin with a cross."""
-    points = frame.to_pixels(np.stack([drawing.travel[0, 0], drawing.travel[0, 1]])).tolist()
+    points = transform.to_pixels(np.stack([drawing.travel[0, 0], drawing.travel[0, 1]])).tolist()
     (x, y), first = points[0], QPointF(*points[1])
     painter.setPen(QPen(QColor(palette.text), 1.6))
     painter.drawLines([QLineF(x - START, y, x + START, y), QLineF(x, y - START, x, y + START)])
@@ -156,11 +156,11 @@ def paint_start(painter: QPainter, drawing: CutDrawing, frame: Frame, palette: P
     painter.drawRect(QRectF(first - QPointF(START, START) / 2, first + QPointF(START, START) / 2))
 
 
-def with_frame(painter: QPainter, frame: Frame) -> None:
+def with_transform(painter: QPainter, transform: ViewTransform) -> None:
     """Let the painter draw in mm, y up, until its restore."""
     painter.save()
-    painter.translate(*frame.origin)
-    painter.scale(frame.scale, -frame.scale)
+    painter.translate(*transform.origin)
+    painter.scale(transform.scale, -transform.scale)
 
 
 def _pen(colour: str, width: float) -> QPen:
@@ -178,13 +178,13 @@ def _stroke(painter: QPainter, cuts: list[QPainterPath], thin: bool) -> None:
         painter.drawPath(cut)
 
 
-def _in_view(drawing: CutDrawing, frame: Frame, view: QRectF) -> npt.NDArray[np.bool_]:
+def _in_view(drawing: CutDrawing, transform: ViewTransform, view: QRectF) -> BoolArray:
     """Which cuts can be seen: (P,) bool."""
-    left, top = frame.to_world(view.topLeft())
-    right, bottom = frame.to_world(view.bottomRight())
-    margin = drawing.pen_width(frame) / frame.scale
+    left, top = transform.to_world(view.topLeft())
+    right, bottom = transform.to_world(view.bottomRight())
+    margin = drawing.pen_width(transform) / transform.scale
     boxes = drawing.boxes
-    seen: npt.NDArray[np.bool_] = (
+    seen: BoolArray = (
         (boxes[:, 0] <= right + margin)
         & (boxes[:, 2] >= left - margin)
         & (boxes[:, 1] <= top + margin)

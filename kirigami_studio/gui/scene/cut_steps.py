@@ -5,12 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from kirigami_studio.fabricate import timing
 from kirigami_studio.fabricate.cut_plan import CutPlan
-
-FloatArray = npt.NDArray[np.float64]
+from kirigami_studio.foundation.arrays import FloatArray
 
 
 @dataclass(frozen=True, slots=True, eq=False)

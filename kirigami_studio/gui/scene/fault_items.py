@@ -6,16 +6,14 @@ from dataclasses import dataclass
 from enum import Enum
 
 import numpy as np
-import numpy.typing as npt
 from PySide6.QtCore import QPointF, Qt
 from PySide6.QtGui import QColor, QPainter, QPainterPath, QPen
 
 from kirigami_studio.evaluate.score import Score
+from kirigami_studio.foundation.arrays import BoolArray, FloatArray
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.scene.posed import PosedDesign
-
-FloatArray = npt.NDArray[np.float64]
 
 #: Panels below this part of the median panel area count as collapsed; far below what any cutter can hold.
 COLLAPSED_SHARE = 1e-6
@@ -41,7 +39,7 @@ class Fault:
     phi: float | None = None
 
 
-def inverted_panels(panels: FloatArray) -> npt.NDArray[np.bool_]:
+def inverted_panels(panels: FloatArray) -> BoolArray:
     """Which panels (K, 4, 2) have turned inside out or lost their area; the same at every angle, panels are rigid."""
     diagonals = panels[:, 2] - panels[:, 0], panels[:, 3] - panels[:, 1]
     area = 0.5 * (diagonals[0][:, 0] * diagonals[1][:, 1] - diagonals[0][:, 1] * diagonals[1][:, 0])
@@ -49,7 +47,7 @@ def inverted_panels(panels: FloatArray) -> npt.NDArray[np.bool_]:
     return area <= COLLAPSED_SHARE * median
 
 
-def faults(panels: FloatArray, inverted: npt.NDArray[np.bool_], contact: FloatArray | None) -> tuple[Fault, ...]:
+def faults(panels: FloatArray, inverted: BoolArray, contact: FloatArray | None) -> tuple[Fault, ...]:
     """Return all faults to be shown: inverted panels where they are now, the contact where it happens.
 
     Parameters

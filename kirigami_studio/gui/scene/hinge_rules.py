@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-import numpy.typing as npt
 
 from kirigami_studio.fabricate.cut_plan import CutPlan, Layer
 from kirigami_studio.fabricate.slits import SHEET_EDGE
+from kirigami_studio.foundation.arrays import BoolArray, FloatArray
 from kirigami_studio.foundation.words import tr
 
 #: The part of all connectors that counts as being at short or at long cuts.
@@ -48,15 +48,15 @@ RULES: tuple[tuple[str, str, Callable[[CutPlan], frozenset[int]]], ...] = (
 )
 
 
-def _cut_lengths(plan: CutPlan) -> npt.NDArray[np.float64]:
+def _cut_lengths(plan: CutPlan) -> FloatArray:
     """Length (mm) of the cut that each hinge shortens: (H,); of a cut in several parts, of all together."""
     lengths = np.zeros(int(plan.hinges.cut.max()) + 1)
     for path in plan.paths:
         if path.cut >= 0 and path.layer is not Layer.RELIEF:
             lengths[path.cut] += path.length
-    chosen: npt.NDArray[np.float64] = lengths[plan.hinges.cut]
+    chosen: FloatArray = lengths[plan.hinges.cut]
     return chosen
 
 
-def _numbers(chosen: npt.NDArray[np.bool_]) -> frozenset[int]:
+def _numbers(chosen: BoolArray) -> frozenset[int]:
     return frozenset(np.flatnonzero(chosen).tolist())

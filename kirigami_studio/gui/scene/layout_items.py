@@ -5,14 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import numpy as np
-import numpy.typing as npt
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QColor, QPainter, QPen
 
+from kirigami_studio.foundation.arrays import BoolArray, FloatArray
 from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.scene.paths import line_path, quad_paths
-
-FloatArray = npt.NDArray[np.float64]
 
 #: Panels smaller than this (pixels) get no line: it would swallow them.
 SMALLEST_LINED_PANEL = 5.0
@@ -21,7 +19,7 @@ SMALLEST_LINED_PANEL = 5.0
 def paint_panels(
     painter: QPainter,
     panels: FloatArray,
-    turns_left: npt.NDArray[np.bool_],
+    turns_left: BoolArray,
     palette: Palette,
     kept: Mapping[int, FloatArray] | None = None,
 ) -> None:
@@ -54,7 +52,7 @@ def paint_panels(
                 painter.drawPath(line_path(part, closed=True))
 
 
-def turning_left(rows: int, columns: int) -> npt.NDArray[np.bool_]:
+def turning_left(rows: int, columns: int) -> BoolArray:
     """Which of the (rows + 1)(columns + 1) panels turn counter-clockwise: those with I + J odd."""
-    odd: npt.NDArray[np.bool_] = np.add.outer(np.arange(rows + 1), np.arange(columns + 1)) % 2 == 1
+    odd: BoolArray = np.add.outer(np.arange(rows + 1), np.arange(columns + 1)) % 2 == 1
     return odd.reshape(-1)

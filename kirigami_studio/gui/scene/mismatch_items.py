@@ -7,23 +7,21 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
-import numpy as np
-import numpy.typing as npt
 from PySide6.QtCore import QPointF, Qt
 from PySide6.QtGui import QBrush, QColor, QPainter, QPen, QPixmap
 
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.look.readable import readable_area
 from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.scene.boundary_gap import BoundaryGap, boundary_gap
 from kirigami_studio.gui.scene.chips import Chip
-from kirigami_studio.gui.scene.frame import Frame
 from kirigami_studio.gui.scene.paths import area_path
+from kirigami_studio.gui.scene.view_transform import ViewTransform
 
 if TYPE_CHECKING:
     from shapely.geometry.base import BaseGeometry
 
-FloatArray = npt.NDArray[np.float64]
 
 TINT_ALPHA = 64
 #: Horizontal distance of hatch lines, pixels.
@@ -104,13 +102,13 @@ def _chips(
     return [Chip(palette.missing, texts[0]), Chip(palette.extra, texts[1]), Chip(palette.text, off)]
 
 
-def paint_mismatch(painter: QPainter, areas: Mismatch, frame: Frame, palette: Palette) -> None:
+def paint_mismatch(painter: QPainter, areas: Mismatch, transform: ViewTransform, palette: Palette) -> None:
     """Hatch missing area one way in orange and extra area the other way in the sheet's contrast colour."""
     ratio = painter.device().devicePixelRatio()
     painter.setPen(Qt.PenStyle.NoPen)
     for area, colour, rising in ((areas.missing, palette.missing, True), (areas.extra, palette.extra, False)):
         painter.setBrush(QBrush(stripes(colour, rising, ratio)))
-        painter.drawPath(area_path(area, frame))
+        painter.drawPath(area_path(area, transform))
 
 
 @lru_cache(maxsize=16)

@@ -5,15 +5,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 from PySide6.QtGui import QPainterPath
 
-from kirigami_studio.gui.scene.frame import Frame
+from kirigami_studio.foundation.arrays import FloatArray
+from kirigami_studio.gui.scene.view_transform import ViewTransform
 
 if TYPE_CHECKING:
     from shapely.geometry.base import BaseGeometry
-
-FloatArray = npt.NDArray[np.float64]
 
 
 def line_path(points: FloatArray, closed: bool) -> QPainterPath:
@@ -50,7 +48,7 @@ def quad_paths(quads: FloatArray) -> list[QPainterPath]:
     return paths
 
 
-def area_path(area: BaseGeometry, frame: Frame) -> QPainterPath:
+def area_path(area: BaseGeometry, transform: ViewTransform) -> QPainterPath:
     """A polygon or many, with holes, in world units; lines and points that an intersection left over are skipped."""
     path = QPainterPath()
     from shapely.geometry import Polygon  # already loaded by whoever made the area
@@ -59,5 +57,5 @@ def area_path(area: BaseGeometry, frame: Frame) -> QPainterPath:
         if not isinstance(part, Polygon) or part.is_empty:
             continue
         for ring in (part.exterior, *part.interiors):
-            add_ring(path, frame.to_pixels(np.asarray(ring.coords)[:-1]).tolist())
+            add_ring(path, transform.to_pixels(np.asarray(ring.coords)[:-1]).tolist())
     return path

@@ -7,15 +7,13 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-import numpy.typing as npt
 
 from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.evaluate.trimming import Trim
-from kirigami_studio.gui.scene.frame import Bounds
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.gui.scene.trimmed_parts import TrimmedParts
+from kirigami_studio.gui.scene.view_transform import Bounds
 from kirigami_studio.lattice.deployment import Deployment
-
-FloatArray = npt.NDArray[np.float64]
 
 #: Angles at which the motion's extent is sampled; the extent is smooth in the angle.
 EXTENT_SAMPLES = 9

@@ -6,9 +6,8 @@ from dataclasses import dataclass
 from enum import Enum
 
 import numpy as np
-import numpy.typing as npt
 
-FloatArray = npt.NDArray[np.float64]
+from kirigami_studio.foundation.arrays import FloatArray
 
 #: How many are shown.
 SHOWN = 5

@@ -6,18 +6,16 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-import numpy.typing as npt
 from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QBrush, QColor, QPainter, QPen
 
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.look.theme import Palette
-from kirigami_studio.gui.scene.frame import Frame
 from kirigami_studio.gui.scene.mismatch_items import stripes
 from kirigami_studio.gui.scene.paths import line_path
+from kirigami_studio.gui.scene.view_transform import ViewTransform
 from kirigami_studio.outlines.mirroring import Axis, Mirror
-
-FloatArray = npt.NDArray[np.float64]
 
 
 def paint_target_shape(painter: QPainter, points: FloatArray, palette: Palette) -> None:
@@ -97,25 +95,25 @@ def paint_reach(painter: QPainter, arms: Sequence[FloatArray], notches: Sequence
             painter.drawPath(line_path(ring, closed=True))
 
 
-def paint_grid(painter: QPainter, frame: Frame, step: float, area: QRectF, palette: Palette) -> None:
+def paint_grid(painter: QPainter, transform: ViewTransform, step: float, area: QRectF, palette: Palette) -> None:
     """Draw the board's grid: a line every ``step`` mm, every fifth one stronger, the axes strongest."""
     painter.fillRect(area, QColor(palette.canvas))
-    left, bottom = frame.to_world(area.bottomLeft())
-    right, top = frame.to_world(area.topRight())
+    left, bottom = transform.to_world(area.bottomLeft())
+    right, top = transform.to_world(area.topRight())
     for vertical, low, high in ((True, left, right), (False, bottom, top)):
         for number in range(math.ceil(low / step), math.floor(high / step) + 1):
             colour = palette.strong_border if number == 0 else palette.border if number % 5 == 0 else palette.grid
             painter.setPen(QPen(QColor(colour), 1.0))
-            x, y = frame.to_pixels(np.array([number * step, number * step])).tolist()
+            x, y = transform.to_pixels(np.array([number * step, number * step])).tolist()
             if vertical:
                 painter.drawLine(QPointF(x, area.top()), QPointF(x, area.bottom()))
             else:
                 painter.drawLine(QPointF(area.left(), y), QPointF(area.right(), y))
 
 
-def paint_axes(painter: QPainter, frame: Frame, mirror: Mirror, area: QRectF, palette: Palette) -> None:
+def paint_axes(painter: QPainter, transform: ViewTransform, mirror: Mirror, area: QRectF, palette: Palette) -> None:
     """Draw the axes that mirror what is drawn as dashed lines across the board."""
-    x, y = frame.to_pixels(np.array(mirror.at)).tolist()
+    x, y = transform.to_pixels(np.array(mirror.at)).tolist()
     pen = QPen(QColor(palette.accent), 1.4, Qt.PenStyle.CustomDashLine)
     pen.setDashPattern([9.0, 4.0, 2.0, 4.0])
     painter.setPen(pen)

@@ -6,10 +6,10 @@ from PySide6.QtCore import QRectF, QSize, Qt
 from PySide6.QtGui import QPainter, QPixmap
 
 from kirigami_studio.gui.look.theme import Palette
-from kirigami_studio.gui.scene.frame import Bounds, Frame
 from kirigami_studio.gui.scene.layout_items import paint_panels, turning_left
 from kirigami_studio.gui.scene.posed import PosedDesign
 from kirigami_studio.gui.scene.target_items import paint_target_line, paint_target_shape
+from kirigami_studio.gui.scene.view_transform import Bounds, ViewTransform
 from kirigami_studio.outlines.outline import Outline
 
 MARGIN = 6.0
@@ -23,13 +23,13 @@ def paint_candidate(
     bounds = Bounds.of(nodes)
     if target is not None:
         bounds = bounds.united(Bounds.of(target.points))
-    frame = Frame.fitting(bounds, rect, MARGIN)
+    transform = ViewTransform.fitting(bounds, rect, MARGIN)
     field = design.deployment.field
-    kept = {row: frame.to_pixels(part) for row, part in design.kept(nodes, design.phi_target).items()}
-    panels = frame.to_pixels(design.panels(nodes))
+    kept = {row: transform.to_pixels(part) for row, part in design.kept(nodes, design.phi_target).items()}
+    panels = transform.to_pixels(design.panels(nodes))
     paint_panels(painter, panels, turning_left(field.rows, field.columns), palette, kept)
     if target is not None:
-        paint_target_line(painter, frame.to_pixels(target.points), palette, width=1.4)
+        paint_target_line(painter, transform.to_pixels(target.points), palette, width=1.4)
 
 
 def candidate_pixmap(
@@ -47,8 +47,8 @@ def target_pixmap(target: Outline, size: QSize, ratio: float, palette: Palette) 
     """Return a target's picture for the library, ``size`` in logical pixels."""
     pixmap = _blank(size, ratio)
     painter = _painter(pixmap)
-    frame = Frame.fitting(Bounds.of(target.points), QRectF(0, 0, size.width(), size.height()), MARGIN)
-    paint_target_shape(painter, frame.to_pixels(target.points), palette)
+    transform = ViewTransform.fitting(Bounds.of(target.points), QRectF(0, 0, size.width(), size.height()), MARGIN)
+    paint_target_shape(painter, transform.to_pixels(target.points), palette)
     painter.end()
     return pixmap
 

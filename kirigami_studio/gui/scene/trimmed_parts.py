@@ -6,15 +6,11 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.evaluate.trimming import Trim
+from kirigami_studio.foundation.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from kirigami_studio.lattice.deployment import Deployment
-
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.int64]
-PlaneArray = npt.NDArray[np.complex128]
 
 #: Vertices are snapped to this grid (unit cells) where parts are taken from panels.
 GRID = 1e-9
@@ -40,9 +36,9 @@ class Rings:
 
     panel: IntArray
     anchor: IntArray
-    even: npt.NDArray[np.bool_]
+    even: BoolArray
     ends: IntArray
-    offsets: PlaneArray
+    offsets: ComplexArray
 
     @classmethod
     def of(cls, deployment: Deployment, numbered: list[tuple[int, FloatArray]]) -> Rings:
@@ -86,6 +82,6 @@ class TrimmedParts:
         return cls(Rings.of(deployment, kept), Rings.of(deployment, removed))
 
 
-def _plane(points: FloatArray) -> PlaneArray:
-    plane: PlaneArray = points[..., 0] + 1j * points[..., 1]
+def _plane(points: FloatArray) -> ComplexArray:
+    plane: ComplexArray = points[..., 0] + 1j * points[..., 1]
     return plane

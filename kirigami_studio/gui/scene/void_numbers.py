@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 from PySide6.QtCore import QLineF, QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QFont, QFontMetricsF, QPainter, QPen
 
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.scene.colour_scale import ColourScale
 from kirigami_studio.gui.scene.paths import quad_paths
-
-FloatArray = npt.NDArray[np.float64]
 
 #: Opacity of the panels' edges on the heat map.
 EDGE_OPACITY = 0.35

@@ -6,13 +6,11 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
-from kirigami_studio.gui.scene.frame import Bounds, Frame
+from kirigami_studio.foundation.arrays import BoolArray, FloatArray
 from kirigami_studio.gui.scene.posed import PosedDesign
+from kirigami_studio.gui.scene.view_transform import Bounds, ViewTransform
 from kirigami_studio.project.document import Void
-
-FloatArray = npt.NDArray[np.float64]
 
 #: Distance (pixels) from a closed slit, or from the edge of an open void, that still means the void.
 VOID_REACH = 7.0
@@ -32,7 +30,7 @@ class VoidShapes:
     ----------
     design : PosedDesign
     phi : float, radians
-    frame : Frame
+    transform : ViewTransform
         World -> pixels.
     corners : (m, n, 4, 2) float, pixels
         p0..p3 of every void.
@@ -42,16 +40,16 @@ class VoidShapes:
 
     design: PosedDesign
     phi: float
-    frame: Frame
+    transform: ViewTransform
     corners: FloatArray
     vertices: FloatArray
 
     @classmethod
-    def of(cls, design: PosedDesign, phi: float, frame: Frame) -> VoidShapes:
+    def of(cls, design: PosedDesign, phi: float, transform: ViewTransform) -> VoidShapes:
         """Place a design."""
         nodes = design.nodes(phi)
-        corners = frame.to_pixels(nodes[design.deployment.topology.void_nodes])
-        return cls(design, phi, frame, corners, frame.to_pixels(design.outline(nodes, phi)))
+        corners = transform.to_pixels(nodes[design.deployment.topology.void_nodes])
+        return cls(design, phi, transform, corners, transform.to_pixels(design.outline(nodes, phi)))
 
     @property
     def movable(self) -> bool:
@@ -84,12 +82,12 @@ class VoidShapes:
         return frozenset((int(row), int(column)) for row, column in np.argwhere(hit))
 
 
-def inside(quads: FloatArray, place: FloatArray) -> npt.NDArray[np.bool_]:
+def inside(quads: FloatArray, place: FloatArray) -> BoolArray:
     """Which convex quadrilaterals (K, 4, 2), turning either way, a place (2,) lies strictly in: (K,)."""
     edge = np.roll(quads, -1, axis=1) - quads
     offset = place - quads
     side = edge[..., 0] * offset[..., 1] - edge[..., 1] * offset[..., 0]
-    found: npt.NDArray[np.bool_] = np.all(side > 0.0, axis=1) | np.all(side < 0.0, axis=1)
+    found: BoolArray = np.all(side > 0.0, axis=1) | np.all(side < 0.0, axis=1)
     return found
 
 

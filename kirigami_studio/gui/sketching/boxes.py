@@ -5,22 +5,20 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 
 import numpy as np
-import numpy.typing as npt
 from PySide6.QtGui import QFont, QFontMetricsF, QPainter, QPainterPath
 
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import TargetError
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.look.theme import Palette
-from kirigami_studio.gui.scene.frame import Frame
 from kirigami_studio.gui.scene.target_items import paint_proposal, paint_size
-from kirigami_studio.gui.sketching.easel import Easel, SketchTool, Spot
+from kirigami_studio.gui.scene.view_transform import ViewTransform
+from kirigami_studio.gui.sketching.sketch_context import PointerEvent, SketchContext, SketchTool
 from kirigami_studio.gui.sketching.strokes import distance
 from kirigami_studio.outlines.figure_nodes import placed_figure
 from kirigami_studio.outlines.figures import Box, Figure
 from kirigami_studio.outlines.lettering import lettered
 from kirigami_studio.outlines.placed import Placed
-
-FloatArray = npt.NDArray[np.float64]
 
 #: A box smaller than this (pixels) was a click, not a drag.
 LEAST_DRAG = 4.0
@@ -31,10 +29,10 @@ LETTER_SIZE = 400
 class BoxTool(SketchTool, ABC):
     """Drags a box; subclasses say what fills it."""
 
-    def __init__(self, easel: Easel) -> None:
-        super().__init__(easel)
-        self._start: Spot | None = None
-        self._end: Spot | None = None
+    def __init__(self, context: SketchContext) -> None:
+        super().__init__(context)
+        self._start: PointerEvent | None = None
+        self._end: PointerEvent | None = None
 
     @abstractmethod
     def shape(self, box: Box) -> Placed:
@@ -51,24 +49,24 @@ class BoxTool(SketchTool, ABC):
     def name(self) -> str:
         """Of the shape, for the document and the name of the change."""
 
-    def press(self, spot: Spot) -> None:
-        self._start = self._end = spot
+    def press(self, pointer: PointerEvent) -> None:
+        self._start = self._end = pointer
 
-    def move(self, spot: Spot, held: bool) -> None:
+    def move(self, pointer: PointerEvent, held: bool) -> None:
         if held and self._start is not None:
-            self._end = spot
+            self._end = pointer
 
-    def release(self, spot: Spot) -> None:
+    def release(self, pointer: PointerEvent) -> None:
         start = self._start
         self.drop()
-        if start is not None and distance(start.pixel, spot.pixel) >= LEAST_DRAG:
-            box = Box.spanned(start.place, spot.place, spot.shift)
-            self.easel.draw(lambda: self.shape(box), self.name)
+        if start is not None and distance(start.pixel, pointer.pixel) >= LEAST_DRAG:
+            box = Box.spanned(start.place, pointer.place, pointer.shift)
+            self.context.draw(lambda: self.shape(box), self.name)
 
     def drop(self) -> None:
         self._start = self._end = None
 
-    def paint(self, painter: QPainter, frame: Frame, palette: Palette) -> None:
+    def paint(self, painter: QPainter, transform: ViewTransform, palette: Palette) -> None:
         if self._start is None or self._end is None:
             return
         box = Box.spanned(self._start.place, self._end.place, self._end.shift)
@@ -76,16 +74,16 @@ class BoxTool(SketchTool, ABC):
             ring = self.shape(box).ring
         except TargetError:  # too flat so far; said when the button is let go
             return
-        for part in (*self.easel.mirror.all_images(ring), ring):
-            paint_proposal(painter, frame.to_pixels(part), palette)
+        for part in (*self.context.mirror.all_images(ring), ring):
+            paint_proposal(painter, transform.to_pixels(part), palette)
         paint_size(painter, self._end.pixel, box.size, palette)
 
 
 class FigureTool(BoxTool):
     """A rectangle, ellipse, regular polygon or star."""
 
-    def __init__(self, easel: Easel, kind: Figure) -> None:
-        super().__init__(easel)
+    def __init__(self, context: SketchContext, kind: Figure) -> None:
+        super().__init__(context)
         self._kind = kind
         self.hint = tr("Drag a box for the {value}. Shift keeps it regular, Ctrl leaves the grid.", value=kind.value)
 
@@ -94,7 +92,7 @@ class FigureTool(BoxTool):
         return self._kind.value
 
     def shape(self, box: Box) -> Placed:
-        return placed_figure(self._kind, box, self.easel.corners, self.easel.waist)
+        return placed_figure(self._kind, box, self.context.corners, self.context.waist)
 
 
 class TextTool(BoxTool):
@@ -107,9 +105,9 @@ class TextTool(BoxTool):
         return "text"
 
     def shape(self, box: Box) -> Placed:
-        text = self.easel.text.strip()
-        easel = self.easel
-        ring, notes = lettered(letters(text, easel.family, easel.bold, easel.italic), box)
+        text = self.context.text.strip()
+        context = self.context
+        ring, notes = lettered(letters(text, context.family, context.bold, context.italic), box)
         return Placed.from_ring(ring, text or "text", notes)
 
 

@@ -10,8 +10,8 @@ from PySide6.QtGui import QColor, QPainter, QPen
 
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.look.theme import Palette
-from kirigami_studio.gui.scene.frame import Frame
 from kirigami_studio.gui.scene.target_items import paint_label, paint_proposal
+from kirigami_studio.gui.scene.view_transform import ViewTransform
 from kirigami_studio.outlines.anchors import Anchors
 from kirigami_studio.outlines.nodes import Kind
 
@@ -44,20 +44,20 @@ class Marks:
     field: tuple[QPointF, QPointF] | None
 
 
-def paint_marks(painter: QPainter, frame: Frame, palette: Palette, marks: Marks) -> None:
+def paint_marks(painter: QPainter, transform: ViewTransform, palette: Palette, marks: Marks) -> None:
     """Draw the points of a target and what is about to happen to them."""
     anchors = marks.anchors
     if marks.dragged:
-        paint_proposal(painter, frame.to_pixels(anchors.ring), palette)
-    _paint_handles(painter, frame, palette, marks)
-    for index, (x, y) in enumerate(frame.to_pixels(anchors.places).tolist()):
+        paint_proposal(painter, transform.to_pixels(anchors.ring), palette)
+    _paint_handles(painter, transform, palette, marks)
+    for index, (x, y) in enumerate(transform.to_pixels(anchors.places).tolist()):
         chosen = index in marks.selected
         painter.setPen(QPen(QColor(palette.accent), 2.4 if index in marks.images else 1.6))
         painter.setBrush(QColor(palette.accent if chosen else palette.canvas))
         _paint_point(painter, QPointF(x, y), anchors.kinds[index])
     if marks.told is not None:
         place = anchors.places[marks.told]
-        x, y = frame.to_pixels(place).tolist()
+        x, y = transform.to_pixels(place).tolist()
         paint_label(
             painter, QPointF(x, y), tr("{place:.4g}, {place_2:.4g} mm", place=place[0], place_2=place[1]), palette
         )
@@ -69,26 +69,26 @@ def paint_marks(painter: QPainter, frame: Frame, palette: Palette, marks: Marks)
         painter.drawRect(QRectF(*marks.field).normalized())
 
 
-def _paint_point(painter: QPainter, spot: QPointF, kind: Kind) -> None:
+def _paint_point(painter: QPainter, pointer: QPointF, kind: Kind) -> None:
     """A square for a corner, a circle for what is smooth; automatic ones are diamonds."""
-    box = QRectF(spot.x() - MARK, spot.y() - MARK, 2 * MARK, 2 * MARK)
+    box = QRectF(pointer.x() - MARK, pointer.y() - MARK, 2 * MARK, 2 * MARK)
     if kind is Kind.CORNER:
         painter.drawRect(box)
     elif kind is Kind.AUTO:
         far = 1.3 * MARK
-        painter.drawPolygon([spot + QPointF(*way) for way in ((0, -far), (far, 0), (0, far), (-far, 0))])
+        painter.drawPolygon([pointer + QPointF(*way) for way in ((0, -far), (far, 0), (0, far), (-far, 0))])
     else:
         painter.drawEllipse(box)
 
 
-def _paint_handles(painter: QPainter, frame: Frame, palette: Palette, marks: Marks) -> None:
+def _paint_handles(painter: QPainter, transform: ViewTransform, palette: Palette, marks: Marks) -> None:
     anchors = marks.anchors
     for index in marks.selected:
-        start = QPointF(*frame.to_pixels(anchors.places[index]).tolist())
+        start = QPointF(*transform.to_pixels(anchors.places[index]).tolist())
         for offset in anchors.handles[index]:
             if not np.any(offset):
                 continue
-            end = QPointF(*frame.to_pixels(anchors.places[index] + offset).tolist())
+            end = QPointF(*transform.to_pixels(anchors.places[index] + offset).tolist())
             painter.setPen(QPen(QColor(palette.muted), 1.2))
             painter.drawLine(start, end)
             painter.setPen(QPen(QColor(palette.accent), 1.4))

@@ -10,15 +10,15 @@ import numpy as np
 from PySide6.QtCore import QPointF, Qt
 from PySide6.QtGui import QKeyEvent, QPainter
 
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import TargetError
 from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.gui.look.theme import Palette
-from kirigami_studio.gui.scene.frame import Frame
-from kirigami_studio.gui.sketching.easel import Change, Easel, SketchTool, Spot
+from kirigami_studio.gui.scene.view_transform import ViewTransform
 from kirigami_studio.gui.sketching.point_marks import Marks, paint_marks
+from kirigami_studio.gui.sketching.sketch_context import Change, PointerEvent, SketchContext, SketchTool
 from kirigami_studio.gui.sketching.strokes import distance
 from kirigami_studio.outlines.anchors import INTO, OUT, Anchors, with_anchors
-from kirigami_studio.outlines.contour import FloatArray
 from kirigami_studio.outlines.nodes import Kind
 from kirigami_studio.outlines.placed import Placed
 
@@ -59,8 +59,8 @@ class PointTool(SketchTool):
 
     cursor = Qt.CursorShape.ArrowCursor
 
-    def __init__(self, easel: Easel) -> None:
-        super().__init__(easel)
+    def __init__(self, context: SketchContext) -> None:
+        super().__init__(context)
         self.hint = tr(
             "Drag points or handles; Shift+click or a dragged field selects more. Double-click sets a point or rounds "
             "it. Arrow keys nudge, Delete removes, [ and ] walk."
@@ -71,13 +71,13 @@ class PointTool(SketchTool):
         self._dragged: Anchors | None = None
         self._grip = Grip.NOTHING
         self._handle: Handle | None = None
-        self._start: Spot | None = None
-        self._field: tuple[Spot, Spot] | None = None
+        self._start: PointerEvent | None = None
+        self._field: tuple[PointerEvent, PointerEvent] | None = None
         self._toggled = False
         self.chosen: int | None = None
         self.selected: frozenset[int] = frozenset()
-        easel.kind_wanted.connect(self.set_kind)
-        easel.mirror_changed.connect(self._start_anew)
+        context.kind_wanted.connect(self.set_kind)
+        context.mirror_changed.connect(self._start_anew)
 
     @property
     def anchors(self) -> Anchors | None:
@@ -85,7 +85,7 @@ class PointTool(SketchTool):
         return self._dragged or self._anchors
 
     def sync(self) -> None:
-        placed = self.easel.placed
+        placed = self.context.placed
         self._dragged = None
         if placed is self._shown and self._anchors is not None:
             self._even()
@@ -98,16 +98,16 @@ class PointTool(SketchTool):
 
     def _start_anew(self) -> None:
         """Other axes hold: points that were set for the old ones only are gone."""
-        if self.easel.placed is not None and self.easel.placed is self._shown:
-            self._anchors = Anchors.of(self.easel.placed)
+        if self.context.placed is not None and self.context.placed is self._shown:
+            self._anchors = Anchors.of(self.context.placed)
             self.select(())
             self._even()
 
     def _even(self) -> None:
         """With a mirror every point of the target has its image: set those that are missing on the line."""
-        placed, anchors = self.easel.placed, self._anchors
+        placed, anchors = self.context.placed, self._anchors
         if placed is not None and anchors is not None and placed is self._shown:
-            images = [self.easel.mirror.image(anchors.places, factors) for factors in self.easel.mirror.images]
+            images = [self.context.mirror.image(anchors.places, factors) for factors in self.context.mirror.images]
             more = anchors.evened(images, IMAGE_REACH * placed.scale)
             if more is not anchors:
                 self._anchors = more
@@ -125,20 +125,20 @@ class PointTool(SketchTool):
     def _tell(self) -> None:
         anchors = self._anchors
         kinds = frozenset() if anchors is None else frozenset(anchors.kinds[index] for index in self.selected)
-        self.easel.kinds_shown.emit(kinds)
+        self.context.kinds_shown.emit(kinds)
 
-    def press(self, spot: Spot) -> None:
-        self._start, self._toggled = spot, False
-        index = self._at(spot.pixel)
-        self._handle = None if index is not None and not spot.alt else self._handle_at(spot.pixel)
+    def press(self, pointer: PointerEvent) -> None:
+        self._start, self._toggled = pointer, False
+        index = self._at(pointer.pixel)
+        self._handle = None if index is not None and not pointer.alt else self._handle_at(pointer.pixel)
         if self._handle is not None:
             self._grip = Grip.HANDLE
         elif index is not None:
             self._grip = Grip.POINTS
-            self._press_point(index, spot.shift)
+            self._press_point(index, pointer.shift)
         else:
-            self._grip, self._field = Grip.FIELD, (spot, spot)
-            if not spot.shift:
+            self._grip, self._field = Grip.FIELD, (pointer, pointer)
+            if not pointer.shift:
                 self.select(())
 
     def _press_point(self, index: int, more: bool) -> None:
@@ -149,25 +149,25 @@ class PointTool(SketchTool):
         else:
             self.select({index}, index)
 
-    def move(self, spot: Spot, held: bool) -> None:
+    def move(self, pointer: PointerEvent, held: bool) -> None:
         anchors, start = self._anchors, self._start
         if not held or start is None or anchors is None:
             return
         if self._grip is Grip.FIELD:
-            self._field = (start, spot)
-        elif self._dragged is None and distance(start.pixel, spot.pixel) < LEAST_DRAG:
+            self._field = (start, pointer)
+        elif self._dragged is None and distance(start.pixel, pointer.pixel) < LEAST_DRAG:
             return
         elif self._grip is Grip.HANDLE and self._handle is not None:
-            self._dragged = self._with_handle(anchors, self._handle, spot)
+            self._dragged = self._with_handle(anchors, self._handle, pointer)
         elif self._grip is Grip.POINTS and self.chosen is not None:
-            self._dragged = self._shifted(anchors, np.array(spot.place) - anchors.places[self.chosen])
+            self._dragged = self._shifted(anchors, np.array(pointer.place) - anchors.places[self.chosen])
 
-    def release(self, spot: Spot) -> None:
+    def release(self, pointer: PointerEvent) -> None:
         dragged, grip, field, chosen = self._dragged, self._grip, self._field, self.chosen
         start = self._start
         self.drop()
         if grip is Grip.FIELD and field is not None:
-            self._take_field(field[0], spot)
+            self._take_field(field[0], pointer)
         elif dragged is not None:
             points = tr_n("Move point", "Move points", len(self.selected))
             self._commit(dragged, tr("Move handle") if grip is Grip.HANDLE else points)
@@ -178,7 +178,7 @@ class PointTool(SketchTool):
             elif not start.shift:
                 self.select({chosen}, chosen)
 
-    def _take_field(self, start: Spot, end: Spot) -> None:
+    def _take_field(self, start: PointerEvent, end: PointerEvent) -> None:
         anchors = self._anchors
         if anchors is None or distance(start.pixel, end.pixel) < LEAST_DRAG:
             return
@@ -186,17 +186,17 @@ class PointTool(SketchTool):
         inside = np.flatnonzero(np.all((anchors.places >= low) & (anchors.places <= high), axis=1))
         self.select({*inside.tolist(), *(self.selected if start.shift else ())})
 
-    def double_click(self, spot: Spot) -> None:
+    def double_click(self, pointer: PointerEvent) -> None:
         if self._anchors is None:
             return
         self._grip, self._start = Grip.NOTHING, None
-        index = self._at(spot.pixel)
+        index = self._at(pointer.pixel)
         if index is not None:
             self.select({index}, index)
             self._take_kind(Kind.AUTO if self._anchors.kinds[index] is Kind.CORNER else Kind.CORNER)
             return
-        more, index = self._anchors.inserted(spot.free)
-        if self._far(more.places[index], spot.pixel) <= REACH:
+        more, index = self._anchors.inserted(pointer.free)
+        if self._far(more.places[index], pointer.pixel) <= REACH:
             # Another point on the same line is no change of the target: nothing to undo, ready to be dragged.
             self._anchors = more
             self.select({index}, index)
@@ -215,7 +215,7 @@ class PointTool(SketchTool):
 
     def _take_kind(self, kind: Kind, cusp: bool = False) -> None:
         anchors = self._anchors
-        if anchors is None or not self.selected or self.easel.placed is not self._shown:
+        if anchors is None or not self.selected or self.context.placed is not self._shown:
             return
         for index in sorted(self.selected | self._images(anchors).keys()):
             anchors = anchors.as_cusp(index) if cusp else anchors.with_kind(index, kind)
@@ -227,7 +227,7 @@ class PointTool(SketchTool):
         if anchors is None:
             return False
         key, keys = event.key(), event.modifiers()
-        nudge = self.easel.nudge(event)
+        nudge = self.context.nudge(event)
         if key in (Qt.Key.Key_BracketLeft, Qt.Key.Key_BracketRight):
             self._walk(1 if key == Qt.Key.Key_BracketRight else -1, len(anchors.places))
         elif key == Qt.Key.Key_A and keys & Qt.KeyboardModifier.ControlModifier:
@@ -255,7 +255,7 @@ class PointTool(SketchTool):
         try:
             fewer = anchors.without(*gone)
         except TargetError as error:
-            self.easel.changed.emit(Change(gesture, _refusal(error)))
+            self.context.changed.emit(Change(gesture, _refusal(error)))
             return
         before = self.selected, self.chosen
         self.select(())
@@ -267,7 +267,7 @@ class PointTool(SketchTool):
         ways: dict[int, FloatArray] = {}
         images = self._images(anchors)
         for index in sorted(self.selected, key=lambda index: index != self.chosen):
-            own = [factors for factors in self.easel.mirror.images if images.get(index) == factors]
+            own = [factors for factors in self.context.mirror.images if images.get(index) == factors]
             ways.setdefault(index, way)
             for factors in own:
                 ways[index] = 0.5 * (ways[index] + ways[index] * factors)
@@ -278,29 +278,29 @@ class PointTool(SketchTool):
     def _images(self, anchors: Anchors) -> dict[int, tuple[int, int]]:
         """The mirror images of the selected points, and by which factors they are that."""
         found: dict[int, tuple[int, int]] = {}
-        placed = self.easel.placed
-        for factors in self.easel.mirror.images if placed is not None else ():
+        placed = self.context.placed
+        for factors in self.context.mirror.images if placed is not None else ():
             for index in self.selected:
-                image = self.easel.mirror.image(anchors.places[index], factors)
+                image = self.context.mirror.image(anchors.places[index], factors)
                 far = np.linalg.norm(anchors.places - image, axis=1)
                 nearest = int(np.argmin(far))
                 if placed is not None and far[nearest] <= IMAGE_REACH * placed.scale:
                     found.setdefault(nearest, factors)
         return found
 
-    def _with_handle(self, anchors: Anchors, handle: Handle, spot: Spot) -> Anchors:
-        offset = np.array(spot.place) - anchors.places[handle.anchor]
-        bent = anchors.with_handle(handle.anchor, handle.side, offset, spot.alt, spot.shift)
-        placed = self.easel.placed
-        for factors in self.easel.mirror.images if placed is not None else ():
-            image = self.easel.mirror.image(anchors.places[handle.anchor], factors)
+    def _with_handle(self, anchors: Anchors, handle: Handle, pointer: PointerEvent) -> Anchors:
+        offset = np.array(pointer.place) - anchors.places[handle.anchor]
+        bent = anchors.with_handle(handle.anchor, handle.side, offset, pointer.alt, pointer.shift)
+        placed = self.context.placed
+        for factors in self.context.mirror.images if placed is not None else ():
+            image = self.context.mirror.image(anchors.places[handle.anchor], factors)
             far = np.linalg.norm(anchors.places - image, axis=1)
             nearest = int(np.argmin(far))
             if placed is None or far[nearest] > IMAGE_REACH * placed.scale or nearest == handle.anchor:
                 continue
             turned = factors[0] * factors[1] < 0  # a reflection turns the order of the points round
             side = (INTO + OUT - handle.side) if turned else handle.side
-            bent = bent.with_handle(nearest, side, offset * factors, spot.alt, spot.shift)
+            bent = bent.with_handle(nearest, side, offset * factors, pointer.alt, pointer.shift)
         return bent
 
     def drop(self) -> None:
@@ -309,7 +309,7 @@ class PointTool(SketchTool):
 
     def _commit(self, anchors: Anchors, gesture: str, merge_key: str | None = None) -> bool:
         """Hand over the target with these points; whether it was taken.  They stay selected."""
-        placed = self.easel.placed
+        placed = self.context.placed
         if placed is None:
             return False
         before = self._anchors
@@ -320,8 +320,8 @@ class PointTool(SketchTool):
             self._anchors = anchors if made.outline.nodes is not None else Anchors.of(made)
             return made
 
-        self.easel.changed.emit(Change(gesture, make, merge_key))
-        if self.easel.placed is placed:  # refused
+        self.context.changed.emit(Change(gesture, make, merge_key))
+        if self.context.placed is placed:  # refused
             self._anchors = before
             return False
         if self._anchors is not None and len(self._anchors.places) != len(anchors.places):
@@ -352,9 +352,9 @@ class PointTool(SketchTool):
         return nearest if nearest is not None and far[nearest] <= REACH else None
 
     def _far(self, place: FloatArray, pixel: QPointF) -> float:
-        return float(np.linalg.norm(self.easel.frame.to_pixels(place) - (pixel.x(), pixel.y())))
+        return float(np.linalg.norm(self.context.transform.to_pixels(place) - (pixel.x(), pixel.y())))
 
-    def paint(self, painter: QPainter, frame: Frame, palette: Palette) -> None:
+    def paint(self, painter: QPainter, transform: ViewTransform, palette: Palette) -> None:
         anchors = self.anchors
         if anchors is None:
             return
@@ -362,7 +362,7 @@ class PointTool(SketchTool):
         images = frozenset(self._images(anchors)) - self.selected
         shown = self.chosen if self._dragged is not None and self._grip is Grip.POINTS else None
         marks = Marks(anchors, self.selected, images, self._dragged is not None, shown, field)
-        paint_marks(painter, frame, palette, marks)
+        paint_marks(painter, transform, palette, marks)
 
 
 def _refusal(error: TargetError) -> Callable[[], Placed]:

@@ -10,9 +10,9 @@ from PySide6.QtGui import QKeyEvent, QPainter
 
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.look.theme import Palette
-from kirigami_studio.gui.scene.frame import Frame
 from kirigami_studio.gui.scene.target_items import paint_sketch
-from kirigami_studio.gui.sketching.easel import FREEHAND, Easel, Place, SketchTool, Spot
+from kirigami_studio.gui.scene.view_transform import ViewTransform
+from kirigami_studio.gui.sketching.sketch_context import FREEHAND, Place, PointerEvent, SketchContext, SketchTool
 from kirigami_studio.outlines.mirroring import Mirror
 from kirigami_studio.outlines.placed import Placed
 
@@ -31,31 +31,31 @@ class Freehand(SketchTool):
 
     hint = tr("Draw the silhouette in one stroke; it closes itself when you let go.")
 
-    def __init__(self, easel: Easel) -> None:
-        super().__init__(easel)
-        self._spots: list[Spot] = []
+    def __init__(self, context: SketchContext) -> None:
+        super().__init__(context)
+        self._spots: list[PointerEvent] = []
 
-    def press(self, spot: Spot) -> None:
-        self._spots = [spot]
+    def press(self, pointer: PointerEvent) -> None:
+        self._spots = [pointer]
 
-    def move(self, spot: Spot, held: bool) -> None:
-        if held and self._spots and distance(spot.pixel, self._spots[-1].pixel) >= SMALLEST_STEP:
-            self._spots.append(spot)
+    def move(self, pointer: PointerEvent, held: bool) -> None:
+        if held and self._spots and distance(pointer.pixel, self._spots[-1].pixel) >= SMALLEST_STEP:
+            self._spots.append(pointer)
 
-    def release(self, spot: Spot) -> None:
-        points, mirror = np.array([spot.free for spot in self._spots]), self.easel.mirror
+    def release(self, pointer: PointerEvent) -> None:
+        points, mirror = np.array([pointer.free for pointer in self._spots]), self.context.mirror
         self.drop()
         if len(points) > 1:
-            self.easel.draw(lambda: stroke_of(points, mirror), FREEHAND)
+            self.context.draw(lambda: stroke_of(points, mirror), FREEHAND)
 
     def drop(self) -> None:
         self._spots = []
 
-    def paint(self, painter: QPainter, frame: Frame, palette: Palette) -> None:
+    def paint(self, painter: QPainter, transform: ViewTransform, palette: Palette) -> None:
         if self._spots:
-            points = frame.to_pixels(np.array([spot.free for spot in self._spots]))
+            points = transform.to_pixels(np.array([pointer.free for pointer in self._spots]))
             paint_sketch(painter, points, palette, corners=False)
-            _paint_images(painter, frame, palette, self.easel, [spot.free for spot in self._spots])
+            _paint_images(painter, transform, palette, self.context, [pointer.free for pointer in self._spots])
 
 
 def stroke_of(points: np.ndarray[tuple[int, ...], np.dtype[np.float64]], mirror: Mirror = PLAIN) -> Placed:
@@ -77,21 +77,21 @@ class Corners(SketchTool):
 
     hint = tr("Click the corners; close with Enter or a click on the first one. Backspace takes back.")
 
-    def __init__(self, easel: Easel) -> None:
-        super().__init__(easel)
-        self._spots: list[Spot] = []
-        self._pointer: Spot | None = None
+    def __init__(self, context: SketchContext) -> None:
+        super().__init__(context)
+        self._spots: list[PointerEvent] = []
+        self._pointer: PointerEvent | None = None
 
-    def press(self, spot: Spot) -> None:
-        if len(self._spots) >= 3 and distance(spot.pixel, self._spots[0].pixel) <= CLOSING_REACH:
+    def press(self, pointer: PointerEvent) -> None:
+        if len(self._spots) >= 3 and distance(pointer.pixel, self._spots[0].pixel) <= CLOSING_REACH:
             self._finish()
-        elif not self._spots or spot.place != self._spots[-1].place:
-            self._spots.append(spot)
+        elif not self._spots or pointer.place != self._spots[-1].place:
+            self._spots.append(pointer)
 
-    def move(self, spot: Spot, held: bool) -> None:
-        self._pointer = spot
+    def move(self, pointer: PointerEvent, held: bool) -> None:
+        self._pointer = pointer
 
-    def double_click(self, spot: Spot) -> None:
+    def double_click(self, pointer: PointerEvent) -> None:
         self._finish()
 
     def key(self, event: QKeyEvent) -> bool:
@@ -107,27 +107,29 @@ class Corners(SketchTool):
         self._spots = []
 
     def _finish(self) -> None:
-        corners = np.array([spot.place for spot in self._spots])
-        whole = self.easel.mirror.completed(corners) if len(corners) else None
+        corners = np.array([pointer.place for pointer in self._spots])
+        whole = self.context.mirror.completed(corners) if len(corners) else None
         ring = corners if whole is None else whole
         self.drop()
         if len(corners):
-            self.easel.draw(lambda: Placed.from_ring(ring, "polygon"), "polygon")
+            self.context.draw(lambda: Placed.from_ring(ring, "polygon"), "polygon")
 
-    def paint(self, painter: QPainter, frame: Frame, palette: Palette) -> None:
+    def paint(self, painter: QPainter, transform: ViewTransform, palette: Palette) -> None:
         if not self._spots:
             return
-        places = [spot.place for spot in self._spots]
+        places = [pointer.place for pointer in self._spots]
         if self._pointer is not None:
             places.append(self._pointer.place)
-        paint_sketch(painter, frame.to_pixels(np.array(places)), palette, corners=True)
-        _paint_images(painter, frame, palette, self.easel, places)
+        paint_sketch(painter, transform.to_pixels(np.array(places)), palette, corners=True)
+        _paint_images(painter, transform, palette, self.context, places)
 
 
-def _paint_images(painter: QPainter, frame: Frame, palette: Palette, easel: Easel, places: list[Place]) -> None:
+def _paint_images(
+    painter: QPainter, transform: ViewTransform, palette: Palette, context: SketchContext, places: list[Place]
+) -> None:
     """Draw what the mirror makes of an unfinished line."""
-    for image in easel.mirror.all_images(np.array(places)):
-        paint_sketch(painter, frame.to_pixels(image), palette, corners=False)
+    for image in context.mirror.all_images(np.array(places)):
+        paint_sketch(painter, transform.to_pixels(image), palette, corners=False)
 
 
 def distance(one: QPointF, other: QPointF) -> float:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QPointF, QRectF
 from PySide6.QtGui import QImage, QPainter
 
-from kirigami_studio.gui.scene.frame import Frame
+from kirigami_studio.gui.scene.view_transform import ViewTransform
 from kirigami_studio.outlines.placed import Placed
 
 if TYPE_CHECKING:
@@ -57,11 +57,11 @@ class Underlay:
         x, y = (corner + self.pixel * own for corner, own in zip(self.corner, traced.centre, strict=True))
         return Placed(traced.outline, self.pixel * traced.scale, (x, y))
 
-    def paint(self, painter: QPainter, frame: Frame) -> None:
+    def paint(self, painter: QPainter, transform: ViewTransform) -> None:
         """Draw the picture, half transparent."""
-        width, height = (self.pixel * count * frame.scale for count in self.size)
-        left = frame.origin[0] + frame.scale * self.corner[0]
-        bottom = frame.origin[1] - frame.scale * self.corner[1]
+        width, height = (self.pixel * count * transform.scale for count in self.size)
+        left = transform.origin[0] + transform.scale * self.corner[0]
+        bottom = transform.origin[1] - transform.scale * self.corner[1]
         painter.save()
         painter.setOpacity(OPACITY)
         painter.setRenderHint(QPainter.RenderHint.SmoothPixmapTransform)

@@ -11,8 +11,8 @@ from PySide6.QtWidgets import QApplication
 
 from kirigami_studio.gui.look.theme import DARK, LIGHT
 from kirigami_studio.gui.offscreen_session import Session, SessionError
-from kirigami_studio.gui.sketching.easel import Change, Spot
 from kirigami_studio.gui.sketching.point_tool import PointTool
+from kirigami_studio.gui.sketching.sketch_context import Change, PointerEvent
 from kirigami_studio.gui.views.target_view import Tool
 from kirigami_studio.outlines.combining import Combine, combined
 from kirigami_studio.outlines.figure_nodes import placed_figure
@@ -64,7 +64,7 @@ class BoardStates(Session):
         target, reshaping = self.window.target, self.window.wiring.reshaping
         body = figure(Figure.ELLIPSE, Box(-40.0, -25.0, 20.0, 25.0))
         reshaping.take(Change("Draw ellipse", lambda: Placed.from_ring(body, "ladle")))
-        arm, now = figure(Figure.RECTANGLE, Box(15.0, -3.0, 60.0, 3.0)), target.view.easel.placed
+        arm, now = figure(Figure.RECTANGLE, Box(15.0, -3.0, 60.0, 3.0)), target.view.context.placed
         reshaping.take(Change("Add rectangle", lambda: combined(now, arm, Combine.ADD, "rectangle")))
         for tool in (Tool.POINTS, Tool.POSE, Tool.STAR, Tool.TEXT):
             target.set_tool(tool)
@@ -92,8 +92,10 @@ class BoardStates(Session):
         target.set_tool(Tool.ELLIPSE)
         target.strip.set_mode(Combine.ADD)
         for place in ((10.0, 10.0), (45.0, 30.0)):
-            spot = Spot(QPointF(*target.view.easel.frame.to_pixels(np.array(place)).tolist()), place, place, False)
-            (target.view.active.press if place[0] < 20 else partial(target.view.active.move, held=True))(spot)
+            pointer = PointerEvent(
+                QPointF(*target.view.context.transform.to_pixels(np.array(place)).tolist()), place, place, False
+            )
+            (target.view.active.press if place[0] < 20 else partial(target.view.active.move, held=True))(pointer)
         self.all_sizes("editor-mirror")
         target.view.active.drop()
         target.strip.set_mode(Combine.REPLACE)

@@ -13,7 +13,7 @@ from pathlib import Path
 from PySide6.QtCore import QEvent, QPoint
 from PySide6.QtWidgets import QApplication
 
-from kirigami_studio.gui.designs.selecting import Order
+from kirigami_studio.gui.designs.selecting import SortOrder
 from kirigami_studio.gui.look.theme import DARK, LIGHT
 from kirigami_studio.gui.messages import Message, Tone
 from kirigami_studio.gui.offscreen_session import DESIGNS, SessionError, click, hover, main
@@ -119,7 +119,7 @@ class StateSheet(BoardStates):
         click(bar.filter)
         for box in (bar.feasible, bar.rejected):
             box.setChecked(True)
-        bar.order.setCurrentIndex(bar.order.findData(Order.PANEL))
+        bar.order.setCurrentIndex(bar.order.findData(SortOrder.PANEL))
         bar.order.activated.emit(bar.order.currentIndex())
         hover(view.viewport(), button_boxes(view.visualRect(view.model_.index(0, 0)))[CardButton.PIN].center())
         self.all_sizes("gallery-sorted")
@@ -186,7 +186,7 @@ class StateSheet(BoardStates):
     def before_and_after(self) -> None:
         """The first design that polishing has changed, as it was drawn."""
         controller, stage = self.window.controller, self.window.stage
-        drawn = [candidate for candidate in controller.document.candidates if candidate.drawn is not None]
+        drawn = [candidate for candidate in controller.document.candidates if candidate.sampled_field is not None]
         if not drawn:
             raise SessionError("Polishing changed no design.")
         controller.choose(drawn[0])

@@ -9,8 +9,8 @@ from PySide6.QtCore import QObject, Signal
 
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.jobs import steps
-from kirigami_studio.gui.jobs.board import Board, Ears
-from kirigami_studio.gui.jobs.slot import Slot
+from kirigami_studio.gui.jobs.queue import JobCallbacks, JobQueue
+from kirigami_studio.gui.jobs.slot import LatestJob
 from kirigami_studio.gui.targets.tracing import Tracing
 from kirigami_studio.outlines.outline import Outline
 
@@ -21,18 +21,18 @@ class Reading(QObject):
     read = Signal(object, bool)  #: Outline; whether it is the first target of the session
     failed = Signal(str, str)  #: sentence, trace
 
-    def __init__(self, board: Board, tracing: Tracing, parent: QObject) -> None:
+    def __init__(self, queue: JobQueue, tracing: Tracing, parent: QObject) -> None:
         super().__init__(parent)
         self._tracing = tracing
-        self._slot = Slot(board)
+        self._slot = LatestJob(queue)
         self.source = ""  #: of the target that was read last
         self._picture: steps.Picture | None = None
 
     def start(self, source: str, first: bool) -> None:
         """Read a file, or a silhouette of the library by name."""
         self.stop()
-        ears = Ears(partial(self._take, source, first), on_failed=self.failed.emit)
-        self._slot.start(tr("reading {name}", name=Path(source).name), partial(steps.reading_target, source), ears)
+        callbacks = JobCallbacks(partial(self._take, source, first), on_failed=self.failed.emit)
+        self._slot.start(tr("reading {name}", name=Path(source).name), partial(steps.reading_target, source), callbacks)
 
     def stop(self) -> None:
         """Forget what is still being read: something else took its place."""

@@ -9,7 +9,7 @@ from PySide6.QtCore import QObject, Signal
 
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui.sketching.easel import Change, Easel
+from kirigami_studio.gui.sketching.sketch_context import Change, SketchContext
 from kirigami_studio.outlines.placed import Placed
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.edits import Edit, without_designs
@@ -26,9 +26,9 @@ class Reshaping(QObject):
     previewed = Signal(object)  #: Placed, or None
     restarted = Signal()  #: the sliders stand for another target now
 
-    def __init__(self, easel: Easel, document: Callable[[], Document], parent: QObject) -> None:
+    def __init__(self, context: SketchContext, document: Callable[[], Document], parent: QObject) -> None:
         super().__init__(parent)
-        self._easel = easel
+        self._context = context
         self._document = document
         self._kind = ""
         self._base: Placed | None = None
@@ -36,15 +36,15 @@ class Reshaping(QObject):
 
     def take(self, change: Change) -> None:
         """Carry out a gesture, or tell why it cannot be."""
-        before = self._easel.placed
+        before = self._context.placed
         try:
             made = change.make()
         except KirigamiError as error:
             self.refused.emit(error)
             return
         if before is not None:
-            self._easel.remember(before)
-        self._easel.remember(made)
+            self._context.remember(before)
+        self._context.remember(made)
         self.edited.emit(self._edit(made, change))
 
     def _edit(self, made: Placed, change: Change) -> Edit:
@@ -63,7 +63,7 @@ class Reshaping(QObject):
         """Simplify or smooth the target that the slider started from."""
         made = self._refined(kind, strength)
         self.previewed.emit(None)
-        placed = self._easel.placed
+        placed = self._context.placed
         if made is not None and (placed is None or made.outline != placed.outline):
             self._result = made
             self.take(Change(REFINEMENTS[kind], lambda: made))
@@ -71,7 +71,7 @@ class Reshaping(QObject):
     def _refined(self, kind: str, strength: float) -> Placed | None:
         from kirigami_studio.outlines import refining
 
-        placed = self._easel.placed
+        placed = self._context.placed
         if self._base is None or placed is not self._result or kind != self._kind:
             self._base, self._result, self._kind = placed, placed, kind
         if self._base is None:
@@ -85,7 +85,7 @@ class Reshaping(QObject):
 
     def follow(self) -> None:
         """The document's target changed: the sliders start anew unless they did it."""
-        if self._easel.placed is not self._result:
+        if self._context.placed is not self._result:
             self._base = self._result = None
             self.restarted.emit()
 
@@ -93,7 +93,7 @@ class Reshaping(QObject):
         """Give the target another real size; its middle stays."""
         from kirigami_studio.outlines.refining import stretched
 
-        placed = self._easel.placed
+        placed = self._context.placed
         if placed is not None:
             known = placed.outline.size if placed.outline.unit == "mm" else None
             width, height = placed.size if known is None else known  # as it is told, free of rounding
@@ -107,7 +107,7 @@ class Reshaping(QObject):
         from kirigami_studio.outlines.combining import Half, symmetric
         from kirigami_studio.outlines.refining import stretched
 
-        placed = self._easel.placed
+        placed = self._context.placed
         if placed is None:
             return
         if how in FLIPS:

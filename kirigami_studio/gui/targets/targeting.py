@@ -9,7 +9,7 @@ from pathlib import Path
 from PySide6.QtCore import QObject, Signal
 
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui.jobs.board import Board
+from kirigami_studio.gui.jobs.queue import JobQueue
 from kirigami_studio.gui.targets.reading import Reading
 from kirigami_studio.gui.targets.tracing import Tracing
 from kirigami_studio.outlines.outline import Outline
@@ -29,12 +29,12 @@ class Targeting(QObject):
     status = Signal(str)
     failed = Signal(str, str)  #: sentence, trace
 
-    def __init__(self, board: Board, document: Callable[[], Document], parent: QObject) -> None:
+    def __init__(self, queue: JobQueue, document: Callable[[], Document], parent: QObject) -> None:
         super().__init__(parent)
         self._document = document
         self._blank = Document()
-        self.tracing = Tracing(board, self)
-        self.reading = Reading(board, self.tracing, self)
+        self.tracing = Tracing(queue, self)
+        self.reading = Reading(queue, self.tracing, self)
         self.reading.read.connect(self._take_read)
         self.reading.failed.connect(self.failed)
         self.tracing.traced.connect(self._take_traced)

@@ -11,8 +11,8 @@ from PySide6.QtCore import QObject, Signal
 
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.jobs import steps
-from kirigami_studio.gui.jobs.board import Board, Ears
-from kirigami_studio.gui.jobs.slot import Slot
+from kirigami_studio.gui.jobs.queue import JobCallbacks, JobQueue
+from kirigami_studio.gui.jobs.slot import LatestJob
 from kirigami_studio.gui.jobs.steps import Picture
 from kirigami_studio.outlines.outline import Outline
 
@@ -30,10 +30,10 @@ class Tracing(QObject):
     refused = Signal(str)
     settled = Signal()  #: the drag is over and its last threshold is traced
 
-    def __init__(self, board: Board, parent: QObject) -> None:
+    def __init__(self, queue: JobQueue, parent: QObject) -> None:
         super().__init__(parent)
         self._pictures: OrderedDict[Outline, Picture] = OrderedDict()
-        self._slot = Slot(board)
+        self._slot = LatestJob(queue)
         self._wanted: Picture | None = None
         self._drag_over = False
 
@@ -65,8 +65,10 @@ class Tracing(QObject):
         self._slot.stop()
 
     def _start(self, picture: Picture) -> None:
-        ears = Ears(partial(self._take, picture), partial(self._go_on, picture), on_failed=partial(self._fail, picture))
-        self._slot.start(tr("tracing {name}", name=picture.path.name), partial(steps.tracing, picture), ears)
+        callbacks = JobCallbacks(
+            partial(self._take, picture), partial(self._go_on, picture), on_failed=partial(self._fail, picture)
+        )
+        self._slot.start(tr("tracing {name}", name=picture.path.name), partial(steps.tracing, picture), callbacks)
 
     def _take(self, picture: Picture, report: object) -> None:
         # By its shape, not by its type: the reader is imported in the worker, which takes a while.

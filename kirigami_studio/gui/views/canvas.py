@@ -14,7 +14,7 @@ from PySide6.QtWidgets import QSizePolicy, QWidget
 
 from kirigami_studio.gui.look import icons
 from kirigami_studio.gui.look.theme import LIGHT, Palette
-from kirigami_studio.gui.scene.frame import Bounds, Frame
+from kirigami_studio.gui.scene.view_transform import Bounds, ViewTransform
 
 MARGIN = 28.0
 ZOOM_STEP = 1.2
@@ -57,7 +57,7 @@ class Canvas(QWidget):
         """Pixels in which everything is shown; the rest is for notes."""
         return QRectF(self.rect())
 
-    def paint_scene(self, painter: QPainter, frame: Frame) -> None:
+    def paint_scene(self, painter: QPainter, transform: ViewTransform) -> None:
         """Draw the scene."""
 
     def paint_notes(self, painter: QPainter) -> None:
@@ -74,13 +74,13 @@ class Canvas(QWidget):
         self.palette_ = palette
         self.update()
 
-    def frame(self) -> Frame | None:
+    def transform(self) -> ViewTransform | None:
         """How the world appears now; None while there is nothing."""
         bounds = self.scene_bounds()
         if bounds is None:
             return None
         box = self.scene_box()
-        fitted = Frame.fitting(bounds, box, self.margin())
+        fitted = ViewTransform.fitting(bounds, box, self.margin())
         return fitted.zoomed(self._zoom, box.center()).moved(self._shift.x(), self._shift.y())
 
     def margin(self) -> float:
@@ -110,9 +110,9 @@ class Canvas(QWidget):
         """Bring a place of the world to the middle, enlarged ``zoom`` times over the fitted picture."""
         self.fit()
         self.zoom(zoom)
-        frame = self.frame()
-        if frame is not None:
-            x, y = frame.to_pixels(np.array(place)).tolist()
+        transform = self.transform()
+        if transform is not None:
+            x, y = transform.to_pixels(np.array(place)).tolist()
             self._shift += self.scene_box().center() - QPointF(x, y)
             self._tell_look()
             self.update()
@@ -197,11 +197,11 @@ class Canvas(QWidget):
     # drawing -------------------------------------------------------------------------------------------------------
 
     def _paint_content(self, painter: QPainter) -> None:
-        frame = self.frame()
-        if frame is None:
+        transform = self.transform()
+        if transform is None:
             self._paint_empty(painter)
         else:
-            self.paint_scene(painter, frame)
+            self.paint_scene(painter, transform)
         self.paint_notes(painter)
 
     def _paint_background(self, painter: QPainter) -> None:

@@ -7,18 +7,17 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import pyqtgraph
 from PySide6.QtCore import QEvent, QObject, Qt, Signal
 from PySide6.QtGui import QColor, QPen, QResizeEvent, QTextDocument
 from PySide6.QtWidgets import QLabel, QSizePolicy, QVBoxLayout, QWidget
 
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.look.theme import LIGHT, Palette
 
 pg: Any = pyqtgraph  # it has types for a part of itself only
 
-FloatArray = npt.NDArray[np.float64]
 
 #: Degrees between the numbers of the angle axis.
 TICKS = (180, 135, 90, 45, 0)

@@ -23,8 +23,8 @@ from kirigami_studio.gui.scene.cut_items import (
     paint_travel,
 )
 from kirigami_studio.gui.scene.fault_items import FaultKind, paint_fault
-from kirigami_studio.gui.scene.frame import Bounds, Frame
 from kirigami_studio.gui.scene.scale_bar import LONGEST, paint_scale_bar
+from kirigami_studio.gui.scene.view_transform import Bounds, ViewTransform
 from kirigami_studio.gui.views.canvas import Canvas
 from kirigami_studio.gui.views.hinge_gestures import HingeGestures, adds
 
@@ -139,55 +139,57 @@ class CutView(Canvas):
     def scene_bounds(self) -> Bounds | None:
         return None if self._drawing is None else self._drawing.bounds
 
-    def paint_scene(self, painter: QPainter, frame: Frame) -> None:
+    def paint_scene(self, painter: QPainter, transform: ViewTransform) -> None:
         if self._drawing is None or self._connectors is None:
             return
         self.frames_painted += 1
-        paint_cut_sheet(painter, self._drawing, frame, self.palette_)
-        paint_cuts(painter, self._drawing, frame, self.palette_, self._step, QRectF(self.rect()))
+        paint_cut_sheet(painter, self._drawing, transform, self.palette_)
+        paint_cuts(painter, self._drawing, transform, self.palette_, self._step, QRectF(self.rect()))
         if CutOverlay.TRAVEL in self._overlays:
-            paint_travel(painter, self._drawing, frame, self.palette_, self._step)
+            paint_travel(painter, self._drawing, transform, self.palette_, self._step)
         if CutOverlay.CONNECTORS in self._overlays and self.picturing:
-            paint_connectors(painter, self._connectors, frame, self.palette_, self.selected)
+            paint_connectors(painter, self._connectors, transform, self.palette_, self.selected)
         elif CutOverlay.CONNECTORS in self._overlays:
-            painter.drawPixmap(0, 0, self._connector_picture(self._connectors, frame))
-        paint_start(painter, self._drawing, frame, self.palette_)
+            painter.drawPixmap(0, 0, self._connector_picture(self._connectors, transform))
+        paint_start(painter, self._drawing, transform, self.palette_)
         if CutOverlay.PROBLEMS in self._overlays:
-            self._paint_problems(painter, frame)
+            self._paint_problems(painter, transform)
         if self.gestures.band is not None:
             painter.setPen(QPen(QColor(self.palette_.accent), 1.2, Qt.PenStyle.DashLine))
             painter.setBrush(Qt.BrushStyle.NoBrush)
             painter.drawRect(self.gestures.band)
 
-    def _connector_picture(self, connectors: Connectors, frame: Frame) -> QPixmap:
+    def _connector_picture(self, connectors: Connectors, transform: ViewTransform) -> QPixmap:
         """The markers; kept while the job is played, because a thousand round dots take longer than all cuts."""
         ratio = self.devicePixelRatioF()
-        key = (connectors, frame, self.selected, self.palette_.name, self.width(), self.height(), ratio)
+        key = (connectors, transform, self.selected, self.palette_.name, self.width(), self.height(), ratio)
         if self._markers is None or self._markers[0] != key:
             picture = QPixmap(round(self.width() * ratio), round(self.height() * ratio))
             picture.setDevicePixelRatio(ratio)
             picture.fill(Qt.GlobalColor.transparent)
             painter = QPainter(picture)
             painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-            paint_connectors(painter, connectors, frame, self.palette_, self.selected)
+            paint_connectors(painter, connectors, transform, self.palette_, self.selected)
             painter.end()
             self._markers = (key, picture)
         return self._markers[1]
 
-    def _paint_problems(self, painter: QPainter, frame: Frame) -> None:
+    def _paint_problems(self, painter: QPainter, transform: ViewTransform) -> None:
         for number, problem in enumerate(self._problems):
             if problem.where is not None:
                 size = 12.0 if number == self._problem else 9.0
-                paint_fault(painter, frame.to_pixels(np.array(problem.where)), FaultKind.CONTACT, self.palette_, size)
+                paint_fault(
+                    painter, transform.to_pixels(np.array(problem.where)), FaultKind.CONTACT, self.palette_, size
+                )
 
     def paint_notes(self, painter: QPainter) -> None:
-        frame = self.frame()
-        if frame is None or self._drawing is None:
+        transform = self.transform()
+        if transform is None or self._drawing is None:
             return
         chips = self._chips()
         paint_legend(painter, chips, self._legend_boxes(chips), self.palette_)
         end = QPointF(self.width() - 16.0, self.height() - 18.0)
-        paint_scale_bar(painter, frame.scale, end, self.palette_)
+        paint_scale_bar(painter, transform.scale, end, self.palette_)
         caption = self._caption
         if self.gestures.dragged_mm is not None:
             named = tr_n("connector", "{count} connectors", len(self.selected))
@@ -228,25 +230,25 @@ class CutView(Canvas):
         self.update()
         self.selection_changed.emit(self.selected)
 
-    def _problem_at(self, place: QPointF, frame: Frame) -> int | None:
+    def _problem_at(self, place: QPointF, transform: ViewTransform) -> int | None:
         if CutOverlay.PROBLEMS not in self._overlays:
             return None
         for number, problem in enumerate(self._problems):
             if problem.where is not None:
-                x, y = frame.to_pixels(np.array(problem.where)).tolist()
+                x, y = transform.to_pixels(np.array(problem.where)).tolist()
                 if (place - QPointF(x, y)).manhattanLength() <= PROBLEM_REACH:
                     return number
         return None
 
     def mousePressEvent(self, event: QMouseEvent) -> None:  # noqa: N802 - Qt's name
-        frame = self.frame()
-        if event.button() is Qt.MouseButton.LeftButton and frame is not None:
-            problem = self._problem_at(event.position(), frame)
+        transform = self.transform()
+        if event.button() is Qt.MouseButton.LeftButton and transform is not None:
+            problem = self._problem_at(event.position(), transform)
             if problem is not None and not adds(event.modifiers()):
                 self.problem_picked.emit(problem)
                 return
             shown = CutOverlay.CONNECTORS in self._overlays
-            if shown and self.gestures.press(event.position(), frame, adds(event.modifiers())):
+            if shown and self.gestures.press(event.position(), transform, adds(event.modifiers())):
                 return
         super().mousePressEvent(event)
 
@@ -257,14 +259,14 @@ class CutView(Canvas):
             super().mouseMoveEvent(event)
 
     def mouseDoubleClickEvent(self, event: QMouseEvent) -> None:  # noqa: N802 - Qt's name
-        frame, shown = self.frame(), CutOverlay.CONNECTORS in self._overlays
-        if not (shown and frame is not None and self.gestures.double(event.position(), frame)):
+        transform, shown = self.transform(), CutOverlay.CONNECTORS in self._overlays
+        if not (shown and transform is not None and self.gestures.double(event.position(), transform)):
             super().mouseDoubleClickEvent(event)
 
     def mouseReleaseEvent(self, event: QMouseEvent) -> None:  # noqa: N802 - Qt's name
-        frame = self.frame()
-        if event.button() is Qt.MouseButton.LeftButton and frame is not None:
-            self.gestures.release(event.position(), frame)
+        transform = self.transform()
+        if event.button() is Qt.MouseButton.LeftButton and transform is not None:
+            self.gestures.release(event.position(), transform)
         super().mouseReleaseEvent(event)
 
     def event(self, event: QEvent) -> bool:
@@ -278,13 +280,13 @@ class CutView(Canvas):
         return super().event(event)
 
     def _hover(self, place: QPointF) -> str:
-        frame = self.frame()
-        if frame is None or self._connectors is None:
+        transform = self.transform()
+        if transform is None or self._connectors is None:
             return ""
-        problem = self._problem_at(place, frame)
+        problem = self._problem_at(place, transform)
         if problem is not None:
             return self._problems[problem].text
-        hinge = self._connectors.nearest(place, frame) if CutOverlay.CONNECTORS in self._overlays else None
+        hinge = self._connectors.nearest(place, transform) if CutOverlay.CONNECTORS in self._overlays else None
         return HINT if hinge is None else self._connectors.described(hinge)
 
     def _wants(self, event: QKeyEvent) -> bool:

@@ -11,7 +11,7 @@ from PySide6.QtCore import QAbstractListModel, QModelIndex, QObject, QPersistent
 from kirigami_studio.evaluate.candidate import Candidate, Origin
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.designs.entry import Entry, same_sample
-from kirigami_studio.gui.designs.selecting import Selection, Shown, arranged, least_panel, told_value
+from kirigami_studio.gui.designs.selecting import Selection, Shown, arranged, format_value, least_panel
 from kirigami_studio.pipeline.rank import rank_key
 from kirigami_studio.project.document import Mark
 
@@ -72,7 +72,7 @@ class GalleryModel(QAbstractListModel):
         if role == Qt.ItemDataRole.AccessibleDescriptionRole:
             return self._size(entry)
         if role == VALUE_ROLE:
-            return told_value(self._as_shown(entry, 0), self._selection, self._width_mm)
+            return format_value(self._as_shown(entry, 0), self._selection, self._width_mm)
         simple = {CANDIDATE_ROLE: entry.candidate, DESIGN_ROLE: entry.design, RISE_ROLE: entry.rise}
         if role == NUMBER_ROLE:
             return self.number_of(entry.candidate)

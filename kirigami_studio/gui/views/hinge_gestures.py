@@ -7,7 +7,7 @@ import math
 from PySide6.QtCore import QObject, QPointF, QRectF, Qt, Signal
 
 from kirigami_studio.gui.scene.connector_items import Connectors
-from kirigami_studio.gui.scene.frame import Frame
+from kirigami_studio.gui.scene.view_transform import ViewTransform
 from kirigami_studio.gui.views.hinge_drag import HingeDrag
 
 #: A press that moves less than this (pixels) is a click.
@@ -66,10 +66,10 @@ class HingeGestures(QObject):
             start = max(self._selected, default=-1) if step > 0 else min(self._selected, default=0)
             self.select(frozenset({(start + step) % len(self.connectors)}))
 
-    def press(self, place: QPointF, frame: Frame, adding: bool) -> bool:
+    def press(self, place: QPointF, transform: ViewTransform, adding: bool) -> bool:
         """The left button went down; whether the press belongs to the connectors."""
         self._pressed, self._adding = place, adding
-        hinge = None if self.connectors is None else self.connectors.nearest(place, frame)
+        hinge = None if self.connectors is None else self.connectors.nearest(place, transform)
         if hinge is None:
             return adding
         self._pressed = None
@@ -82,9 +82,9 @@ class HingeGestures(QObject):
             self._held = HingeDrag(hinge, place, self._told.get(hinge, self.connectors.asked_mm(hinge)))
         return True
 
-    def double(self, place: QPointF, frame: Frame) -> bool:
+    def double(self, place: QPointF, transform: ViewTransform) -> bool:
         """A double click; on a connector it is cut through, or brought back where it was."""
-        hinge = None if self.connectors is None else self.connectors.nearest(place, frame)
+        hinge = None if self.connectors is None else self.connectors.nearest(place, transform)
         if hinge is None or self.connectors is None:
             return False
         self._held = None
@@ -124,7 +124,7 @@ class HingeGestures(QObject):
             self.drag_ended.emit()
             self.changed.emit()
 
-    def release(self, place: QPointF, frame: Frame) -> None:
+    def release(self, place: QPointF, transform: ViewTransform) -> None:
         """The button came up: the band selects; a click beside all connectors forgets the selection."""
         if self._held is not None:
             self._let_go(self._held)
@@ -132,7 +132,7 @@ class HingeGestures(QObject):
         pressed, band = self._pressed, self._band
         self._pressed, self._band = None, None
         if band is not None and self.connectors is not None:
-            self.select(self._selected | self.connectors.within(band, frame))
+            self.select(self._selected | self.connectors.within(band, transform))
             self.changed.emit()
         elif pressed is not None and not self._adding and (place - pressed).manhattanLength() < CLICK:
             self.select(frozenset())

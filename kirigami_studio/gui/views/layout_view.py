@@ -7,12 +7,12 @@ from dataclasses import replace
 from enum import Enum
 
 import numpy as np
-import numpy.typing as npt
 from PySide6.QtCore import QPointF, QRectF
 from PySide6.QtGui import QFontMetrics, QPainter
 from PySide6.QtWidgets import QWidget
 
 from kirigami_studio.evaluate.score import Score
+from kirigami_studio.foundation.arrays import BoolArray, FloatArray
 from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.gui.scene.chips import Chip, legend_boxes, paint_caption, paint_legend
 from kirigami_studio.gui.scene.clear_box import clear_box
@@ -34,12 +34,12 @@ from kirigami_studio.gui.scene.fault_items import (
     inverted_panels,
     paint_fault,
 )
-from kirigami_studio.gui.scene.frame import Bounds, Frame
 from kirigami_studio.gui.scene.layout_items import paint_panels, turning_left
 from kirigami_studio.gui.scene.mismatch_items import Mismatch, difference_chips, mismatch, paint_mismatch, usual_chips
 from kirigami_studio.gui.scene.posed import PosedDesign
 from kirigami_studio.gui.scene.small_parts import SmallPart, smallest_parts
 from kirigami_studio.gui.scene.target_items import paint_target_line
+from kirigami_studio.gui.scene.view_transform import Bounds, ViewTransform
 from kirigami_studio.gui.scene.void_numbers import (
     heat_tiles,
     paint_dimension,
@@ -97,8 +97,8 @@ class LayoutView(Canvas):
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self._design: PosedDesign | None = None
-        self._inverted: npt.NDArray[np.bool_] = np.zeros(0, dtype=np.bool_)
-        self._contact: npt.NDArray[np.float64] | None = None
+        self._inverted: BoolArray = np.zeros(0, dtype=np.bool_)
+        self._contact: FloatArray | None = None
         self._contact_phi: float | None = None
         self._target: Outline | None = None
         self._bounds: Bounds | None = None
@@ -178,8 +178,8 @@ class LayoutView(Canvas):
         self.update()
 
     def _void_shapes(self) -> VoidShapes | None:
-        frame = self.frame()
-        return None if self._design is None or frame is None else VoidShapes.of(self._design, self._phi, frame)
+        transform = self.transform()
+        return None if self._design is None or transform is None else VoidShapes.of(self._design, self._phi, transform)
 
     def set_phi(self, phi: float) -> None:
         """Show another angle, radians."""
@@ -228,11 +228,11 @@ class LayoutView(Canvas):
 
     def fault_at(self, pixel: QPointF) -> Fault | None:
         """The marked fault under a pixel, if any."""
-        frame = self.frame()
-        if frame is None:
+        transform = self.transform()
+        if transform is None:
             return None
         for fault in self._faults:
-            x, y = frame.to_pixels(np.array(fault.where)).tolist()
+            x, y = transform.to_pixels(np.array(fault.where)).tolist()
             if math.hypot(x - pixel.x(), y - pixel.y()) <= FAULT_REACH:
                 return fault
         return None
@@ -295,26 +295,26 @@ class LayoutView(Canvas):
             chips = self._fitting(ways, metrics)
         return list(zip(chips, legend_boxes(chips, metrics, self.width(), self.height()), strict=True))
 
-    def paint_scene(self, painter: QPainter, frame: Frame) -> None:
+    def paint_scene(self, painter: QPainter, transform: ViewTransform) -> None:
         if self._design is None:
             return
         self.frames_painted += 1
         nodes = self._design.nodes(self._phi)
         field = self._design.deployment.field
-        panels = frame.to_pixels(self._design.panels(nodes))
-        kept = {row: frame.to_pixels(part) for row, part in self._design.kept(nodes, self._phi).items()}
+        panels = transform.to_pixels(self._design.panels(nodes))
+        kept = {row: transform.to_pixels(part) for row, part in self._design.kept(nodes, self._phi).items()}
         palette = self.palette_
         if Overlay.RATIOS in self._overlays:  # blue means a ratio there, not a panel
             palette = replace(palette, panel_even=palette.border, panel_odd=palette.grid, panel_line=palette.muted)
         paint_panels(painter, panels, turning_left(field.rows, field.columns), palette, kept)
-        self._paint_voids(painter, frame, nodes)
+        self._paint_voids(painter, transform, nodes)
         if self._target is not None:
-            self._paint_comparison(painter, frame, nodes)
-        self._paint_labels(painter, frame, nodes)
-        self._paint_faults(painter, frame)
+            self._paint_comparison(painter, transform, nodes)
+        self._paint_labels(painter, transform, nodes)
+        self._paint_faults(painter, transform)
         self.voids.paint(painter, self.palette_)
 
-    def _paint_voids(self, painter: QPainter, frame: Frame, nodes: npt.NDArray[np.float64]) -> None:
+    def _paint_voids(self, painter: QPainter, transform: ViewTransform, nodes: FloatArray) -> None:
         """Colours of voids: by their ratio, by their area."""
         self._scales = []
         design = self._design
@@ -323,14 +323,14 @@ class LayoutView(Canvas):
         field = design.deployment.field
         if Overlay.RATIOS in self._overlays:
             self._scales.append(ratio_scale(field.ratio, self.palette_))
-            paint_heat(painter, frame.to_pixels(design.panels(nodes)), field.ratio, self._scales[-1], self.palette_)
+            paint_heat(painter, transform.to_pixels(design.panels(nodes)), field.ratio, self._scales[-1], self.palette_)
         if Overlay.OPENINGS in self._overlays:
             voids, mm2 = design.voids(nodes), self.mm_per_unit**2
             self._scales.append(opening_scale(self._largest_opening * mm2, self.palette_))
             areas = quad_areas(voids).ravel() * mm2
-            paint_shaded(painter, frame.to_pixels(voids).reshape(-1, 4, 2), areas, self._scales[-1])
+            paint_shaded(painter, transform.to_pixels(voids).reshape(-1, 4, 2), areas, self._scales[-1])
 
-    def _paint_labels(self, painter: QPainter, frame: Frame, nodes: npt.NDArray[np.float64]) -> None:
+    def _paint_labels(self, painter: QPainter, transform: ViewTransform, nodes: FloatArray) -> None:
         """Numbers of panels and voids where they fit, and sizes of the smallest parts."""
         design = self._design
         if design is None:
@@ -338,25 +338,25 @@ class LayoutView(Canvas):
         field, panels, voids = design.deployment.field, design.panels(nodes), design.voids(nodes)
         rows, columns = field.rows, field.columns
         if Overlay.PANEL_NUMBERS in self._overlays:
-            grid = frame.to_pixels(panels).reshape(rows + 1, columns + 1, 4, 2)
+            grid = transform.to_pixels(panels).reshape(rows + 1, columns + 1, 4, 2)
             paint_numbers(painter, grid.mean(axis=2), room_in(grid), self.palette_, framed=False)
         if Overlay.VOID_NUMBERS in self._overlays:
-            tiles = frame.to_pixels(heat_tiles(panels, rows, columns))
-            paint_numbers(painter, frame.to_pixels(voids).mean(axis=2), room_in(tiles), self.palette_, framed=True)
-        lengths: list[tuple[float, npt.NDArray[np.float64]]] = []
+            tiles = transform.to_pixels(heat_tiles(panels, rows, columns))
+            paint_numbers(painter, transform.to_pixels(voids).mean(axis=2), room_in(tiles), self.palette_, framed=True)
+        lengths: list[tuple[float, FloatArray]] = []
         if self._areas is not None:
-            gap = frame.to_pixels(self._areas.gap.ends)
+            gap = transform.to_pixels(self._areas.gap.ends)
             if np.linalg.norm(gap[1] - gap[0]) >= SHORTEST_GAP:
                 lengths.append((self._areas.gap.greatest, gap))
         if Overlay.SMALL_PARTS in self._overlays:
-            lengths += [(part.size, frame.to_pixels(part.ends(panels))) for part in self._small]
+            lengths += [(part.size, transform.to_pixels(part.ends(panels))) for part in self._small]
         taken: list[QRectF] = []
         for length, ends in lengths:
             paint_dimension(
                 painter, ends, tr("{mm_per_unit:.2f} mm", mm_per_unit=length * self.mm_per_unit), self.palette_, taken
             )
 
-    def _paint_comparison(self, painter: QPainter, frame: Frame, nodes: npt.NDArray[np.float64]) -> None:
+    def _paint_comparison(self, painter: QPainter, transform: ViewTransform, nodes: FloatArray) -> None:
         self._areas = None
         if self._design is None or self._target is None:
             return
@@ -365,20 +365,20 @@ class LayoutView(Canvas):
             outline, removed = self._design.outline(nodes, self._phi), self._design.removed(nodes, self._phi)
             self._areas = mismatch(self._target.points, outline, removed)
             painter.setOpacity(min(1.0, 2.0 * nearness))
-            paint_mismatch(painter, self._areas, frame, self.palette_)
+            paint_mismatch(painter, self._areas, transform, self.palette_)
             painter.setOpacity(1.0)
         if Overlay.TARGET in self._overlays:
             painter.setOpacity(min(1.0, max(FAINT, 2.0 * nearness)))
-            paint_target_line(painter, frame.to_pixels(self._target.points), self.palette_)
+            paint_target_line(painter, transform.to_pixels(self._target.points), self.palette_)
             painter.setOpacity(1.0)
 
-    def _paint_faults(self, painter: QPainter, frame: Frame) -> None:
+    def _paint_faults(self, painter: QPainter, transform: ViewTransform) -> None:
         self._faults = ()
         if Overlay.FAULTS not in self._overlays:
             return
         self._faults = self.find_faults()
         for fault in self._faults:
-            paint_fault(painter, frame.to_pixels(np.array(fault.where)), fault.kind, self.palette_)
+            paint_fault(painter, transform.to_pixels(np.array(fault.where)), fault.kind, self.palette_)
 
     def paint_notes(self, painter: QPainter) -> None:
         if self._design is None:

@@ -19,7 +19,6 @@ from PySide6.QtWidgets import QWidget
 
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.jobs.steps import Picture
-from kirigami_studio.gui.scene.frame import Bounds, Frame
 from kirigami_studio.gui.scene.target_items import (
     paint_axes,
     paint_grid,
@@ -28,10 +27,11 @@ from kirigami_studio.gui.scene.target_items import (
     paint_target_line,
     paint_target_shape,
 )
+from kirigami_studio.gui.scene.view_transform import Bounds, ViewTransform
 from kirigami_studio.gui.sketching.boxes import FigureTool, TextTool
-from kirigami_studio.gui.sketching.easel import BOARD, Easel, SketchTool, Spot
 from kirigami_studio.gui.sketching.point_tool import PointTool
 from kirigami_studio.gui.sketching.pose_tool import PoseTool
+from kirigami_studio.gui.sketching.sketch_context import BOARD, PointerEvent, SketchContext, SketchTool
 from kirigami_studio.gui.sketching.strokes import Corners, Freehand
 from kirigami_studio.gui.sketching.underlay import Underlay
 from kirigami_studio.gui.views.canvas import Canvas
@@ -78,11 +78,11 @@ class TargetView(Canvas):
         self._editing = False
         self._board = BOARD
         self._drop_here = False
-        self.easel = Easel(self)
-        self.easel.repaint.connect(self.update)
-        self.easel.tool_done.connect(self.tool_left)
+        self.context = SketchContext(self)
+        self.context.repaint.connect(self.update)
+        self.context.tool_done.connect(self.tool_left)
         self._tool = Tool.LOOK
-        self._tools = _tools(self.easel)
+        self._tools = _tools(self.context)
         self.setAcceptDrops(True)
         self.setMouseTracking(True)
         self.setObjectName("targetView")
@@ -108,7 +108,7 @@ class TargetView(Canvas):
         One that was drawn here, or traced from the picture that lies here, stays where it is, with the board as it is
         seen; another one is fitted.
         """
-        drawn = None if outline is None else self.easel.recall(outline)
+        drawn = None if outline is None else self.context.recall(outline)
         traced = None if picture is None else picture.traced
         under = self.underlay
         if under is not None and picture is not None and traced is not None and under.path == picture.path:
@@ -119,10 +119,10 @@ class TargetView(Canvas):
         elif drawn is None:
             under = None
         self._outline, self._preview, self.reach = outline, None, None
-        self.easel.placed = drawn or (None if outline is None else Placed.on_board(outline))
+        self.context.placed = drawn or (None if outline is None else Placed.on_board(outline))
         seen = None if picture is None else picture.seen
-        if under is None and picture is not None and seen is not None and traced is not None and self.easel.placed:
-            under = Underlay.under(self.easel.placed, picture.path, seen, traced)
+        if under is None and picture is not None and seen is not None and traced is not None and self.context.placed:
+            under = Underlay.under(self.context.placed, picture.path, seen, traced)
         self.underlay = under
         if drawn is None or not self._editing:
             self._choose_board()
@@ -159,7 +159,7 @@ class TargetView(Canvas):
 
     def _choose_board(self) -> None:
         """Room to draw in: around the target, or the empty board."""
-        placed = self.easel.placed
+        placed = self.context.placed
         if placed is None:
             self._board = BOARD
             return
@@ -181,35 +181,35 @@ class TargetView(Canvas):
     def scene_bounds(self) -> Bounds | None:
         if self._editing:
             return self._board
-        if self.easel.placed is not None:
-            return Bounds.of(self.easel.placed.ring)
+        if self.context.placed is not None:
+            return Bounds.of(self.context.placed.ring)
         return None if self._tool is Tool.LOOK else BOARD
 
-    def paint_scene(self, painter: QPainter, frame: Frame) -> None:
-        self.easel.frame = frame
-        if self._editing and self.easel.snapping:
+    def paint_scene(self, painter: QPainter, transform: ViewTransform) -> None:
+        self.context.transform = transform
+        if self._editing and self.context.snapping:
             inside = QRectF(self.rect()).adjusted(2, 2, -2, -2)
-            paint_grid(painter, frame, self.easel.step, inside, self.palette_)
+            paint_grid(painter, transform, self.context.step, inside, self.palette_)
         if self.underlay is not None:
-            self.underlay.paint(painter, frame)
-        if self.easel.placed is not None:
-            replacing = self.easel.combine is Combine.REPLACE and self._tool in DRAWING
+            self.underlay.paint(painter, transform)
+        if self.context.placed is not None:
+            replacing = self.context.combine is Combine.REPLACE and self._tool in DRAWING
             painter.setOpacity(0.25 if replacing else 1.0)
             paint = paint_target_shape if self.underlay is None else paint_target_line
-            paint(painter, frame.to_pixels(self.easel.placed.ring), self.palette_)
-            self._paint_reach(painter, frame, self.easel.placed)
+            paint(painter, transform.to_pixels(self.context.placed.ring), self.palette_)
+            self._paint_reach(painter, transform, self.context.placed)
             painter.setOpacity(1.0)
         if self._preview is not None:
-            paint_proposal(painter, frame.to_pixels(self._preview.ring), self.palette_)
+            paint_proposal(painter, transform.to_pixels(self._preview.ring), self.palette_)
         if self._editing:
-            paint_axes(painter, frame, self.easel.mirror, QRectF(self.rect()), self.palette_)
-        self.active.paint(painter, frame, self.palette_)
+            paint_axes(painter, transform, self.context.mirror, QRectF(self.rect()), self.palette_)
+        self.active.paint(painter, transform, self.palette_)
 
-    def _paint_reach(self, painter: QPainter, frame: Frame, placed: Placed) -> None:
+    def _paint_reach(self, painter: QPainter, transform: ViewTransform, placed: Placed) -> None:
         if self.reach is None or self._preview is not None:
             return
         arms, notches = (
-            [frame.to_pixels(ring * placed.scale + placed.centre) for ring in rings]
+            [transform.to_pixels(ring * placed.scale + placed.centre) for ring in rings]
             for rings in (self.reach.arms, self.reach.notches)
         )
         paint_reach(painter, arms, notches, self.palette_)
@@ -222,9 +222,9 @@ class TargetView(Canvas):
 
     # the pointer and the keys --------------------------------------------------------------------------------------
 
-    def _spot(self, event: QMouseEvent) -> Spot:
-        self.easel.frame = self.frame() or self.easel.frame
-        return self.easel.spot(event.position(), event.modifiers())
+    def _spot(self, event: QMouseEvent) -> PointerEvent:
+        self.context.transform = self.transform() or self.context.transform
+        return self.context.pointer(event.position(), event.modifiers())
 
     def mousePressEvent(self, event: QMouseEvent) -> None:  # noqa: N802 - Qt's name
         if self._tool is Tool.LOOK or event.button() is not Qt.MouseButton.LeftButton:
@@ -293,20 +293,20 @@ class TargetView(Canvas):
 DRAWING = frozenset(Tool) - {Tool.LOOK, Tool.POINTS, Tool.POSE}
 
 
-def _tools(easel: Easel) -> dict[Tool, SketchTool]:
-    looking = SketchTool(easel)
+def _tools(context: SketchContext) -> dict[Tool, SketchTool]:
+    looking = SketchTool(context)
     looking.cursor = Qt.CursorShape.ArrowCursor
     return {
         Tool.LOOK: looking,
-        Tool.POINTS: PointTool(easel),
-        Tool.POSE: PoseTool(easel),
-        Tool.FREEHAND: Freehand(easel),
-        Tool.POLYGON: Corners(easel),
-        Tool.RECTANGLE: FigureTool(easel, Figure.RECTANGLE),
-        Tool.ELLIPSE: FigureTool(easel, Figure.ELLIPSE),
-        Tool.REGULAR: FigureTool(easel, Figure.REGULAR),
-        Tool.STAR: FigureTool(easel, Figure.STAR),
-        Tool.TEXT: TextTool(easel),
+        Tool.POINTS: PointTool(context),
+        Tool.POSE: PoseTool(context),
+        Tool.FREEHAND: Freehand(context),
+        Tool.POLYGON: Corners(context),
+        Tool.RECTANGLE: FigureTool(context, Figure.RECTANGLE),
+        Tool.ELLIPSE: FigureTool(context, Figure.ELLIPSE),
+        Tool.REGULAR: FigureTool(context, Figure.REGULAR),
+        Tool.STAR: FigureTool(context, Figure.STAR),
+        Tool.TEXT: TextTool(context),
     }
 
 

@@ -219,7 +219,7 @@ class VoidGestures(QObject):
             self._grasp, self._moves = partial(self.vertex_begun.emit, vertex), self.vertex_moved
         elif void is not None:
             self.select(frozenset({void}))
-            self._grasp = partial(self.pull_begun.emit, void, shapes.frame.to_world(place))
+            self._grasp = partial(self.pull_begun.emit, void, shapes.transform.to_world(place))
             self._moves = self.pulled
         else:
             return False
@@ -241,7 +241,7 @@ class VoidGestures(QObject):
             self._dragging = True
             self._grasp(shapes.phi)
         if self._dragging and shapes is not None:
-            self._moves.emit(shapes.frame.to_world(place))
+            self._moves.emit(shapes.transform.to_world(place))
         self._canvas.update()
         return True
 

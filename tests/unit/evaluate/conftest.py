@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from kirigami_studio.evaluate.similarity import FloatArray
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.lattice.compact import barycentric_stencil
 from kirigami_studio.lattice.deployment import Deployment, even_panel_part
 from kirigami_studio.lattice.ratio_field import RatioField, frozen

@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 import shapely
 
-from kirigami_studio.evaluate.agreement import drawn_ious, exact_ious
+from kirigami_studio.evaluate.agreement import exact_ious, raster_ious
 from kirigami_studio.evaluate.boundary import as_plane
-from kirigami_studio.evaluate.silhouette import Frame, filled_in_frame, rasterise_in_frame
-from kirigami_studio.evaluate.similarity import FloatArray, Similarity
+from kirigami_studio.evaluate.silhouette import RasterFrame, filled_in_frame, rasterise_in_frame
+from kirigami_studio.evaluate.similarity import Similarity
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.outlines.silhouettes import load
@@ -29,19 +30,19 @@ def laid() -> FloatArray:
 
 
 def drawn_one_by_one(shape: FloatArray, target: FloatArray) -> float:
-    frame = Frame.around(target).covering(shape)
+    frame = RasterFrame.around(target).covering(shape)
     first, second = rasterise_in_frame(shape, frame), rasterise_in_frame(target, frame)
     return float(np.count_nonzero(first & second) / np.count_nonzero(first | second))
 
 
 def test_that_pixels_are_counted_as_one_by_one(laid: FloatArray) -> None:
     target = load("heart").points
-    assert drawn_ious(laid, target).tolist() == [drawn_one_by_one(shape, target) for shape in laid]
-    assert [drawn_ious(shape[None], target)[0] for shape in laid] == drawn_ious(laid, target).tolist()
+    assert raster_ious(laid, target).tolist() == [drawn_one_by_one(shape, target) for shape in laid]
+    assert [raster_ious(shape[None], target)[0] for shape in laid] == raster_ious(laid, target).tolist()
 
 
 def test_that_many_polygons_are_filled_as_one_by_one(laid: FloatArray) -> None:
-    frame = Frame.around(load("star").points, 40)
+    frame = RasterFrame.around(load("star").points, 40)
     masks, (row, column) = filled_in_frame(as_plane(laid), frame)
     assert (row, column) > (0, 0)
     for mask, shape in zip(masks, laid, strict=True):

@@ -10,7 +10,8 @@ from scipy.optimize import minimize
 from kirigami_studio.evaluate.alignment import align, align_many
 from kirigami_studio.evaluate.alignment_target import alignment_target
 from kirigami_studio.evaluate.boundary import as_plane, edge_parts
-from kirigami_studio.evaluate.similarity import FloatArray, Similarity
+from kirigami_studio.evaluate.similarity import Similarity
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField

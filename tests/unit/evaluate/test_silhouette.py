@@ -8,15 +8,15 @@ import numpy as np
 import pytest
 from skimage.draw import polygon2mask
 
-from kirigami_studio.evaluate.silhouette import Frame, rasterise, rasterise_in_frame
-from kirigami_studio.evaluate.similarity import FloatArray
+from kirigami_studio.evaluate.silhouette import RasterFrame, rasterise, rasterise_in_frame
 from kirigami_studio.evaluate.siou import mask_siou
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 
 
-def slow_mask(polygon: FloatArray, frame: Frame) -> np.ndarray:
+def slow_mask(polygon: FloatArray, frame: RasterFrame) -> np.ndarray:
     """The same picture by scikit-image's point-in-polygon test at every pixel centre."""
     column = (polygon[:, 0] - frame.left) / frame.pixel - 0.5
     row = (frame.top - polygon[:, 1]) / frame.pixel - 0.5
@@ -28,7 +28,7 @@ def slow_mask(polygon: FloatArray, frame: Frame) -> np.ndarray:
 def test_that_the_scanline_mask_is_the_point_in_polygon_mask(seed: int, phi: float) -> None:
     field = RatioField.from_log10(np.random.default_rng(seed).uniform(-1, 1, (10, 10)))
     outline = deploy(field).outline(phi)
-    frame = Frame.around(outline, 128)
+    frame = RasterFrame.around(outline, 128)
     assert np.count_nonzero(rasterise(outline) != slow_mask(outline, frame)) <= 2
 
 
@@ -50,7 +50,7 @@ def test_that_place_size_and_orientation_do_not_change_the_mask(letter_l: FloatA
 
 def test_that_a_covering_frame_keeps_its_pixels_and_holds_both_shapes(letter_l: FloatArray) -> None:
     moved = letter_l + np.array([1.0, -2.0])
-    wide = Frame.around(letter_l, 100).covering(moved)
+    wide = RasterFrame.around(letter_l, 100).covering(moved)
     first, second = rasterise_in_frame(letter_l, wide), rasterise_in_frame(moved, wide)
     assert first.sum() == rasterise(letter_l, 100).sum() == second.sum()
     np.testing.assert_array_equal(second[40:, 20:], first[: first.shape[0] - 40, : first.shape[1] - 20])

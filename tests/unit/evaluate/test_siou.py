@@ -9,8 +9,9 @@ import pytest
 from scipy.ndimage import rotate, zoom
 
 from kirigami_studio.evaluate.silhouette import rasterise
-from kirigami_studio.evaluate.similarity import FloatArray, Similarity
+from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.evaluate.siou import mask_siou
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.outlines import silhouettes
 

@@ -7,11 +7,11 @@ import math
 import numpy as np
 import pytest
 
-from kirigami_studio.evaluate.boundary import PlaneArray
 from kirigami_studio.evaluate.clearance import stays_clear
 from kirigami_studio.evaluate.crossing import deepest_crossing
 from kirigami_studio.evaluate.feasibility import invalid_quads, overlap_ratio, path_contact
 from kirigami_studio.evaluate.soundness import Soundness, soundness_of_many
+from kirigami_studio.foundation.arrays import ComplexArray
 from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 
@@ -22,7 +22,7 @@ def one_by_one(sheet: Deployment, phi: float) -> Soundness:
     return Soundness(invalid_quads(sheet, phi), overlap_ratio(sheet, phi), path_contact(sheet, phi))
 
 
-def random_linkage(draw: np.random.Generator, edges: int) -> tuple[PlaneArray, PlaneArray]:
+def random_linkage(draw: np.random.Generator, edges: int) -> tuple[ComplexArray, ComplexArray]:
     """U and V of a closed chain of rigid edges, each of which turns with one family or the other."""
     even = np.roll(np.repeat([True, False], edges // 2), draw.integers(edges))
     if draw.random() < 0.5:

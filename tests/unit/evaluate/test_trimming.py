@@ -11,8 +11,9 @@ from shapely.geometry import Point, Polygon
 
 from kirigami_studio.evaluate.alignment import align
 from kirigami_studio.evaluate.kept_panels import edge_panels
-from kirigami_studio.evaluate.similarity import FloatArray, Similarity
+from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.evaluate.trimming import KEEP, Trim, trim
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import AngleError, Cancelled, UsageError
 from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.lattice.ratio_field import RatioField

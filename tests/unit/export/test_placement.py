@@ -6,16 +6,16 @@ import numpy as np
 import pytest
 from shapely.geometry import box
 
-from kirigami_studio.export.dxf_content import DrawnPath
+from kirigami_studio.export.dxf_content import FilePath
 from kirigami_studio.export.placement import placement_problems
 from kirigami_studio.fabricate.checks import Severity
 
 SHEET = box(0, 0, 50, 40)
-OUTLINE = DrawnPath(np.array(SHEET.exterior.coords), "OUTLINE", True)
+OUTLINE = FilePath(np.array(SHEET.exterior.coords), "OUTLINE", True)
 
 
-def cut(layer: str, *points: tuple[float, float]) -> DrawnPath:
-    return DrawnPath(np.array(points, dtype=float), layer, False)
+def cut(layer: str, *points: tuple[float, float]) -> FilePath:
+    return FilePath(np.array(points, dtype=float), layer, False)
 
 
 def test_that_well_placed_cuts_have_no_problems() -> None:
@@ -23,7 +23,7 @@ def test_that_well_placed_cuts_have_no_problems() -> None:
     problems = placement_problems(paths, SHEET)
     assert [problem.severity for problem in problems] == [Severity.WARNING]
     assert "origin" in problems[0].text
-    shifted = [DrawnPath(drawn.points + 1.0, drawn.layer, drawn.closed) for drawn in paths]
+    shifted = [FilePath(drawn.points + 1.0, drawn.layer, drawn.closed) for drawn in paths]
     assert placement_problems(shifted, box(1, 1, 51, 41)) == []
 
 
@@ -36,7 +36,7 @@ def test_that_well_placed_cuts_have_no_problems() -> None:
         (cut("SLITS", (10, 10), (50, 10)), "reaches the outline"),
     ],
 )
-def test_that_misplaced_cuts_are_errors_with_a_place(path: DrawnPath, word: str) -> None:
+def test_that_misplaced_cuts_are_errors_with_a_place(path: FilePath, word: str) -> None:
     (problem,) = placement_problems([path, OUTLINE], SHEET)
     assert problem.severity is Severity.ERROR
     assert word in problem.text

@@ -15,9 +15,9 @@ from kirigami_studio.fabricate.cut_plan import CutPath, CutPlan, Layer, plan_cut
 from kirigami_studio.fabricate.material import find_material
 from kirigami_studio.fabricate.options import CutOptions
 from kirigami_studio.fabricate.tabs import joined_ring, tabbed
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import FabricationError
 from kirigami_studio.lattice.deployment import Deployment
-from kirigami_studio.lattice.ratio_field import FloatArray
 
 MakeDesign = Callable[..., Deployment]
 SQUARE = np.array([[0.0, 0.0], [40.0, 0.0], [40.0, 40.0], [0.0, 40.0]])

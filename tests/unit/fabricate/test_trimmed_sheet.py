@@ -16,9 +16,9 @@ from kirigami_studio.fabricate.cut_plan import CutPlan, Layer, plan_cuts
 from kirigami_studio.fabricate.material import find_material
 from kirigami_studio.fabricate.slits import cut_table
 from kirigami_studio.fabricate.trimmed_sheet import kept_area, needed_keep, outline_around
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import FabricationError
 from kirigami_studio.lattice.deployment import Deployment
-from kirigami_studio.lattice.ratio_field import FloatArray
 
 MakeDesign = Callable[..., Deployment]
 

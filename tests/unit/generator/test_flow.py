@@ -6,8 +6,9 @@ import pytest
 import torch
 from small_networks import random_fields, random_network, silhouettes
 
+from kirigami_studio.foundation.paper import LOG_RATIO_LIMIT
 from kirigami_studio.generator.conditioning import contour_points
-from kirigami_studio.generator.flow import Z_LIMIT, integrate, trail
+from kirigami_studio.generator.flow import integrate, trail
 from kirigami_studio.generator.network import TargetCode, VelocityNetwork
 from kirigami_studio.generator.sheet import Sheet
 from kirigami_studio.training.preference_loss import boundary_gap
@@ -26,7 +27,7 @@ class Recorded(VelocityNetwork):
 
     def correction(self, z: torch.Tensor, code: TargetCode) -> torch.Tensor:
         self.__dict__.setdefault("asked", []).append("correct")
-        assert float(z.abs().max()) <= Z_LIMIT
+        assert float(z.abs().max()) <= LOG_RATIO_LIMIT
         return super().correction(z, code)
 
 
@@ -83,9 +84,9 @@ def test_that_corrections_are_added_to_the_euler_steps_on_the_sheet(sheet: Sheet
     first, second, last = trail(network, noise, code, 4)
     half = noise + 0.5 * network(noise, torch.zeros(3), code)
     torch.testing.assert_close(first, code.on_sheet(half + 0.5 * network(half, torch.full((3,), 0.5), code)))
-    bounded = first.clamp(-Z_LIMIT, Z_LIMIT)
+    bounded = first.clamp(-LOG_RATIO_LIMIT, LOG_RATIO_LIMIT)
     torch.testing.assert_close(second, bounded + network.correction(bounded, code))
-    bounded = second.clamp(-Z_LIMIT, Z_LIMIT)
+    bounded = second.clamp(-LOG_RATIO_LIMIT, LOG_RATIO_LIMIT)
     torch.testing.assert_close(last, bounded + network.correction(bounded, code))
     assert torch.equal(integrate(network, noise, code, 4), last)
 

@@ -10,8 +10,9 @@ import pytest
 import torch
 
 from kirigami_studio.evaluate.score import evaluate
+from kirigami_studio.foundation.paper import LOG_RATIO_LIMIT
 from kirigami_studio.generator.network import VelocityNetwork
-from kirigami_studio.generator.sampler import Z_LIMIT, draw_fields, one_pose, pose_angle, posed
+from kirigami_studio.generator.sampler import draw_fields, one_pose, pose_angle, posed
 from kirigami_studio.generator.sheet import Sheet
 from kirigami_studio.generator.weights import Model, load_model
 from kirigami_studio.lattice.deployment import deploy
@@ -62,7 +63,7 @@ def test_that_asking_for_more_keeps_the_first_candidates(model: Model) -> None:
 def test_that_any_grid_can_be_asked_for(model: Model, grid: tuple[int, int]) -> None:
     fields = draw_fields(model, load("drop"), grid, 2, 0, 4)
     assert all(field.ratio.shape == grid for field in fields)
-    assert all(np.abs(field.log10).max() <= Z_LIMIT + 1e-12 for field in fields)
+    assert all(np.abs(field.log10).max() <= LOG_RATIO_LIMIT + 1e-12 for field in fields)
 
 
 def test_that_sampling_leaves_the_thread_setting_alone(model: Model) -> None:
@@ -102,7 +103,7 @@ def test_that_every_sheet_gets_fields_of_its_own_grid_that_seed_and_number_decid
     grid = sheet.rows, sheet.columns
     few, many = (draw_fields(corrector, load("star"), grid, k, 3, 4, sheet.phi) for k in (2, 9))
     assert all(field.ratio.shape == grid for field in many)
-    assert all(np.abs(field.log10).max() <= Z_LIMIT + 1e-12 for field in many)
+    assert all(np.abs(field.log10).max() <= LOG_RATIO_LIMIT + 1e-12 for field in many)
     assert many[:2] == few
     assert many[8] not in many[:8]
     assert draw_fields(corrector, load("star"), grid, 2, 4, 4, sheet.phi)[0] != few[0]
@@ -119,7 +120,7 @@ def test_that_another_grid_is_matched_better_than_by_carrying_fields_over(model:
     heart = load("heart")
     own = draw_fields(model, heart, (10, 10), 16, 0, 4)
     carried = resize_fields(np.stack([field.log10 for field in own]), 16, 16)
-    resized = tuple(RatioField.from_log10(np.clip(z, -Z_LIMIT, Z_LIMIT)) for z in carried)
+    resized = tuple(RatioField.from_log10(np.clip(z, -LOG_RATIO_LIMIT, LOG_RATIO_LIMIT)) for z in carried)
     plain = mean_match(resized, heart)
     assert mean_match(draw_fields(model, heart, (16, 16), 16, 0, 4), heart) > plain
     assert mean_match(draw_fields(corrector, heart, (16, 16), 16, 0, 4), heart) > plain + 0.005

@@ -137,7 +137,7 @@ def test_that_leaving_a_batch_stops_its_workers_within_a_step_and_keeps_the_pool
         if time.perf_counter() - began > 0.1:
             break
     stopped = time.perf_counter()
-    while any(one.order is not None for one in pool.workers):
+    while any(one.assignment is not None for one in pool.workers):
         assert pool.ready
         assert time.perf_counter() - stopped < 5.0
         time.sleep(0.005)

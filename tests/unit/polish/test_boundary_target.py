@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import shapely
 
-from kirigami_studio.lattice.ratio_field import FloatArray
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.silhouettes import load
 from kirigami_studio.polish.boundary_target import NORMAL_LENGTH, BoundaryTarget, unit_normals

@@ -10,8 +10,9 @@ import shapely
 
 from kirigami_studio.evaluate.score import exact_iou
 from kirigami_studio.evaluate.similarity import Similarity
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.lattice.deployment import deploy
-from kirigami_studio.lattice.ratio_field import FloatArray, RatioField
+from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.silhouettes import load
 from kirigami_studio.polish.continuation import fit_shape

@@ -46,7 +46,7 @@ def _candidate(field: RatioField, index: int) -> Candidate:
         transform=Similarity(0.1234567890123, -0.7, (0.1, -0.2)),
     )
     drawn = RatioField.uniform(4, 5) if index == 2 else None
-    return Candidate(field, score, seed=11, index=index, polished=index == 2, drawn=drawn, variant="prior")
+    return Candidate(field, score, seed=11, index=index, polished=index == 2, sampled_field=drawn, variant="prior")
 
 
 @pytest.fixture

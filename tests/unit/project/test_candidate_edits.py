@@ -38,7 +38,7 @@ def other(like: Candidate, seed: int, siou: float) -> Candidate:
         like,
         field=RatioField.from_log10(z),
         seed=seed,
-        drawn=None,
+        sampled_field=None,
         score=replace(like.score, siou=siou),
         polished=False,
     )

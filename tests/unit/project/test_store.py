@@ -219,7 +219,7 @@ def test_that_a_project_of_the_first_format_opens_with_the_usual_preferences(
     members["manifest.json"] = members["manifest.json"].replace(b'"version": 5', b'"version": 1')
     opened = store.load(write_members(tmp_path / "old.kiri", members))
     usual = replace(document.settings, prefer="balanced", search=0)
-    bare = tuple(replace(candidate, drawn=None) for candidate in document.candidates)
+    bare = tuple(replace(candidate, sampled_field=None) for candidate in document.candidates)
     assert opened == replace(document, settings=usual, candidates=bare)
 
 

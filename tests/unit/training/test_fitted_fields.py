@@ -10,10 +10,10 @@ import pytest
 import shapely
 import torch
 
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import KirigamiError, UsageError
 from kirigami_studio.generator.conditioning import normalised
 from kirigami_studio.lattice.batched import BatchedLattice
-from kirigami_studio.lattice.ratio_field import FloatArray
 from kirigami_studio.outlines.editing import resampled
 from kirigami_studio.training.corpus import zero_outline
 from kirigami_studio.training.drawn_shapes import drawn_shape

@@ -10,9 +10,10 @@ import pytest
 
 from kirigami_studio.evaluate.feasibility import invalid_quads, overlap_ratio
 from kirigami_studio.evaluate.score import evaluate
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.lattice.deployment import Deployment, deploy, rotate
-from kirigami_studio.lattice.ratio_field import FloatArray, RatioField, frozen
+from kirigami_studio.lattice.ratio_field import RatioField, frozen
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.training.rewards import REWARDS, Reward, Verdict, judge, judge_sheets
 

@@ -7,7 +7,6 @@ from collections import OrderedDict
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.gui.designs.entry import Entry
 from kirigami_studio.gui.designs.selecting import least_panel
-from kirigami_studio.gui.jobs.steps import finished_field
 from kirigami_studio.gui.scene.posed import PosedDesign
 from kirigami_studio.lattice.deployment import Deployment, deploy
 
@@ -15,7 +14,7 @@ from kirigami_studio.lattice.deployment import Deployment, deploy
 CAPACITY = 2048
 
 
-class Shelf:
+class DesignCache:
     """Keeps the most recently used motions."""
 
     def __init__(self) -> None:
@@ -39,11 +38,8 @@ class Shelf:
         """The card of a candidate, posed for the angle it was scored or trimmed at; decodes it when it must."""
         if candidate not in self._entries:
             if candidate not in self._motions:
-                self.put(candidate, deploy(finished_field(candidate)))
-            score, trim, motion = candidate.score, candidate.trim, self._motions[candidate]
-            if trim is None:
-                design = PosedDesign(motion, score.transform, score.phi)
-            else:
-                design = PosedDesign(motion, trim.pose, trim.phi, trim)
+                self.put(candidate, deploy(candidate.final_field))
+            motion = self._motions[candidate]
+            design = PosedDesign(motion, candidate.final_pose, candidate.final_phi, candidate.trim)
             self._entries[candidate] = Entry(candidate, design)
         return self._entries[candidate]

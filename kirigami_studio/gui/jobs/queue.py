@@ -23,7 +23,7 @@ def _ignore(*_: object) -> None:
 
 
 @dataclass(frozen=True, slots=True)
-class Ears:
+class JobCallbacks:
     """Who is told about a job, in the window's thread."""
 
     on_report: Callable[[object], None] = _ignore
@@ -32,7 +32,7 @@ class Ears:
     on_failed: Callable[[str, str], None] = _ignore
 
 
-class Board(QObject):
+class JobQueue(QObject):
     """Owns a worker thread, which ``name`` names; :meth:`close` ends it."""
 
     idle = Signal()
@@ -40,7 +40,7 @@ class Board(QObject):
     def __init__(self, parent: QObject | None = None, name: str = "kirigami-worker") -> None:
         super().__init__(parent)
         self._numbers = itertools.count(1)
-        self._open: dict[int, tuple[Job, Ears]] = {}
+        self._open: dict[int, tuple[Job, JobCallbacks]] = {}
         self._heard: deque[Callable[[], None]] = deque()
         self._turn = QTimer(self)
         self._turn.setSingleShot(True)
@@ -61,10 +61,10 @@ class Board(QObject):
         """Whether any job is open."""
         return bool(self._open)
 
-    def start(self, name: str, steps: Steps, ears: Ears) -> int:
+    def start(self, name: str, steps: Steps, callbacks: JobCallbacks) -> int:
         """Queue a job and return its number; ``name`` follows the word "while" in messages."""
         job = Job(next(self._numbers), name, steps)
-        self._open[job.number] = (job, ears)
+        self._open[job.number] = (job, callbacks)
         self._worker.take(job)
         return job.number
 
@@ -78,7 +78,7 @@ class Board(QObject):
         if number in self._open:
             job, _ = self._open[number]
             job.flag.set()
-            self._open[number] = (job, Ears())
+            self._open[number] = (job, JobCallbacks())
 
     def close(self) -> None:
         """Stop everything and wait for the thread to end."""
@@ -96,15 +96,15 @@ class Board(QObject):
 
     @Slot(int)
     def _finish(self, number: int) -> None:
-        self._hear(number, partial(self._close_job, number, lambda ears: ears.on_finished()))
+        self._hear(number, partial(self._close_job, number, lambda callbacks: callbacks.on_finished()))
 
     @Slot(int)
     def _cancel(self, number: int) -> None:
-        self._hear(number, partial(self._close_job, number, lambda ears: ears.on_cancelled()))
+        self._hear(number, partial(self._close_job, number, lambda callbacks: callbacks.on_cancelled()))
 
     @Slot(int, str, str)
     def _fail(self, number: int, sentence: str, trace: str) -> None:
-        self._hear(number, partial(self._close_job, number, lambda ears: ears.on_failed(sentence, trace)))
+        self._hear(number, partial(self._close_job, number, lambda callbacks: callbacks.on_failed(sentence, trace)))
 
     def _hear(self, number: int, word: Callable[[], None]) -> None:
         """Keep what the worker says until it is told, in the order in which it was said."""
@@ -124,10 +124,10 @@ class Board(QObject):
         if number in self._open:
             self._open[number][1].on_report(report)
 
-    def _close_job(self, number: int, tell: Callable[[Ears], None]) -> None:
+    def _close_job(self, number: int, tell: Callable[[JobCallbacks], None]) -> None:
         if number not in self._open:
             return
-        _, ears = self._open.pop(number)
-        tell(ears)
+        _, callbacks = self._open.pop(number)
+        tell(callbacks)
         if not self._open:
             self.idle.emit()

@@ -4,11 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-import numpy.typing as npt
 from PySide6.QtCore import QPointF, QRectF
 
-FloatArray = npt.NDArray[np.float64]
+from kirigami_studio.foundation.arrays import FloatArray
 
 #: Spans below this (world units) are treated as this, so that a degenerate box still gets a finite scale.
 SMALLEST_SPAN = 1e-9
@@ -41,7 +39,7 @@ class Bounds:
 
 
 @dataclass(frozen=True, slots=True)
-class Frame:
+class ViewTransform:
     """Uniform scaling with the y axis turned over: ``px = (x, -y) * scale + origin``.
 
     Attributes
@@ -55,7 +53,7 @@ class Frame:
     origin: tuple[float, float]
 
     @classmethod
-    def fitting(cls, bounds: Bounds, rect: QRectF, margin: float = 0.0) -> Frame:
+    def fitting(cls, bounds: Bounds, rect: QRectF, margin: float = 0.0) -> ViewTransform:
         """Show ``bounds`` as large as possible, centred in ``rect`` less ``margin`` pixels on each side."""
         width = max(rect.width() - 2 * margin, 1.0)
         height = max(rect.height() - 2 * margin, 1.0)
@@ -76,12 +74,12 @@ class Frame:
         """Map one pixel position to the world."""
         return (pixel.x() - self.origin[0]) / self.scale, (self.origin[1] - pixel.y()) / self.scale
 
-    def zoomed(self, factor: float, about: QPointF) -> Frame:
+    def zoomed(self, factor: float, about: QPointF) -> ViewTransform:
         """Enlarge by ``factor``, keeping the pixel ``about`` in place."""
         x = about.x() + (self.origin[0] - about.x()) * factor
         y = about.y() + (self.origin[1] - about.y()) * factor
-        return Frame(self.scale * factor, (x, y))
+        return ViewTransform(self.scale * factor, (x, y))
 
-    def moved(self, dx: float, dy: float) -> Frame:
+    def moved(self, dx: float, dy: float) -> ViewTransform:
         """Shift by pixels."""
-        return Frame(self.scale, (self.origin[0] + dx, self.origin[1] + dy))
+        return ViewTransform(self.scale, (self.origin[0] + dx, self.origin[1] + dy))

@@ -7,20 +7,19 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 from PySide6.QtCore import QObject, QPointF, Qt, Signal
 from PySide6.QtGui import QKeyEvent, QPainter
 
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.look.theme import Palette
-from kirigami_studio.gui.scene.frame import Bounds, Frame
+from kirigami_studio.gui.scene.view_transform import Bounds, ViewTransform
 from kirigami_studio.outlines.combining import Combine
 from kirigami_studio.outlines.figures import USUAL_WAIST
 from kirigami_studio.outlines.mirroring import Axis, Mirror, mirrored
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.placed import BOARD_MM, Placed
 
-FloatArray = npt.NDArray[np.float64]
 Place = tuple[float, float]
 
 #: The empty board, mm.
@@ -62,7 +61,7 @@ class Change:
 
 
 @dataclass(frozen=True, slots=True)
-class Spot:
+class PointerEvent:
     """Where the pointer is.
 
     Attributes
@@ -84,7 +83,7 @@ class Spot:
     snaps: bool = False
 
 
-class Easel(QObject):
+class SketchContext(QObject):
     """The board with its target; tools read it and report to it."""
 
     changed = Signal(object)  #: Change
@@ -96,7 +95,7 @@ class Easel(QObject):
 
     def __init__(self, parent: QObject | None = None) -> None:
         super().__init__(parent)
-        self.frame = Frame(1.0, (0.0, 0.0))
+        self.transform = ViewTransform(1.0, (0.0, 0.0))
         self.placed: Placed | None = None
         self.combine = Combine.REPLACE
         self.snapping = True
@@ -123,17 +122,17 @@ class Easel(QObject):
     @property
     def step(self) -> float:
         """Distance of the grid's lines, mm: 1, 2 or 5 times a power of ten."""
-        least = CLOSEST_LINES / self.frame.scale
+        least = CLOSEST_LINES / self.transform.scale
         power = 10.0 ** math.floor(math.log10(least))
         return next(factor * power for factor in (1.0, 2.0, 5.0, 10.0) if factor * power >= least * (1 - 1e-9))
 
-    def spot(self, pixel: QPointF, modifiers: Qt.KeyboardModifier) -> Spot:
+    def pointer(self, pixel: QPointF, modifiers: Qt.KeyboardModifier) -> PointerEvent:
         """Where a pixel lies on the board; Ctrl suspends snapping."""
-        free = self.frame.to_world(pixel)
+        free = self.transform.to_world(pixel)
         snaps = self.snapping and not modifiers & Qt.KeyboardModifier.ControlModifier
         place = (self.snapped(free[0]), self.snapped(free[1])) if snaps else free
         shift, alt = (bool(modifiers & key) for key in (SHIFT, ALT))
-        return Spot(pixel, free, place, shift, alt, snaps)
+        return PointerEvent(pixel, free, place, shift, alt, snaps)
 
     def snapped(self, length: float) -> float:
         """The nearest line of the grid, mm."""
@@ -201,19 +200,19 @@ class SketchTool:
     hint = ""
     cursor = Qt.CursorShape.CrossCursor
 
-    def __init__(self, easel: Easel) -> None:
-        self.easel = easel
+    def __init__(self, context: SketchContext) -> None:
+        self.context = context
 
-    def press(self, spot: Spot) -> None:
+    def press(self, pointer: PointerEvent) -> None:
         """The left button goes down."""
 
-    def move(self, spot: Spot, held: bool) -> None:
+    def move(self, pointer: PointerEvent, held: bool) -> None:
         """The pointer moves, with the left button held or not."""
 
-    def release(self, spot: Spot) -> None:
+    def release(self, pointer: PointerEvent) -> None:
         """The left button goes up."""
 
-    def double_click(self, spot: Spot) -> None:
+    def double_click(self, pointer: PointerEvent) -> None:
         """The left button goes down for the second time."""
 
     def key(self, event: QKeyEvent) -> bool:
@@ -224,8 +223,8 @@ class SketchTool:
         """Forget a gesture that is under way."""
 
     def sync(self) -> None:
-        """The easel's target is another one now."""
+        """The target is another one now."""
         self.drop()
 
-    def paint(self, painter: QPainter, frame: Frame, palette: Palette) -> None:
+    def paint(self, painter: QPainter, transform: ViewTransform, palette: Palette) -> None:
         """Draw what the tool is about to do."""

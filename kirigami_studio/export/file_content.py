@@ -14,7 +14,7 @@ MILLIMETRES = 4
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class DrawnFile:
+class FileContent:
     """A cut file as one reader sees it.
 
     Attributes
@@ -46,10 +46,10 @@ class DrawnFile:
         return sum(stroke.length for stroke in self.strokes)
 
 
-def one_drawing(files: Sequence[DrawnFile]) -> DrawnFile:
+def one_drawing(files: Sequence[FileContent]) -> FileContent:
     """Lay files of one origin upon each other; what they do not share (unit, extent) is lost."""
     first = files[0]
-    return DrawnFile(
+    return FileContent(
         reader=first.reader,
         strokes=tuple(stroke for content in files for stroke in content.strokes),
         unit=first.unit if len({content.unit for content in files}) == 1 else None,
