@@ -45,7 +45,7 @@ run: setup
 	  $(BIN)/kirigami-studio; \
 	else \
 	  echo "No display here: playing the session off-screen; pictures and the cut file go to out/"; \
-	  QT_QPA_PLATFORM=offscreen $(BIN)/python -m kirigami_studio.gui.offscreen_session --out out; \
+	  QT_QPA_PLATFORM=offscreen $(BIN)/python -m kirigami_studio.demonstrations.offscreen_session --out out; \
 	fi
 
 # What watches a clock, alone; then everything else, file by file in two processes of one thread each.
@@ -78,12 +78,12 @@ demo: setup
 	$(BIN)/kirigami-studio design heart --k 8 --out out/heart
 
 states: setup
-	QT_QPA_PLATFORM=offscreen $(BIN)/python -m kirigami_studio.gui.states.state_sheet --out out/states
-	QT_QPA_PLATFORM=offscreen $(BIN)/python -m kirigami_studio.gui.states.state_sheet --out out/states-200 --scale 2
+	QT_QPA_PLATFORM=offscreen $(BIN)/python -m kirigami_studio.demonstrations.state_sheet --out out/states
+	QT_QPA_PLATFORM=offscreen $(BIN)/python -m kirigami_studio.demonstrations.state_sheet --out out/states-200 --scale 2
 
 # What translators start from: every sentence of the program, without places, so that it changes with the words alone.
 messages: setup
-	$(BIN)/pybabel -q extract -k tr -k tr_n:1,2 --no-default-keywords --no-location --sort-output --omit-header \
+	$(BIN)/pybabel -q extract -k tr -k mark -k tr_n:1,2 --no-default-keywords --no-location --sort-output --omit-header \
 	  -o resources/locale/kirigami_studio.pot kirigami_studio
 
 clean:

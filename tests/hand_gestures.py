@@ -12,7 +12,7 @@ from PySide6.QtWidgets import QApplication
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.gui.main_window import MainWindow
-from kirigami_studio.gui.scene.void_shapes import VoidShapes
+from kirigami_studio.gui.scene.void_items import VoidShapes
 from kirigami_studio.gui.views.layout_view import LayoutView
 from kirigami_studio.project.document import Void
 

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
-from kirigami_studio.gui.states.state_sheet import StateSheet
+from kirigami_studio.demonstrations.state_sheet import StateSheet
 
 
 def shown(made: StateSheet, qtbot: QtBot) -> Iterator[StateSheet]:

@@ -18,8 +18,9 @@ from kirigami_studio.export.registry import export as export_file
 from kirigami_studio.export.registry import find_exporter
 from kirigami_studio.export.sidecar import sidecar_path, write_sidecar
 from kirigami_studio.export.verification import FORMATS, Verification, verify_export
-from kirigami_studio.fabricate.checks import Report, Severity, check_plan
+from kirigami_studio.fabricate.checks import Report, check_plan
 from kirigami_studio.fabricate.cut_plan import CutPlan
+from kirigami_studio.fabricate.findings import Severity
 from kirigami_studio.fabricate.material import default_material, find_material
 from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions, CutOrder
 from kirigami_studio.fabricate.slits import cut_table

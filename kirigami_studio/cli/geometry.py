@@ -19,8 +19,8 @@ from kirigami_studio.cli.inputs import (
     read_targets,
 )
 from kirigami_studio.evaluate.feasibility import invalid_quads, overlap_ratio, path_contact
+from kirigami_studio.evaluate.mask_siou import mask_siou
 from kirigami_studio.evaluate.score import evaluate
-from kirigami_studio.evaluate.siou import mask_siou
 from kirigami_studio.foundation.errors import AngleError, RatioError, UsageError
 from kirigami_studio.foundation.files import write_atomically
 from kirigami_studio.lattice.deployment import check_phi, deploy

@@ -18,7 +18,7 @@ from ezdxf.filemanagement import readfile
 from ezdxf.lldxf.const import DXFError
 from ezdxf.path import make_path
 
-from kirigami_studio.fabricate.checks import Problem, Severity
+from kirigami_studio.fabricate.findings import Problem, Severity
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import ExportError
 

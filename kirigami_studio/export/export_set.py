@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from kirigami_studio.export.dxf_reference import write_reference
+from kirigami_studio.export.dxf import write_reference
 from kirigami_studio.export.exporter import ExportJob
 from kirigami_studio.export.profile import find_profile
 from kirigami_studio.export.registry import export

@@ -6,7 +6,8 @@ lines to cut along, and a map of all pages first.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+import re
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from io import BytesIO
 from pathlib import Path
@@ -24,7 +25,6 @@ from kirigami_studio.export.exporter import ExportJob
 from kirigami_studio.export.facts import facts_of
 from kirigami_studio.export.palette import Colour
 from kirigami_studio.export.paper import FOOTER_MM, MARGIN_MM, NO_PAPER, Box, Tile, Tiling, find_paper, tile
-from kirigami_studio.export.pdf_reading import Page, read_pages
 from kirigami_studio.export.profile import find_profile
 from kirigami_studio.export.verified import write_verified
 from kirigami_studio.fabricate.cut_plan import CutPlan
@@ -245,3 +245,87 @@ def _length_in_cell(page: Page, part: Tile, colour: Colour) -> float:
     low = np.maximum(part.cell[:2], -1e6)
     high = np.minimum(part.cell[2:], 1e6)
     return float(sum(line.intersection(shapely.box(*low, *high)).length for line in lines))
+
+
+MM_PER_POINT = 25.4 / 72.0
+_BOX = re.compile(rb"/MediaBox \[ 0 0 ([\d.]+) ([\d.]+) \]")
+_STREAM = re.compile(rb"stream\r?\n(.*?)endstream", re.DOTALL)
+_TEXT = re.compile(rb"BT.*?ET", re.DOTALL)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PageLine:
+    """One line of a page.
+
+    Attributes
+    ----------
+    points : (P, 2) float, mm
+        From the page's lower left corner; a closed line comes back to its first point.
+    colour : (red, green, blue), 0 to 255
+    """
+
+    points: FloatArray
+    colour: tuple[int, int, int]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Page:
+    """One page.
+
+    Attributes
+    ----------
+    size_mm : (width, height)
+    lines : tuple of PageLine
+    """
+
+    size_mm: tuple[float, float]
+    lines: tuple[PageLine, ...]
+
+
+def read_pages(path: Path) -> list[Page]:
+    """Return all pages in order.
+
+    Raises
+    ------
+    ExportError
+        No PDF, cut short, or with compressed pages.
+    """
+    content = path.read_bytes()
+    if not content.startswith(b"%PDF-") or not content.rstrip().endswith(b"%%EOF"):
+        raise ExportError(f"{path} is not a whole PDF; export it again.")
+    boxes = [tuple(float(side) * MM_PER_POINT for side in match) for match in _BOX.findall(content)]
+    streams = _STREAM.findall(content)
+    if len(boxes) != len(streams):
+        raise ExportError(f"{path} has {len(boxes)} pages but {len(streams)} drawings; export it again.")
+    try:
+        return [
+            Page((box[0], box[1]), tuple(_lines(_TEXT.sub(b"", stream).decode("latin-1"))))
+            for box, stream in zip(boxes, streams, strict=True)
+        ]
+    except (ValueError, IndexError) as error:
+        raise ExportError(f"{path} holds a drawing that cannot be read: {error}. Export it again.") from error
+
+
+def _lines(stream: str) -> Iterator[PageLine]:
+    numbers: list[float] = []
+    colour = (0, 0, 0)
+    line: list[tuple[float, float]] = []
+    whole: list[list[tuple[float, float]]] = []
+    for word in stream.split():
+        if word in ("m", "l"):
+            if word == "m":
+                line = []
+                whole.append(line)
+            line.append((numbers[-2], numbers[-1]))
+        elif word == "h":
+            line.append(line[0])
+        elif word == "RG":
+            colour = (round(255 * numbers[-3]), round(255 * numbers[-2]), round(255 * numbers[-1]))
+        elif word in ("S", "f", "n"):
+            if word == "S":
+                yield from (PageLine(np.array(part) * MM_PER_POINT, colour) for part in whole)
+            whole = []
+        try:
+            numbers.append(float(word))
+        except ValueError:
+            numbers = []

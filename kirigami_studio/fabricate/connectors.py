@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from kirigami_studio.fabricate.lengths import check_length
+from kirigami_studio.fabricate.cut_path import check_length
 from kirigami_studio.fabricate.slits import SHEET_EDGE, CutTable
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray, IntArray
 from kirigami_studio.foundation.errors import FabricationError

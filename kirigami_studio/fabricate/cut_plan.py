@@ -16,9 +16,9 @@ from kirigami_studio.fabricate import timing
 from kirigami_studio.fabricate.connectors import Hinges, hinge_widths, shorten
 from kirigami_studio.fabricate.cut_path import CutPath as CutPath
 from kirigami_studio.fabricate.cut_path import Layer as Layer
+from kirigami_studio.fabricate.cut_path import check_length
 from kirigami_studio.fabricate.hinged_cuts import HingedCuts, hinged_cuts, relief_radius
 from kirigami_studio.fabricate.kerf import OVERCUT_MM, edge_cut_paths, outline_path
-from kirigami_studio.fabricate.lengths import check_length
 from kirigami_studio.fabricate.material import Material, default_material
 from kirigami_studio.fabricate.notes import plan_notes
 from kirigami_studio.fabricate.options import CutOptions

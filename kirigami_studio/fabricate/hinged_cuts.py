@@ -9,11 +9,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 from shapely.geometry import Polygon
 
-from kirigami_studio.fabricate.fitting import Fitting
+from kirigami_studio.fabricate.fitting import Fitting, Place, cut_through, places_of_ends
 from kirigami_studio.fabricate.material import Material
 from kirigami_studio.fabricate.measuring import SlitEnd, measured_widths, straight_end
 from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions
-from kirigami_studio.fabricate.removal import Place, cut_through, places_of_ends
 from kirigami_studio.fabricate.seats import Seat
 from kirigami_studio.fabricate.slits import CutTable
 from kirigami_studio.fabricate.trimmed_sheet import CutPiece

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from enum import Enum
 from itertools import pairwise
 
-from kirigami_studio.fabricate.lengths import check_length
+from kirigami_studio.fabricate.cut_path import check_length
 from kirigami_studio.foundation.errors import FabricationError
 
 #: Finished width (mm) of a tab unless told otherwise: common for thin sheet.

@@ -1,10 +1,42 @@
-"""The errors a person may read.  Each message is one clear sentence: what, where, what to try."""
+"""The errors a person may read: a code, the values that belong to it, and one clear sentence made of both.
+
+``raise TargetError("outline.too_few_points", count=2)`` says what happened; the sentence stands once, in
+:mod:`kirigami_studio.foundation.sentences`, and is made in the user's language only when somebody reads it.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
+from kirigami_studio.foundation.sentences import sentence
+
 
 class KirigamiError(Exception):
-    """Root of every error this program raises on purpose; ``str(error)`` is shown to the user."""
+    """Root of every error this program raises on purpose; ``str(error)`` is the sentence for the user.
+
+    Attributes
+    ----------
+    code : str
+        Names the problem, ``topic.what``; stable, so that programs and tests can tell problems apart.
+    fields : mapping of str to object
+        The values that the sentence names.
+    """
+
+    def __init__(self, code: str, /, **fields: object) -> None:
+        super().__init__(code)
+        self.code = code
+        self.fields: Mapping[str, object] = fields
+
+    def __str__(self) -> str:
+        return sentence(self.code, self.fields)
+
+    def __reduce__(self) -> tuple[object, ...]:
+        return _remade, (type(self), self.code, dict(self.fields))
+
+
+def _remade(kind: type[KirigamiError], code: str, fields: Mapping[str, object]) -> KirigamiError:
+    """An error that came out of a pickle: worker processes send theirs to the run."""
+    return kind(code, **fields)
 
 
 class UsageError(KirigamiError):

@@ -37,7 +37,7 @@ def write_atomically(path: Path, content: bytes) -> None:
             with contextlib.suppress(OSError):
                 Path(temporary).unlink()
         reason = error.strerror or str(error)
-        raise ExportError(f"Cannot write {path}: {reason}. Choose another folder or free some space.") from error
+        raise ExportError("file.not_written", path=path, reason=reason) from error
 
 
 def linked_file(path: Path) -> Path:
@@ -54,14 +54,9 @@ def linked_file(path: Path) -> Path:
         return path.resolve(strict=True)
     except FileNotFoundError as error:
         to = path.readlink()
-        raise ExportError(
-            f"Cannot write {path}: it is a link to {to}, and no file is there. Delete the link or give another name."
-        ) from error
+        raise ExportError("file.link_to_nothing", path=path, target=to) from error
     except (OSError, RuntimeError) as error:  # RuntimeError: pathlib's word for a circle
-        raise ExportError(
-            f"Cannot write {path}: it is a link that leads to no file, perhaps in a circle. "
-            "Delete the link or give another name."
-        ) from error
+        raise ExportError("file.link_in_circle", path=path) from error
 
 
 def check_folder(folder: Path) -> None:
@@ -78,4 +73,4 @@ def check_folder(folder: Path) -> None:
     except (OSError, ValueError, StopIteration):
         usable = False
     if not usable:
-        raise ExportError(f"Files cannot be written to {folder}: choose a folder that you may write to.")
+        raise ExportError("file.folder_not_writable", folder=folder)

@@ -23,7 +23,7 @@ def resource_root() -> Path:
     for root in (package / "resources", package.parent / "resources"):
         if (root / "silhouettes").is_dir():
             return root
-    raise KirigamiError(f"The bundled files are missing beside {package}; install Kirigami Studio again.")
+    raise KirigamiError("installation.incomplete", package=package)
 
 
 def resource(*parts: str) -> Path:

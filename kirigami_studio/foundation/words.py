@@ -12,11 +12,14 @@ import os
 from functools import cache
 from pathlib import Path
 
-from kirigami_studio.foundation.resources import resource
-
 DOMAIN = "kirigami_studio"
 #: A folder of catalogues that is looked into before the bundled one.
 FOLDER_VARIABLE = "KIRIGAMI_STUDIO_LOCALE"
+
+
+def mark(text: str, /) -> str:
+    """Mark a sentence for the catalogue that is translated later, when it is read."""
+    return text
 
 
 def tr(text: str, /, **values: object) -> str:
@@ -41,6 +44,8 @@ def tr_n(one: str, many: str, count: int, /, **values: object) -> str:
 
 @cache
 def _catalogue() -> gettext.NullTranslations:
+    from kirigami_studio.foundation.resources import resource  # its errors are sentences too
+
     own = os.environ.get(FOLDER_VARIABLE)
     for folder in (Path(own) if own else None, resource("locale")):
         if folder is not None and gettext.find(DOMAIN, folder):

@@ -18,8 +18,7 @@ from kirigami_studio.generator.conditioning import normalised
 from kirigami_studio.generator.evenness import evenness_terms
 from kirigami_studio.generator.gauss_newton import Residuals, gauss_newton_direction
 from kirigami_studio.generator.sheet import Sheet, carrier_between
-from kirigami_studio.lattice.batched import BatchedLattice
-from kirigami_studio.lattice.batched_slopes import BatchedSlopes
+from kirigami_studio.lattice.batched import BatchedLattice, BatchedSlopes
 
 #: z is decoded within these bounds: early in the flow it still is noise.
 Z_BOUND = 1.5

@@ -17,9 +17,8 @@ from kirigami_studio.gui.tour import Tour
 if TYPE_CHECKING:
     from kirigami_studio.fabricate.material import Material
     from kirigami_studio.gui.dialogs.export_report import ExportReport
-    from kirigami_studio.gui.dialogs.guide import GuideWindow
+    from kirigami_studio.gui.dialogs.help import GuideWindow, ShortcutSheet
     from kirigami_studio.gui.dialogs.material_editor import MaterialEditor
-    from kirigami_studio.gui.dialogs.shortcut_sheet import ShortcutSheet
     from kirigami_studio.gui.dialogs.silhouette_picker import SilhouettePicker
     from kirigami_studio.gui.panels.history_list import HistoryList
 
@@ -119,7 +118,7 @@ class Beside(QObject):
 
     def show_guide(self) -> None:
         """Open the guide, or bring it to the front."""
-        from kirigami_studio.gui.dialogs.guide import GuideWindow
+        from kirigami_studio.gui.dialogs.help import GuideWindow
 
         if self.guide is None:
             self.guide = GuideWindow(self.window)
@@ -129,7 +128,7 @@ class Beside(QObject):
 
     def show_shortcuts(self) -> None:
         """Open the sheet of keys and gestures, or bring it to the front."""
-        from kirigami_studio.gui.dialogs.shortcut_sheet import ShortcutSheet
+        from kirigami_studio.gui.dialogs.help import ShortcutSheet
 
         if self.shortcuts is None:
             self.shortcuts = ShortcutSheet(self.window)

@@ -19,8 +19,7 @@ from kirigami_studio.gui.dressing import Dressing
 from kirigami_studio.gui.files.pasting import Pasting
 from kirigami_studio.gui.files.picturing import Picturing
 from kirigami_studio.gui.messages import Message, Tone
-from kirigami_studio.gui.panels.picture_menu import PictureMenu
-from kirigami_studio.gui.panels.recent_menu import RecentMenu
+from kirigami_studio.gui.panels.menus import PictureMenu, RecentMenu
 from kirigami_studio.gui.shell import Shell
 from kirigami_studio.gui.views.layout_view import USUAL, Overlay
 from kirigami_studio.gui.views.target_view import Tool

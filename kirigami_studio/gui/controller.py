@@ -9,7 +9,7 @@ from typing import Unpack
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui.designs.collecting import Plan
+from kirigami_studio.gui.designs.collection import Plan
 from kirigami_studio.gui.file_kinds import kind_of
 from kirigami_studio.gui.jobs import steps
 from kirigami_studio.gui.jobs.queue import JobCallbacks

@@ -9,7 +9,7 @@ from PySide6.QtWidgets import QMenu
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.controller import Controller
-from kirigami_studio.gui.designs.entry import Entry
+from kirigami_studio.gui.designs.design_cache import Entry
 from kirigami_studio.gui.look import icons
 from kirigami_studio.gui.shell import Shell
 from kirigami_studio.gui.side_by_side import SideBySide

@@ -7,7 +7,7 @@ from PySide6.QtCore import QObject, QSignalBlocker
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.controller import Controller
-from kirigami_studio.gui.designs.entry import Entry
+from kirigami_studio.gui.designs.design_cache import Entry
 from kirigami_studio.gui.messages import Message, Tone
 from kirigami_studio.gui.shell import Shell
 from kirigami_studio.outlines.outline import Outline

@@ -9,15 +9,14 @@ from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.commands import OVERLAY_ACTIONS, Commands
 from kirigami_studio.gui.controller import Controller
-from kirigami_studio.gui.designs.entry import Entry
-from kirigami_studio.gui.designs.lost_designs import LostDesigns
+from kirigami_studio.gui.designs.collection import LostDesigns
+from kirigami_studio.gui.designs.design_cache import Entry
 from kirigami_studio.gui.gallery_wiring import GalleryWiring
 from kirigami_studio.gui.hand_wiring import HandWiring
 from kirigami_studio.gui.jobs.steps import Planned
 from kirigami_studio.gui.messages import Message, Tone
 from kirigami_studio.gui.shell import Shell
-from kirigami_studio.gui.targets.reshaping import Reshaping
-from kirigami_studio.gui.targets.sizing import Sizing
+from kirigami_studio.gui.targets.reshaping import Reshaping, Sizing
 from kirigami_studio.gui.views.layout_view import Overlay
 from kirigami_studio.project.document import Document
 

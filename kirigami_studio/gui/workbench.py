@@ -12,20 +12,14 @@ from PySide6.QtCore import QObject, Signal
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.foundation.resources import resource_root
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui.cuts.cutting import Cutting
-from kirigami_studio.gui.cuts.fabricating import Fabricating
-from kirigami_studio.gui.designs.collecting import Collecting
-from kirigami_studio.gui.designs.comparing import Comparing
-from kirigami_studio.gui.designs.design_cache import DesignCache
+from kirigami_studio.gui.cuts.cutting import Cutting, Fabricating
+from kirigami_studio.gui.designs.chosen_design import Comparing, Refitting, TrimJob
+from kirigami_studio.gui.designs.collection import Collecting, Marking, StoppedRun
+from kirigami_studio.gui.designs.design_cache import DesignCache, Entry
 from kirigami_studio.gui.designs.design_run import DesignRun
-from kirigami_studio.gui.designs.entry import Entry
-from kirigami_studio.gui.designs.finishing import TrimJob
 from kirigami_studio.gui.designs.hand_editing import HandEditing
-from kirigami_studio.gui.designs.marking import Marking
 from kirigami_studio.gui.designs.plotting import Plotting
-from kirigami_studio.gui.designs.refitting import Refitting
 from kirigami_studio.gui.designs.showing import Showing
-from kirigami_studio.gui.designs.stopped_run import StoppedRun
 from kirigami_studio.gui.files.filing import Filing
 from kirigami_studio.gui.files.recovering import Work
 from kirigami_studio.gui.jobs import steps

@@ -27,10 +27,39 @@ from kirigami_studio.lattice.ratio_field import RatioField, check_grid
 from kirigami_studio.lattice.resize import resize_fields
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.polish.levenberg import Fit, check_fit, polish
-from kirigami_studio.polish.morph import EasyShape, thickened
 from kirigami_studio.polish.panel_size import check_least
 from kirigami_studio.polish.regularity import Regularity
 from kirigami_studio.polish.symmetry import Symmetry, shared_symmetries
+
+#: Vertices of a thickened shape may move by this (unit-area lengths): round corners need no more.
+ACCURACY = 0.002
+
+
+@dataclass(frozen=True, slots=True)
+class EasyShape:
+    """One shape on the way.
+
+    Attributes
+    ----------
+    outline : Outline
+    frame : Similarity
+        Carries ``outline``'s own unit-area frame to the target's frame.
+    """
+
+    outline: Outline
+    frame: Similarity
+
+
+def thickened(target: Outline, margins: Sequence[float]) -> list[EasyShape]:
+    """``target`` with its boundary moved outwards by each margin (unit-area lengths, > 0), holes filled."""
+    return [_shape(target.polygon.buffer(margin)) for margin in margins]
+
+
+def _shape(thick: shapely.geometry.base.BaseGeometry) -> EasyShape:
+    solid = shapely.Polygon(shapely.get_exterior_ring(thick)).simplify(ACCURACY)
+    frame = Similarity(math.sqrt(solid.area), 0.0, (solid.centroid.x, solid.centroid.y))
+    return EasyShape(Outline.from_points(shapely.get_coordinates(solid)[:-1]), frame)
+
 
 #: Largest grid that is searched directly; finer ones start from a search on about this many voids each way.
 COARSE = 10

@@ -13,17 +13,115 @@ from kirigami_studio.evaluate.feasibility import Contact
 from kirigami_studio.evaluate.score import Score
 from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.evaluate.trimming import Trim, trim
+from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions, CutOrder
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import ProjectError
 from kirigami_studio.lattice.deployment import check_phi, deploy
 from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.outlines.nodes import Kind, Nodes
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.document import Document, Mark, Void
-from kirigami_studio.project.fabrication_record import fabrication_json, fabrication_of
 from kirigami_studio.project.json_record import Record, one_of, read_json
+from kirigami_studio.project.material_record import material_json, material_of
 from kirigami_studio.project.migrations import Members
-from kirigami_studio.project.nodes_record import nodes_json, nodes_of
-from kirigami_studio.project.settings import DesignSettings
+from kirigami_studio.project.settings import DesignSettings, FabricationSettings
+
+
+def fabrication_json(settings: FabricationSettings) -> dict[str, object]:
+    """Return what a project file says about cutting."""
+    options = settings.options
+    return {
+        "width_mm": settings.width_mm,
+        "material": settings.material,
+        "connector_mm": settings.connector_mm,
+        "kerf_mm": settings.kerf_mm,
+        "options": {
+            "style": options.style.value,
+            "order": options.order.value,
+            "tabs": options.tabs,
+            "tab_mm": options.tab_mm,
+            "hinge_mm": [list(pair) for pair in options.hinge_mm],
+            "removed": list(options.removed),
+        },
+        "profile": settings.profile,
+        "dxf_version": settings.dxf_version,
+        "own": None if settings.own is None else material_json(settings.own),
+    }
+
+
+def fabrication_of(record: Record) -> FabricationSettings:
+    """Rebuild the settings.
+
+    Raises
+    ------
+    KirigamiError
+        A field is missing, or holds what no settings can hold.
+    """
+    options = record.record("options")
+    return FabricationSettings(
+        width_mm=record.number("width_mm"),
+        material=record.text("material"),
+        connector_mm=record.number("connector_mm") if record.holds("connector_mm") else None,
+        kerf_mm=record.number("kerf_mm") if record.holds("kerf_mm") else None,
+        options=CutOptions(
+            style=one_of(ConnectorStyle, options.text("style")),
+            order=one_of(CutOrder, options.text("order")),
+            tabs=options.whole("tabs"),
+            tab_mm=options.number("tab_mm"),
+            hinge_mm=tuple(_hinge_width(entry) for entry in options.list("hinge_mm")),
+            removed=tuple(_hinge(entry) for entry in options.list("removed")),
+        ),
+        profile=record.text("profile"),
+        dxf_version=record.text("dxf_version"),
+        own=material_of(record.record("own")) if record.holds("own") else None,
+    )
+
+
+def _hinge(entry: object) -> int:
+    if isinstance(entry, bool) or not isinstance(entry, int):
+        raise ProjectError(f"{entry!r} is no hinge number")
+    return entry
+
+
+def _hinge_width(entry: object) -> tuple[int, float]:
+    if not isinstance(entry, list) or len(entry) != 2:
+        raise ProjectError(f"{entry!r} is no hinge with its width")
+    hinge, width = entry
+    if isinstance(width, bool) or not isinstance(width, (int, float)):
+        raise ProjectError(f"{width!r} is no width")
+    return _hinge(hinge), float(width)
+
+
+def nodes_json(nodes: Nodes) -> dict[str, object]:
+    """Return what :func:`nodes_of` reads."""
+    return {
+        "at": nodes.at.tolist(),
+        "kinds": [kind.value for kind in nodes.kinds],
+        "handles": nodes.handles.tolist(),
+        "kept": nodes.kept.tolist(),
+    }
+
+
+def nodes_of(record: Record) -> Nodes:
+    """Rebuild the nodes.
+
+    Raises
+    ------
+    ProjectError, TargetError
+        Something that no outline can have.
+    """
+    at, kept = record.list("at"), record.list("kept")
+    if not all(isinstance(index, int) and not isinstance(index, bool) and abs(index) < 2**31 for index in at):
+        raise ProjectError("target.nodes.at must be whole numbers")
+    if not all(isinstance(flag, bool) for flag in kept):
+        raise ProjectError("target.nodes.kept must be yes or no each")
+    try:
+        handles = np.array(record.list("handles"), dtype=np.float64)
+    except (TypeError, ValueError, OverflowError):
+        raise ProjectError("target.nodes.handles is not a table of numbers") from None
+    kinds = tuple(one_of(Kind, name) for name in record.list("kinds"))
+    return Nodes(np.array(at, dtype=np.int64), kinds, handles, np.array(kept, dtype=np.bool_))
+
 
 DESIGN = "design.json"
 RATIOS = "ratios.npy"

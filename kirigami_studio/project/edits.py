@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import TypedDict, Unpack
 
@@ -10,7 +10,7 @@ from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions, CutOrder
 from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.outlines.outline import Outline
-from kirigami_studio.project.document import Document
+from kirigami_studio.project.document import Document, Void
 from kirigami_studio.project.settings import FabricationSettings
 
 
@@ -210,3 +210,125 @@ def _label(changes: Mapping[str, object]) -> str:
 
 def _merge_key(room: str, changes: Mapping[str, object]) -> str:
     return f"{room}:{','.join(sorted(changes))}"
+
+
+#: Widths are kept to this many decimals of a millimetre.
+DECIMALS = 4
+
+
+def set_hinge_width(document: Document, hinges: Collection[int], width_mm: float) -> Edit:
+    """Give connectors a finished width of their own; the steps of one drag undo together.
+
+    Removed ones among others stay removed; they come back only where all of these hinges are.
+
+    Parameters
+    ----------
+    document : Document
+    hinges : collection of int
+        Numbered as in ``slits.CutTable``.
+    width_mm : float
+
+    Raises
+    ------
+    FabricationError
+        The width is not above 0, or a number is negative.
+    """
+    gone = set(document.fabrication.options.removed)
+    hinges = [hinge for hinge in hinges if hinge not in gone] or hinges
+    options = _without(document.fabrication.options, hinges)
+    widths = dict(options.hinge_mm) | dict.fromkeys(hinges, round(float(width_mm), DECIMALS))
+    changed = replace(options, hinge_mm=tuple(sorted(widths.items())))
+    numbers = ",".join(str(hinge) for hinge in sorted(hinges))
+    return _edit(
+        document,
+        changed,
+        tr("Set {named} to {width_mm:g} mm", named=_named(hinges), width_mm=width_mm),
+        f"hinges:{numbers}",
+    )
+
+
+def remove_hinges(document: Document, hinges: Collection[int]) -> Edit:
+    """Leave no connector at these hinges."""
+    options = _without(document.fabrication.options, hinges)
+    changed = replace(options, removed=tuple(sorted({*options.removed, *hinges})))
+    return _edit(document, changed, tr("Cut through {named}", named=_named(hinges)))
+
+
+def reset_hinges(document: Document, hinges: Collection[int]) -> Edit:
+    """Give connectors the sheet's usual width again."""
+    return _edit(document, _without(document.fabrication.options, hinges), tr("Reset {named}", named=_named(hinges)))
+
+
+def _without(options: CutOptions, hinges: Collection[int]) -> CutOptions:
+    """The options without any choice about these hinges."""
+    chosen = set(hinges)
+    return replace(
+        options,
+        hinge_mm=tuple(pair for pair in options.hinge_mm if pair[0] not in chosen),
+        removed=tuple(hinge for hinge in options.removed if hinge not in chosen),
+    )
+
+
+def _edit(document: Document, options: CutOptions, label: str, merge_key: str | None = None) -> Edit:
+    fabrication = replace(document.fabrication, options=options)
+    return Edit(label, replace(document, fabrication=fabrication), merge_key)
+
+
+def _named(hinges: Collection[int]) -> str:
+    return (
+        tr("connector {hinges}", hinges=min(hinges))
+        if len(hinges) == 1
+        else tr("{count} connectors", count=len(hinges))
+    )
+
+
+def take_changed(
+    document: Document, before: Candidate, after: Candidate, gesture: str, merge_key: str | None = None
+) -> Edit | None:
+    """Put a changed design in the place of the one it came from; which design is chosen stays as it is.
+
+    Gestures of one ``merge_key`` that follow one another undo together.  None when the document does not hold the
+    design any more: it was replaced while the change was being scored.
+    """
+    if before not in document.candidates:
+        return None
+    candidates = with_candidate(document, document.candidates.index(before), after)
+    return Edit(gesture, replace(document, candidates=candidates), merge_key)
+
+
+def moves_locked(document: Document, before: Candidate, after: Candidate) -> bool:
+    """Whether a change gives another ratio to a void that is locked now, by the ratios that are shown and cut."""
+    shown = [one.final_field for one in (before, after)]
+    return any(shown[0].ratio[void] != shown[1].ratio[void] for void in document.locked)
+
+
+def lock_voids(document: Document, voids: Iterable[Void], on: bool) -> Edit:
+    """Lock voids against changes by hand, or unlock them.
+
+    Raises
+    ------
+    ProjectError
+        The designs have no such void.
+    """
+    chosen = frozenset(voids)
+    locked = document.locked | chosen if on else document.locked - chosen
+    return Edit(_lock_label(chosen, on), replace(document, locked=locked))
+
+
+def lock_all(document: Document, on: bool) -> Edit:
+    """Lock every void of the grid, or none."""
+    rows, columns = document.candidates[0].field.ratio.shape if document.candidates else (0, 0)
+    every = frozenset((row, column) for row in range(rows) for column in range(columns))
+    label = tr("Lock all voids") if on else tr("Unlock all voids")
+    return Edit(label, replace(document, locked=every if on else frozenset()))
+
+
+def _lock_label(voids: frozenset[Void], on: bool) -> str:
+    if len(voids) == 1:
+        ((row, column),) = voids
+        if on:
+            return tr("Lock void ({row}, {column})", row=row, column=column)
+        return tr("Unlock void ({row}, {column})", row=row, column=column)
+    if on:
+        return tr_n("Lock {count} void", "Lock {count} voids", len(voids))
+    return tr_n("Unlock {count} void", "Unlock {count} voids", len(voids))

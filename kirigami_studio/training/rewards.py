@@ -18,10 +18,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from kirigami_studio.evaluate.agreement import agreement_of_many
 from kirigami_studio.evaluate.feasibility import TAU_OVERLAP
-from kirigami_studio.evaluate.regularity import total_variation
+from kirigami_studio.evaluate.siou import agreement_of_many
 from kirigami_studio.evaluate.soundness import soundness_of_many
+from kirigami_studio.evaluate.total_variation import total_variation
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import RatioError, UsageError
 from kirigami_studio.lattice.deployment import Deployment, deploy

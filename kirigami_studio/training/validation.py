@@ -9,7 +9,7 @@ import shapely
 import torch
 from torch import Tensor
 
-from kirigami_studio.evaluate.regularity import total_variation
+from kirigami_studio.evaluate.total_variation import total_variation
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.paper import LOG_RATIO_LIMIT
 from kirigami_studio.generator.backbones import Network

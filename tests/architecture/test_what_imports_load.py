@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 PACKAGE = Path(__file__).resolve().parents[2] / "kirigami_studio"
-KNOWS_TORCH = {"kirigami_studio.lattice.batched", "kirigami_studio.lattice.batched_slopes"}
+KNOWS_TORCH = {"kirigami_studio.lattice.batched"}
 pytestmark = pytest.mark.slow
 CORE = ("foundation", "lattice", "outlines", "evaluate", "fabricate", "export", "project")
 LOADED = """

@@ -16,8 +16,7 @@ from kirigami_studio.gui.messages import Message
 from kirigami_studio.gui.sketching.sketch_context import Change
 from kirigami_studio.gui.views.target_view import Tool
 from kirigami_studio.outlines.combining import Combine
-from kirigami_studio.outlines.figure_nodes import placed_figure
-from kirigami_studio.outlines.figures import Box, Figure
+from kirigami_studio.outlines.figures import Box, Figure, placed_figure
 from tests.gui.test_board_points import ALT, CTRL, LEFT, NONE, PLAIN, SHIFT, drag, placed, send, undo_label
 
 Until = Callable[[Callable[[], bool]], None]

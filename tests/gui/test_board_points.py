@@ -17,8 +17,7 @@ from kirigami_studio.gui.sketching.point_tool import PointTool
 from kirigami_studio.gui.sketching.sketch_context import Change
 from kirigami_studio.gui.views.target_view import Tool
 from kirigami_studio.outlines.anchors import OUT
-from kirigami_studio.outlines.figure_nodes import placed_figure
-from kirigami_studio.outlines.figures import Box, Figure
+from kirigami_studio.outlines.figures import Box, Figure, placed_figure
 from kirigami_studio.outlines.mirroring import Axis
 from kirigami_studio.outlines.nodes import Kind
 from kirigami_studio.outlines.placed import Placed

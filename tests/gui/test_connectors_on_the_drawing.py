@@ -14,8 +14,8 @@ from kirigami_studio.fabricate.cut_plan import Layer
 from kirigami_studio.fabricate.slits import SHEET_EDGE
 from kirigami_studio.gui.main_window import MainWindow
 from kirigami_studio.gui.panels.cuts_page import CutsPage
-from kirigami_studio.gui.scene.hinge_rules import RULES
-from kirigami_studio.gui.views.hinge_drag import HingeDrag
+from kirigami_studio.gui.panels.hinge_bar import RULES
+from kirigami_studio.gui.views.hinge_gestures import HingeDrag
 from kirigami_studio.project.settings import FabricationSettings
 
 Until = Callable[[Callable[[], bool]], None]

@@ -18,9 +18,8 @@ from kirigami_studio.fabricate.checks import check_plan
 from kirigami_studio.fabricate.cut_plan import CutPath, CutPlan, Layer, plan_cuts
 from kirigami_studio.gui.look.theme import LIGHT
 from kirigami_studio.gui.main_window import MainWindow
-from kirigami_studio.gui.scene.cut_items import SEEN, THINNEST, CutDrawing
-from kirigami_studio.gui.scene.cut_steps import cut_steps
-from kirigami_studio.gui.scene.scale_bar import round_length
+from kirigami_studio.gui.scene.cut_items import SEEN, THINNEST, CutDrawing, cut_steps
+from kirigami_studio.gui.scene.legends import round_length
 from kirigami_studio.gui.views.cut_view import CutOverlay, CutView
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField

@@ -11,7 +11,7 @@ from PySide6.QtWidgets import QDoubleSpinBox, QWidget
 from pytestqt.qtbot import QtBot
 
 from kirigami_studio.gui.main_window import MainWindow
-from kirigami_studio.gui.panels.decimal_field import DecimalField, LengthField
+from kirigami_studio.gui.panels.number_field import DecimalField, LengthField
 
 pytestmark = pytest.mark.qt
 

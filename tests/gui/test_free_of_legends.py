@@ -11,8 +11,8 @@ from PySide6.QtCore import QPointF, QRectF
 from PySide6.QtWidgets import QApplication
 
 from kirigami_studio.gui.main_window import MainWindow
-from kirigami_studio.gui.scene.clear_box import AWAY, clear_box
 from kirigami_studio.gui.scene.colour_scale import bar_boxes
+from kirigami_studio.gui.scene.legends import AWAY, clear_box
 from kirigami_studio.gui.scene.view_transform import Bounds, ViewTransform
 from kirigami_studio.gui.views.canvas import Canvas
 from kirigami_studio.gui.views.layout_view import USUAL, LayoutView, Overlay

@@ -13,7 +13,7 @@ from pytestqt.qtbot import QtBot
 
 from kirigami_studio.evaluate.candidate import Candidate, Origin
 from kirigami_studio.generator.weights import digest_of
-from kirigami_studio.gui.designs.collecting import next_seed
+from kirigami_studio.gui.designs.collection import next_seed
 from kirigami_studio.gui.designs.selecting import SortOrder
 from kirigami_studio.gui.jobs.adding_steps import adding
 from kirigami_studio.gui.main_window import MainWindow

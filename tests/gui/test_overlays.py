@@ -19,10 +19,10 @@ from kirigami_studio.fabricate.panel_sizes import edges_of, necks_of, panels_in_
 from kirigami_studio.gui.commands import OVERLAY_ACTIONS
 from kirigami_studio.gui.look.theme import DARK, LIGHT, Palette
 from kirigami_studio.gui.main_window import MainWindow
-from kirigami_studio.gui.scene.boundary_gap import boundary_gap
-from kirigami_studio.gui.scene.chips import Chip, legend_boxes, paint_legend
 from kirigami_studio.gui.scene.colour_scale import opening_scale, paint_colour_bars, ratio_scale
 from kirigami_studio.gui.scene.fault_items import FaultKind, crossing_place
+from kirigami_studio.gui.scene.legends import Chip, legend_boxes, paint_legend
+from kirigami_studio.gui.scene.mismatch_items import boundary_gap
 from kirigami_studio.gui.scene.posed import PosedDesign
 from kirigami_studio.gui.scene.void_numbers import heat_tiles, quad_areas
 from kirigami_studio.gui.views.layout_view import USUAL, LayoutView, Overlay

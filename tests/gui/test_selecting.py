@@ -12,7 +12,7 @@ from pytestqt.modeltest import ModelTester
 from pytestqt.qtbot import QtBot
 
 from kirigami_studio.evaluate.candidate import Candidate
-from kirigami_studio.gui.designs.entry import Entry
+from kirigami_studio.gui.designs.design_cache import Entry
 from kirigami_studio.gui.designs.selecting import Selection, SortOrder, least_panel
 from kirigami_studio.gui.main_window import MainWindow
 from kirigami_studio.gui.views.gallery_model import NUMBER_ROLE, VALUE_ROLE, GalleryModel

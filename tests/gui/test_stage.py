@@ -12,9 +12,9 @@ from PySide6.QtGui import QWheelEvent
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
-from kirigami_studio.gui.designs.playing import phase_of, phi_at
 from kirigami_studio.gui.look.theme import DARK, LIGHT
 from kirigami_studio.gui.main_window import MainWindow
+from kirigami_studio.gui.panels.play_options import phase_of, phi_at
 from kirigami_studio.gui.views.layout_view import Overlay
 
 Until = Callable[[Callable[[], bool]], None]

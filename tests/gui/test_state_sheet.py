@@ -10,9 +10,8 @@ from PIL import Image
 from pytestqt.qtbot import QtBot
 from shown_sheets import shown
 
-from kirigami_studio.gui.states.board_states import LARGE, SIZES
-from kirigami_studio.gui.states.contact_sheet import contact_sheets
-from kirigami_studio.gui.states.state_sheet import StateSheet
+from kirigami_studio.demonstrations.board_states import LARGE, SIZES
+from kirigami_studio.demonstrations.state_sheet import StateSheet, contact_sheets
 
 
 @pytest.fixture
@@ -76,7 +75,7 @@ def test_that_the_message_states_leave_no_message(sheet: StateSheet, tmp_path: P
 def test_that_the_project_states_offer_lost_work_and_leave_none(
     sheet: StateSheet, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("kirigami_studio.gui.states.state_sheet.SIZES", SIZES[1:2])
+    monkeypatch.setattr("kirigami_studio.demonstrations.state_sheet.SIZES", SIZES[1:2])
     sheet.window.controller.change_fabrication(width_mm=88.0)
     sheet.project()
     assert sheet.window.messages.messages == () and not list((tmp_path / "recovery").glob("left*"))
@@ -87,7 +86,9 @@ def test_that_the_project_states_offer_lost_work_and_leave_none(
 def test_that_the_editor_states_show_tools_and_a_marked_arm(
     sheet: StateSheet, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("kirigami_studio.gui.states.state_sheet.SIZES", SIZES[1:2])  # one is enough, each takes seconds
+    monkeypatch.setattr(
+        "kirigami_studio.demonstrations.state_sheet.SIZES", SIZES[1:2]
+    )  # one is enough, each takes seconds
     sheet.editor()
     target = sheet.window.target
     assert target.editing and target.view.reach is not None and len(target.view.reach.arms) == 1

@@ -13,8 +13,8 @@ from PySide6.QtCore import QObject, Qt
 from PySide6.QtWidgets import QWidget
 from pytestqt.qtbot import QtBot
 
+from kirigami_studio.gui.application import WarmUp
 from kirigami_studio.gui.jobs import importing
-from kirigami_studio.gui.warm_up import WarmUp
 
 
 def test_that_it_happens_once_after_a_rest(qtbot: QtBot) -> None:

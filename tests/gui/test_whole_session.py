@@ -21,7 +21,7 @@ from kirigami_studio.project import store
 def test_that_the_session_without_a_display_makes_pictures_a_cut_file_and_a_project(
     tmp_path: Path, repository: Path
 ) -> None:
-    command = [sys.executable, "-m", "kirigami_studio.gui.offscreen_session", "--out", str(tmp_path / "out")]
+    command = [sys.executable, "-m", "kirigami_studio.demonstrations.offscreen_session", "--out", str(tmp_path / "out")]
     done = subprocess.run(command, cwd=repository, capture_output=True, text=True, timeout=240, check=False)
     assert done.returncode == 0, done.stderr
     made = [Path(line.strip()) for line in done.stdout.splitlines()[1:]]
@@ -33,7 +33,13 @@ def test_that_the_session_without_a_display_makes_pictures_a_cut_file_and_a_proj
 
 def test_that_the_session_reports_failure(tmp_path: Path, repository: Path) -> None:
     (tmp_path / "wall").write_text("a file", encoding="utf-8")
-    command = [sys.executable, "-m", "kirigami_studio.gui.offscreen_session", "--out", str(tmp_path / "wall" / "out")]
+    command = [
+        sys.executable,
+        "-m",
+        "kirigami_studio.demonstrations.offscreen_session",
+        "--out",
+        str(tmp_path / "wall" / "out"),
+    ]
     done = subprocess.run(command, cwd=repository, capture_output=True, text=True, timeout=120, check=False)
     assert done.returncode == 1 and done.stderr.startswith("The session failed: ") and "Traceback" not in done.stderr
 

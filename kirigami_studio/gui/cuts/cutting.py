@@ -2,16 +2,24 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import partial
 from pathlib import Path
+from typing import Unpack
 
 from PySide6.QtCore import QObject, QTimer, Signal
 
-from kirigami_studio.fabricate.material import Material
+from kirigami_studio.fabricate.material import Material, library
+from kirigami_studio.fabricate.material_copies import save_copy
+from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.jobs import steps
 from kirigami_studio.gui.jobs.queue import JobCallbacks, JobQueue
 from kirigami_studio.gui.messages import Message, Tone
+from kirigami_studio.project import edits
+from kirigami_studio.project.document import Document
+from kirigami_studio.project.edits import Edit, FabricationChange, OptionsChange
+from kirigami_studio.project.material_record import carried_material
 from kirigami_studio.project.settings import FabricationSettings
 
 #: Changes that follow each other faster than this (ms) lead to one plan.
@@ -120,3 +128,112 @@ def told(path: Path, made: steps.Planned) -> Message:
         return Message(sentence, Tone.DONE, details)
     sentence = tr("{name} was written, but cutting it would fail: {text}", name=path.name, text=check.problems[0].text)
     return Message(sentence, Tone.WARNING, details)
+
+
+class Fabricating(QObject):
+    """Proposes the edit that a gesture leads to, or says why there is none."""
+
+    edited = Signal(object)  #: Edit
+    refused = Signal(object)  #: KirigamiError
+
+    def __init__(self, document: Callable[[], Document], parent: QObject) -> None:
+        super().__init__(parent)
+        self._document = document
+
+    def change(self, **changes: Unpack[FabricationChange]) -> None:
+        """Change sheet, material, widths or what files are written for."""
+        self._propose(lambda document: edits.set_fabrication(document, **changes))
+
+    def cut_at_drawn_size(self, width_mm: float) -> None:
+        """Let the flat sheet be as wide as opens to the size that the target was drawn with."""
+        self._propose(
+            lambda document: Edit(
+                tr("Cut at the drawn size"), edits.set_fabrication(document, width_mm=width_mm).document
+            )
+        )
+
+    def change_options(self, **changes: Unpack[OptionsChange]) -> None:
+        """Change connector style, order or tabs."""
+        self._propose(lambda document: edits.set_cut_options(document, **changes))
+
+    def set_hinge_width(self, hinges: frozenset[int], width_mm: float) -> None:
+        """Give connectors a width of their own."""
+        if hinges:
+            self._propose(lambda document: edits.set_hinge_width(document, hinges, width_mm))
+
+    def remove_hinges(self, hinges: frozenset[int]) -> None:
+        """Leave no connector at these hinges."""
+        if hinges:
+            self._propose(lambda document: edits.remove_hinges(document, hinges))
+
+    def reset_hinges(self, hinges: frozenset[int]) -> None:
+        """Give connectors the usual width again."""
+        if hinges:
+            self._propose(lambda document: edits.reset_hinges(document, hinges))
+
+    def _propose(self, make: Callable[[Document], Edit]) -> None:
+        try:
+            edit = make(self._document())
+        except KirigamiError as error:
+            self.refused.emit(error)
+        else:
+            self.edited.emit(edit)
+
+
+class MaterialStore(QObject):
+    """Compares what a project carries with what is in stock."""
+
+    stocked = Signal(str)  #: key of a material that is in stock now
+    message = Signal(object)  #: Message
+    status = Signal(str)
+
+    def __init__(self, parent: QObject) -> None:
+        super().__init__(parent)
+
+    def welcome(self, document: Document) -> None:
+        """A project was opened."""
+        material = carried_material(document.fabrication)
+        if material is None:
+            return
+        known = library().materials.get(material.key)
+        if known is None:
+            sentence = tr(
+                "The material {name} is not among yours; its numbers came with the project and are used.",
+                name=material.name,
+            )
+            keep = (tr("Add to my materials"), partial(self.keep, material))
+            self.message.emit(Message(sentence, Tone.WARNING, actions=(keep,)))
+        elif known != material:
+            sentence = tr(
+                "Your material {name} has other numbers than this project knew; yours are used.", name=known.name
+            )
+            self.message.emit(Message(sentence, Tone.WARNING, differences(material, known)))
+
+    def keep(self, material: Material) -> None:
+        """Save what a project carries among the own materials."""
+        try:
+            save_copy(material)
+        except KirigamiError as error:
+            self.message.emit(Message(str(error), Tone.ERROR))
+            return
+        self.status.emit(tr("{name} is among your materials now.", name=material.name))
+        self.stocked.emit(material.key)
+
+
+def differences(carried: Material, known: Material) -> str:
+    """One line for every entry in which two materials differ."""
+    entries = [name for name in Material.__dataclass_fields__ if getattr(carried, name) != getattr(known, name)]
+    return "\n".join(
+        tr(
+            "{entry}: {theirs} in the project, {ours} in stock",
+            entry=name,
+            theirs=_told(carried, name),
+            ours=_told(known, name),
+        )
+        for name in entries
+    )
+
+
+def _told(material: Material, name: str) -> str:
+    value = getattr(material, name)
+    return f"{value:g}" if isinstance(value, float) else str(value)

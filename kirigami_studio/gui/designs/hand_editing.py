@@ -22,21 +22,48 @@ import numpy as np
 from PySide6.QtCore import QObject, QTimer, Signal
 
 from kirigami_studio.evaluate.candidate import Candidate
-from kirigami_studio.foundation.words import tr
+from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.gui.designs.design_cache import DesignCache
 from kirigami_studio.gui.designs.hand_pull import LARGEST, SMALLEST, Pull
-from kirigami_studio.gui.designs.hand_words import locked_sentence, ratio_label, score_sentence
 from kirigami_studio.gui.designs.outline_drag import OutlineDrag
 from kirigami_studio.gui.jobs import hand_steps
 from kirigami_studio.gui.jobs.drag_steps import Followed, Grasp
-from kirigami_studio.gui.jobs.queue import JobCallbacks, JobQueue
-from kirigami_studio.gui.jobs.slot import LatestJob
+from kirigami_studio.gui.jobs.queue import JobCallbacks, JobQueue, LatestJob
 from kirigami_studio.gui.jobs.steps import Decoded
 from kirigami_studio.gui.scene.posed import PosedDesign
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
-from kirigami_studio.project import hand_edits
+from kirigami_studio.project import edits
 from kirigami_studio.project.document import Document, Void
+
+
+def ratio_label(void: Void, count: int) -> str:
+    """How a change of ``count`` ratios is named; ``void`` is the only one, or one of them."""
+    if count > 1:
+        return tr_n("Change ratio of {count} void", "Change ratio of {count} voids", count)
+    row, column = void
+    return tr("Change ratio of void ({row}, {column})", row=row, column=column)
+
+
+def locked_sentence(count: int) -> str:
+    """Why nothing happens to ``count`` voids."""
+    return tr_n(
+        "{count} void is locked. Unlock it (L) to change its ratio.",
+        "{count} voids are locked. Unlock them (L) to change their ratios.",
+        count,
+    )
+
+
+def score_sentence(label: str, before: Candidate, after: Candidate) -> str:
+    """What a change has done to the match, and what it has cost."""
+    gain = 100.0 * (after.score.siou - before.score.siou)
+    told = tr("{gesture}: sIoU {siou:.1f} % ({gain:+.2f}).", gesture=label, siou=100 * after.score.siou, gain=gain)
+    if not after.score.feasible:
+        told = tr("{told} The design is not feasible now.", told=told)
+    if before.trim is not None:
+        told = tr("{told} Its trim is off; trim it again when you are done.", told=told)
+    return told
+
 
 #: Milliseconds after the last notch of the wheel, or the last press of a key, that end the gesture.
 PAUSE_MS = 250
@@ -207,12 +234,12 @@ class HandEditing(QObject):
     def lock(self, voids: frozenset[Void], on: bool) -> None:
         """Lock voids against changes by hand, or unlock them."""
         if voids and not self.postpones(lambda: self.lock(voids, on)):
-            self.edited.emit(hand_edits.lock_voids(self._document(), voids, on))
+            self.edited.emit(edits.lock_voids(self._document(), voids, on))
 
     def lock_all(self, on: bool) -> None:
         """Lock every void, or none."""
         if not self.postpones(lambda: self.lock_all(on)):
-            self.edited.emit(hand_edits.lock_all(self._document(), on))
+            self.edited.emit(edits.lock_all(self._document(), on))
 
     # the outline ---------------------------------------------------------------------------------------------------
 
@@ -352,7 +379,7 @@ class HandEditing(QObject):
         before = self._base
         if not isinstance(report, Decoded) or before is None:
             return
-        edit = hand_edits.take_changed(self._document(), before, report.candidate, gesture.label, gesture.merge_key)
+        edit = edits.take_changed(self._document(), before, report.candidate, gesture.label, gesture.merge_key)
         if edit is None:
             self._restore()
             return

@@ -19,8 +19,7 @@ from PySide6.QtCore import QObject, Signal
 
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.jobs.drag_steps import Followed, Follower, Grasp
-from kirigami_studio.gui.jobs.queue import JobCallbacks, JobQueue
-from kirigami_studio.gui.jobs.slot import LatestJob
+from kirigami_studio.gui.jobs.queue import JobCallbacks, JobQueue, LatestJob
 
 
 class OutlineDrag(QObject):

@@ -11,8 +11,7 @@ from PySide6.QtCore import QObject, Signal
 
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.jobs.plot_steps import Reading, plotting
-from kirigami_studio.gui.jobs.queue import JobCallbacks, JobQueue
-from kirigami_studio.gui.jobs.slot import LatestJob
+from kirigami_studio.gui.jobs.queue import JobCallbacks, JobQueue, LatestJob
 from kirigami_studio.gui.scene.posed import PosedDesign
 from kirigami_studio.outlines.outline import Outline
 

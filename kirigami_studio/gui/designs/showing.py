@@ -9,8 +9,7 @@ from PySide6.QtCore import QObject, Signal
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui.designs.design_cache import DesignCache
-from kirigami_studio.gui.designs.entry import Entry, same_sample
+from kirigami_studio.gui.designs.design_cache import DesignCache, Entry, same_sample
 from kirigami_studio.gui.jobs import steps
 from kirigami_studio.gui.jobs.queue import JobCallbacks, JobQueue
 from kirigami_studio.pipeline.rank import rank_key

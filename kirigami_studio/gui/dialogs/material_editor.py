@@ -25,8 +25,7 @@ from kirigami_studio.fabricate import material_copies
 from kirigami_studio.fabricate.material import Library, Material, library
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui.dialogs.gap_row import GapRow
-from kirigami_studio.gui.dialogs.material_form import TEXTS, MaterialForm
+from kirigami_studio.gui.dialogs.material_form import TEXTS, GapRow, MaterialForm
 
 SIZE = QSize(760, 560)
 NEW = tr("Your own copy of a preset can be changed; presets stay as they are.")

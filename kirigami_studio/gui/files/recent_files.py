@@ -14,8 +14,7 @@ from PySide6.QtCore import QLockFile, QObject, Signal
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.files.pasting import PASTED
-from kirigami_studio.gui.jobs.queue import JobCallbacks, JobQueue
-from kirigami_studio.gui.jobs.worker import Cancel
+from kirigami_studio.gui.jobs.queue import Cancel, JobCallbacks, JobQueue
 from kirigami_studio.gui.messages import Message, Tone
 from kirigami_studio.project import recent
 from kirigami_studio.project.recent import Recent

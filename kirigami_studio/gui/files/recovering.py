@@ -12,10 +12,9 @@ from pathlib import Path
 from PySide6.QtCore import QDateTime, QDeadlineTimer, QLocale, QLockFile, QObject, QTimer, Signal
 
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui.jobs import recovery_steps
-from kirigami_studio.gui.jobs.project_steps import Left, Project
+from kirigami_studio.gui.jobs import project_steps
+from kirigami_studio.gui.jobs.project_steps import Left, Leftover, Project
 from kirigami_studio.gui.jobs.queue import JobCallbacks, JobQueue
-from kirigami_studio.gui.jobs.recovery_steps import Leftover
 from kirigami_studio.gui.jobs.steps import Picture
 from kirigami_studio.gui.messages import Message, Tone
 from kirigami_studio.project import recovery
@@ -130,7 +129,7 @@ class Recovering(QObject):
         callbacks = JobCallbacks(
             self._take_kept, self._look_again, on_failed=lambda sentence, _: self._not_kept(sentence)
         )
-        steps = partial(recovery_steps.keeping, work.document, work.picture, note, self._own)
+        steps = partial(project_steps.keeping, work.document, work.picture, note, self._own)
         self._job = self._queue.start(tr("keeping the work for a recovery"), steps, callbacks)
 
     def _locked(self, own: Path) -> bool:
@@ -172,7 +171,7 @@ class Recovering(QObject):
         if self._job is not None:  # it may be writing at this moment
             self._queue.abandon(self._job)
             self._job = None
-            self._queue.start(tr("tidying up"), partial(recovery_steps.removing, self._own), JobCallbacks())
+            self._queue.start(tr("tidying up"), partial(project_steps.removing, self._own), JobCallbacks())
         _remove(self._own)
         self._drop_pending()
 
@@ -195,7 +194,7 @@ class Recovering(QObject):
                     abandoned.append(file)
         if abandoned:
             callbacks = JobCallbacks(self._offer, on_failed=self.failed.emit)
-            steps = partial(recovery_steps.looking, tuple(abandoned[::-1]))
+            steps = partial(project_steps.looking, tuple(abandoned[::-1]))
             self._queue.start(tr("looking for unsaved work"), steps, callbacks)
 
     def _offer(self, leftover: object) -> None:
@@ -222,7 +221,7 @@ class Recovering(QObject):
         callbacks = JobCallbacks(
             partial(self._take_recovered, leftover), on_failed=partial(self._not_recovered, leftover)
         )
-        steps = partial(recovery_steps.recovering, leftover, self._place())
+        steps = partial(project_steps.recovering, leftover, self._place())
         self._queue.start(tr("recovering {called}", called=_called(leftover)), steps, callbacks)
 
     def discard(self, leftover: Leftover) -> None:

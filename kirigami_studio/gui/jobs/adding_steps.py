@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.gui.jobs.queue import Cancel
 from kirigami_studio.gui.jobs.steps import Decoded, ModelFound, generating
-from kirigami_studio.gui.jobs.worker import Cancel
 from kirigami_studio.pipeline.events import Event, Finished
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.pipeline.variety import distinct

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from kirigami_studio.foundation.arrays import BoolArray
-from kirigami_studio.gui.jobs.worker import Cancel
+from kirigami_studio.gui.jobs.queue import Cancel
 from kirigami_studio.gui.scene.posed import PosedDesign
 
 if TYPE_CHECKING:

@@ -10,8 +10,8 @@ import numpy as np
 from kirigami_studio.evaluate.candidate import Candidate, Origin
 from kirigami_studio.foundation.errors import Cancelled, KirigamiError
 from kirigami_studio.foundation.words import tr
+from kirigami_studio.gui.jobs.queue import Cancel
 from kirigami_studio.gui.jobs.steps import Decoded, trimming
-from kirigami_studio.gui.jobs.worker import Cancel
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.outlines.outline import Outline
@@ -43,7 +43,7 @@ class Refitted:
 
 def scoring(candidate: Candidate, field: RatioField, target: Outline, cancel: Cancel) -> Iterator[Decoded]:
     """Score a candidate with another field, changed by hand; a trim belonged to the old one and goes."""
-    from kirigami_studio.evaluate.staying import evaluate_near
+    from kirigami_studio.evaluate.score import evaluate_near
     from kirigami_studio.pipeline.threads import one_blas_thread
 
     deployment = deploy(field)
@@ -66,7 +66,7 @@ def refitting(
 
     A candidate that is trimmed is trimmed again.
     """
-    from kirigami_studio.evaluate.staying import evaluate_near
+    from kirigami_studio.evaluate.score import evaluate_near
     from kirigami_studio.pipeline.rank import improves
     from kirigami_studio.pipeline.threads import one_blas_thread
     from kirigami_studio.polish.levenberg import polish

@@ -16,8 +16,8 @@ from pathlib import Path
 from PySide6.QtCore import QSize
 from PySide6.QtGui import QColor, QImage, QPainter, QPicture
 
+from kirigami_studio.gui.jobs.queue import Cancel
 from kirigami_studio.gui.jobs.steps import CutRequest, export_job, planned
-from kirigami_studio.gui.jobs.worker import Cancel
 
 #: Pixels that are painted at a time; each band costs the whole recording again, less what lies outside it.
 BAND = 1_000_000

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from kirigami_studio.gui.jobs.worker import Cancel
+from kirigami_studio.gui.jobs.queue import Cancel
 from kirigami_studio.gui.scene.posed import PosedDesign
 from kirigami_studio.lattice.deployment import ZIPPED_BELOW, rotate
 from kirigami_studio.outlines.outline import Outline
@@ -72,8 +72,8 @@ def batches(phi_target: float) -> list[list[float]]:
 
 def readings(design: PosedDesign, target: Outline | None, angles: list[float]) -> tuple[Reading, ...]:
     """Read a design at some angles whose outlines have equally many vertices."""
-    from kirigami_studio.evaluate.agreement import agreement_of_many
     from kirigami_studio.evaluate.outline_gap import outline_gap
+    from kirigami_studio.evaluate.siou import agreement_of_many
     from kirigami_studio.pipeline.threads import one_blas_thread
 
     sheet, found = design.deployment, []

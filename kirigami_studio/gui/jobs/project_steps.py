@@ -10,14 +10,19 @@ from typing import TYPE_CHECKING
 from kirigami_studio.foundation.errors import ProjectError
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.jobs.picture_reading import reduced_picture
+from kirigami_studio.gui.jobs.queue import Cancel
 from kirigami_studio.gui.jobs.steps import Picture
-from kirigami_studio.gui.jobs.worker import Cancel
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.picture_record import LARGEST_PICTURE, TracedPicture
 
 if TYPE_CHECKING:
     from kirigami_studio.project.store import Opened
+from contextlib import suppress
+
+from kirigami_studio.foundation.errors import KirigamiError
+from kirigami_studio.project import recovery
+from kirigami_studio.project.recovery import Note
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,3 +109,51 @@ def laid_out(opened: Opened, folder: Path) -> Picture | None:
     path.write_bytes(kept.content)
     traced = Traced(target, kept.scale, kept.centre, kept.size)
     return Picture(path, kept.automatic, kept.threshold, traced, reduced_picture(path))
+
+
+@dataclass(frozen=True, slots=True)
+class Leftover:
+    """Work that a session kept which has not ended as it should.
+
+    Attributes
+    ----------
+    file : Path
+    note : Note or None
+        None if it cannot be read.
+    fault : str
+        Why it cannot be read, a sentence; else "".
+    """
+
+    file: Path
+    note: Note | None
+    fault: str = ""
+
+
+def keeping(document: Document, picture: Picture | None, note: Note, path: Path, cancel: Cancel) -> Iterator[Document]:
+    """Keep a document, and yield it once it is on disk; a picture that cannot be kept is told when it is saved."""
+    kept = None
+    with suppress(ProjectError):
+        kept = stored(picture)
+    recovery.keep(document, note, path, kept)
+    yield document
+
+
+def looking(files: tuple[Path, ...], cancel: Cancel) -> Iterator[Leftover]:
+    """Find out what the files of earlier sessions keep."""
+    for file in files:
+        try:
+            yield Leftover(file, recovery.read_note(file))
+        except KirigamiError as error:
+            yield Leftover(file, None, str(error))
+
+
+def recovering(leftover: Leftover, folder: Path, cancel: Cancel) -> Iterator[Left | Project]:
+    """Read the work that was kept; its picture is laid into a folder."""
+    yield from loading(leftover.file, folder, cancel)
+
+
+def removing(file: Path, cancel: Cancel) -> Iterator[Path]:
+    """Delete a kept file, in its turn after whatever still writes it."""
+    with suppress(OSError):
+        file.unlink(missing_ok=True)
+    yield file

@@ -3,15 +3,109 @@
 from __future__ import annotations
 
 import itertools
+import logging
+import threading
 import time
+import traceback
 from collections import deque
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
 from functools import partial
 
-from PySide6.QtCore import QObject, QThread, QTimer, Signal, Slot
+from PySide6.QtCore import QMetaObject, QObject, Qt, QThread, QTimer, Signal, Slot
 
-from kirigami_studio.gui.jobs.worker import Job, Steps, Worker
+from kirigami_studio.foundation.errors import Cancelled, KirigamiError
+from kirigami_studio.foundation.log import topic
+from kirigami_studio.foundation.words import tr
+
+log: logging.Logger = topic("gui.jobs")
+
+Cancel = Callable[[], bool]
+Steps = Callable[[Cancel], Iterator[object]]
+
+
+@dataclass(slots=True, eq=False)
+class Job:
+    """One piece of work.
+
+    Attributes
+    ----------
+    number : int
+        Unique in the process.
+    name : str
+        As it follows "while": "reading heart.svg".
+    steps : callable
+        Gets the cancel flag and returns the generator that does the work.
+    flag : threading.Event
+        Set to ask the job to stop.
+    """
+
+    number: int
+    name: str
+    steps: Steps
+    flag: threading.Event = field(default_factory=threading.Event)
+    iterator: Iterator[object] | None = None
+
+
+class Worker(QObject):
+    """Lives in the worker thread."""
+
+    reported = Signal(int, object)
+    finished = Signal(int)
+    cancelled = Signal(int)
+    failed = Signal(int, str, str)  #: number, sentence, trace
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._jobs: deque[Job] = deque()
+
+    def take(self, job: Job) -> None:
+        """Queue a job; may be called from any thread."""
+        self._jobs.append(job)
+        self._step_soon()
+
+    def _step_soon(self) -> None:
+        QMetaObject.invokeMethod(self, "step", Qt.ConnectionType.QueuedConnection)
+
+    @Slot()
+    def step(self) -> None:
+        """Run the next job up to its next report, then let the others have their turn."""
+        if not self._jobs:
+            return
+        job = self._jobs.popleft()
+        if self._advanced(job):
+            self._jobs.append(job)
+        if self._jobs:
+            self._step_soon()
+
+    def _advanced(self, job: Job) -> bool:
+        """Whether the job has more to do."""
+        try:
+            if job.flag.is_set():
+                raise Cancelled(tr("Stopped {name}.", name=job.name))
+            if job.iterator is None:
+                job.iterator = job.steps(job.flag.is_set)
+            report = next(job.iterator)
+        except StopIteration:
+            self.finished.emit(job.number)
+        except Cancelled:
+            self.cancelled.emit(job.number)
+        except KirigamiError as error:
+            log.info("job %d (%s) refused: %s", job.number, job.name, error)
+            self.failed.emit(job.number, str(error), traceback.format_exc())
+        except Exception as error:  # a thread's last line of defence: it must reach the user, not end the thread
+            log.exception("job %d (%s) failed", job.number, job.name)
+            sentence = tr(
+                "Something unexpected went wrong while {name}: {value}.",
+                name=job.name,
+                value=error or type(error).__name__,
+            )
+            self.failed.emit(job.number, sentence, traceback.format_exc())
+        else:
+            self.reported.emit(job.number, report)
+            return True
+        return False
+
 
 #: Seconds of telling in one turn of the event loop: reports of many designs come all at once, and between two turns the
 #: window takes what was clicked and typed meanwhile.
@@ -131,3 +225,42 @@ class JobQueue(QObject):
         tell(callbacks)
         if not self._open:
             self.idle.emit()
+
+
+class LatestJob:
+    """Holds at most one job of a board; it is empty again before anybody is told how the job ended."""
+
+    def __init__(self, queue: JobQueue) -> None:
+        self._queue = queue
+        self._number: int | None = None
+
+    @property
+    def busy(self) -> bool:
+        """Whether a job is open here."""
+        return self._number is not None
+
+    def start(self, name: str, steps: Steps, callbacks: JobCallbacks) -> None:
+        """Stop the job that is here and begin another; ``name`` follows the word "while" in messages."""
+        self.stop()
+        own = JobCallbacks(
+            callbacks.on_report,
+            partial(self._end, callbacks.on_finished),
+            partial(self._end, callbacks.on_cancelled),
+            partial(self._end, callbacks.on_failed),
+        )
+        self._number = self._queue.start(name, steps, own)
+
+    def cancel(self) -> None:
+        """Ask the job to stop at its next report; it will say that it did."""
+        if self._number is not None:
+            self._queue.cancel(self._number)
+
+    def stop(self) -> None:
+        """Stop the job and forget what it would still say."""
+        if self._number is not None:
+            self._queue.abandon(self._number)
+            self._number = None
+
+    def _end(self, tell: Callable[..., None], *said: str) -> None:
+        self._number = None
+        tell(*said)

@@ -20,7 +20,7 @@ from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.file_kinds import kind_of
 from kirigami_studio.gui.jobs import importing
 from kirigami_studio.gui.jobs.picture_reading import reduced_picture
-from kirigami_studio.gui.jobs.worker import Cancel
+from kirigami_studio.gui.jobs.queue import Cancel
 from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.pipeline.events import CandidateFound, CandidateImproved, Event

@@ -9,7 +9,7 @@ from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QLabel, QToolButton, QVBoxLayout, QWidget
 
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui.designs.entry import Entry
+from kirigami_studio.gui.designs.design_cache import Entry
 from kirigami_studio.gui.designs.selecting import differences, least_panel
 from kirigami_studio.gui.look import icons
 from kirigami_studio.gui.look.theme import Palette

@@ -10,7 +10,7 @@ from kirigami_studio.gui.look import icons
 from kirigami_studio.gui.look.readable import readable_length, readable_time
 from kirigami_studio.gui.look.theme import LIGHT, Palette
 from kirigami_studio.gui.panels.card import tool_button
-from kirigami_studio.gui.scene.cut_steps import CutSteps
+from kirigami_studio.gui.scene.cut_items import CutSteps
 
 #: Seconds in which a whole job is played, however long it takes to cut.
 PLAY_SECONDS = 12.0

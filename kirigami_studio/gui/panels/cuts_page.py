@@ -4,23 +4,82 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import Signal
-from PySide6.QtWidgets import QToolButton, QVBoxLayout, QWidget
+from PySide6.QtCore import QSignalBlocker, QSize, Qt, Signal
+from PySide6.QtWidgets import QListWidget, QListWidgetItem, QToolButton, QVBoxLayout, QWidget
 
+from kirigami_studio.fabricate.findings import Problem, Severity
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.look import icons
 from kirigami_studio.gui.look.readable import readable_size
-from kirigami_studio.gui.look.theme import Palette
+from kirigami_studio.gui.look.theme import LIGHT, Palette
 from kirigami_studio.gui.panels.card import tool_button
 from kirigami_studio.gui.panels.cut_bar import CutBar
 from kirigami_studio.gui.panels.hinge_bar import HingeBar
-from kirigami_studio.gui.panels.problem_list import ProblemList
-from kirigami_studio.gui.scene.cut_steps import cut_steps
+from kirigami_studio.gui.scene.cut_items import cut_steps
 from kirigami_studio.gui.views.cut_view import CutOverlay, CutView
 
 if TYPE_CHECKING:
     from kirigami_studio.fabricate.cut_plan import CutPlan
     from kirigami_studio.gui.jobs.steps import Planned
+
+#: Lines that are shown without scrolling.
+MOST_LINES = 3
+ICONS = {Severity.ERROR: "fault", Severity.WARNING: "warning"}
+WORDS = {Severity.ERROR: tr("Error"), Severity.WARNING: tr("Warning")}
+
+
+class ProblemList(QListWidget):
+    """One line for each problem: symbol, word and sentence; hidden while there is none."""
+
+    picked = Signal(int)  #: number of the problem
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._problems: tuple[Problem, ...] = ()
+        self._palette: Palette = LIGHT
+        self.setObjectName("problemList")
+        self.setAccessibleName(tr("Problems of the cut plan"))
+        self.setIconSize(QSize(16, 16))
+        self.setTextElideMode(Qt.TextElideMode.ElideRight)
+        self.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+        self.currentRowChanged.connect(self._tell)
+        self.itemClicked.connect(lambda item: self._tell(self.row(item)))
+        self.hide()
+
+    def show_problems(self, problems: tuple[Problem, ...]) -> None:
+        """Show another plan's problems."""
+        self._problems = problems
+        with QSignalBlocker(self):
+            self.clear()
+            for problem in problems:
+                item = QListWidgetItem(f"{WORDS[problem.severity]}: {problem.text}")
+                place = "" if problem.where is None else tr("\nClick to see the place.")
+                item.setToolTip(f"{problem.text}{place}")
+                self.addItem(item)
+            self.setCurrentRow(-1)
+        self._dress()
+        self.setVisible(bool(problems))
+        lines = min(len(problems), MOST_LINES)
+        self.setFixedHeight(lines * (self.fontMetrics().height() + 8) + 6)
+
+    def show_picked(self, problem: int) -> None:
+        """Mark the line of a problem that was picked in the drawing."""
+        with QSignalBlocker(self):
+            self.setCurrentRow(problem)
+
+    def set_palette(self, palette: Palette) -> None:
+        """Draw in other colours."""
+        self._palette = palette
+        self._dress()
+
+    def _dress(self) -> None:
+        for row, problem in enumerate(self._problems):
+            self.item(row).setIcon(icons.icon(ICONS[problem.severity], self._palette, self._palette.warning))
+
+    def _tell(self, row: int) -> None:
+        if row >= 0:
+            self.picked.emit(row)
+
 
 OVERLAYS = (
     (CutOverlay.TRAVEL, "travel", tr("Show the moves between cuts, dashed.")),

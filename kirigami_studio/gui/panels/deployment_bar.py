@@ -8,13 +8,11 @@ from PySide6.QtCore import QElapsedTimer, QSettings, QSignalBlocker, QTimer, Sig
 from PySide6.QtWidgets import QHBoxLayout, QWidget
 
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui.designs.playing import PlayMode, phase_of, phi_at
 from kirigami_studio.gui.look import icons
 from kirigami_studio.gui.look.theme import LIGHT, Palette
 from kirigami_studio.gui.panels.card import tool_button
-from kirigami_studio.gui.panels.decimal_field import DecimalField
-from kirigami_studio.gui.panels.number_field import number_field
-from kirigami_studio.gui.panels.play_options import PlayOptions
+from kirigami_studio.gui.panels.number_field import DecimalField, number_field
+from kirigami_studio.gui.panels.play_options import PlayMode, PlayOptions, phase_of, phi_at
 from kirigami_studio.gui.views.phi_slider import PhiSlider
 
 #: Seconds from the flat sheet to fully turned while playing at the usual speed.

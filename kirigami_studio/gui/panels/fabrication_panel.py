@@ -22,9 +22,9 @@ from kirigami_studio.gui.look import icons
 from kirigami_studio.gui.look.readable import UNKNOWN, readable_length, readable_range, readable_size, readable_time
 from kirigami_studio.gui.look.theme import LIGHT, Palette
 from kirigami_studio.gui.panels.card import Card, ScrolledWhenShort, captioned, compact, muted_label, tool_button
-from kirigami_studio.gui.panels.decimal_field import LengthField
 from kirigami_studio.gui.panels.export_row import ExportRow
 from kirigami_studio.gui.panels.more_options import MoreOptions
+from kirigami_studio.gui.panels.number_field import LengthField
 from kirigami_studio.gui.panels.opened_row import OpenedRow
 from kirigami_studio.project.material_record import carried_material
 from kirigami_studio.project.settings import FabricationSettings

@@ -2,16 +2,255 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import QSize
+from dataclasses import replace
+
+from PySide6.QtCore import QSignalBlocker, QSize, Qt, Signal
 from PySide6.QtGui import QResizeEvent
-from PySide6.QtWidgets import QWidget
+from PySide6.QtWidgets import (
+    QCheckBox,
+    QComboBox,
+    QHBoxLayout,
+    QLabel,
+    QPushButton,
+    QSizePolicy,
+    QSlider,
+    QToolButton,
+    QVBoxLayout,
+    QWidget,
+)
 
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui.designs.selecting import Selection, counted
+from kirigami_studio.gui.designs.selecting import Selection, SortOrder, counted
+from kirigami_studio.gui.look import icons
 from kirigami_studio.gui.look.theme import Palette
-from kirigami_studio.gui.panels.card import INSET, Card, FittingLabel
-from kirigami_studio.gui.panels.gallery_bar import GalleryBar
+from kirigami_studio.gui.panels.card import INSET, Card, FittingLabel, tool_button
+from kirigami_studio.gui.panels.number_field import DecimalField, number_field
 from kirigami_studio.gui.views.gallery_view import GalleryView
+from kirigami_studio.lattice.ratio_field import RatioField
+
+#: Nearness at the two ends of the slider, and where it starts.
+NEAREST, FARTHEST, USUAL = 0.9, 0.1, 0.6
+#: Positions of the slider.
+STEPS = 100
+
+
+class GalleryBar(QWidget):
+    """Reports the selection that is wanted, and wishes for more designs."""
+
+    selection_changed = Signal(object)  #: Selection
+    again_wanted = Signal()
+    alike_wanted = Signal(float)  #: nearness
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._selection = Selection()
+        self._chosen: tuple[RatioField, int] | None = None
+        self.order = self._order_box()
+        self.filter = tool_button("filterGallery", tr("Filter: choose which designs are shown."), checkable=True)
+        self.again = tool_button("again", tr("More designs (Ctrl+R)."))
+        self.alike = tool_button("moreLike", tr("More like the chosen design (Ctrl+Shift+R)."), checkable=True)
+        tip = tr("Compare two designs side by side (K). Ctrl+click a card to say with which.")
+        self.compare = tool_button("compare", tip, checkable=True)
+        row = QHBoxLayout()
+        row.setSpacing(4)
+        row.addWidget(self.order, 1)
+        for button in (self.filter, self.compare, self.again, self.alike):
+            row.addWidget(button)
+        column = QVBoxLayout(self)
+        column.setContentsMargins(0, 0, 8, 0)
+        column.setSpacing(6)
+        column.addLayout(row)
+        self.filter_pane = self._filter_pane()
+        self.alike_pane = self._alike_pane()
+        for pane in (self.filter_pane, self.alike_pane):
+            column.addWidget(pane)
+            pane.hide()
+        self.filter.toggled.connect(self._fold)
+        self.alike.toggled.connect(self._fold)
+        self.again.clicked.connect(self.again_wanted)
+        self.set_ready(False)
+
+    def _order_box(self) -> QComboBox:
+        box = QComboBox()
+        box.setObjectName("galleryOrder")
+        box.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+        box.setAccessibleName(tr("Sort the designs by"))
+        box.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
+        for order, text, tip in _orders():
+            box.addItem(text, order)
+            box.setItemData(box.count() - 1, tip, Qt.ItemDataRole.ToolTipRole)
+        box.activated.connect(lambda _: self._choose_order())
+        box.currentIndexChanged.connect(lambda row: box.setToolTip(box.itemData(row, Qt.ItemDataRole.ToolTipRole)))
+        box.setToolTip(_orders()[0][2])
+        return box
+
+    def _filter_pane(self) -> QWidget:
+        self.feasible = _check("feasibleOnly", tr("Feasible"), tr("Show only designs that can be built."))
+        self.pinned = _check("pinnedOnly", tr("Pinned"), tr("Show only pinned designs."))
+        self.rejected = _check("showRejected", tr("Rejected"), tr("Also show rejected designs, dimmed."))
+        self.pinned_first = _check("pinnedFirst", tr("Pinned first"), tr("Show pinned designs before all others."))
+        self.least = DecimalField()
+        self.least.setObjectName("leastSiou")
+        self.least.setRange(0.0, 100.0)
+        self.least.setDecimals(1)
+        self.least.setSuffix(" %")
+        self.least.setSpecialValueText(tr("any"))
+        self.least.setKeyboardTracking(False)
+        self.least.setFixedWidth(84)
+        self.least.setAccessibleName(tr("Least sIoU that is shown, in percent"))
+        self.least.setToolTip(tr("Show only designs with at least this sIoU, in percent."))
+        number_field(self.least)
+        self.least.valueChanged.connect(lambda _: self._tell())
+        pane = QWidget()
+        column = QVBoxLayout(pane)
+        column.setContentsMargins(0, 0, 0, 2)
+        column.setSpacing(6)
+        first, second = QHBoxLayout(), QHBoxLayout()
+        for box in (self.feasible, self.pinned, self.rejected):
+            first.addWidget(box)
+        first.addStretch(1)
+        caption = QLabel(tr("sIoU from"))
+        caption.setBuddy(self.least)
+        second.addWidget(self.pinned_first)
+        second.addStretch(1)
+        second.addWidget(caption)
+        second.addWidget(self.least)
+        for box in (self.feasible, self.pinned, self.rejected, self.pinned_first):
+            box.toggled.connect(lambda _: self._tell())
+        column.addLayout(first)
+        column.addLayout(second)
+        return pane
+
+    def _alike_pane(self) -> QWidget:
+        self.nearness = QSlider(Qt.Orientation.Horizontal)
+        self.nearness.setObjectName("nearness")
+        self.nearness.setRange(0, STEPS)
+        self.nearness.setPageStep(STEPS // 10)
+        self.nearness.setValue(round(STEPS * (NEAREST - USUAL) / (NEAREST - FARTHEST)))
+        self.nearness.setAccessibleName(tr("How far from the chosen design new ones may lie"))
+        self.nearness.setToolTip(tr("Left: close variations of the chosen design. Right: only a little like it."))
+        self.draw = QPushButton(tr("Draw"))
+        self.draw.setObjectName("small")
+        self.draw.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+        self.draw.setToolTip(tr("Draw designs like the chosen one and add them (Ctrl+Shift+R)."))
+        self.draw.clicked.connect(lambda: self.alike_wanted.emit(self.nearness_value))
+        pane = QWidget()
+        row = QHBoxLayout(pane)
+        row.setContentsMargins(0, 0, 0, 2)
+        row.setSpacing(8)
+        self.alike_says = QLabel(tr("near"))
+        self.alike_says.setBuddy(self.nearness)
+        row.addWidget(self.alike_says)
+        row.addWidget(self.nearness, 1)
+        row.addWidget(QLabel(tr("far")))
+        row.addWidget(self.draw)
+        return pane
+
+    @property
+    def selection(self) -> Selection:
+        """What is wanted to be seen."""
+        return self._selection
+
+    @property
+    def nearness_value(self) -> float:
+        """How near new designs are to lie, from ``FARTHEST`` to ``NEAREST``."""
+        return NEAREST - (NEAREST - FARTHEST) * self.nearness.value() / STEPS
+
+    def show_all(self) -> None:
+        """Take every filter off; the order stays."""
+        wanted = self._selection.unfiltered()
+        boxes = (
+            (self.feasible, wanted.feasible_only),
+            (self.pinned, wanted.pinned_only),
+            (self.rejected, wanted.show_rejected),
+        )
+        for box, on in boxes:
+            with QSignalBlocker(box):
+                box.setChecked(on)
+        with QSignalBlocker(self.least):
+            self.least.setValue(0.0)
+        self._tell()
+
+    def set_chosen(self, chosen: tuple[RatioField, int] | None) -> None:
+        """The design on the stage and its number: what others can be unlike, or drawn alike."""
+        self._chosen = chosen
+
+    def set_ready(self, ready: bool) -> None:
+        """Whether there are designs that more can be added to."""
+        for part in (self.again, self.alike, self.draw, self.nearness):
+            part.setEnabled(ready)
+
+    def show_count(self, count: int) -> None:
+        """Tell how many designs would be added."""
+        self.again.setToolTip(tr("Draw {count} more designs with the next seed and add them (Ctrl+R).", count=count))
+
+    def set_palette(self, palette: Palette) -> None:
+        """Draw in other colours."""
+        buttons = (self.filter, "filter"), (self.compare, "compare"), (self.again, "again"), (self.alike, "alike")
+        for button, icon in buttons:
+            button.setIcon(icons.icon(icon, palette))
+
+    def _choose_order(self) -> None:
+        order: SortOrder = self.order.currentData()
+        if order is SortOrder.UNLIKE and self._chosen is None:
+            order = SortOrder.RANK
+            self.order.setCurrentIndex(0)
+        unlike = self._chosen if order is SortOrder.UNLIKE else None
+        last = self.order.count() - 1
+        text = tr("Unlike the chosen") if unlike is None else tr("Unlike design {number}", number=unlike[1])
+        self.order.setItemText(last, text)
+        self._selection = replace(self._selection, order=order, unlike=None if unlike is None else unlike[0])
+        self._tell()
+
+    def _tell(self) -> None:
+        self._selection = replace(
+            self._selection,
+            pinned_first=self.pinned_first.isChecked(),
+            feasible_only=self.feasible.isChecked(),
+            pinned_only=self.pinned.isChecked(),
+            show_rejected=self.rejected.isChecked(),
+            least_siou=0.01 * self.least.value(),
+        )
+        self.selection_changed.emit(self._selection)
+
+    def _fold(self) -> None:
+        """One pane at a time: cards need the room."""
+        sender = self.sender()
+        pairs: tuple[tuple[QToolButton, QToolButton], ...] = ((self.filter, self.alike), (self.alike, self.filter))
+        for button, other in pairs:
+            if sender is button and button.isChecked():
+                other.setChecked(False)
+        self.filter_pane.setVisible(self.filter.isChecked())
+        self.alike_pane.setVisible(self.alike.isChecked())
+
+
+def _orders() -> tuple[tuple[SortOrder, str, str], ...]:
+    return (
+        (SortOrder.RANK, tr("By rank"), tr("Feasible designs first, then the highest sIoU.")),
+        (SortOrder.SIOU, tr("By sIoU"), tr("The closest match first, feasible or not.")),
+        (SortOrder.GAIN, tr("By gain"), tr("The largest gain over the uniform sheet first.")),
+        (SortOrder.TV, tr("By evenness"), tr("The lowest total variation (TV) of the ratios first.")),
+        (
+            SortOrder.PANEL,
+            tr("By panel size"),
+            tr("The sheet whose smallest panel edge or neck is largest first, in mm at the sheet's width."),
+        ),
+        (SortOrder.NEWEST, tr("By newest"), tr("Designs that the last run has added first; they carry a dot.")),
+        (
+            SortOrder.UNLIKE,
+            tr("Unlike the chosen"),
+            tr("The design that differs most from the one chosen now first; choose this again to start from another."),
+        ),
+    )
+
+
+def _check(name: str, text: str, tip: str) -> QCheckBox:
+    box = QCheckBox(text)
+    box.setObjectName(name)
+    box.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+    box.setToolTip(tip)
+    box.setAccessibleName(tip.rstrip("."))
+    return box
 
 
 class GalleryPanel(Card):

@@ -11,7 +11,7 @@ from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.look import icons
 from kirigami_studio.gui.look.theme import LIGHT, Palette
 from kirigami_studio.gui.panels.card import captioned, compact, tool_button
-from kirigami_studio.gui.panels.decimal_field import LengthField
+from kirigami_studio.gui.panels.number_field import LengthField
 from kirigami_studio.project.settings import FabricationSettings
 
 TOOLTIP = Qt.ItemDataRole.ToolTipRole

@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+import re
+from collections.abc import Mapping
+
 from PySide6.QtCore import QEvent, QObject, Qt
-from PySide6.QtGui import QKeyEvent
-from PySide6.QtWidgets import QAbstractSpinBox
+from PySide6.QtGui import QKeyEvent, QValidator
+from PySide6.QtWidgets import QAbstractSpinBox, QDoubleSpinBox
+
+from kirigami_studio.foundation.units import MM_PER_INCH
 
 #: Keys that, with Ctrl, mean something to the window: undo, redo and export.  A field keeps undo while it is typed in.
 WINDOW_KEYS = (Qt.Key.Key_Z, Qt.Key.Key_Y, Qt.Key.Key_E)
@@ -30,3 +35,92 @@ def number_field(box: QAbstractSpinBox) -> None:
     box.lineEdit().setTextMargins(6, 0, 0, 0)
     box.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
     box.installEventFilter(_Courtesy(box))
+
+
+#: What Qt wants back: whether the text is a number, the text, and where the cursor stands.
+Answer = tuple[QValidator.State, str, int]
+#: Millimetres in one of each unit that may be typed behind a length.
+LENGTH_UNITS: Mapping[str, float] = {
+    "mm": 1.0,
+    "cm": 10.0,
+    "um": 0.001,
+    "\N{MICRO SIGN}m": 0.001,
+    "\N{GREEK SMALL LETTER MU}m": 0.001,
+    "in": MM_PER_INCH,
+    "inch": MM_PER_INCH,
+    '"': MM_PER_INCH,
+    "thou": MM_PER_INCH / 1000,
+}
+#: A number, a fraction of two, and what stands behind them.
+TYPED = re.compile(r"\s*([+-]?\d*[.,]?\d*)\s*(?:(/)\s*(\d*[.,]?\d*))?\s*([^\d\s.,+/-]*)\s*")
+
+
+class DecimalField(QDoubleSpinBox):
+    """A spin box that takes comma and point as the decimal sign, whatever the system's language.
+
+    Qt's own reads ``85,5`` as 855 where the system writes a point, and ``85.5`` as 855 where it writes a comma.
+    """
+
+    #: Factor to the field's own unit of each unit that may be typed.
+    units: Mapping[str, float] = {}
+
+    def validate(self, text: str, position: int) -> Answer:
+        """Say whether a text can be, or can become, a number (Qt's own call)."""
+        parts = self._parts(text)
+        if parts is None:
+            return QValidator.State.Invalid, text, position
+        if parts == ("", "", "", ""):
+            return super().validate(text, position)
+        _, stroke, _, unit = parts
+        if not stroke and not unit:
+            return super().validate(self._plain(text), position)
+        if not self.units or not any(known.startswith(unit) for known in self.units):
+            return QValidator.State.Invalid, text, position
+        value = self._value(parts)
+        inside = value is not None and self.minimum() <= round(value, self.decimals()) <= self.maximum()
+        return QValidator.State.Acceptable if inside else QValidator.State.Intermediate, text, position
+
+    def valueFromText(self, text: str) -> float:  # noqa: N802 - Qt's name
+        """Read a number in the field's own unit (Qt's own call)."""
+        parts = self._parts(text)
+        if parts is None or not (parts[1] or parts[3]):
+            return super().valueFromText(self._plain(text))
+        value = self._value(parts)
+        return self.value() if value is None else round(value, self.decimals())
+
+    def _parts(self, text: str) -> tuple[str, str, str, str] | None:
+        """Split into number, stroke, divisor and unit; None if it cannot be a number."""
+        if text == self.specialValueText():
+            return "", "", "", ""
+        body = text.removeprefix(self.prefix())
+        found = TYPED.fullmatch(body.removesuffix(self.suffix()))
+        if found is None:
+            return None
+        number, stroke, divisor, unit = (part or "" for part in found.groups())
+        return number, stroke, divisor, unit.lower()
+
+    def _value(self, parts: tuple[str, str, str, str]) -> float | None:
+        number, stroke, divisor, unit = parts
+        try:
+            value = float(number.replace(",", "."))
+            if stroke:
+                value /= float(divisor.replace(",", "."))
+        except (ValueError, ZeroDivisionError):
+            return None
+        if unit and unit not in self.units:
+            return None
+        return value * self.units.get(unit, 1.0)
+
+    def _plain(self, text: str) -> str:
+        """Write the decimal sign as the field's language does; what stands around the number stays."""
+        front, back = self.prefix(), self.suffix()
+        head = front if text.startswith(front) else ""
+        tail = back if text.endswith(back) else ""
+        body = text[len(head) : len(text) - len(tail)]
+        return head + body.replace(",", ".").replace(".", self.locale().decimalPoint()) + tail
+
+
+class LengthField(DecimalField):
+    """A length in mm that may be typed as ``3 in``, ``3/8"``, ``8.5 cm`` or ``50 um``; it shows mm."""
+
+    units = LENGTH_UNITS

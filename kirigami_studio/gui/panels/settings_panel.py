@@ -20,7 +20,7 @@ from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.look import icons
 from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.panels.card import Card, captioned, compact, tool_button
-from kirigami_studio.gui.panels.decimal_field import DecimalField
+from kirigami_studio.gui.panels.number_field import DecimalField
 from kirigami_studio.lattice.ratio_field import LARGEST_GRID, SMALLEST_GRID
 from kirigami_studio.pipeline.request import LARGEST_K
 from kirigami_studio.project.settings import DesignSettings

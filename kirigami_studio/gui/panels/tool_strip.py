@@ -19,13 +19,9 @@ from PySide6.QtWidgets import (
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.look import icons
 from kirigami_studio.gui.look.theme import Palette
-from kirigami_studio.gui.panels.axis_button import AxisButton
 from kirigami_studio.gui.panels.card import tool_button
-from kirigami_studio.gui.panels.decimal_field import DecimalField
-from kirigami_studio.gui.panels.font_options import FontOptions
-from kirigami_studio.gui.panels.node_options import NodeOptions
-from kirigami_studio.gui.panels.number_field import number_field
-from kirigami_studio.gui.panels.pose_options import PoseOptions
+from kirigami_studio.gui.panels.number_field import DecimalField, number_field
+from kirigami_studio.gui.panels.tool_options import AxisButton, FontOptions, NodeOptions, PoseOptions
 from kirigami_studio.gui.sketching.sketch_context import SketchContext
 from kirigami_studio.gui.views.target_view import Tool
 from kirigami_studio.outlines.combining import Combine

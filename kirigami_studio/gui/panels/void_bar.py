@@ -11,8 +11,7 @@ from kirigami_studio.gui.designs.hand_pull import LARGEST, SMALLEST
 from kirigami_studio.gui.look import icons
 from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.panels.card import FittingLabel, tool_button
-from kirigami_studio.gui.panels.decimal_field import DecimalField
-from kirigami_studio.gui.panels.number_field import number_field
+from kirigami_studio.gui.panels.number_field import DecimalField, number_field
 from kirigami_studio.project.document import Void
 
 

@@ -13,7 +13,7 @@ from PySide6.QtGui import QColor, QFontMetrics, QLinearGradient, QPainter, QPen
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.look.theme import Palette
-from kirigami_studio.gui.scene.chips import paint_chip
+from kirigami_studio.gui.scene.legends import paint_chip
 
 #: Shades of a scale; neighbours cannot be told apart.
 SHADES = 64

@@ -15,8 +15,7 @@ from kirigami_studio.gui.scene.target_items import paint_proposal, paint_size
 from kirigami_studio.gui.scene.view_transform import ViewTransform
 from kirigami_studio.gui.sketching.sketch_context import PointerEvent, SketchContext, SketchTool
 from kirigami_studio.gui.sketching.strokes import distance
-from kirigami_studio.outlines.figure_nodes import placed_figure
-from kirigami_studio.outlines.figures import Box, Figure
+from kirigami_studio.outlines.figures import Box, Figure, placed_figure
 from kirigami_studio.outlines.lettering import lettered
 from kirigami_studio.outlines.placed import Placed
 

@@ -7,8 +7,10 @@ from dataclasses import replace
 
 from PySide6.QtCore import QObject, Signal
 
+from kirigami_studio.evaluate.opened_size import OpenedSize, opened_size
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.foundation.words import tr
+from kirigami_studio.gui.designs.design_cache import Entry
 from kirigami_studio.gui.sketching.sketch_context import Change, SketchContext
 from kirigami_studio.outlines.placed import Placed
 from kirigami_studio.project.document import Document
@@ -118,3 +120,27 @@ class Reshaping(QObject):
 
 #: Factors along x and y of the reflections of the whole target.
 FLIPS = {"across": (-1.0, 1.0), "over": (1.0, -1.0)}
+
+
+class Sizing(QObject):
+    """Follows the design on the stage and the document's sizes."""
+
+    known = Signal(object)  #: OpenedSize, or None without a design
+    width_wanted = Signal(float)  #: mm, of the flat sheet
+
+    def __init__(self, parent: QObject) -> None:
+        super().__init__(parent)
+        self.size: OpenedSize | None = None
+
+    def follow(self, entry: Entry | None, document: Document) -> None:
+        """Another design, target or width holds now."""
+        self.size = None
+        if entry is not None and document.target is not None:
+            design = entry.design
+            self.size = opened_size(design.deployment, design.pose, document.target, document.fabrication.width_mm)
+        self.known.emit(self.size)
+
+    def link(self) -> None:
+        """Let the sheet be as wide as shows the target in its drawn size."""
+        if self.size is not None and self.size.fitting_width_mm is not None:
+            self.width_wanted.emit(self.size.fitting_width_mm)

@@ -9,10 +9,9 @@ from PySide6.QtCore import QEvent, QPointF, QRectF, Qt, Signal
 from PySide6.QtGui import QColor, QHelpEvent, QKeyEvent, QKeySequence, QMouseEvent, QPainter, QPen, QPixmap
 from PySide6.QtWidgets import QToolTip, QWidget
 
-from kirigami_studio.fabricate.checks import Problem
 from kirigami_studio.fabricate.cut_plan import CutPlan, Layer
+from kirigami_studio.fabricate.findings import Problem
 from kirigami_studio.foundation.words import tr, tr_n
-from kirigami_studio.gui.scene.chips import Chip, legend_boxes, paint_caption, paint_legend
 from kirigami_studio.gui.scene.connector_items import Connectors, paint_connectors
 from kirigami_studio.gui.scene.cut_items import (
     CutDrawing,
@@ -23,7 +22,7 @@ from kirigami_studio.gui.scene.cut_items import (
     paint_travel,
 )
 from kirigami_studio.gui.scene.fault_items import FaultKind, paint_fault
-from kirigami_studio.gui.scene.scale_bar import LONGEST, paint_scale_bar
+from kirigami_studio.gui.scene.legends import LONGEST, Chip, legend_boxes, paint_caption, paint_legend, paint_scale_bar
 from kirigami_studio.gui.scene.view_transform import Bounds, ViewTransform
 from kirigami_studio.gui.views.canvas import Canvas
 from kirigami_studio.gui.views.hinge_gestures import HingeGestures, adds

@@ -10,7 +10,7 @@ from PySide6.QtCore import QAbstractListModel, QModelIndex, QObject, QPersistent
 
 from kirigami_studio.evaluate.candidate import Candidate, Origin
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui.designs.entry import Entry, same_sample
+from kirigami_studio.gui.designs.design_cache import Entry, same_sample
 from kirigami_studio.gui.designs.selecting import Selection, Shown, arranged, format_value, least_panel
 from kirigami_studio.pipeline.rank import rank_key
 from kirigami_studio.project.document import Mark

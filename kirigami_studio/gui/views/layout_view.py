@@ -14,8 +14,6 @@ from PySide6.QtWidgets import QWidget
 from kirigami_studio.evaluate.score import Score
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray
 from kirigami_studio.foundation.words import tr, tr_n
-from kirigami_studio.gui.scene.chips import Chip, legend_boxes, paint_caption, paint_legend
-from kirigami_studio.gui.scene.clear_box import clear_box
 from kirigami_studio.gui.scene.colour_scale import (
     OPENING_TITLE,
     RATIO_TITLE,
@@ -35,11 +33,13 @@ from kirigami_studio.gui.scene.fault_items import (
     paint_fault,
 )
 from kirigami_studio.gui.scene.layout_items import paint_panels, turning_left
+from kirigami_studio.gui.scene.legends import Chip, clear_box, legend_boxes, paint_caption, paint_legend
 from kirigami_studio.gui.scene.mismatch_items import Mismatch, difference_chips, mismatch, paint_mismatch, usual_chips
 from kirigami_studio.gui.scene.posed import PosedDesign
 from kirigami_studio.gui.scene.small_parts import SmallPart, smallest_parts
 from kirigami_studio.gui.scene.target_items import paint_target_line
 from kirigami_studio.gui.scene.view_transform import Bounds, ViewTransform
+from kirigami_studio.gui.scene.void_items import VoidShapes, steady
 from kirigami_studio.gui.scene.void_numbers import (
     heat_tiles,
     paint_dimension,
@@ -49,7 +49,6 @@ from kirigami_studio.gui.scene.void_numbers import (
     quad_areas,
     room_in,
 )
-from kirigami_studio.gui.scene.void_shapes import VoidShapes, steady
 from kirigami_studio.gui.views.canvas import Canvas
 from kirigami_studio.gui.views.void_gestures import VoidGestures
 from kirigami_studio.outlines.outline import Outline

@@ -80,7 +80,7 @@ def test_that_a_prior_is_aligned_to_three_variants_of_one_file_and_resumed(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path, sighted: Path
 ) -> None:
     # Watching 200 targets of each family takes most of a minute.
-    monkeypatch.setattr("kirigami_studio.cli.aligning.VALIDATION_COUNT", 3)
+    monkeypatch.setattr("kirigami_studio.cli.learning.VALIDATION_COUNT", 3)
     run = tmp_path / "run"
     words = ["train", "align", "--start", str(sighted), "--steps", "2", "--batch", "4", "--drawn", "3",
              "--learning-rate", "0.01", "--device", "cpu", "--out", str(run)]  # fmt: skip

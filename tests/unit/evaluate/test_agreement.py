@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 import shapely
 
-from kirigami_studio.evaluate.agreement import exact_ious, raster_ious
 from kirigami_studio.evaluate.boundary import as_plane
 from kirigami_studio.evaluate.silhouette import RasterFrame, filled_in_frame, rasterise_in_frame
 from kirigami_studio.evaluate.similarity import Similarity
+from kirigami_studio.evaluate.siou import exact_ious, raster_ious
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField

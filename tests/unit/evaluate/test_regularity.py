@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from kirigami_studio.evaluate.regularity import log_variation, total_variation
+from kirigami_studio.evaluate.total_variation import log_variation, total_variation
 from kirigami_studio.lattice.ratio_field import RatioField
 
 

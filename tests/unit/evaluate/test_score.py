@@ -8,10 +8,10 @@ import math
 import numpy as np
 import pytest
 
+from kirigami_studio.evaluate.mask_siou import mask_siou
 from kirigami_studio.evaluate.score import evaluate, evaluate_many
 from kirigami_studio.evaluate.silhouette import rasterise
 from kirigami_studio.evaluate.similarity import Similarity
-from kirigami_studio.evaluate.siou import mask_siou
 from kirigami_studio.foundation.errors import AngleError
 from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.lattice.ratio_field import RatioField

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from skimage.draw import polygon2mask
 
+from kirigami_studio.evaluate.mask_siou import mask_siou
 from kirigami_studio.evaluate.silhouette import RasterFrame, rasterise, rasterise_in_frame
-from kirigami_studio.evaluate.siou import mask_siou
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.lattice.deployment import deploy

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from scipy.ndimage import rotate, zoom
 
+from kirigami_studio.evaluate.mask_siou import mask_siou
 from kirigami_studio.evaluate.silhouette import rasterise
 from kirigami_studio.evaluate.similarity import Similarity
-from kirigami_studio.evaluate.siou import mask_siou
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.outlines import silhouettes

@@ -7,10 +7,9 @@ import math
 import numpy as np
 import pytest
 
-from kirigami_studio.evaluate.clearance import stays_clear
 from kirigami_studio.evaluate.crossing import deepest_crossing
 from kirigami_studio.evaluate.feasibility import invalid_quads, overlap_ratio, path_contact
-from kirigami_studio.evaluate.soundness import Soundness, soundness_of_many
+from kirigami_studio.evaluate.soundness import Soundness, soundness_of_many, stays_clear
 from kirigami_studio.foundation.arrays import ComplexArray
 from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.lattice.ratio_field import RatioField

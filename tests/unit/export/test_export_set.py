@@ -15,9 +15,8 @@ import numpy as np
 import pytest
 
 from kirigami_studio.export import verified
-from kirigami_studio.export.dxf import write_dxf
+from kirigami_studio.export.dxf import write_dxf, write_reference
 from kirigami_studio.export.dxf_check import check_file
-from kirigami_studio.export.dxf_reference import write_reference
 from kirigami_studio.export.export_set import export_all
 from kirigami_studio.export.exporter import ExportJob
 from kirigami_studio.export.profile import PROFILES

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from kirigami_studio.export import lightburn
-from kirigami_studio.export.lightburn_reading import layer_lengths
+from kirigami_studio.export.lightburn import layer_lengths
 from kirigami_studio.fabricate.cut_plan import CutPath, CutPlan, Layer, plan_cuts
 from kirigami_studio.foundation.errors import ExportError
 from kirigami_studio.lattice.deployment import Deployment

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from shapely.geometry import box
 
+from kirigami_studio.export.dxf_check import placement_problems
 from kirigami_studio.export.dxf_content import FilePath
-from kirigami_studio.export.placement import placement_problems
-from kirigami_studio.fabricate.checks import Severity
+from kirigami_studio.fabricate.findings import Severity
 
 SHEET = box(0, 0, 50, 40)
 OUTLINE = FilePath(np.array(SHEET.exterior.coords), "OUTLINE", True)

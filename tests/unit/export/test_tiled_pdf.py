@@ -16,7 +16,7 @@ from shapely.geometry import LineString
 from kirigami_studio.export import palette, pdf
 from kirigami_studio.export.exporter import ExportJob
 from kirigami_studio.export.paper import PAPERS, tile
-from kirigami_studio.export.pdf_reading import read_pages
+from kirigami_studio.export.pdf import read_pages
 from kirigami_studio.export.registry import export
 from kirigami_studio.fabricate.cut_plan import CutPlan, Layer, plan_cuts
 from kirigami_studio.foundation.errors import ExportError

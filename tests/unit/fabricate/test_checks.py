@@ -10,8 +10,9 @@ import numpy as np
 import pytest
 from shapely.geometry import LineString, Polygon, box
 
-from kirigami_studio.fabricate.checks import Severity, check_plan
+from kirigami_studio.fabricate.checks import check_plan
 from kirigami_studio.fabricate.cut_plan import CutPath, Layer, plan_cuts
+from kirigami_studio.fabricate.findings import Severity
 from kirigami_studio.fabricate.finished_sheet import overlap_length, remaining_pieces, smallest_ligament
 from kirigami_studio.lattice.deployment import Deployment
 

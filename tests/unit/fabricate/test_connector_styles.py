@@ -12,8 +12,9 @@ import pytest
 from cut_sheets import bitten, connector_distances, covered_hinges, drawn_line, finished_pieces, mouths
 
 from kirigami_studio.fabricate.bulges import arc_of
-from kirigami_studio.fabricate.checks import Severity, check_plan
+from kirigami_studio.fabricate.checks import check_plan
 from kirigami_studio.fabricate.cut_plan import CutPath, CutPlan, Layer, plan_cuts
+from kirigami_studio.fabricate.findings import Severity
 from kirigami_studio.fabricate.joints import ending_on_others, touching
 from kirigami_studio.fabricate.material import find_material
 from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions

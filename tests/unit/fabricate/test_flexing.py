@@ -9,9 +9,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from kirigami_studio.fabricate.checks import Severity, check_plan
+from kirigami_studio.fabricate.checks import check_plan, hinge_strains, hinge_turn
 from kirigami_studio.fabricate.cut_plan import plan_cuts
-from kirigami_studio.fabricate.flexing import hinge_strains, hinge_turn
+from kirigami_studio.fabricate.findings import Severity
 from kirigami_studio.fabricate.material import Material, default_material, find_material
 from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions
 from kirigami_studio.lattice.deployment import Deployment

@@ -10,8 +10,9 @@ import pytest
 from cut_sheets import bitten
 from shapely.geometry import LineString, Point, Polygon
 
-from kirigami_studio.fabricate.checks import Severity, check_plan
+from kirigami_studio.fabricate.checks import check_plan
 from kirigami_studio.fabricate.cut_plan import plan_cuts
+from kirigami_studio.fabricate.findings import Severity
 from kirigami_studio.fabricate.panel_sizes import smallest_edge, smallest_neck, trimmed_neck_below
 from kirigami_studio.lattice.deployment import Deployment
 

@@ -10,8 +10,9 @@ import pytest
 from cut_sheets import bitten, drawn_line, finished_pieces, hanging_together, mouths
 from shapely.geometry import Point, Polygon
 
-from kirigami_studio.fabricate.checks import Severity, check_plan
+from kirigami_studio.fabricate.checks import check_plan
 from kirigami_studio.fabricate.cut_plan import Layer, plan_cuts
+from kirigami_studio.fabricate.findings import Severity
 from kirigami_studio.fabricate.joints import ending_on_others
 from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions
 from kirigami_studio.fabricate.slits import SHEET_EDGE, cut_table

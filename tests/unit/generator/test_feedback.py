@@ -9,8 +9,7 @@ from kirigami_studio.generator.conditioning import contour_points, normalised
 from kirigami_studio.generator.feedback import CHUNK, DIRECTION_SCALE, GAP_SCALE, PLACE_SCALE, Feedback
 from kirigami_studio.generator.feedback import _normalised_slopes as normalised_slopes
 from kirigami_studio.generator.sheet import Sheet
-from kirigami_studio.lattice.batched import BatchedLattice
-from kirigami_studio.lattice.batched_slopes import BatchedSlopes
+from kirigami_studio.lattice.batched import BatchedLattice, BatchedSlopes
 from kirigami_studio.training.corpus import sheet_outline
 
 pytestmark = pytest.mark.torch

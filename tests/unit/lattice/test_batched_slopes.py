@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 import torch
 
-from kirigami_studio.lattice.batched import BatchedLattice
-from kirigami_studio.lattice.batched_slopes import BatchedSlopes
+from kirigami_studio.lattice.batched import BatchedLattice, BatchedSlopes
 from kirigami_studio.polish.sensitivity import OutlineModel
 
 pytestmark = pytest.mark.torch

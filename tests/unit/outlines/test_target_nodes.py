@@ -14,8 +14,7 @@ from hypothesis import strategies as st
 from kirigami_studio.foundation.errors import TargetError
 from kirigami_studio.outlines import bezier, silhouettes
 from kirigami_studio.outlines.anchors import INTO, OUT, Anchors, with_anchors
-from kirigami_studio.outlines.figure_nodes import placed_figure
-from kirigami_studio.outlines.figures import Box, Figure, figure
+from kirigami_studio.outlines.figures import Box, Figure, figure, placed_figure
 from kirigami_studio.outlines.nodes import Kind, Nodes
 from kirigami_studio.outlines.placed import Placed
 from kirigami_studio.outlines.refining import stretched, turned

@@ -12,8 +12,7 @@ from PIL import Image
 
 from kirigami_studio.foundation.errors import TargetError
 from kirigami_studio.outlines import silhouettes
-from kirigami_studio.outlines.read import READERS, read_many, read_target
-from kirigami_studio.outlines.read_json import read_json
+from kirigami_studio.outlines.read import READERS, read_json, read_many, read_target
 
 SQUARE = [[0, 0], [2, 0], [2, 2], [0, 2]]
 

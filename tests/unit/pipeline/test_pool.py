@@ -16,12 +16,11 @@ from kirigami_studio.foundation.errors import Cancelled
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.outlines.silhouettes import load
 from kirigami_studio.pipeline import worker
-from kirigami_studio.pipeline.dispatch import answers, gains
 from kirigami_studio.pipeline.messages import Ready
 from kirigami_studio.pipeline.pool import Pool, worker_command
 from kirigami_studio.pipeline.request import Request
+from kirigami_studio.pipeline.run import Watch, answers, gains
 from kirigami_studio.pipeline.tasks import Answer, Polish, Task, scored
-from kirigami_studio.pipeline.watch import Watch
 
 pytestmark = pytest.mark.slow
 COUNT = 6

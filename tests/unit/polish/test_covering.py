@@ -15,8 +15,7 @@ from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.polish.boundary_target import BoundaryTarget
 from kirigami_studio.polish.covering import fit_cover
 from kirigami_studio.polish.levenberg import Fit, polish
-from kirigami_studio.polish.objective import Objective
-from kirigami_studio.polish.one_sided import outer_hinges
+from kirigami_studio.polish.objective import Objective, outer_hinges
 from kirigami_studio.polish.regularity import Regularity, RegularTerms
 from kirigami_studio.polish.sensitivity import OutlineModel
 

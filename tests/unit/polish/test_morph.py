@@ -7,7 +7,7 @@ import pytest
 import shapely
 
 from kirigami_studio.outlines.silhouettes import load
-from kirigami_studio.polish.morph import ACCURACY, thickened
+from kirigami_studio.polish.continuation import ACCURACY, thickened
 
 
 @pytest.mark.parametrize("name", ["letter-l", "crescent", "puzzle", "butterfly"])

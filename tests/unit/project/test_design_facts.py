@@ -9,8 +9,7 @@ from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.project.candidate_edits import Brought, add_candidates, renew_candidates
 from kirigami_studio.project.design_facts import design_facts
 from kirigami_studio.project.document import Document, Mark
-from kirigami_studio.project.edits import replace_candidate
-from kirigami_studio.project.hand_edits import take_changed
+from kirigami_studio.project.edits import replace_candidate, take_changed
 
 
 def test_that_a_candidate_tells_its_own_model_seed_and_origin(document: Document) -> None:

@@ -12,7 +12,7 @@ from kirigami_studio.foundation.errors import ProjectError
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.outlines.silhouettes import load
-from kirigami_studio.project import edits, hand_edits
+from kirigami_studio.project import edits
 from kirigami_studio.project.document import Document, Mark
 
 
@@ -28,7 +28,7 @@ def document() -> Document:
 def test_that_a_changed_design_takes_its_place_and_nothing_else_moves(document: Document) -> None:
     before = document.candidates[1]
     after = replace(before, polished=True)
-    edit = hand_edits.take_changed(document, before, after, "Fit design 2")
+    edit = edits.take_changed(document, before, after, "Fit design 2")
     assert edit is not None and edit.label == "Fit design 2" and edit.merge_key is None
     changed = edit.document
     assert changed.candidates == (document.candidates[0], after, document.candidates[2])
@@ -37,19 +37,19 @@ def test_that_a_changed_design_takes_its_place_and_nothing_else_moves(document: 
 
 def test_that_a_design_that_is_gone_is_not_brought_back(document: Document) -> None:
     gone = replace(document.candidates[0], index=9)
-    assert hand_edits.take_changed(document, gone, gone, "Change") is None
+    assert edits.take_changed(document, gone, gone, "Change") is None
 
 
 def test_that_locks_add_up_and_are_named(document: Document) -> None:
-    one = hand_edits.lock_voids(document, [(1, 2)], True)
+    one = edits.lock_voids(document, [(1, 2)], True)
     assert one.label == "Lock void (1, 2)" and one.document.locked == {(0, 0), (1, 2)}
-    two = hand_edits.lock_voids(one.document, [(0, 0), (1, 2)], False)
+    two = edits.lock_voids(one.document, [(0, 0), (1, 2)], False)
     assert two.label == "Unlock 2 voids" and not two.document.locked
-    every = hand_edits.lock_all(document, True)
+    every = edits.lock_all(document, True)
     assert every.label == "Lock all voids" and len(every.document.locked) == 6
-    assert not hand_edits.lock_all(every.document, False).document.locked
+    assert not edits.lock_all(every.document, False).document.locked
 
 
 def test_that_a_void_the_grid_does_not_have_is_refused(document: Document) -> None:
     with pytest.raises(ProjectError, match=r"\(2, 0\)"):
-        hand_edits.lock_voids(document, [(2, 0)], True)
+        edits.lock_voids(document, [(2, 0)], True)

@@ -14,7 +14,7 @@ from kirigami_studio.foundation.errors import FabricationError
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.outlines import silhouettes
-from kirigami_studio.project import edits, hinge_edits
+from kirigami_studio.project import edits
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.history import History
 
@@ -26,7 +26,7 @@ def options_of(document: Document) -> CutOptions:
 def test_that_widths_of_a_drag_are_one_undo_step() -> None:
     history = History()
     for width in (0.3, 0.35, 0.4):
-        history.apply(hinge_edits.set_hinge_width(history.document, {7, 3}, width))
+        history.apply(edits.set_hinge_width(history.document, {7, 3}, width))
     assert options_of(history.document).hinge_mm == ((3, 0.4), (7, 0.4))
     assert history.undo_label == "Set 2 connectors to 0.4 mm"
     history.undo()
@@ -35,36 +35,36 @@ def test_that_widths_of_a_drag_are_one_undo_step() -> None:
 
 def test_that_other_connectors_make_another_undo_step() -> None:
     history = History()
-    history.apply(hinge_edits.set_hinge_width(history.document, {3}, 0.3))
-    history.apply(hinge_edits.set_hinge_width(history.document, {4}, 0.3))
+    history.apply(edits.set_hinge_width(history.document, {3}, 0.3))
+    history.apply(edits.set_hinge_width(history.document, {4}, 0.3))
     history.undo()
     assert options_of(history.document).hinge_mm == ((3, 0.3),)
 
 
 def test_that_a_removed_connector_has_no_width_and_a_width_brings_it_back() -> None:
-    first = hinge_edits.set_hinge_width(Document(), {5}, 0.3).document
-    removed = hinge_edits.remove_hinges(first, {5, 2})
+    first = edits.set_hinge_width(Document(), {5}, 0.3).document
+    removed = edits.remove_hinges(first, {5, 2})
     assert removed.label == "Cut through 2 connectors"
     assert options_of(removed.document) == CutOptions(removed=(2, 5))
-    back = hinge_edits.set_hinge_width(removed.document, {5}, 0.25).document
+    back = edits.set_hinge_width(removed.document, {5}, 0.25).document
     assert options_of(back) == CutOptions(removed=(2,), hinge_mm=((5, 0.25),))
-    assert options_of(hinge_edits.reset_hinges(back, {2, 5}).document) == CutOptions()
+    assert options_of(edits.reset_hinges(back, {2, 5}).document) == CutOptions()
 
 
 def test_that_a_width_for_many_leaves_the_removed_among_them_removed() -> None:
-    removed = hinge_edits.remove_hinges(Document(), {5, 2}).document
-    wide = hinge_edits.set_hinge_width(removed, {2, 3, 4}, 0.6)
+    removed = edits.remove_hinges(Document(), {5, 2}).document
+    wide = edits.set_hinge_width(removed, {2, 3, 4}, 0.6)
     assert wide.label == "Set 2 connectors to 0.6 mm"
     assert options_of(wide.document) == CutOptions(removed=(2, 5), hinge_mm=((3, 0.6), (4, 0.6)))
 
 
 def test_that_a_width_of_nothing_is_refused() -> None:
     with pytest.raises(FabricationError, match="hinge 3"):
-        hinge_edits.set_hinge_width(Document(), {3}, 0.0)
+        edits.set_hinge_width(Document(), {3}, 0.0)
 
 
 def test_that_options_of_the_sheet_leave_single_connectors_alone() -> None:
-    document = hinge_edits.remove_hinges(Document(), {1}).document
+    document = edits.remove_hinges(Document(), {1}).document
     edit = edits.set_cut_options(document, style=ConnectorStyle.ROUND, tabs=2)
     assert edit.label == "Change the connector style and the number of tabs"
     assert options_of(edit.document) == CutOptions(style=ConnectorStyle.ROUND, tabs=2, removed=(1,))

@@ -8,7 +8,7 @@ import pytest
 import torch
 from small_networks import random_fields, silhouettes
 
-from kirigami_studio.evaluate.regularity import total_variation
+from kirigami_studio.evaluate.total_variation import total_variation
 from kirigami_studio.generator.conditioning import contour_points
 from kirigami_studio.generator.sheet import Sheet
 from kirigami_studio.lattice.batched import BatchedLattice

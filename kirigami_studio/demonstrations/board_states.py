@@ -1,0 +1,113 @@
+"""States of the target and its drawing board, pictured in all sizes and both themes."""
+
+from __future__ import annotations
+
+from functools import partial
+
+import numpy as np
+from PIL import Image, ImageDraw
+from PySide6.QtCore import QPointF, QSize
+from PySide6.QtWidgets import QApplication
+
+from kirigami_studio.demonstrations.offscreen_session import Session, SessionError
+from kirigami_studio.gui.look.theme import DARK, LIGHT
+from kirigami_studio.gui.sketching.point_tool import PointTool
+from kirigami_studio.gui.sketching.sketch_context import Change, PointerEvent
+from kirigami_studio.gui.views.target_view import Tool
+from kirigami_studio.outlines.combining import Combine, combined
+from kirigami_studio.outlines.figures import Box, Figure, figure, placed_figure
+from kirigami_studio.outlines.mirroring import Axis
+from kirigami_studio.outlines.placed import Placed
+
+SIZES = (QSize(1000, 640), QSize(1280, 720), QSize(1440, 900))
+#: A large screen, for the states that look different there.
+LARGE = QSize(2560, 1440)
+LARGE_STATES = frozenset({"editor-points", "designs", "cuts", "half-open", "tour"})
+#: What is drawn at twice the scale: 2560 x 1440 dots.
+SCALED = QSize(1280, 720)
+LONG_NAME = "a scanned drawing with the long name that scanners like to give, page 3 of 12"
+
+
+class BoardStates(Session):
+    """Leads one window through what can be done to a target, and knows how a state is pictured."""
+
+    def sizes(self, name: str) -> tuple[QSize, ...]:
+        """The sizes that a state is pictured in."""
+        if self.window.devicePixelRatioF() > 1.0:
+            return (SCALED,)
+        return (*SIZES, LARGE) if name in LARGE_STATES else SIZES
+
+    def all_sizes(self, name: str) -> None:
+        """Take one picture for every size and theme."""
+        for size in self.sizes(name):
+            self.window.resize(size)
+            for palette in (LIGHT, DARK):
+                self.window.set_theme(palette)
+                QApplication.processEvents()
+                self.picture(f"{name}-{size.width()}x{size.height()}-{palette.name}")
+        self.window.set_theme(LIGHT)
+
+    def picture_target(self) -> None:
+        """Open a blurred grey picture."""
+        path = self.out / f"{LONG_NAME}.png"
+        page = Image.new("L", (400, 300), 240)
+        draw = ImageDraw.Draw(page)
+        draw.ellipse((90, 60, 310, 240), fill=60)
+        draw.ellipse((40, 110, 150, 190), fill=150)
+        page.save(path)
+        self.window.controller.targeting.open(str(path))
+        self.until(lambda: self.window.target.threshold.isVisible(), "the picture was not read")
+
+    def editor(self) -> None:
+        """A shape with a thin arm on the drawing board, its points, its handles, and a shape about to be taken away."""
+        target, reshaping = self.window.target, self.window.wiring.reshaping
+        body = figure(Figure.ELLIPSE, Box(-40.0, -25.0, 20.0, 25.0))
+        reshaping.take(Change("Draw ellipse", lambda: Placed.from_ring(body, "ladle")))
+        arm, now = figure(Figure.RECTANGLE, Box(15.0, -3.0, 60.0, 3.0)), target.view.context.placed
+        reshaping.take(Change("Add rectangle", lambda: combined(now, arm, Combine.ADD, "rectangle")))
+        for tool in (Tool.POINTS, Tool.POSE, Tool.STAR, Tool.TEXT):
+            target.set_tool(tool)
+            target.strip.set_mode(Combine.ADD)
+            self.all_sizes(f"editor-{tool.value}")
+        target.strip.set_mode(Combine.REPLACE)
+        reshaping.preview("smooth", 0.8)
+        self.all_sizes("editor-smoothing")
+        target.view.show_preview(None)
+
+    def points_and_mirror(self) -> None:
+        """Selected points with their handles, a field that selects, and a shape that is mirrored as it is drawn."""
+        target, reshaping = self.window.target, self.window.wiring.reshaping
+        disc = placed_figure(Figure.ELLIPSE, Box(-30.0, -25.0, 30.0, 25.0))
+        reshaping.take(Change("Draw ellipse", lambda: disc))
+        target.set_tool(Tool.POINTS)
+        target.strip.axis.set_axis(Axis.UPRIGHT)
+        tool = target.view.active
+        if not isinstance(tool, PointTool):
+            raise SessionError("The points tool is not in use.")
+        tool.select({0, 1}, 0)
+        target.view.update()
+        self.all_sizes("editor-handles")
+        target.strip.axis.set_axis(Axis.BOTH)
+        target.set_tool(Tool.ELLIPSE)
+        target.strip.set_mode(Combine.ADD)
+        for place in ((10.0, 10.0), (45.0, 30.0)):
+            pointer = PointerEvent(
+                QPointF(*target.view.context.transform.to_pixels(np.array(place)).tolist()), place, place, False
+            )
+            (target.view.active.press if place[0] < 20 else partial(target.view.active.move, held=True))(pointer)
+        self.all_sizes("editor-mirror")
+        target.view.active.drop()
+        target.strip.set_mode(Combine.REPLACE)
+        target.strip.axis.set_axis(Axis.NONE)
+
+    def lost_designs(self) -> None:
+        """A turned target whose designs wait to be brought back."""
+        target, controller = self.window.target, self.window.controller
+        target.set_tool(Tool.POSE)
+        target.strip.options.pose.turn.setValue(20.0)
+        self.all_sizes("lost-designs")
+        self.window.wiring.lost.bring_back()
+        target.set_editing(False)
+        if not controller.document.candidates:
+            raise SessionError("The designs did not come back.")
+        self.until(self.window.fabrication.export.isEnabled, "the designs came back without a plan")

@@ -1,0 +1,399 @@
+"""One picture of every state of the window, in every size and both themes, to be looked at.
+
+``python -m kirigami_studio.demonstrations.state_sheet --out out/states`` writes them, and a page of small ones
+for every size and theme; ``--scale 2`` draws them for a high-resolution screen.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+import sys
+from collections import defaultdict
+from collections.abc import Sequence
+from pathlib import Path
+
+from PIL import Image, ImageDraw, ImageFont
+from PySide6.QtCore import QEvent, QPoint
+from PySide6.QtWidgets import QApplication
+
+from kirigami_studio.demonstrations.board_states import LONG_NAME, SIZES, BoardStates
+from kirigami_studio.demonstrations.offscreen_session import DESIGNS, SessionError, click, hover, main
+from kirigami_studio.gui.designs.selecting import SortOrder
+from kirigami_studio.gui.look.theme import DARK, LIGHT
+from kirigami_studio.gui.messages import Message, Tone
+from kirigami_studio.gui.views.card_delegate import CardButton, button_boxes
+from kirigami_studio.gui.views.cut_view import CutOverlay
+from kirigami_studio.gui.views.layout_view import Overlay
+from kirigami_studio.gui.views.target_view import Tool
+from kirigami_studio.project import recovery
+from kirigami_studio.project.document import Mark
+from kirigami_studio.project.recovery import Note
+
+#: ``STATE-WIDTHxHEIGHT-THEME.png``, as the state sheet names its pictures.
+NAME = re.compile(r"(?P<state>.+)-(?P<group>\d+x\d+-(?:light|dark))")
+#: Pixels: width of one small picture, and the band for its caption.
+WIDTH, CAPTION = 480, 22
+GAP = 10
+COLUMNS = 4
+PAPER, INK = "#8a94a0", "#0b0f14"
+
+
+def contact_sheets(pictures: Sequence[Path], out: Path) -> list[Path]:
+    """Write one page for every size and theme among the pictures.
+
+    Parameters
+    ----------
+    pictures : sequence of Path
+        Those that are named otherwise share a page of their own, ``others``.
+    out : Path
+        Folder of the pages.
+
+    Returns
+    -------
+    pages : list of Path
+        ``contact-GROUP.png``, in the order in which the groups first appear.
+    """
+    groups: dict[str, list[tuple[str, Path]]] = defaultdict(list)
+    for picture in pictures:
+        found = NAME.fullmatch(picture.stem)
+        group, state = (found["group"], found["state"]) if found else ("others", picture.stem)
+        groups[group].append((state, picture))
+    pages = []
+    for group, entries in groups.items():
+        page = out / f"contact-{group}.png"
+        contact_sheet(entries).save(page)
+        pages.append(page)
+    return pages
+
+
+def contact_sheet(entries: Sequence[tuple[str, Path]]) -> Image.Image:
+    """One page of captioned pictures, row by row."""
+    small = [(caption, _small(path)) for caption, path in entries]
+    height = max(picture.height for _, picture in small) + CAPTION
+    columns = min(COLUMNS, len(small))
+    rows = -(-len(small) // columns)
+    page = Image.new("RGB", (columns * (WIDTH + GAP) + GAP, rows * (height + GAP) + GAP), PAPER)
+    draw, font = ImageDraw.Draw(page), ImageFont.load_default(size=13)
+    for number, (caption, picture) in enumerate(small):
+        row, column = divmod(number, columns)
+        left, top = GAP + column * (WIDTH + GAP), GAP + row * (height + GAP)
+        draw.text((left, top + 2), caption, fill=INK, font=font)
+        page.paste(picture, (left, top + CAPTION))
+    return page
+
+
+def _small(path: Path) -> Image.Image:
+    """A picture no wider than its column, and no higher than three quarters of that."""
+    with Image.open(path) as picture:
+        shown = picture.convert("RGB")
+    shown.thumbnail((WIDTH, WIDTH * 3 // 4), Image.Resampling.LANCZOS)
+    return shown
+
+
+class StateSheet(BoardStates):
+    """Leads one window from state to state and takes each picture in all sizes and themes."""
+
+    def play(self) -> list[Path]:
+        """Make all pictures and return their files."""
+        window = self.window
+        window.show()
+        self.all_sizes("empty")
+        window.target.set_tool(Tool.POLYGON)
+        self.all_sizes("drawing")
+        self.editor()
+        self.points_and_mirror()
+        window.target.set_editing(False)
+        self.picture_target()
+        self.all_sizes("photo")
+        window.target.set_editing(True)
+        self.all_sizes("photo-editor")
+        window.target.set_editing(False)
+        self.choose_heart()
+        self.polishing()
+        self.all_sizes("designs")
+        self.lost_designs()
+        self.collection()
+        self.overlays()
+        self.plots()
+        self.before_and_after()
+        self.trimmed()
+        self.by_hand()
+        self.cuts()
+        self.exported()
+        window.stage.deployment.set_phi(math.radians(100.0))
+        self.all_sizes("half-open")
+        window.stage.deployment.set_phi(math.pi)
+        self.all_sizes("flat")
+        window.fabrication.lengths["connector_mm"].setValue(15.0)
+        self.until(lambda: not window.fabrication.export.isEnabled(), "the wide connector was not refused")
+        self.all_sizes("refused")
+        window.actions_["undo"].trigger()
+        self.until(window.fabrication.export.isEnabled, "undo did not bring the plan back")
+        self.project()
+        self.messages()
+        click(window.target.buttons["library"])
+        if window.commands.picker is not None:
+            self.picture("library", window.commands.picker)
+            window.commands.picker.close()
+        window.commands.show_guide()
+        if window.commands.guide is not None:
+            self.picture("guide", window.commands.guide)
+        self.first_steps()
+        window.controller.history.mark_saved()
+        window.close()
+        self.files.extend(contact_sheets([file for file in self.files if file.suffix == ".png"], self.out))
+        return self.files
+
+    def first_steps(self) -> None:
+        """The tour at a control on every side, and the sheet of keys."""
+        commands = self.window.commands
+        commands.tour.start()
+        for step in range(len(commands.tour.steps)):
+            if step == 2:
+                self.all_sizes("tour")
+            else:
+                self.picture(f"tour-{step + 1}")
+            click(commands.tour.callout.next)
+        commands.show_shortcuts()
+        if commands.shortcuts is not None:
+            for palette in (DARK, LIGHT):
+                self.window.set_theme(palette)
+                self.picture(f"shortcuts-{palette.name}", commands.shortcuts)
+
+    def polishing(self) -> None:
+        """A run whose designs improve, with a search after it."""
+        window = self.window
+        window.settings.search.setChecked(True)
+        window.settings.candidates.setValue(DESIGNS)
+        click(window.run.generate)
+        self.until(lambda: window.says.text().startswith("Polished"), "no design was polished")
+        self.all_sizes("polishing")
+        self.until(lambda: not window.controller.running, "the run did not end")
+        self.until(window.fabrication.export.isEnabled, "no cut plan was made")
+
+    def collection(self) -> None:
+        """Marks, filters, more designs like one, two side by side; then everything as it was."""
+        window, controller = self.window, self.window.controller
+        view, bar, before = window.gallery.view, window.gallery.bar, len(controller.document.candidates)
+        for row in (1, 2):
+            controller.marking.pin(controller.document.candidates[row])
+        controller.marking.reject(controller.document.candidates[3], None)
+        click(bar.filter)
+        for box in (bar.feasible, bar.rejected):
+            box.setChecked(True)
+        bar.order.setCurrentIndex(bar.order.findData(SortOrder.PANEL))
+        bar.order.activated.emit(bar.order.currentIndex())
+        hover(view.viewport(), button_boxes(view.visualRect(view.model_.index(0, 0)))[CardButton.PIN].center())
+        self.all_sizes("gallery-sorted")
+        bar.least.setValue(100.0)
+        self.all_sizes("gallery-nothing")
+        view.clear_wanted.emit()
+        bar.rejected.setChecked(False)
+        bar.order.setCurrentIndex(0)
+        bar.order.activated.emit(0)
+        click(bar.alike)
+        self.all_sizes("gallery-alike")
+        click(bar.draw)
+        self.until(lambda: not controller.running, "the run near a design did not end")
+        self.until(window.fabrication.export.isEnabled, "no cut plan was made")
+        self.all_sizes("gallery-more")
+        click(bar.alike)
+        self.side_by_side()
+        while len(controller.document.candidates) > before or set(controller.document.marks) != {Mark.NONE}:
+            window.actions_["undo"].trigger()
+        self.until(lambda: view.model_.rowCount() == before, "undo did not bring the first designs back")
+        self.until(window.fabrication.export.isEnabled, "no cut plan was made")
+
+    def side_by_side(self) -> None:
+        """Two designs at the target and half open, zoomed; the menu of a card."""
+        window = self.window
+        click(window.gallery.bar.compare)
+        self.all_sizes("compare")
+        window.stage.deployment.set_phi(math.radians(100.0))
+        window.stage.compare.left.view.zoom(2.0)
+        self.all_sizes("compare-half-open")
+        window.stage.deployment.set_phi(0.0)
+        click(window.stage.compare.leave)
+        window.wiring.gallery.show_menu(window.controller.document.candidates[0], QPoint(100, 100))
+        menu = window.wiring.gallery.menu
+        if menu is not None:
+            self.picture("card-menu", menu)
+            menu.close()
+
+    def overlays(self) -> None:
+        """The heat map with the smallest parts at the target angle, openings and numbers half open."""
+        stage = self.window.stage
+        for angle, shown in (
+            (0.0, (Overlay.RATIOS, Overlay.SMALL_PARTS)),
+            (100.0, (Overlay.OPENINGS, Overlay.PANEL_NUMBERS, Overlay.VOID_NUMBERS)),
+        ):
+            stage.deployment.set_phi(math.radians(angle))
+            for overlay in shown:
+                stage.set_overlay(overlay, True)
+            self.all_sizes(f"overlay-{shown[0].value}")
+            for overlay in shown:
+                stage.set_overlay(overlay, False)
+        stage.deployment.set_phi(0.0)
+
+    def plots(self) -> None:
+        """The curves of the design, with the line at 60 degrees."""
+        stage = self.window.stage
+        click(stage.plots_switch)
+        self.until(lambda: stage.plots.complete, "the curves were not read")
+        stage.deployment.set_phi(math.radians(60.0))
+        self.all_sizes("plots")
+        click(stage.plots_switch)
+        stage.deployment.set_phi(0.0)
+
+    def before_and_after(self) -> None:
+        """The first design that polishing has changed, as it was drawn."""
+        controller, stage = self.window.controller, self.window.stage
+        drawn = [candidate for candidate in controller.document.candidates if candidate.sampled_field is not None]
+        if not drawn:
+            raise SessionError("Polishing changed no design.")
+        controller.choose(drawn[0])
+        click(stage.before)
+        self.until(lambda: stage.showing_before, "the drawn design was not shown")
+        self.all_sizes("before")
+        click(stage.before)
+
+    def trimmed(self) -> None:
+        """The same design trimmed, opened and flat, and whole again."""
+        controller, stage = self.window.controller, self.window.stage
+        click(stage.trim)
+        self.picture("trimming")
+        self.until(lambda: not controller.finishing.busy, "trimming did not end")
+        if controller.stage is None or controller.stage.candidate.trim is None:
+            raise SessionError("The design was not trimmed.")
+        self.until(self._planned, "no trimmed cut plan was made")
+        self.all_sizes("trimmed")
+        click(stage.cuts_switch)
+        self.all_sizes("trimmed-cuts")
+        click(stage.cuts_switch)
+        stage.deployment.set_phi(math.radians(60.0))
+        self.all_sizes("trimmed-half-open")
+        stage.deployment.set_phi(math.pi)
+        self.all_sizes("trimmed-flat")
+        stage.deployment.set_phi(0.0)
+        click(stage.trim)
+        self.until(lambda: not self._planned() and self.window.fabrication.export.isEnabled(), "no whole cut plan")
+
+    def by_hand(self) -> None:
+        """The mode in which voids are changed: with locks and a label at the pointer."""
+        window, view, controller = self.window, self.window.stage.view, self.window.controller
+        click(window.stage.hand)
+        controller.hand.lock(frozenset((row, column) for row in (2, 3) for column in (3, 4, 5)), True)
+        for name, degrees in (("half-open", 70.0), ("flat", 180.0), ("target", 0.0)):
+            window.stage.deployment.set_phi(math.radians(degrees))
+            view.voids.select(frozenset({(5, 5)}))
+            for size in SIZES:
+                window.resize(size)
+                for palette in (LIGHT, DARK):
+                    window.set_theme(palette)
+                    QApplication.processEvents()
+                    view.voids.point_at((6, 6))
+                    self.picture(f"by-hand-{name}-{size.width()}x{size.height()}-{palette.name}")
+        window.set_theme(LIGHT)
+        QApplication.sendEvent(view, QEvent(QEvent.Type.Leave))
+        controller.hand.nudge(frozenset({(5, 5)}), 0.3)
+        self.until(lambda: not controller.hand.busy, "the changed ratio was not scored")
+        self.all_sizes("by-hand-changed")
+        while window.controller.history.undo_label is not None and "void" in window.controller.history.undo_label:
+            window.actions_["undo"].trigger()
+        click(window.stage.hand)
+
+    def cuts(self) -> None:
+        """The cut plan: whole, half cut with its travel, with connectors of their own and a problem, with options."""
+        stage, fabrication = self.window.stage, self.window.fabrication
+        page, history = stage.cuts, self.window.controller.history
+        click(stage.cuts_switch)
+        self.all_sizes("cuts")
+        click(page.toggles[CutOverlay.TRAVEL])
+        page.bar.slider.setValue(page.bar.slider.maximum() // 2)
+        self.all_sizes("cuts-half")
+        click(page.toggles[CutOverlay.TRAVEL])
+        for hinges, width in ((range(30), 0.45), (range(30, 50), 0.05)):
+            page.view.gestures.select(frozenset(hinges))
+            page.hinges.width_mm.setValue(width)
+        self.until(lambda: page.problems.isVisible(), "the narrow connectors were not found")
+        self.all_sizes("cuts-connectors")
+        page.problems.setCurrentRow(0)
+        self.all_sizes("cuts-problem")
+        stage.fit()
+        while history.undo_label is not None and "connectors" in history.undo_label:
+            self.window.actions_["undo"].trigger()
+        self.until(lambda: not page.problems.isVisible(), "undo did not bring the connectors back")
+        page.view.gestures.select(frozenset())
+        click(stage.cuts_switch)
+        fabrication.options.fold.setChecked(True)
+        self.all_sizes("options")
+        fabrication.options.fold.setChecked(False)
+
+    def exported(self) -> None:
+        """The report of a cut file and the material editor, in both themes."""
+        commands = self.window.commands
+        self.window.controller.export(self.out / "cut.dxf")
+        self.until(lambda: commands.report is not None, "no report was shown")
+        commands.show_materials()
+        for palette in (DARK, LIGHT):
+            self.window.set_theme(palette)
+            if commands.report is not None and commands.materials is not None:
+                self.picture(f"report-{palette.name}", commands.report)
+                self.picture(f"materials-{palette.name}", commands.materials)
+        if commands.materials is not None:
+            commands.materials.close()
+        commands.close_report()
+        while self.window.messages.messages:
+            self.window.messages.close_message()
+
+    def _planned(self) -> bool:
+        return "trimmed" in self.window.fabrication.summary.text()
+
+    def project(self) -> None:
+        """Work of a session that was cut off, the menus about files and pictures, the history with undone steps."""
+        window, commands = self.window, self.window.commands
+        filing, folder = window.controller.filing, self.out / "recovery"
+        left = folder / "left.kiri"
+        note = Note("teapot.kiri", str(self.out / "teapot.kiri"), "2026-11-21T12:03:00+00:00", 1)
+        recovery.keep(window.controller.document, note, left)
+        filing.recovering.use(folder)
+        self.until(lambda: "ended unexpectedly" in window.messages.sentence.text(), "the lost work was not offered")
+        self.all_sizes("recovery")
+        dict(window.messages.messages[-1].actions)["Discard"]()
+        while window.messages.messages:
+            window.messages.close_message()
+        for name in ("teapot.kiri", "session.kiri"):
+            filing.recent.take_project(self.out / name)
+        filing.recent.take_target(str(self.out / f"{LONG_NAME}.png"))
+        commands.recent.show_missing(frozenset({str((self.out / "teapot.kiri").absolute())}))
+        window.actions_["history"].trigger()
+        window.controller.go_to(max(0, window.controller.history.position - 2))
+        for palette in (DARK, LIGHT):
+            window.set_theme(palette)
+            for menu, name in ((commands.recent, "recent"), (commands.pictures, "pictures")):
+                menu.popup(window.mapToGlobal(window.rect().topLeft()))
+                self.picture(f"menu-{name}-{palette.name}", menu)
+                menu.close()
+            if commands.history is not None:
+                commands.history.show_history(window.controller.history, palette)
+                self.picture(f"history-{palette.name}", commands.history)
+        window.controller.go_to(len(window.controller.history.steps))
+        if commands.history is not None:
+            commands.history.close()
+
+    def messages(self) -> None:
+        """An error with details, then a question."""
+        bar = self.window.messages
+        sentence = f"{LONG_NAME}.svg crosses itself at (12.4, 88.1) mm; separate the two loops there and open it again."
+        bar.add(Message(sentence, Tone.ERROR, "first line of the trace\nsecond line of the trace"))
+        bar.details.setChecked(True)
+        self.all_sizes("error")
+        self.window.actions_["new"].trigger()
+        self.all_sizes("question")
+        while bar.messages:
+            bar.close_message()
+
+
+if __name__ == "__main__":
+    sys.exit(main(kind=StateSheet))

@@ -1,0 +1,57 @@
+"""What the packages below the window say: one table a package, from a problem's code to its English sentence.
+
+A sentence is whole, says what happened, where, and what to try, and names its values: ``"{name} is empty."``.  Where
+the
+number of things changes the words, the entry is a pair (one, many) and the values hold ``count``.  Translators get
+all of them: ``mark`` is a word that ``make messages`` collects.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from kirigami_studio.foundation.sentences import (
+    cli,
+    evaluate,
+    export,
+    fabricate,
+    foundation,
+    generator,
+    lattice,
+    outlines,
+    pipeline,
+    polish,
+    project,
+    training,
+)
+from kirigami_studio.foundation.words import tr, tr_n
+
+#: Every sentence by the code of its problem.
+SENTENCES: Mapping[str, str | tuple[str, str]] = {
+    code: text
+    for package in (
+        cli,
+        evaluate,
+        export,
+        fabricate,
+        foundation,
+        generator,
+        lattice,
+        outlines,
+        pipeline,
+        polish,
+        project,
+        training,
+    )
+    for code, text in package.SENTENCES.items()
+}
+
+
+def sentence(code: str, fields: Mapping[str, object]) -> str:
+    """The sentence of a problem in the user's language, with its values in place."""
+    text = SENTENCES.get(code, code)
+    if isinstance(text, tuple):
+        one, many = text
+        others = {name: value for name, value in fields.items() if name != "count"}
+        return tr_n(one, many, int(str(fields["count"])), **others)
+    return tr(text, **fields)

@@ -1,0 +1,5 @@
+"""Sentences of ``training``, by the code of the problem."""
+
+from __future__ import annotations
+
+SENTENCES: dict[str, str | tuple[str, str]] = {}

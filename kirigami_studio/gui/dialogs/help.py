@@ -1,0 +1,182 @@
+"""Every key and every gesture of the mouse on one sheet, with a search, beside the work."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from PySide6.QtCore import Qt
+from PySide6.QtGui import QKeyEvent, QKeySequence
+from PySide6.QtWidgets import (
+    QHeaderView,
+    QLabel,
+    QLineEdit,
+    QTextBrowser,
+    QTreeWidget,
+    QTreeWidgetItem,
+    QVBoxLayout,
+    QWidget,
+)
+
+from kirigami_studio.foundation.resources import resource
+from kirigami_studio.foundation.words import tr, tr_n
+from kirigami_studio.gui.actions import COMMANDS, Command
+
+
+class GuideWindow(QWidget):
+    """Shows ``resources/guide/guide.md``."""
+
+    def __init__(self, parent: QWidget) -> None:
+        super().__init__(parent, Qt.WindowType.Window)
+        self.setWindowTitle(tr("Kirigami Studio guide"))
+        self.text = QTextBrowser()
+        self.text.setObjectName("guideText")
+        self.text.setAccessibleName(tr("User guide"))
+        self.text.setOpenExternalLinks(True)
+        self.text.setMarkdown(resource("guide", "guide.md").read_text(encoding="utf-8"))
+        column = QVBoxLayout(self)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.addWidget(self.text)
+        self.resize(680, 720)
+
+
+#: What a line is found by.
+WORDS = Qt.ItemDataRole.UserRole
+
+
+@dataclass(frozen=True, slots=True)
+class Gesture:
+    """What a hand does with the mouse, where, and what happens."""
+
+    view: str
+    does: str
+    effect: str
+
+
+def gestures() -> tuple[Gesture, ...]:
+    """The gestures that every view takes, and those of each."""
+    anywhere, board, cuts, numbers = tr("Every drawing"), tr("Drawing board"), tr("Cuts"), tr("Numbers and angle")
+    hand, gallery = tr("Edit by hand"), tr("Candidates")
+    return (
+        Gesture(anywhere, tr("Wheel"), tr("Zoom at the pointer")),
+        Gesture(anywhere, tr("Drag"), tr("Move the picture")),
+        Gesture(anywhere, tr("Double-click"), tr("Show everything")),
+        Gesture(board, tr("Ctrl while drawing"), tr("Leave the grid for a moment")),
+        Gesture(board, tr("Shift while dragging a box"), tr("Keep it regular")),
+        Gesture(board, tr("Drag a point"), tr("Move it; arrow keys move it by small steps, with Shift by large ones")),
+        Gesture(board, tr("Double-click on the outline"), tr("Add a point there")),
+        Gesture(board, tr("Shift at the knob"), tr("Turn in steps of 15°")),
+        Gesture(board, tr("[ and ] with points"), tr("Walk over the points; Ctrl+A selects all, Delete removes")),
+        Gesture(
+            hand, tr("Wheel or + and -"), tr("Change the ratio of the void; finely with Shift (wheel) or Alt (keys)")
+        ),
+        Gesture(hand, tr("Drag a void"), tr("Pull its ratio; Esc takes the drag back")),
+        Gesture(hand, tr("Drag a corner of the outline"), tr("The outline follows as far as it can")),
+        Gesture(hand, tr("Alt-click on a void"), tr("Lock or unlock it")),
+        Gesture(hand, tr("Arrow keys"), tr("Walk to the next void")),
+        Gesture(gallery, tr("Ctrl-click on a card"), tr("Compare it with the chosen design")),
+        Gesture(gallery, tr("Delete"), tr("Reject the chosen design; Undo takes it back")),
+        Gesture(cuts, tr("Click on a connector"), tr("Select it; type its width in mm, or press Delete")),
+        Gesture(cuts, tr("Shift-click"), tr("Select one more, or one less")),
+        Gesture(cuts, tr("Shift-drag"), tr("Select what is inside the box; Ctrl+A selects all")),
+        Gesture(cuts, tr("Drag a connector"), tr("Make it wider or narrower; Alt: finely")),
+        Gesture(cuts, tr("Double-click on a connector"), tr("Cut it through, or bring it back")),
+        Gesture(numbers, tr("Arrow keys"), tr("One step; with Page Up and Page Down ten")),
+    )
+
+
+class ShortcutSheet(QWidget):
+    """Lists the command table and the gestures; typing filters both."""
+
+    def __init__(self, parent: QWidget, commands: Iterable[Command] = COMMANDS) -> None:
+        super().__init__(parent, Qt.WindowType.Window)
+        self.setWindowTitle(tr("Keyboard shortcuts"))
+        self.search = QLineEdit()
+        self.search.setPlaceholderText(tr("Search for a command, a key or a gesture"))
+        self.search.setAccessibleName(tr("Search the shortcuts"))
+        self.search.setToolTip(tr("Show only lines with these words"))
+        self.search.setClearButtonEnabled(True)
+        self.list = QTreeWidget()
+        self.list.setObjectName("shortcutList")
+        self.list.setAccessibleName(tr("Shortcuts and gestures"))
+        self.list.setColumnCount(2)
+        self.list.setHeaderLabels([tr("What it does"), tr("Keys or mouse")])
+        self.list.setRootIsDecorated(False)
+        self.list.setUniformRowHeights(True)
+        self.list.header().setSectionResizeMode(0, QHeaderView.ResizeMode.Stretch)
+        self.list.header().setSectionResizeMode(1, QHeaderView.ResizeMode.ResizeToContents)
+        self.found = QLabel()
+        self.found.setObjectName("muted")
+        column = QVBoxLayout(self)
+        column.setContentsMargins(12, 12, 12, 10)
+        column.addWidget(self.search)
+        column.addWidget(self.list, 1)
+        column.addWidget(self.found)
+        self._fill(commands)
+        self.search.textChanged.connect(self._filter)
+        self._filter("")
+        self.resize(720, 640)
+
+    def _fill(self, commands: Iterable[Command]) -> None:
+        for command in commands:
+            if command.shortcuts:
+                keys = tr(" or ").join(shown(keys) for keys in command.shortcuts)
+                text = command.text.replace("&", "")
+                self._add(command.menu.replace("&", ""), command.tip or text, keys, text)
+        for gesture in gestures():
+            self._add(gesture.view, gesture.effect, gesture.does)
+        self.list.expandAll()
+
+    def _add(self, group: str, effect: str, keys: str, text: str = "") -> None:
+        heads = self.list.findItems(group, Qt.MatchFlag.MatchExactly)
+        if not heads:
+            head = QTreeWidgetItem([group])
+            font = self.font()
+            font.setBold(True)
+            head.setFont(0, font)
+            head.setFlags(Qt.ItemFlag.ItemIsEnabled)
+            self.list.addTopLevelItem(head)
+            head.setFirstColumnSpanned(True)
+            heads = [head]
+        line = QTreeWidgetItem([effect, keys])
+        line.setToolTip(0, effect)
+        line.setData(0, WORDS, f"{effect} {keys} {group} {text}".lower())
+        heads[0].addChild(line)
+
+    def showing(self) -> list[tuple[str, str]]:
+        """The lines in sight: effect, keys."""
+        return [(line.text(0), line.text(1)) for line in self._lines() if not line.isHidden()]
+
+    def _heads(self) -> list[QTreeWidgetItem]:
+        found = (self.list.topLevelItem(row) for row in range(self.list.topLevelItemCount()))
+        return [head for head in found if head is not None]
+
+    def _lines(self) -> list[QTreeWidgetItem]:
+        return [line for head in self._heads() for line in lines_of(head)]
+
+    def _filter(self, text: str) -> None:
+        words = text.lower().split()
+        for line in self._lines():
+            line.setHidden(not all(word in line.data(0, WORDS) for word in words))
+        for head in self._heads():
+            head.setHidden(all(line.isHidden() for line in lines_of(head)))
+        self.found.setText(tr_n("{count} line", "{count} lines", len(self.showing())))
+
+    def keyPressEvent(self, event: QKeyEvent) -> None:  # noqa: N802 - Qt's name
+        """Esc empties the search first, then closes."""
+        if event.key() != Qt.Key.Key_Escape:
+            super().keyPressEvent(event)
+        elif self.search.text():
+            self.search.clear()
+        else:
+            self.close()
+
+
+def lines_of(head: QTreeWidgetItem) -> list[QTreeWidgetItem]:
+    """What stands under a heading."""
+    return [line for line in (head.child(row) for row in range(head.childCount())) if line is not None]
+
+
+def shown(keys: str) -> str:
+    """A key sequence as this platform writes it."""
+    return QKeySequence(keys).toString(QKeySequence.SequenceFormat.NativeText)

@@ -1,0 +1,121 @@
+"""File > Open recent: projects, then targets, each by its name; missing ones are grey."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+
+from PySide6.QtGui import QAction, QActionGroup
+from PySide6.QtWidgets import QLabel, QMenu, QWidget, QWidgetAction
+
+from kirigami_studio.foundation.words import tr
+from kirigami_studio.gui.files.picturing import SCALES, Picturing
+from kirigami_studio.gui.files.recent_files import RecentFiles
+from kirigami_studio.project.recent import Recent
+
+
+class PictureMenu(QMenu):
+    """Asks where to, and lets the pictures be made."""
+
+    def __init__(self, parent: QWidget, picturing: Picturing, ask: Callable[[str], Path | None]) -> None:
+        super().__init__(tr("Export pi&cture of"), parent)
+        self._picturing = picturing
+        self._ask = ask
+        self.menuAction().setStatusTip(tr("Write a view as PNG or SVG"))
+        self.setToolTipsVisible(True)
+        self.aboutToShow.connect(self.refresh)
+        self.refresh()
+
+    def refresh(self) -> None:
+        """List the views in sight."""
+        self.clear()
+        for name, view in self._picturing.views().items():
+            self.addAction(name.replace("&", "&&")).triggered.connect(partial(self._write, view, name))
+        self.addSeparator()
+        sizes = QActionGroup(self)
+        for scale in SCALES:
+            each = self.addAction(tr("&{scale} x as large (PNG)", scale=scale))
+            each.setToolTip(tr("{scale} pixels of a PNG for each pixel of the view", scale=scale))
+            each.setCheckable(True)
+            each.setChecked(scale == self._picturing.scale)
+            each.triggered.connect(partial(self._set_scale, scale))
+            sizes.addAction(each)
+        self.addSeparator()
+        overlays = self.addAction(tr("With &overlays, as seen"))
+        overlays.setObjectName("pictureOverlays")
+        overlays.setCheckable(True)
+        overlays.setChecked(self._picturing.overlays)
+        overlays.toggled.connect(self._set_overlays)
+
+    def _write(self, view: QWidget, name: str, _: bool = False) -> None:
+        path = self._ask(f"{name.lower()}.png")
+        if path is not None:
+            self._picturing.write(view, path)
+
+    def _set_scale(self, scale: int, _: bool = False) -> None:
+        self._picturing.scale = scale
+
+    def _set_overlays(self, on: bool) -> None:
+        self._picturing.overlays = on
+
+
+class RecentMenu(QMenu):
+    """Lists what was used last, and opens it."""
+
+    def __init__(self, parent: QWidget, files: RecentFiles, take: Callable[[str], None]) -> None:
+        super().__init__(tr("Open &recent"), parent)
+        self._files = files
+        self._take = take
+        self.entries: dict[str, QAction] = {}
+        self.setToolTipsVisible(True)
+        self.menuAction().setStatusTip(tr("Projects and targets that were used last"))
+        self.aboutToShow.connect(files.look)
+        files.changed.connect(self.show_recent)
+        files.missing.connect(self.show_missing)
+        self.show_recent(files.present)
+
+    def show_recent(self, recent: Recent) -> None:
+        """List these files."""
+        self.clear()
+        self.entries.clear()
+        for title, paths in ((tr("Projects"), recent.projects), (tr("Targets"), recent.targets)):
+            if paths:
+                self.addAction(self._caption(title))
+            for number, path in enumerate(paths, start=1):
+                self._add(path, number, paths)
+        self.addSeparator()
+        forget = self.addAction(tr("&Clear list"))
+        forget.setObjectName("clearRecent")
+        forget.triggered.connect(lambda _=False: self._files.clear())
+        self.menuAction().setEnabled(bool(self.entries))
+
+    def show_missing(self, missing: frozenset[str]) -> None:
+        """Offer what is there, in grey what is not."""
+        for path, action in self.entries.items():
+            action.setEnabled(path not in missing)
+            action.setToolTip(tr("{path} is not there any more.", path=path) if path in missing else path)
+
+    def _caption(self, title: str) -> QAction:
+        """A line that only says what follows; the style draws no titles of sections."""
+        label = QLabel(title)
+        label.setObjectName("muted")
+        label.setContentsMargins(12, 6, 12, 2)
+        caption = QWidgetAction(self)
+        caption.setDefaultWidget(label)
+        caption.setEnabled(False)
+        return caption
+
+    def _add(self, path: str, number: int, paths: tuple[str, ...]) -> None:
+        name = Path(path).name
+        if sum(Path(other).name == name for other in paths) > 1:
+            name = tr("{name} in {folder}", name=name, folder=Path(path).parent.name)
+        shown = name.replace("&", "&&")
+        action = self.addAction(f"&{number % 10}  {shown}")
+        action.setToolTip(path)
+        action.setStatusTip(path)
+        action.triggered.connect(partial(self._open, path))
+        self.entries[path] = action
+
+    def _open(self, path: str, _: bool = False) -> None:
+        self._take(path)

@@ -1,0 +1,231 @@
+"""Mirror while drawing: which axes reflect what is drawn, as a button with a menu."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+from PySide6.QtCore import QSignalBlocker
+from PySide6.QtGui import QAction, QActionGroup, QFont
+from PySide6.QtWidgets import QFontComboBox, QHBoxLayout, QLabel, QMenu, QToolButton, QWidget
+
+from kirigami_studio.foundation.words import tr
+from kirigami_studio.gui.look import icons
+from kirigami_studio.gui.look.theme import LIGHT, Palette
+from kirigami_studio.gui.panels.card import TOOL_ICON, tool_button
+from kirigami_studio.gui.panels.number_field import DecimalField, LengthField, number_field
+from kirigami_studio.gui.sketching.sketch_context import Change, SketchContext
+from kirigami_studio.outlines.mirroring import Axis
+from kirigami_studio.outlines.nodes import Kind
+from kirigami_studio.outlines.placed import LARGEST_MM, Placed
+
+
+class NodeOptions(QWidget):
+    """One button for each kind; those of the selected points are down."""
+
+    def __init__(self, context: SketchContext) -> None:
+        super().__init__()
+        row = QHBoxLayout(self)
+        row.setContentsMargins(0, 0, 0, 0)
+        row.setSpacing(2)
+        self.buttons: dict[Kind, QToolButton] = {}
+        for kind, tip in (
+            (
+                Kind.CORNER,
+                tr("Corner (Shift+C). Handles of the selected points go their own ways (Alt+drag); again: no handles."),
+            ),
+            (Kind.SMOOTH, tr("Smooth (Shift+S). Both handles of the selected points lie on one line.")),
+            (Kind.SYMMETRIC, tr("Symmetric (Shift+Y). Both handles are also of one length; Shift+drag does the same.")),
+            (Kind.AUTO, tr("Automatic (Shift+A). The neighbours of the selected points set their handles.")),
+        ):
+            button = tool_button(f"node{kind.value.capitalize()}", tip, checkable=True)
+            button.clicked.connect(lambda _=False, kind=kind: context.kind_wanted.emit(kind))
+            self.buttons[kind] = button
+            row.addWidget(button)
+        context.kinds_shown.connect(self.show_kinds)
+        self.show_kinds(frozenset())
+
+    def show_kinds(self, kinds: frozenset[Kind]) -> None:
+        """Show which kinds the selected points have; without one there is nothing to change."""
+        for kind, button in self.buttons.items():
+            button.setEnabled(bool(kinds))
+            button.setChecked(kind in kinds)
+
+    def set_palette(self, palette: Palette) -> None:
+        """Draw in other colours."""
+        for kind, button in self.buttons.items():
+            button.setIcon(icons.icon(f"node-{kind.value}", palette))
+
+
+class FontOptions(QWidget):
+    """Families of this computer that can be scaled; the list is filled when it is shown for the first time."""
+
+    def __init__(self, context: SketchContext) -> None:
+        super().__init__()
+        self._context = context
+        self._row = QHBoxLayout(self)
+        self._row.setContentsMargins(0, 0, 0, 0)
+        self._row.setSpacing(2)
+        self.family: QFontComboBox | None = None
+        self.bold = tool_button("fontBold", tr("Bold letters. Sheets show thick strokes better than thin ones."), True)
+        self.italic = tool_button("fontItalic", tr("Italic letters."), True)
+        self.bold.setChecked(context.bold)
+        self.bold.toggled.connect(lambda on: setattr(context, "bold", on))
+        self.italic.toggled.connect(lambda on: setattr(context, "italic", on))
+        self._row.addWidget(self.bold)
+        self._row.addWidget(self.italic)
+
+    def fill(self) -> None:
+        """List the families: reading them takes a while, so only when the text tool is taken."""
+        if self.family is not None:
+            return
+        self.family = QFontComboBox()
+        self.family.setFontFilters(QFontComboBox.FontFilter.ScalableFonts)
+        self.family.setAccessibleName(tr("Font of the text"))
+        self.family.setToolTip(tr("Font of the text. Its letters are moved together until they hang in one piece."))
+        self.family.setMaximumWidth(190)
+        with QSignalBlocker(self.family):
+            self.family.setCurrentFont(QFont(self._context.family) if self._context.family else self.font())
+        self.family.currentFontChanged.connect(lambda font: setattr(self._context, "family", font.family()))
+        self._row.insertWidget(0, self.family)
+
+    def set_palette(self, palette: Palette) -> None:
+        """Draw in other colours."""
+        self.bold.setIcon(icons.icon("bold", palette))
+        self.italic.setIcon(icons.icon("italic", palette))
+
+
+class PoseOptions(QWidget):
+    """Two lengths and an angle; the steps of one visit to a field undo together."""
+
+    def __init__(self, context: SketchContext) -> None:
+        super().__init__()
+        self._context = context
+        self._visit = 0
+        row = QHBoxLayout(self)
+        row.setContentsMargins(0, 0, 0, 0)
+        row.setSpacing(6)
+        self.x_ = self._field(tr("Middle of the target from left to right, mm on the board"), LARGEST_MM, 1, tr(" mm"))
+        self.y_ = self._field(tr("Middle of the target from bottom to top, mm on the board"), LARGEST_MM, 1, tr(" mm"))
+        self.turn = self._field(tr("Turn the target by this angle, degrees counter-clockwise"), 360.0, 1, "°")
+        for caption, field in ((tr("&X"), self.x_), (tr("&Y"), self.y_), (tr("T&urn by"), self.turn)):
+            label = QLabel(caption)
+            label.setObjectName("muted")
+            label.setBuddy(field)
+            row.addWidget(label)
+            row.addWidget(field)
+        self.x_.valueChanged.connect(self._move)
+        self.y_.valueChanged.connect(self._move)
+        self.turn.valueChanged.connect(self._turn)
+
+    def _field(self, tip: str, largest: float, digits: int, suffix: str) -> DecimalField:
+        field = LengthField() if suffix == tr(" mm") else DecimalField()
+        field.setRange(-largest, largest)
+        field.setDecimals(digits)
+        field.setSuffix(suffix)
+        field.setKeyboardTracking(False)
+        field.setToolTip(tip)
+        field.setAccessibleName(tip)
+        number_field(field)
+        field.setMaximumWidth(96)
+        field.editingFinished.connect(self._leave)
+        return field
+
+    def _leave(self) -> None:
+        self._visit += 1
+
+    def show_placed(self, placed: Placed | None) -> None:
+        """Show where the target lies."""
+        self.setEnabled(placed is not None)
+        if placed is None:
+            return
+        for field, value in zip((self.x_, self.y_), middle_of(placed), strict=True):
+            with QSignalBlocker(field):
+                field.setValue(value)
+        with QSignalBlocker(self.turn):
+            self.turn.setValue(0.0)
+
+    def _move(self) -> None:
+        placed = self._context.placed
+        if placed is not None:
+            middle = middle_of(placed)
+            # Only the field that was changed: the other one shows a rounded number.
+            fields = zip((self.x_, self.y_), middle, strict=True)
+            x, y = (field.value() - old if self.sender() is field else 0.0 for field, old in fields)
+            self._change(tr("Move target"), lambda: placed.moved((x, y)))
+
+    def _turn(self, degrees: float) -> None:
+        from kirigami_studio.outlines.refining import turned
+
+        placed = self._context.placed
+        if placed is not None and degrees:
+            self._change(tr("Rotate target"), lambda: turned(placed, math.radians(degrees)))
+
+    def _change(self, gesture: str, make: Callable[[], Placed]) -> None:
+        self._context.changed.emit(Change(gesture, make, f"typed {gesture} {self._visit}"))
+
+
+def middle_of(placed: Placed) -> tuple[float, float]:
+    """The middle of a target's box, mm."""
+    ring = placed.ring
+    x, y = (0.5 * (ring.min(axis=0) + ring.max(axis=0))).tolist()
+    return x, y
+
+
+class AxisButton(QToolButton):
+    """Shows the axes in use; its menu and Shift+M change them."""
+
+    def __init__(self, context: SketchContext, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._context = context
+        self._palette: Palette = LIGHT
+        self.setObjectName("axis")
+        self.setIconSize(TOOL_ICON)
+        self.setAccessibleName(tr("Mirror while drawing"))
+        self.setToolTip(
+            tr(
+                "Mirror while drawing (Shift+M). Shapes, strokes and points are reflected about the dashed axis "
+                "through the middle of the target."
+            )
+        )
+        self.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)
+        self.setCheckable(True)
+        menu = QMenu(self)
+        group = QActionGroup(self)
+        self.choices: dict[Axis, QAction] = {}
+        for axis, text in (
+            (Axis.NONE, tr("&No mirror")),
+            (Axis.UPRIGHT, tr("&Left and right")),
+            (Axis.LEVEL, tr("&Top and bottom")),
+            (Axis.BOTH, tr("&Both")),
+        ):
+            choice = menu.addAction(text)
+            choice.setCheckable(True)
+            choice.triggered.connect(lambda _=False, axis=axis: self.set_axis(axis))
+            group.addAction(choice)
+            self.choices[axis] = choice
+        self.setMenu(menu)
+        self.choices[context.mirror.axis].setChecked(True)
+
+    def set_axis(self, axis: Axis) -> None:
+        """Mirror about these axes from now on."""
+        self._context.set_axis(axis)
+        self.choices[axis].setChecked(True)
+        self.setChecked(axis is not Axis.NONE)
+        self._dress()
+
+    def cycle(self) -> None:
+        """Go on to the next choice."""
+        axes = list(Axis)
+        self.set_axis(axes[(axes.index(self._context.mirror.axis) + 1) % len(axes)])
+
+    def set_palette(self, palette: Palette) -> None:
+        """Draw in other colours."""
+        self._palette = palette
+        self._dress()
+
+    def _dress(self) -> None:
+        axis = self._context.mirror.axis
+        self.setIcon(icons.icon(f"axis-{axis.value}", self._palette))
+        for choice, action in self.choices.items():
+            action.setIcon(icons.icon(f"axis-{choice.value}", self._palette))

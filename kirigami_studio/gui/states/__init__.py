@@ -1,1 +1,0 @@
-"""Pictures of every state of the window, for people to look at."""
