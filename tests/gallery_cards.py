@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.gui.designs.design_cache import Entry
-from kirigami_studio.gui.scene.posed import PosedDesign
 from kirigami_studio.lattice.deployment import deploy
 
 

@@ -59,5 +59,5 @@ def _tiles(one: Made) -> list[tuple[Image.Image, tuple[str, str]]]:
 
 def _drawn(candidate: Candidate, one: Made) -> Image.Image:
     job = ExportJob.of(candidate, one.target.points)
-    panels = job.placed_panels(job.phi)
+    panels = job.posed.parts(job.phi)
     return draw_polygons(panels, PictureFrame.around([*panels, one.target.points], TILE), one.target.points)

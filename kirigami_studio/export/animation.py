@@ -57,7 +57,7 @@ def write_animation(job: ExportJob, path: str | Path, frames: int = FRAMES, long
     """
     if frames < 2:
         raise ExportError(f"An animation needs at least 2 frames, got {frames}.")
-    pictures = _pictures(job, frames, longest)
+    pictures = animation_frames(job, frames, longest)
     durations = [HOLD_MS] + [FRAME_MS] * (frames - 2) + [HOLD_MS]
     stream = BytesIO()
     facts = "; ".join(f"{name} {text}" for name, text in origin_facts(job.provenance).items())
@@ -82,9 +82,10 @@ def write_animation(job: ExportJob, path: str | Path, frames: int = FRAMES, long
     return frames
 
 
-def _pictures(job: ExportJob, frames: int, longest: int) -> list[Image.Image]:
-    """All frames in one constant frame box and one palette."""
-    poses = [job.placed_panels(float(angle)) for angle in frame_angles(job.phi, frames)]
+def animation_frames(job: ExportJob, frames: int, longest: int) -> list[Image.Image]:
+    """Pictures of the motion that show one part of the plane and share one palette."""
+    design = job.posed
+    poses = [design.parts(float(angle)) for angle in frame_angles(job.phi, frames)]
     clouds = [np.concatenate(panels) for panels in poses]
     box = PictureFrame.around(clouds if job.target is None else [*clouds, job.target], longest)
     drawn = [draw_polygons(panels, box, job.target) for panels in poses]

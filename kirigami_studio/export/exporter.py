@@ -8,9 +8,8 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Protocol
 
-import numpy as np
-
 from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.evaluate.trimming import Trim
 from kirigami_studio.export.paper import NO_PAPER
@@ -18,7 +17,7 @@ from kirigami_studio.export.profile import DEFAULT_PROFILE
 from kirigami_studio.fabricate.cut_plan import CutPlan
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import ExportError
-from kirigami_studio.lattice.deployment import Deployment, deploy, signed_area
+from kirigami_studio.lattice.deployment import Deployment, deploy
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -61,7 +60,7 @@ class ExportJob:
 
     @classmethod
     def of(cls, candidate: Candidate, target: FloatArray | None, plan: CutPlan | None = None) -> ExportJob:
-        """The job of a candidate as it is finished: trimmed if it is."""
+        """The job of a candidate with its final field, pose and angle, trimmed if it is."""
         motion = deploy(candidate.final_field)
         return cls(motion, candidate.final_phi, plan, target, candidate.final_pose, trim=candidate.trim)
 
@@ -78,38 +77,10 @@ class ExportJob:
             raise ExportError("A cut file needs a cut plan: choose a material and a sheet width first.")
         return replace(self.plan, origin=self.provenance) if self.provenance else self.plan
 
-    def placed(self, nodes: FloatArray) -> FloatArray:
-        """Move points (..., 2) from the layout's frame at ``phi`` to the target's frame."""
-        matrix = self.transform.matrix
-        moved: FloatArray = nodes @ matrix[:, :2].T + matrix[:, 2]
-        return moved
-
-    def placed_nodes(self, phi: float) -> FloatArray:
-        """All nodes at any angle in the target's frame: turned as at the target angle, with the same centroid."""
-        placed: FloatArray = self.placed(self.deployment.nodes(phi)) + self._drift(phi)
-        return placed
-
-    def placed_panels(self, phi: float) -> list[FloatArray]:
-        """What there is of every panel at any angle in the same frame: list of (P, 2)."""
-        if self.trim is None:
-            return list(self.placed_nodes(phi)[self.deployment.topology.panel_nodes].reshape(-1, 4, 2))
-        drift = self._drift(phi)
-        return [self.placed(part) + drift for part in self.trim.deployed(self.deployment, phi)]
-
-    def _drift(self, phi: float) -> FloatArray:
-        """Shift (2,) that lays the centre of the sheet at ``phi`` upon that at the target angle."""
-        loop = self.deployment.topology.outline_nodes
-        goal, nodes = (self.placed(self.deployment.nodes(angle)[loop]) for angle in (self.phi, phi))
-        drift: FloatArray = area_centroid(goal) - area_centroid(nodes)
-        return drift
-
-
-def area_centroid(polygon: FloatArray) -> FloatArray:
-    """Centre of area of a closed polygon (L, 2)."""
-    following = np.roll(polygon, -1, axis=0)
-    cross = polygon[:, 0] * following[:, 1] - polygon[:, 1] * following[:, 0]
-    centre: FloatArray = ((polygon + following) * cross[:, None]).sum(axis=0) / (6.0 * signed_area(polygon))
-    return centre
+    @property
+    def posed(self) -> PosedDesign:
+        """The moving sheet over its target, as the window shows it; ask once for a whole animation."""
+        return PosedDesign(self.deployment, self.transform, self.phi, self.trim)
 
 
 class Exporter(Protocol):

@@ -62,6 +62,6 @@ def text_chunks(facts: Mapping[str, str]) -> PngInfo:
 
 def preview(job: ExportJob, longest: int = LONGEST_SIDE) -> Image.Image:
     """Draw the layout at the target angle over the target."""
-    panels = job.placed_panels(job.phi)
+    panels = job.posed.parts(job.phi)
     clouds = panels if job.target is None else [*panels, job.target]
     return draw_polygons(panels, PictureFrame.around(clouds, longest), job.target)

@@ -114,8 +114,9 @@ def write_layout_svg(job: ExportJob, path: str | Path, width_mm: float = 100.0) 
     tables = job.deployment.topology
     compact_width = float(np.ptp(job.deployment.compact[:, 0]))
     scale = width_mm / compact_width / job.transform.scale
-    nodes = job.placed_nodes(job.phi) * scale
-    panels = [panel * scale for panel in job.placed_panels(job.phi)]
+    design = job.posed
+    nodes = design.nodes(job.phi) * scale
+    panels = [panel * scale for panel in design.parts(job.phi)]
     target = None if job.target is None else np.asarray(job.target, dtype=np.float64) * scale
     everything = nodes if target is None else np.concatenate([nodes, target])
     low = everything.min(axis=0) - LAYOUT_MARGIN_MM

@@ -10,12 +10,12 @@ from PySide6.QtCore import QPointF, QRectF, QSize
 from PySide6.QtGui import QColor, QImage
 from PySide6.QtWidgets import QApplication
 
+from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.gui.actions import COMMANDS
 from kirigami_studio.gui.look import icons, theme
 from kirigami_studio.gui.look.theme import DARK, LIGHT, PALETTES, Palette, style_sheet
 from kirigami_studio.gui.scene.fault_items import FaultKind, contact_place, faults, inverted_panels
 from kirigami_studio.gui.scene.mismatch_items import mismatch
-from kirigami_studio.gui.scene.posed import PosedDesign
 from kirigami_studio.gui.scene.thumbnail import candidate_pixmap
 from kirigami_studio.gui.scene.view_transform import Bounds, ViewTransform
 from kirigami_studio.lattice.deployment import deploy
@@ -58,7 +58,7 @@ def test_that_a_posed_design_lies_on_its_target_and_turns_about_its_middle(posed
     assert at_target == pytest.approx(posed.pose.apply(posed.deployment.nodes(0.0)))
     for phi in (0.7, math.pi):
         assert posed.nodes(phi).mean(axis=0) == pytest.approx(at_target.mean(axis=0))
-    box = posed.bounds()
+    box = Bounds.of(posed.extent())
     everywhere = np.concatenate([posed.nodes(phi) for phi in np.linspace(0, math.pi, 9)])
     assert everywhere[:, 0].min() >= box.left and everywhere[:, 1].max() <= box.top
 

@@ -13,13 +13,13 @@ from PySide6.QtCore import QPoint, Qt, QThread
 from PySide6.QtTest import QTest
 
 from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.gui.jobs import drag_steps
 from kirigami_studio.gui.jobs.drag_steps import Follower, Grasp
 from kirigami_studio.gui.jobs.queue import JobCallbacks, JobQueue
 from kirigami_studio.gui.main_window import MainWindow
-from kirigami_studio.gui.scene.posed import PosedDesign
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.outlines import silhouettes

@@ -15,6 +15,7 @@ from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
 from kirigami_studio.evaluate.feasibility import Contact
+from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.fabricate.panel_sizes import edges_of, necks_of, panels_in_mm, smallest_edge, smallest_neck
 from kirigami_studio.gui.commands import OVERLAY_ACTIONS
 from kirigami_studio.gui.look.theme import DARK, LIGHT, Palette
@@ -23,7 +24,6 @@ from kirigami_studio.gui.scene.colour_scale import opening_scale, paint_colour_b
 from kirigami_studio.gui.scene.fault_items import FaultKind, crossing_place
 from kirigami_studio.gui.scene.legends import Chip, legend_boxes, paint_legend
 from kirigami_studio.gui.scene.mismatch_items import boundary_gap
-from kirigami_studio.gui.scene.posed import PosedDesign
 from kirigami_studio.gui.scene.void_numbers import heat_tiles, quad_areas
 from kirigami_studio.gui.views.layout_view import USUAL, LayoutView, Overlay
 from kirigami_studio.lattice.deployment import Deployment, deploy, rotate

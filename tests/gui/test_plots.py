@@ -16,11 +16,11 @@ from PySide6.QtGui import QMouseEvent
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
+from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.gui.jobs.plot_steps import ANGLES, Reading, batches, plotting
 from kirigami_studio.gui.look.theme import DARK, LIGHT
 from kirigami_studio.gui.main_window import MainWindow
-from kirigami_studio.gui.scene.posed import PosedDesign
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.outlines import silhouettes

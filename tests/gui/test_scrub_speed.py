@@ -11,8 +11,8 @@ import pytest
 from pytest_benchmark.fixture import BenchmarkFixture
 from pytestqt.qtbot import QtBot
 
+from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.evaluate.score import evaluate
-from kirigami_studio.gui.scene.posed import PosedDesign
 from kirigami_studio.gui.views.layout_view import USUAL, LayoutView, Overlay
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField

@@ -6,8 +6,8 @@ from collections import OrderedDict
 from dataclasses import dataclass
 
 from kirigami_studio.evaluate.candidate import Candidate, Origin
+from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.gui.designs.selecting import least_panel
-from kirigami_studio.gui.scene.posed import PosedDesign
 from kirigami_studio.lattice.deployment import Deployment, deploy
 
 
@@ -19,7 +19,7 @@ class Entry:
     ----------
     candidate : Candidate
     design : PosedDesign
-        As it is finished: trimmed if the candidate is.
+        With its final field, pose and angle: trimmed if the candidate is.
     rise : float
         What polishing has added to its sIoU in the run that goes on.
     kept : bool

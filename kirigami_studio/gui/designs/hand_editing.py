@@ -22,6 +22,7 @@ import numpy as np
 from PySide6.QtCore import QObject, QTimer, Signal
 
 from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.gui.designs.design_cache import DesignCache
 from kirigami_studio.gui.designs.hand_pull import LARGEST, SMALLEST, Pull
@@ -30,7 +31,6 @@ from kirigami_studio.gui.jobs import hand_steps
 from kirigami_studio.gui.jobs.drag_steps import Followed, Grasp
 from kirigami_studio.gui.jobs.queue import JobCallbacks, JobQueue, LatestJob
 from kirigami_studio.gui.jobs.steps import Decoded
-from kirigami_studio.gui.scene.posed import PosedDesign
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.project import edits

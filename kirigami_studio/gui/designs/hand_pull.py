@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.foundation.arrays import FloatArray
-from kirigami_studio.gui.scene.posed import PosedDesign
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.project.document import Void

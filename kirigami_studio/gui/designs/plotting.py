@@ -9,10 +9,10 @@ from functools import partial
 import numpy as np
 from PySide6.QtCore import QObject, Signal
 
+from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.jobs.plot_steps import Reading, plotting
 from kirigami_studio.gui.jobs.queue import JobCallbacks, JobQueue, LatestJob
-from kirigami_studio.gui.scene.posed import PosedDesign
 from kirigami_studio.outlines.outline import Outline
 
 #: Curves that are kept.

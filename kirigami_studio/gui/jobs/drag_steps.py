@@ -11,9 +11,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.foundation.arrays import BoolArray
 from kirigami_studio.gui.jobs.queue import Cancel
-from kirigami_studio.gui.scene.posed import PosedDesign
 
 if TYPE_CHECKING:
     from kirigami_studio.polish.vertex_drag import VertexDrag

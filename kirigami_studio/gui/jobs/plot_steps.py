@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.gui.jobs.queue import Cancel
-from kirigami_studio.gui.scene.posed import PosedDesign
 from kirigami_studio.lattice.deployment import ZIPPED_BELOW, rotate
 from kirigami_studio.outlines.outline import Outline
 

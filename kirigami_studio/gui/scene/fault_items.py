@@ -9,11 +9,11 @@ import numpy as np
 from PySide6.QtCore import QPointF, Qt
 from PySide6.QtGui import QColor, QPainter, QPainterPath, QPen
 
+from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.evaluate.score import Score
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.look.theme import Palette
-from kirigami_studio.gui.scene.posed import PosedDesign
 
 #: Panels below this part of the median panel area count as collapsed; far below what any cutter can hold.
 COLLAPSED_SHARE = 1e-6

@@ -5,9 +5,9 @@ from __future__ import annotations
 from PySide6.QtCore import QRectF, QSize, Qt
 from PySide6.QtGui import QPainter, QPixmap
 
+from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.scene.layout_items import paint_panels, turning_left
-from kirigami_studio.gui.scene.posed import PosedDesign
 from kirigami_studio.gui.scene.target_items import paint_target_line, paint_target_shape
 from kirigami_studio.gui.scene.view_transform import Bounds, ViewTransform
 from kirigami_studio.outlines.outline import Outline

@@ -10,12 +10,12 @@ import numpy as np
 from PySide6.QtCore import QPointF, QRectF, QSizeF, Qt
 from PySide6.QtGui import QBrush, QColor, QPainter, QPen
 
+from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray
 from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.scene.legends import paint_chip
 from kirigami_studio.gui.scene.mismatch_items import stripes
 from kirigami_studio.gui.scene.paths import line_path
-from kirigami_studio.gui.scene.posed import PosedDesign
 from kirigami_studio.gui.scene.view_transform import Bounds, ViewTransform
 from kirigami_studio.project.document import Void
 

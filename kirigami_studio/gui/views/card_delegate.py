@@ -12,10 +12,10 @@ from PySide6.QtGui import QColor, QFont, QHelpEvent, QPainter, QPen, QPixmap
 from PySide6.QtWidgets import QAbstractItemView, QStyle, QStyledItemDelegate, QStyleOptionViewItem, QToolTip, QWidget
 
 from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.look import icons
 from kirigami_studio.gui.look.theme import LIGHT, Palette
-from kirigami_studio.gui.scene.posed import PosedDesign
 from kirigami_studio.gui.scene.thumbnail import candidate_pixmap
 from kirigami_studio.gui.views.gallery_model import (
     CANDIDATE_ROLE,

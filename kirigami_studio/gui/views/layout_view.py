@@ -11,6 +11,7 @@ from PySide6.QtCore import QPointF, QRectF
 from PySide6.QtGui import QFontMetrics, QPainter
 from PySide6.QtWidgets import QWidget
 
+from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.evaluate.score import Score
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray
 from kirigami_studio.foundation.words import tr, tr_n
@@ -35,7 +36,6 @@ from kirigami_studio.gui.scene.fault_items import (
 from kirigami_studio.gui.scene.layout_items import paint_panels, turning_left
 from kirigami_studio.gui.scene.legends import Chip, clear_box, legend_boxes, paint_caption, paint_legend
 from kirigami_studio.gui.scene.mismatch_items import Mismatch, difference_chips, mismatch, paint_mismatch, usual_chips
-from kirigami_studio.gui.scene.posed import PosedDesign
 from kirigami_studio.gui.scene.small_parts import SmallPart, smallest_parts
 from kirigami_studio.gui.scene.target_items import paint_target_line
 from kirigami_studio.gui.scene.view_transform import Bounds, ViewTransform
@@ -148,7 +148,7 @@ class LayoutView(Canvas):
         self._areas, self._faults = None, ()
         before, self._bounds = self._bounds, None
         if design is not None:
-            self._bounds = design.bounds()
+            self._bounds = Bounds.of(design.extent())
             self._inverted = inverted_panels(design.panels(design.nodes(design.phi_target)))
             self._contact = None if score is None else contact_place(design, score)
             self._contact_phi = None if score is None or score.contact is None else score.contact.phi

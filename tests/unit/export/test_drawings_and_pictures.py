@@ -154,10 +154,11 @@ def test_that_an_animation_of_one_frame_is_refused(job: ExportJob, tmp_path: Pat
 
 
 def test_that_the_motion_ends_in_the_pose_of_the_target_and_keeps_its_centre(job: ExportJob) -> None:
-    loop = job.deployment.topology.outline_nodes
-    end = job.placed_nodes(0.0)
+    design = job.posed
+    end = design.nodes(0.0)
     assert job.target is not None
     np.testing.assert_allclose(end[job.deployment.topology.outline_at_zero], job.target, atol=1e-9)
-    start = job.placed_nodes(math.pi)[loop]
-    area = signed_area(start)
+    start = design.nodes(math.pi)
+    np.testing.assert_allclose(start.mean(axis=0), end.mean(axis=0), atol=1e-12)
+    area = signed_area(start[job.deployment.topology.outline_nodes])
     assert area == pytest.approx(30.0 * 0.2**2)

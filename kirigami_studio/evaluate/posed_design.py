@@ -1,0 +1,188 @@
+"""The moving sheet in the target's frame: one motion for the screen, pictures and the animation.
+
+A deployment is computed in its own layout frame.  A :class:`PosedDesign` places it over its target at the target angle
+and, at every other angle, keeps the mean of all nodes where it is then.  What trimming left of the edge panels, and
+what it took, turns and moves with the panels.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+import shapely
+
+from kirigami_studio.evaluate.boundary import as_plane, as_points
+from kirigami_studio.evaluate.kept_panels import GRID
+from kirigami_studio.evaluate.similarity import Similarity
+from kirigami_studio.evaluate.trimming import Trim
+from kirigami_studio.foundation.arrays import BoolArray, ComplexArray, FloatArray, IntArray
+from kirigami_studio.lattice.deployment import Deployment
+
+#: Angles at which the motion's extent is sampled; the extent is smooth in the angle.
+EXTENT_SAMPLES = 9
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PosedDesign:
+    """One design over its target at ``phi_target``, and at every other angle with the same centre (mean of all nodes).
+
+    Attributes
+    ----------
+    deployment : Deployment
+    pose : Similarity
+        Layout frame at ``phi_target`` -> world.
+    phi_target : float, radians
+    trim : Trim or None
+        What was cut off the edge panels.
+    """
+
+    deployment: Deployment
+    pose: Similarity
+    phi_target: float
+    trim: Trim | None = None
+
+    def nodes(self, phi: float) -> FloatArray:
+        """All nodes at angle ``phi``: (N, 2) float, world."""
+        placed = self.pose.apply(self.deployment.nodes(phi))
+        centred: FloatArray = placed + (self._middle() - placed.mean(axis=0))
+        return centred
+
+    def _middle(self) -> FloatArray:
+        return _placed_middle(self)
+
+    def panels(self, nodes: FloatArray) -> FloatArray:
+        """Panel corners (K, 4, 2) out of :meth:`nodes`."""
+        return nodes[self.deployment.topology.panel_nodes].reshape(-1, 4, 2)
+
+    def voids(self, nodes: FloatArray) -> FloatArray:
+        """Void corners p0 to p3 (m, n, 4, 2) out of :meth:`nodes`."""
+        return nodes[self.deployment.topology.void_nodes]
+
+    def mm_per_world(self, width_mm: float) -> float:
+        """Millimetres of one world unit, where the flat sheet is ``width_mm`` wide."""
+        return width_mm / (float(np.ptp(self.deployment.compact[:, 0])) * self.pose.scale)
+
+    def kept(self, nodes: FloatArray, phi: float) -> dict[int, FloatArray]:
+        """What stays of the trimmed panels, (P, 2) each by its row in :meth:`panels`, out of :meth:`nodes`."""
+        if self.trim is None:
+            return {}
+        rings = _trimmed_parts(self).kept
+        return dict(zip(rings.panel.tolist(), rings.at(nodes, self.pose, phi), strict=True))
+
+    def parts(self, phi: float) -> list[FloatArray]:
+        """What there is of every panel at angle ``phi``, row by row: list of (P, 2) float, world."""
+        nodes = self.nodes(phi)
+        parts = list(self.panels(nodes))
+        for row, part in self.kept(nodes, phi).items():
+            parts[row] = part
+        return parts
+
+    def removed(self, nodes: FloatArray, phi: float) -> list[FloatArray]:
+        """What trimming cut off: list of (P, 2), out of :meth:`nodes`."""
+        return [] if self.trim is None else _trimmed_parts(self).removed.at(nodes, self.pose, phi)
+
+    def outline(self, nodes: FloatArray, phi: float) -> FloatArray:
+        """Boundary polygon (L, 2) out of :meth:`nodes`, before anything was cut off."""
+        tables = self.deployment.topology
+        zipped = phi < 1e-9
+        boundary: FloatArray = nodes[tables.outline_at_zero if zipped else tables.outline_nodes]
+        return boundary
+
+    def to_world(self, place: tuple[float, float], phi: float) -> FloatArray:
+        """Map one place of the layout frame at ``phi`` to the world: (2,)."""
+        placed = self.pose.apply(self.deployment.nodes(phi)).mean(axis=0)
+        moved: FloatArray = self.pose.apply(np.asarray(place)) + (self._middle() - placed)
+        return moved
+
+    def to_layout(self, place: tuple[float, float], phi: float) -> FloatArray:
+        """Map one place of the world to the layout frame at ``phi``: (2,), the way back of :meth:`to_world`."""
+        placed = self.pose.apply(self.deployment.nodes(phi)).mean(axis=0)
+        back: FloatArray = self.pose.inverse().apply(np.asarray(place) - (self._middle() - placed))
+        return back
+
+    def extent(self) -> FloatArray:
+        """Lower left and upper right corner of the box around the whole motion from pi to 0: (2, 2) float, world."""
+        clouds = [self.nodes(float(phi)) for phi in np.linspace(math.pi, 0.0, EXTENT_SAMPLES)]
+        lowest = np.min([cloud.min(axis=0) for cloud in clouds], axis=0)
+        highest = np.max([cloud.max(axis=0) for cloud in clouds], axis=0)
+        return np.stack([lowest, highest])
+
+
+@lru_cache(maxsize=512)
+def _placed_middle(design: PosedDesign) -> FloatArray:
+    middle: FloatArray = design.pose.apply(design.deployment.nodes(design.phi_target)).mean(axis=0)
+    return middle
+
+
+@lru_cache(maxsize=256)
+def _trimmed_parts(design: PosedDesign) -> TrimmedParts:
+    if design.trim is None:
+        raise ValueError("A design that is not trimmed has no trimmed parts.")
+    return TrimmedParts.of(design.deployment, design.trim)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Rings:
+    """Polygons that each move with one panel.
+
+    Attributes
+    ----------
+    panel : (R,) int
+        Number of the panel, row by row.
+    anchor : (R,) int
+        Its top node.
+    even : (R,) bool
+        Panels with I + J even turn by -a while the sheet opens, the others by +a.
+    ends : (R,) int
+        Where each ring ends in ``offsets``.
+    offsets : (P,) complex, unit cells
+        Vertices seen from the anchor, in the compact sheet.
+    """
+
+    panel: IntArray
+    anchor: IntArray
+    even: BoolArray
+    ends: IntArray
+    offsets: ComplexArray
+
+    @classmethod
+    def of(cls, deployment: Deployment, numbered: list[tuple[int, FloatArray]]) -> Rings:
+        """Rings (P, 2) in the compact sheet with the number of the panel that each moves with."""
+        panel = np.array([number for number, _ in numbered], dtype=np.int64)
+        line, place = np.divmod(panel, deployment.field.columns + 1)
+        anchor = deployment.topology.panel_nodes.reshape(-1, 4)[panel, 0]
+        lengths = np.array([len(ring) for _, ring in numbered], dtype=np.int64)
+        points = np.concatenate([ring for _, ring in numbered]) if numbered else np.zeros((0, 2))
+        offsets = as_plane(points) - np.repeat(as_plane(deployment.compact)[anchor], lengths)
+        return cls(panel, anchor, (line + place) % 2 == 0, np.cumsum(lengths), offsets)
+
+    def at(self, nodes: FloatArray, pose: Similarity, phi: float) -> list[FloatArray]:
+        """The rings (P, 2) in the world, where ``nodes`` (N, 2) are the sheet's at ``phi`` in a pose."""
+        half = 0.5 * (math.pi - phi)
+        turn = pose.factor * np.exp(1j * np.where(self.even, -half, half))
+        lengths = np.diff(self.ends, prepend=0)
+        points = self.offsets * np.repeat(turn, lengths) + np.repeat(as_plane(nodes)[self.anchor], lengths)
+        return np.split(as_points(points), self.ends[:-1]) if len(lengths) else []
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class TrimmedParts:
+    """Both sides of a trim: ``kept`` has one ring for each trimmed panel, ``removed`` one for each piece."""
+
+    kept: Rings
+    removed: Rings
+
+    @classmethod
+    def of(cls, deployment: Deployment, trim: Trim) -> TrimmedParts:
+        """Divide the panels of a trimmed design."""
+        corners = deployment.compact[deployment.topology.panel_nodes.reshape(-1, 4)]
+        kept = [(number, part) for number, part in enumerate(trim.kept) if part is not None]
+        removed = []
+        for number, part in kept:
+            rest = shapely.difference(shapely.Polygon(corners[number]), shapely.Polygon(part), grid_size=GRID)
+            pieces = [piece for piece in shapely.get_parts(rest) if piece.area > 0.0]
+            removed += [(number, shapely.get_coordinates(piece.exterior)[:-1]) for piece in pieces]
+        return cls(Rings.of(deployment, kept), Rings.of(deployment, removed))
