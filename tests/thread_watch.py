@@ -1,4 +1,4 @@
-"""How long a user-interface thread is held up, with what the machine took for others left out.
+"""How long a UI freeze lasts, with what the machine took for others left out.
 
 A person waits when the window does not take events.  A timer of 5 ms in the watched thread notes when it fires; the
 time between two firings is one turn of the event loop.  A turn can be long for three reasons:
@@ -7,10 +7,10 @@ time between two firings is one turn of the event loop.  A turn can be long for 
 2. it slept, nearly always because another thread of the program held the interpreter's lock;
 3. the machine gave the processor to somebody else, to this thread's loss or to that of the thread that holds the lock.
 
-The first two are the program's doing and count as *held up*.  The third is the neighbours' and does not: Linux counts
+The first two are the program's doing and count as a *freeze*.  The third is the neighbours' and does not: Linux counts
 for every thread how long it was ready to run but did not (``schedstat``), and that is taken off: the watched thread's
 own loss, and of the time in which it slept the largest loss of another thread, for which it may have waited.  Where
-there is no such count, all of the time is held up.  A turn is never held up for less than the thread computed in it.
+there is no such count, all of the time counts.  A turn never freezes the UI for less than the thread computed in it.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ class Turn:
 
     wall: float = 0.0
     own: float = 0.0  #: processor time of the thread itself
-    held_up: float = 0.0
+    frozen: float = 0.0
 
 
 class ThreadWatch(QObject):
@@ -60,7 +60,7 @@ class ThreadWatch(QObject):
         self._now = self._clocks()
 
     def end(self) -> Turn:
-        """Return the turn in which the thread was held up longest."""
+        """Return the turn in which the thread was frozen longest."""
         self._turn()
         return self._worst
 
@@ -76,9 +76,9 @@ class ThreadWatch(QObject):
         wall, own = self._now[0] - wall, self._now[1] - own
         losses = {thread: delay - waited.get(thread, delay) for thread, delay in self._now[2].items()}
         slept = max(0.0, wall - own - losses.pop(self._thread, 0.0))
-        held_up = own + slept - min(slept, max(losses.values(), default=0.0))
-        if held_up > self._worst.held_up:
-            self._worst = Turn(wall, own, held_up)
+        frozen = own + slept - min(slept, max(losses.values(), default=0.0))
+        if frozen > self._worst.frozen:
+            self._worst = Turn(wall, own, frozen)
 
     def _clocks(self) -> tuple[float, float, dict[int, float]]:
         now = time.perf_counter()

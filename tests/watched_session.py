@@ -1,6 +1,6 @@
 """One session through the real window in a process of its own, with the user-interface thread watched at every step.
 
-``python tests/watched_session.py FOLDER`` prints one JSON object: step -> [wall, own, held up] in seconds, the longest
+``python tests/watched_session.py FOLDER`` prints one JSON object: step -> [wall, own, frozen] in seconds, the longest
 turn of the event loop in it.  ``--block SECONDS`` plays only steps that are known to hold the thread up.  Another
 session with other steps is in ``watched_tools.py``.
 """
@@ -140,7 +140,7 @@ class WatchedSession:
         self.until(lambda: bool(acted) and (happened is bool or happened()))
         self.let_live(self.rest)
         turn = self.watch.end()
-        self.longest[name] = (turn.wall, turn.own, turn.held_up)
+        self.longest[name] = (turn.wall, turn.own, turn.frozen)
 
     def until(self, happened: Callable[[], bool]) -> None:
         """Let the window live until something has happened."""
