@@ -12,7 +12,7 @@ export PIP_DISABLE_PIP_VERSION_CHECK := 1
 QUICK_TESTS := tests/architecture tests/property $(wildcard $(addprefix tests/unit/,foundation lattice evaluate fabricate project)) \
   --ignore=tests/unit/evaluate/test_siou.py
 
-.PHONY: help setup run test quick lint bench consumers demo states messages clean
+.PHONY: help setup run test quick lint bench consumers demo states pictures messages clean
 .DEFAULT_GOAL := help
 
 help:
@@ -25,6 +25,7 @@ help:
 	@echo "make consumers  let MeerK40t, in an environment of its own, plan our cut files"
 	@echo "make demo    design a heart on the command line into out/heart"
 	@echo "make states  pictures of every state of the window into out/states, at 200 % into out/states-200"
+	@echo "make pictures  the pictures of the README, from the real program"
 	@echo "make messages  collect the sentences for translators in resources/locale"
 	@echo "make clean   remove what the other targets made, .venv excepted"
 
@@ -80,6 +81,11 @@ demo: setup
 states: setup
 	QT_QPA_PLATFORM=offscreen $(BIN)/python -m kirigami_studio.demonstrations.state_sheet --out out/states
 	QT_QPA_PLATFORM=offscreen $(BIN)/python -m kirigami_studio.demonstrations.state_sheet --out out/states-200 --scale 2
+
+pictures: setup
+	QT_QPA_PLATFORM=offscreen $(BIN)/python -m kirigami_studio.demonstrations.offscreen_session --out out/pictures
+	cp out/pictures/4-designs.png docs/pictures/window.png
+	$(BIN)/kirigami-studio animate resources/examples/heart.kiri --out docs/pictures/heart.gif
 
 # What translators start from: every sentence of the program, without places, so that it changes with the words alone.
 messages: setup

@@ -196,7 +196,7 @@ def message_for(error: BaseException) -> Message:
     return Message(sentence, Tone.ERROR, details)
 
 
-#: Rest (ms) after which an import disturbs nobody: a reader's or a thinker's pause, longer than that between two gestures.
+#: Rest (ms) after which an import disturbs nobody: longer than the pause between two gestures.
 REST_MS = 2500
 TOUCHES = frozenset(
     {

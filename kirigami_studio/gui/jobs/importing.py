@@ -2,7 +2,7 @@
 
 Python code gives the interpreter's lock away every few milliseconds; three things do not, and each is a freeze: mapping
 a large library, a collection of garbage among hundreds of thousands of objects that imports have made, and the
-collections that come later and look at all of them again.  Measured with ``tests/performance/test_ui_freeze.py``: 315 ms
+collections that come later and look at all of them again.  ``tests/performance/test_ui_freeze.py`` measured 315 ms
 while the generator was loaded and 170 to 200 ms in later collections, without what is done here.
 
 Each room is imported once: what is garbage at that moment is never collected, so this must not be done at every job.
