@@ -13,19 +13,17 @@ from kirigami_studio.cli.console import ProgressLine, plain, print_json, say
 from kirigami_studio.cli.fabrication import checked_plan, material_settings
 from kirigami_studio.cli.inputs import are_many_targets, parse_grid, read_targets
 from kirigami_studio.evaluate.candidate import Candidate
-from kirigami_studio.evaluate.trimming import KEEP, LARGEST_KEEP
+from kirigami_studio.evaluate.trimming import KEEP
 from kirigami_studio.export.exporter import ExportJob
 from kirigami_studio.export.png import write_png
 from kirigami_studio.export.registry import export
 from kirigami_studio.export.svg import write_layout_svg
-from kirigami_studio.fabricate.trimmed_sheet import needed_keep
 from kirigami_studio.foundation.errors import Cancelled, FabricationError
 from kirigami_studio.foundation.files import check_folder, write_atomically
-from kirigami_studio.lattice.deployment import deploy
-from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.pipeline.events import Finished, Progress, Result
 from kirigami_studio.pipeline.provenance import provenance
+from kirigami_studio.pipeline.redesign import keep_for_connectors
 from kirigami_studio.pipeline.request import POLISH_STEPS, Request
 from kirigami_studio.pipeline.run import run
 from kirigami_studio.project.candidate_edits import format_run
@@ -174,17 +172,8 @@ def _in_cells(length_mm: float, fabrication: FabricationSettings, grid: tuple[in
 
 def _keep(fabrication: FabricationSettings, grid: tuple[int, int]) -> float:
     """How deep (unit cells) material has to stay at the hinges of a trimmed sheet so that its connectors hold."""
-    material = material_for(fabrication)
-    connector = material.connector_mm if fabrication.connector_mm is None else fabrication.connector_mm
-    kerf = material.kerf_mm if fabrication.kerf_mm is None else fabrication.kerf_mm
-    needed = needed_keep(deploy(RatioField.uniform(*grid)), fabrication.width_mm, connector, kerf)
-    if needed > LARGEST_KEEP:
-        least = fabrication.width_mm * needed / LARGEST_KEEP
-        raise FabricationError(
-            f"Connectors of {connector:g} mm leave no room for trimming; make the sheet at least {least:.0f} mm wide, "
-            f"the connectors narrower, or leave --trim out."
-        )
-    return max(KEEP, needed)
+    material, numbers = material_for(fabrication), (fabrication.connector_mm, fabrication.kerf_mm)
+    return keep_for_connectors(grid, material, fabrication.width_mm, *numbers)
 
 
 def _folder_name(name: str, used: set[str]) -> str:

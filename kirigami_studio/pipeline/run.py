@@ -25,7 +25,7 @@ from kirigami_studio.pipeline.events import (
 from kirigami_studio.pipeline.pool import Pool, shared_pool
 from kirigami_studio.pipeline.rank import ranked
 from kirigami_studio.pipeline.request import Request
-from kirigami_studio.pipeline.tasks import Answer, Finish, Polish, Search, Task, carry_out, scored
+from kirigami_studio.pipeline.tasks import Answer, PolishTask, SearchTask, Task, TrimTask, carry_out, scored
 from kirigami_studio.pipeline.variety import worth_a_fit
 
 
@@ -257,16 +257,16 @@ class _Work:
         rounds = 2 if self.request.polish >= 2 * FIRST_ROUND else 1
         for number in range(rounds):
             steps = self.request.polish if rounds == 1 else FIRST_ROUND
-            tasks = [Polish(candidate, steps) for candidate in chosen] if number == 0 else self._rest(chosen)
+            tasks = [PolishTask(candidate, steps) for candidate in chosen] if number == 0 else self._rest(chosen)
             yield from self._polished(tasks, number * len(chosen), rounds * len(chosen))
 
-    def _rest(self, chosen: Sequence[Candidate]) -> list[Polish]:
+    def _rest(self, chosen: Sequence[Candidate]) -> list[PolishTask]:
         """The second round: what the first has improved gets the steps that are left, the others all of them."""
         now = ranked(self.found[candidate.index] for candidate in chosen)
         left = self.request.polish - FIRST_ROUND
-        return [Polish(candidate, left if candidate.polished else self.request.polish) for candidate in now]
+        return [PolishTask(candidate, left if candidate.polished else self.request.polish) for candidate in now]
 
-    def _polished(self, tasks: Sequence[Polish], done: int, total: int) -> Iterator[Event]:
+    def _polished(self, tasks: Sequence[PolishTask], done: int, total: int) -> Iterator[Event]:
         for report in self._carried_out(tasks, "polishing", done, total):
             if isinstance(report, Progress):
                 yield report
@@ -281,7 +281,7 @@ class _Work:
     def search(self) -> Iterator[Event]:
         """Look for a better design from the best that differ and from scratch."""
         starts = tuple(candidate.field for candidate in worth_a_fit(self.found)[:SEARCH_STARTS])
-        for report in self._carried_out([Search(self.request.k, starts)], "searching", 0, 1):
+        for report in self._carried_out([SearchTask(self.request.k, starts)], "searching", 0, 1):
             if isinstance(report, Progress):
                 yield report
             elif report[1].candidate is not None:
@@ -291,7 +291,7 @@ class _Work:
     def trim(self) -> Iterator[Event]:
         """Trim the best that differ."""
         chosen = worth_a_fit(self.found)[:TRIMMED]
-        for report in self._carried_out([Finish(candidate) for candidate in chosen], "trimming", 0, len(chosen)):
+        for report in self._carried_out([TrimTask(candidate) for candidate in chosen], "trimming", 0, len(chosen)):
             if isinstance(report, Progress):
                 yield report
             elif report[1].candidate is not None:

@@ -7,25 +7,20 @@ from dataclasses import dataclass, replace
 
 from kirigami_studio.evaluate.candidate import Candidate, Origin
 from kirigami_studio.evaluate.score import evaluate_many
-from kirigami_studio.evaluate.trimming import KEEP
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
-from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.pipeline.rank import MILDER, improves
+from kirigami_studio.pipeline.redesign import trimmed
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.pipeline.threads import one_blas_thread
 from kirigami_studio.polish.continuation import fit_shape
-from kirigami_studio.polish.covering import fit_cover
 from kirigami_studio.polish.levenberg import polish
 from kirigami_studio.polish.regularity import PREFERENCES
 
-#: Steps of the fit before trimming.
-COVER_STEPS = 12
-
 
 @dataclass(frozen=True, slots=True)
-class Polish:
+class PolishTask:
     """Fit a candidate on the exact geometry, from where it is, by at most ``steps`` steps."""
 
     candidate: Candidate
@@ -33,7 +28,7 @@ class Polish:
 
 
 @dataclass(frozen=True, slots=True)
-class Search:
+class SearchTask:
     """Look for a better design than all samples; the one found gets the number ``index``."""
 
     index: int
@@ -41,13 +36,13 @@ class Search:
 
 
 @dataclass(frozen=True, slots=True)
-class Finish:
+class TrimTask:
     """Fit a candidate once more so that it covers the target, and trim its edge panels."""
 
     candidate: Candidate
 
 
-Task = Polish | Search | Finish
+Task = PolishTask | SearchTask | TrimTask
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,14 +63,14 @@ class Answer:
 
 def carry_out(request: Request, task: Task, stopped: Callable[[], bool]) -> Answer:
     """Do one task; once ``stopped`` is true the best so far is the answer, within one step of the fit."""
-    if isinstance(task, Polish):
+    if isinstance(task, PolishTask):
         return _polished(request, task, stopped)
-    if isinstance(task, Finish):
-        return trimmed(request.target, task.candidate, stopped, request.keep)
+    if isinstance(task, TrimTask):
+        return _trimmed(request, task, stopped)
     return _searched(request, task, stopped)
 
 
-def _polished(request: Request, task: Polish, stopped: Callable[[], bool]) -> Answer:
+def _polished(request: Request, task: PolishTask, stopped: Callable[[], bool]) -> Answer:
     candidate, evaluations = task.candidate, 0
     prefer: str | None = request.prefer
     while prefer is not None:
@@ -98,7 +93,7 @@ def _polished(request: Request, task: Polish, stopped: Callable[[], bool]) -> An
     return Answer(None, evaluations)
 
 
-def _searched(request: Request, task: Search, stopped: Callable[[], bool]) -> Answer:
+def _searched(request: Request, task: SearchTask, stopped: Callable[[], bool]) -> Answer:
     with one_blas_thread():
         fits = fit_shape(
             request.target,
@@ -114,17 +109,12 @@ def _searched(request: Request, task: Search, stopped: Callable[[], bool]) -> An
     return Answer(found, fits[0].evaluations + 1)
 
 
-def trimmed(
-    target: Outline, candidate: Candidate, stopped: Callable[[], bool] = lambda: False, keep: float = KEEP
-) -> Answer:
-    """The candidate with its trim: another field in another pose, beside its own; None where it cannot be trimmed."""
-    score = candidate.score
+def _trimmed(request: Request, task: TrimTask, stopped: Callable[[], bool]) -> Answer:
     try:
-        with one_blas_thread():
-            cover = fit_cover(candidate.field, target, score.phi, COVER_STEPS, score.transform, keep, stopped)
-    except KirigamiError:  # stopped, or it crosses itself
+        made = trimmed(task.candidate, request.target, request.keep, stopped)
+    except KirigamiError:  # it crosses itself
         return Answer(None, 1)
-    return Answer(replace(candidate, trim=cover.trim), cover.fit.evaluations + 1)
+    return Answer(made.candidate, made.evaluations)
 
 
 def scored(

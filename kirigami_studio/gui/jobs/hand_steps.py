@@ -3,23 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+from functools import partial
 
-import numpy as np
-
-from kirigami_studio.evaluate.candidate import Candidate, Origin
-from kirigami_studio.foundation.errors import Cancelled, KirigamiError
-from kirigami_studio.foundation.words import tr
+from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.gui.jobs.queue import Cancel
-from kirigami_studio.gui.jobs.steps import Decoded, trimming
-from kirigami_studio.lattice.deployment import deploy
+from kirigami_studio.gui.jobs.steps import Decoded, decoded, keep_for
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.document import Void
 from kirigami_studio.project.settings import FabricationSettings
-
-#: Accepted steps of one fit that a person asks for; most end before that because nothing more is gained.
-REFIT_STEPS = 20
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,16 +35,10 @@ class Refitted:
 
 
 def scoring(candidate: Candidate, field: RatioField, target: Outline, cancel: Cancel) -> Iterator[Decoded]:
-    """Score a candidate with another field, changed by hand; a trim belonged to the old one and goes."""
-    from kirigami_studio.evaluate.score import evaluate_near
-    from kirigami_studio.pipeline.threads import one_blas_thread
+    """Score a candidate with another field, changed by hand."""
+    from kirigami_studio.pipeline.redesign import rescored
 
-    deployment = deploy(field)
-    pose = candidate.final_pose
-    with one_blas_thread():
-        score = evaluate_near(deployment, target, candidate.score.phi, pose)
-    changed = replace(candidate, field=field, score=score, polished=False, trim=None, origin=Origin.EDITED)
-    yield Decoded(changed, deployment)
+    yield decoded(rescored(candidate, field, target))
 
 
 def refitting(
@@ -62,38 +49,9 @@ def refitting(
     settings: FabricationSettings,
     cancel: Cancel,
 ) -> Iterator[Refitted]:
-    """Fit a candidate on the exact geometry from its present field; locked voids keep the ratios that are seen.
+    """Fit a candidate on the exact geometry from its present field, and trim it again if it is trimmed."""
+    from kirigami_studio.pipeline.redesign import refitted
 
-    A candidate that is trimmed is trimmed again.
-    """
-    from kirigami_studio.evaluate.score import evaluate_near
-    from kirigami_studio.pipeline.rank import improves
-    from kirigami_studio.pipeline.threads import one_blas_thread
-    from kirigami_studio.polish.levenberg import polish
-    from kirigami_studio.polish.regularity import PREFERENCES
-
-    table = np.zeros(candidate.field.ratio.shape, dtype=np.bool_)
-    for void in locked:
-        table[void] = True
-    held = table if table.any() else None
-    start = RatioField(np.where(table, candidate.final_field.ratio, candidate.field.ratio))
-    score, stopped = candidate.score, Cancelled(tr("Fitting was stopped; nothing was changed."))
-    with one_blas_thread():
-        preference = PREFERENCES[prefer]
-        fit = polish(start, target, score.phi, REFIT_STEPS, preference, score.transform, cancel, held=held)
-        if cancel():
-            raise stopped
-        deployment = deploy(fit.field)
-        found = evaluate_near(deployment, target, score.phi, fit.pose)
-    drawn = candidate.sampled_field or candidate.field
-    fitted = replace(candidate, field=fit.field, score=found, polished=True, sampled_field=drawn, trim=None)
-    better = improves(fitted, candidate, prefer)
-    made, refused = Decoded(fitted, deployment), ""
-    if candidate.trim is not None:
-        try:
-            (made,) = trimming(fitted, target, settings, cancel, held)
-        except Cancelled:
-            raise stopped from None
-        except KirigamiError as error:
-            refused = str(error)
-    yield Refitted(made, better, refused)
+    refit = refitted(candidate, target, prefer, locked, partial(keep_for, candidate, settings), cancel)
+    untrimmed = "" if refit.trim_problem is None else str(refit.trim_problem)
+    yield Refitted(decoded(refit.candidate), refit.better, untrimmed)

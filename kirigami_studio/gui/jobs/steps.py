@@ -6,15 +6,12 @@ import then happens in the worker, after the window is shown.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from kirigami_studio.evaluate.candidate import Candidate
-from kirigami_studio.evaluate.trimming import KEEP, LARGEST_KEEP
-from kirigami_studio.foundation.arrays import BoolArray
 from kirigami_studio.foundation.errors import Cancelled, ExportError, UsageError
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.file_kinds import kind_of
@@ -147,70 +144,46 @@ def generating(request: Request, cancel: Cancel) -> Iterator[Event | ModelFound 
     for event in run(request, cancel):
         yield event
         if isinstance(event, CandidateFound | CandidateImproved):
-            yield Decoded(event.candidate, deploy(event.candidate.final_field))
+            yield decoded(event.candidate)
 
 
 def decoding(candidates: tuple[Candidate, ...], cancel: Cancel) -> Iterator[Decoded]:
     """Decode the candidates of an opened project."""
     for candidate in candidates:
-        yield Decoded(candidate, deploy(candidate.final_field))
+        yield decoded(candidate)
+
+
+def decoded(candidate: Candidate) -> Decoded:
+    """A candidate with the motion of its final field."""
+    return Decoded(candidate, deploy(candidate.final_field))
 
 
 def comparing(candidate: Candidate, target: Outline, cancel: Cancel) -> Iterator[Decoded]:
-    """Score a candidate as the generator drew it, in the pose that suits it best."""
-    from kirigami_studio.evaluate.score import evaluate
-    from kirigami_studio.pipeline.threads import one_blas_thread
+    """Score a candidate as the generator sampled it, in the pose that suits it best."""
+    from kirigami_studio.pipeline.redesign import sampled
 
-    if candidate.sampled_field is None:
-        return
-    deployment = deploy(candidate.sampled_field)
-    with one_blas_thread():
-        score = evaluate(deployment, target, candidate.score.phi)
-    drawn = replace(
-        candidate, field=candidate.sampled_field, score=score, polished=False, sampled_field=None, trim=None
-    )
-    yield Decoded(drawn, deployment)
+    before = sampled(candidate, target)
+    if before is not None:
+        yield decoded(before)
 
 
-def trimming(
-    candidate: Candidate,
-    target: Outline,
-    settings: FabricationSettings,
-    cancel: Cancel,
-    held: BoolArray | None = None,
-) -> Iterator[Decoded]:
-    """Fit a candidate so that it covers the target, and trim it, with room for the connectors at its hinges.
+def trimming(candidate: Candidate, target: Outline, settings: FabricationSettings, cancel: Cancel) -> Iterator[Decoded]:
+    """Fit a candidate so that it covers the target, and trim it, with room for the connectors at its hinges."""
+    from kirigami_studio.pipeline.redesign import trimmed
 
-    Voids that are ``held``, (m, n) bool, keep their ratios.
-    """
-    from kirigami_studio.fabricate.trimmed_sheet import needed_keep
-    from kirigami_studio.pipeline.tasks import COVER_STEPS
-    from kirigami_studio.pipeline.threads import one_blas_thread
-    from kirigami_studio.polish.covering import fit_cover
+    found = trimmed(candidate, target, keep_for(candidate, settings), cancel)
+    if cancel():
+        raise Cancelled("trim.stopped")
+    yield decoded(found.candidate)
+
+
+def keep_for(candidate: Candidate, settings: FabricationSettings) -> float:
+    """Depth (unit cells) of the material that trimming has to leave at the hinges of a candidate."""
+    from kirigami_studio.pipeline.redesign import keep_for_connectors
     from kirigami_studio.project.material_record import material_for
 
-    material, score = material_for(settings), candidate.score
-    connector = material.connector_mm if settings.connector_mm is None else settings.connector_mm
-    kerf = material.kerf_mm if settings.kerf_mm is None else settings.kerf_mm
-    needed = needed_keep(deploy(candidate.field), settings.width_mm, connector, kerf)
-    if needed > LARGEST_KEEP:
-        least = settings.width_mm * needed / LARGEST_KEEP
-        raise UsageError(
-            tr(
-                "Connectors of {connector:g} mm leave nothing to trim on a sheet {width_mm:g} mm "
-                "wide; make the sheet at least {ceil} mm wide or the connectors narrower, then trim "
-                "again.",
-                connector=connector,
-                width_mm=settings.width_mm,
-                ceil=math.ceil(least),
-            )
-        )
-    with one_blas_thread():
-        keep = max(KEEP, needed)
-        cover = fit_cover(candidate.field, target, score.phi, COVER_STEPS, score.transform, keep, cancel, held)
-    if cancel():
-        raise Cancelled(tr("Trimming was stopped; nothing was changed."))
-    yield Decoded(replace(candidate, trim=cover.trim), deploy(cover.trim.field))
+    grid, material = (candidate.field.rows, candidate.field.columns), material_for(settings)
+    return keep_for_connectors(grid, material, settings.width_mm, settings.connector_mm, settings.kerf_mm)
 
 
 def reading_target(source: str, cancel: Cancel) -> Iterator[Picture | Outline]:

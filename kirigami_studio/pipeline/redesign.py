@@ -1,0 +1,210 @@
+"""What is done with one design after it was found: score it with other ratios, trim it, fit it again.
+
+Every function takes a candidate and returns a new one; window, command line and worker processes all call these.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Collection
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from kirigami_studio.evaluate.candidate import Candidate, Origin
+from kirigami_studio.evaluate.score import evaluate, evaluate_near
+from kirigami_studio.evaluate.trimming import KEEP, LARGEST_KEEP
+from kirigami_studio.fabricate.material import Material
+from kirigami_studio.fabricate.trimmed_sheet import needed_keep
+from kirigami_studio.foundation.arrays import BoolArray
+from kirigami_studio.foundation.errors import Cancelled, FabricationError, KirigamiError
+from kirigami_studio.lattice.deployment import deploy
+from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.pipeline.rank import improves
+from kirigami_studio.pipeline.threads import one_blas_thread
+from kirigami_studio.polish.covering import fit_cover
+from kirigami_studio.polish.levenberg import polish
+from kirigami_studio.polish.regularity import PREFERENCES
+
+#: Steps of the fit before trimming.
+COVER_STEPS = 12
+
+#: Accepted steps of one fit that a person asks for; most end before that because nothing more is gained.
+REFIT_STEPS = 20
+
+
+@dataclass(frozen=True, slots=True)
+class Trimmed:
+    """What trimming has made of a candidate.
+
+    Attributes
+    ----------
+    candidate : Candidate
+        With its trim: another field in another pose, beside its own.
+    evaluations : int
+        Layouts decoded on the way.
+    """
+
+    candidate: Candidate
+    evaluations: int
+
+
+@dataclass(frozen=True, slots=True)
+class Refit:
+    """What a fit from a design's present field has found.
+
+    Attributes
+    ----------
+    candidate : Candidate
+        The fitted design, trimmed if the one it began with was.
+    better : bool
+        Whether it ranks before the one it began with, both untrimmed.
+    trim_problem : KirigamiError or None
+        Why it could not be trimmed again, None if that was not to be done or was.
+    """
+
+    candidate: Candidate
+    better: bool
+    trim_problem: KirigamiError | None = None
+
+
+def sampled(candidate: Candidate, target: Outline) -> Candidate | None:
+    """The candidate as the generator sampled it, in the pose that suits it best; None where no fit has changed it."""
+    field = candidate.sampled_field
+    if field is None:
+        return None
+    with one_blas_thread():
+        score = evaluate(deploy(field), target, candidate.score.phi)
+    return replace(candidate, field=field, score=score, polished=False, sampled_field=None, trim=None)
+
+
+def rescored(candidate: Candidate, field: RatioField, target: Outline) -> Candidate:
+    """The candidate with another field, changed by hand, near its present pose; a trim belonged to the old field."""
+    with one_blas_thread():
+        score = evaluate_near(deploy(field), target, candidate.score.phi, candidate.final_pose)
+    return replace(candidate, field=field, score=score, polished=False, trim=None, origin=Origin.EDITED)
+
+
+def keep_for_connectors(
+    grid: tuple[int, int], material: Material, width_mm: float, connector_mm: float | None, kerf_mm: float | None
+) -> float:
+    """How deep material has to stay at the hinges of a trimmed sheet so that its connectors hold.
+
+    Parameters
+    ----------
+    grid : (rows, columns)
+    material : Material
+    width_mm : float
+        Width of the flat sheet.
+    connector_mm, kerf_mm : float or None
+        Widths of connectors and of the cut; None for the material's own.
+
+    Returns
+    -------
+    float, unit cells
+
+    Raises
+    ------
+    FabricationError
+        The connectors need more than any trim can leave.
+    """
+    connector = material.connector_mm if connector_mm is None else connector_mm
+    kerf = material.kerf_mm if kerf_mm is None else kerf_mm
+    needed = needed_keep(deploy(RatioField.uniform(*grid)), width_mm, connector, kerf)
+    if needed > LARGEST_KEEP:
+        raise FabricationError(
+            "trim.connectors_too_wide",
+            connector_mm=connector,
+            width_mm=width_mm,
+            least_mm=math.ceil(width_mm * needed / LARGEST_KEEP),
+        )
+    return max(KEEP, needed)
+
+
+def trimmed(
+    candidate: Candidate,
+    target: Outline,
+    keep: float,
+    cancel: Callable[[], bool],
+    locked: BoolArray | None = None,
+) -> Trimmed:
+    """Fit a candidate so that it covers the target, and trim its edge panels.
+
+    Parameters
+    ----------
+    candidate : Candidate
+    target : Outline
+    keep : float, unit cells
+        Depth of the material that stays at every hinge, see :func:`keep_for_connectors`.
+    cancel : callable
+        Asked before every step; the best so far is returned.
+    locked : (m, n) bool, optional
+        Voids that keep their ratios.
+
+    Raises
+    ------
+    KirigamiError
+        The candidate's outline crosses itself.
+    """
+    score = candidate.score
+    with one_blas_thread():
+        cover = fit_cover(candidate.field, target, score.phi, COVER_STEPS, score.transform, keep, cancel, locked)
+    return Trimmed(replace(candidate, trim=cover.trim), cover.fit.evaluations + 1)
+
+
+def refitted(
+    candidate: Candidate,
+    target: Outline,
+    prefer: str,
+    locked: Collection[tuple[int, int]],
+    keep: Callable[[], float],
+    cancel: Callable[[], bool],
+) -> Refit:
+    """Fit a candidate on the exact geometry from its present field, and trim it again if it is trimmed.
+
+    Parameters
+    ----------
+    candidate : Candidate
+    target : Outline
+    prefer : str
+        A key of :data:`kirigami_studio.polish.regularity.PREFERENCES`.
+    locked : collection of (row, column)
+        Voids that keep the ratios that are seen: those of the trim, if the candidate is trimmed.
+    keep : callable
+        Tells how deep (unit cells) material stays at the hinges; asked only where the candidate is trimmed.  An error
+        it raises is the result's ``trim_problem``.
+    cancel : callable
+        Asked before every step.
+
+    Raises
+    ------
+    Cancelled
+        ``cancel`` returned true.
+    """
+    table = np.zeros(candidate.field.ratio.shape, dtype=np.bool_)
+    for void in locked:
+        table[void] = True
+    kept = table if table.any() else None
+    start = RatioField(np.where(table, candidate.final_field.ratio, candidate.field.ratio))
+    score, preference = candidate.score, PREFERENCES[prefer]
+    with one_blas_thread():
+        fit = polish(start, target, score.phi, REFIT_STEPS, preference, score.transform, cancel, held=kept)
+        _stop_if(cancel)
+        found = evaluate_near(deploy(fit.field), target, score.phi, fit.pose)
+    first = candidate.sampled_field or candidate.field
+    fitted = replace(candidate, field=fit.field, score=found, polished=True, sampled_field=first, trim=None)
+    better = improves(fitted, candidate, prefer)
+    if candidate.trim is None:
+        return Refit(fitted, better)
+    try:
+        again = trimmed(fitted, target, keep(), cancel, kept)
+    except KirigamiError as problem:
+        return Refit(fitted, better, problem)
+    _stop_if(cancel)
+    return Refit(again.candidate, better)
+
+
+def _stop_if(cancel: Callable[[], bool]) -> None:
+    if cancel():
+        raise Cancelled("fit.stopped")

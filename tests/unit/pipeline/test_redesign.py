@@ -1,0 +1,101 @@
+"""What is done with a design after it was found: other ratios, a trim, another fit, its sample again."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from kirigami_studio.evaluate.candidate import Candidate, Origin
+from kirigami_studio.evaluate.score import evaluate
+from kirigami_studio.evaluate.trimming import KEEP
+from kirigami_studio.fabricate.material import find_material
+from kirigami_studio.foundation.errors import Cancelled, FabricationError
+from kirigami_studio.lattice.deployment import deploy
+from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.outlines.silhouettes import load
+from kirigami_studio.pipeline.redesign import keep_for_connectors, refitted, rescored, sampled, trimmed
+
+GRID = (6, 6)
+
+
+def never() -> bool:
+    return False
+
+
+def shallow() -> float:
+    return KEEP
+
+
+@pytest.fixture(scope="module")
+def heart() -> Outline:
+    return load("heart")
+
+
+@pytest.fixture(scope="module")
+def candidate(heart: Outline) -> Candidate:
+    field = RatioField.from_log10(np.random.default_rng(1).uniform(-0.3, 0.3, GRID))
+    return Candidate(field, evaluate(deploy(field), heart), seed=1, index=0)
+
+
+@pytest.fixture(scope="module")
+def trimmed_candidate(candidate: Candidate, heart: Outline) -> Candidate:
+    return trimmed(candidate, heart, KEEP, never).candidate
+
+
+def test_that_a_trim_is_added_beside_the_designs_own_field_and_score(
+    candidate: Candidate, trimmed_candidate: Candidate
+) -> None:
+    assert trimmed_candidate.trim is not None and trimmed_candidate.trim.iou > candidate.score.iou_exact
+    assert replace(trimmed_candidate, trim=None) == candidate
+
+
+def test_that_a_change_by_hand_is_scored_and_loses_the_trim(trimmed_candidate: Candidate, heart: Outline) -> None:
+    field = RatioField(trimmed_candidate.field.ratio * 1.01)
+    changed = rescored(trimmed_candidate, field, heart)
+    assert changed.trim is None and changed.origin is Origin.EDITED and changed.field == field
+    assert changed.score.siou == pytest.approx(evaluate(deploy(field), heart).siou, abs=0.01)
+
+
+def test_that_a_fit_keeps_locked_ratios_exactly_and_remembers_the_sample(candidate: Candidate, heart: Outline) -> None:
+    refit = refitted(candidate, heart, "accuracy", [(0, 1), (2, 2)], shallow, never)
+    for void in ((0, 1), (2, 2)):
+        assert refit.candidate.field.ratio[void] == candidate.field.ratio[void]
+    assert refit.better and refit.candidate.polished and refit.candidate.sampled_field == candidate.field
+    assert refit.candidate.trim is None and refit.trim_problem is None
+
+
+def test_that_a_trimmed_design_is_trimmed_again_after_a_fit(trimmed_candidate: Candidate, heart: Outline) -> None:
+    refit = refitted(trimmed_candidate, heart, "accuracy", [], shallow, never)
+    assert refit.candidate.trim is not None and refit.candidate.trim != trimmed_candidate.trim
+
+
+def test_that_a_fit_whose_trim_is_refused_says_why(trimmed_candidate: Candidate, heart: Outline) -> None:
+    def refuse() -> float:
+        return keep_for_connectors(GRID, find_material("card-co2"), 20.0, 5.0, None)
+
+    refit = refitted(trimmed_candidate, heart, "accuracy", [], refuse, never)
+    assert refit.candidate.trim is None and refit.candidate.polished
+    assert refit.trim_problem is not None and refit.trim_problem.code == "trim.connectors_too_wide"
+
+
+def test_that_a_cancelled_fit_ends_without_a_result(candidate: Candidate, heart: Outline) -> None:
+    with pytest.raises(Cancelled) as caught:
+        refitted(candidate, heart, "accuracy", [], shallow, lambda: True)
+    assert caught.value.code == "fit.stopped"
+
+
+def test_that_the_sample_of_a_fitted_design_is_scored_again(candidate: Candidate, heart: Outline) -> None:
+    fitted = refitted(candidate, heart, "accuracy", [], shallow, never).candidate
+    assert sampled(fitted, heart) == candidate
+    assert sampled(candidate, heart) is None
+
+
+def test_that_wider_connectors_need_deeper_material_and_too_wide_ones_are_refused() -> None:
+    card = find_material("card-co2")
+    assert keep_for_connectors(GRID, card, 1000.0, 0.5, None) == KEEP
+    assert keep_for_connectors(GRID, card, 100.0, 3.0, None) > KEEP
+    with pytest.raises(FabricationError, match=r"Make the sheet at least \d+ mm wide"):
+        keep_for_connectors(GRID, card, 20.0, 5.0, None)
