@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from PIL import Image, ImageDraw
-from PySide6.QtCore import QThread, QTimer
+from PySide6.QtCore import QCoreApplication, QEvent, QThread, QTimer
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
@@ -89,6 +89,8 @@ def window(qtbot: QtBot, files: PathAnswers) -> Iterator[MainWindow]:
     assert not any(thread.isRunning() for thread in made.findChildren(QThread))
     assert [timer for timer in made.findChildren(QTimer) if timer.isActive()] == []
     made.deleteLater()
+    # Outside an event loop nothing is deleted later: the window would live on into the next test and slow it down.
+    QCoreApplication.sendPostedEvents(None, QEvent.Type.DeferredDelete)
     QApplication.processEvents()
 
 

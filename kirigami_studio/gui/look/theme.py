@@ -164,13 +164,15 @@ def style_sheet(palette: Palette) -> str:
 
 
 def apply(application: QApplication, palette: Palette) -> None:
-    """Dress the whole application in one palette."""
-    # A style sheet that is on was put on below, over this very style, whose name it hides; to set the style again would
-    # dress every widget once more.
+    """Style the whole application with one palette."""
+    sheet = style_sheet(palette)
+    if application.styleSheet() == sheet:  # setting it again would polish every widget once more, for nothing
+        return
+    # The style sheet hides the name of the style below it, which was set with the first one.
     if not application.styleSheet() and application.style().objectName() != "fusion":
         application.setStyle("Fusion")
     application.setPalette(_qt_palette(palette))
-    application.setStyleSheet(style_sheet(palette))
+    application.setStyleSheet(sheet)
 
 
 def _qt_palette(palette: Palette) -> QPalette:
