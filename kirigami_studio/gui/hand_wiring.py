@@ -9,7 +9,7 @@ from PySide6.QtWidgets import QMenu
 from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.controller import Controller
-from kirigami_studio.gui.scene.void_facts import VoidFacts
+from kirigami_studio.gui.scene.void_items import VoidFacts
 from kirigami_studio.gui.shell import Shell
 from kirigami_studio.project.document import Document, Void
 

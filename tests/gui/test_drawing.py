@@ -15,8 +15,8 @@ from kirigami_studio.gui.actions import COMMANDS
 from kirigami_studio.gui.look import icons, theme
 from kirigami_studio.gui.look.theme import DARK, LIGHT, PALETTES, Palette, style_sheet
 from kirigami_studio.gui.scene.fault_items import FaultKind, contact_place, faults, inverted_panels
+from kirigami_studio.gui.scene.layout_items import candidate_pixmap
 from kirigami_studio.gui.scene.mismatch_items import mismatch
-from kirigami_studio.gui.scene.thumbnail import candidate_pixmap
 from kirigami_studio.gui.scene.view_transform import Bounds, ViewTransform
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.project.document import Document

@@ -22,9 +22,9 @@ from kirigami_studio.gui.look.theme import DARK, LIGHT, Palette
 from kirigami_studio.gui.main_window import MainWindow
 from kirigami_studio.gui.scene.colour_scale import opening_scale, paint_colour_bars, ratio_scale
 from kirigami_studio.gui.scene.fault_items import FaultKind, crossing_place
+from kirigami_studio.gui.scene.layout_labels import heat_tiles, quad_areas
 from kirigami_studio.gui.scene.legends import Chip, legend_boxes, paint_legend
 from kirigami_studio.gui.scene.mismatch_items import boundary_gap
-from kirigami_studio.gui.scene.void_numbers import heat_tiles, quad_areas
 from kirigami_studio.gui.views.layout_view import USUAL, LayoutView, Overlay
 from kirigami_studio.lattice.deployment import Deployment, deploy, rotate
 from kirigami_studio.project.document import Document
@@ -222,7 +222,7 @@ def test_that_numbers_are_written_only_where_they_fit(qtbot: QtBot, posed: Posed
 
 
 def test_that_no_fault_kind_is_without_words() -> None:
-    from kirigami_studio.gui.views.fault_tour import _words
+    from kirigami_studio.gui.views.layout_view import _words
 
     assert all(_words(kind) for kind in FaultKind)
 

@@ -12,10 +12,8 @@ from PySide6.QtCore import QPoint, QSettings, Qt
 from pytestqt.qtbot import QtBot
 
 from kirigami_studio.gui.main_window import MainWindow
-from kirigami_studio.gui.panels.deployment_bar import DeploymentBar
-from kirigami_studio.gui.panels.play_options import SPEEDS, PlayMode, phase_of, phi_at
-from kirigami_studio.gui.scene.track_items import MarkKind, Stretch, stretches
-from kirigami_studio.gui.views.phi_slider import PhiSlider
+from kirigami_studio.gui.panels.deployment_bar import SPEEDS, DeploymentBar, PlayMode, phase_of, phi_at
+from kirigami_studio.gui.views.phi_slider import MarkKind, PhiSlider, Stretch, stretches
 
 LEFT = Qt.MouseButton.LeftButton
 Until = Callable[[Callable[[], bool]], None]

@@ -14,7 +14,7 @@ from pytestqt.qtbot import QtBot
 
 from kirigami_studio.gui.look.theme import DARK, LIGHT
 from kirigami_studio.gui.main_window import MainWindow
-from kirigami_studio.gui.panels.play_options import phase_of, phi_at
+from kirigami_studio.gui.panels.deployment_bar import phase_of, phi_at
 from kirigami_studio.gui.views.layout_view import Overlay
 
 Until = Callable[[Callable[[], bool]], None]

@@ -8,7 +8,7 @@ from PySide6.QtWidgets import QFrame, QLabel, QLineEdit, QListView, QListWidget,
 
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.look.theme import Palette
-from kirigami_studio.gui.scene.thumbnail import target_pixmap
+from kirigami_studio.gui.scene.layout_items import target_pixmap
 from kirigami_studio.outlines import silhouettes
 
 PICTURE = QSize(64, 64)

@@ -1,86 +1,42 @@
-"""The second view of the stage: the cuts as they will burn, what is wrong with them, and their connectors."""
+"""The second page of the stage: the cut plan with its problems and connectors, and the job played cut by cut."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QSignalBlocker, QSize, Qt, Signal
-from PySide6.QtWidgets import QListWidget, QListWidgetItem, QToolButton, QVBoxLayout, QWidget
+from PySide6.QtCore import QElapsedTimer, QSignalBlocker, QSize, Qt, QTimer, Signal
+from PySide6.QtWidgets import (
+    QHBoxLayout,
+    QLabel,
+    QListWidget,
+    QListWidgetItem,
+    QSlider,
+    QToolButton,
+    QVBoxLayout,
+    QWidget,
+)
 
 from kirigami_studio.fabricate.findings import Problem, Severity
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.look import icons
-from kirigami_studio.gui.look.readable import readable_size
+from kirigami_studio.gui.look.readable import readable_length, readable_size, readable_time
 from kirigami_studio.gui.look.theme import LIGHT, Palette
 from kirigami_studio.gui.panels.card import tool_button
-from kirigami_studio.gui.panels.cut_bar import CutBar
 from kirigami_studio.gui.panels.hinge_bar import HingeBar
-from kirigami_studio.gui.scene.cut_items import cut_steps
+from kirigami_studio.gui.scene.cut_items import CutSteps, cut_steps
 from kirigami_studio.gui.views.cut_view import CutOverlay, CutView
 
 if TYPE_CHECKING:
     from kirigami_studio.fabricate.cut_plan import CutPlan
     from kirigami_studio.gui.jobs.steps import Planned
 
+#: Seconds in which a whole job is played, however long it takes to cut.
+PLAY_SECONDS = 12.0
+FRAME_MS = 16
 #: Lines that are shown without scrolling.
 MOST_LINES = 3
 ICONS = {Severity.ERROR: "fault", Severity.WARNING: "warning"}
 WORDS = {Severity.ERROR: tr("Error"), Severity.WARNING: tr("Warning")}
-
-
-class ProblemList(QListWidget):
-    """One line for each problem: symbol, word and sentence; hidden while there is none."""
-
-    picked = Signal(int)  #: number of the problem
-
-    def __init__(self, parent: QWidget | None = None) -> None:
-        super().__init__(parent)
-        self._problems: tuple[Problem, ...] = ()
-        self._palette: Palette = LIGHT
-        self.setObjectName("problemList")
-        self.setAccessibleName(tr("Problems of the cut plan"))
-        self.setIconSize(QSize(16, 16))
-        self.setTextElideMode(Qt.TextElideMode.ElideRight)
-        self.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
-        self.currentRowChanged.connect(self._tell)
-        self.itemClicked.connect(lambda item: self._tell(self.row(item)))
-        self.hide()
-
-    def show_problems(self, problems: tuple[Problem, ...]) -> None:
-        """Show another plan's problems."""
-        self._problems = problems
-        with QSignalBlocker(self):
-            self.clear()
-            for problem in problems:
-                item = QListWidgetItem(f"{WORDS[problem.severity]}: {problem.text}")
-                place = "" if problem.where is None else tr("\nClick to see the place.")
-                item.setToolTip(f"{problem.text}{place}")
-                self.addItem(item)
-            self.setCurrentRow(-1)
-        self._dress()
-        self.setVisible(bool(problems))
-        lines = min(len(problems), MOST_LINES)
-        self.setFixedHeight(lines * (self.fontMetrics().height() + 8) + 6)
-
-    def show_picked(self, problem: int) -> None:
-        """Mark the line of a problem that was picked in the drawing."""
-        with QSignalBlocker(self):
-            self.setCurrentRow(problem)
-
-    def set_palette(self, palette: Palette) -> None:
-        """Draw in other colours."""
-        self._palette = palette
-        self._dress()
-
-    def _dress(self) -> None:
-        for row, problem in enumerate(self._problems):
-            self.item(row).setIcon(icons.icon(ICONS[problem.severity], self._palette, self._palette.warning))
-
-    def _tell(self, row: int) -> None:
-        if row >= 0:
-            self.picked.emit(row)
-
-
 OVERLAYS = (
     (CutOverlay.TRAVEL, "travel", tr("Show the moves between cuts, dashed.")),
     (
@@ -187,3 +143,158 @@ class CutsPage(QWidget):
 
     def _tell_overlays(self) -> None:
         self.view.set_overlays(frozenset(overlay for overlay, one in self.toggles.items() if one.isChecked()))
+
+
+class ProblemList(QListWidget):
+    """One line for each problem: symbol, word and sentence; hidden while there is none."""
+
+    picked = Signal(int)  #: number of the problem
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._problems: tuple[Problem, ...] = ()
+        self._palette: Palette = LIGHT
+        self.setObjectName("problemList")
+        self.setAccessibleName(tr("Problems of the cut plan"))
+        self.setIconSize(QSize(16, 16))
+        self.setTextElideMode(Qt.TextElideMode.ElideRight)
+        self.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+        self.currentRowChanged.connect(self._tell)
+        self.itemClicked.connect(lambda item: self._tell(self.row(item)))
+        self.hide()
+
+    def show_problems(self, problems: tuple[Problem, ...]) -> None:
+        """Show another plan's problems."""
+        self._problems = problems
+        with QSignalBlocker(self):
+            self.clear()
+            for problem in problems:
+                item = QListWidgetItem(f"{WORDS[problem.severity]}: {problem.text}")
+                place = "" if problem.where is None else tr("\nClick to see the place.")
+                item.setToolTip(f"{problem.text}{place}")
+                self.addItem(item)
+            self.setCurrentRow(-1)
+        self._dress()
+        self.setVisible(bool(problems))
+        lines = min(len(problems), MOST_LINES)
+        self.setFixedHeight(lines * (self.fontMetrics().height() + 8) + 6)
+
+    def show_picked(self, problem: int) -> None:
+        """Mark the line of a problem that was picked in the drawing."""
+        with QSignalBlocker(self):
+            self.setCurrentRow(problem)
+
+    def set_palette(self, palette: Palette) -> None:
+        """Draw in other colours."""
+        self._palette = palette
+        self._dress()
+
+    def _dress(self) -> None:
+        for row, problem in enumerate(self._problems):
+            self.item(row).setIcon(icons.icon(ICONS[problem.severity], self._palette, self._palette.warning))
+
+    def _tell(self, row: int) -> None:
+        if row >= 0:
+            self.picked.emit(row)
+
+
+class CutBar(QWidget):
+    """Sets how much of the job the cut view shows."""
+
+    step_changed = Signal(int)
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._palette: Palette = LIGHT
+        self._steps: CutSteps | None = None
+        self._seconds = 0.0
+        self._clock = QElapsedTimer()
+        self.play = tool_button("playCuts", tr("Play or pause the cutting (Space)."), checkable=True)
+        self.slider = QSlider(Qt.Orientation.Horizontal)
+        self.slider.setObjectName("cutStep")
+        self.slider.setAccessibleName(tr("Cuts made so far"))
+        self.slider.setToolTip(
+            tr("Cuts made so far, in cutting order (arrow keys: one cut; Home and End: none and all)")
+        )
+        self.slider.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
+        self.count, self.so_far = QLabel(), QLabel()
+        for label, name in ((self.count, tr("Cuts so far")), (self.so_far, tr("Time and cut length so far"))):
+            label.setObjectName("muted")
+            label.setAccessibleName(name)
+            label.setAlignment(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
+        row = QHBoxLayout(self)
+        row.setContentsMargins(0, 0, 0, 0)
+        row.setSpacing(8)
+        row.addWidget(self.play)
+        row.addWidget(self.slider, 1)
+        row.addWidget(self.count)
+        row.addWidget(self.so_far)
+        self._timer = QTimer(self)
+        self._timer.setInterval(FRAME_MS)
+        self._timer.timeout.connect(self._advance)
+        self.play.toggled.connect(self._toggle)
+        self.slider.valueChanged.connect(self._tell)
+        self.set_steps(None)
+
+    @property
+    def playing(self) -> bool:
+        return self._timer.isActive()
+
+    def set_steps(self, steps: CutSteps | None) -> None:
+        """Another job, shown as cut to its end; None when there is nothing to play."""
+        self.play.setChecked(False)
+        self._steps = steps
+        for part in (self.play, self.slider):
+            part.setEnabled(steps is not None)
+        last = 0 if steps is None else steps.last
+        self.slider.setRange(0, last)
+        self.slider.setPageStep(max(last // 10, 1))
+        self.slider.setValue(last)
+        self._show_numbers()
+
+    def set_palette(self, palette: Palette) -> None:
+        """Draw in other colours."""
+        self._palette = palette
+        self._dress_button()
+
+    def _dress_button(self) -> None:
+        self.play.setIcon(icons.icon("pause" if self.play.isChecked() else "play", self._palette))
+
+    def _tell(self, step: int) -> None:
+        self._show_numbers()
+        self.step_changed.emit(step)
+
+    def _show_numbers(self) -> None:
+        """The numbers keep their places while they grow."""
+        steps = self._steps
+        if steps is None:
+            self.count.clear()
+            self.so_far.clear()
+            return
+        step = self.slider.value()
+        self.count.setText(f"{step} / {steps.last}")
+        self.so_far.setText(f"{readable_time(steps.seconds[step])}  ·  {readable_length(steps.length_mm[step])}")
+        metrics = self.fontMetrics()
+        widest = f"{readable_time(99.0)}  ·  {readable_length(99_990.0)}"
+        self.count.setMinimumWidth(metrics.horizontalAdvance(f"{steps.last} / {steps.last}"))
+        self.so_far.setMinimumWidth(metrics.horizontalAdvance(widest))
+
+    def _toggle(self, playing: bool) -> None:
+        self._dress_button()
+        if playing and self._steps is not None:
+            at_end = self.slider.value() == self._steps.last
+            self._seconds = 0.0 if at_end else float(self._steps.seconds[self.slider.value()])
+            self._clock.start()
+            self._timer.start()
+        else:
+            self._timer.stop()
+
+    def _advance(self) -> None:
+        """Follow the job's own time, so that long cuts take longer than short ones."""
+        steps = self._steps
+        if steps is None:
+            return
+        self._seconds += self._clock.restart() / 1000.0 * float(steps.seconds[-1]) / PLAY_SECONDS
+        self.slider.setValue(steps.at(self._seconds))
+        if self._seconds >= steps.seconds[-1]:
+            self.play.setChecked(False)

@@ -1,18 +1,19 @@
-"""Open and close the sheet: play, slider, number."""
+"""Open and close the sheet: play, how it is played, slider, number."""
 
 from __future__ import annotations
 
 import math
+from enum import Enum
 
-from PySide6.QtCore import QElapsedTimer, QSettings, QSignalBlocker, QTimer, Signal
-from PySide6.QtWidgets import QHBoxLayout, QWidget
+from PySide6.QtCore import QElapsedTimer, QSettings, QSignalBlocker, Qt, QTimer, Signal
+from PySide6.QtGui import QAction, QActionGroup
+from PySide6.QtWidgets import QHBoxLayout, QMenu, QToolButton, QWidget
 
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.look import icons
 from kirigami_studio.gui.look.theme import LIGHT, Palette
-from kirigami_studio.gui.panels.card import tool_button
+from kirigami_studio.gui.panels.card import TOOL_ICON, tool_button
 from kirigami_studio.gui.panels.number_field import DecimalField, number_field
-from kirigami_studio.gui.panels.play_options import PlayMode, PlayOptions, phase_of, phi_at
 from kirigami_studio.gui.views.phi_slider import PhiSlider
 
 #: Seconds from the flat sheet to fully turned while playing at the usual speed.
@@ -20,6 +21,39 @@ PLAY_SECONDS = 4.0
 FRAME_MS = 16
 #: Radians from the last angle at which the sheet counts as open: less than a step of the slider.
 AT_LAST = 1e-3
+#: Part of a whole swing during which playing rests at each end, to let the eye arrive.
+REST = 0.08
+#: How many times faster than usual the deployment may be played.
+SPEEDS = (0.25, 0.5, 1.0, 2.0, 4.0)
+TIMES = "\N{MULTIPLICATION SIGN}"
+
+
+class PlayMode(Enum):
+    """What happens when the sheet has opened."""
+
+    SWING = "swing"  #: it closes again
+    LOOP = "loop"  #: it starts anew from the flat sheet
+    ONCE = "once"  #: it stays
+
+
+MODE_ICONS = {PlayMode.SWING: "swing", PlayMode.LOOP: "loop", PlayMode.ONCE: "once"}
+
+
+def phi_at(phase: float, mode: PlayMode = PlayMode.SWING, last: float = 0.0) -> float:
+    """Angle (radians) at a phase (0..1): from pi to ``last``, and back when swinging, with a rest at both ends.
+
+    A swing is open at phase 1/2, the others at 1.
+    """
+    there = 1.0 - abs(2.0 * (phase % 1.0) - 1.0) if mode is PlayMode.SWING else min(max(phase, 0.0), 1.0)
+    eased = min(max((there - REST) / (1.0 - 2.0 * REST), 0.0), 1.0)
+    return math.pi - eased * (math.pi - last)
+
+
+def phase_of(phi: float, mode: PlayMode = PlayMode.SWING, last: float = 0.0) -> float:
+    """Phase on the opening way that shows ``phi``; what lies past ``last`` counts as open."""
+    opened = min((math.pi - phi) / (math.pi - last), 1.0)
+    there = REST + (1.0 - 2.0 * REST) * opened
+    return 0.5 * there if mode is PlayMode.SWING else there
 
 
 class DeploymentBar(QWidget):
@@ -136,3 +170,114 @@ class DeploymentBar(QWidget):
     def remember(self, settings: QSettings) -> None:
         """Keep how it is played for the next time."""
         self.options.remember(settings)
+
+
+class PlayOptions(QToolButton):
+    """A button with a menu; it shows the mode, and the speed when that is not the usual one."""
+
+    changed = Signal()
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._palette: Palette = LIGHT
+        self.setObjectName("playOptions")
+        self.setIconSize(TOOL_ICON)
+        self.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+        self.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)
+        self.setAccessibleName(tr("How the deployment is played"))
+        menu = QMenu(self)
+        menu.setToolTipsVisible(True)
+        self.modes: dict[PlayMode, QAction] = {}
+        self.speeds: dict[float, QAction] = {}
+        self._add_modes(menu)
+        menu.addSeparator()
+        self._add_speeds(menu)
+        menu.addSeparator()
+        self.to_target = menu.addAction(tr("&Only as far as the target angle"))
+        self.to_target.setCheckable(True)
+        self.to_target.toggled.connect(self._tell)
+        self.setMenu(menu)
+        self._tell()
+
+    def _add_modes(self, menu: QMenu) -> None:
+        words = {
+            PlayMode.SWING: (tr("&To and fro"), tr("Open and close again and again")),
+            PlayMode.LOOP: (tr("&Loop"), tr("Open again and again from the flat sheet")),
+            PlayMode.ONCE: (tr("O&nce"), tr("Open once and stop")),
+        }
+        group = QActionGroup(self)
+        for mode, (text, tip) in words.items():
+            action = menu.addAction(text)
+            action.setToolTip(tip)
+            action.setCheckable(True)
+            action.setActionGroup(group)
+            action.setChecked(mode is PlayMode.SWING)
+            action.toggled.connect(self._tell)
+            self.modes[mode] = action
+
+    def _add_speeds(self, menu: QMenu) -> None:
+        group = QActionGroup(self)
+        for speed in SPEEDS:
+            action = menu.addAction(f"{speed:g}{TIMES}")
+            action.setToolTip(tr("{speed:g} times the usual speed", speed=speed))
+            action.setCheckable(True)
+            action.setActionGroup(group)
+            action.setChecked(speed == 1.0)
+            action.toggled.connect(self._tell)
+            self.speeds[speed] = action
+
+    @property
+    def mode(self) -> PlayMode:
+        return next(mode for mode, action in self.modes.items() if action.isChecked())
+
+    @property
+    def speed(self) -> float:
+        """Times the usual speed."""
+        return next(speed for speed, action in self.speeds.items() if action.isChecked())
+
+    def next_mode(self) -> None:
+        """Go to the next mode, after the last one to the first."""
+        modes = list(self.modes)
+        self.modes[modes[(modes.index(self.mode) + 1) % len(modes)]].setChecked(True)
+
+    def change_speed(self, step: int) -> None:
+        """Play ``step`` speeds faster, or slower when it is negative."""
+        place = min(max(SPEEDS.index(self.speed) + step, 0), len(SPEEDS) - 1)
+        self.speeds[SPEEDS[place]].setChecked(True)
+
+    def set_palette(self, palette: Palette) -> None:
+        """Draw in other colours."""
+        self._palette = palette
+        for mode, action in self.modes.items():
+            action.setIcon(icons.icon(MODE_ICONS[mode], palette))
+        self._tell()
+
+    def restore(self, settings: QSettings) -> None:
+        """Play as the last time."""
+        for mode, action in self.modes.items():
+            if settings.value("playMode") == mode.value:
+                action.setChecked(True)
+        for speed, action in self.speeds.items():
+            if settings.value("playSpeed") == f"{speed:g}":
+                action.setChecked(True)
+        self.to_target.setChecked(settings.value("playToTarget") == "yes")
+
+    def remember(self, settings: QSettings) -> None:
+        """Keep the choice for the next time."""
+        settings.setValue("playMode", self.mode.value)
+        settings.setValue("playSpeed", f"{self.speed:g}")
+        settings.setValue("playToTarget", "yes" if self.to_target.isChecked() else "no")
+
+    def _tell(self, on: bool = True) -> None:
+        if not on and self.sender() is not self.to_target:
+            return  # of two choices that trade places only the new one counts
+        usual = self.speed == 1.0
+        self.setText("" if usual else f"{self.speed:g}{TIMES}")
+        beside, only = Qt.ToolButtonStyle.ToolButtonTextBesideIcon, Qt.ToolButtonStyle.ToolButtonIconOnly
+        self.setToolButtonStyle(only if usual else beside)
+        self.setIcon(icons.icon(MODE_ICONS[self.mode], self._palette))
+        words = self.modes[self.mode].text().replace("&", "").lower()
+        tip = tr("Playing {mode} at {speed:g} times the usual speed. Speed: < and >, mode: Shift+P.",
+                 mode=words, speed=self.speed)  # fmt: skip
+        self.setToolTip(tip)
+        self.changed.emit()

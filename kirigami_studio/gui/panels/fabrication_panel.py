@@ -1,4 +1,4 @@
-"""From design to cut file: material, widths in mm, live numbers, export."""
+"""From design to cut file: material, widths in mm, size when opened, live numbers, export."""
 
 from __future__ import annotations
 
@@ -16,16 +16,31 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from kirigami_studio.evaluate.opened_size import OpenedSize
 from kirigami_studio.fabricate.material import library
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.look import icons
-from kirigami_studio.gui.look.readable import UNKNOWN, readable_length, readable_range, readable_size, readable_time
+from kirigami_studio.gui.look.readable import (
+    TIMES,
+    UNKNOWN,
+    readable_length,
+    readable_range,
+    readable_size,
+    readable_time,
+)
 from kirigami_studio.gui.look.theme import LIGHT, Palette
-from kirigami_studio.gui.panels.card import Card, ScrolledWhenShort, captioned, compact, muted_label, tool_button
+from kirigami_studio.gui.panels.card import (
+    Card,
+    ElidedLabel,
+    ScrolledWhenShort,
+    captioned,
+    compact,
+    muted_label,
+    tool_button,
+)
 from kirigami_studio.gui.panels.export_row import ExportRow
 from kirigami_studio.gui.panels.more_options import MoreOptions
 from kirigami_studio.gui.panels.number_field import LengthField
-from kirigami_studio.gui.panels.opened_row import OpenedRow
 from kirigami_studio.project.material_record import carried_material
 from kirigami_studio.project.settings import FabricationSettings
 
@@ -372,6 +387,56 @@ class FabricationPanel(Card):
         self._dress_fold()
 
 
+class OpenedRow(QWidget):
+    """Hidden until there is a design."""
+
+    link_wanted = Signal()
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.setObjectName("plain")
+        row = QHBoxLayout(self)
+        row.setContentsMargins(0, 0, 0, 0)
+        row.setSpacing(4)
+        self.text = ElidedLabel()
+        self.text.setAccessibleName(tr("Size of the opened sheet"))
+        self.link = tool_button("cutAtDrawnSize", "")
+        self.link.setAccessibleName(tr("Cut at the drawn size"))
+        self.link.clicked.connect(self.link_wanted)
+        row.addWidget(self.text, 1)
+        row.addWidget(self.link)
+        self.show_size(None)
+
+    def show_size(self, size: OpenedSize | None) -> None:
+        """Show both sizes where they differ."""
+        self.setVisible(size is not None)
+        if size is None:
+            return
+        opened = _sides(size.opened)
+        if size.drawn is None:
+            self.text.setText(tr("Opens to {opened} mm", opened=opened))
+            tip = tr("The target has no size in mm. Give it one in the editor (E) to cut at that size.")
+        elif size.agrees:
+            self.text.setText(tr("Opens to {opened} mm, as drawn", opened=opened))
+            tip = tr("The sheet's width fits the drawn size of the target.")
+        else:
+            self.text.setText(
+                tr("Opens to {opened}, drawn {drawn} mm", opened=opened, drawn=_sides(size.drawn)),
+                tr("Opens {opened} mm wide, drawn {drawn}", opened=_side(size.opened[0]), drawn=_side(size.drawn[0])),
+            )
+            tip = tr(
+                "Cut at the drawn size: make the flat sheet {width:.1f} mm wide, so that it opens to the size in mm "
+                "that the target was drawn with.",
+                width=size.fitting_width_mm,
+            )
+        self.link.setToolTip(tip)
+        self.link.setEnabled(size.drawn is not None and not size.agrees)
+
+    def set_palette(self, palette: Palette) -> None:
+        """Draw in other colours."""
+        self.link.setIcon(icons.icon("chain", palette))
+
+
 def format_slots(planned: Planned) -> str:
     """What slots cost, where the machine profile asks for them."""
     if planned.slots_mm is None:
@@ -393,3 +458,11 @@ def format_times(times: CutTimes) -> str:
         readable_time=readable_time(times.total),
         split=split,
     )
+
+
+def _sides(size: tuple[float, float]) -> str:
+    return f"{_side(size[0])} {TIMES} {_side(size[1])}"
+
+
+def _side(side: float) -> str:
+    return f"{side:.0f}" if side >= 100 else f"{side:.1f}"

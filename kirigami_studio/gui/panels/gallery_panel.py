@@ -1,4 +1,4 @@
-"""The candidates with their count, what they are sorted by, and more of them."""
+"""The candidates: cards, their count, sort order and filters, and more of them."""
 
 from __future__ import annotations
 
@@ -32,6 +32,48 @@ from kirigami_studio.lattice.ratio_field import RatioField
 NEAREST, FARTHEST, USUAL = 0.9, 0.1, 0.6
 #: Positions of the slider.
 STEPS = 100
+
+
+class GalleryPanel(Card):
+    """Title, count, bar and cards."""
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(tr("Candidates"), parent, right_inset=4)
+        self.view = GalleryView()
+        self.bar = GalleryBar()
+        self.count = FittingLabel()
+        self.count.setContentsMargins(0, 0, 8, 0)
+        self.header.addWidget(self.count)
+        self.body.addWidget(self.bar)
+        self.body.addWidget(self.view, 1)
+        self.view.model_.arranged.connect(self._count)
+        self.view.clear_wanted.connect(self.bar.show_all)
+        self.bar.selection_changed.connect(self._select)
+
+    def _select(self, selection: Selection) -> None:
+        self.view.select(selection)
+        self._count()
+
+    def _count(self) -> None:
+        model = self.view.model_
+        self.count.set_texts(*counted([entry.candidate for entry in model.entries], len(model.all_entries)))
+        self._fit_count()
+        self.view.viewport().update()
+
+    def _fit_count(self) -> None:
+        self.count.fit(self.width() - INSET - 4 - self.title.sizeHint().width() - 16)
+
+    def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802 - Qt's name
+        self._fit_count()
+        super().resizeEvent(event)
+
+    def set_palette(self, palette: Palette) -> None:
+        """Draw in other colours."""
+        self.view.set_palette(palette)
+        self.bar.set_palette(palette)
+
+    def minimumSizeHint(self) -> QSize:  # noqa: N802 - Qt's name
+        return QSize(250, 236)
 
 
 class GalleryBar(QWidget):
@@ -251,45 +293,3 @@ def _check(name: str, text: str, tip: str) -> QCheckBox:
     box.setToolTip(tip)
     box.setAccessibleName(tip.rstrip("."))
     return box
-
-
-class GalleryPanel(Card):
-    """Title, count, bar and cards."""
-
-    def __init__(self, parent: QWidget | None = None) -> None:
-        super().__init__(tr("Candidates"), parent, right_inset=4)
-        self.view = GalleryView()
-        self.bar = GalleryBar()
-        self.count = FittingLabel()
-        self.count.setContentsMargins(0, 0, 8, 0)
-        self.header.addWidget(self.count)
-        self.body.addWidget(self.bar)
-        self.body.addWidget(self.view, 1)
-        self.view.model_.arranged.connect(self._count)
-        self.view.clear_wanted.connect(self.bar.show_all)
-        self.bar.selection_changed.connect(self._select)
-
-    def _select(self, selection: Selection) -> None:
-        self.view.select(selection)
-        self._count()
-
-    def _count(self) -> None:
-        model = self.view.model_
-        self.count.set_texts(*counted([entry.candidate for entry in model.entries], len(model.all_entries)))
-        self._fit_count()
-        self.view.viewport().update()
-
-    def _fit_count(self) -> None:
-        self.count.fit(self.width() - INSET - 4 - self.title.sizeHint().width() - 16)
-
-    def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802 - Qt's name
-        self._fit_count()
-        super().resizeEvent(event)
-
-    def set_palette(self, palette: Palette) -> None:
-        """Draw in other colours."""
-        self.view.set_palette(palette)
-        self.bar.set_palette(palette)
-
-    def minimumSizeHint(self) -> QSize:  # noqa: N802 - Qt's name
-        return QSize(250, 236)

@@ -1,4 +1,4 @@
-"""What may be done to the selected connectors: a width of their own, cut through, back to the usual."""
+"""Which connectors are selected, by which rule, and their width: own, cut through, or the usual one."""
 
 from __future__ import annotations
 
@@ -18,6 +18,7 @@ from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.panels.card import FittingLabel, tool_button
 from kirigami_studio.gui.panels.number_field import LengthField, number_field
 
+WIDTH_TIP = tr("Finished width of the selected connectors, mm (0.02 to 20).")
 #: The part of all connectors that counts as being at short or at long cuts.
 QUARTER = 0.25
 
@@ -46,15 +47,6 @@ def hinges_of_long_cuts(plan: CutPlan) -> frozenset[int]:
     return _numbers(length >= np.quantile(length, 1.0 - QUARTER))
 
 
-#: Menu text, tooltip, rule.
-RULES: tuple[tuple[str, str, Callable[[CutPlan], frozenset[int]]], ...] = (
-    (tr("&All connectors"), tr("Select every connector of the sheet"), every_hinge),
-    (tr("&Edge connectors"), tr("Select the connectors beside the sheet's edge"), edge_hinges),
-    (tr("At &short cuts"), tr("Select the quarter of the connectors with the shortest cuts"), hinges_of_short_cuts),
-    (tr("At &long cuts"), tr("Select the quarter of the connectors with the longest cuts"), hinges_of_long_cuts),
-)
-
-
 def _cut_lengths(plan: CutPlan) -> FloatArray:
     """Length (mm) of the cut that each hinge shortens: (H,); of a cut in several parts, of all together."""
     lengths = np.zeros(int(plan.hinges.cut.max()) + 1)
@@ -69,7 +61,13 @@ def _numbers(chosen: BoolArray) -> frozenset[int]:
     return frozenset(np.flatnonzero(chosen).tolist())
 
 
-WIDTH_TIP = tr("Finished width of the selected connectors, mm (0.02 to 20).")
+#: Menu text, tooltip, rule.
+RULES: tuple[tuple[str, str, Callable[[CutPlan], frozenset[int]]], ...] = (
+    (tr("&All connectors"), tr("Select every connector of the sheet"), every_hinge),
+    (tr("&Edge connectors"), tr("Select the connectors beside the sheet's edge"), edge_hinges),
+    (tr("At &short cuts"), tr("Select the quarter of the connectors with the shortest cuts"), hinges_of_short_cuts),
+    (tr("At &long cuts"), tr("Select the quarter of the connectors with the longest cuts"), hinges_of_long_cuts),
+)
 
 
 class HingeBar(QWidget):

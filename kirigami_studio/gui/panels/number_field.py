@@ -1,4 +1,4 @@
-"""Number fields that leave alone what is not meant for them: the wheel of one who scrolls past, the window's keys."""
+"""Number fields that read comma, point and units, leave the wheel to the page that scrolls, and undo to the window."""
 
 from __future__ import annotations
 
@@ -13,6 +13,29 @@ from kirigami_studio.foundation.units import MM_PER_INCH
 
 #: Keys that, with Ctrl, mean something to the window: undo, redo and export.  A field keeps undo while it is typed in.
 WINDOW_KEYS = (Qt.Key.Key_Z, Qt.Key.Key_Y, Qt.Key.Key_E)
+#: Millimetres in one of each unit that may be typed behind a length.
+LENGTH_UNITS: Mapping[str, float] = {
+    "mm": 1.0,
+    "cm": 10.0,
+    "um": 0.001,
+    "\N{MICRO SIGN}m": 0.001,
+    "\N{GREEK SMALL LETTER MU}m": 0.001,
+    "in": MM_PER_INCH,
+    "inch": MM_PER_INCH,
+    '"': MM_PER_INCH,
+    "thou": MM_PER_INCH / 1000,
+}
+#: A number, a fraction of two, and what stands behind them.
+TYPED = re.compile(r"\s*([+-]?\d*[.,]?\d*)\s*(?:(/)\s*(\d*[.,]?\d*))?\s*([^\d\s.,+/-]*)\s*")
+#: What Qt wants back: whether the text is a number, the text, and where the cursor stands.
+Answer = tuple[QValidator.State, str, int]
+
+
+def number_field(box: QAbstractSpinBox) -> None:
+    """Give a field its margin and its manners: it turns by the wheel only while it has the focus."""
+    box.lineEdit().setTextMargins(6, 0, 0, 0)
+    box.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
+    box.installEventFilter(_Courtesy(box))
 
 
 class _Courtesy(QObject):
@@ -28,31 +51,6 @@ class _Courtesy(QObject):
                     event.ignore()
                     return True
         return super().eventFilter(watched, event)
-
-
-def number_field(box: QAbstractSpinBox) -> None:
-    """Give a field its margin and its manners: it turns by the wheel only while it has the focus."""
-    box.lineEdit().setTextMargins(6, 0, 0, 0)
-    box.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
-    box.installEventFilter(_Courtesy(box))
-
-
-#: What Qt wants back: whether the text is a number, the text, and where the cursor stands.
-Answer = tuple[QValidator.State, str, int]
-#: Millimetres in one of each unit that may be typed behind a length.
-LENGTH_UNITS: Mapping[str, float] = {
-    "mm": 1.0,
-    "cm": 10.0,
-    "um": 0.001,
-    "\N{MICRO SIGN}m": 0.001,
-    "\N{GREEK SMALL LETTER MU}m": 0.001,
-    "in": MM_PER_INCH,
-    "inch": MM_PER_INCH,
-    '"': MM_PER_INCH,
-    "thou": MM_PER_INCH / 1000,
-}
-#: A number, a fraction of two, and what stands behind them.
-TYPED = re.compile(r"\s*([+-]?\d*[.,]?\d*)\s*(?:(/)\s*(\d*[.,]?\d*))?\s*([^\d\s.,+/-]*)\s*")
 
 
 class DecimalField(QDoubleSpinBox):

@@ -1,4 +1,4 @@
-"""The chosen design, large: layout or cuts, overlays, before and after, trim, deployment."""
+"""The chosen design, large: layout, cuts or comparison, with overlays, plots and the deployment."""
 
 from __future__ import annotations
 
@@ -13,16 +13,18 @@ from kirigami_studio.gui.look import icons
 from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.panels.card import INSET, Card, FittingLabel, tool_button
 from kirigami_studio.gui.panels.compare_page import ComparePage
-from kirigami_studio.gui.panels.cut_bar import CutBar
-from kirigami_studio.gui.panels.cuts_page import CutsPage
+from kirigami_studio.gui.panels.cuts_page import CutBar, CutsPage
 from kirigami_studio.gui.panels.deployment_bar import DeploymentBar
 from kirigami_studio.gui.panels.plots_panel import PlotsPanel
 from kirigami_studio.gui.panels.void_bar import VoidBar
-from kirigami_studio.gui.views.fault_tour import FaultTour
 from kirigami_studio.gui.views.gallery_model import described
-from kirigami_studio.gui.views.layout_view import USUAL, LayoutView, Overlay
+from kirigami_studio.gui.views.layout_view import USUAL, FaultTour, LayoutView, Overlay
 from kirigami_studio.outlines.outline import Outline
 
+#: A stage at least this wide (pixels) has its plots at the side, a narrower one below.
+WIDE = 640
+#: Pixels between the title and the numbers at least.
+GAP = 12
 OVERLAYS = (
     (Overlay.TARGET, "target", tr("Show the target's outline (T).")),
     (
@@ -40,29 +42,6 @@ UNTRIM = tr("Trim to target (Ctrl+T). Press again to bring back what was cut off
 TRIMMING = tr("Trim to target: at work. Press again, or Esc, to stop.")
 CUTS = tr("Cuts: show the cut plan as it will burn (C).")
 PLOTS = tr("Plots: match, area, size and gaps at every angle (J).")
-
-
-def scores_told(candidate: Candidate, drawn: Candidate | None) -> tuple[str, ...]:
-    """Scores of a design, beside those of its drawn state if that is shown, longest text first."""
-    score, trim = candidate.score, candidate.trim
-    siou = f"{100 * score.siou:.1f} %"
-    if drawn is not None:
-        before = f"{100 * drawn.score.siou:.1f} %"
-        long = tr("before polish: sIoU {before}  ·  after: {siou}", before=before, siou=siou)
-        return long, tr("before {before}  ·  after {siou}", before=before, siou=siou)
-    if trim is not None:
-        trimmed = f"{100 * trim.iou:.1f} %"
-        long = tr("sIoU {siou}  ·  trimmed IoU {trimmed}", siou=siou, trimmed=trimmed)
-        return long, tr("{siou}  ·  trimmed {trimmed}", siou=siou, trimmed=trimmed)
-    gain, variation = 100 * score.siou_gain, score.tv
-    long = tr("sIoU {siou}   gain {gain:+.1f}   TV {variation:.2f}", siou=siou, gain=gain, variation=variation)
-    return long, tr("sIoU {siou}", siou=siou)
-
-
-#: A stage at least this wide (pixels) has its plots at the side, a narrower one below.
-WIDE = 640
-#: Pixels between the title and the numbers at least.
-GAP = 12
 
 
 class StagePanel(Card):
@@ -414,3 +393,20 @@ class StagePanel(Card):
         chosen |= self._other_overlays
         self.view.set_overlays(chosen)
         self.overlays_changed.emit(chosen)
+
+
+def scores_told(candidate: Candidate, drawn: Candidate | None) -> tuple[str, ...]:
+    """Scores of a design, beside those of its drawn state if that is shown, longest text first."""
+    score, trim = candidate.score, candidate.trim
+    siou = f"{100 * score.siou:.1f} %"
+    if drawn is not None:
+        before = f"{100 * drawn.score.siou:.1f} %"
+        long = tr("before polish: sIoU {before}  ·  after: {siou}", before=before, siou=siou)
+        return long, tr("before {before}  ·  after {siou}", before=before, siou=siou)
+    if trim is not None:
+        trimmed = f"{100 * trim.iou:.1f} %"
+        long = tr("sIoU {siou}  ·  trimmed IoU {trimmed}", siou=siou, trimmed=trimmed)
+        return long, tr("{siou}  ·  trimmed {trimmed}", siou=siou, trimmed=trimmed)
+    gain, variation = 100 * score.siou_gain, score.tv
+    long = tr("sIoU {siou}   gain {gain:+.1f}   TV {variation:.2f}", siou=siou, gain=gain, variation=variation)
+    return long, tr("sIoU {siou}", siou=siou)

@@ -1,79 +1,41 @@
-"""Where the target comes from: a file, the library, or the editor that the panel grows into."""
+"""The target: file, library, drawing board, its size, simplify and smooth, the threshold of a traced picture."""
 
 from __future__ import annotations
 
 from PySide6.QtCore import QSignalBlocker, QSize, Qt, Signal
-from PySide6.QtWidgets import QHBoxLayout, QLabel, QPushButton, QSizePolicy, QSlider, QWidget
+from PySide6.QtGui import QMouseEvent
+from PySide6.QtWidgets import (
+    QHBoxLayout,
+    QLabel,
+    QPushButton,
+    QSizePolicy,
+    QSlider,
+    QStyle,
+    QStyleOptionSlider,
+    QWidget,
+)
 
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.jobs.steps import Picture
 from kirigami_studio.gui.look import icons
 from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.panels.card import Card, ElidedLabel, muted_label, tool_button
-from kirigami_studio.gui.panels.refine_bar import RefineBar
+from kirigami_studio.gui.panels.number_field import LengthField, number_field
 from kirigami_studio.gui.panels.tool_strip import ToolStrip
 from kirigami_studio.gui.views.target_view import TargetView, Tool
 from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.outlines.placed import LARGEST_MM, Placed
 from kirigami_studio.outlines.reach import reach_of, told
 
+#: Slider steps from nothing to most.
+REFINE_STEPS = 100
 #: Slider steps from black to white; the ends would leave no shape.
-STEPS = 200
-
-
-class ThresholdBar(QWidget):
-    """Shown for targets that came from a picture; grey levels run from 0 (black) to 1 (white)."""
-
-    changed = Signal(float)  #: grey level 0..1
-    automatic_wanted = Signal()
-    edited = Signal()  #: the drag is over
-
-    def __init__(self, parent: QWidget | None = None) -> None:
-        super().__init__(parent)
-        caption = QLabel(tr("&Threshold"))
-        caption.setObjectName("muted")
-        self.slider = QSlider(Qt.Orientation.Horizontal)
-        self.slider.setObjectName("threshold")
-        self.slider.setRange(1, STEPS - 1)
-        self.slider.setPageStep(STEPS // 20)
-        self.slider.setAccessibleName(tr("Threshold between shape and ground, from black to white"))
-        self.slider.setToolTip(
-            tr("Grey level that divides shape and ground: 0 % is black, 100 % white (arrow keys: 0.5 %)")
-        )
-        self.number = QLabel()
-        self.number.setObjectName("muted")
-        self.number.setAlignment(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
-        self.number.setMinimumWidth(self.number.fontMetrics().horizontalAdvance("99.5 %"))
-        self.automatic = QPushButton(tr("Auto"))
-        self.automatic.setObjectName("small")
-        self.automatic.setFocusPolicy(Qt.FocusPolicy.TabFocus)
-        self.automatic.setToolTip(tr("Back to the threshold that was found in the picture"))
-        caption.setBuddy(self.slider)
-        row = QHBoxLayout(self)
-        row.setContentsMargins(0, 0, 0, 0)
-        row.setSpacing(8)
-        row.addWidget(caption)
-        row.addWidget(self.slider, 1)
-        row.addWidget(self.number)
-        row.addWidget(self.automatic)
-        self.slider.valueChanged.connect(self._tell)
-        self.slider.sliderReleased.connect(self.edited)
-        self.automatic.clicked.connect(self.automatic_wanted)
-
-    def show_levels(self, threshold: float, automatic: float) -> None:
-        """Show the level that holds, 0..1; a slider under the hand is left where it is."""
-        if not self.slider.isSliderDown():
-            with QSignalBlocker(self.slider):
-                self.slider.setValue(round(STEPS * threshold))
-            self.number.setText(f"{100 * threshold:.1f} %")
-        self.automatic.setEnabled(threshold != automatic)
-
-    def _tell(self, value: int) -> None:
-        self.number.setText(f"{100 * value / STEPS:.1f} %")
-        self.changed.emit(value / STEPS)
-        if not self.slider.isSliderDown():
-            self.edited.emit()
-
-
+GREY_LEVELS = 200
+#: Name, caption, tooltip.
+SLIDERS = (
+    ("simplify", tr("S&implify"), tr("Drop points: the further to the right, the fewer corners stay")),
+    ("smooth", tr("S&mooth"), tr("Round corners and calm edges; the area stays")),
+)
 #: Tool button name, icon, tooltip, whether it stays down.
 BUTTONS = (
     ("openTarget", "open", tr("Open a target file (Ctrl+O). PNG, JPG, BMP, SVG, DXF or JSON."), False),
@@ -81,8 +43,6 @@ BUTTONS = (
     ("edit", "edit", tr("Draw and edit the target (E). Shapes, points, add and take away."), True),
     ("clearTarget", "clear", tr("Clear the target. Undo brings it back."), False),
 )
-
-
 #: Said when the editor is left.
 DONE_HINT = tr("Press Generate (Ctrl+G) to design a sheet for this target.")
 
@@ -233,3 +193,200 @@ def measured(outline: Outline) -> str:
         return tr("{count} points", count=len(outline.points))
     width, height = outline.size
     return f"{width:.4g} \N{MULTIPLICATION SIGN} {height:.4g} {outline.unit}"
+
+
+class RefineBar(QWidget):
+    """Two sliders with a live preview, two lengths in mm."""
+
+    previewed = Signal(str, float)  #: name of the slider, strength 0..1
+    refined = Signal(str, float)
+    size_wanted = Signal(float, float)  #: width and height, mm
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        row = QHBoxLayout(self)
+        row.setContentsMargins(0, 0, 0, 0)
+        row.setSpacing(8)
+        self._ratio = 1.0
+        self._size = (0.0, 0.0)
+        self.sliders: dict[str, QSlider] = {}
+        for name, caption, tip in SLIDERS:
+            slider = GrooveSlider()
+            slider.setObjectName("threshold")
+            slider.setRange(0, REFINE_STEPS)
+            slider.setPageStep(REFINE_STEPS // 10)
+            slider.setAccessibleName(tr("{replace} the target", replace=caption.replace("&", "")))
+            slider.setToolTip(tip)
+            slider.setMinimumWidth(60)
+            slider.valueChanged.connect(lambda value, name=name: self._slide(name, value))
+            slider.sliderReleased.connect(lambda name=name: self._settle(name))
+            self.sliders[name] = slider
+            row.addWidget(_caption(caption, slider))
+            row.addWidget(slider, 1)
+        self.width_ = _length(tr("Width of the target"))
+        self.height_ = _length(tr("Height of the target"))
+        for caption, field in ((tr("Size"), self.width_), ("\N{MULTIPLICATION SIGN}", self.height_)):
+            row.addWidget(_caption(caption, field))
+            row.addWidget(field)
+        self.proportions = tool_button("keepProportions", tr("Keep proportions. Off: width or height alone."), True)
+        self.proportions.setChecked(True)
+        row.addWidget(self.proportions)
+        self.width_.valueChanged.connect(self._take_width)
+        self.height_.valueChanged.connect(self._take_height)
+
+    def _take_width(self, width: float) -> None:
+        self.size_wanted.emit(width, width / self._ratio if self.proportions.isChecked() else self._size[1])
+
+    def _take_height(self, height: float) -> None:
+        self.size_wanted.emit(height * self._ratio if self.proportions.isChecked() else self._size[0], height)
+
+    def set_palette(self, palette: Palette) -> None:
+        """Draw in other colours."""
+        self.proportions.setIcon(icons.icon("chain", palette))
+
+    def show_placed(self, placed: Placed | None) -> None:
+        """Show the target's size on the board."""
+        self.setEnabled(placed is not None)
+        if placed is None:
+            return
+        width, height = self._size = placed.size
+        self._ratio = width / height
+        for field, value in ((self.width_, width), (self.height_, height)):
+            with QSignalBlocker(field):
+                field.setValue(value)
+
+    def restart(self) -> None:
+        """The sliders stand for another target: nothing is simplified or smoothed yet."""
+        for slider in self.sliders.values():
+            with QSignalBlocker(slider):
+                slider.setValue(0)
+
+    def _slide(self, name: str, value: int) -> None:
+        for other, slider in self.sliders.items():
+            if other != name:
+                with QSignalBlocker(slider):
+                    slider.setValue(0)
+        if self.sliders[name].isSliderDown():
+            self.previewed.emit(name, value / REFINE_STEPS)
+        else:
+            self.refined.emit(name, value / REFINE_STEPS)
+
+    def _settle(self, name: str) -> None:
+        self.refined.emit(name, self.sliders[name].value() / REFINE_STEPS)
+
+
+class GrooveSlider(QSlider):
+    """Goes to the pointer at once and stays down until the button is let go, so that a click shows before it counts."""
+
+    def __init__(self) -> None:
+        super().__init__(Qt.Orientation.Horizontal)
+        self._offset = 0.0
+
+    def mousePressEvent(self, event: QMouseEvent) -> None:  # noqa: N802 - Qt's name
+        if event.button() is not Qt.MouseButton.LeftButton:
+            event.ignore()
+            return
+        option = QStyleOptionSlider()
+        self.initStyleOption(option)
+        handle = self.style().subControlRect(
+            QStyle.ComplexControl.CC_Slider, option, QStyle.SubControl.SC_SliderHandle, self
+        )
+        on_handle = handle.contains(event.position().toPoint())
+        self._offset = event.position().x() - handle.left() if on_handle else 0.5 * handle.width()
+        self.setSliderDown(True)
+        if not on_handle:
+            self.setValue(self._value_at(event.position().x(), handle.width()))
+        event.accept()
+
+    def mouseMoveEvent(self, event: QMouseEvent) -> None:  # noqa: N802 - Qt's name
+        if self.isSliderDown():
+            option = QStyleOptionSlider()
+            self.initStyleOption(option)
+            width = self.style().pixelMetric(QStyle.PixelMetric.PM_SliderLength, option, self)
+            self.setValue(self._value_at(event.position().x(), width))
+            event.accept()
+
+    def mouseReleaseEvent(self, event: QMouseEvent) -> None:  # noqa: N802 - Qt's name
+        if self.isSliderDown() and event.button() is Qt.MouseButton.LeftButton:
+            self.setSliderDown(False)
+            event.accept()
+
+    def _value_at(self, x: float, handle: int) -> int:
+        return QStyle.sliderValueFromPosition(
+            self.minimum(), self.maximum(), round(x - self._offset), max(self.width() - handle, 1)
+        )
+
+
+class ThresholdBar(QWidget):
+    """Shown for targets that came from a picture; grey levels run from 0 (black) to 1 (white)."""
+
+    changed = Signal(float)  #: grey level 0..1
+    automatic_wanted = Signal()
+    edited = Signal()  #: the drag is over
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        caption = QLabel(tr("&Threshold"))
+        caption.setObjectName("muted")
+        self.slider = QSlider(Qt.Orientation.Horizontal)
+        self.slider.setObjectName("threshold")
+        self.slider.setRange(1, GREY_LEVELS - 1)
+        self.slider.setPageStep(GREY_LEVELS // 20)
+        self.slider.setAccessibleName(tr("Threshold between shape and ground, from black to white"))
+        self.slider.setToolTip(
+            tr("Grey level that divides shape and ground: 0 % is black, 100 % white (arrow keys: 0.5 %)")
+        )
+        self.number = QLabel()
+        self.number.setObjectName("muted")
+        self.number.setAlignment(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
+        self.number.setMinimumWidth(self.number.fontMetrics().horizontalAdvance("99.5 %"))
+        self.automatic = QPushButton(tr("Auto"))
+        self.automatic.setObjectName("small")
+        self.automatic.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+        self.automatic.setToolTip(tr("Back to the threshold that was found in the picture"))
+        caption.setBuddy(self.slider)
+        row = QHBoxLayout(self)
+        row.setContentsMargins(0, 0, 0, 0)
+        row.setSpacing(8)
+        row.addWidget(caption)
+        row.addWidget(self.slider, 1)
+        row.addWidget(self.number)
+        row.addWidget(self.automatic)
+        self.slider.valueChanged.connect(self._tell)
+        self.slider.sliderReleased.connect(self.edited)
+        self.automatic.clicked.connect(self.automatic_wanted)
+
+    def show_levels(self, threshold: float, automatic: float) -> None:
+        """Show the level that holds, 0..1; a slider under the hand is left where it is."""
+        if not self.slider.isSliderDown():
+            with QSignalBlocker(self.slider):
+                self.slider.setValue(round(GREY_LEVELS * threshold))
+            self.number.setText(f"{100 * threshold:.1f} %")
+        self.automatic.setEnabled(threshold != automatic)
+
+    def _tell(self, value: int) -> None:
+        self.number.setText(f"{100 * value / GREY_LEVELS:.1f} %")
+        self.changed.emit(value / GREY_LEVELS)
+        if not self.slider.isSliderDown():
+            self.edited.emit()
+
+
+def _caption(text: str, buddy: QWidget) -> QLabel:
+    label = QLabel(text)
+    label.setObjectName("muted")
+    label.setBuddy(buddy)
+    return label
+
+
+def _length(name: str) -> LengthField:
+    field = LengthField()
+    field.setRange(0.1, LARGEST_MM)
+    field.setDecimals(1)
+    field.setSuffix(tr(" mm"))
+    number_field(field)
+    field.setKeyboardTracking(False)
+    field.setAccessibleName(name)
+    field.setToolTip(
+        tr("{name} in mm; 3 in or 8.5 cm may be typed too. The chain beside it keeps the proportions.", name=name)
+    )
+    return field

@@ -1,4 +1,4 @@
-"""Mirror while drawing: which axes reflect what is drawn, as a button with a menu."""
+"""The numbers and choices of the editor's tools: corners, points, pose, font, mirror axes."""
 
 from __future__ import annotations
 
@@ -7,17 +7,91 @@ from collections.abc import Callable
 
 from PySide6.QtCore import QSignalBlocker
 from PySide6.QtGui import QAction, QActionGroup, QFont
-from PySide6.QtWidgets import QFontComboBox, QHBoxLayout, QLabel, QMenu, QToolButton, QWidget
+from PySide6.QtWidgets import QFontComboBox, QHBoxLayout, QLabel, QLineEdit, QMenu, QSpinBox, QToolButton, QWidget
 
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.look import icons
 from kirigami_studio.gui.look.theme import LIGHT, Palette
 from kirigami_studio.gui.panels.card import TOOL_ICON, tool_button
 from kirigami_studio.gui.panels.number_field import DecimalField, LengthField, number_field
-from kirigami_studio.gui.sketching.sketch_context import Change, SketchContext
+from kirigami_studio.gui.sketching.sketch_context import Change, SketchContext, middle_of
+from kirigami_studio.gui.views.target_view import Tool
+from kirigami_studio.outlines.figures import FEWEST_CORNERS, MOST_CORNERS, NARROWEST_WAIST, WIDEST_WAIST
 from kirigami_studio.outlines.mirroring import Axis
 from kirigami_studio.outlines.nodes import Kind
 from kirigami_studio.outlines.placed import LARGEST_MM, Placed
+
+
+class ToolOptions(QWidget):
+    """Corners of a polygon, tips and waist of a star, letters of a text, kinds of points, place of the target."""
+
+    def __init__(self, context: SketchContext) -> None:
+        super().__init__()
+        self._context = context
+        row = QHBoxLayout(self)
+        row.setContentsMargins(8, 0, 8, 0)
+        row.setSpacing(6)
+        self.corners = QSpinBox()
+        self.corners.setRange(FEWEST_CORNERS, MOST_CORNERS)
+        self.corners.setValue(context.corners)
+        self.corners.setAccessibleName(tr("Number of corners or tips"))
+        self.corners.setToolTip(tr("Corners of the polygon, tips of the star"))
+        self.waist = DecimalField()
+        self.waist.setRange(100 * NARROWEST_WAIST, 100 * WIDEST_WAIST)
+        self.waist.setDecimals(0)
+        self.waist.setSuffix(" %")
+        self.waist.setValue(100 * context.waist)
+        self.waist.setAccessibleName(tr("Waist of the star"))
+        self.waist.setToolTip(tr("How far its inner corners are from the middle, as a share of its tips"))
+        for number in (self.corners, self.waist):
+            number_field(number)
+        self.text = QLineEdit(context.text)
+        self.text.setAccessibleName(tr("Text to draw"))
+        self.text.setPlaceholderText(tr("Text"))
+        self.text.setMaxLength(24)
+        self.text.setMaximumWidth(150)
+        self.nodes, self.pose, self.font_ = NodeOptions(context), PoseOptions(context), FontOptions(context)
+        self._parts: list[tuple[frozenset[Tool], tuple[QWidget, ...]]] = []
+        for tools, caption, field in (
+            (frozenset({Tool.REGULAR, Tool.STAR}), tr("&Corners"), self.corners),
+            (frozenset({Tool.STAR}), tr("Wai&st"), self.waist),
+            (frozenset({Tool.TEXT}), tr("Te&xt"), self.text),
+        ):
+            label = QLabel(caption)
+            label.setObjectName("muted")
+            label.setBuddy(field)
+            row.addWidget(label)
+            row.addWidget(field)
+            self._parts.append((tools, (label, field)))
+        for tool, options in ((Tool.POINTS, self.nodes), (Tool.POSE, self.pose), (Tool.TEXT, self.font_)):
+            row.addWidget(options)
+            self._parts.append((frozenset({tool}), (options,)))
+        self.corners.valueChanged.connect(self._take_corners)
+        self.waist.valueChanged.connect(self._take_waist)
+        self.text.textChanged.connect(self._take_text)
+        self.show_tool(Tool.LOOK)
+
+    def _take_corners(self, corners: int) -> None:
+        self._context.corners = corners
+
+    def _take_waist(self, percent: float) -> None:
+        self._context.waist = percent / 100
+
+    def _take_text(self, text: str) -> None:
+        self._context.text = text
+
+    def show_tool(self, tool: Tool) -> None:
+        """Show the numbers that a tool has."""
+        if tool is Tool.TEXT:
+            self.font_.fill()
+        for tools, widgets in self._parts:
+            for widget in widgets:
+                widget.setVisible(tool in tools)
+
+    def set_palette(self, palette: Palette) -> None:
+        """Draw in other colours."""
+        self.nodes.set_palette(palette)
+        self.font_.set_palette(palette)
 
 
 class NodeOptions(QWidget):
@@ -55,44 +129,6 @@ class NodeOptions(QWidget):
         """Draw in other colours."""
         for kind, button in self.buttons.items():
             button.setIcon(icons.icon(f"node-{kind.value}", palette))
-
-
-class FontOptions(QWidget):
-    """Families of this computer that can be scaled; the list is filled when it is shown for the first time."""
-
-    def __init__(self, context: SketchContext) -> None:
-        super().__init__()
-        self._context = context
-        self._row = QHBoxLayout(self)
-        self._row.setContentsMargins(0, 0, 0, 0)
-        self._row.setSpacing(2)
-        self.family: QFontComboBox | None = None
-        self.bold = tool_button("fontBold", tr("Bold letters. Sheets show thick strokes better than thin ones."), True)
-        self.italic = tool_button("fontItalic", tr("Italic letters."), True)
-        self.bold.setChecked(context.bold)
-        self.bold.toggled.connect(lambda on: setattr(context, "bold", on))
-        self.italic.toggled.connect(lambda on: setattr(context, "italic", on))
-        self._row.addWidget(self.bold)
-        self._row.addWidget(self.italic)
-
-    def fill(self) -> None:
-        """List the families: reading them takes a while, so only when the text tool is taken."""
-        if self.family is not None:
-            return
-        self.family = QFontComboBox()
-        self.family.setFontFilters(QFontComboBox.FontFilter.ScalableFonts)
-        self.family.setAccessibleName(tr("Font of the text"))
-        self.family.setToolTip(tr("Font of the text. Its letters are moved together until they hang in one piece."))
-        self.family.setMaximumWidth(190)
-        with QSignalBlocker(self.family):
-            self.family.setCurrentFont(QFont(self._context.family) if self._context.family else self.font())
-        self.family.currentFontChanged.connect(lambda font: setattr(self._context, "family", font.family()))
-        self._row.insertWidget(0, self.family)
-
-    def set_palette(self, palette: Palette) -> None:
-        """Draw in other colours."""
-        self.bold.setIcon(icons.icon("bold", palette))
-        self.italic.setIcon(icons.icon("italic", palette))
 
 
 class PoseOptions(QWidget):
@@ -165,11 +201,48 @@ class PoseOptions(QWidget):
         self._context.changed.emit(Change(gesture, make, f"typed {gesture} {self._visit}"))
 
 
-def middle_of(placed: Placed) -> tuple[float, float]:
-    """The middle of a target's box, mm."""
-    ring = placed.ring
-    x, y = (0.5 * (ring.min(axis=0) + ring.max(axis=0))).tolist()
-    return x, y
+class FontOptions(QWidget):
+    """Families of this computer that can be scaled; the list is filled when it is shown for the first time."""
+
+    def __init__(self, context: SketchContext) -> None:
+        super().__init__()
+        self._context = context
+        self._row = QHBoxLayout(self)
+        self._row.setContentsMargins(0, 0, 0, 0)
+        self._row.setSpacing(2)
+        self.family: QFontComboBox | None = None
+        self.bold = tool_button("fontBold", tr("Bold letters. Sheets show thick strokes better than thin ones."), True)
+        self.italic = tool_button("fontItalic", tr("Italic letters."), True)
+        self.bold.setChecked(context.bold)
+        self.bold.toggled.connect(self._take_style)
+        self.italic.toggled.connect(self._take_style)
+        self._row.addWidget(self.bold)
+        self._row.addWidget(self.italic)
+
+    def fill(self) -> None:
+        """List the families: reading them takes a while, so only when the text tool is taken."""
+        if self.family is not None:
+            return
+        self.family = QFontComboBox()
+        self.family.setFontFilters(QFontComboBox.FontFilter.ScalableFonts)
+        self.family.setAccessibleName(tr("Font of the text"))
+        self.family.setToolTip(tr("Font of the text. Its letters are moved together until they hang in one piece."))
+        self.family.setMaximumWidth(190)
+        with QSignalBlocker(self.family):
+            self.family.setCurrentFont(QFont(self._context.family) if self._context.family else self.font())
+        self.family.currentFontChanged.connect(self._take_family)
+        self._row.insertWidget(0, self.family)
+
+    def _take_style(self) -> None:
+        self._context.bold, self._context.italic = self.bold.isChecked(), self.italic.isChecked()
+
+    def _take_family(self, font: QFont) -> None:
+        self._context.family = font.family()
+
+    def set_palette(self, palette: Palette) -> None:
+        """Draw in other colours."""
+        self.bold.setIcon(icons.icon("bold", palette))
+        self.italic.setIcon(icons.icon("italic", palette))
 
 
 class AxisButton(QToolButton):

@@ -1,4 +1,4 @@
-"""The editor's tools in one row, and the numbers of the chosen one."""
+"""The editor's tools, modes and grid in one row."""
 
 from __future__ import annotations
 
@@ -7,11 +7,8 @@ from PySide6.QtWidgets import (
     QButtonGroup,
     QFrame,
     QHBoxLayout,
-    QLabel,
-    QLineEdit,
     QMenu,
     QPushButton,
-    QSpinBox,
     QToolButton,
     QWidget,
 )
@@ -20,12 +17,10 @@ from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.look import icons
 from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.panels.card import tool_button
-from kirigami_studio.gui.panels.number_field import DecimalField, number_field
-from kirigami_studio.gui.panels.tool_options import AxisButton, FontOptions, NodeOptions, PoseOptions
+from kirigami_studio.gui.panels.tool_options import AxisButton, ToolOptions
 from kirigami_studio.gui.sketching.sketch_context import SketchContext
 from kirigami_studio.gui.views.target_view import Tool
 from kirigami_studio.outlines.combining import Combine
-from kirigami_studio.outlines.figures import FEWEST_CORNERS, MOST_CORNERS, NARROWEST_WAIST, WIDEST_WAIST
 
 #: Tool, icon, tooltip; None for a gap.
 TOOLS: tuple[tuple[Tool, str, str] | None, ...] = (
@@ -151,68 +146,6 @@ class ToolStrip(QWidget):
             button.setIcon(icons.icon(icon, palette))
         self.axis.set_palette(palette)
         self.options.set_palette(palette)
-
-
-class ToolOptions(QWidget):
-    """Corners of a polygon, tips and waist of a star, letters of a text, kinds of points, place of the target."""
-
-    def __init__(self, context: SketchContext) -> None:
-        super().__init__()
-        row = QHBoxLayout(self)
-        row.setContentsMargins(8, 0, 8, 0)
-        row.setSpacing(6)
-        self.corners = QSpinBox()
-        self.corners.setRange(FEWEST_CORNERS, MOST_CORNERS)
-        self.corners.setValue(context.corners)
-        self.corners.setAccessibleName(tr("Number of corners or tips"))
-        self.corners.setToolTip(tr("Corners of the polygon, tips of the star"))
-        self.waist = DecimalField()
-        self.waist.setRange(100 * NARROWEST_WAIST, 100 * WIDEST_WAIST)
-        self.waist.setDecimals(0)
-        self.waist.setSuffix(" %")
-        self.waist.setValue(100 * context.waist)
-        self.waist.setAccessibleName(tr("Waist of the star"))
-        self.waist.setToolTip(tr("How far its inner corners are from the middle, as a share of its tips"))
-        for number in (self.corners, self.waist):
-            number_field(number)
-        self.text = QLineEdit(context.text)
-        self.text.setAccessibleName(tr("Text to draw"))
-        self.text.setPlaceholderText(tr("Text"))
-        self.text.setMaxLength(24)
-        self.text.setMaximumWidth(150)
-        self.nodes, self.pose, self.font_ = NodeOptions(context), PoseOptions(context), FontOptions(context)
-        self._parts: list[tuple[frozenset[Tool], tuple[QWidget, ...]]] = []
-        for tools, caption, field in (
-            (frozenset({Tool.REGULAR, Tool.STAR}), tr("&Corners"), self.corners),
-            (frozenset({Tool.STAR}), tr("Wai&st"), self.waist),
-            (frozenset({Tool.TEXT}), tr("Te&xt"), self.text),
-        ):
-            label = QLabel(caption)
-            label.setObjectName("muted")
-            label.setBuddy(field)
-            row.addWidget(label)
-            row.addWidget(field)
-            self._parts.append((tools, (label, field)))
-        for tool, options in ((Tool.POINTS, self.nodes), (Tool.POSE, self.pose), (Tool.TEXT, self.font_)):
-            row.addWidget(options)
-            self._parts.append((frozenset({tool}), (options,)))
-        self.corners.valueChanged.connect(lambda value: setattr(context, "corners", value))
-        self.waist.valueChanged.connect(lambda value: setattr(context, "waist", value / 100))
-        self.text.textChanged.connect(lambda value: setattr(context, "text", value))
-        self.show_tool(Tool.LOOK)
-
-    def show_tool(self, tool: Tool) -> None:
-        """Show the numbers that a tool has."""
-        if tool is Tool.TEXT:
-            self.font_.fill()
-        for tools, widgets in self._parts:
-            for widget in widgets:
-                widget.setVisible(tool in tools)
-
-    def set_palette(self, palette: Palette) -> None:
-        """Draw in other colours."""
-        self.nodes.set_palette(palette)
-        self.font_.set_palette(palette)
 
 
 def _rule() -> QFrame:

@@ -1,4 +1,4 @@
-"""A bar of a round length in mm, so that a person sees how large the picture is."""
+"""Labels over a drawing: legend chips, a caption, the scale bar, and where the picture is clear of them."""
 
 from __future__ import annotations
 
@@ -18,6 +18,13 @@ from kirigami_studio.gui.scene.view_transform import Bounds, ViewTransform
 INSET = 14.0
 GAP = 8.0
 SWATCH = 10.0
+#: Pixels that stay between the picture and a legend.
+AWAY = 8.0
+#: Less of the view's height or width than this is not worth a free legend.
+LEAST_SHARE = 0.4
+#: The bar is as long as this (pixels) at most.
+LONGEST = 90.0
+ENDS = 4.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,15 +41,6 @@ class Chip:
     def width(self, metrics: QFontMetrics) -> float:
         """Pixels from edge to edge."""
         return metrics.horizontalAdvance(self.text) + 26.0 + SWATCH * len(self.colours)
-
-
-def paint_chip(painter: QPainter, box: QRectF, palette: Palette) -> None:
-    """Draw the box behind a label."""
-    back = QColor(palette.surface)
-    back.setAlpha(225)
-    painter.setPen(QColor(palette.border))
-    painter.setBrush(back)
-    painter.drawRoundedRect(box, 6, 6)
 
 
 def legend_boxes(
@@ -82,6 +80,15 @@ def paint_legend(painter: QPainter, chips: list[Chip], boxes: list[QRectF], pale
         painter.drawText(room, int(Qt.AlignmentFlag.AlignVCenter), text)
 
 
+def paint_chip(painter: QPainter, box: QRectF, palette: Palette) -> None:
+    """Draw the box behind a label."""
+    back = QColor(palette.surface)
+    back.setAlpha(225)
+    painter.setPen(QColor(palette.border))
+    painter.setBrush(back)
+    painter.drawRoundedRect(box, 6, 6)
+
+
 def paint_caption(painter: QPainter, text: str, width: float, palette: Palette) -> None:
     """Draw one label in the upper left corner, ended by an ellipsis where ``width`` pixels end."""
     metrics = painter.fontMetrics()
@@ -91,12 +98,6 @@ def paint_caption(painter: QPainter, text: str, width: float, palette: Palette) 
     painter.setPen(QColor(palette.text))
     shown = metrics.elidedText(text, Qt.TextElideMode.ElideRight, round(breadth - 18.0))
     painter.drawText(box, int(Qt.AlignmentFlag.AlignCenter), shown)
-
-
-#: Pixels that stay between the picture and a legend.
-AWAY = 8.0
-#: Less of the view's height or width than this is not worth a free legend.
-LEAST_SHARE = 0.4
 
 
 def clear_box(bounds: Bounds, view: QRectF, margin: float, legends: Sequence[QRectF]) -> QRectF:
@@ -141,22 +142,6 @@ def _shown(bounds: Bounds, transform: ViewTransform) -> QRectF:
     return QRectF(QPointF(left, top), QPointF(right, bottom)).adjusted(-free, -free, free, free)
 
 
-#: The bar is as long as this (pixels) at most.
-LONGEST = 90.0
-ENDS = 4.0
-
-
-def round_length(longest: float) -> float:
-    """The largest of 1, 2, 5 times a power of ten that is no longer; ``longest`` > 0."""
-    power = 10.0 ** math.floor(math.log10(longest))
-    return max(step * power for step in (1.0, 2.0, 5.0) if step * power <= longest * (1.0 + 1e-9))
-
-
-def readable_mm(length: float) -> str:
-    """A length without needless digits."""
-    return tr("{length:g} mm", length=length)
-
-
 def paint_scale_bar(painter: QPainter, scale: float, right_end: QPointF, palette: Palette) -> None:
     """Draw the bar with its number above it.
 
@@ -172,3 +157,14 @@ def paint_scale_bar(painter: QPainter, scale: float, right_end: QPointF, palette
     height = painter.fontMetrics().height()
     box = QRectF(min(left, x - LONGEST), y - height - ENDS, max(x - left, LONGEST), height)
     painter.drawText(box, int(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignBottom), readable_mm(length))
+
+
+def round_length(longest: float) -> float:
+    """The largest of 1, 2, 5 times a power of ten that is no longer; ``longest`` > 0."""
+    power = 10.0 ** math.floor(math.log10(longest))
+    return max(step * power for step in (1.0, 2.0, 5.0) if step * power <= longest * (1.0 + 1e-9))
+
+
+def readable_mm(length: float) -> str:
+    """A length without needless digits."""
+    return tr("{length:g} mm", length=length)

@@ -27,6 +27,55 @@ from kirigami_studio.gui.scene.view_transform import ViewTransform
 
 #: Places on each boundary at which the distance is measured, beside its corners.
 STATIONS = 256
+#: What was cut off is snapped to this grid (world units) when it is taken from the sheet.
+GRID = 1e-9
+TINT_ALPHA = 64
+#: Horizontal distance of hatch lines, pixels.
+STRIPE_STEP = 8
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Mismatch:
+    """Both differences between a target and a sheet.
+
+    Attributes
+    ----------
+    missing, extra : shapely geometry, world
+        Target without sheet, and sheet without target.
+    missing_share, extra_share : float
+        Their areas as parts of the target's area.
+    target_area : float, world
+    gap : BoundaryGap
+        How far the boundaries of target and sheet are from each other.
+    """
+
+    missing: BaseGeometry
+    extra: BaseGeometry
+    missing_share: float
+    extra_share: float
+    target_area: float
+    gap: BoundaryGap
+
+
+def mismatch(target: FloatArray, sheet: FloatArray, removed: Sequence[FloatArray] = ()) -> Mismatch:
+    """Compare two closed polygons (L, 2) in world units; ``removed`` ones were cut off the sheet.
+
+    A sheet whose outline crosses itself is read as the area it covers.
+    """
+    import shapely  # 70 ms that the empty window need not pay
+
+    wanted = shapely.Polygon(target)
+    covered: BaseGeometry = shapely.Polygon(sheet)
+    if not covered.is_valid:
+        covered = shapely.make_valid(covered)
+    if removed:
+        off = shapely.union_all([shapely.Polygon(ring) for ring in removed], grid_size=GRID)
+        parts = shapely.get_parts(covered)  # of a sheet that touches itself lines may be left over
+        areas = shapely.union_all(parts[shapely.area(parts) > 0.0], grid_size=GRID)
+        covered = shapely.difference(areas, off, grid_size=GRID)
+    missing, extra = wanted.difference(covered), covered.difference(wanted)
+    gap = boundary_gap(wanted, covered)
+    return Mismatch(missing, extra, missing.area / wanted.area, extra.area / wanted.area, wanted.area, gap)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -72,57 +121,6 @@ def _stations(boundary: BaseGeometry) -> npt.NDArray[np.object_]:
     rings = [ring for ring in shapely.get_parts(boundary) if ring.length >= step]
     along = [shapely.line_interpolate_point(ring, np.arange(0.0, ring.length, step)) for ring in rings]
     return np.concatenate([np.atleast_1d(points) for points in along])
-
-
-TINT_ALPHA = 64
-#: Horizontal distance of hatch lines, pixels.
-STRIPE_STEP = 8
-#: What was cut off is snapped to this grid (world units) when it is taken from the sheet.
-GRID = 1e-9
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Mismatch:
-    """Both differences between a target and a sheet.
-
-    Attributes
-    ----------
-    missing, extra : shapely geometry, world
-        Target without sheet, and sheet without target.
-    missing_share, extra_share : float
-        Their areas as parts of the target's area.
-    target_area : float, world
-    gap : BoundaryGap
-        How far the boundaries of target and sheet are from each other.
-    """
-
-    missing: BaseGeometry
-    extra: BaseGeometry
-    missing_share: float
-    extra_share: float
-    target_area: float
-    gap: BoundaryGap
-
-
-def mismatch(target: FloatArray, sheet: FloatArray, removed: Sequence[FloatArray] = ()) -> Mismatch:
-    """Compare two closed polygons (L, 2) in world units; ``removed`` ones were cut off the sheet.
-
-    A sheet whose outline crosses itself is read as the area it covers.
-    """
-    import shapely  # 70 ms that the empty window need not pay
-
-    wanted = shapely.Polygon(target)
-    covered: BaseGeometry = shapely.Polygon(sheet)
-    if not covered.is_valid:
-        covered = shapely.make_valid(covered)
-    if removed:
-        off = shapely.union_all([shapely.Polygon(ring) for ring in removed], grid_size=GRID)
-        parts = shapely.get_parts(covered)  # of a sheet that touches itself lines may be left over
-        areas = shapely.union_all(parts[shapely.area(parts) > 0.0], grid_size=GRID)
-        covered = shapely.difference(areas, off, grid_size=GRID)
-    missing, extra = wanted.difference(covered), covered.difference(wanted)
-    gap = boundary_gap(wanted, covered)
-    return Mismatch(missing, extra, missing.area / wanted.area, extra.area / wanted.area, wanted.area, gap)
 
 
 def difference_chips(areas: Mismatch, mm_per_unit: float, palette: Palette, short: bool = False) -> list[Chip]:

@@ -1,4 +1,4 @@
-"""Paint what the hand may take hold of: voids, the vertices of the outline, locks, and a label at the pointer."""
+"""Voids and outline vertices that can be edited: picking, facts, highlight, locks, handles, the pointer's label."""
 
 from __future__ import annotations
 
@@ -12,11 +12,13 @@ from PySide6.QtGui import QBrush, QColor, QPainter, QPen
 
 from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray
+from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.scene.legends import paint_chip
 from kirigami_studio.gui.scene.mismatch_items import stripes
 from kirigami_studio.gui.scene.paths import line_path
 from kirigami_studio.gui.scene.view_transform import Bounds, ViewTransform
+from kirigami_studio.lattice.deployment import Deployment
 from kirigami_studio.project.document import Void
 
 #: Distance (pixels) from a closed slit, or from the edge of an open void, that still means the void.
@@ -27,6 +29,14 @@ VERTEX_REACH = 8.0
 STIFF_WITHIN = 0.02
 #: While a design is edited by hand, the picture keeps its place until its box has changed by this share.
 STEADY = 0.08
+#: Edge length (pixels) of a handle on a vertex, and of the one that is meant.
+HANDLE, HELD = 5.0, 9.0
+#: Handles closer together than this (pixels) would hide the outline: they get smaller.
+CROWDED = 14.0
+#: A lock's sign is drawn where a void's longer diagonal has at least this many pixels.
+ROOM_FOR_SIGN = 24.0
+#: Pixels between the pointer and its label.
+BESIDE = QPointF(16.0, 18.0)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -118,14 +128,63 @@ def steady(before: Bounds, now: Bounds) -> Bounds:
     return before if float(np.abs(moved).max()) <= STEADY * span else now
 
 
-#: Edge length (pixels) of a handle on a vertex, and of the one that is meant.
-HANDLE, HELD = 5.0, 9.0
-#: Handles closer together than this (pixels) would hide the outline: they get smaller.
-CROWDED = 14.0
-#: A lock's sign is drawn where a void's longer diagonal has at least this many pixels.
-ROOM_FOR_SIGN = 24.0
-#: Pixels between the pointer and its label.
-BESIDE = QPointF(16.0, 18.0)
+@dataclass(frozen=True, slots=True)
+class VoidFacts:
+    """One void at one angle of the motion.
+
+    Attributes
+    ----------
+    void : (row, column)
+    ratio : float
+        x = |p1 - p0| / |p3 - p0|.
+    angle : float, radians
+        Interior angle at the left corner p0 (paper, Eq. 1); the one at the bottom is its supplement.
+    edges_mm : four floats, mm
+        Lengths p0p1, p1p2, p2p3, p3p0 on the sheet as it is cut.
+    locked : bool
+    """
+
+    void: Void
+    ratio: float
+    angle: float
+    edges_mm: tuple[float, float, float, float]
+    locked: bool
+
+    @classmethod
+    def of(cls, deployment: Deployment, void: Void, phi: float, width_mm: float, locked: bool) -> VoidFacts:
+        """Measure a void of a sheet that is ``width_mm`` wide, at angle ``phi`` (radians)."""
+        scale = width_mm / float(np.ptp(deployment.compact[:, 0]))
+        corners = deployment.compact[deployment.topology.void_nodes[void]]
+        one, two, three, four = (scale * np.hypot(*(np.roll(corners, -1, axis=0) - corners).T)).tolist()
+        even = sum(void) % 2 == 0
+        ratio = float(deployment.field.ratio[void])
+        return cls(void, ratio, phi if even else math.pi - phi, (one, two, three, four), locked)
+
+    def lines(self) -> tuple[str, str]:
+        """What the small label says."""
+        row, column = self.void
+        first = tr("Void ({row}, {column})   x {ratio:.3f}", row=row, column=column, ratio=self.ratio)
+        if self.locked:
+            first = tr("{facts}   locked", facts=first)
+        angle, edges = math.degrees(self.angle), self._edges()
+        return first, tr("{angle:.1f}°   {edges} mm", angle=angle, edges=edges)
+
+    def sentence(self) -> str:
+        """What the status line says."""
+        row, column = self.void
+        told = tr(
+            "Void ({row}, {column}): ratio x {ratio:.3f}, angle {angle:.1f}° at its left corner, edges {edges} mm",
+            row=row,
+            column=column,
+            ratio=self.ratio,
+            angle=math.degrees(self.angle),
+            edges=self._edges(),
+        )
+        return tr("{facts}, locked.", facts=told) if self.locked else tr("{facts}.", facts=told)
+
+    def _edges(self) -> str:
+        """Opposite edges are equal: a void is a parallelogram."""
+        return f"{self.edges_mm[0]:.2f} \N{MULTIPLICATION SIGN} {self.edges_mm[1]:.2f}"
 
 
 def paint_marked(painter: QPainter, shapes: VoidShapes, voids: Iterable[Void], palette: Palette, width: float) -> None:

@@ -14,8 +14,14 @@ from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.scene.target_items import paint_label, paint_proposal, paint_size
 from kirigami_studio.gui.scene.view_transform import ViewTransform
-from kirigami_studio.gui.sketching.sketch_context import Change, Place, PointerEvent, SketchContext, SketchTool
-from kirigami_studio.gui.sketching.strokes import distance
+from kirigami_studio.gui.sketching.sketch_context import (
+    Change,
+    Place,
+    PointerEvent,
+    SketchContext,
+    SketchTool,
+    distance,
+)
 from kirigami_studio.outlines.placed import Placed
 
 REACH = 11.0

@@ -1,4 +1,4 @@
-"""What the tools of the target view share: the board, the grid, the mode, and where finished changes go."""
+"""What the tools of the target view share: the board, the grid, the mode, pointer events and finished changes."""
 
 from __future__ import annotations
 
@@ -21,7 +21,6 @@ from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.placed import BOARD_MM, Placed
 
 Place = tuple[float, float]
-
 #: The empty board, mm.
 BOARD = Bounds(-0.5 * BOARD_MM, -0.5 * BOARD_MM, 0.5 * BOARD_MM, 0.5 * BOARD_MM)
 #: Lines of the grid are at least this far apart, pixels.
@@ -39,25 +38,6 @@ ARROWS = {
     Qt.Key.Key_Up: (0, 1),
     Qt.Key.Key_Down: (0, -1),
 }
-
-
-@dataclass(frozen=True, slots=True)
-class Change:
-    """A finished gesture.
-
-    Attributes
-    ----------
-    gesture : str
-        As it follows the word Undo: "Add star".
-    make : callable
-        Returns the target as it shall be; raises a TargetError when that cannot be.
-    merge_key : str or None
-        Changes of one key that follow each other undo together.
-    """
-
-    gesture: str
-    make: Callable[[], Placed]
-    merge_key: str | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,6 +61,25 @@ class PointerEvent:
     shift: bool
     alt: bool = False
     snaps: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Change:
+    """A finished gesture.
+
+    Attributes
+    ----------
+    gesture : str
+        As it follows the word Undo: "Add star".
+    make : callable
+        Returns the target as it shall be; raises a TargetError when that cannot be.
+    merge_key : str or None
+        Changes of one key that follow each other undo together.
+    """
+
+    gesture: str
+    make: Callable[[], Placed]
+    merge_key: str | None = None
 
 
 class SketchContext(QObject):
@@ -141,12 +140,7 @@ class SketchContext(QObject):
 
     def set_axis(self, axis: Axis) -> None:
         """Mirror what is drawn from now on about axes through the middle of the target, or of the empty board."""
-        middle = (0.0, 0.0)
-        if self.placed is not None:
-            ring = self.placed.ring
-            x, y = (0.5 * (ring.min(axis=0) + ring.max(axis=0))).tolist()
-            middle = (x, y)
-        self.mirror = Mirror(axis, middle)
+        self.mirror = Mirror(axis, (0.0, 0.0) if self.placed is None else middle_of(self.placed))
         self.mirror_changed.emit()
         self.repaint.emit()
 
@@ -173,18 +167,6 @@ class SketchContext(QObject):
         self.changed.emit(Change(gesture, lambda: mirrored(target, make(), how, name, mirror)))
         if replaces:
             self.tool_done.emit()
-
-
-def _told(how: Combine, name: str) -> str:
-    """A drawn shape as it follows the word Undo."""
-    if how is Combine.REPLACE:
-        return tr("Draw freehand") if name == FREEHAND else tr("Draw {name}", name=name)
-    return tr("Add {name}", name=name) if how is Combine.ADD else tr("Take away {name}", name=name)
-
-
-def _key(outline: Outline) -> tuple[object, ...]:
-    """What tells drawn outlines apart, equal ones too."""
-    return outline, outline.size, outline.place, outline.nodes
 
 
 class SketchTool:
@@ -228,3 +210,27 @@ class SketchTool:
 
     def paint(self, painter: QPainter, transform: ViewTransform, palette: Palette) -> None:
         """Draw what the tool is about to do."""
+
+
+def middle_of(placed: Placed) -> tuple[float, float]:
+    """The middle of a target's box, mm."""
+    ring = placed.ring
+    x, y = (0.5 * (ring.min(axis=0) + ring.max(axis=0))).tolist()
+    return x, y
+
+
+def distance(one: QPointF, other: QPointF) -> float:
+    """Pixels between two positions."""
+    return math.hypot(one.x() - other.x(), one.y() - other.y())
+
+
+def _told(how: Combine, name: str) -> str:
+    """A drawn shape as it follows the word Undo."""
+    if how is Combine.REPLACE:
+        return tr("Draw freehand") if name == FREEHAND else tr("Draw {name}", name=name)
+    return tr("Add {name}", name=name) if how is Combine.ADD else tr("Take away {name}", name=name)
+
+
+def _key(outline: Outline) -> tuple[object, ...]:
+    """What tells drawn outlines apart, equal ones too."""
+    return outline, outline.size, outline.place, outline.nodes

@@ -16,7 +16,7 @@ from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.look import icons
 from kirigami_studio.gui.look.theme import LIGHT, Palette
-from kirigami_studio.gui.scene.thumbnail import candidate_pixmap
+from kirigami_studio.gui.scene.layout_items import candidate_pixmap
 from kirigami_studio.gui.views.gallery_model import (
     CANDIDATE_ROLE,
     DESIGN_ROLE,

@@ -1,4 +1,4 @@
-"""What the mouse and the keyboard do to the connectors of a cut view: pick, band, drag, remove."""
+"""Mouse gestures on the connectors of a cut view: select, rubber band, drag a width, cut through."""
 
 from __future__ import annotations
 
@@ -16,33 +16,6 @@ LIMITS_MM = (0.02, 20.0)
 DOUBLING = 70.0
 #: Widths snap to this, mm; with fine control to a tenth of it.
 STEP_MM = 0.01
-
-
-@dataclass(frozen=True, slots=True)
-class HingeDrag:
-    """Where the drag began.
-
-    Attributes
-    ----------
-    hinge : int
-    start : QPointF, pixels
-    width_mm : float
-        Finished width there; not a number where the connector was removed.
-    """
-
-    hinge: int
-    start: QPointF
-    width_mm: float
-
-    def width_at(self, place: QPointF, fine: bool) -> float:
-        """Width in mm that a place of the mouse asks for; ``fine`` for steps and ways of a tenth."""
-        way = (place.x() - self.start.x()) - (place.y() - self.start.y())
-        step, doubling = (0.1 * STEP_MM, 10.0 * DOUBLING) if fine else (STEP_MM, DOUBLING)
-        wanted = self.width_mm * math.pow(2.0, min(max(way / doubling, -20.0), 20.0))
-        low, high = LIMITS_MM
-        return min(max(round(wanted / step) * step, low), high)
-
-
 #: A press that moves less than this (pixels) is a click.
 CLICK = 4.0
 
@@ -169,6 +142,31 @@ class HingeGestures(QObject):
             self.changed.emit()
         elif pressed is not None and not self._adding and (place - pressed).manhattanLength() < CLICK:
             self.select(frozenset())
+
+
+@dataclass(frozen=True, slots=True)
+class HingeDrag:
+    """Where the drag began.
+
+    Attributes
+    ----------
+    hinge : int
+    start : QPointF, pixels
+    width_mm : float
+        Finished width there; not a number where the connector was removed.
+    """
+
+    hinge: int
+    start: QPointF
+    width_mm: float
+
+    def width_at(self, place: QPointF, fine: bool) -> float:
+        """Width in mm that a place of the mouse asks for; ``fine`` for steps and ways of a tenth."""
+        way = (place.x() - self.start.x()) - (place.y() - self.start.y())
+        step, doubling = (0.1 * STEP_MM, 10.0 * DOUBLING) if fine else (STEP_MM, DOUBLING)
+        wanted = self.width_mm * math.pow(2.0, min(max(way / doubling, -20.0), 20.0))
+        low, high = LIMITS_MM
+        return min(max(round(wanted / step) * step, low), high)
 
 
 def adds(modifiers: Qt.KeyboardModifier) -> bool:

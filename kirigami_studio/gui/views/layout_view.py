@@ -1,4 +1,4 @@
-"""The sheet at any angle, over its target."""
+"""The sheet at any angle over its target, and the tour from fault to fault."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from dataclasses import replace
 from enum import Enum
 
 import numpy as np
-from PySide6.QtCore import QPointF, QRectF
-from PySide6.QtGui import QFontMetrics, QPainter
+from PySide6.QtCore import QEvent, QObject, QPointF, QRectF, Qt, Signal
+from PySide6.QtGui import QFontMetrics, QMouseEvent, QPainter
 from PySide6.QtWidgets import QWidget
 
 from kirigami_studio.evaluate.posed_design import PosedDesign
@@ -34,13 +34,8 @@ from kirigami_studio.gui.scene.fault_items import (
     paint_fault,
 )
 from kirigami_studio.gui.scene.layout_items import paint_panels, turning_left
-from kirigami_studio.gui.scene.legends import Chip, clear_box, legend_boxes, paint_caption, paint_legend
-from kirigami_studio.gui.scene.mismatch_items import Mismatch, difference_chips, mismatch, paint_mismatch, usual_chips
-from kirigami_studio.gui.scene.small_parts import SmallPart, smallest_parts
-from kirigami_studio.gui.scene.target_items import paint_target_line
-from kirigami_studio.gui.scene.view_transform import Bounds, ViewTransform
-from kirigami_studio.gui.scene.void_items import VoidShapes, steady
-from kirigami_studio.gui.scene.void_numbers import (
+from kirigami_studio.gui.scene.layout_labels import (
+    SmallPart,
     heat_tiles,
     paint_dimension,
     paint_heat,
@@ -48,7 +43,13 @@ from kirigami_studio.gui.scene.void_numbers import (
     paint_shaded,
     quad_areas,
     room_in,
+    smallest_parts,
 )
+from kirigami_studio.gui.scene.legends import Chip, clear_box, legend_boxes, paint_caption, paint_legend
+from kirigami_studio.gui.scene.mismatch_items import Mismatch, difference_chips, mismatch, paint_mismatch, usual_chips
+from kirigami_studio.gui.scene.target_items import paint_target_line
+from kirigami_studio.gui.scene.view_transform import Bounds, ViewTransform
+from kirigami_studio.gui.scene.void_items import VoidShapes, steady
 from kirigami_studio.gui.views.canvas import Canvas
 from kirigami_studio.gui.views.void_gestures import VoidGestures
 from kirigami_studio.outlines.outline import Outline
@@ -57,6 +58,22 @@ from kirigami_studio.outlines.outline import Outline
 COMPARED_WITHIN = math.radians(12.0)
 #: Opacity of the target's outline there.
 FAINT = 0.4
+#: Width (mm) of the flat sheet until it is known.
+USUAL_WIDTH_MM = 100.0
+#: Pixels around a fault's middle that belong to its sign.
+FAULT_REACH = 12.0
+#: Radians past the first contact from which the place of the overlap at that angle is marked as well.
+NEAR_CONTACT = math.radians(0.5)
+#: The greatest distance between sheet and target is marked from this length (pixels) on.
+SHORTEST_GAP = 6.0
+#: Narrower than this (pixels) the legend says less.
+NARROW = 440
+#: Pixels from the top that the caption takes.
+CAPTION_HEIGHT = 44.0
+#: How much a fault is enlarged over the fitted picture.
+CLOSE_UP = 5.0
+#: A mouse that moves less than this (pixels) between press and release has clicked.
+STILL = 4.0
 
 
 class Overlay(Enum):
@@ -76,18 +93,6 @@ class Overlay(Enum):
 USUAL = frozenset({Overlay.TARGET, Overlay.MISMATCH, Overlay.FAULTS})
 #: Overlays that a colour bar explains.
 BAR_TITLES = {Overlay.RATIOS: RATIO_TITLE, Overlay.OPENINGS: OPENING_TITLE}
-#: Width (mm) of the flat sheet until it is known.
-USUAL_WIDTH_MM = 100.0
-#: Pixels around a fault's middle that belong to its sign.
-FAULT_REACH = 12.0
-#: Radians past the first contact from which the place of the overlap at that angle is marked as well.
-NEAR_CONTACT = math.radians(0.5)
-#: The greatest distance between sheet and target is marked from this length (pixels) on.
-SHORTEST_GAP = 6.0
-#: Narrower than this (pixels) the legend says less.
-NARROW = 440
-#: Pixels from the top that the caption takes.
-CAPTION_HEIGHT = 44.0
 
 
 class LayoutView(Canvas):
@@ -388,3 +393,59 @@ class LayoutView(Canvas):
             paint_caption(painter, self._caption, self.width(), self.palette_)
         paint_colour_bars(painter, self._scales, self.width() - 10.0, self._bars_top(), self.palette_)
         self.voids.paint_label(painter, self.palette_)
+
+
+class FaultTour(QObject):
+    """Watches one view; it takes no click away from it that is not on a fault."""
+
+    phi_wanted = Signal(float)  #: radians, the angle at which the fault can be seen
+    said = Signal(str)
+
+    def __init__(self, view: LayoutView) -> None:
+        super().__init__(view)
+        self._view = view
+        self._place = -1
+        self._pressed: QPointF | None = None
+        view.installEventFilter(self)
+
+    def step(self, forth: int) -> None:
+        """Go to the next fault, or to the one before; after the last one comes the first."""
+        found = self._view.find_faults()
+        if not found:
+            self.said.emit(tr("No fault: no panel is inverted, and the sheet does not touch itself."))
+            return
+        self._place = (self._place + forth) % len(found) if self._place >= 0 else (0 if forth > 0 else len(found) - 1)
+        self.visit(found[self._place])
+        words = _words(found[self._place].kind)
+        self.said.emit(tr("Fault {number} of {count}: {what}.", number=self._place + 1, count=len(found), what=words))
+
+    def visit(self, fault: Fault) -> None:
+        """Show one fault, at the angle at which it is seen."""
+        if fault.phi is not None:
+            self.phi_wanted.emit(fault.phi)
+        self._view.zoom_to(fault.where, CLOSE_UP)
+
+    def forget(self) -> None:
+        """Another design: begin with its first fault."""
+        self._place = -1
+
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802 - Qt's name
+        if isinstance(event, QMouseEvent) and event.button() is Qt.MouseButton.LeftButton:
+            if event.type() == QEvent.Type.MouseButtonPress:
+                self._pressed = event.position()
+            elif event.type() == QEvent.Type.MouseButtonRelease and self._pressed is not None:
+                moved = (event.position() - self._pressed).manhattanLength()
+                fault = self._view.fault_at(event.position()) if moved < STILL else None
+                self._pressed = None
+                if fault is not None:
+                    self.visit(fault)
+                    self.said.emit(_words(fault.kind).capitalize() + ".")
+        return False
+
+
+def _words(kind: FaultKind) -> str:
+    return {
+        FaultKind.INVERTED: tr("inverted or collapsed panel"),
+        FaultKind.CONTACT: tr("first contact while deploying"),
+        FaultKind.CROSSING: tr("the sheet overlaps itself here"),
+    }[kind]

@@ -28,11 +28,10 @@ from kirigami_studio.gui.scene.target_items import (
     paint_target_shape,
 )
 from kirigami_studio.gui.scene.view_transform import Bounds, ViewTransform
-from kirigami_studio.gui.sketching.boxes import FigureTool, TextTool
 from kirigami_studio.gui.sketching.point_tool import PointTool
 from kirigami_studio.gui.sketching.pose_tool import PoseTool
+from kirigami_studio.gui.sketching.shape_tools import Corners, FigureTool, Freehand, TextTool
 from kirigami_studio.gui.sketching.sketch_context import BOARD, PointerEvent, SketchContext, SketchTool
-from kirigami_studio.gui.sketching.strokes import Corners, Freehand
 from kirigami_studio.gui.sketching.underlay import Underlay
 from kirigami_studio.gui.views.canvas import Canvas
 from kirigami_studio.outlines.combining import Combine

@@ -24,6 +24,11 @@ from kirigami_studio.gui.scene.void_items import (
 from kirigami_studio.gui.views.canvas import Canvas
 from kirigami_studio.project.document import Void
 
+#: log10 of the factor by which one notch of the wheel, or a press of + or -, changes a ratio: 5 %, or 0.5 % with Shift.
+NOTCH, FINE_NOTCH = 0.0212, 0.00217
+#: A press that moves less than this (pixels) is a click.
+CLICK = 4.0
+LEFT = Qt.MouseButton.LeftButton
 _WALKS = {
     Qt.Key.Key_Left: (0, -1),
     Qt.Key.Key_Right: (0, 1),
@@ -32,46 +37,6 @@ _WALKS = {
 }
 #: Shift is part of "+" on many keyboards, so that Alt asks for fine steps here.
 _TURNS = {Qt.Key.Key_Plus: 1, Qt.Key.Key_Equal: 1, Qt.Key.Key_Minus: -1, Qt.Key.Key_Underscore: -1}
-
-
-@dataclass(frozen=True, slots=True)
-class Step:
-    """A walk to another void, or a change of the ratio.
-
-    Attributes
-    ----------
-    down, right : int
-        Rows and columns to walk.
-    direction : int
-        1 for a larger ratio, -1 for a smaller one, 0 for a walk.
-    fine : bool
-    """
-
-    down: int = 0
-    right: int = 0
-    direction: int = 0
-    fine: bool = False
-
-
-def step_of(event: QKeyEvent) -> Step | None:
-    """What a key asks for, if anything; Ctrl and the keys of the window stay with the window."""
-    key, modifiers = Qt.Key(event.key()), event.modifiers()
-    if modifiers & Qt.KeyboardModifier.ControlModifier:
-        return None
-    fine = bool(modifiers & Qt.KeyboardModifier.AltModifier)
-    if key in _WALKS and not fine:
-        down, right = _WALKS[key]
-        return Step(down, right)
-    if key in _TURNS:
-        return Step(direction=_TURNS[key], fine=fine)
-    return None
-
-
-#: log10 of the factor by which one notch of the wheel, or a press of + or -, changes a ratio: 5 %, or 0.5 % with Shift.
-NOTCH, FINE_NOTCH = 0.0212, 0.00217
-#: A press that moves less than this (pixels) is a click.
-CLICK = 4.0
-LEFT = Qt.MouseButton.LeftButton
 
 
 class VoidGestures(QObject):
@@ -386,3 +351,36 @@ class VoidGestures(QObject):
             self._hovered = None
             self.hovered.emit(None)
         self._canvas.update()
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """A walk to another void, or a change of the ratio.
+
+    Attributes
+    ----------
+    down, right : int
+        Rows and columns to walk.
+    direction : int
+        1 for a larger ratio, -1 for a smaller one, 0 for a walk.
+    fine : bool
+    """
+
+    down: int = 0
+    right: int = 0
+    direction: int = 0
+    fine: bool = False
+
+
+def step_of(event: QKeyEvent) -> Step | None:
+    """What a key asks for, if anything; Ctrl and the keys of the window stay with the window."""
+    key, modifiers = Qt.Key(event.key()), event.modifiers()
+    if modifiers & Qt.KeyboardModifier.ControlModifier:
+        return None
+    fine = bool(modifiers & Qt.KeyboardModifier.AltModifier)
+    if key in _WALKS and not fine:
+        down, right = _WALKS[key]
+        return Step(down, right)
+    if key in _TURNS:
+        return Step(direction=_TURNS[key], fine=fine)
+    return None

@@ -1,6 +1,9 @@
-"""Paint what belongs to voids: ratios as a heat map, openings by their area, numbers of voids and panels."""
+"""What overlays say about a layout: ratios and openings as colours, numbers of panels and voids, the smallest parts."""
 
 from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
 
 import numpy as np
 from PySide6.QtCore import QLineF, QPointF, QRectF, Qt
@@ -17,6 +20,30 @@ EDGE_OPACITY = 0.35
 SMALL_PRINT = 0.82
 #: Pixels around a number that belong to it.
 AROUND = 3.0
+#: How many are shown.
+SHOWN = 5
+
+
+def paint_heat(painter: QPainter, panels: FloatArray, ratio: FloatArray, scale: ColourScale, palette: Palette) -> None:
+    """Fill the tiles of panels ((m + 1)(n + 1), 4, 2), pixels, with the colours of the ratios (m, n)."""
+    rows, columns = ratio.shape
+    paint_shaded(painter, heat_tiles(panels, rows, columns).reshape(-1, 4, 2), np.log10(ratio).ravel(), scale)
+    line = QColor(palette.text)
+    line.setAlphaF(EDGE_OPACITY)
+    painter.setPen(QPen(line, 0.0))
+    sides = np.stack([panels, np.roll(panels, -1, axis=1)], axis=2).reshape(-1, 4)
+    painter.drawLines([QLineF(*side) for side in sides.tolist()])
+
+
+def paint_shaded(painter: QPainter, quads: FloatArray, values: FloatArray, scale: ColourScale) -> None:
+    """Fill quadrilaterals (K, 4, 2), pixels, with the colours of their values (K,).
+
+    Without a pen and opaque: with them 576 take 50 ms instead of 6.
+    """
+    painter.setPen(Qt.PenStyle.NoPen)
+    for path, colour in zip(quad_paths(quads), scale.shades(values), strict=True):
+        painter.setBrush(colour)
+        painter.drawPath(path)
 
 
 def heat_tiles(panels: FloatArray, rows: int, columns: int) -> FloatArray:
@@ -39,28 +66,6 @@ def quad_areas(quads: FloatArray) -> FloatArray:
     """Area of quadrilaterals (..., 4, 2), without sign."""
     first, second = quads[..., 2, :] - quads[..., 0, :], quads[..., 3, :] - quads[..., 1, :]
     return np.asarray(0.5 * np.abs(first[..., 0] * second[..., 1] - first[..., 1] * second[..., 0]))
-
-
-def paint_shaded(painter: QPainter, quads: FloatArray, values: FloatArray, scale: ColourScale) -> None:
-    """Fill quadrilaterals (K, 4, 2), pixels, with the colours of their values (K,).
-
-    Without a pen and opaque: with them 576 take 50 ms instead of 6.
-    """
-    painter.setPen(Qt.PenStyle.NoPen)
-    for path, colour in zip(quad_paths(quads), scale.shades(values), strict=True):
-        painter.setBrush(colour)
-        painter.drawPath(path)
-
-
-def paint_heat(painter: QPainter, panels: FloatArray, ratio: FloatArray, scale: ColourScale, palette: Palette) -> None:
-    """Fill the tiles of panels ((m + 1)(n + 1), 4, 2), pixels, with the colours of the ratios (m, n)."""
-    rows, columns = ratio.shape
-    paint_shaded(painter, heat_tiles(panels, rows, columns).reshape(-1, 4, 2), np.log10(ratio).ravel(), scale)
-    line = QColor(palette.text)
-    line.setAlphaF(EDGE_OPACITY)
-    painter.setPen(QPen(line, 0.0))
-    sides = np.stack([panels, np.roll(panels, -1, axis=1)], axis=2).reshape(-1, 4)
-    painter.drawLines([QLineF(*side) for side in sides.tolist()])
 
 
 def paint_numbers(
@@ -113,6 +118,67 @@ def room_in(quads: FloatArray) -> FloatArray:
     along = np.linalg.norm(middles[..., 3, :] - middles[..., 1, :], axis=-1)
     shorter: FloatArray = np.minimum(across, along)
     return shorter
+
+
+class PartKind(Enum):
+    """What is small about a panel."""
+
+    EDGE = "edge"
+    NECK = "neck"
+
+
+@dataclass(frozen=True, slots=True)
+class SmallPart:
+    """An edge or a neck of one panel; panels are rigid, so it stays the same at every angle.
+
+    Attributes
+    ----------
+    kind : PartKind
+    panel : int
+        Row by row.
+    which : int
+        Number of the edge or neck in the panel.
+    size : float
+        In the unit of the corners that it was found in.
+    """
+
+    kind: PartKind
+    panel: int
+    which: int
+    size: float
+
+    def ends(self, panels: FloatArray) -> FloatArray:
+        """Both ends (2, 2) of it in panels (K, 4, 2) of any frame that keeps angles."""
+        from kirigami_studio.fabricate.panel_sizes import edges_of, necks_of
+
+        sizes = edges_of if self.kind is PartKind.EDGE else necks_of
+        line: FloatArray = sizes(panels[self.panel : self.panel + 1]).lines[0, self.which]
+        return line
+
+
+def smallest_parts(panels: FloatArray, trimmed: frozenset[int] = frozenset(), count: int = SHOWN) -> list[SmallPart]:
+    """Find the smallest part of each panel, and return the smallest of them all, smallest first.
+
+    Parameters
+    ----------
+    panels : (K, 4, 2) float
+    trimmed : frozenset of int
+        Panels that are not looked at: trimming has changed their shape.
+    """
+    from kirigami_studio.fabricate.panel_sizes import edges_of, necks_of
+
+    edges, necks = edges_of(panels).sizes, necks_of(panels).sizes
+    sizes = np.concatenate([edges, necks], axis=1)
+    sizes[sorted(trimmed)] = np.inf
+    which = np.argmin(sizes, axis=1)
+    smallest = sizes[np.arange(len(sizes)), which]
+    found = []
+    for panel in np.argsort(smallest, kind="stable")[:count].tolist():
+        number, size = int(which[panel]), float(smallest[panel])
+        if np.isfinite(size):
+            kind = PartKind.EDGE if number < edges.shape[1] else PartKind.NECK
+            found.append(SmallPart(kind, panel, number if kind is PartKind.EDGE else number - edges.shape[1], size))
+    return found
 
 
 def paint_dimension(
