@@ -26,10 +26,9 @@ from kirigami_studio.pipeline.provenance import provenance
 from kirigami_studio.pipeline.redesign import keep_for_connectors
 from kirigami_studio.pipeline.request import POLISH_STEPS, Request
 from kirigami_studio.pipeline.run import run
-from kirigami_studio.project.candidate_edits import format_run
-from kirigami_studio.project.design_facts import design_facts
+from kirigami_studio.project.cutting import material_for
+from kirigami_studio.project.design_facts import design_facts, with_run
 from kirigami_studio.project.document import Document
-from kirigami_studio.project.material_record import material_for
 from kirigami_studio.project.settings import DesignSettings, FabricationSettings
 from kirigami_studio.project.store import save
 
@@ -151,7 +150,7 @@ def document_of(result: Result, fabrication: FabricationSettings) -> Document:
         request.search,
     )
     source = provenance(request, digest_of(request.variant))
-    candidates = tuple(format_run(result.candidates, source))
+    candidates = tuple(with_run(result.candidates, source))
     return Document(request.target, settings, candidates, 0, fabrication, source)
 
 

@@ -220,7 +220,7 @@ COMMANDS: tuple[Command, ...] = (
         "the paper's network and settings, 400 epochs of 5000 targets (on a GPU):",
         "kirigami-studio train prior --backbone unet --coupling ot --batch 64 --noises 1 --learning-rate 2e-5 "
         "--weight-decay 0.05 --outline-weight 0 --steps 31250 --out runs/unet")),
-    Command("train align", "align a prior with match and regularity, through sampler and geometry", "aligning:align", (
+    Command("train align", "align a prior with match and regularity, through sampler and geometry", "learning:align", (
         option("--out", required=True, help="run folder: checkpoint, log, weights"),
         option("--start", default="bundled", metavar="WEIGHTS",
                help="prior to align: 'bundled' (default), or the .safetensors of a run"),
@@ -247,7 +247,7 @@ COMMANDS: tuple[Command, ...] = (
     ), ("kirigami-studio train align --out runs/aligned",
         "kirigami-studio train align --go-on bundled --seed 1 --out runs/further",
         "kirigami-studio train align --start runs/prior/prior.safetensors --minutes 30 --out runs/aligned")),
-    Command("train grpo", "align a generator with a reward, by the paper's rule; resumes as well", "aligning:grpo", (
+    Command("train grpo", "align a generator with a reward, by the paper's rule; resumes as well", "learning:grpo", (
         option("--out", required=True, help="run folder: checkpoint, log, weights"),
         option("--reward", choices=("accuracy", "regularity", "balanced"), default="accuracy",
                help="what to prefer (default accuracy)"),

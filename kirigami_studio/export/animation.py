@@ -13,9 +13,9 @@ from PIL import Image
 from kirigami_studio.export.exporter import ExportJob
 from kirigami_studio.export.facts import origin_facts
 from kirigami_studio.export.picture import PictureFrame, draw_polygons
-from kirigami_studio.export.verified import write_verified
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import ExportError
+from kirigami_studio.foundation.files import write_atomically
 
 FRAMES = 40
 FRAME_MS = 50
@@ -78,7 +78,7 @@ def write_animation(job: ExportJob, path: str | Path, frames: int = FRAMES, long
             if found != frames or read.size != pictures[0].size:
                 raise ExportError(f"The GIF did not read back: {found} frames instead of {frames}.")
 
-    write_verified(Path(path), stream.getvalue(), verify)
+    write_atomically(Path(path), stream.getvalue(), verify)
     return frames
 
 

@@ -22,9 +22,9 @@ from kirigami_studio.export.facts import facts_of
 from kirigami_studio.export.file_content import FileContent, bent_otherwise
 from kirigami_studio.export.profile import BLUE, DEFAULT_PROFILE, WHITE, Profile, find_profile
 from kirigami_studio.export.strokes import Stroke, extent, layer_colours, strokes_of
-from kirigami_studio.export.verified import write_verified
 from kirigami_studio.fabricate.cut_plan import CutPlan
 from kirigami_studio.foundation.errors import ExportError
+from kirigami_studio.foundation.files import write_atomically
 
 VERSIONS = ("R2010", "R12")
 #: Layers that every DXF document has whether wanted or not.
@@ -70,7 +70,7 @@ def write_dxf(
     content = dxf_bytes(plan, version, chosen)
     strokes = strokes_of(plan, chosen)
     size = extent(strokes)
-    write_verified(Path(path), content, lambda written: check_written(written, strokes, size, version))
+    write_atomically(Path(path), content, lambda written: check_written(written, strokes, size, version))
 
 
 def dxf_bytes(plan: CutPlan, version: str, profile: Profile) -> bytes:
@@ -256,7 +256,7 @@ def write_reference(plan: CutPlan, path: str | Path) -> Path:
     facts = {**facts_of(plan, find_profile(PROFILE)), "PURPOSE": "reference, not for cutting"}
     content = strokes_dxf(strokes, size, "R2010", facts, lambda document: _mark(document, plan, facts))
     circles = len(plan.hinges)
-    write_verified(goal, content, lambda written: check_marked(written, strokes, {"CIRCLE": circles}))
+    write_atomically(goal, content, lambda written: check_marked(written, strokes, {"CIRCLE": circles}))
     return goal
 
 

@@ -18,9 +18,9 @@ from kirigami_studio.export.dxf import check_written, strokes_dxf
 from kirigami_studio.export.facts import facts_of
 from kirigami_studio.export.profile import Profile
 from kirigami_studio.export.strokes import Stroke, extent, strokes_of
-from kirigami_studio.export.verified import write_verified
 from kirigami_studio.fabricate.cut_plan import CutPlan
 from kirigami_studio.foundation.errors import ExportError
+from kirigami_studio.foundation.files import write_atomically
 
 OWN_NAME = re.compile(r"[1-9]_[A-Z_]+\.dxf")
 
@@ -56,7 +56,7 @@ def write_layer_files(plan: CutPlan, path: str | Path, version: str, profile: Pr
         fresh = Path(tempfile.mkdtemp(prefix=f".{folder.name}.", dir=folder.parent))
         for name, part in by_layer(strokes).items():
             verify = partial(check_written, strokes=part, size=size, version=version)
-            write_verified(fresh / name, strokes_dxf(part, size, version, facts), verify)
+            write_atomically(fresh / name, strokes_dxf(part, size, version, facts), verify)
         fresh.chmod(0o755)
         _put_in_place(fresh, folder)
         fresh = None

@@ -18,11 +18,11 @@ from kirigami_studio.export.exporter import ExportJob
 from kirigami_studio.export.facts import facts_of
 from kirigami_studio.export.profile import find_profile
 from kirigami_studio.export.strokes import layer_colours, strokes_of
-from kirigami_studio.export.verified import write_verified
 from kirigami_studio.fabricate.bulges import arc_of
 from kirigami_studio.fabricate.cut_plan import CutPath, CutPlan, Layer
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import ExportError
+from kirigami_studio.foundation.files import write_atomically
 
 #: Numbers of the palette: magenta, red, green, blue, as in the DXF profile.
 PALETTE_NUMBER = {Layer.RELIEF: 7, Layer.SLITS: 2, Layer.EDGE_SLITS: 3, Layer.OUTLINE: 1}
@@ -76,7 +76,7 @@ def write_lightburn(plan: CutPlan, path: str | Path) -> None:
                     f"{name}. Nothing was written."
                 )
 
-    write_verified(Path(path), content, verify)
+    write_atomically(Path(path), content, verify)
 
 
 def lightburn_bytes(plan: CutPlan) -> bytes:

@@ -26,10 +26,10 @@ from kirigami_studio.export.facts import facts_of
 from kirigami_studio.export.palette import Colour
 from kirigami_studio.export.paper import FOOTER_MM, MARGIN_MM, NO_PAPER, Box, Tile, Tiling, find_paper, tile
 from kirigami_studio.export.profile import find_profile
-from kirigami_studio.export.verified import write_verified
 from kirigami_studio.fabricate.cut_plan import CutPlan
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import ExportError
+from kirigami_studio.foundation.files import write_atomically
 
 RULER_MM = 50.0
 CUT_LINE_MM = 0.1
@@ -75,7 +75,7 @@ def write_pdf(plan: CutPlan, path: str | Path, paper: str = NO_PAPER) -> None:
     lines = [(cut.flattened, cut.closed, palette.LAYER_COLOUR[cut.layer]) for cut in plan.paths]
     tiling = one_page(plan) if find_paper(paper) is None else tile(plan.bounds_mm, paper)
     content = _pdf_bytes(plan, lines, tiling)
-    write_verified(Path(path), content, lambda written: _verify(written, plan, tiling))
+    write_atomically(Path(path), content, lambda written: _verify(written, plan, tiling))
 
 
 def page_size_mm(plan: CutPlan) -> tuple[float, float]:

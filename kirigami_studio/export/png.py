@@ -13,8 +13,8 @@ from PIL.PngImagePlugin import PngInfo
 from kirigami_studio.export.exporter import ExportJob
 from kirigami_studio.export.facts import origin_facts
 from kirigami_studio.export.picture import PictureFrame, draw_polygons
-from kirigami_studio.export.verified import write_verified
 from kirigami_studio.foundation.errors import ExportError
+from kirigami_studio.foundation.files import write_atomically
 
 LONGEST_SIDE = 900
 
@@ -49,7 +49,7 @@ def write_png(job: ExportJob, path: str | Path, longest: int = LONGEST_SIDE) -> 
             if read.size != image.size:
                 raise ExportError(f"The PNG did not read back: {read.size} instead of {image.size} pixels.")
 
-    write_verified(Path(path), stream.getvalue(), verify)
+    write_atomically(Path(path), stream.getvalue(), verify)
 
 
 def text_chunks(facts: Mapping[str, str]) -> PngInfo:

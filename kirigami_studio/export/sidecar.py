@@ -12,9 +12,9 @@ from typing import Any
 
 from kirigami_studio import __version__
 from kirigami_studio.export.exporter import ExportJob
-from kirigami_studio.export.verified import write_verified
 from kirigami_studio.fabricate.cut_plan import CutPlan
 from kirigami_studio.foundation.errors import ExportError
+from kirigami_studio.foundation.files import write_atomically
 
 #: Raised when entries change their meaning.
 VERSION = 1
@@ -49,7 +49,7 @@ def write_sidecar(job: ExportJob, path: str | Path, cut_files: Sequence[Path] = 
         if json.loads(written.read_bytes()) != record:
             raise ExportError(f"The record {goal} did not read back. Nothing was written; please report it.")
 
-    write_verified(goal, content, verify)
+    write_atomically(goal, content, verify)
     return goal
 
 

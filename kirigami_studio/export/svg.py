@@ -16,10 +16,10 @@ from kirigami_studio.export.facts import facts_of, origin_facts
 from kirigami_studio.export.palette import hexadecimal
 from kirigami_studio.export.profile import BLUE, GREEN, MAGENTA, RED, WHITE, Profile, find_profile
 from kirigami_studio.export.strokes import Stroke, extent, strokes_of
-from kirigami_studio.export.verified import write_verified
 from kirigami_studio.fabricate.cut_plan import DECIMALS, CutPlan
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import ExportError
+from kirigami_studio.foundation.files import write_atomically
 
 NAMESPACE = "http://www.w3.org/2000/svg"
 #: Line width (mm) of cut lines; laser drivers take anything thinner than 0.1 mm as a line to cut.
@@ -175,7 +175,7 @@ def _write(root: ElementTree.Element, path: Path, paths: int, size: tuple[float,
         if found != paths or read.get("width") != f"{_number(size[0])}mm":
             raise ExportError(f"The SVG did not read back: {found} paths instead of {paths}. Nothing was written.")
 
-    write_verified(path, content, verify)
+    write_atomically(path, content, verify)
 
 
 def _content(root: ElementTree.Element) -> bytes:

@@ -4,40 +4,62 @@ from __future__ import annotations
 
 import contextlib
 import os
+import stat
 import tempfile
+from collections.abc import Callable
 from pathlib import Path
 
 from kirigami_studio.foundation.errors import ExportError
 
+#: Permissions of files that did not exist before: everybody may read them.
+NEW_FILE_MODE = 0o644
 
-def write_atomically(path: Path, content: bytes) -> None:
+
+def write_atomically(path: Path, content: bytes, verify: Callable[[Path], None] | None = None) -> None:
     """Write ``content`` beside ``path``, flush it to disk, then rename it into place.
 
-    A symbolic link at ``path`` stays; the file that it leads to is replaced.
+    A symbolic link at ``path`` stays; the file that it leads to is replaced.  A file that exists keeps its permissions.
+
+    Parameters
+    ----------
+    path : Path
+        Where the file shall appear; missing folders are made.
+    content : bytes
+    verify : callable, optional
+        Reads the temporary file, which has the same extension, before it is renamed; raises ExportError when the file
+        is not what was meant.
 
     Raises
     ------
     ExportError
-        The folder is missing or cannot be written, the disk is full, or ``path`` is a link that leads to no file; an
-        older file at ``path`` is untouched.
+        The folder is missing or cannot be written, the disk is full, ``path`` is a link that leads to no file, or
+        ``verify`` refused the file; an older file at ``path`` is untouched and nothing else is left behind.
     """
-    temporary: str | None = None
+    temporary: Path | None = None
     try:
         place = linked_file(path)
         place.parent.mkdir(parents=True, exist_ok=True)
-        handle, temporary = tempfile.mkstemp(prefix=f".{place.name}.", dir=place.parent)
+        if place.is_dir():
+            raise ExportError("file.is_a_folder", path=path)
+        mode = stat.S_IMODE(place.stat().st_mode) if place.exists() else NEW_FILE_MODE
+        # Part of the name, since that of the file may already be as long as a name can be.
+        handle, name = tempfile.mkstemp(prefix=f".{place.stem[:40]}.", suffix=place.suffix, dir=place.parent)
+        temporary = Path(name)
         with os.fdopen(handle, "wb") as stream:
             stream.write(content)
             stream.flush()
             os.fsync(stream.fileno())
-        Path(temporary).chmod(0o644)
-        Path(temporary).replace(place)
+        if verify is not None:
+            verify(temporary)
+        temporary.chmod(mode)
+        temporary.replace(place)
+        temporary = None
     except OSError as error:
+        raise ExportError("file.not_written", path=path, reason=error.strerror or str(error)) from error
+    finally:
         if temporary is not None:
             with contextlib.suppress(OSError):
-                Path(temporary).unlink()
-        reason = error.strerror or str(error)
-        raise ExportError("file.not_written", path=path, reason=reason) from error
+                temporary.unlink()
 
 
 def linked_file(path: Path) -> Path:
@@ -65,7 +87,7 @@ def check_folder(folder: Path) -> None:
     Raises
     ------
     ExportError
-        A file stands where the folder should be, or there is no right to write.
+        A file stands where the folder should be, or the folder cannot be written to.
     """
     try:
         nearest = next(place for place in (folder, *folder.absolute().parents) if place.exists())

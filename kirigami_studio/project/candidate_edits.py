@@ -1,4 +1,4 @@
-"""The named changes to the collection of designs: what is thought of one, and what another run adds."""
+"""The named changes to the collection of designs: marking one, and adding those of another run."""
 
 from __future__ import annotations
 
@@ -10,14 +10,12 @@ from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.errors import ProjectError
 from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.project.design_facts import joined_provenance, with_run
 from kirigami_studio.project.document import Document, Mark
 from kirigami_studio.project.edits import Edit, set_candidates
 
 #: Designs that a project collects at most; one run may bring as many.
 LARGEST_COLLECTION = 1024
-#: Between what is known of several runs.
-BETWEEN_RUNS = "; "
-
 #: Sorting key of a candidate; smaller is better.
 RankKey = Callable[[Candidate], Any]
 
@@ -25,7 +23,7 @@ RankKey = Callable[[Candidate], Any]
 def set_mark(document: Document, index: int, mark: Mark, chosen: int | None = None) -> Edit:
     """Pin or reject candidate ``index``, or take that back.
 
-    ``chosen`` goes to the stage in the same step, as when the design that is rejected was there.
+    ``chosen`` is chosen in the same step, as when the design that is rejected was the chosen one.
 
     Raises
     ------
@@ -33,7 +31,7 @@ def set_mark(document: Document, index: int, mark: Mark, chosen: int | None = No
         There is no such candidate.
     """
     if not 0 <= index < len(document.candidates):
-        raise ProjectError(f"Design number {index} was to be marked, but the project holds {len(document.candidates)}.")
+        raise ProjectError("project.no_such_design", index=index, designs=len(document.candidates))
     marks = list(document.marks)
     before, marks[index] = marks[index], mark
     labels = {
@@ -77,8 +75,8 @@ def add_candidates(document: Document, brought: Brought, rank: RankKey, limit: i
     """
     marked = dict(zip(document.candidates, document.marks, strict=True))
     fields = {candidate.field for candidate in document.candidates}
-    added = format_run(_without_repeats(brought.candidates, fields), brought.provenance)
-    present = format_run(document.candidates, document.provenance)
+    added = with_run(_without_repeats(brought.candidates, fields), brought.provenance)
+    present = with_run(document.candidates, document.provenance)
     kept = _within([*present, *added], marked, document.candidate, rank, limit)
     changed = _collected(document, kept, marked, document.candidate)
     changed = replace(changed, provenance=joined_provenance(document.provenance, brought.provenance))
@@ -90,14 +88,14 @@ def add_candidates(document: Document, brought: Brought, rank: RankKey, limit: i
 
 
 def renew_candidates(document: Document, brought: Brought, rank: RankKey, chosen: Candidate | None = None) -> Edit:
-    """Take the designs of a new run in the place of all but the pinned ones, and choose one, the best unless told.
+    """Take the designs of a new run in the place of all but the pinned ones, and choose one, by default the best.
 
     Pinned designs stay only where they share target, grid and angle with the new ones, which the caller has checked.
     """
-    known = format_run(document.candidates, document.provenance)
+    known = with_run(document.candidates, document.provenance)
     pinned = [one for one, mark in zip(known, document.marks, strict=True) if mark is Mark.PINNED]
     fields = {candidate.field for candidate in pinned}
-    fresh = format_run(_without_repeats(brought.candidates, fields), brought.provenance)
+    fresh = with_run(_without_repeats(brought.candidates, fields), brought.provenance)
     found = sorted([*pinned, *fresh], key=rank)
     joined = joined_provenance(document.provenance, brought.provenance) if pinned else brought.provenance
     edit = set_candidates(document, found, joined, brought.target)
@@ -106,21 +104,6 @@ def renew_candidates(document: Document, brought: Brought, rank: RankKey, chosen
     if brought.seed is not None:
         changed = replace(changed, settings=replace(document.settings, seed=brought.seed))
     return Edit(label, changed)
-
-
-def joined_provenance(before: Mapping[str, str], after: Mapping[str, str]) -> dict[str, str]:
-    """What is known of several runs together: where they differ, each value once, in the order of the runs."""
-    known = dict(before)
-    for name, value in after.items():
-        values = [part for part in known.get(name, "").split(BETWEEN_RUNS) if part]
-        known[name] = BETWEEN_RUNS.join(dict.fromkeys([*values, *value.split(BETWEEN_RUNS)]))
-    return known
-
-
-def format_run(candidates: Iterable[Candidate], provenance: Mapping[str, str]) -> list[Candidate]:
-    """The designs with the settings of their run; those that know their own keep them."""
-    run = tuple(sorted(provenance.items()))
-    return [one if one.made_with or not run else replace(one, made_with=run) for one in candidates]
 
 
 def _without_repeats(found: Iterable[Candidate], fields: Iterable[object]) -> list[Candidate]:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import io
 import json
-from dataclasses import replace
+from dataclasses import asdict, fields, replace
+from typing import Any
 
 import numpy as np
 
@@ -13,6 +14,7 @@ from kirigami_studio.evaluate.feasibility import Contact
 from kirigami_studio.evaluate.score import Score
 from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.evaluate.trimming import Trim, trim
+from kirigami_studio.fabricate.material import Material
 from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions, CutOrder
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import ProjectError
@@ -22,111 +24,13 @@ from kirigami_studio.outlines.nodes import Kind, Nodes
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.document import Document, Mark, Void
 from kirigami_studio.project.json_record import Record, one_of, read_json
-from kirigami_studio.project.material_record import material_json, material_of
 from kirigami_studio.project.migrations import Members
 from kirigami_studio.project.settings import DesignSettings, FabricationSettings
-
-
-def fabrication_json(settings: FabricationSettings) -> dict[str, object]:
-    """Return what a project file says about cutting."""
-    options = settings.options
-    return {
-        "width_mm": settings.width_mm,
-        "material": settings.material,
-        "connector_mm": settings.connector_mm,
-        "kerf_mm": settings.kerf_mm,
-        "options": {
-            "style": options.style.value,
-            "order": options.order.value,
-            "tabs": options.tabs,
-            "tab_mm": options.tab_mm,
-            "hinge_mm": [list(pair) for pair in options.hinge_mm],
-            "removed": list(options.removed),
-        },
-        "profile": settings.profile,
-        "dxf_version": settings.dxf_version,
-        "own": None if settings.own is None else material_json(settings.own),
-    }
-
-
-def fabrication_of(record: Record) -> FabricationSettings:
-    """Rebuild the settings.
-
-    Raises
-    ------
-    KirigamiError
-        A field is missing, or holds what no settings can hold.
-    """
-    options = record.record("options")
-    return FabricationSettings(
-        width_mm=record.number("width_mm"),
-        material=record.text("material"),
-        connector_mm=record.number("connector_mm") if record.holds("connector_mm") else None,
-        kerf_mm=record.number("kerf_mm") if record.holds("kerf_mm") else None,
-        options=CutOptions(
-            style=one_of(ConnectorStyle, options.text("style")),
-            order=one_of(CutOrder, options.text("order")),
-            tabs=options.whole("tabs"),
-            tab_mm=options.number("tab_mm"),
-            hinge_mm=tuple(_hinge_width(entry) for entry in options.list("hinge_mm")),
-            removed=tuple(_hinge(entry) for entry in options.list("removed")),
-        ),
-        profile=record.text("profile"),
-        dxf_version=record.text("dxf_version"),
-        own=material_of(record.record("own")) if record.holds("own") else None,
-    )
-
-
-def _hinge(entry: object) -> int:
-    if isinstance(entry, bool) or not isinstance(entry, int):
-        raise ProjectError(f"{entry!r} is no hinge number")
-    return entry
-
-
-def _hinge_width(entry: object) -> tuple[int, float]:
-    if not isinstance(entry, list) or len(entry) != 2:
-        raise ProjectError(f"{entry!r} is no hinge with its width")
-    hinge, width = entry
-    if isinstance(width, bool) or not isinstance(width, (int, float)):
-        raise ProjectError(f"{width!r} is no width")
-    return _hinge(hinge), float(width)
-
-
-def nodes_json(nodes: Nodes) -> dict[str, object]:
-    """Return what :func:`nodes_of` reads."""
-    return {
-        "at": nodes.at.tolist(),
-        "kinds": [kind.value for kind in nodes.kinds],
-        "handles": nodes.handles.tolist(),
-        "kept": nodes.kept.tolist(),
-    }
-
-
-def nodes_of(record: Record) -> Nodes:
-    """Rebuild the nodes.
-
-    Raises
-    ------
-    ProjectError, TargetError
-        Something that no outline can have.
-    """
-    at, kept = record.list("at"), record.list("kept")
-    if not all(isinstance(index, int) and not isinstance(index, bool) and abs(index) < 2**31 for index in at):
-        raise ProjectError("target.nodes.at must be whole numbers")
-    if not all(isinstance(flag, bool) for flag in kept):
-        raise ProjectError("target.nodes.kept must be yes or no each")
-    try:
-        handles = np.array(record.list("handles"), dtype=np.float64)
-    except (TypeError, ValueError, OverflowError):
-        raise ProjectError("target.nodes.handles is not a table of numbers") from None
-    kinds = tuple(one_of(Kind, name) for name in record.list("kinds"))
-    return Nodes(np.array(at, dtype=np.int64), kinds, handles, np.array(kept, dtype=np.bool_))
-
 
 DESIGN = "design.json"
 RATIOS = "ratios.npy"
 #: The fields as they were sampled, of those candidates that a fit has improved, in the candidates' order.
-DRAWN = "drawn.npy"
+SAMPLED = "sampled.npy"
 
 
 def encode(document: Document) -> dict[str, bytes]:
@@ -145,7 +49,7 @@ def encode(document: Document) -> dict[str, bytes]:
             "prefer": document.settings.prefer,
             "search": document.settings.search,
         },
-        "fabrication": fabrication_json(document.fabrication),
+        "fabrication": _fabrication_json(document.fabrication),
         "candidates": [_candidate_json(entry, runs) for entry in document.candidates],
         "runs": [dict(run) for run in runs],
         "chosen": document.chosen,
@@ -154,11 +58,11 @@ def encode(document: Document) -> dict[str, bytes]:
         "locked": [list(void) for void in sorted(document.locked)],
     }
     members = {DESIGN: json.dumps(design, indent=1, allow_nan=False).encode()}
-    drawn = [entry.sampled_field for entry in document.candidates if entry.sampled_field is not None]
-    for name, fields in ((RATIOS, [entry.field for entry in document.candidates]), (DRAWN, drawn)):
-        if fields:
+    sampled = [entry.sampled_field for entry in document.candidates if entry.sampled_field is not None]
+    for name, tables in ((RATIOS, [entry.field for entry in document.candidates]), (SAMPLED, sampled)):
+        if tables:
             stream = io.BytesIO()
-            stacked = np.stack([field.ratio for field in fields]).astype("<f8")
+            stacked = np.stack([field.ratio for field in tables]).astype("<f8")
             np.lib.format.write_array(stream, stacked, version=(1, 0), allow_pickle=False)
             members[name] = stream.getvalue()
     return members
@@ -170,16 +74,16 @@ def decode(members: Members) -> Document:
     Raises
     ------
     KirigamiError
-        A member is missing or holds what no document can hold; the sentence fits after "the project is damaged:".
+        A member is missing or holds what no document can hold.
     """
     if DESIGN not in members:
-        raise ProjectError(f"it lacks {DESIGN}")
+        raise ProjectError("project.member_missing", name=DESIGN)
     design = Record(read_json(members[DESIGN], DESIGN), DESIGN)
     settings = design.record("settings")
     entries = design.list("candidates")
     records = [Record(entry, f"{DESIGN}.candidates[{k}]") for k, entry in enumerate(entries)]
     fields = _read_ratios(members, RATIOS, len(records))
-    drawn = iter(_read_ratios(members, DRAWN, sum(record.flag("drawn") for record in records)))
+    sampled = iter(_read_ratios(members, SAMPLED, sum(record.flag("sampled") for record in records)))
     runs = _runs(design.list("runs"))
     rows, columns = _whole_pair(settings, "grid")
     target = _outline(design.record("target")) if design.holds("target") else None
@@ -198,24 +102,17 @@ def decode(members: Members) -> Document:
         ),
         candidates=tuple(
             replace(
-                _candidate(record, field, next(drawn) if record.flag("drawn") else None, target),
+                _candidate(record, field, next(sampled) if record.flag("sampled") else None, target),
                 made_with=_run(record, runs),
             )
             for record, field in zip(records, fields, strict=True)
         ),
         chosen=design.whole("chosen") if design.holds("chosen") else None,
-        fabrication=fabrication_of(design.record("fabrication")),
+        fabrication=_fabrication(design.record("fabrication")),
         provenance=design.texts("provenance"),
         marks=tuple(one_of(Mark, name) for name in design.list("marks")),
         locked=frozenset(_void(entry) for entry in design.list("locked")),
     )
-
-
-def _void(entry: object) -> Void:
-    if not isinstance(entry, list) or len(entry) != 2:
-        raise ProjectError(f"{DESIGN}: {entry!r} is no void")
-    void = Record(dict(zip(("row", "column"), entry, strict=True)), f"{DESIGN}.locked")
-    return void.whole("row"), void.whole("column")
 
 
 def _outline_json(outline: Outline) -> dict[str, object]:
@@ -226,7 +123,7 @@ def _outline_json(outline: Outline) -> dict[str, object]:
         "unit": outline.unit,
         "points": outline.points.tolist(),
         "place": None if outline.place is None else list(outline.place),
-        "nodes": None if outline.nodes is None else nodes_json(outline.nodes),
+        "nodes": None if outline.nodes is None else _nodes_json(outline.nodes),
     }
 
 
@@ -239,31 +136,98 @@ def _outline(record: Record) -> Outline:
         size=record.pair("size") if record.holds("size") else None,
         unit=record.text("unit"),
         place=record.pair("place") if record.holds("place") else None,
-        nodes=nodes_of(record.record("nodes")) if record.holds("nodes") else None,
+        nodes=_nodes(record.record("nodes")) if record.holds("nodes") else None,
     )
 
 
-def _table(rows: list[object], place: str) -> FloatArray:
-    """A table of numbers from a list of lists."""
+def _nodes_json(nodes: Nodes) -> dict[str, object]:
+    return {
+        "at": nodes.at.tolist(),
+        "kinds": [kind.value for kind in nodes.kinds],
+        "handles": nodes.handles.tolist(),
+        "kept": nodes.kept.tolist(),
+    }
+
+
+def _nodes(record: Record) -> Nodes:
+    at, kept = record.list("at"), record.list("kept")
+    if not all(isinstance(index, int) and not isinstance(index, bool) and abs(index) < 2**31 for index in at):
+        raise ProjectError("json.not_whole_numbers", place=f"{DESIGN}.target.nodes.at")
+    if not all(isinstance(flag, bool) for flag in kept):
+        raise ProjectError("json.not_all_true_or_false", place=f"{DESIGN}.target.nodes.kept")
     try:
-        return np.array(rows, dtype=np.float64)
+        handles = np.array(record.list("handles"), dtype=np.float64)
     except (TypeError, ValueError, OverflowError):
-        raise ProjectError(f"{DESIGN}.{place} is not a table of numbers") from None
+        raise ProjectError("json.not_a_table_of_numbers", place=f"{DESIGN}.target.nodes.handles") from None
+    kinds = tuple(one_of(Kind, name) for name in record.list("kinds"))
+    return Nodes(np.array(at, dtype=np.int64), kinds, handles, np.array(kept, dtype=np.bool_))
 
 
-def _runs(entries: list[object]) -> list[tuple[tuple[str, str], ...]]:
-    """What designs were made with, one table for each run."""
-    by_number = Record({str(number): entry for number, entry in enumerate(entries)}, f"{DESIGN}.runs")
-    return [tuple(sorted(by_number.texts(str(number)).items())) for number in range(len(entries))]
+def _fabrication_json(settings: FabricationSettings) -> dict[str, object]:
+    options = settings.options
+    return {
+        "width_mm": settings.width_mm,
+        "material": settings.material,
+        "connector_mm": settings.connector_mm,
+        "kerf_mm": settings.kerf_mm,
+        "options": {
+            "style": options.style.value,
+            "order": options.order.value,
+            "tabs": options.tabs,
+            "tab_mm": options.tab_mm,
+            "hinge_mm": [list(pair) for pair in options.hinge_mm],
+            "removed": list(options.removed),
+        },
+        "profile": settings.profile,
+        "dxf_version": settings.dxf_version,
+        "own": None if settings.own is None else _material_json(settings.own),
+    }
 
 
-def _run(record: Record, runs: list[tuple[tuple[str, str], ...]]) -> tuple[tuple[str, str], ...]:
-    if not record.holds("run"):
-        return ()
-    number = record.whole("run")
-    if not 0 <= number < len(runs):
-        raise ProjectError(f"{DESIGN}: a design is of run number {number}, but {len(runs)} are told")
-    return runs[number]
+def _fabrication(record: Record) -> FabricationSettings:
+    options = record.record("options")
+    return FabricationSettings(
+        width_mm=record.number("width_mm"),
+        material=record.text("material"),
+        connector_mm=record.number("connector_mm") if record.holds("connector_mm") else None,
+        kerf_mm=record.number("kerf_mm") if record.holds("kerf_mm") else None,
+        options=CutOptions(
+            style=one_of(ConnectorStyle, options.text("style")),
+            order=one_of(CutOrder, options.text("order")),
+            tabs=options.whole("tabs"),
+            tab_mm=options.number("tab_mm"),
+            hinge_mm=tuple(_hinge_width(entry) for entry in options.list("hinge_mm")),
+            removed=tuple(_hinge(entry) for entry in options.list("removed")),
+        ),
+        profile=record.text("profile"),
+        dxf_version=record.text("dxf_version"),
+        own=_material(record.record("own")) if record.holds("own") else None,
+    )
+
+
+def _hinge(entry: object) -> int:
+    if isinstance(entry, bool) or not isinstance(entry, int):
+        raise ProjectError("project.not_a_connector_number", value=entry)
+    return entry
+
+
+def _hinge_width(entry: object) -> tuple[int, float]:
+    if not isinstance(entry, list) or len(entry) != 2:
+        raise ProjectError("project.not_a_connector_with_width", value=entry)
+    hinge, width = entry
+    if isinstance(width, bool) or not isinstance(width, (int, float)):
+        raise ProjectError("project.not_a_connector_width", value=width)
+    return _hinge(hinge), float(width)
+
+
+def _material_json(material: Material) -> dict[str, object]:
+    return asdict(material)
+
+
+def _material(record: Record) -> Material:
+    read = {"str": record.text, "float": record.number, "int": record.whole, "bool": record.flag}
+    values: dict[str, Any] = {entry.name: read[str(entry.type)](entry.name) for entry in fields(Material)}
+    return Material(**values)
 
 
 def _candidate_json(entry: Candidate, runs: list[tuple[tuple[str, str], ...]]) -> dict[str, object]:
@@ -275,7 +239,7 @@ def _candidate_json(entry: Candidate, runs: list[tuple[tuple[str, str], ...]]) -
         "variant": entry.variant,
         "origin": entry.origin.value,
         "run": runs.index(entry.made_with) if entry.made_with else None,
-        "drawn": entry.sampled_field is not None,
+        "sampled": entry.sampled_field is not None,
         "score": entry.score.to_json(),
         # What was cut off follows from these; it is cut again on reading.
         "trim": None
@@ -284,14 +248,14 @@ def _candidate_json(entry: Candidate, runs: list[tuple[tuple[str, str], ...]]) -
     }
 
 
-def _candidate(record: Record, field: RatioField, drawn: RatioField | None, target: Outline | None) -> Candidate:
+def _candidate(record: Record, field: RatioField, sampled: RatioField | None, target: Outline | None) -> Candidate:
     return Candidate(
         field=field,
         score=_score(record.record("score")),
         seed=record.whole("seed"),
         index=record.whole("index"),
         polished=record.flag("polished"),
-        sampled_field=drawn,
+        sampled_field=sampled,
         trim=_trim(record.record("trim"), target) if record.holds("trim") and target is not None else None,
         variant=record.text("variant"),
         origin=one_of(Origin, record.text("origin")),
@@ -327,12 +291,42 @@ def _score(record: Record) -> Score:
     )
 
 
+def _runs(entries: list[object]) -> list[tuple[tuple[str, str], ...]]:
+    """What designs were made with, one table for each run."""
+    by_number = Record({str(number): entry for number, entry in enumerate(entries)}, f"{DESIGN}.runs")
+    return [tuple(sorted(by_number.texts(str(number)).items())) for number in range(len(entries))]
+
+
+def _run(record: Record, runs: list[tuple[tuple[str, str], ...]]) -> tuple[tuple[str, str], ...]:
+    if not record.holds("run"):
+        return ()
+    number = record.whole("run")
+    if not 0 <= number < len(runs):
+        raise ProjectError("project.no_such_run", number=number, runs=len(runs))
+    return runs[number]
+
+
+def _void(entry: object) -> Void:
+    if not isinstance(entry, list) or len(entry) != 2:
+        raise ProjectError("project.not_a_void", value=entry)
+    void = Record(dict(zip(("row", "column"), entry, strict=True)), f"{DESIGN}.locked")
+    return void.whole("row"), void.whole("column")
+
+
 def _whole_pair(record: Record, name: str) -> tuple[int, int]:
     values = record.list(name)
     if len(values) != 2:
-        raise ProjectError(f"{DESIGN}: {name} must be two whole numbers, got {len(values)}")
-    both = Record(dict(zip(("rows", "columns"), values, strict=True)), f"{DESIGN}.{name}")
+        raise ProjectError("json.not_two_whole_numbers", place=f"{DESIGN}.settings.{name}", value=values)
+    both = Record(dict(zip(("rows", "columns"), values, strict=True)), f"{DESIGN}.settings.{name}")
     return both.whole("rows"), both.whole("columns")
+
+
+def _table(rows: list[object], place: str) -> FloatArray:
+    """A table of numbers from a list of lists."""
+    try:
+        return np.array(rows, dtype=np.float64)
+    except (TypeError, ValueError, OverflowError):
+        raise ProjectError("json.not_a_table_of_numbers", place=f"{DESIGN}.{place}") from None
 
 
 def _read_ratios(members: Members, name: str, count: int) -> list[RatioField]:
@@ -340,19 +334,19 @@ def _read_ratios(members: Members, name: str, count: int) -> list[RatioField]:
     if count == 0:
         return []
     if name not in members:
-        raise ProjectError(f"it lacks {name}")
+        raise ProjectError("project.member_missing", name=name)
     content = members[name]
     stream = io.BytesIO(content)
     try:
         if np.lib.format.read_magic(stream) != (1, 0):
-            raise ValueError("another npy version")
+            raise ValueError("version of the NPY format")
         shape, fortran, dtype = np.lib.format.read_array_header_1_0(stream)
     except (ValueError, SyntaxError, TypeError, KeyError, RecursionError, MemoryError) as error:
-        raise ProjectError(f"{name} is not an array file ({str(error)[:80]})") from error
+        raise ProjectError("project.array_not_readable", name=name, reason=str(error)) from error
     if len(shape) != 3 or shape[0] != count or fortran or dtype != np.dtype("<f8"):
-        raise ProjectError(f"{name} must hold {count} tables of numbers, got an array {shape} of {dtype}")
+        raise ProjectError("project.array_of_wrong_shape", name=name, designs=count, shape=shape, dtype=str(dtype))
     size = 8 * int(shape[0]) * int(shape[1]) * int(shape[2])
     if len(content) - stream.tell() != size:
-        raise ProjectError(f"{name} should hold {size} bytes of ratios, got {len(content) - stream.tell()}")
+        raise ProjectError("project.array_of_wrong_size", name=name, bytes=size, found=len(content) - stream.tell())
     table = np.frombuffer(content, dtype="<f8", offset=stream.tell()).reshape(shape)
     return [RatioField(ratio) for ratio in table]

@@ -1,11 +1,17 @@
-"""From a finished design and its fabrication settings to the cut plan: the one way for window and command line."""
+"""From a design and its fabrication settings to the material and the cut plan: the one way for window and command line.
+
+A person's own material is stored in the project with its numbers, for machines whose library of materials lacks it.
+"""
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.fabricate.cut_plan import CutPlan, plan_cuts
+from kirigami_studio.fabricate.material import Material, find_material, library
 from kirigami_studio.lattice.deployment import Deployment, deploy
-from kirigami_studio.project.material_record import material_for
+from kirigami_studio.project.document import Document
 from kirigami_studio.project.settings import FabricationSettings
 
 
@@ -17,7 +23,7 @@ def plan_of(candidate: Candidate, settings: FabricationSettings, deployment: Dep
     candidate : Candidate
     settings : FabricationSettings
     deployment : Deployment, optional
-        Of the finished field, if it is known already: that of the trim, if the candidate is trimmed.
+        Of the candidate's final field, if it is known already.
 
     Raises
     ------
@@ -34,3 +40,33 @@ def plan_of(candidate: Candidate, settings: FabricationSettings, deployment: Dep
         options=settings.options,
         kept=None if trim is None else trim.kept,
     )
+
+
+def material_for(settings: FabricationSettings) -> Material:
+    """The material that the settings name: from the library, else as it is stored in the project.
+
+    Raises
+    ------
+    FabricationError
+        Neither has it; the sentence lists the library.
+    """
+    stored = stored_material(settings)
+    if stored is not None and stored.key not in library().materials:
+        return stored
+    return find_material(settings.material)
+
+
+def stored_material(settings: FabricationSettings) -> Material | None:
+    """The numbers of the settings' material as the project stores them; None for bundled materials."""
+    return settings.own if settings.own is not None and settings.own.key == settings.material else None
+
+
+def with_stored_material(document: Document) -> Document:
+    """The document as it is saved: with the numbers of its material, if that is a person's own."""
+    settings, known = document.fabrication, library()
+    numbers = stored_material(settings)
+    if settings.material in known.materials:
+        numbers = known.materials[settings.material] if settings.material in known.own else None
+    if numbers == settings.own:
+        return document
+    return replace(document, fabrication=replace(settings, own=numbers))

@@ -1,26 +1,44 @@
-"""Where one design comes from, as every export of it says: its own variant, seed and origin, and the run's settings."""
+"""Where designs come from: the provenance of one or several runs, and the facts that every export states."""
 
 from __future__ import annotations
 
 import math
 import re
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
 
 from kirigami_studio.evaluate.candidate import Candidate, Origin
 from kirigami_studio.project.document import Document
 
-#: What stands between the values of several runs in one project.
-BETWEEN = re.compile(r"[,;]\s*")
-#: What a run knows only of designs that were drawn near another one.
+#: What joins the values of several runs in one provenance.
+BETWEEN_RUNS = "; "
+#: What may separate them: several models of one run are joined by commas.
+SEPARATOR = re.compile(r"[,;]\s*")
+#: Entries of a provenance that apply only to designs that were sampled near another one.
 OF_RESAMPLED = ("near", "nearness")
 
 
-def design_facts(document: Document, candidate: Candidate) -> dict[str, str]:
-    """Name to text, all that is needed to make the design again.
+def joined_provenance(before: Mapping[str, str], after: Mapping[str, str]) -> dict[str, str]:
+    """The provenance of several runs together: where they differ, each value once, in the order of the runs."""
+    known = dict(before)
+    for name, value in after.items():
+        values = [part for part in known.get(name, "").split(BETWEEN_RUNS) if part]
+        known[name] = BETWEEN_RUNS.join(dict.fromkeys([*values, *value.split(BETWEEN_RUNS)]))
+    return known
 
-    The settings are those of the run that drew the candidate.  Of designs out of projects before format 5 they are not
-    known: then what the project knows of its run or runs is repeated, except that the model and its hash are those
-    that this candidate was drawn with; a hash that the project does not know is left out rather than taken from
-    another model, and a design that was not drawn near another one names none.
+
+def with_run(candidates: Iterable[Candidate], provenance: Mapping[str, str]) -> list[Candidate]:
+    """The designs with the settings of their run; designs that have settings already keep them."""
+    run = tuple(sorted(provenance.items()))
+    return [one if one.made_with or not run else replace(one, made_with=run) for one in candidates]
+
+
+def design_facts(document: Document, candidate: Candidate) -> dict[str, str]:
+    """All that is needed to make the design again, name to text.
+
+    The settings are those of the candidate's own run.  Where that is not known, the provenance of the whole document
+    stands in, except that the model and its hash are the candidate's own: a hash that is not known is left out rather
+    than taken from another model, and a design that was not sampled near another one names none.
     """
     facts = _run_of(document, candidate)
     models, digests = (_parts(facts.pop(name, "")) for name in ("model", "model_sha256"))
@@ -47,10 +65,10 @@ def design_facts(document: Document, candidate: Candidate) -> dict[str, str]:
 
 
 def _run_of(document: Document, candidate: Candidate) -> dict[str, str]:
-    """The settings of a candidate's run; one that has not heard of them yet is asked for in the document."""
+    """The settings of a candidate's run; a candidate without them is looked up in the document."""
     known = candidate.made_with or next((one.made_with for one in document.candidates if one == candidate), ())
     return dict(known or document.provenance)
 
 
 def _parts(text: str) -> list[str]:
-    return [part for part in BETWEEN.split(text) if part]
+    return [part for part in SEPARATOR.split(text) if part]

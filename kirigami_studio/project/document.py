@@ -69,26 +69,33 @@ class Document:
         object.__setattr__(self, "candidates", tuple(self.candidates))
         object.__setattr__(self, "provenance", MappingProxyType(dict(self.provenance)))
         if self.candidates and self.target is None:
-            raise ProjectError("A project with designs needs the target that they were made for.")
+            raise ProjectError("project.designs_without_target")
         grids = sorted({candidate.field.ratio.shape for candidate in self.candidates})
         if len(grids) > 1:
-            sizes = " and ".join(f"{rows} x {columns}" for rows, columns in grids[:2])
-            raise ProjectError(f"The designs of a project must share one grid, got {sizes}.")
+            (rows, columns), (other_rows, other_columns) = grids[:2]
+            raise ProjectError(
+                "project.grids_differ",
+                rows=rows,
+                columns=columns,
+                other_rows=other_rows,
+                other_columns=other_columns,
+            )
         count = len(self.candidates)
         if self.chosen is not None and not (isinstance(self.chosen, int) and 0 <= self.chosen < count):
-            raise ProjectError(f"Design number {self.chosen} was chosen, but the project holds {count}.")
+            raise ProjectError("project.no_such_design", index=self.chosen, designs=count)
         self._check_marks(count)
 
     def _check_marks(self, count: int) -> None:
         marks = tuple(self.marks) or (Mark.NONE,) * count
         if len(marks) != count:
-            raise ProjectError(f"Every design needs one mark, got {len(marks)} marks for {count} designs.")
+            raise ProjectError("project.marks_do_not_match", marks=len(marks), designs=count)
         object.__setattr__(self, "marks", marks)
         object.__setattr__(self, "locked", frozenset(self.locked))
         rows, columns = self.candidates[0].field.ratio.shape if self.candidates else (0, 0)
         outside = sorted(void for void in self.locked if not (0 <= void[0] < rows and 0 <= void[1] < columns))
         if outside:
-            raise ProjectError(f"Void {outside[0]} is locked, but the designs have {rows} x {columns} voids.")
+            row, column = outside[0]
+            raise ProjectError("project.no_such_void", row=row, column=column, rows=rows, columns=columns)
 
     @property
     def candidate(self) -> Candidate | None:

@@ -67,27 +67,31 @@ class OptionsChange(TypedDict, total=False):
     tab_mm: float
 
 
-_NAMES = {
-    "grid": tr("the grid"),
-    "phi": tr("the target angle"),
-    "k": tr("the number of candidates"),
-    "seed": tr("the seed"),
-    "variant": tr("the generator"),
-    "steps": tr("the number of steps"),
-    "polish": tr("the polish"),
-    "prefer": tr("what the polish prefers"),
-    "search": tr("the search"),
-    "width_mm": tr("the sheet's width"),
-    "material": tr("the material"),
-    "connector_mm": tr("the connector width"),
-    "kerf_mm": tr("the kerf"),
-    "options": tr("the cuts"),
-    "profile": tr("the machine profile"),
-    "dxf_version": tr("the DXF version"),
-    "style": tr("the connector style"),
-    "order": tr("the cutting order"),
-    "tabs": tr("the number of tabs"),
-    "tab_mm": tr("the tab width"),
+#: Widths of single connectors are rounded to this many decimals of a millimetre.
+DECIMALS = 4
+
+#: What the Undo menu says of a change to one field; of several at once it names the first.
+_LABELS = {
+    "grid": tr("Change the grid"),
+    "phi": tr("Change the target angle"),
+    "k": tr("Change the number of candidates"),
+    "seed": tr("Change the seed"),
+    "variant": tr("Change the generator"),
+    "steps": tr("Change the number of sampling steps"),
+    "polish": tr("Change the polish"),
+    "prefer": tr("Change the preference"),
+    "search": tr("Change the search"),
+    "width_mm": tr("Change the sheet's width"),
+    "material": tr("Change the material"),
+    "connector_mm": tr("Change the connector width"),
+    "kerf_mm": tr("Change the kerf"),
+    "options": tr("Change the cuts"),
+    "profile": tr("Change the machine profile"),
+    "dxf_version": tr("Change the DXF version"),
+    "style": tr("Change the connector style"),
+    "order": tr("Change the cutting order"),
+    "tabs": tr("Change the number of tabs"),
+    "tab_mm": tr("Change the tab width"),
 }
 
 
@@ -97,15 +101,15 @@ def set_target(document: Document, target: Outline) -> Edit:
     return Edit(tr("Set target {name}", name=target.name), changed)
 
 
-def without_designs(document: Document, target: Outline | None) -> Document:
-    """The document with another target; the designs of the old one, and what was said of them, go."""
-    return replace(document, target=target, candidates=(), chosen=None, provenance={}, marks=(), locked=frozenset())
-
-
 def edit_target(document: Document, target: Outline, gesture: str) -> Edit:
     """Reshape the target by a gesture such as "Rotate target"; the steps of one drag undo together."""
     changed = without_designs(document, target)
     return Edit(gesture, changed, merge_key=f"target:{gesture}")
+
+
+def without_designs(document: Document, target: Outline | None) -> Document:
+    """The document with another target; the designs of the old one, their marks and locks go."""
+    return replace(document, target=target, candidates=(), chosen=None, provenance={}, marks=(), locked=frozenset())
 
 
 def set_settings(document: Document, **changes: Unpack[SettingsChange]) -> Edit:
@@ -118,65 +122,6 @@ def set_settings(document: Document, **changes: Unpack[SettingsChange]) -> Edit:
     """
     changed = replace(document, settings=replace(document.settings, **changes))
     return Edit(_label(changes), changed, merge_key=_merge_key("settings", changes))
-
-
-def set_candidates(
-    document: Document,
-    candidates: Iterable[Candidate],
-    provenance: Mapping[str, str],
-    target: Outline | None = None,
-) -> Edit:
-    """Take the designs of a finished run, best first, and choose the best.
-
-    ``target`` is the one that the run was made for, if the document should return to it.  Choices about single hinges
-    stay while the grid stays: on another one their numbers would name other places.
-    """
-    found = tuple(candidates)
-    changed = replace(
-        document,
-        fabrication=_without_strange_hinges(document, found),
-        target=document.target if target is None else target,
-        candidates=found,
-        chosen=0 if found else None,
-        provenance=provenance,
-        marks=(),
-        locked=frozenset(),
-    )
-    count = len(found)
-    return Edit(tr_n("Generate {count} design", "Generate {count} designs", count), changed)
-
-
-def _without_strange_hinges(document: Document, found: tuple[Candidate, ...]) -> FabricationSettings:
-    settings, options = document.fabrication, document.fabrication.options
-    before = {candidate.field.ratio.shape for candidate in document.candidates}
-    after = {candidate.field.ratio.shape for candidate in found}
-    if before == after or not (options.hinge_mm or options.removed):
-        return settings
-    return replace(settings, options=replace(options, hinge_mm=(), removed=()))
-
-
-def replace_candidate(document: Document, index: int, candidate: Candidate, gesture: str) -> Edit:
-    """Put an improved design in the place of candidate ``index`` and choose it."""
-    return Edit(gesture, replace(document, candidates=with_candidate(document, index, candidate), chosen=index))
-
-
-def with_candidate(document: Document, index: int, candidate: Candidate) -> tuple[Candidate, ...]:
-    """The designs with ``candidate`` in the place of the one that it was made of, whose run it shares."""
-    candidates = list(document.candidates)
-    candidates[index] = replace(candidate, made_with=candidate.made_with or candidates[index].made_with)
-    return tuple(candidates)
-
-
-def choose(document: Document, index: int | None) -> Edit:
-    """Put candidate ``index`` on the stage, or none.
-
-    Raises
-    ------
-    ProjectError
-        There is no such candidate.
-    """
-    label = tr("Choose no design") if index is None else tr("Choose design {index}", index=index + 1)
-    return Edit(label, replace(document, chosen=index))
 
 
 def set_fabrication(document: Document, **changes: Unpack[FabricationChange]) -> Edit:
@@ -205,81 +150,64 @@ def set_cut_options(document: Document, **changes: Unpack[OptionsChange]) -> Edi
 
 
 def _label(changes: Mapping[str, object]) -> str:
-    return tr("Change ") + tr(" and ").join(_NAMES[name] for name in changes)
+    return _LABELS[next(iter(changes))]
 
 
-def _merge_key(room: str, changes: Mapping[str, object]) -> str:
-    return f"{room}:{','.join(sorted(changes))}"
+def _merge_key(part: str, changes: Mapping[str, object]) -> str:
+    return f"{part}:{','.join(sorted(changes))}"
 
 
-#: Widths are kept to this many decimals of a millimetre.
-DECIMALS = 4
+def set_candidates(
+    document: Document,
+    candidates: Iterable[Candidate],
+    provenance: Mapping[str, str],
+    target: Outline | None = None,
+) -> Edit:
+    """Take the designs of a finished run, best first, and choose the best.
+
+    ``target`` is the one that the run was made for, if the document should return to it.  Choices for single
+    connectors stay while the grid stays: on another grid their numbers would name other places.
+    """
+    found = tuple(candidates)
+    changed = replace(
+        document,
+        fabrication=_fabrication_for(document, found),
+        target=document.target if target is None else target,
+        candidates=found,
+        chosen=0 if found else None,
+        provenance=provenance,
+        marks=(),
+        locked=frozenset(),
+    )
+    count = len(found)
+    return Edit(tr_n("Generate {count} design", "Generate {count} designs", count), changed)
 
 
-def set_hinge_width(document: Document, hinges: Collection[int], width_mm: float) -> Edit:
-    """Give connectors a finished width of their own; the steps of one drag undo together.
+def _fabrication_for(document: Document, found: tuple[Candidate, ...]) -> FabricationSettings:
+    """The fabrication settings for new designs; on another grid without choices for single connectors."""
+    settings, options = document.fabrication, document.fabrication.options
+    before = {candidate.field.ratio.shape for candidate in document.candidates}
+    after = {candidate.field.ratio.shape for candidate in found}
+    if before == after or not (options.hinge_mm or options.removed):
+        return settings
+    return replace(settings, options=replace(options, hinge_mm=(), removed=()))
 
-    Removed ones among others stay removed; they come back only where all of these hinges are.
 
-    Parameters
-    ----------
-    document : Document
-    hinges : collection of int
-        Numbered as in ``slits.CutTable``.
-    width_mm : float
+def choose(document: Document, index: int | None) -> Edit:
+    """Choose candidate ``index``, or none.
 
     Raises
     ------
-    FabricationError
-        The width is not above 0, or a number is negative.
+    ProjectError
+        There is no such candidate.
     """
-    gone = set(document.fabrication.options.removed)
-    hinges = [hinge for hinge in hinges if hinge not in gone] or hinges
-    options = _without(document.fabrication.options, hinges)
-    widths = dict(options.hinge_mm) | dict.fromkeys(hinges, round(float(width_mm), DECIMALS))
-    changed = replace(options, hinge_mm=tuple(sorted(widths.items())))
-    numbers = ",".join(str(hinge) for hinge in sorted(hinges))
-    return _edit(
-        document,
-        changed,
-        tr("Set {named} to {width_mm:g} mm", named=_named(hinges), width_mm=width_mm),
-        f"hinges:{numbers}",
-    )
+    label = tr("Choose no design") if index is None else tr("Choose design {number}", number=index + 1)
+    return Edit(label, replace(document, chosen=index))
 
 
-def remove_hinges(document: Document, hinges: Collection[int]) -> Edit:
-    """Leave no connector at these hinges."""
-    options = _without(document.fabrication.options, hinges)
-    changed = replace(options, removed=tuple(sorted({*options.removed, *hinges})))
-    return _edit(document, changed, tr("Cut through {named}", named=_named(hinges)))
-
-
-def reset_hinges(document: Document, hinges: Collection[int]) -> Edit:
-    """Give connectors the sheet's usual width again."""
-    return _edit(document, _without(document.fabrication.options, hinges), tr("Reset {named}", named=_named(hinges)))
-
-
-def _without(options: CutOptions, hinges: Collection[int]) -> CutOptions:
-    """The options without any choice about these hinges."""
-    chosen = set(hinges)
-    return replace(
-        options,
-        hinge_mm=tuple(pair for pair in options.hinge_mm if pair[0] not in chosen),
-        removed=tuple(hinge for hinge in options.removed if hinge not in chosen),
-    )
-
-
-def _edit(document: Document, options: CutOptions, label: str, merge_key: str | None = None) -> Edit:
-    fabrication = replace(document.fabrication, options=options)
-    return Edit(label, replace(document, fabrication=fabrication), merge_key)
-
-
-def _named(hinges: Collection[int]) -> str:
-    return (
-        tr("connector {hinges}", hinges=min(hinges))
-        if len(hinges) == 1
-        else tr("{count} connectors", count=len(hinges))
-    )
+def replace_candidate(document: Document, index: int, candidate: Candidate, gesture: str) -> Edit:
+    """Put an improved design in the place of candidate ``index`` and choose it."""
+    return Edit(gesture, replace(document, candidates=with_candidate(document, index, candidate), chosen=index))
 
 
 def take_changed(
@@ -294,6 +222,13 @@ def take_changed(
         return None
     candidates = with_candidate(document, document.candidates.index(before), after)
     return Edit(gesture, replace(document, candidates=candidates), merge_key)
+
+
+def with_candidate(document: Document, index: int, candidate: Candidate) -> tuple[Candidate, ...]:
+    """The designs with ``candidate`` in the place of the one that it was made from, whose run it shares."""
+    candidates = list(document.candidates)
+    candidates[index] = replace(candidate, made_with=candidate.made_with or candidates[index].made_with)
+    return tuple(candidates)
 
 
 def moves_locked(document: Document, before: Candidate, after: Candidate) -> bool:
@@ -332,3 +267,67 @@ def _lock_label(voids: frozenset[Void], on: bool) -> str:
     if on:
         return tr_n("Lock {count} void", "Lock {count} voids", len(voids))
     return tr_n("Unlock {count} void", "Unlock {count} voids", len(voids))
+
+
+def set_hinge_width(document: Document, hinges: Collection[int], width_mm: float) -> Edit:
+    """Give connectors a finished width of their own; the steps of one drag undo together.
+
+    Removed connectors among others stay removed; they come back only if all of these are removed.
+
+    Parameters
+    ----------
+    document : Document
+    hinges : collection of int
+        Numbered as in ``slits.CutTable``.
+    width_mm : float
+
+    Raises
+    ------
+    FabricationError
+        The width is not above 0, or a number is negative.
+    """
+    gone = set(document.fabrication.options.removed)
+    hinges = [hinge for hinge in hinges if hinge not in gone] or hinges
+    options = _without(document.fabrication.options, hinges)
+    widths = dict(options.hinge_mm) | dict.fromkeys(hinges, round(float(width_mm), DECIMALS))
+    changed = replace(options, hinge_mm=tuple(sorted(widths.items())))
+    numbers = ",".join(str(hinge) for hinge in sorted(hinges))
+    label = tr_n(
+        "Set connector {number} to {width_mm:g} mm",
+        "Set {count} connectors to {width_mm:g} mm",
+        len(hinges),
+        number=min(hinges, default=0),
+        width_mm=width_mm,
+    )
+    return _edit(document, changed, label, f"hinges:{numbers}")
+
+
+def remove_hinges(document: Document, hinges: Collection[int]) -> Edit:
+    """Leave no connector at these hinges."""
+    options = _without(document.fabrication.options, hinges)
+    changed = replace(options, removed=tuple(sorted({*options.removed, *hinges})))
+    number = min(hinges, default=0)
+    label = tr_n("Cut through connector {number}", "Cut through {count} connectors", len(hinges), number=number)
+    return _edit(document, changed, label)
+
+
+def reset_hinges(document: Document, hinges: Collection[int]) -> Edit:
+    """Give connectors the sheet's usual width again."""
+    number = min(hinges, default=0)
+    label = tr_n("Reset connector {number}", "Reset {count} connectors", len(hinges), number=number)
+    return _edit(document, _without(document.fabrication.options, hinges), label)
+
+
+def _without(options: CutOptions, hinges: Collection[int]) -> CutOptions:
+    """The options without the choices for these connectors."""
+    chosen = set(hinges)
+    return replace(
+        options,
+        hinge_mm=tuple(pair for pair in options.hinge_mm if pair[0] not in chosen),
+        removed=tuple(hinge for hinge in options.removed if hinge not in chosen),
+    )
+
+
+def _edit(document: Document, options: CutOptions, label: str, merge_key: str | None = None) -> Edit:
+    fabrication = replace(document.fabrication, options=options)
+    return Edit(label, replace(document, fabrication=fabrication), merge_key)

@@ -106,7 +106,7 @@ class History:
             There are not so many steps.
         """
         if not 0 <= position <= len(self.steps):
-            raise ProjectError(f"The history has {len(self.steps)} steps, there is no step {position}.")
+            raise ProjectError("history.no_such_step", position=position, last=len(self.steps))
         moved = False
         while position < len(self._done):
             moved = self.undo()

@@ -1,4 +1,4 @@
-"""JSON read field by field: every surprise becomes a sentence that names the place."""
+"""JSON read field by field: whatever is missing or of the wrong kind is refused by its place in the file."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def read_json(content: bytes, place: str) -> object:
     try:
         return json.loads(content.decode("utf-8"), parse_constant=_refuse_constant)
     except (ValueError, RecursionError) as error:
-        raise ProjectError(f"{place} is not readable as JSON ({error})") from error
+        raise ProjectError("json.not_readable", place=place, reason=str(error)) from error
 
 
 def _refuse_constant(name: str) -> NoReturn:
@@ -51,51 +51,51 @@ class Record:
 
     def __init__(self, value: object, place: str) -> None:
         if not isinstance(value, dict):
-            raise ProjectError(f"{place} is not a JSON object")
+            raise ProjectError("json.not_an_object", place=place)
         self._value: dict[str, Any] = value
         self._place = place
 
     def number(self, name: str) -> float:
         value = self._get(name)
         if isinstance(value, bool) or not isinstance(value, (int, float)) or not _fits(value):
-            self._refuse(name, "a number", value)
+            self._refuse("json.not_a_number", name, value)
         return float(value)
 
     def whole(self, name: str) -> int:
         value = self._get(name)
         if isinstance(value, bool) or not isinstance(value, int):
-            self._refuse(name, "a whole number", value)
+            self._refuse("json.not_a_whole_number", name, value)
         return int(value)
 
     def flag(self, name: str) -> bool:
         value = self._get(name)
         if not isinstance(value, bool):
-            self._refuse(name, "true or false", value)
+            self._refuse("json.not_true_or_false", name, value)
         return bool(value)
 
     def text(self, name: str) -> str:
         value = self._get(name)
         if not isinstance(value, str):
-            self._refuse(name, "a text", value)
+            self._refuse("json.not_a_text", name, value)
         return str(value)
 
     def list(self, name: str) -> list[Any]:
         value = self._get(name)
         if not isinstance(value, list):
-            self._refuse(name, "a list", value)
+            self._refuse("json.not_a_list", name, value)
         return list(value)
 
     def texts(self, name: str) -> dict[str, str]:
         value = self._get(name)
         if not isinstance(value, dict) or not all(isinstance(text, str) for text in value.values()):
-            self._refuse(name, "a table of texts", value)
+            self._refuse("json.not_a_table_of_texts", name, value)
         return dict(value)
 
     def pair(self, name: str) -> tuple[float, float]:
         """Two numbers."""
         values = self.list(name)
         if len(values) != 2:
-            self._refuse(name, "two numbers", values)
+            self._refuse("json.not_two_numbers", name, values)
         both = Record(dict(zip("01", values, strict=True)), f"{self._place}.{name}")
         return both.number("0"), both.number("1")
 
@@ -109,12 +109,11 @@ class Record:
     def _get(self, name: str) -> Any:
         value = self._value.get(name, _NOT_GIVEN)
         if value is _NOT_GIVEN:
-            raise ProjectError(f"{self._place} lacks {name!r}")
+            raise ProjectError("json.entry_missing", place=self._place, name=name)
         return value
 
-    def _refuse(self, name: str, wanted: str, value: object) -> NoReturn:
-        shown = repr(value) if len(repr(value)) <= 60 else repr(value)[:57] + "..."
-        raise ProjectError(f"{self._place}.{name} must be {wanted}, got {shown}")
+    def _refuse(self, code: str, name: str, value: object) -> NoReturn:
+        raise ProjectError(code, place=f"{self._place}.{name}", value=value)
 
 
 def _fits(value: float) -> bool:
@@ -132,4 +131,5 @@ def one_of(kind: type[Choice], name: object) -> Choice:
     try:
         return kind(name)
     except ValueError:
-        raise ProjectError(f"{name!r} is none of {', '.join(str(choice.value) for choice in kind)}") from None
+        choices = ", ".join(str(choice.value) for choice in kind)
+        raise ProjectError("json.not_a_choice", value=name, choices=choices) from None

@@ -1,7 +1,7 @@
 """The picture that a target was traced from, inside the project file: its bytes, its threshold, its place.
 
-It is no part of the document: what cannot be kept or read again is left out with a sentence, and the project is whole
-without it.
+It is no part of the document: a picture that cannot be stored or read is left out with a note, and the project is
+complete without it.
 """
 
 from __future__ import annotations
@@ -15,9 +15,9 @@ from kirigami_studio.foundation.errors import KirigamiError, ProjectError
 from kirigami_studio.project.json_record import Record, read_json
 
 RECORD = "picture.json"
-#: Kinds that a project keeps, by the extension of their member.
+#: Kinds of pictures that a project can store, by the extension of their member.
 EXTENSIONS = (".png", ".jpg", ".jpeg", ".bmp")
-#: Larger pictures stay outside of the project.
+#: Larger pictures are not stored.
 LARGEST_PICTURE = 16 * 2**20
 
 
@@ -55,13 +55,13 @@ class TracedPicture:
 
     def __post_init__(self) -> None:
         if "\0" in self.name or Path(self.name).name != self.name or Path(self.name).suffix.lower() not in EXTENSIONS:
-            raise ProjectError(f"{self.name[:60]!r} is no name of a picture ({', '.join(EXTENSIONS)})")
+            raise ProjectError("picture.not_a_picture_name", name=self.name, extensions=", ".join(EXTENSIONS))
         if len(self.content) > LARGEST_PICTURE:
-            megabytes = len(self.content) / 2**20
-            raise ProjectError(f"{self.name} has {megabytes:.0f} MB, more than {LARGEST_PICTURE // 2**20}")
+            megabytes, limit = len(self.content) / 2**20, LARGEST_PICTURE // 2**20
+            raise ProjectError("picture.too_large", name=self.name, megabytes=megabytes, limit=limit)
         levels_fit = 0.0 <= self.automatic <= 1.0 and 0.0 < self.threshold < 1.0
         if not levels_fit or self.scale <= 0.0 or min(self.size) < 1:
-            raise ProjectError(f"the record of {self.name} holds a number that no picture has")
+            raise ProjectError("picture.impossible_number", name=self.name)
 
     @property
     def member(self) -> str:
@@ -70,7 +70,7 @@ class TracedPicture:
 
 
 def picture_members(picture: TracedPicture | None) -> dict[str, bytes]:
-    """The members of a project file that keep a picture; none for none."""
+    """The members of a project file that store the picture, if there is one."""
     if picture is None:
         return {}
     record = {
@@ -85,12 +85,12 @@ def picture_members(picture: TracedPicture | None) -> dict[str, bytes]:
 
 
 def picture_of(members: Mapping[str, bytes]) -> TracedPicture | None:
-    """The picture that a project file keeps, None if it keeps none.
+    """The picture that is stored in a project file, None without one.
 
     Raises
     ------
     ProjectError
-        It keeps one that is damaged or not there.
+        It is damaged or missing.
     """
     if RECORD not in members:
         return None
@@ -99,7 +99,7 @@ def picture_of(members: Mapping[str, bytes]) -> TracedPicture | None:
         name = record.text("name")
         member = f"picture{Path(name).suffix.lower()}"
         if member not in members:
-            raise ProjectError(f"{member} is missing")
+            raise ProjectError("project.member_missing", name=member)
         width, height = record.pair("size")
         return TracedPicture(
             name=name,
@@ -111,4 +111,4 @@ def picture_of(members: Mapping[str, bytes]) -> TracedPicture | None:
             size=(int(width), int(height)),
         )
     except (KirigamiError, ValueError) as error:
-        raise ProjectError(f"The photo in this project cannot be read and was left out: {error}.") from error
+        raise ProjectError("picture.left_out", reason=error) from error

@@ -41,11 +41,11 @@ class Preferences:
         for name in ("profile", "dxf_version", "theme"):
             value = getattr(self, name)
             if not isinstance(value, str) or not value:
-                raise ProjectError(f"The preference {name} must be a name, got {value!r}.")
+                raise ProjectError("preferences.not_a_name", name=name, value=value)
         if self.theme not in THEMES:
-            raise ProjectError(f"The preference theme must be one of {', '.join(THEMES)}, got {self.theme!r}.")
+            raise ProjectError("preferences.unknown_theme", themes=", ".join(THEMES), value=self.theme)
         if not isinstance(self.tour_seen, bool):
-            raise ProjectError(f"The preference tour_seen must be true or false, got {self.tour_seen!r}.")
+            raise ProjectError("preferences.not_true_or_false", name="tour_seen", value=self.tour_seen)
 
     def new_document(self) -> Document:
         """An empty document with these choices."""
@@ -71,9 +71,9 @@ def load(path: Path) -> Preferences:
     except FileNotFoundError:
         return Preferences()
     except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
-        raise ProjectError(f"The preferences in {path} cannot be read: {error}. Correct or delete the file.") from error
+        raise ProjectError("preferences.not_readable", path=path, reason=str(error)) from error
     if unknown := entries.keys() - asdict(Preferences()).keys():
-        raise ProjectError(f"The preferences in {path} have unknown entries {', '.join(sorted(unknown))}; drop them.")
+        raise ProjectError("preferences.unknown_entries", path=path, names=", ".join(sorted(unknown)))
     return Preferences(**entries)
 
 

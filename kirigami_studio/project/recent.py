@@ -37,7 +37,7 @@ class Recent:
         for name in ("projects", "targets"):
             entries = getattr(self, name)
             if not isinstance(entries, tuple | list) or not all(isinstance(entry, str) and entry for entry in entries):
-                raise ProjectError(f"The list of recent {name} must hold paths, got {str(entries)[:60]!r}.")
+                raise ProjectError("recent.not_paths", name=name, value=entries)
             object.__setattr__(self, name, tuple(entries)[:MOST])
 
     def with_project(self, path: Path) -> Recent:
@@ -67,9 +67,9 @@ def load(path: Path) -> Recent:
     except FileNotFoundError:
         return Recent()
     except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
-        raise ProjectError(f"The list of recent files {path} cannot be read: {error}. Delete the file.") from error
+        raise ProjectError("recent.not_readable", path=path, reason=str(error)) from error
     if unknown := entries.keys() - {"projects", "targets"}:
-        raise ProjectError(f"The list of recent files {path} has unknown entries {', '.join(sorted(unknown))}.")
+        raise ProjectError("recent.unknown_entries", path=path, names=", ".join(sorted(unknown)))
     return Recent(**entries)
 
 

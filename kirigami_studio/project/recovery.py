@@ -1,7 +1,7 @@
-"""What survives a crash: a project file with a note of its own about where the work belongs.
+"""Recovery files: what survives a crash, a project file with a note of where the work belongs.
 
-The file is a whole project, so that it can also be opened by hand; the note is one more member of it, so that file and
-note appear together or not at all.
+A recovery file is a whole project, so it can also be opened by hand; the note is one more member of it, so project and
+note are written together or not at all.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ LONGEST_NOTE = 64 * 2**10
 
 @dataclass(frozen=True, slots=True)
 class Note:
-    """Whose work it is.
+    """Whose work a recovery file holds.
 
     Attributes
     ----------
@@ -35,9 +35,9 @@ class Note:
     path : str
         Where the project was saved last, absolute; "" if it never was.
     changed : str
-        When the kept change was made, ISO 8601 with the offset of its time zone.
+        When the latest change was made, ISO 8601 with the offset of its time zone.
     pid : int
-        Process that kept it.
+        Process that wrote it.
     """
 
     name: str
@@ -64,36 +64,36 @@ def keep(document: Document, note: Note, path: Path, picture: TracedPicture | No
     ExportError
         The file cannot be written.
     """
-    # Here, so that knowing of notes costs the window's start nothing.
+    # Imported here, so that reading notes does not slow the start of the window.
     from kirigami_studio.project import store
-    from kirigami_studio.project.material_record import with_material
+    from kirigami_studio.project.cutting import with_stored_material
 
-    stream = io.BytesIO(store.pack(with_material(document), picture))
+    stream = io.BytesIO(store.pack(with_stored_material(document), picture))
     with zipfile.ZipFile(stream, "a", zipfile.ZIP_DEFLATED) as archive:
         archive.writestr(NOTE, json.dumps(asdict(note), indent=1))
     write_atomically(path, stream.getvalue())
 
 
 def read_note(path: Path) -> Note:
-    """Read whose work a file keeps, without reading the work.
+    """Read whose work a recovery file holds, without reading the work.
 
     Raises
     ------
     ProjectError
-        Unreadable, damaged, or no kept work.
+        Unreadable, damaged, or not a recovery file.
     """
     try:
         with zipfile.ZipFile(path) as archive, archive.open(NOTE) as stream:
             content = stream.read(LONGEST_NOTE)
     except OSError as error:
-        raise ProjectError(f"The kept work {path} cannot be read: {error.strerror or error}.") from error
+        raise ProjectError("recovery.not_readable", path=path, reason=error.strerror or str(error)) from error
     except (KeyError, ValueError, RuntimeError, zipfile.BadZipFile) as error:
-        raise ProjectError(f"The kept work {path} is damaged ({str(error)[:80]}).") from error
+        raise ProjectError("recovery.damaged", path=path, reason=str(error)) from error
     try:
         record = Record(read_json(content, NOTE), NOTE)
         note = Note(record.text("name"), record.text("path"), record.text("changed"), record.whole("pid"))
         if note.when.tzinfo is None:
-            raise ProjectError(f"{NOTE} does not say in which time zone it was written")
+            raise ProjectError("recovery.no_time_zone", name=NOTE)
     except (KirigamiError, ValueError) as error:
-        raise ProjectError(f"The kept work {path} is damaged ({str(error)[:80]}).") from error
+        raise ProjectError("recovery.damaged", path=path, reason=str(error)) from error
     return note

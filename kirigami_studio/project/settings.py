@@ -30,7 +30,7 @@ class DesignSettings:
     steps : int, >= 1
         Evaluations of the network for each sample: Euler steps of the flow, then corrections.
     polish : int, >= 0
-        Steps of the fit on the exact geometry; 0 leaves candidates as drawn.
+        Steps of the fit on the exact geometry; 0 leaves candidates as sampled.
     prefer : str
         What the fit prefers, from "accuracy" to "calm".
     search : int, >= 0
@@ -55,24 +55,24 @@ class DesignSettings:
     def __post_init__(self) -> None:
         grid = tuple(self.grid)
         if len(grid) != 2 or not all(_is_whole(count) for count in grid):
-            raise GridError(f"A grid needs two whole numbers (rows, columns), got {self.grid!r}.")
+            raise GridError("settings.grid_not_two_numbers", value=self.grid)
         check_grid(*grid)
         object.__setattr__(self, "grid", grid)
         if not _is_number(self.phi) or not 0.0 <= self.phi < math.pi:
-            raise AngleError(f"The target angle must lie in [0, pi) radians, got {self.phi!r}; 0 is the usual choice.")
-        for name, value, lowest in (
-            ("number of candidates", self.k, 1),
-            ("seed", self.seed, 0),
-            ("number of steps", self.steps, 1),
-            ("number of polishing steps", self.polish, 0),
-            ("effort of the search", self.search, 0),
+            raise AngleError("settings.angle_out_of_range", value=self.phi)
+        for code, value, lowest in (
+            ("settings.number_of_candidates", self.k, 1),
+            ("settings.seed", self.seed, 0),
+            ("settings.number_of_steps", self.steps, 1),
+            ("settings.number_of_polishing_steps", self.polish, 0),
+            ("settings.search_effort", self.search, 0),
         ):
             if not _is_whole(value) or value < lowest:
-                raise UsageError(f"The {name} must be a whole number from {lowest} on, got {value!r}.")
+                raise UsageError(code, value=value, lowest=lowest)
         if not isinstance(self.variant, str) or not self.variant:
-            raise UsageError(f"The generator variant must be a name, got {self.variant!r}.")
+            raise UsageError("settings.variant_not_a_name", value=self.variant)
         if not isinstance(self.prefer, str) or not self.prefer:
-            raise UsageError(f"What the fit prefers must be a name, got {self.prefer!r}.")
+            raise UsageError("settings.preference_not_a_name", value=self.prefer)
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,8 +95,8 @@ class FabricationSettings:
     dxf_version : str
         DXF dialect of cut files.
     own : Material or None
-        What the project knows of a material that is no preset; no choice of its own, so it decides nothing about
-        equality.
+        The numbers of ``material`` where that is a person's own and no preset.  Not a choice, so it takes no part in
+        comparisons.
 
     Raises
     ------
@@ -115,21 +115,21 @@ class FabricationSettings:
 
     def __post_init__(self) -> None:
         if not _is_number(self.width_mm) or not 0 < self.width_mm <= LARGEST_SHEET_MM:
-            raise UsageError(
-                f"The sheet's width must be above 0 and at most {LARGEST_SHEET_MM:g} mm, got {self.width_mm!r}."
-            )
+            raise UsageError("settings.sheet_width", value=self.width_mm, largest_mm=LARGEST_SHEET_MM)
         if not isinstance(self.material, str) or not self.material:
-            raise UsageError(f"The material must be the name of a preset, got {self.material!r}.")
+            raise UsageError("settings.material_not_a_name", value=self.material)
         if not isinstance(self.profile, str) or not self.profile:
-            raise UsageError(f"The machine profile must be a name, got {self.profile!r}.")
+            raise UsageError("settings.profile_not_a_name", value=self.profile)
         if not isinstance(self.dxf_version, str) or not self.dxf_version:
-            raise UsageError(f"The DXF version must be a name, got {self.dxf_version!r}.")
-        for name, value, zero_allowed in (("connector", self.connector_mm, False), ("kerf", self.kerf_mm, True)):
+            raise UsageError("settings.dxf_version_not_a_name", value=self.dxf_version)
+        for code, value, zero_allowed in (
+            ("settings.connector_width", self.connector_mm, False),
+            ("settings.kerf_width", self.kerf_mm, True),
+        ):
             if value is None:
                 continue
             if not _is_number(value) or value < 0 or (value == 0 and not zero_allowed) or value > LARGEST_SHEET_MM:
-                bound = "0 mm or more" if zero_allowed else "above 0 mm"
-                raise UsageError(f"The {name} width must be {bound} and no wider than a sheet, got {value!r}.")
+                raise UsageError(code, value=value, largest_mm=LARGEST_SHEET_MM)
 
 
 def _is_whole(value: object) -> bool:

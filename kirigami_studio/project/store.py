@@ -1,4 +1,4 @@
-"""Document <-> ``.kiri`` file: a zip that appears whole or not at all, and is read with suspicion."""
+"""Document <-> ``.kiri`` file: a zip that is written atomically, and read within limits of size and number."""
 
 from __future__ import annotations
 
@@ -12,11 +12,12 @@ from pathlib import Path
 from kirigami_studio import __version__
 from kirigami_studio.foundation.errors import KirigamiError, ProjectError
 from kirigami_studio.foundation.files import write_atomically
+from kirigami_studio.project import migrations
 from kirigami_studio.project.codec import decode, encode
+from kirigami_studio.project.cutting import with_stored_material
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.json_record import Record, read_json
-from kirigami_studio.project.material_record import with_material
-from kirigami_studio.project.migrations import CURRENT_VERSION, Members, migrate
+from kirigami_studio.project.migrations import Members, migrate
 from kirigami_studio.project.picture_record import TracedPicture, picture_members, picture_of
 
 SUFFIX = ".kiri"
@@ -41,7 +42,7 @@ class Opened:
     picture : TracedPicture or None
         What the target was traced from.
     notes : tuple of str
-        Sentences about what had to be left out.
+        What had to be left out, in sentences.
     """
 
     document: Document
@@ -57,12 +58,12 @@ def save(document: Document, path: Path | str, picture: TracedPicture | None = N
     ExportError
         The file cannot be written.
     """
-    write_atomically(Path(path), pack(with_material(document), picture))
+    write_atomically(Path(path), pack(with_stored_material(document), picture))
 
 
 def pack(document: Document, picture: TracedPicture | None = None) -> bytes:
     """Return the project file's bytes; equal documents and pictures give equal bytes."""
-    manifest = {"format": FORMAT, "version": CURRENT_VERSION, "app_version": __version__}
+    manifest = {"format": FORMAT, "version": migrations.CURRENT_VERSION, "app_version": __version__}
     members = {MANIFEST: json.dumps(manifest, indent=1).encode(), **encode(document), **picture_members(picture)}
     stream = io.BytesIO()
     with zipfile.ZipFile(stream, "w") as archive:
@@ -82,12 +83,12 @@ def load(path: Path | str) -> Document:
 
 
 def load_all(path: Path | str) -> Opened:
-    """Read a project file; a picture that cannot be read is left out with a sentence.
+    """Read a project file; a picture that cannot be read is left out, and a note says so.
 
     Raises
     ------
     ProjectError
-        No such file, no project, damaged, or of a newer version; the sentence says which and what to try.
+        No such file, no project, damaged (code ``project.damaged``), or of a newer format (``project.newer_format``).
     """
     path = Path(path)
     content = _read_file(path)
@@ -95,48 +96,38 @@ def load_all(path: Path | str) -> Opened:
         members = _unpack(content)
         version = _version(members)
     except KirigamiError as error:
-        raise _damaged(path, error) from error
-    try:
-        members = migrate(members, version)
-    except ProjectError as error:
-        raise ProjectError(f"The project {path} cannot be opened: {error}.") from error
+        raise ProjectError("project.damaged", path=path, reason=error) from error
+    members = migrate(members, version, path)
     try:
         document = decode(members)
     except KirigamiError as error:
-        raise _damaged(path, error) from error
+        raise ProjectError("project.damaged", path=path, reason=error) from error
     try:
         return Opened(document, picture_of(members))
     except ProjectError as error:
         return Opened(document, notes=(str(error),))
 
 
-def _damaged(path: Path, error: KirigamiError) -> ProjectError:
-    reason = str(error).rstrip(".")
-    return ProjectError(f"The project {path} cannot be opened: {reason}. Try an earlier copy of the file.")
-
-
 def _version(members: Members) -> int:
     """Format version by the manifest."""
     if MANIFEST not in members:
-        raise ProjectError(f"it lacks {MANIFEST}")
+        raise ProjectError("project.member_missing", name=MANIFEST)
     manifest = Record(read_json(members[MANIFEST], MANIFEST), MANIFEST)
     version = manifest.whole("version")
     if manifest.text("format") != FORMAT or version < 1:
-        raise ProjectError(f"{MANIFEST} does not describe a project")
+        raise ProjectError("project.not_a_manifest", name=MANIFEST)
     return version
 
 
 def _read_file(path: Path) -> bytes:
     try:
         if path.stat().st_size > LARGEST_FILE:
-            raise ProjectError(
-                f"The file {path} is larger than any project ({LARGEST_FILE // 2**20} MB); choose a {SUFFIX} file."
-            )
+            raise ProjectError("project.file_too_large", path=path, limit=LARGEST_FILE // 2**20)
         return path.read_bytes()
     except OSError as error:
-        raise ProjectError(f"The project {path} cannot be read: {error.strerror or error}. Check its name.") from error
+        raise ProjectError("project.not_readable", path=path, reason=error.strerror or str(error)) from error
     except ValueError as error:  # a null character in the name
-        raise ProjectError(f"{str(path)!r} is no file name ({error}); choose a {SUFFIX} file.") from error
+        raise ProjectError("project.not_a_file_name", path=str(path)) from error
 
 
 def _unpack(content: bytes) -> Members:
@@ -147,21 +138,21 @@ def _unpack(content: bytes) -> Members:
         with zipfile.ZipFile(io.BytesIO(content)) as archive:
             entries = archive.infolist()
             if len(entries) > MOST_MEMBERS:
-                raise ProjectError(f"it holds {len(entries)} members, at most {MOST_MEMBERS} are allowed")
+                raise ProjectError("project.too_many_members", members=len(entries), limit=MOST_MEMBERS)
             for entry in entries:
                 members[entry.filename] = _read_member(archive, entry, budget)
                 budget -= len(members[entry.filename])
     except (zipfile.BadZipFile, zlib.error, EOFError, OSError, ValueError, RuntimeError) as error:
         # RuntimeError: zipfile's word for an encrypted member.
-        raise ProjectError(f"it is not a project file, or it is damaged ({str(error)[:80]})") from error
+        raise ProjectError("project.not_a_zip", reason=str(error)) from error
     return members
 
 
 def _read_member(archive: zipfile.ZipFile, entry: zipfile.ZipInfo, budget: int) -> bytes:
     if entry.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
-        raise ProjectError(f"its member {entry.filename[:40]!r} is packed in a way that no project uses")
+        raise ProjectError("project.foreign_compression", name=entry.filename)
     with archive.open(entry) as stream:
         content = stream.read(budget + 1)
     if len(content) > budget:
-        raise ProjectError(f"it unpacks to more than {LARGEST_CONTENT // 2**20} MB, which no project needs")
+        raise ProjectError("project.content_too_large", limit=LARGEST_CONTENT // 2**20)
     return content

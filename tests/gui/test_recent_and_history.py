@@ -105,7 +105,7 @@ def test_that_a_list_of_recent_files_holds_ten_of_each_kind_and_none_twice() -> 
 def test_that_a_spoilt_list_is_told_and_left_as_it_is(text: str, tmp_path: Path, window: MainWindow) -> None:
     kept = tmp_path / "recent.toml"
     kept.write_text(text)
-    with pytest.raises(ProjectError, match="list of recent"):
+    with pytest.raises(ProjectError, match="list of recent files"):
         recent.load(kept)
     window.controller.filing.recent.load(kept)
     assert "list of recent" in window.messages.messages[-1].sentence

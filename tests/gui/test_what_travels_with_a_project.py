@@ -96,7 +96,7 @@ def test_that_an_impossible_material_in_a_project_is_refused(entry: str, value: 
         design["fabrication"]["own"][entry] = value
         members["design.json"] = json.dumps(design).encode()
 
-    with pytest.raises(store.ProjectError, match="cannot be opened"):
+    with pytest.raises(store.ProjectError, match="Cannot open"):
         store.load(rewritten(own_project, spoil))
 
 
@@ -175,7 +175,7 @@ def test_that_a_photo_that_cannot_be_read_is_left_out_with_a_sentence(
     window.controller.open_project(rewritten(traced_project, spoil))
     until(lambda: bool(told(window, "left out")) and window.controller.document.target is not None)
     assert not window.target.threshold.isVisible()
-    assert len(told(window, "The photo in this project cannot be read and was left out")) == 1
+    assert len(told(window, "The picture in this project cannot be read and was left out")) == 1
 
 
 def test_that_a_photo_that_is_gone_at_saving_is_told_and_the_project_is_saved(

@@ -6,6 +6,7 @@ from kirigami_studio.foundation.words import mark
 
 SENTENCES: dict[str, str | tuple[str, str]] = {
     "file.not_written": mark("Cannot write {path}: {reason}. Choose another folder or free some space."),
+    "file.is_a_folder": mark("Cannot write {path}: it is a folder. Give a file name."),
     "file.link_to_nothing": mark(
         "Cannot write {path}: it is a link to {target}, which does not exist. Delete the link or choose another name."
     ),

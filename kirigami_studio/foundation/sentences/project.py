@@ -1,5 +1,113 @@
-"""Sentences of ``project``, by the code of the problem."""
+"""Sentences of ``project``, by the code of the problem: documents, project files, preferences and recovery files."""
 
 from __future__ import annotations
 
-SENTENCES: dict[str, str | tuple[str, str]] = {}
+from kirigami_studio.foundation.words import mark
+
+SENTENCES: dict[str, str | tuple[str, str]] = {
+    # What a document cannot hold
+    "project.designs_without_target": mark("A project with designs also needs the target they were made for."),
+    "project.grids_differ": mark(
+        "All designs of a project must have the same grid, got {rows} x {columns} and {other_rows} x {other_columns}."
+    ),
+    "project.no_such_design": mark(
+        "There is no design with index {index!s:.40}; the project has {designs}, from 0 on."
+    ),
+    "project.marks_do_not_match": mark("Every design needs one mark: got {marks} for {designs} designs."),
+    "project.no_such_void": mark(
+        "Void ({row}, {column}) cannot be locked: it is outside of the designs' {rows} x {columns} voids."
+    ),
+    "history.no_such_step": mark("There is no step {position} in the history; the last one is {last}."),
+    # Settings
+    "settings.grid_not_two_numbers": mark("A grid is two whole numbers (rows, columns), got {value!r:.60}."),
+    "settings.angle_out_of_range": mark(
+        "The target angle must be at least 0 and below pi radians, got {value!r:.40}. The usual choice is 0."
+    ),
+    "settings.number_of_candidates": mark(
+        "The number of candidates must be a whole number of at least {lowest}, got {value!r:.40}."
+    ),
+    "settings.seed": mark("The seed must be a whole number of at least {lowest}, got {value!r:.40}."),
+    "settings.number_of_steps": mark(
+        "The number of sampling steps must be a whole number of at least {lowest}, got {value!r:.40}."
+    ),
+    "settings.number_of_polishing_steps": mark(
+        "The number of polishing steps must be a whole number of at least {lowest}, got {value!r:.40}."
+    ),
+    "settings.search_effort": mark(
+        "The effort of the search must be a whole number of at least {lowest}, got {value!r:.40}."
+    ),
+    "settings.variant_not_a_name": mark("The generator variant must be a name, got {value!r:.40}."),
+    "settings.preference_not_a_name": mark("The preference of the polish must be a name, got {value!r:.40}."),
+    "settings.sheet_width": mark("The sheet's width must be above 0 and at most {largest_mm:g} mm, got {value!r:.40}."),
+    "settings.material_not_a_name": mark("The material must be the name of a preset, got {value!r:.40}."),
+    "settings.profile_not_a_name": mark("The machine profile must be a name, got {value!r:.40}."),
+    "settings.dxf_version_not_a_name": mark("The DXF version must be a name, got {value!r:.40}."),
+    "settings.connector_width": mark(
+        "The connector width must be above 0 and at most {largest_mm:g} mm, got {value!r:.40}."
+    ),
+    "settings.kerf_width": mark("The kerf must be from 0 to {largest_mm:g} mm, got {value!r:.40}."),
+    # Project files
+    "project.not_readable": mark("Cannot read the project {path}: {reason}. Check its name."),
+    "project.not_a_file_name": mark("{path!r} is not a file name. Choose a .kiri file."),
+    "project.file_too_large": mark("{path} is too large for a project (more than {limit} MB). Choose a .kiri file."),
+    "project.damaged": mark("Cannot open {path}: the file is damaged. {reason} Try an earlier copy of the file."),
+    "project.newer_format": mark(
+        "Cannot open {path}: it was saved by a newer Kirigami Studio (format {version}; this one reads up to "
+        "{current}). Update Kirigami Studio."
+    ),
+    "project.format_too_old": mark(
+        "Cannot open {path}: its format {version} is older than anything this Kirigami Studio can read."
+    ),
+    "project.not_a_zip": mark("It is not a project file, or part of it is missing ({reason:.80})."),
+    "project.too_many_members": mark("It contains {members} members; projects have at most {limit}."),
+    "project.foreign_compression": mark("Its member {name:.40} is compressed in a way that projects do not use."),
+    "project.content_too_large": mark("It unpacks to more than {limit} MB; projects are smaller."),
+    "project.member_missing": mark("Its member {name} is missing."),
+    "project.not_a_manifest": mark("Its member {name} does not describe a project."),
+    "project.not_a_connector_number": mark("{value!r:.60} is not the number of a connector."),
+    "project.not_a_connector_with_width": mark("{value!r:.60} is not the number of a connector with its width."),
+    "project.not_a_connector_width": mark("{value!r:.60} is not the width of a connector."),
+    "project.not_a_void": mark("{value!r:.60} is not the row and column of a void."),
+    "project.no_such_run": mark("A design belongs to run {number}, but the number of runs in the file is {runs}."),
+    "project.array_not_readable": mark("Its member {name} is not a NumPy array file ({reason:.80})."),
+    "project.array_of_wrong_shape": mark(
+        "Its member {name} must hold one table of numbers for each of {designs} designs, got an array of shape "
+        "{shape!s:.60} and type {dtype:.40}."
+    ),
+    "project.array_of_wrong_size": mark("Its member {name} should hold {bytes} bytes of ratios, got {found}."),
+    # JSON inside project files
+    "json.not_readable": mark("{place} is not valid JSON ({reason:.80})."),
+    "json.not_an_object": mark("{place} must be a JSON object."),
+    "json.entry_missing": mark("{place} has no entry '{name}'."),
+    "json.not_a_number": mark("{place} must be a number, got {value!r:.60}."),
+    "json.not_a_whole_number": mark("{place} must be a whole number, got {value!r:.60}."),
+    "json.not_true_or_false": mark("{place} must be true or false, got {value!r:.60}."),
+    "json.not_a_text": mark("{place} must be text, got {value!r:.60}."),
+    "json.not_a_list": mark("{place} must be a list, got {value!r:.60}."),
+    "json.not_a_table_of_texts": mark("{place} must be a table of texts, got {value!r:.60}."),
+    "json.not_two_numbers": mark("{place} must be two numbers, got {value!r:.60}."),
+    "json.not_two_whole_numbers": mark("{place} must be two whole numbers, got {value!r:.60}."),
+    "json.not_whole_numbers": mark("{place} must be a list of whole numbers."),
+    "json.not_all_true_or_false": mark("{place} must be a list of true and false."),
+    "json.not_a_table_of_numbers": mark("{place} must be a table of numbers."),
+    "json.not_a_choice": mark("{value!r:.60} is none of {choices}."),
+    # The picture that a target was traced from
+    "picture.not_a_picture_name": mark("{name!r:.60} is not the name of a picture ({extensions})."),
+    "picture.too_large": mark("{name} has {megabytes:.0f} MB; projects store pictures of at most {limit} MB."),
+    "picture.impossible_number": mark("The picture {name:.60} has an impossible threshold, scale or size."),
+    "picture.left_out": mark("The picture in this project cannot be read and was left out. {reason}"),
+    # Preferences, recent files, recovery files
+    "preferences.not_a_name": mark("The preference {name} must be a name, got {value!r:.40}."),
+    "preferences.unknown_theme": mark("The preference theme must be one of {themes}, got {value!r:.40}."),
+    "preferences.not_true_or_false": mark("The preference {name} must be true or false, got {value!r:.40}."),
+    "preferences.not_readable": mark(
+        "Cannot read the preferences in {path}: {reason:.80}. Correct or delete the file."
+    ),
+    "preferences.unknown_entries": mark("The preferences in {path} have unknown entries: {names:.80}. Remove them."),
+    "recent.not_paths": mark("In the list of recent files, {name} must be paths, got {value!r:.60}."),
+    "recent.not_readable": mark("Cannot read the list of recent files {path}: {reason:.80}. Delete the file."),
+    "recent.unknown_entries": mark("The list of recent files {path} has unknown entries: {names:.80}. Remove them."),
+    "recovery.not_readable": mark("Cannot read the recovery file {path}: {reason}."),
+    "recovery.damaged": mark("The recovery file {path} is damaged ({reason:.80})."),
+    "recovery.no_time_zone": mark("{name} does not name a time zone."),
+}

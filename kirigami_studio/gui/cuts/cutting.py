@@ -17,9 +17,9 @@ from kirigami_studio.gui.jobs import steps
 from kirigami_studio.gui.jobs.queue import JobCallbacks, JobQueue
 from kirigami_studio.gui.messages import Message, Tone
 from kirigami_studio.project import edits
+from kirigami_studio.project.cutting import stored_material
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.edits import Edit, FabricationChange, OptionsChange
-from kirigami_studio.project.material_record import carried_material
 from kirigami_studio.project.settings import FabricationSettings
 
 #: Changes that follow each other faster than this (ms) lead to one plan.
@@ -192,7 +192,7 @@ class MaterialStore(QObject):
 
     def welcome(self, document: Document) -> None:
         """A project was opened."""
-        material = carried_material(document.fabrication)
+        material = stored_material(document.fabrication)
         if material is None:
             return
         known = library().materials.get(material.key)

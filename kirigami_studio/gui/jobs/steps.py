@@ -180,7 +180,7 @@ def trimming(candidate: Candidate, target: Outline, settings: FabricationSetting
 def keep_for(candidate: Candidate, settings: FabricationSettings) -> float:
     """Depth (unit cells) of the material that trimming has to leave at the hinges of a candidate."""
     from kirigami_studio.pipeline.redesign import keep_for_connectors
-    from kirigami_studio.project.material_record import material_for
+    from kirigami_studio.project.cutting import material_for
 
     grid, material = (candidate.field.rows, candidate.field.columns), material_for(settings)
     return keep_for_connectors(grid, material, settings.width_mm, settings.connector_mm, settings.kerf_mm)

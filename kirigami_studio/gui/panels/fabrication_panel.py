@@ -41,7 +41,7 @@ from kirigami_studio.gui.panels.card import (
 from kirigami_studio.gui.panels.export_row import ExportRow
 from kirigami_studio.gui.panels.more_options import MoreOptions
 from kirigami_studio.gui.panels.number_field import LengthField
-from kirigami_studio.project.material_record import carried_material
+from kirigami_studio.project.cutting import stored_material
 from kirigami_studio.project.settings import FabricationSettings
 
 if TYPE_CHECKING:
@@ -279,7 +279,7 @@ class FabricationPanel(Card):
 
     def show_settings(self, settings: FabricationSettings) -> None:
         """Show the document's numbers, the material's own where it holds none."""
-        material = self._presets.get(settings.material) or carried_material(settings)
+        material = self._presets.get(settings.material) or stored_material(settings)
         with QSignalBlocker(self.material):
             if self.material.findData(settings.material) < 0:
                 self.material.addItem(material.name if material else settings.material, settings.material)

@@ -71,7 +71,7 @@ def test_that_a_failure_half_way_leaves_the_old_folder(
 ) -> None:
     folder = export(job, tmp_path / "sheet.dxf")
     before = {path.name: path.read_bytes() for path in folder.iterdir()}
-    write, calls = layer_files.write_verified, []
+    write, calls = layer_files.write_atomically, []
 
     def full_disk(path: Path, content: bytes, verify: Callable[[Path], None]) -> None:
         calls.append(path)
@@ -79,7 +79,7 @@ def test_that_a_failure_half_way_leaves_the_old_folder(
             raise ExportError(f"Cannot write {path}: No space left on device.")
         write(path, content, verify)
 
-    monkeypatch.setattr(layer_files, "write_verified", full_disk)
+    monkeypatch.setattr(layer_files, "write_atomically", full_disk)
     with pytest.raises(ExportError, match="No space left"):
         export(job, tmp_path / "sheet.dxf")
     assert {path.name: path.read_bytes() for path in folder.iterdir()} == before

@@ -14,11 +14,11 @@ from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.candidate_edits import (
     Brought,
     add_candidates,
-    joined_provenance,
     renew_candidates,
     set_mark,
 )
 from kirigami_studio.project.codec import decode, encode
+from kirigami_studio.project.design_facts import joined_provenance
 from kirigami_studio.project.document import Document, Mark
 
 

@@ -66,7 +66,7 @@ def test_that_a_width_of_nothing_is_refused() -> None:
 def test_that_options_of_the_sheet_leave_single_connectors_alone() -> None:
     document = edits.remove_hinges(Document(), {1}).document
     edit = edits.set_cut_options(document, style=ConnectorStyle.ROUND, tabs=2)
-    assert edit.label == "Change the connector style and the number of tabs"
+    assert edit.label == "Change the connector style"
     assert options_of(edit.document) == CutOptions(style=ConnectorStyle.ROUND, tabs=2, removed=(1,))
 
 

@@ -74,7 +74,7 @@ def test_that_a_file_without_points_or_place_opens_as_before(drawn: Placed, tmp_
 def test_that_points_that_no_drawing_has_are_a_sentence(
     change: Callable[[dict[str, Any]], object], drawn: Placed, tmp_path: Path
 ) -> None:
-    with pytest.raises(ProjectError, match="cannot be opened"):
+    with pytest.raises(ProjectError, match="Cannot open"):
         store.load(changed(drawn, tmp_path, change))
 
 

@@ -1,0 +1,45 @@
+"""Lift project files of older formats: one function per version, applied one after the other.
+
+``MIGRATIONS[v]`` takes the members of a version ``v`` file and returns those of version ``v + 1``.  A change of the
+format raises :data:`CURRENT_VERSION` by one and adds one entry; entries that were released never change.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from types import MappingProxyType
+
+from kirigami_studio.foundation.errors import ProjectError
+
+#: The members of a project file by name; the manifest is not among them.
+Members = Mapping[str, bytes]
+Migration = Callable[[Members], Members]
+
+CURRENT_VERSION = 1
+MIGRATIONS: Mapping[int, Migration] = MappingProxyType({})
+
+
+def migrate(members: Members, version: int, path: Path) -> Members:
+    """Return the members as the current version has them.
+
+    Parameters
+    ----------
+    members : mapping of str to bytes
+    version : int
+        Format of the file, by its manifest.
+    path : Path
+        Of the file, for messages.
+
+    Raises
+    ------
+    ProjectError
+        The file is newer than this program, or older than its oldest migration.
+    """
+    if version > CURRENT_VERSION:
+        raise ProjectError("project.newer_format", path=path, version=version, current=CURRENT_VERSION)
+    for step in range(version, CURRENT_VERSION):
+        if step not in MIGRATIONS:
+            raise ProjectError("project.format_too_old", path=path, version=step)
+        members = MIGRATIONS[step](members)
+    return members
