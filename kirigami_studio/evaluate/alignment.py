@@ -4,9 +4,9 @@ Four stages, the first three vectorised over many outlines:
 
 1. *starts*: boundary Procrustes for every cyclic shift (Gower 1975), principal axes, and a ring of plain rotations, all
    with equal area and centroid; the few best distinct ones by IoU go on;
-2. *ascent* on the tabulated IoU with its boundary-integral gradient (module ``ascent``), of ever fewer starts;
-3. *polish* of the last ones by the same ascent with boundary integrals that are accurate to 1e-4 of the area;
-4. *finish* on exact polygons (module ``finish``).
+2. *ascent* on the tabulated IoU with its boundary-integral gradient, of ever fewer starts;
+3. the same ascent of the last ones, with boundary integrals that are accurate to 1e-4 of the area;
+4. *refinement* of near-copies on the exact polygons, as in point-to-line registration.
 
 Reflections are never used: a sheet shows its target only the right way round.
 """
@@ -26,6 +26,41 @@ from kirigami_studio.evaluate.boundary import as_points, edge_parts, resampled
 from kirigami_studio.evaluate.outline_batch import Boundaries, OutlineBatch
 from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.foundation.arrays import ComplexArray, FloatArray
+
+#: Plain rotations tried as starts: every 10 degrees.
+RING = 36
+
+#: Starts at the best cyclic shifts of the boundary.
+CYCLIC_STARTS = 3
+
+#: Starts that go on, at least 15 degrees apart.
+KEPT_STARTS = 4
+APART = np.deg2rad(15.0)
+
+#: Spare boundary parts of the integrals that choose among starts.
+START_PARTS = 64
+
+#: The ascent's stages: starts kept, spare boundary parts, and band of every step (see ``_ascended``); wide steps first.
+STAGES: tuple[tuple[int, int, tuple[float, ...]], ...] = (
+    (4, 128, (0.15, 0.12, 0.096, 0.077, 0.061, 0.049, 0.039, 0.031)),
+    (2, 256, (0.025, 0.02)),
+    (1, 512, (0.02, 0.02, 0.02, 0.02, 0.02)),
+)
+
+#: Tabulated IoU that a start may lack and still turn out to be the better near-copy.
+RIVAL = 0.01
+
+#: What half a turn counts as when two places are about equally good: a person would turn a design less.
+TURN_PENALTY = 2e-4
+
+#: Share of the band's weight that every boundary point keeps, so that no direction is left without curvature.
+LEAST_WEIGHT = 0.1
+
+#: Damping relative to the trace of the curvature; it only matters where a rotation changes nothing (a disc).
+DAMPING = 1e-3
+
+#: Longest step in log scale, radians and lengths.
+LONGEST_STEP = 0.2
 
 #: Above this IoU every boundary point has its partner next to it, and nearest-point steps converge to a copy.
 NEAR_COPY = 0.98
@@ -51,187 +86,6 @@ class Placement:
     factor: complex
     shift: complex
     iou: float
-
-
-def finished(vertices: ComplexArray, target: AlignmentTarget, places: Sequence[Placement]) -> Placement:
-    """Choose among places of an outline (L,) complex, in its normal frame.
-
-    The first one unless it is a near-copy of the target: then all of them slide, and the best by exact IoU is chosen.
-    Shapes that are almost symmetric have several near-copies, which the table cannot tell apart.
-    """
-    if places[0].iou < NEAR_COPY - TABLE_ERROR:
-        return places[0]
-    measured = [slid(vertices, target, place) for place in places]
-    top = max(place.iou for place in measured)
-    ties = [place for place in measured if place.iou >= top - TIE]
-    return min(ties, key=lambda place: abs(np.angle(place.factor)))
-
-
-def slid(vertices: ComplexArray, target: AlignmentTarget, place: Placement) -> Placement:
-    """Move a near-copy so that its boundary points meet the tangents at their nearest target points.
-
-    Least squares in the normal direction only, as in point-to-line registration.  Never worse by exact IoU, which the
-    result holds, than the given place; the given place itself unless that is a near-copy.
-    """
-    factor, shift = place.factor, place.shift
-    start = Placement(factor, shift, exact_iou(vertices, target, factor, shift))
-    if start.iou < NEAR_COPY:
-        return start
-    points, steps = edge_parts(vertices, SLIDING_PARTS)
-    for _ in range(ROUNDS):
-        arm = factor * points
-        here = arm + shift
-        along = shapely.line_locate_point(target.ring, shapely.points(here.real, here.imag))
-        feet = shapely.line_interpolate_point(target.ring, along)
-        gap = shapely.get_x(feet) + 1j * shapely.get_y(feet) - here
-        edge = factor * steps
-        # sqrt(ds) times the unit normal: every length of boundary counts the same.
-        normal = 1j * np.conj(edge) / np.sqrt(np.maximum(np.abs(edge), 1e-12))
-        rows = np.stack([(normal * arm).real, (1j * normal * arm).real, normal.real, -normal.imag], axis=-1)
-        move = np.linalg.lstsq(rows, (normal * gap).real, rcond=1e-9)[0]
-        factor *= complex(np.exp(move[0] + 1j * move[1]))
-        shift += complex(move[2], move[3])
-    end = Placement(factor, shift, exact_iou(vertices, target, factor, shift))
-    return end if end.iou > start.iou else start
-
-
-def exact_iou(vertices: ComplexArray, target: AlignmentTarget, factor: complex, shift: complex) -> float:
-    """IoU of the polygons themselves, laid at ``factor * p + shift``."""
-    polygon = shapely.Polygon(as_points(factor * vertices + shift))
-    shape = polygon if polygon.is_valid else shapely.make_valid(polygon)
-    common = shape.intersection(target.polygon).area
-    return float(common / (shape.area + target.area - common))
-
-
-#: Share of the band's weight that every boundary point keeps, so that no direction is left without curvature.
-LEAST_WEIGHT = 0.1
-
-#: Damping relative to the trace of the curvature; it only matters where a rotation changes nothing (a disc).
-DAMPING = 1e-3
-
-#: Longest step in log scale, radians and lengths.
-LONGEST_STEP = 0.2
-
-
-def overlap(
-    outlines: Boundaries, target: AlignmentTarget, factor: ComplexArray, shift: ComplexArray
-) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Tabulated intersection and union areas (B, S), and depth of the boundary points (B, S, Q).
-
-    Parameters
-    ----------
-    factor, shift : (B, S) complex
-        Places to try: outline b goes to ``factor[b, s] * p + shift[b, s]``.
-    """
-    places = factor[..., newaxis] * outlines.points[:, newaxis] + shift[..., newaxis]
-    found = target.lookup(places)
-    rise = (factor[..., newaxis] * outlines.steps[:, newaxis]).imag
-    intersection = (found.real * rise).sum(axis=-1)
-    return intersection, np.abs(factor) ** 2 + 1.0 - intersection, found.imag
-
-
-def intersections(outlines: Boundaries, target: AlignmentTarget, rotation: ComplexArray) -> FloatArray:
-    """Tabulated intersection areas under plain rotations (B, S), complex numbers of modulus 1: (B, S)."""
-    length = target.stretch_at(rotation[..., newaxis] * outlines.points[:, newaxis])
-    length *= (rotation[..., newaxis] * outlines.steps[:, newaxis]).imag
-    return np.asarray(length.sum(axis=-1))
-
-
-def ascend(
-    outlines: Boundaries,
-    target: AlignmentTarget,
-    factor: ComplexArray,
-    shift: ComplexArray,
-    bands: Sequence[float],
-) -> tuple[ComplexArray, ComplexArray, FloatArray]:
-    """Climb from every start (B, S); returns the best factor, shift and tabulated IoU found, each (B, S).
-
-    Parameters
-    ----------
-    bands : sequence of float
-        Width of the band around the target's outline that gives the curvature, one entry a step (lengths of a target
-        of area 1): wide ones far from the summit.
-    """
-    best = np.full(factor.shape, -np.inf)
-    step = np.zeros((*factor.shape, 4))
-    share = np.ones(factor.shape)
-    trial_factor, trial_shift = factor, shift
-    for band in (*bands, None):
-        intersection, union, depth = overlap(outlines, target, trial_factor, trial_shift)
-        iou = intersection / union
-        better = iou > best
-        best = np.where(better, iou, best)
-        factor = np.where(better, trial_factor, factor)
-        shift = np.where(better, trial_shift, shift)
-        if band is None:
-            break
-        fresh = _newton_step(outlines, target, trial_factor, intersection, union, depth, band)
-        step = np.where(better[..., newaxis], fresh, step)
-        # A failed step is retried shorter from the best place; successes lengthen it again.
-        share = np.where(better, np.minimum(1.6 * share, 1.6), 0.35 * share)
-        move = np.clip(share[..., newaxis] * step, -LONGEST_STEP, LONGEST_STEP)
-        trial_factor = factor * np.exp(move[..., 0] + 1j * move[..., 1])
-        trial_shift = shift + move[..., 2] + 1j * move[..., 3]
-    return factor, shift, best
-
-
-def _newton_step(
-    outlines: Boundaries,
-    target: AlignmentTarget,
-    factor: ComplexArray,
-    intersection: FloatArray,
-    union: FloatArray,
-    depth: FloatArray,
-    band: float,
-) -> FloatArray:
-    """Ascent step (B, S, 4) in (log scale, rotation, x, y).
-
-    With v the velocity of the boundary and n ds its outward normal, dI is the loop integral of v.n ds over the part
-    inside the target, dA the same over the whole boundary, and U^2 d(I/U) = (U + I) dI - I dA.  The second derivative
-    of I sits where the two outlines cross; a tent of width ``band`` in the depth stands for that delta function.
-    """
-    moment = np.conj(outlines.points) * outlines.steps
-    swept = (np.abs(factor) ** 2)[..., newaxis] * moment[:, newaxis]
-    steps = factor[..., newaxis] * outlines.steps[:, newaxis]
-    flux = np.stack([swept.imag, -swept.real, steps.imag, -steps.real], axis=-2)
-    inside = np.clip(0.5 + depth / target.step, 0.0, 1.0)
-    both = (union + intersection)[..., newaxis]
-    gradient = np.matmul(flux, (both * inside - intersection[..., newaxis])[..., newaxis])
-    tent = np.maximum(1.0 - np.abs(depth) / band, LEAST_WEIGHT)
-    weight = both / band * tent / np.maximum(np.abs(steps), 1e-12)
-    curvature = np.matmul(flux * weight[..., newaxis, :], np.swapaxes(flux, -1, -2))
-    damping = DAMPING * np.trace(curvature, axis1=-2, axis2=-1)[..., newaxis, newaxis] * np.eye(4)
-    step: FloatArray = np.linalg.solve(curvature + damping, gradient)[..., 0]
-    return step
-
-
-__all__ = ["Similarity", "align", "align_many"]
-
-#: Plain rotations tried as starts: every 10 degrees.
-RING = 36
-
-#: Starts at the best cyclic shifts of the boundary.
-CYCLIC_STARTS = 3
-
-#: Starts that are refined, at least 15 degrees apart.
-KEPT_STARTS = 4
-APART = np.deg2rad(15.0)
-
-#: Spare boundary parts of the integrals that choose among starts.
-START_PARTS = 64
-
-#: The ascent's stages: starts kept, spare boundary parts, and band of every step (see ``ascend``); wide steps first.
-STAGES: tuple[tuple[int, int, tuple[float, ...]], ...] = (
-    (4, 128, (0.15, 0.12, 0.096, 0.077, 0.061, 0.049, 0.039, 0.031)),
-    (2, 256, (0.025, 0.02)),
-    (1, 512, (0.02, 0.02, 0.02, 0.02, 0.02)),
-)
-
-#: Tabulated IoU that a start may lack and still turn out to be the better near-copy.
-RIVAL = 0.01
-
-#: What half a turn counts as when two places are about equally good: a person would turn a design less.
-TURN_PENALTY = 2e-4
 
 
 def align(moving: npt.ArrayLike, fixed: npt.ArrayLike) -> Similarity:
@@ -268,16 +122,30 @@ def align_many(moving: Sequence[npt.ArrayLike], fixed: npt.ArrayLike) -> list[Si
     climbed = []
     for kept, parts, bands in STAGES:
         factor, shift = _best(kept, iou, factor, shift)
-        factor, shift, iou = ascend(outlines.boundaries(parts), target, factor, shift, bands)
+        factor, shift, iou = _ascended(outlines.boundaries(parts), target, factor, shift, bands)
         climbed.append((factor, shift, iou))
     first, last = climbed[0], climbed[-1]
     found = []
     for index, to_normal in enumerate(outlines.to_normal):
         places = [*_places(index, last, 1.0), *_places(index, first, RIVAL)]
-        place = finished(outlines.vertices[index], target, places)
+        place = _refined(outlines.vertices[index], target, places)
         laid = Similarity.from_complex(place.factor, place.shift)
         found.append(target.to_source.compose(laid).compose(to_normal))
     return found
+
+
+def align_near(moving: npt.ArrayLike, fixed: npt.ArrayLike, pose: Similarity) -> Similarity:
+    """Climb from ``pose`` to the nearest best place of ``moving`` (L, 2) over ``fixed`` (K, 2)."""
+    target, outlines = alignment_target(fixed), OutlineBatch.from_outlines([moving])
+    to_normal = outlines.to_normal[0]
+    start = target.to_source.inverse().compose(pose).compose(to_normal.inverse())
+    factor, shift = np.array([[start.factor]]), np.array([[complex(*start.shift)]])
+    iou = np.zeros(factor.shape)
+    for _, parts, bands in STAGES:
+        factor, shift, iou = _ascended(outlines.boundaries(parts), target, factor, shift, bands)
+    place = Placement(complex(factor[0, 0]), complex(shift[0, 0]), float(iou[0, 0]))
+    place = _slid(outlines.vertices[0], target, place)
+    return target.to_source.compose(Similarity.from_complex(place.factor, place.shift)).compose(to_normal)
 
 
 def _places(index: int, climbed: tuple[ComplexArray, ComplexArray, FloatArray], margin: float) -> list[Placement]:
@@ -301,7 +169,7 @@ def _starts(outlines: OutlineBatch, target: AlignmentTarget) -> ComplexArray:
     cyclic = _procrustes(outlines.vertices, target)
     rotation = np.concatenate([ring, half_turns, cyclic], axis=1)
     coarse = outlines.boundaries(START_PARTS)
-    intersection = intersections(coarse, target, rotation)
+    intersection = _intersections(coarse, target, rotation)
     score = intersection / (2.0 - intersection)
     kept = np.empty((count, KEPT_STARTS), dtype=np.complex128)
     rows = np.arange(count)
@@ -325,3 +193,145 @@ def _procrustes(vertices: ComplexArray, target: AlignmentTarget) -> ComplexArray
     best = np.argsort(np.where(peak, -fit, 0.0), axis=1, kind="stable")[:, :CYCLIC_STARTS]
     product, fit = np.take_along_axis(product, best, axis=1), np.take_along_axis(fit, best, axis=1)
     return np.where(fit > 0.0, product / np.maximum(fit, 1e-300), 1.0 + 0.0j)
+
+
+def _intersections(outlines: Boundaries, target: AlignmentTarget, rotation: ComplexArray) -> FloatArray:
+    """Tabulated intersection areas under plain rotations (B, S), complex numbers of modulus 1: (B, S)."""
+    length = target.stretch_at(rotation[..., newaxis] * outlines.points[:, newaxis])
+    length *= (rotation[..., newaxis] * outlines.steps[:, newaxis]).imag
+    return np.asarray(length.sum(axis=-1))
+
+
+def _ascended(
+    outlines: Boundaries,
+    target: AlignmentTarget,
+    factor: ComplexArray,
+    shift: ComplexArray,
+    bands: Sequence[float],
+) -> tuple[ComplexArray, ComplexArray, FloatArray]:
+    """Climb from every start (B, S); returns the best factor, shift and tabulated IoU found, each (B, S).
+
+    Parameters
+    ----------
+    bands : sequence of float
+        Width of the band around the target's outline that gives the curvature, one entry a step (lengths of a target
+        of area 1): wide ones far from the summit.
+    """
+    best = np.full(factor.shape, -np.inf)
+    step = np.zeros((*factor.shape, 4))
+    share = np.ones(factor.shape)
+    trial_factor, trial_shift = factor, shift
+    for band in (*bands, None):
+        intersection, union, depth = _overlap(outlines, target, trial_factor, trial_shift)
+        iou = intersection / union
+        better = iou > best
+        best = np.where(better, iou, best)
+        factor = np.where(better, trial_factor, factor)
+        shift = np.where(better, trial_shift, shift)
+        if band is None:
+            break
+        fresh = _newton_step(outlines, target, trial_factor, intersection, union, depth, band)
+        step = np.where(better[..., newaxis], fresh, step)
+        # A failed step is retried shorter from the best place; successes lengthen it again.
+        share = np.where(better, np.minimum(1.6 * share, 1.6), 0.35 * share)
+        move = np.clip(share[..., newaxis] * step, -LONGEST_STEP, LONGEST_STEP)
+        trial_factor = factor * np.exp(move[..., 0] + 1j * move[..., 1])
+        trial_shift = shift + move[..., 2] + 1j * move[..., 3]
+    return factor, shift, best
+
+
+def _overlap(
+    outlines: Boundaries, target: AlignmentTarget, factor: ComplexArray, shift: ComplexArray
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Tabulated intersection and union areas (B, S), and depth of the boundary points (B, S, Q).
+
+    Parameters
+    ----------
+    factor, shift : (B, S) complex
+        Places to try: outline b goes to ``factor[b, s] * p + shift[b, s]``.
+    """
+    places = factor[..., newaxis] * outlines.points[:, newaxis] + shift[..., newaxis]
+    found = target.lookup(places)
+    rise = (factor[..., newaxis] * outlines.steps[:, newaxis]).imag
+    intersection = (found.real * rise).sum(axis=-1)
+    return intersection, np.abs(factor) ** 2 + 1.0 - intersection, found.imag
+
+
+def _newton_step(
+    outlines: Boundaries,
+    target: AlignmentTarget,
+    factor: ComplexArray,
+    intersection: FloatArray,
+    union: FloatArray,
+    depth: FloatArray,
+    band: float,
+) -> FloatArray:
+    """Ascent step (B, S, 4) in (log scale, rotation, x, y).
+
+    With v the velocity of the boundary and n ds its outward normal, dI is the loop integral of v.n ds over the part
+    inside the target, dA the same over the whole boundary, and U^2 d(I/U) = (U + I) dI - I dA.  The second derivative
+    of I sits where the two outlines cross; a tent of width ``band`` in the depth stands for that delta function.
+    """
+    moment = np.conj(outlines.points) * outlines.steps
+    swept = (np.abs(factor) ** 2)[..., newaxis] * moment[:, newaxis]
+    steps = factor[..., newaxis] * outlines.steps[:, newaxis]
+    flux = np.stack([swept.imag, -swept.real, steps.imag, -steps.real], axis=-2)
+    inside = np.clip(0.5 + depth / target.step, 0.0, 1.0)
+    both = (union + intersection)[..., newaxis]
+    gradient = np.matmul(flux, (both * inside - intersection[..., newaxis])[..., newaxis])
+    tent = np.maximum(1.0 - np.abs(depth) / band, LEAST_WEIGHT)
+    weight = both / band * tent / np.maximum(np.abs(steps), 1e-12)
+    curvature = np.matmul(flux * weight[..., newaxis, :], np.swapaxes(flux, -1, -2))
+    damping = DAMPING * np.trace(curvature, axis1=-2, axis2=-1)[..., newaxis, newaxis] * np.eye(4)
+    step: FloatArray = np.linalg.solve(curvature + damping, gradient)[..., 0]
+    return step
+
+
+def _refined(vertices: ComplexArray, target: AlignmentTarget, places: Sequence[Placement]) -> Placement:
+    """Choose among places of an outline (L,) complex, in its normal frame.
+
+    The first one unless it is a near-copy of the target: then all of them slide, and the best by exact IoU is chosen.
+    Shapes that are almost symmetric have several near-copies, which the table cannot tell apart.
+    """
+    if places[0].iou < NEAR_COPY - TABLE_ERROR:
+        return places[0]
+    measured = [_slid(vertices, target, place) for place in places]
+    top = max(place.iou for place in measured)
+    ties = [place for place in measured if place.iou >= top - TIE]
+    return min(ties, key=lambda place: abs(np.angle(place.factor)))
+
+
+def _slid(vertices: ComplexArray, target: AlignmentTarget, place: Placement) -> Placement:
+    """Move a near-copy so that its boundary points meet the tangents at their nearest target points.
+
+    Least squares in the normal direction only, as in point-to-line registration.  Never worse by exact IoU, which the
+    result holds, than the given place; the given place itself unless that is a near-copy.
+    """
+    factor, shift = place.factor, place.shift
+    start = Placement(factor, shift, _exact_iou(vertices, target, factor, shift))
+    if start.iou < NEAR_COPY:
+        return start
+    points, steps = edge_parts(vertices, SLIDING_PARTS)
+    for _ in range(ROUNDS):
+        arm = factor * points
+        here = arm + shift
+        along = shapely.line_locate_point(target.ring, shapely.points(here.real, here.imag))
+        feet = shapely.line_interpolate_point(target.ring, along)
+        gap = shapely.get_x(feet) + 1j * shapely.get_y(feet) - here
+        edge = factor * steps
+        # sqrt(ds) times the unit normal: every length of boundary counts the same.
+        normal = 1j * np.conj(edge) / np.sqrt(np.maximum(np.abs(edge), 1e-12))
+        rows = np.stack([(normal * arm).real, (1j * normal * arm).real, normal.real, -normal.imag], axis=-1)
+        move = np.linalg.lstsq(rows, (normal * gap).real, rcond=1e-9)[0]
+        factor *= complex(np.exp(move[0] + 1j * move[1]))
+        shift += complex(move[2], move[3])
+    end = Placement(factor, shift, _exact_iou(vertices, target, factor, shift))
+    return end if end.iou > start.iou else start
+
+
+def _exact_iou(vertices: ComplexArray, target: AlignmentTarget, factor: complex, shift: complex) -> float:
+    """IoU of the polygons themselves, laid at ``factor * p + shift``."""
+    polygon = shapely.Polygon(as_points(factor * vertices + shift))
+    shape = polygon if polygon.is_valid else shapely.make_valid(polygon)
+    common = shape.intersection(target.polygon).area
+    return float(common / (shape.area + target.area - common))

@@ -6,14 +6,16 @@ long as its outline does not cross itself: overlap and contact are read off one 
 
 from __future__ import annotations
 
+import cmath
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import shapely
 
 from kirigami_studio.evaluate.boundary import as_plane, as_points
-from kirigami_studio.evaluate.crossing import deepest_crossing
+from kirigami_studio.evaluate.crossing import deepest_crossing, stays_clear
 from kirigami_studio.foundation.arrays import BoolArray, ComplexArray, FloatArray
 from kirigami_studio.lattice.deployment import ZIPPED_BELOW, Deployment, check_phi
 
@@ -51,6 +53,34 @@ class Contact:
     def to_json(self) -> dict[str, object]:
         """Plain numbers: ``phi`` (radians) and ``where`` [x, y]."""
         return {"phi": self.phi, "where": list(self.where)}
+
+
+@dataclass(frozen=True, slots=True)
+class Feasibility:
+    """What :func:`invalid_quads`, :func:`overlap_ratio` and :func:`path_contact` say about one design at one angle."""
+
+    n_invalid: int
+    overlap_ratio: float
+    contact: Contact | None
+
+    @property
+    def feasible(self) -> bool:
+        return self.n_invalid == 0 and self.overlap_ratio <= TAU_OVERLAP and self.contact is None
+
+
+def feasibility_of_many(deployments: Sequence[Deployment], phi: float) -> list[Feasibility]:
+    """Check designs of one grid at an angle in [0, pi]: the three checks, shared between all designs."""
+    sheets = _Sheets(deployments)
+    n_invalid = np.count_nonzero(bad_quads(sheets.quads(phi)), axis=1)
+    loop = deployments[0].topology.outline_nodes
+    clear = stays_clear(sheets.even[:, loop], sheets.odd[:, loop], phi, PATH_ANGLES)
+    return [
+        # What is not certainly clear is looked at again one by one.
+        Feasibility(int(count), 0.0, None)
+        if free
+        else Feasibility(int(count), overlap_ratio(deployment, phi), path_contact(deployment, phi))
+        for deployment, count, free in zip(deployments, n_invalid, clear, strict=True)
+    ]
 
 
 def invalid_quads(deployment: Deployment, phi: float) -> int:
@@ -149,3 +179,22 @@ def _edges_cross(a: ComplexArray, b: ComplexArray, c: ComplexArray, d: ComplexAr
 def _side(a: ComplexArray, b: ComplexArray, p: ComplexArray) -> FloatArray:
     side: FloatArray = (np.conj(b - a) * (p - a)).imag
     return side
+
+
+class _Sheets:
+    """Nodes of several designs of one grid."""
+
+    def __init__(self, deployments: Sequence[Deployment]) -> None:
+        self.deployments = deployments
+        self.even = as_plane(np.stack([deployment.even_part for deployment in deployments]))
+        self.odd = as_plane(np.stack([deployment.odd_part for deployment in deployments]))
+
+    def quads(self, phi: float) -> ComplexArray:
+        """The quads that count at an angle, see :func:`quads_that_count`: (B, Q, 4) complex."""
+        tables = self.deployments[0].topology
+        nodes = tables.panel_nodes.reshape(-1, 4)
+        if ZIPPED_BELOW < phi < math.pi - ZIPPED_BELOW:
+            nodes = np.concatenate([nodes, tables.void_nodes.reshape(-1, 4)])
+        turn = cmath.exp(0.5j * (math.pi - phi))
+        places: ComplexArray = (turn.conjugate() * self.even + turn * self.odd)[:, nodes]
+        return places

@@ -1,10 +1,10 @@
-"""sIoU of two masks: the paper's silhouette similarity, symmetric and with (almost) no canvas to fall off.
+"""sIoU of two mask images, as the command line measures it; the sIoU of a design's score is in ``siou``.
 
 As in the paper's appendix ("Silhouette similarity metric") the masks are aligned by a similarity transform (boundary
-Procrustes start, principal axes otherwise, refinement), one is drawn into the pixels of the other, and the IoU is taken
-at 128 x 128.  Two differences make it a measure: only a rim of three pixels around the canvas is left out, where the
-paper leaves out all that falls off its image grid, and both directions are averaged, so that swapping the masks changes
-nothing.
+Procrustes start, principal axes otherwise, refinement), one is filled into the pixels of the other, and the IoU is
+taken at 128 x 128.  It differs from the paper's evaluator in two points: only a rim of three pixels around the canvas
+is left out, where the paper leaves out all that falls off its image grid, and both directions are averaged, so that
+swapping the masks changes nothing.
 """
 
 from __future__ import annotations
@@ -21,6 +21,7 @@ from kirigami_studio.evaluate.alignment import align
 from kirigami_studio.evaluate.boundary import checked_polygon
 from kirigami_studio.evaluate.mask import FittedMask
 from kirigami_studio.evaluate.similarity import Similarity
+from kirigami_studio.evaluate.siou import raster_iou
 from kirigami_studio.foundation.arrays import FloatArray
 
 #: Pixels beyond the canvas that do not count.  Silhouettes fill their image, so even good matches lose a pixel or two
@@ -174,7 +175,7 @@ def _drawn_iou(moving: FittedMask, fixed: FittedMask, pose: Similarity, crop: bo
         rim[_widened(rows), _widened(columns)] = True
         rim[rows, columns] = False
         drawn, still = drawn & ~rim, still & ~rim
-    return float(np.count_nonzero(drawn & still) / np.count_nonzero(drawn | still))
+    return float(raster_iou(drawn, still))
 
 
 def _widened(part: slice) -> slice:

@@ -1,4 +1,7 @@
-"""All that is said about one design, in one frozen value."""
+"""The score of a design against a target: sIoU, total variation and feasibility, in one frozen value.
+
+sIoU is defined in ``siou``, total variation in ``total_variation``, feasibility in ``feasibility``.
+"""
 
 from __future__ import annotations
 
@@ -8,26 +11,25 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
-import numpy.typing as npt
 
-from kirigami_studio.evaluate.alignment import STAGES, Placement, ascend, slid
-from kirigami_studio.evaluate.alignment_target import alignment_target
-from kirigami_studio.evaluate.boundary import checked_polygon
-from kirigami_studio.evaluate.feasibility import Contact
-from kirigami_studio.evaluate.outline_batch import OutlineBatch
+from kirigami_studio.evaluate.feasibility import Contact, Feasibility, feasibility_of_many
 from kirigami_studio.evaluate.similarity import Similarity
-from kirigami_studio.evaluate.siou import Agreement, agreement_of_many, exact_ious, raster_ious
-from kirigami_studio.evaluate.soundness import Soundness, soundness_of_many
+from kirigami_studio.evaluate.siou import ShapeMatch, siou_near, siou_of_many
 from kirigami_studio.evaluate.total_variation import log_variation, total_variation
-from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.lattice.deployment import Deployment, check_phi, deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.outlines.outline import Outline
 
+#: Turns below this (radians) are what any change brings about.
+SAME_TURN = 0.1
+#: Exact IoU that a design may lack to stay turned as it was.  After changes of single ratios by 16 % staying cost a
+#: circle, star or hexagon at most 0.00013 (12 changes each); what is clearly better turned may turn.
+STAY = 0.003
+
 
 @dataclass(frozen=True, slots=True)
 class Score:
-    """Shape agreement, regularity and feasibility of one design against one target at one angle.
+    """Shape match, total variation and feasibility of one design against one target at one angle.
 
     Attributes
     ----------
@@ -121,62 +123,11 @@ def evaluate_many(deployments: Sequence[Deployment], outline: Outline, phi: floa
     for grid in dict.fromkeys(_grid(deployment) for deployment in deployments):
         members = [index for index, deployment in enumerate(deployments) if _grid(deployment) == grid]
         sheets = [deployments[index] for index in members]
-        agreements = agreement_of_many([sheet.outline(phi) for sheet in sheets], outline)
-        checks = soundness_of_many(sheets, phi)
-        for index, sheet, agreement, soundness in zip(members, sheets, agreements, checks, strict=True):
-            found[index] = _complete(sheet, agreement, soundness, outline, phi)
+        matches = siou_of_many([sheet.outline(phi) for sheet in sheets], outline)
+        checks = feasibility_of_many(sheets, phi)
+        for index, sheet, match, check in zip(members, sheets, matches, checks, strict=True):
+            found[index] = _complete(sheet, match, check, outline, phi)
     return [found[index] for index in range(len(deployments))]
-
-
-def _grid(deployment: Deployment) -> tuple[int, int]:
-    return deployment.field.rows, deployment.field.columns
-
-
-def _complete(
-    deployment: Deployment, agreement: Agreement, soundness: Soundness, outline: Outline, phi: float
-) -> Score:
-    floor = _uniform_agreement(*_grid(deployment), _cell(deployment), phi, outline)
-    return Score(
-        siou=agreement.siou,
-        siou_gain=agreement.siou - floor.siou,
-        uniform_siou=floor.siou,
-        iou_exact=agreement.iou_exact,
-        uniform_iou=floor.iou_exact,
-        tv=total_variation(deployment.field),
-        tv_log10=log_variation(deployment.field),
-        feasible=soundness.feasible,
-        n_invalid=soundness.n_invalid,
-        overlap_ratio=soundness.overlap_ratio,
-        contact=soundness.contact,
-        transform=agreement.transform,
-        phi=phi,
-    )
-
-
-def exact_iou(laid: FloatArray, outline: Outline) -> float:
-    """Intersection over union of an aligned silhouette (L, 2) and the target, on the polygons themselves."""
-    return float(exact_ious(checked_polygon(laid)[np.newaxis], outline)[0])
-
-
-def _cell(deployment: Deployment) -> tuple[float, float]:
-    """Size of a cell of the compact sheet, from the sheet's own size."""
-    width, height = np.ptp(deployment.compact, axis=0)
-    field = deployment.field
-    return round(float(width) / (field.columns + 1), 9), round(float(height) / (field.rows + 1), 9)
-
-
-@lru_cache(maxsize=256)
-def _uniform_agreement(rows: int, columns: int, cell: tuple[float, float], phi: float, outline: Outline) -> Agreement:
-    """The floor that a target sets: the agreement of the uniform layout, kept per grid, angle and target."""
-    uniform = deploy(RatioField.uniform(rows, columns), cell)
-    return agreement_of_many([uniform.outline(phi)], outline)[0]
-
-
-#: Turns below this (radians) are what any change brings about.
-SAME_TURN = 0.1
-#: Exact IoU that a design may lack to stay turned as it was.  After changes of single ratios by 16 % staying cost a
-#: circle, star or hexagon at most 0.00013 (12 changes each); what is clearly better turned may turn.
-STAY = 0.003
 
 
 def evaluate_near(deployment: Deployment, outline: Outline, phi: float, pose: Similarity) -> Score:
@@ -198,28 +149,45 @@ def evaluate_near(deployment: Deployment, outline: Outline, phi: float, pose: Si
     best = evaluate(deployment, outline, phi)
     if abs(cmath.phase(best.transform.factor / pose.factor)) < SAME_TURN:
         return best
-    near = _agreement_near(deployment.outline(phi), outline, pose)
+    near = siou_near(deployment.outline(phi), outline, pose)
     if near.iou_exact < best.iou_exact - STAY:
         return best
     gain = near.siou - best.uniform_siou
     return replace(best, siou=near.siou, siou_gain=gain, iou_exact=near.iou_exact, transform=near.transform)
 
 
-def align_near(moving: npt.ArrayLike, fixed: npt.ArrayLike, pose: Similarity) -> Similarity:
-    """Climb from ``pose`` to the nearest best place of ``moving`` (L, 2) over ``fixed`` (K, 2)."""
-    target, outlines = alignment_target(fixed), OutlineBatch.from_outlines([moving])
-    to_normal = outlines.to_normal[0]
-    start = target.to_source.inverse().compose(pose).compose(to_normal.inverse())
-    factor, shift = np.array([[start.factor]]), np.array([[complex(*start.shift)]])
-    iou = np.zeros(factor.shape)
-    for _, parts, bands in STAGES:
-        factor, shift, iou = ascend(outlines.boundaries(parts), target, factor, shift, bands)
-    place = Placement(complex(factor[0, 0]), complex(shift[0, 0]), float(iou[0, 0]))
-    place = slid(outlines.vertices[0], target, place)
-    return target.to_source.compose(Similarity.from_complex(place.factor, place.shift)).compose(to_normal)
+def _grid(deployment: Deployment) -> tuple[int, int]:
+    return deployment.field.rows, deployment.field.columns
 
 
-def _agreement_near(shape: FloatArray, outline: Outline, pose: Similarity) -> Agreement:
-    transform = align_near(shape, outline.points, pose)
-    laid = transform.apply(shape)[np.newaxis]
-    return Agreement(float(raster_ious(laid, outline.points)[0]), float(exact_ious(laid, outline)[0]), transform)
+def _complete(deployment: Deployment, match: ShapeMatch, check: Feasibility, outline: Outline, phi: float) -> Score:
+    floor = _uniform_match(*_grid(deployment), _cell(deployment), phi, outline)
+    return Score(
+        siou=match.siou,
+        siou_gain=match.siou - floor.siou,
+        uniform_siou=floor.siou,
+        iou_exact=match.iou_exact,
+        uniform_iou=floor.iou_exact,
+        tv=total_variation(deployment.field),
+        tv_log10=log_variation(deployment.field),
+        feasible=check.feasible,
+        n_invalid=check.n_invalid,
+        overlap_ratio=check.overlap_ratio,
+        contact=check.contact,
+        transform=match.transform,
+        phi=phi,
+    )
+
+
+def _cell(deployment: Deployment) -> tuple[float, float]:
+    """Size of a cell of the compact sheet, from the sheet's own size."""
+    width, height = np.ptp(deployment.compact, axis=0)
+    field = deployment.field
+    return round(float(width) / (field.columns + 1), 9), round(float(height) / (field.rows + 1), 9)
+
+
+@lru_cache(maxsize=256)
+def _uniform_match(rows: int, columns: int, cell: tuple[float, float], phi: float, outline: Outline) -> ShapeMatch:
+    """The floor that a target sets: how well the uniform layout matches it, kept per grid, angle and target."""
+    uniform = deploy(RatioField.uniform(rows, columns), cell)
+    return siou_of_many([uniform.outline(phi)], outline)[0]

@@ -43,20 +43,6 @@ class RasterFrame:
         centre = 0.5 * (low + high)
         return cls(float(centre[0]) - 0.5 * side, float(centre[1]) + 0.5 * side, side / size, size, size)
 
-    def covering(self, polygon: FloatArray) -> RasterFrame:
-        """The same pixels, continued so far that the polygon (L, 2) lies inside as well."""
-        low, high = polygon.min(axis=0), polygon.max(axis=0)
-        before = max(0, _pixels(self.left - low[0], self.pixel)), max(0, _pixels(high[1] - self.top, self.pixel))
-        right, bottom = self.left + self.columns * self.pixel, self.top - self.rows * self.pixel
-        after = max(0, _pixels(high[0] - right, self.pixel)), max(0, _pixels(bottom - low[1], self.pixel))
-        return RasterFrame(
-            self.left - before[0] * self.pixel,
-            self.top + before[1] * self.pixel,
-            self.pixel,
-            self.rows + before[1] + after[1],
-            self.columns + before[0] + after[0],
-        )
-
 
 def _pixels(length: float, pixel: float) -> int:
     return int(np.ceil(length / pixel))

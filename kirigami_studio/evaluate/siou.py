@@ -1,4 +1,14 @@
-"""Shape agreement of many designs with one target, under the best similarity: exact, and on the paper's raster."""
+"""sIoU, the paper's silhouette similarity: intersection over union under the best similarity transform.
+
+Definition (paper, Appendix "Silhouette similarity metric"): lay a silhouette A over the target B by the rotation, scale
+and translation T that match best, never by a reflection, fill both into 128 x 128 pixels, and compare,
+
+    sIoU(A, B) = |T A and B| / |T A or B|.
+
+T is found on the polygons themselves (module ``alignment``).  The 128 pixels span the longer side of the target's
+bounding box and are continued beyond it, so that nothing that sticks out of the target is cut off.  *Exact IoU* is the
+same ratio of areas without a raster.  For two mask images see ``mask_siou``.
+"""
 
 from __future__ import annotations
 
@@ -8,49 +18,74 @@ from dataclasses import dataclass
 import numpy as np
 import shapely
 
-from kirigami_studio.evaluate.alignment import align_many
-from kirigami_studio.evaluate.boundary import as_plane
+from kirigami_studio.evaluate.alignment import align_many, align_near
+from kirigami_studio.evaluate.boundary import as_plane, checked_polygon
 from kirigami_studio.evaluate.silhouette import RasterFrame, filled_in_frame, rasterise_in_frame
 from kirigami_studio.evaluate.similarity import Similarity
-from kirigami_studio.foundation.arrays import BoolArray, FloatArray, IntArray
+from kirigami_studio.foundation.arrays import BoolArray, FloatArray
 from kirigami_studio.outlines.outline import Outline
 
 
 @dataclass(frozen=True, slots=True)
-class Agreement:
-    """How well one outline, laid over the target by ``transform``, covers it."""
+class ShapeMatch:
+    """How well a silhouette covers the target.
+
+    Attributes
+    ----------
+    siou : float, 0..1
+    iou_exact : float, 0..1
+        The same on the polygons.
+    transform : Similarity
+        Frame of the silhouette -> frame of the target; both numbers hold under it.
+    """
 
     siou: float
     iou_exact: float
     transform: Similarity
 
 
-def agreement_of_many(shapes: Sequence[FloatArray], outline: Outline) -> list[Agreement]:
-    """Align shapes (L, 2) with equal numbers of vertices and measure them."""
-    transforms = align_many(shapes, outline.points)
+def siou_of_many(shapes: Sequence[FloatArray], target: Outline) -> list[ShapeMatch]:
+    """The sIoU of silhouettes (L, 2) that all have the same number of vertices."""
+    return _matches(shapes, target, align_many(shapes, target.points))
+
+
+def siou_near(shape: FloatArray, target: Outline, pose: Similarity) -> ShapeMatch:
+    """The same of one silhouette (L, 2), under the best similarity that is found from ``pose`` on uphill."""
+    return _matches([shape], target, [align_near(shape, target.points, pose)])[0]
+
+
+def _matches(shapes: Sequence[FloatArray], target: Outline, transforms: Sequence[Similarity]) -> list[ShapeMatch]:
+    if not transforms:
+        return []
     laid = np.stack([transform.apply(shape) for transform, shape in zip(transforms, shapes, strict=True)])
-    found = zip(raster_ious(laid, outline.points), exact_ious(laid, outline), transforms, strict=True)
-    return [Agreement(float(drawn), float(exact), transform) for drawn, exact, transform in found]
+    found = zip(aligned_sious(laid, target.points), exact_ious(laid, target), transforms, strict=True)
+    return [ShapeMatch(float(siou), float(exact), transform) for siou, exact, transform in found]
 
 
-def exact_ious(laid: FloatArray, outline: Outline) -> FloatArray:
-    """Intersection over union of aligned silhouettes (B, L, 2) and the target, on the polygons themselves: (B,)."""
+def aligned_sious(laid: FloatArray, target: FloatArray) -> FloatArray:
+    """The sIoU of silhouettes (B, L, 2) that lie on the target (K, 2) as they should: (B,)."""
+    frame = RasterFrame.around(target)
+    masks, (row, column) = filled_in_frame(as_plane(laid), frame)
+    still = np.zeros(masks.shape[1:], dtype=np.bool_)
+    still[row : row + frame.rows, column : column + frame.columns] = rasterise_in_frame(target, frame)
+    return raster_iou(masks, still)
+
+
+def raster_iou(first: BoolArray, second: BoolArray) -> FloatArray:
+    """Intersection over union of masks (..., rows, columns) that share their pixels: (...)."""
+    common = np.count_nonzero(first & second, axis=(-2, -1))
+    return np.asarray(common / np.count_nonzero(first | second, axis=(-2, -1)))
+
+
+def exact_iou(laid: FloatArray, target: Outline) -> float:
+    """Intersection over union of an aligned silhouette (L, 2) and the target, on the polygons themselves."""
+    return float(exact_ious(checked_polygon(laid)[np.newaxis], target)[0])
+
+
+def exact_ious(laid: FloatArray, target: Outline) -> FloatArray:
+    """The same of aligned silhouettes (B, L, 2): (B,)."""
     shapes = np.asarray(shapely.polygons(laid), dtype=object)
     crossing = ~shapely.is_valid(shapes)
     shapes[crossing] = shapely.make_valid(shapes[crossing])
-    common = shapely.area(shapely.intersection(shapes, outline.polygon))
-    return np.asarray(common / (shapely.area(shapes) + outline.polygon.area - common), dtype=np.float64)
-
-
-def raster_ious(laid: FloatArray, target: FloatArray) -> FloatArray:
-    """The same on 128 x 128 pixels around the target, continued so far that nothing is cut off: (B,)."""
-    frame = RasterFrame.around(target)
-    masks, (row, column) = filled_in_frame(as_plane(laid), frame)
-    still = rasterise_in_frame(target, frame)
-    window = masks[:, row : row + frame.rows, column : column + frame.columns]
-    common = _count(window & still)
-    return np.asarray(common / (_count(masks) + np.count_nonzero(still) - common), dtype=np.float64)
-
-
-def _count(masks: BoolArray) -> IntArray:
-    return np.asarray(np.count_nonzero(masks, axis=(1, 2)))
+    common = shapely.area(shapely.intersection(shapes, target.polygon))
+    return np.asarray(common / (shapely.area(shapes) + target.polygon.area - common), dtype=np.float64)

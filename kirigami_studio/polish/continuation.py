@@ -19,8 +19,8 @@ import shapely
 
 from kirigami_studio.evaluate.alignment import align
 from kirigami_studio.evaluate.feasibility import path_contact
-from kirigami_studio.evaluate.score import exact_iou
 from kirigami_studio.evaluate.similarity import Similarity
+from kirigami_studio.evaluate.siou import exact_iou
 from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField, check_grid

@@ -28,8 +28,8 @@ import shapely
 import torch
 
 from kirigami_studio.evaluate.feasibility import TAU_OVERLAP, invalid_quads, overlap_ratio, path_contact
-from kirigami_studio.evaluate.score import exact_iou
 from kirigami_studio.evaluate.similarity import Similarity
+from kirigami_studio.evaluate.siou import exact_iou
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.foundation.files import write_atomically
 from kirigami_studio.generator.conditioning import normalised

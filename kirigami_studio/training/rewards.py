@@ -18,9 +18,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from kirigami_studio.evaluate.feasibility import TAU_OVERLAP
-from kirigami_studio.evaluate.siou import agreement_of_many
-from kirigami_studio.evaluate.soundness import soundness_of_many
+from kirigami_studio.evaluate.feasibility import TAU_OVERLAP, feasibility_of_many
+from kirigami_studio.evaluate.siou import siou_of_many
 from kirigami_studio.evaluate.total_variation import total_variation
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import RatioError, UsageError
@@ -142,20 +141,20 @@ def judge(fields: FloatArray, outline: Outline) -> list[Verdict]:
 
 
 def judge_sheets(sheets: Sequence[Deployment], outline: Outline) -> list[Verdict]:
-    """Check and score decoded designs of one grid at phi = 0; the sIoU is that of ``evaluate.Score``."""
+    """Check and score decoded designs of one grid at phi = 0; the sIoU is that of a score."""
     if not sheets:
         return []
-    agreements = agreement_of_many([sheet.outline(0.0) for sheet in sheets], outline)
+    matches = siou_of_many([sheet.outline(0.0) for sheet in sheets], outline)
     return [
         Verdict(
-            agreement.siou,
+            match.siou,
             total_variation(sheet.field),
             check.n_invalid,
             check.overlap_ratio,
             has_layout=True,
             feasible=check.feasible,
         )
-        for sheet, agreement, check in zip(sheets, agreements, soundness_of_many(sheets, 0.0), strict=True)
+        for sheet, match, check in zip(sheets, matches, feasibility_of_many(sheets, 0.0), strict=True)
     ]
 
 

@@ -10,8 +10,8 @@ import pytest
 from kirigami_studio.benchmark.generator_suite import measure_generator
 from kirigami_studio.benchmark.robustness_suite import DISTURBANCES, Disturbance, measure_robustness, shaken
 from kirigami_studio.evaluate.alignment import align
-from kirigami_studio.evaluate.score import exact_iou
 from kirigami_studio.evaluate.silhouette import rasterise
+from kirigami_studio.evaluate.siou import exact_iou
 from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.read_image import outline_of_mask

@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 from skimage.draw import polygon2mask
 
+from kirigami_studio.evaluate.boundary import as_plane
 from kirigami_studio.evaluate.mask_siou import mask_siou
-from kirigami_studio.evaluate.silhouette import RasterFrame, rasterise, rasterise_in_frame
+from kirigami_studio.evaluate.silhouette import RasterFrame, filled_in_frame, rasterise
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.lattice.deployment import deploy
@@ -48,10 +49,9 @@ def test_that_place_size_and_orientation_do_not_change_the_mask(letter_l: FloatA
     np.testing.assert_array_equal(rasterise(letter_l), rasterise(letter_l[::-1] * 8.0 + 16.0))
 
 
-def test_that_a_covering_frame_keeps_its_pixels_and_holds_both_shapes(letter_l: FloatArray) -> None:
+def test_that_a_frame_keeps_its_pixels_where_it_is_continued_to_hold_several_shapes(letter_l: FloatArray) -> None:
     moved = letter_l + np.array([1.0, -2.0])
-    wide = RasterFrame.around(letter_l, 100).covering(moved)
-    first, second = rasterise_in_frame(letter_l, wide), rasterise_in_frame(moved, wide)
+    (first, second), _ = filled_in_frame(as_plane(np.stack([letter_l, moved])), RasterFrame.around(letter_l, 100))
     assert first.sum() == rasterise(letter_l, 100).sum() == second.sum()
     np.testing.assert_array_equal(second[40:, 20:], first[: first.shape[0] - 40, : first.shape[1] - 20])
 

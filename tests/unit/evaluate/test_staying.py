@@ -8,9 +8,10 @@ import math
 import numpy as np
 import pytest
 
-from kirigami_studio.evaluate.alignment import align
-from kirigami_studio.evaluate.score import STAY, align_near, evaluate, evaluate_near, exact_iou
+from kirigami_studio.evaluate.alignment import align, align_near
+from kirigami_studio.evaluate.score import STAY, evaluate, evaluate_near
 from kirigami_studio.evaluate.similarity import Similarity
+from kirigami_studio.evaluate.siou import exact_iou
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.outlines.outline import Outline

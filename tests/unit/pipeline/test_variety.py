@@ -10,7 +10,8 @@ import pytest
 
 from kirigami_studio.evaluate.alignment import align
 from kirigami_studio.evaluate.candidate import Candidate
-from kirigami_studio.evaluate.score import evaluate, exact_iou
+from kirigami_studio.evaluate.score import evaluate
+from kirigami_studio.evaluate.siou import exact_iou
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.outlines.outline import Outline

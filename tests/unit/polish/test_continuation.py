@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from kirigami_studio.evaluate.score import exact_iou
+from kirigami_studio.evaluate.siou import exact_iou
 from kirigami_studio.foundation.errors import AngleError, GridError, UsageError
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField

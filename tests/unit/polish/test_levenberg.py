@@ -11,7 +11,7 @@ import pytest
 import shapely
 
 from kirigami_studio.evaluate.feasibility import path_contact
-from kirigami_studio.evaluate.score import exact_iou
+from kirigami_studio.evaluate.siou import exact_iou
 from kirigami_studio.evaluate.total_variation import total_variation
 from kirigami_studio.foundation.errors import AngleError, UsageError
 from kirigami_studio.lattice.deployment import deploy

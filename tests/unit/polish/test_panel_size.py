@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import shapely
 
-from kirigami_studio.evaluate.score import exact_iou
+from kirigami_studio.evaluate.siou import exact_iou
 from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField

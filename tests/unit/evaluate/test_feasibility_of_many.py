@@ -7,9 +7,14 @@ import math
 import numpy as np
 import pytest
 
-from kirigami_studio.evaluate.crossing import deepest_crossing
-from kirigami_studio.evaluate.feasibility import invalid_quads, overlap_ratio, path_contact
-from kirigami_studio.evaluate.soundness import Soundness, soundness_of_many, stays_clear
+from kirigami_studio.evaluate.crossing import deepest_crossing, stays_clear
+from kirigami_studio.evaluate.feasibility import (
+    Feasibility,
+    feasibility_of_many,
+    invalid_quads,
+    overlap_ratio,
+    path_contact,
+)
 from kirigami_studio.foundation.arrays import ComplexArray
 from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.lattice.ratio_field import RatioField
@@ -17,8 +22,8 @@ from kirigami_studio.lattice.ratio_field import RatioField
 SAMPLES = 32
 
 
-def one_by_one(sheet: Deployment, phi: float) -> Soundness:
-    return Soundness(invalid_quads(sheet, phi), overlap_ratio(sheet, phi), path_contact(sheet, phi))
+def one_by_one(sheet: Deployment, phi: float) -> Feasibility:
+    return Feasibility(invalid_quads(sheet, phi), overlap_ratio(sheet, phi), path_contact(sheet, phi))
 
 
 def random_linkage(draw: np.random.Generator, edges: int) -> tuple[ComplexArray, ComplexArray]:
@@ -56,7 +61,7 @@ def test_that_a_linkage_is_clear_when_no_sampled_angle_shows_a_crossing(phi: flo
 def test_that_a_batch_is_checked_as_its_members_are(grid: tuple[int, int], phi: float) -> None:
     draw = np.random.default_rng(3)
     sheets = [deploy(RatioField.from_log10(draw.uniform(-3, 3, grid))) for _ in range(6)]
-    assert soundness_of_many(sheets, phi) == [one_by_one(sheet, phi) for sheet in sheets]
+    assert feasibility_of_many(sheets, phi) == [one_by_one(sheet, phi) for sheet in sheets]
 
 
 @pytest.mark.parametrize("part", [1.5, 1.01, 0.99, 0.3])
@@ -65,6 +70,6 @@ def test_that_a_colliding_sheet_among_sound_ones_is_found(colliding: Deployment,
     assert contact is not None
     phi = part * contact.phi
     sound = deploy(RatioField.uniform(colliding.field.rows, colliding.field.columns))
-    found = soundness_of_many([sound, colliding, sound], phi)
+    found = feasibility_of_many([sound, colliding, sound], phi)
     assert found == [one_by_one(sheet, phi) for sheet in (sound, colliding, sound)]
     assert [one.feasible for one in found] == [True, part > 1.0, True]
