@@ -77,8 +77,7 @@ def _polish_suite(arguments: argparse.Namespace, line: ProgressLine) -> dict[str
 
 def _designs_suite(arguments: argparse.Namespace, line: ProgressLine) -> dict[str, object]:
     """The whole program on targets, shape by shape, with pictures where asked for."""
-    from kirigami_studio.benchmark.contact_sheet import write_contact_sheet
-    from kirigami_studio.benchmark.design_suite import design_figures, make_designs, worst_of
+    from kirigami_studio.benchmark.design_suite import design_figures, make_designs, worst_of, write_contact_sheet
     from kirigami_studio.pipeline.request import Request
 
     results: dict[str, object] = {}
@@ -111,7 +110,7 @@ def _designs_suite(arguments: argparse.Namespace, line: ProgressLine) -> dict[st
 
 def _regularity_suite(arguments: argparse.Namespace, line: ProgressLine) -> dict[str, object]:
     """Agreement and total variation, unpolished and at every preference."""
-    from kirigami_studio.benchmark.regularity_suite import measure_regularity
+    from kirigami_studio.benchmark.polish_suite import measure_regularity
 
     return {
         family: measure_regularity(
@@ -147,7 +146,7 @@ def _variants_suite(arguments: argparse.Namespace, line: ProgressLine) -> dict[s
 
 def _spread_suite(arguments: argparse.Namespace, line: ProgressLine) -> dict[str, object]:
     """How much the samples for one target differ, variant by variant."""
-    from kirigami_studio.benchmark.spread_suite import measure_spread
+    from kirigami_studio.benchmark.variants_suite import measure_spread
 
     variants = _variants(arguments)
     return {
@@ -208,7 +207,7 @@ def _robustness_suite(arguments: argparse.Namespace, line: ProgressLine) -> dict
 
 def _generation_speed_suite(arguments: argparse.Namespace, line: ProgressLine) -> dict[str, object]:
     """Timings of loading and sampling, variant by variant."""
-    from kirigami_studio.benchmark.generation_timing import generation_timings
+    from kirigami_studio.benchmark.speed_suite import generation_timings
 
     line.show("Timing the generator")
     return generation_timings(
@@ -221,7 +220,7 @@ def _generation_speed_suite(arguments: argparse.Namespace, line: ProgressLine) -
 
 def _speed_suite(arguments: argparse.Namespace, line: ProgressLine) -> dict[str, object]:
     """Timings of scoring and polishing."""
-    from kirigami_studio.benchmark.polish_timing import polish_timings
+    from kirigami_studio.benchmark.speed_suite import polish_timings
 
     line.show("Timing scores and fits")
     return polish_timings()
@@ -229,7 +228,7 @@ def _speed_suite(arguments: argparse.Namespace, line: ProgressLine) -> dict[str,
 
 def _lattice_suite(arguments: argparse.Namespace, line: ProgressLine) -> dict[str, object]:
     """Timings of the exact geometry, with the ratio to the marching reference."""
-    from kirigami_studio.benchmark.lattice_timing import lattice_timings
+    from kirigami_studio.benchmark.lattice_suite import lattice_timings
 
     line.show("Timing the lattice")
     return dict(lattice_timings())

@@ -11,10 +11,10 @@ from kirigami_studio.cli.inputs import parse_grid
 from kirigami_studio.foundation.errors import UsageError
 
 if TYPE_CHECKING:
-    from kirigami_studio.generator.backbones import Shape
+    from kirigami_studio.generator.velocity import Shape
     from kirigami_studio.training.train_flow import Sources
 if TYPE_CHECKING:
-    from kirigami_studio.generator.backbones import Network
+    from kirigami_studio.generator.velocity import Network
     from kirigami_studio.generator.weights import Model
 
 #: Fits of drawn shapes by default: about 3800 shapes, each fitted twice, of which nine in ten come near enough.
@@ -76,8 +76,8 @@ def _drawn(arguments: argparse.Namespace, grid: tuple[int, int]) -> int:
 def train(arguments: argparse.Namespace) -> int:
     """Train the prior, or go on training it, and write its weights into the run folder."""
     from kirigami_studio.generator.weights import store_model
-    from kirigami_studio.training.device import training_device
-    from kirigami_studio.training.train_flow import FlowSettings, finished_network, train_flow
+    from kirigami_studio.training.learner import training_device
+    from kirigami_studio.training.train_flow import FlowSettings, train_flow, trained_network
     from kirigami_studio.training.validation import validator
 
     seconds = seconds_allowed(arguments)
@@ -112,7 +112,7 @@ def train(arguments: argparse.Namespace) -> int:
         if not arguments.json:
             say(" ".join(f"{key} {value:.4f}" for key, value in record.items()))
     about = {"validation": record, "settings": settings.to_json()}
-    path = store_model("prior", finished_network(settings, folder, device), folder, about)
+    path = store_model("prior", trained_network(settings, folder, device), folder, about)
     if arguments.json:
         print_json({"files": [str(path)], "record": record})
     else:
@@ -161,8 +161,8 @@ GROUP_COUNT = 50
 def grpo(arguments: argparse.Namespace) -> int:
     """Align a generator, or go on aligning it, and write its weights into the run folder."""
     from kirigami_studio.generator.weights import store_model
-    from kirigami_studio.training.device import training_device
     from kirigami_studio.training.grpo import GrpoSettings, aligned_network, train_grpo
+    from kirigami_studio.training.learner import training_device
     from kirigami_studio.training.validation import group_figures, validator
 
     seconds = seconds_allowed(arguments)
@@ -209,7 +209,7 @@ def grpo(arguments: argparse.Namespace) -> int:
 def align(arguments: argparse.Namespace) -> int:
     """Align a prior through the sampler, or go on aligning it, and write the variants into the run folder."""
     from kirigami_studio.generator.weights import store_variants
-    from kirigami_studio.training.device import training_device
+    from kirigami_studio.training.learner import training_device
     from kirigami_studio.training.train_aligned import VARIANTS, AlignSettings, aligned_network, train_aligned
     from kirigami_studio.training.validation import preference_figures
 

@@ -138,3 +138,28 @@ def condition(polygons: Tensor, layout: ConditionLayout, shift: Tensor | None = 
     points = contour_points(polygons, layout.contour_points, shift).flatten(1)
     radius = outer_radius(polygons, layout.rays)
     return torch.cat([points / 0.4, (radius - 0.56) / 0.1], dim=1)
+
+
+#: Two standard deviations of the phase that structured designs show in their own sheet's pose (7.6 degrees).
+UPRIGHT_WITHIN = math.radians(15.0)
+
+
+def square_pose(polygons: Tensor) -> Tensor:
+    """Angle by which a target is turned away from upright, and which is taken back before the network sees it.
+
+    Fields know their sheet's pose, drawings come in any.  Silhouettes of square sheets are square-like within a few
+    degrees, so a target that already stands so is left alone (its exact pose is information) and any other is turned
+    to stand square.  Quarter turns need no choice: even x even grids have them as an exact symmetry.
+
+    Parameters
+    ----------
+    polygons : (B, L, 2) tensor
+        Unit area about the centroid.
+
+    Returns
+    -------
+    angle : (B,) tensor, radians
+        0 where the target stands upright.
+    """
+    phase = square_phase(polygons)
+    return torch.where(phase.abs() <= UPRIGHT_WITHIN, torch.zeros_like(phase), phase)

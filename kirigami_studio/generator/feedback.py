@@ -15,8 +15,7 @@ import torch
 from torch import Tensor
 
 from kirigami_studio.generator.conditioning import normalised
-from kirigami_studio.generator.evenness import evenness_terms
-from kirigami_studio.generator.gauss_newton import Residuals, gauss_newton_direction
+from kirigami_studio.generator.gauss_newton import Residuals, evenness_terms, gauss_newton_direction
 from kirigami_studio.generator.sheet import Sheet, carrier_between
 from kirigami_studio.lattice.batched import BatchedLattice, BatchedSlopes
 

@@ -1,7 +1,7 @@
-"""From noise to design: few-step integration of dz/dt = v(z, t, condition) (paper, Sec. 2.3), with correctors.
+"""From noise to design: few-step integration of dz/dt = v(z, t, condition) (paper, Sec. 2.3), with corrections.
 
-Predictor-corrector sampling (the scheme of Song et al. 2021, arXiv 2011.13456): Euler steps carry noise to a design,
-correctors bring the finished design's exact outline nearer to the target's.
+A predictor-corrector scheme (Song et al. 2021, arXiv 2011.13456): Euler steps take noise to a design, corrections bring
+the design's exact outline nearer to the target's.
 """
 
 from __future__ import annotations
@@ -15,35 +15,35 @@ from kirigami_studio.generator.velocity import Code, Velocity
 
 
 @dataclass(frozen=True, slots=True)
-class Head:
-    """Where the flow starts when it does not start from noise alone (as SDEdit does, Meng et al. 2021, 2108.01073).
+class LateStart:
+    """A flow that starts near a design and not from noise alone (as SDEdit does, Meng et al. 2021, 2108.01073).
 
     Attributes
     ----------
     time : float, in [0, 1)
         When it starts: the state is then the straight path's, (1 - time) noise + time design.
-    beyond : (1, m * n) tensor
-        What the sheet's design has and the network's own grid cannot hold, taken ``time`` times: the flow carries it
-        along unchanged.
+    remainder : (1, m * n) tensor
+        What the sheet's design has and the network's own grid cannot hold, taken ``time`` times: it is added to the
+        result unchanged.
     """
 
     time: float
-    beyond: Tensor
+    remainder: Tensor
 
 
-def integrate(network: Velocity, start: Tensor, code: Code, steps: int, head: Head | None = None) -> Tensor:
+def integrate(network: Velocity, start: Tensor, code: Code, steps: int, late: LateStart | None = None) -> Tensor:
     """Follow the velocity field from t = 0 to t = 1.
 
     Parameters
     ----------
     network : Velocity
     start : (B, m * n) tensor
-        z at t = 0, or at the time of ``head``.
+        z at t = 0, or at the time of ``late``.
     code : Code of B targets, the network's own
     steps : int
         Evaluations of the network.  Where it has a corrector, half of them, rounded down, are corrections; the others
         are equal Euler steps.
-    head : Head, optional
+    late : LateStart, optional
         Starts later than at t = 0.
 
     Returns
@@ -51,24 +51,24 @@ def integrate(network: Velocity, start: Tensor, code: Code, steps: int, head: He
     z : (B, m * n) tensor at t = 1
         Fields of the sheet that the code is for.
     """
-    return trail(network, start, code, steps, head)[-1]
+    return trail(network, start, code, steps, late)[-1]
 
 
-def trail(network: Velocity, start: Tensor, code: Code, steps: int, head: Head | None = None) -> list[Tensor]:
-    """Like :func:`integrate`, but every finished field: after the Euler steps and after each correction."""
+def trail(network: Velocity, start: Tensor, code: Code, steps: int, late: LateStart | None = None) -> list[Tensor]:
+    """Like :func:`integrate`, but every design on the way: after the Euler steps and after each correction."""
     corrections = steps // 2 if network.corrects else 0
     euler = steps - corrections
-    begin = 0.0 if head is None else head.time
+    begin = 0.0 if late is None else late.time
     z = start
     for step in range(euler):
         t = full((z.shape[0],), begin + (1.0 - begin) * step / euler, dtype=z.dtype, device=z.device)
         z = z + (1.0 - begin) * network(z, t, code) / euler
     z = code.on_sheet(z)
-    if head is not None:
-        z = z + head.beyond
-    finished = [z]
+    if late is not None:
+        z = z + late.remainder
+    designs = [z]
     for _ in range(corrections):
         z = z.clamp(-LOG_RATIO_LIMIT, LOG_RATIO_LIMIT)
         z = z + network.correction(z, code)
-        finished.append(z)
-    return finished
+        designs.append(z)
+    return designs

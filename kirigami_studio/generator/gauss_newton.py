@@ -7,8 +7,11 @@ the pose that the network sees.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
+from functools import lru_cache
 
+import numpy as np
 import torch
 from torch import Tensor
 
@@ -129,3 +132,53 @@ def _by_vertices(residuals: Residuals) -> tuple[Tensor, Tensor]:
     pairs = index[..., :, None] * size + index[..., None, :]
     matrix.scatter_add_(1, pairs.flatten(1), (weighted[..., :, None] * reads[..., None, :]).flatten(1))
     return gradient, matrix.view(batch, size, size)
+
+
+LN10 = math.log(10.0)
+#: Differences of neighbouring ratios below this count quadratically.
+SMALLEST_DIFFERENCE = 0.1
+
+
+def evenness_terms(z: Tensor, weight: Tensor) -> tuple[Tensor, Tensor]:
+    """Quadratic model of ``weight`` times TV(x) / (m n) around fields.
+
+    Parameters
+    ----------
+    z : (B, m, n) tensor
+        log10 of the ratios.
+    weight : (B,) tensor
+
+    Returns
+    -------
+    descent : (B, m * n) tensor
+        Negative gradient by z.
+    matrix : (B, m * n, m * n) tensor
+        Positive semi-definite second derivative.
+    """
+    first, second = _neighbours(z.shape[1], z.shape[2], z.device)
+    cells = z.shape[1] * z.shape[2]
+    x = torch.pow(10.0, z).flatten(1)
+    difference = x[:, first] - x[:, second]
+    stiffness = weight[:, None] / cells / difference.abs().clamp_min(SMALLEST_DIFFERENCE)
+    a, b = LN10 * x[:, first], LN10 * x[:, second]
+    pull = stiffness * difference
+    descent = z.new_zeros(len(z), cells)
+    descent.index_add_(1, first, -pull * a).index_add_(1, second, pull * b)
+    matrix = z.new_zeros(len(z), cells * cells)
+    for row, column, value in (
+        (first, first, stiffness * a * a),
+        (second, second, stiffness * b * b),
+        (first, second, -stiffness * a * b),
+        (second, first, -stiffness * a * b),
+    ):
+        matrix.index_add_(1, row * cells + column, value)
+    return descent, matrix.view(-1, cells, cells)
+
+
+@lru_cache(maxsize=256)
+def _neighbours(rows: int, columns: int, device: torch.device) -> tuple[Tensor, Tensor]:
+    """Flat indices of the voids on either side of every shared place."""
+    number = np.arange(rows * columns).reshape(rows, columns)
+    first = np.concatenate([number[:-1].ravel(), number[:, :-1].ravel()])
+    second = np.concatenate([number[1:].ravel(), number[:, 1:].ravel()])
+    return torch.tensor(first, device=device), torch.tensor(second, device=device)

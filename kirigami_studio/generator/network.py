@@ -135,7 +135,7 @@ class _Block(nn.Module):
 
 
 class VelocityNetwork(nn.Module):
-    """v(z_t, t, condition) of the flow (paper, Eq. CFM), on flattened fields."""
+    """v(z_t, t, condition) of the flow (paper, Eq. 3), on flattened fields."""
 
     def __init__(self, shape: NetworkShape) -> None:
         super().__init__()

@@ -1,9 +1,10 @@
-"""Draw K candidate fields for one target in one batch."""
+"""Draw K candidate fields for one target in batches, on one torch thread."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,16 +13,26 @@ from torch import Tensor
 
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.paper import LOG_RATIO_LIMIT
-from kirigami_studio.generator.conditioning import normalised, turned
-from kirigami_studio.generator.flow import Head, integrate
-from kirigami_studio.generator.pose import square_pose
+from kirigami_studio.generator.conditioning import normalised, square_pose, turned
+from kirigami_studio.generator.flow import LateStart, integrate
 from kirigami_studio.generator.sheet import Sheet
-from kirigami_studio.generator.threads import one_torch_thread
 from kirigami_studio.generator.velocity import Code
 from kirigami_studio.generator.weights import Model
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.resize import resize_fields
 from kirigami_studio.outlines.outline import Outline
+
+
+@contextmanager
+def one_torch_thread() -> Iterator[None]:
+    """Run torch on one thread: results do not depend on the machine's core count, and the window keeps a core."""
+    before = torch.get_num_threads()
+    torch.set_num_threads(1)
+    try:
+        yield
+    finally:
+        torch.set_num_threads(before)
+
 
 #: Candidates drawn together, always this many: rounding in matrix products depends on the batch size, and nearest-point
 #: feedback can turn a rounding difference into a visible one.
@@ -101,22 +112,22 @@ def draw_fields(
             seen = posed(target, batch, poses) if near is None else lying(target, len(batch), near.angle)
             code = model.code(seen, sheet)
             rows = torch.tensor(noise[start : start + BATCH], dtype=torch.float32)
-            head = None
+            late = None
             if near is not None:
-                rows, head = _near_start(near, rows, (shape.rows, shape.columns), code)
-            drawn.append(integrate(model.network, rows, code, steps, head))
+                rows, late = _late_start(near, rows, (shape.rows, shape.columns), code)
+            drawn.append(integrate(model.network, rows, code, steps, late))
     z = torch.cat(drawn)[:k].double().numpy()
     fields: FloatArray = np.clip(z.reshape(k, *grid), -LOG_RATIO_LIMIT, LOG_RATIO_LIMIT)
     return tuple(RatioField.from_log10(np.round(field, 6)) for field in fields)
 
 
-def _near_start(near: Near, noise: Tensor, own: tuple[int, int], code: Code) -> tuple[Tensor, Head]:
+def _late_start(near: Near, noise: Tensor, own: tuple[int, int], code: Code) -> tuple[Tensor, LateStart]:
     """State of the flow between noise (B, cells) and a design, on the network's own grid, and what that cannot hold."""
     z = near.field.log10[np.newaxis]
     design = torch.tensor(resize_fields(z, *own).reshape(1, -1), dtype=torch.float32)
     on_sheet = torch.tensor(z.reshape(1, -1), dtype=torch.float32)
-    beyond = near.nearness * (on_sheet - code.on_sheet(design))
-    return (1.0 - near.nearness) * noise + near.nearness * design, Head(near.nearness, beyond)
+    remainder = near.nearness * (on_sheet - code.on_sheet(design))
+    return (1.0 - near.nearness) * noise + near.nearness * design, LateStart(near.nearness, remainder)
 
 
 def lying(target: Outline, count: int, angle: float) -> Tensor:

@@ -29,15 +29,148 @@ import math
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from torch import Tensor, cat, nn, zeros_like
+import torch
+from torch import Tensor, nn
 from torch.nn import functional
 
 from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.foundation.paper import MASK_SIZE
 from kirigami_studio.generator.conditioning import ConditionLayout
-from kirigami_studio.generator.masks import filled_masks
 from kirigami_studio.generator.sheet import Carrier, Sheet, carrier_between
-from kirigami_studio.generator.unet_blocks import Residual, SelfAttention, Stage, TimeEmbedding, zeroed
+
+
+def filled_masks(polygons: Tensor, size: int = MASK_SIZE) -> Tensor:
+    """Fill each polygon into its own square mask: the picture of a target that the network sees.  No gradient.
+
+    The same pixels as ``evaluate.silhouette.rasterise``, which fills one polygon at a time in NumPy, where training
+    needs a whole batch on the device it runs on.  All edges cut every row of pixel centres; where the sum of their
+    directions from the left is not 0, the pixel is inside (winding number, so a sheet that overlaps itself is still
+    filled).
+
+    Parameters
+    ----------
+    polygons : (B, L, 2) float tensor
+        y up, any place and size, either direction.
+    size : int
+        Pixels each way; the longer side of the bounding box fills it, the other is centred (paper, Appendix: recentred
+        by the bounding-box midpoint).
+
+    Returns
+    -------
+    masks : (B, size, size) tensor of the polygons' type
+        1 where the pixel's centre is inside, 0 elsewhere; row 0 on top.
+    """
+    with torch.no_grad():
+        low, high = polygons.amin(dim=1), polygons.amax(dim=1)
+        corner = 0.5 * (low + high) - 0.5 * (high - low).amax(dim=1, keepdim=True)
+        pixel = (high - low).amax(dim=1) / size
+        # In pixels, with pixel centres at whole numbers and the first row at the bottom.
+        x, y = ((polygons - corner[:, None]) / pixel[:, None, None] - 0.5).unbind(dim=-1)
+        next_x, next_y = x.roll(-1, dims=1), y.roll(-1, dims=1)
+        row = torch.arange(size, dtype=y.dtype, device=y.device)
+        above, next_above = y[..., None] > row, next_y[..., None] > row
+        crosses = above != next_above
+        rise = torch.where(crosses, (next_y - y)[..., None], torch.ones_like(y)[..., None])
+        crossing = x[..., None] + (row - y[..., None]) / rise * (next_x - x)[..., None]
+        # Pixels from the crossing on get +1 where the edge goes down and -1 where it goes up.
+        column = crossing.ceil().clamp(0, size).long()
+        direction = torch.where(crosses, above.to(y.dtype) - next_above.to(y.dtype), torch.zeros_like(crossing))
+        change = torch.zeros((len(y), size, size + 1), dtype=y.dtype, device=y.device)
+        change.scatter_add_(2, column.transpose(1, 2), direction.transpose(1, 2))
+        winding = change[..., :-1].cumsum(dim=2)
+        return (winding.round() != 0).to(y.dtype).flip(1)
+
+
+#: The paper's times run from 0 to 1000.
+LARGEST_TIME = 1000.0
+
+
+def zeroed(layer: nn.Conv2d) -> nn.Conv2d:
+    """The same convolution with all weights 0: what it feeds begins without it."""
+    nn.init.zeros_(layer.weight)
+    if layer.bias is not None:
+        nn.init.zeros_(layer.bias)
+    return layer
+
+
+class TimeEmbedding(nn.Module):
+    """t in [0, 1] -> (B, width), from ``features`` sinusoids of 1000 t (wave lengths 2 pi .. 20000 pi)."""
+
+    def __init__(self, features: int, width: int) -> None:
+        super().__init__()
+        self.features = features
+        self.mix = nn.Sequential(nn.Linear(features, width), nn.SiLU(), nn.Linear(width, width))
+
+    def forward(self, t: Tensor) -> Tensor:
+        half = self.features // 2
+        frequency = torch.exp(torch.arange(half, dtype=t.dtype, device=t.device) * (-math.log(10_000.0) / half))
+        phase = LARGEST_TIME * t[:, None] * frequency
+        embedded: Tensor = self.mix(torch.cat([torch.cos(phase), torch.sin(phase)], dim=-1))
+        return embedded
+
+
+class Residual(nn.Module):
+    """x + convolutions(x, time), at the same, half or twice the resolution.
+
+    Parameters
+    ----------
+    inside, outside : int
+        Channels of the input and of the output.
+    time : int
+        Width of the time embedding.
+    groups : int
+        Of the group normalisations.
+    resample : module, optional
+        Changes the resolution of both ways through the block ("residual up and down sampling" of the paper).
+    """
+
+    def __init__(self, inside: int, outside: int, time: int, groups: int, resample: nn.Module | None = None) -> None:
+        super().__init__()
+        self.resample = resample or nn.Identity()
+        self.enter = nn.Sequential(nn.GroupNorm(groups, inside), nn.SiLU())
+        self.first = nn.Conv2d(inside, outside, 3, padding=1)
+        self.time = nn.Sequential(nn.SiLU(), nn.Linear(time, outside))
+        self.second = nn.Sequential(
+            nn.GroupNorm(groups, outside), nn.SiLU(), zeroed(nn.Conv2d(outside, outside, 3, padding=1))
+        )
+        self.past = nn.Identity() if inside == outside else nn.Conv2d(inside, outside, 1)
+
+    def forward(self, x: Tensor, time: Tensor) -> Tensor:
+        """(B, inside, H, W) and (B, time) -> (B, outside, H', W')."""
+        update = self.first(self.resample(self.enter(x))) + self.time(time)[:, :, None, None]
+        result: Tensor = self.past(self.resample(x)) + self.second(update)
+        return result
+
+
+class SelfAttention(nn.Module):
+    """x + attention of every pixel to all pixels."""
+
+    def __init__(self, channels: int, heads: int, groups: int, dropout: float) -> None:
+        super().__init__()
+        self.norm = nn.GroupNorm(groups, channels)
+        self.attend = nn.MultiheadAttention(channels, heads, dropout, batch_first=True)
+
+    def forward(self, x: Tensor) -> Tensor:
+        """(B, channels, H, W) -> the same shape."""
+        pixels = self.norm(x).flatten(2).transpose(1, 2)
+        update, _ = self.attend(pixels, pixels, pixels, need_weights=False)
+        result: Tensor = x + update.transpose(1, 2).reshape(x.shape)
+        return result
+
+
+class Stage(nn.Module):
+    """A residual block, followed by self-attention where the level has it."""
+
+    def __init__(self, block: Residual, attention: SelfAttention | None) -> None:
+        super().__init__()
+        self.block = block
+        self.attention = attention or nn.Identity()
+
+    def forward(self, x: Tensor, time: Tensor) -> Tensor:
+        """(B, inside, H, W) and (B, time) -> (B, outside, H', W')."""
+        result: Tensor = self.attention(self.block(x, time))
+        return result
+
 
 #: Most groups of a group normalisation; narrow networks have fewer.
 GROUPS = 32
@@ -202,13 +335,13 @@ class UpwardHalf(nn.Module):
         """The middle (B, channels[-1], h, w), the time embedding and the features -> (B, 1, latent, latent)."""
         left = list(features)
         for stage, takes in zip(self.stages, self.takes, strict=True):
-            x = stage(cat([x, left.pop()], dim=1) if takes else x, time)
+            x = stage(torch.cat([x, left.pop()], dim=1) if takes else x, time)
         image: Tensor = self.leave(x)
         return image
 
 
 class UNetVelocity(nn.Module):
-    """v(z_t, t, mask) of the flow (paper, Eq. CFM), on flattened fields."""
+    """v(z_t, t, mask) of the flow (paper, Eq. 3), on flattened fields."""
 
     def __init__(self, shape: UNetShape) -> None:
         super().__init__()
@@ -235,7 +368,7 @@ class UNetVelocity(nn.Module):
 
     def correction(self, z: Tensor, code: MaskCode) -> Tensor:
         """No change."""
-        return zeros_like(z)
+        return torch.zeros_like(z)
 
     def code(
         self,

@@ -1,4 +1,4 @@
-"""What samples: the few things that integration, sampling and validation ask of a velocity network."""
+"""Velocity networks: what integration, sampling and validation ask of one, and which there are to train and load."""
 
 from __future__ import annotations
 
@@ -9,8 +9,11 @@ from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 import torch
 from torch import Tensor
 
+from kirigami_studio.foundation.errors import ModelError
 from kirigami_studio.generator.conditioning import ConditionLayout
+from kirigami_studio.generator.network import NetworkShape, VelocityNetwork
 from kirigami_studio.generator.sheet import Sheet
+from kirigami_studio.generator.unet import UNetShape, UNetVelocity
 
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance
@@ -66,7 +69,7 @@ class Code(Protocol):
 
 
 class Velocity(Protocol):
-    """v(z_t, t, target) of the flow (paper, Eq. CFM)."""
+    """v(z_t, t, target) of the flow (paper, Eq. 3)."""
 
     @property
     def shape(self) -> VelocityShape: ...
@@ -105,3 +108,35 @@ def joined(codes: Sequence[Coded]) -> Coded:
         return torch.cat(values) if isinstance(values[0], Tensor) else values[0]
 
     return type(codes[0])(*(merged([getattr(code, field.name) for code in codes]) for field in fields(codes[0])))
+
+
+#: The networks that can be trained and loaded, by the name under which manifests and the command line know them.
+Shape = NetworkShape | UNetShape
+Network = VelocityNetwork | UNetVelocity
+
+PERCEPTRON = "perceptron"
+UNET = "unet"
+SHAPES: dict[str, type[Shape]] = {PERCEPTRON: NetworkShape, UNET: UNetShape}
+
+
+def backbone_of(shape: Shape) -> str:
+    """Name of the kind of network that a shape describes."""
+    return next(name for name, kind in SHAPES.items() if isinstance(shape, kind))
+
+
+def network_of(shape: Shape) -> Network:
+    """A network of random weights."""
+    return UNetVelocity(shape) if isinstance(shape, UNetShape) else VelocityNetwork(shape)
+
+
+def shape_from_json(backbone: str, record: dict[str, Any]) -> Shape:
+    """The shape that ``to_json`` of a backbone wrote.
+
+    Raises
+    ------
+    ModelError
+        A backbone that this version does not know.
+    """
+    if backbone not in SHAPES:
+        raise ModelError(f"These weights are of a kind of network, '{backbone}', that this version does not know.")
+    return SHAPES[backbone](**record)

@@ -23,9 +23,8 @@ from torch import Tensor
 from kirigami_studio.foundation.errors import ModelError, UsageError
 from kirigami_studio.foundation.files import write_atomically
 from kirigami_studio.foundation.resources import resource
-from kirigami_studio.generator.backbones import PERCEPTRON, Network, backbone_of, network_of, shape_from_json
 from kirigami_studio.generator.sheet import Sheet
-from kirigami_studio.generator.velocity import Code
+from kirigami_studio.generator.velocity import PERCEPTRON, Code, Network, backbone_of, network_of, shape_from_json
 
 MANIFEST = "manifest.json"
 FORMAT = 1

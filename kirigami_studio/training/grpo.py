@@ -1,11 +1,11 @@
-"""Group Relative Policy Optimization as the paper states it (Sec. "OT-CFM prior and GRPO preference alignment").
+"""Group Relative Policy Optimization, GRPO, as the paper states it (Sec. "OT-CFM prior and GRPO preference alignment").
 
 A step draws G designs x for each of B targets with the current network, lets the evaluator reward them, and regresses
 the flow towards them, the better ones more:
 
-    A_g = (r_g - mean r) / (std r + eps)                              within a group    (Eq. grpo_adv)
-    w_g = exp(A_g / T) / (1/G sum_k exp(A_k / T))                                       (Eq. grpo_weights)
-    loss = mean over targets of 1/G sum_g w_g |v(x_t, t, y) - (x_g - x_0)|^2            (Eq. grpo_loss)
+    A_g = (r_g - mean r) / (std r + eps)                              within a group    (Eq. 4)
+    w_g = exp(A_g / T) / (1/G sum_k exp(A_k / T))                                       (Eq. 5)
+    loss = mean over targets of 1/G sum_g w_g |v(x_t, t, y) - (x_g - x_0)|^2            (Eq. 6)
 
 with x_t = (1 - t) x_0 + t x_g, fresh noise x_0 and t uniform.  There is no policy ratio and no log-probability.  The
 text is followed where the authors' released code differs from it; what goes beyond the text (pull to the prior, plain
@@ -33,20 +33,18 @@ from torch import Tensor
 
 from kirigami_studio.foundation.errors import ModelError, UsageError
 from kirigami_studio.foundation.paper import LOG_RATIO_LIMIT
-from kirigami_studio.generator.backbones import Network
-from kirigami_studio.generator.conditioning import turned
+from kirigami_studio.generator.conditioning import square_pose, turned
 from kirigami_studio.generator.flow import integrate
-from kirigami_studio.generator.pose import square_pose
-from kirigami_studio.generator.velocity import Code
+from kirigami_studio.generator.velocity import Code, Network
 from kirigami_studio.generator.weights import Model
 from kirigami_studio.outlines.outline import Outline
-from kirigami_studio.training.checkpoint import Checkpoint
 from kirigami_studio.training.corpus import Corpus
 from kirigami_studio.training.fields import mixed_fields
-from kirigami_studio.training.learner import CHECKPOINT, Learner, logged, opened
+from kirigami_studio.training.flow_path import ConditionalPath, PathSample, cfm_errors
+from kirigami_studio.training.learner import CHECKPOINT, Checkpoint, Learner, logged, opened
 from kirigami_studio.training.rewards import Reward, Verdict, judge
 
-#: The small constant of Eq. grpo_adv.
+#: The small constant of Eq. 4.
 EPSILON = 1e-6
 ADVANTAGES = ("standardised", "centred")
 #: Steps' worth of the prior's samples that set the scales of the balanced reward; they count as environment calls.
@@ -74,7 +72,7 @@ class GrpoSettings:
     rollout_steps : int
         Euler steps of the rollouts.
     advantages : str
-        ``standardised`` (Eq. grpo_adv), or ``centred``: not divided by the standard deviation.  The division turns
+        ``standardised`` (Eq. 4), or ``centred``: not divided by the standard deviation.  The division turns
         even the evaluator's rounding into full-size advantages where all designs of a group are equally good.
     weight_clip : float
         Largest weight w, at most G by itself; 0 sets no bound.
@@ -132,7 +130,7 @@ class GrpoSettings:
 
 
 def advantages(rewards: Tensor, kind: str = "standardised") -> Tensor:
-    """Eq. grpo_adv for rewards (B, G), each row a group; ``centred`` leaves the division out."""
+    """Group-relative advantages (paper, Eq. 4) of rewards (B, G), each row a group; ``centred`` does not divide."""
     centred = rewards - rewards.mean(dim=1, keepdim=True)
     if kind == "centred":
         return centred
@@ -140,9 +138,27 @@ def advantages(rewards: Tensor, kind: str = "standardised") -> Tensor:
 
 
 def group_weights(advantage: Tensor, temperature: float, clip: float = 0.0) -> Tensor:
-    """Eq. grpo_weights for advantages (B, G): the mean of each row is 1, before a bound ``clip`` above 0."""
+    """Weights (paper, Eq. 5) of advantages (B, G): the mean of each row is 1, before a bound ``clip`` above 0."""
     weights = advantage.shape[1] * torch.softmax(advantage / temperature, dim=1)
     return weights.clamp_max(clip) if clip else weights
+
+
+def grpo_loss(velocity: Tensor, sample: PathSample, weights: Tensor, groups: int | None = None) -> Tensor:
+    """GRPO loss (paper, Eq. 6): the CFM errors of Eq. 3, each times the weight of its design.
+
+    Parameters
+    ----------
+    velocity : (B * G, C) tensor
+        v at the points ``x_t`` of ``sample``, the designs of a group in a row.
+    sample : PathSample
+    weights : (B, G) tensor
+        Eq. 5; 0 for designs of groups that are left out.
+    groups : int, optional
+        How many groups count; all of them when missing.
+    """
+    errors = cfm_errors(velocity, sample)
+    counted = len(weights) if groups is None else groups
+    return (weights.flatten().to(errors) * errors).sum() / max(1, counted * weights.shape[1])
 
 
 def train_grpo(
@@ -314,18 +330,17 @@ class _Run:
         return group_weights(advantage, self.settings.temperature, self.settings.weight_clip)
 
     def _update(self, seen: Tensor, designs: Tensor, weights: Tensor, groups: int) -> float:
-        """One Adam step on Eq. grpo_loss over ``groups`` groups that count, and the pull to the prior."""
+        """One Adam step on the GRPO loss over ``groups`` groups that count, and the pull to the prior."""
         group = self.settings.group
         code = self.network.code(seen).repeated(group)
         design = designs.flatten(0, 1)
         noise = self._normal(design.shape) * self.z_scale
         t = torch.rand(len(design), generator=self.generator, device=self.device)
-        between = noise + t[:, None] * (design - noise)
-        velocity = self.network(between, t, code)
-        error = (velocity - (design - noise)).square().mean(dim=1)
-        loss = (weights.flatten().to(error) * error).sum() / max(1, groups * group)
+        path = ConditionalPath.sample(noise, design, t)
+        velocity = self.network(path.x_t, t, code)
+        loss = grpo_loss(velocity, path, weights, groups)
         if self.settings.reference:
-            wanted = self._prior_velocity(between, t, self.prior.code(seen).repeated(group))
+            wanted = self._prior_velocity(path.x_t, t, self.prior.code(seen).repeated(group))
             loss = loss + self.settings.reference * (velocity - wanted).square().mean()
         if not torch.isfinite(loss):
             raise ModelError(
@@ -334,9 +349,9 @@ class _Run:
         self.learner.learn(loss, self.settings.average_decay)
         return float(loss.detach())
 
-    def _prior_velocity(self, between: Tensor, t: Tensor, code: Code) -> Tensor:
+    def _prior_velocity(self, x_t: Tensor, t: Tensor, code: Code) -> Tensor:
         with torch.no_grad():
-            return self.prior(between, t, code)
+            return self.prior(x_t, t, code)
 
     def _note(self, rewards: Tensor, verdicts: list[list[Verdict]], designs: Tensor, used: Tensor, loss: float) -> None:
         """Add a step to the sums that ``taken_means`` divides."""

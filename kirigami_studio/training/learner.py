@@ -2,15 +2,87 @@
 
 from __future__ import annotations
 
+import io
 import json
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Generic, TypeVar
 
 import torch
 from torch import Tensor, nn
 
-from kirigami_studio.foundation.errors import ExportError
-from kirigami_studio.training.checkpoint import Checkpoint
+from kirigami_studio.foundation.errors import ExportError, ModelError, UsageError
+from kirigami_studio.foundation.files import write_atomically
+from kirigami_studio.generator.network import NetworkShape
+from kirigami_studio.generator.velocity import Network, Shape, network_of
+
+
+@dataclass(slots=True)
+class Checkpoint:
+    """Everything a run needs to go on exactly where it stopped.
+
+    Attributes
+    ----------
+    step : int
+        Finished optimiser steps.
+    network, average : dict of tensors
+        Raw weights and their exponential moving average.
+    optimiser : dict
+    settings : dict
+        The run's settings, compared on resume.
+    generator : tensor
+        State of the noise generator.
+    more : dict
+        What one kind of training needs beside: plain numbers and text.
+    """
+
+    step: int
+    network: dict[str, torch.Tensor]
+    average: dict[str, torch.Tensor]
+    optimiser: dict[str, Any]
+    settings: dict[str, Any]
+    generator: torch.Tensor
+    more: dict[str, Any] = field(default_factory=dict)
+
+    def save(self, path: Path) -> None:
+        """Write beside the old checkpoint, then rename: an interrupted save loses nothing.
+
+        Raises
+        ------
+        ExportError
+            The folder cannot be written or the disk is full; the old checkpoint is untouched.
+        """
+        buffer = io.BytesIO()
+        torch.save({name: getattr(self, name) for name in self.__slots__}, buffer)
+        write_atomically(path, buffer.getvalue())
+
+    @classmethod
+    def load(cls, path: Path) -> Checkpoint:
+        """Read a checkpoint (weights-only unpickling: no code is run).
+
+        Raises
+        ------
+        ModelError
+            The file is damaged or not a checkpoint.
+        """
+        try:
+            content = torch.load(path, map_location="cpu", weights_only=True)
+            return cls(**content)
+        except Exception as error:  # torch raises many kinds on a damaged file
+            raise ModelError(f"The checkpoint {path} cannot be read; delete it to start afresh.") from error
+
+    def check_settings(self, wanted: dict[str, Any], path: Path) -> None:
+        """Refuse to go on with other settings than those the checkpoint at ``path`` was made with.
+
+        Raises
+        ------
+        ModelError
+            Names the settings that differ.
+        """
+        if self.settings != wanted:
+            names = ", ".join(name for name in wanted if self.settings.get(name) != wanted[name])
+            raise ModelError(f"The checkpoint {path} was made with other settings ({names}); choose another folder.")
+
 
 #: Name of the resumable state in a run folder.
 CHECKPOINT = "checkpoint.pt"
@@ -109,3 +181,55 @@ def logged(folder: Path, record: dict[str, float]) -> dict[str, float]:
     with (folder / "log.jsonl").open("a", encoding="utf-8") as log:
         log.write(json.dumps(record) + "\n")
     return record
+
+
+def training_device(name: str, threads: int = 1) -> torch.device:
+    """Resolve ``auto``, ``cpu`` or ``cuda``, and give torch that many processor threads.
+
+    Raises
+    ------
+    UsageError
+        The device does not exist on this machine, or fewer than one thread was asked for.
+    """
+    if threads < 1:
+        raise UsageError(f"Training needs at least 1 thread, got {threads}.")
+    torch.set_num_threads(threads)
+    if name == "auto":
+        return torch.device("cuda" if torch.cuda.is_available() else "cpu")
+    if name == "cuda" and not torch.cuda.is_available():
+        raise UsageError("No CUDA device is available to this torch build; use --device cpu or install a GPU build.")
+    try:
+        return torch.device(name)
+    except RuntimeError as error:
+        raise UsageError(f"Unknown device '{name}'; use auto, cpu or cuda.") from error
+
+
+def grown_state(network: Network, shape: Shape) -> dict[str, Tensor]:
+    """Weights of ``network`` for a network of ``shape``: what is new counts for nothing at first.
+
+    Raises
+    ------
+    ModelError
+        The shapes differ in more than their inputs, or the new one sees less.
+    """
+    state = dict(network.state_dict())
+    if network.shape == shape:
+        return state
+    if not isinstance(shape, NetworkShape) or not _sees_more(network.shape, shape):
+        raise ModelError("The weights to begin with belong to a network of another shape.")
+    grown = network_of(shape).state_dict()
+    for name, value in grown.items():
+        old = state.get(name)
+        if old is None:
+            state[name] = torch.zeros_like(value)
+        elif old.shape != value.shape:
+            state[name] = torch.cat([old, old.new_zeros(len(old), value.shape[1] - old.shape[1])], dim=1)
+    return {name: state[name] for name in grown}
+
+
+def _sees_more(old: Shape, new: NetworkShape) -> bool:
+    if not isinstance(old, NetworkShape):
+        return False
+    senses = {"direction": new.direction, "preference": new.preference, "sheets": new.sheets}
+    lost = any(getattr(old, name) and not value for name, value in senses.items())
+    return replace(old, **senses) == new and not lost

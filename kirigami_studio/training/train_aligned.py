@@ -25,11 +25,9 @@ from kirigami_studio.generator.network import NetworkShape, VelocityNetwork
 from kirigami_studio.generator.sheet import Sheet
 from kirigami_studio.generator.weights import Model
 from kirigami_studio.lattice.batched import BatchedLattice
-from kirigami_studio.training.checkpoint import Checkpoint
 from kirigami_studio.training.corpus import sheet_outline
 from kirigami_studio.training.fields import mixed_fields
-from kirigami_studio.training.growth import grown_state
-from kirigami_studio.training.learner import CHECKPOINT, Learner, logged, opened
+from kirigami_studio.training.learner import CHECKPOINT, Checkpoint, Learner, grown_state, logged, opened
 from kirigami_studio.training.preference_loss import EARLY_WEIGHT, PreferenceTerms, trail_gap
 from kirigami_studio.training.sampled_targets import TargetSource
 from kirigami_studio.training.train_flow import LARGEST_GRADIENT, schedule
@@ -73,7 +71,7 @@ class AlignSettings:
         Largest standard deviation of the target's contour as the network sees it, unit-area lengths (a pixel of 128 is
         about 0.009); drawn anew for every row.  The loss looks at the undisturbed target.
     pictured_share : float
-        Share of the targets that the network sees as read from a picture instead, see ``pictured_targets``.
+        Share of the targets that the network sees as read from a picture instead, see ``sampled_targets``.
     shift_noise : float
         Standard deviation of the contour's start, in point spacings.
     other_sheets : float

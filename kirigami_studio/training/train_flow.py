@@ -1,4 +1,4 @@
-"""Train the prior: conditional flow matching on z = log10 x (paper, Eq. CFM).
+"""Train the prior: conditional flow matching on z = log10 x with the CFM loss (paper, Eq. 3).
 
 One command for CPU and GPU, resumable: the run folder holds ``checkpoint.pt``, ``log.jsonl`` and, at the end,
 ``prior.safetensors``.
@@ -16,19 +16,15 @@ import torch
 from torch import Tensor
 
 from kirigami_studio.foundation.errors import ModelError
-from kirigami_studio.generator.backbones import Network, Shape, network_of
-from kirigami_studio.generator.conditioning import condition, turned
+from kirigami_studio.generator.conditioning import condition, square_pose, turned
 from kirigami_studio.generator.network import NetworkShape
-from kirigami_studio.generator.pose import square_pose
-from kirigami_studio.generator.velocity import joined
+from kirigami_studio.generator.velocity import Network, Shape, joined, network_of
 from kirigami_studio.generator.weights import Model
 from kirigami_studio.training.corpus import Chunk, Corpus, zero_outline
-from kirigami_studio.training.coupling import pair_noise
 from kirigami_studio.training.fields import mixed_fields
-from kirigami_studio.training.fitted_batches import FittedBatches, Targets
-from kirigami_studio.training.fitted_fields import FittedFields
-from kirigami_studio.training.growth import grown_state
-from kirigami_studio.training.learner import CHECKPOINT, Learner, logged, opened
+from kirigami_studio.training.fitted_fields import FittedBatches, FittedFields, Targets
+from kirigami_studio.training.flow_path import ConditionalPath, cfm_loss, pair_noise
+from kirigami_studio.training.learner import CHECKPOINT, Learner, grown_state, logged, opened
 
 WARM_UP_STEPS = 200
 #: Gradients are scaled down to this norm.
@@ -54,7 +50,7 @@ class FlowSettings:
         Weight of the squared outline error (unit-area lengths) of the predicted design, through the exact decoder,
         times t^2; on the draw with the largest t of each target.
     coupling : str
-        See :mod:`kirigami_studio.training.coupling`.
+        See :mod:`kirigami_studio.training.flow_path`.
     chunk, passes : int
         Designs generated together, and how often each is visited before the next chunk.
     vertex_noise : float
@@ -181,7 +177,7 @@ def train_flow(
             break
 
 
-def finished_network(settings: FlowSettings, folder: Path, device: torch.device) -> Network:
+def trained_network(settings: FlowSettings, folder: Path, device: torch.device) -> Network:
     """The averaged network of the checkpoint in ``folder``: what is shipped."""
     return _Run(settings, folder / CHECKPOINT, device, Sources()).averaged()
 
@@ -268,13 +264,13 @@ class _Run:
             described = torch.cat([condition(polygons, layout, shift) for polygons, shift in seen])
             noise = pair_noise(settings.coupling, noise, target, described.repeat_interleave(draws, dim=0))
         t = torch.rand(target.shape[0], generator=self.generator, device=self.device)
-        between = noise + t[:, None] * (target - noise)
-        velocity = self.network(between, t, code)
-        flow = (velocity - (target - noise)).square().mean()
+        path = ConditionalPath.sample(noise, target, t)
+        velocity = self.network(path.x_t, t, code)
+        flow = cfm_loss(velocity, path)
         if not settings.outline_weight:
             return flow
         late = t.view(-1, draws).argmax(dim=1) + torch.arange(len(z), device=self.device) * draws
-        predicted = between[late] + (1 - t[late, None]) * velocity[late]
+        predicted = ConditionalPath.predicted_data(path.x_t[late], velocity[late], t[late])
         return flow + settings.outline_weight * (t[late].square() * self._outline_error(predicted, z)).mean()
 
     def _outline_error(self, predicted: Tensor, z: Tensor) -> Tensor:

@@ -12,11 +12,9 @@ from torch import Tensor
 from kirigami_studio.evaluate.total_variation import total_variation
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.paper import LOG_RATIO_LIMIT
-from kirigami_studio.generator.backbones import Network
-from kirigami_studio.generator.conditioning import normalised, turned
+from kirigami_studio.generator.conditioning import normalised, square_pose, turned
 from kirigami_studio.generator.flow import integrate
-from kirigami_studio.generator.pose import square_pose
-from kirigami_studio.generator.velocity import Velocity
+from kirigami_studio.generator.velocity import Network, Velocity
 from kirigami_studio.lattice.batched import BatchedLattice
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.outlines.editing import resampled

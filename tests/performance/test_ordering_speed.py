@@ -7,8 +7,7 @@ import time
 import numpy as np
 import pytest
 
-from kirigami_studio.benchmark.fabrication_suite import random_design
-from kirigami_studio.benchmark.travel_bound import travel_bound
+from kirigami_studio.benchmark.fabrication_suite import random_design, travel_bound
 from kirigami_studio.fabricate.cut_path import Layer
 from kirigami_studio.fabricate.cut_plan import CutPlan, plan_cuts
 from kirigami_studio.fabricate.options import CutOptions, CutOrder

@@ -8,9 +8,8 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from kirigami_studio.benchmark.contact_sheet import write_contact_sheet
-from kirigami_studio.benchmark.design_suite import Made, design_figures, make_designs, worst_of
-from kirigami_studio.benchmark.regularity_suite import measure_regularity
+from kirigami_studio.benchmark.design_suite import Made, design_figures, make_designs, worst_of, write_contact_sheet
+from kirigami_studio.benchmark.polish_suite import measure_regularity
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.lattice.deployment import deploy

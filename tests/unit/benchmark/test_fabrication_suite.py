@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 
 from kirigami_studio.benchmark import fabrication_suite
-from kirigami_studio.benchmark.fabrication_suite import check_designs, measure_fabrication, random_design
-from kirigami_studio.benchmark.travel_bound import travel_bound
+from kirigami_studio.benchmark.fabrication_suite import check_designs, measure_fabrication, random_design, travel_bound
 from kirigami_studio.cli import main
 from kirigami_studio.fabricate.cut_plan import plan_cuts
 from kirigami_studio.fabricate.options import CutOptions, CutOrder

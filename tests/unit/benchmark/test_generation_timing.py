@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from kirigami_studio.benchmark.generation_timing import generation_timings
+from kirigami_studio.benchmark.speed_suite import generation_timings
 from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.generator.weights import load_model
 from kirigami_studio.outlines.silhouettes import load

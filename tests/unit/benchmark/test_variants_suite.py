@@ -11,8 +11,14 @@ import pytest
 import torch
 
 from kirigami_studio.benchmark.generator_suite import bootstrap_ratio_interval, measure_generator
-from kirigami_studio.benchmark.spread_suite import clusters_of, measure_spread, spread_of
-from kirigami_studio.benchmark.variants_suite import difference, measure_variants, with_reference
+from kirigami_studio.benchmark.variants_suite import (
+    clusters_of,
+    difference,
+    measure_spread,
+    measure_variants,
+    spread_of,
+    with_reference,
+)
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.foundation.errors import UsageError

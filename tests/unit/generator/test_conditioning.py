@@ -16,9 +16,9 @@ from kirigami_studio.generator.conditioning import (
     outer_radius,
     smoothed_points,
     square_phase,
+    square_pose,
     turned,
 )
-from kirigami_studio.generator.pose import square_pose
 
 pytestmark = pytest.mark.torch
 

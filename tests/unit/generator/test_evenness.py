@@ -7,8 +7,8 @@ import torch
 from small_networks import random_fields, silhouettes
 
 from kirigami_studio.generator.conditioning import smoothed_points
-from kirigami_studio.generator.evenness import LN10, SMALLEST_DIFFERENCE, evenness_terms
 from kirigami_studio.generator.feedback import Feedback
+from kirigami_studio.generator.gauss_newton import LN10, SMALLEST_DIFFERENCE, evenness_terms
 from kirigami_studio.generator.network import EVENNESS
 from kirigami_studio.generator.sheet import Sheet
 from kirigami_studio.training.preference_loss import boundary_gap

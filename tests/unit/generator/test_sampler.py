@@ -20,7 +20,7 @@ from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.resize import resize_fields
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.silhouettes import load
-from kirigami_studio.training.growth import grown_state
+from kirigami_studio.training.learner import grown_state
 
 pytestmark = pytest.mark.torch
 

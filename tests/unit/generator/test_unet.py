@@ -6,11 +6,10 @@ import pytest
 import torch
 
 from kirigami_studio.foundation.errors import UsageError
-from kirigami_studio.generator.backbones import backbone_of, network_of
 from kirigami_studio.generator.flow import integrate
 from kirigami_studio.generator.network import NetworkShape
 from kirigami_studio.generator.unet import UNetShape, UNetVelocity
-from kirigami_studio.generator.velocity import Code, joined
+from kirigami_studio.generator.velocity import Code, backbone_of, joined, network_of
 
 pytestmark = pytest.mark.torch
 TINY = UNetShape(4, 6, channels=(8, 16))

@@ -7,8 +7,14 @@ import math
 import numpy as np
 import pytest
 
-from kirigami_studio.training.drawn_shapes import FAMILIES, SMALLEST_COMPACTNESS, drawn_shape
-from kirigami_studio.training.glyphs import CHARACTERS, FACES, _outline
+from kirigami_studio.training.drawn_shapes import (
+    CHARACTERS,
+    FACES,
+    FAMILIES,
+    SMALLEST_COMPACTNESS,
+    _letter_outline,
+    drawn_shape,
+)
 
 COUNT = 250
 SHAPES = [drawn_shape(3, number) for number in range(COUNT)]
@@ -38,7 +44,7 @@ def test_that_shapes_are_thick_enough_for_a_sheet_and_some_are_thin() -> None:
 @pytest.mark.parametrize("face", FACES)
 def test_that_letters_stand_upright(face: str) -> None:
     # A leans on two legs: more of it below its middle than above.
-    points = _outline(face, "A")
+    points = _letter_outline(face, "A")
     assert np.ptp(points[points[:, 1] < 0, 0]) > np.ptp(points[points[:, 1] > 0, 0])
 
 

@@ -17,8 +17,16 @@ from kirigami_studio.lattice.batched import BatchedLattice
 from kirigami_studio.outlines.editing import resampled
 from kirigami_studio.training.corpus import zero_outline
 from kirigami_studio.training.drawn_shapes import drawn_shape
-from kirigami_studio.training.fitted_batches import LARGEST_MOVE, FittedBatches, Targets
-from kirigami_studio.training.fitted_fields import ARRAYS, REQUESTED_POINTS, FittedFields, fit_shapes, fitted_block
+from kirigami_studio.training.fitted_fields import (
+    ARRAYS,
+    LARGEST_MOVE,
+    REQUESTED_POINTS,
+    FittedBatches,
+    FittedFields,
+    Targets,
+    fit_shapes,
+    fitted_block,
+)
 
 pytestmark = pytest.mark.torch
 GRID = (6, 6)

@@ -12,7 +12,7 @@ from kirigami_studio.foundation.errors import ModelError
 from kirigami_studio.generator.network import NetworkShape, VelocityNetwork
 from kirigami_studio.generator.sheet import Sheet
 from kirigami_studio.generator.unet import UNetShape, UNetVelocity
-from kirigami_studio.training.growth import grown_state
+from kirigami_studio.training.learner import grown_state
 
 pytestmark = pytest.mark.torch
 OWN = Sheet(4, 4)

@@ -17,7 +17,7 @@ from kirigami_studio.generator.weights import Model, load_model, store_model
 from kirigami_studio.training.corpus import Corpus
 from kirigami_studio.training.fields import mixed_fields, structured_fields
 from kirigami_studio.training.grpo import GrpoSettings, advantages, aligned_network, group_weights, train_grpo
-from kirigami_studio.training.train_flow import FlowSettings, finished_network, train_flow
+from kirigami_studio.training.train_flow import FlowSettings, train_flow, trained_network
 from kirigami_studio.training.validation import VALIDATION_SEED, group_figures
 
 pytestmark = pytest.mark.torch
@@ -33,7 +33,7 @@ def start(tmp_path_factory: pytest.TempPathFactory) -> Model:
 def trained(shape: NetworkShape, folder: Path) -> Model:
     settings = FlowSettings(steps=60, batch=16, noises=2, chunk=64, shape=shape, learning_rate=3e-3)
     list(train_flow(settings, folder, CPU, lambda network: {}, validate_every=60))
-    store_model("prior", finished_network(settings, folder, CPU), folder, {})
+    store_model("prior", trained_network(settings, folder, CPU), folder, {})
     return load_model("prior", folder)
 
 

@@ -8,8 +8,7 @@ import pytest
 import torch
 from small_networks import random_fields, random_network, silhouettes
 
-from kirigami_studio.generator.conditioning import contour_points, turned
-from kirigami_studio.generator.pose import square_pose
+from kirigami_studio.generator.conditioning import contour_points, square_pose, turned
 from kirigami_studio.generator.sheet import Sheet
 from kirigami_studio.training.preference_loss import boundary_gap
 from kirigami_studio.training.sampled_targets import LOSS_POINTS, SEEN_POINTS, TargetSource

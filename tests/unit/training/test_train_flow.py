@@ -11,10 +11,10 @@ import torch
 from kirigami_studio.foundation.errors import ModelError, UsageError
 from kirigami_studio.generator.network import NetworkShape
 from kirigami_studio.generator.weights import Model, load_model, store_model
-from kirigami_studio.training.coupling import pair_noise
-from kirigami_studio.training.device import training_device
 from kirigami_studio.training.fitted_fields import FittedFields, fitted_block
-from kirigami_studio.training.train_flow import FlowSettings, Sources, finished_network, train_flow
+from kirigami_studio.training.flow_path import pair_noise
+from kirigami_studio.training.learner import training_device
+from kirigami_studio.training.train_flow import FlowSettings, Sources, train_flow, trained_network
 from kirigami_studio.training.validation import validator
 
 pytestmark = pytest.mark.torch
@@ -39,7 +39,7 @@ def fits() -> FittedFields:
 def start(tmp_path_factory: pytest.TempPathFactory) -> Model:
     folder = tmp_path_factory.mktemp("start")
     train(replace(TINY, steps=8, seed=9), folder)
-    store_model("prior", finished_network(replace(TINY, steps=8, seed=9), folder, CPU), folder, {})
+    store_model("prior", trained_network(replace(TINY, steps=8, seed=9), folder, CPU), folder, {})
     return load_model("prior", folder)
 
 
@@ -48,7 +48,7 @@ def test_that_a_resumed_run_equals_an_uninterrupted_one(tmp_path: Path) -> None:
     stopped = train(TINY, tmp_path / "parts", seconds=0.0)
     assert stopped[-1]["step"] < TINY.steps
     train(TINY, tmp_path / "parts")
-    whole, parts = (finished_network(TINY, tmp_path / name, CPU).state_dict() for name in ("whole", "parts"))
+    whole, parts = (trained_network(TINY, tmp_path / name, CPU).state_dict() for name in ("whole", "parts"))
     assert all(torch.equal(whole[name], parts[name]) for name in whole)
 
 
@@ -116,7 +116,7 @@ def test_that_unknown_couplings_and_devices_are_refused() -> None:
 def test_that_a_warm_start_begins_with_the_given_weights(tmp_path: Path, start: Model) -> None:
     settings = replace(TINY, steps=4, learning_rate=1e-12, warm_start=start.digest)
     train(settings, tmp_path, Sources(start))
-    ended = finished_network(settings, tmp_path, CPU).state_dict()
+    ended = trained_network(settings, tmp_path, CPU).state_dict()
     for name, value in start.network.state_dict().items():
         torch.testing.assert_close(ended[name], value, atol=1e-6, rtol=1e-6)
 
@@ -136,7 +136,7 @@ def test_that_a_resumed_run_with_fits_equals_an_uninterrupted_one(
     train(settings, tmp_path / "whole", sources)
     assert train(settings, tmp_path / "parts", sources, seconds=0.0)[-1]["step"] < TINY.steps
     train(settings, tmp_path / "parts", sources)
-    whole, parts = (finished_network(settings, tmp_path / name, CPU).state_dict() for name in ("whole", "parts"))
+    whole, parts = (trained_network(settings, tmp_path / name, CPU).state_dict() for name in ("whole", "parts"))
     assert all(torch.equal(whole[name], parts[name]) for name in whole)
     train(replace(TINY, warm_start=start.digest, coupling=coupling), tmp_path / "without", Sources(start))
     without = torch.load(tmp_path / "without" / "checkpoint.pt", weights_only=True)["network"]

@@ -12,7 +12,7 @@ from kirigami_studio.foundation.errors import ModelError
 from kirigami_studio.generator.unet import UNetShape, UNetVelocity
 from kirigami_studio.generator.weights import load_model, store_model
 from kirigami_studio.training.fitted_fields import fitted_block
-from kirigami_studio.training.train_flow import FlowSettings, Sources, finished_network, train_flow
+from kirigami_studio.training.train_flow import FlowSettings, Sources, train_flow, trained_network
 from kirigami_studio.training.validation import validator
 
 pytestmark = pytest.mark.torch
@@ -42,7 +42,7 @@ def test_that_a_resumed_run_equals_an_uninterrupted_one(tmp_path: Path, coupling
     train(settings, tmp_path / "whole")
     assert train(settings, tmp_path / "parts", seconds=0.0)[-1]["step"] < settings.steps
     train(settings, tmp_path / "parts")
-    whole, parts = (finished_network(settings, tmp_path / name, CPU).state_dict() for name in ("whole", "parts"))
+    whole, parts = (trained_network(settings, tmp_path / name, CPU).state_dict() for name in ("whole", "parts"))
     assert all(torch.equal(whole[name], parts[name]) for name in whole)
 
 
@@ -51,7 +51,7 @@ def test_that_dropout_takes_part_in_training(tmp_path: Path) -> None:
     train(TINY, tmp_path / "with")
     train(without, tmp_path / "without")
     ours, theirs = (
-        finished_network(s, tmp_path / n, CPU).state_dict() for s, n in ((TINY, "with"), (without, "without"))
+        trained_network(s, tmp_path / n, CPU).state_dict() for s, n in ((TINY, "with"), (without, "without"))
     )
     assert not all(torch.equal(ours[name], theirs[name]) for name in ours)
 
@@ -60,7 +60,7 @@ def test_that_the_loss_falls_and_the_control_branch_moves(tmp_path: Path) -> Non
     settings = replace(TINY, steps=300)
     records = train(settings, tmp_path)
     assert records[-1]["loss"] < 0.85 * records[0]["loss"]
-    network = finished_network(settings, tmp_path, CPU)
+    network = trained_network(settings, tmp_path, CPU)
     assert isinstance(network, UNetVelocity)
     assert all(gate.weight.abs().max() > 0 for gate in [*network.gates, network.middle_gate])
 
@@ -72,12 +72,12 @@ def test_that_validation_draws_from_it(tmp_path: Path) -> None:
 
 def test_that_fits_take_part_and_a_warm_start_begins_with_its_weights(tmp_path: Path) -> None:
     train(TINY, tmp_path / "first")
-    store_model("prior", finished_network(TINY, tmp_path / "first", CPU), tmp_path / "first", {})
+    store_model("prior", trained_network(TINY, tmp_path / "first", CPU), tmp_path / "first", {})
     start = load_model("prior", tmp_path / "first")
     fits = fitted_block(0, seed=1, grid=(4, 4), variant="prior", size=2)
     settings = replace(TINY, steps=4, learning_rate=1e-12, warm_start=start.digest, fits=fits.digest)
     train(settings, tmp_path / "second", Sources(start, fits))
-    ended = finished_network(settings, tmp_path / "second", CPU).state_dict()
+    ended = trained_network(settings, tmp_path / "second", CPU).state_dict()
     for name, value in start.network.state_dict().items():
         torch.testing.assert_close(ended[name], value, atol=1e-6, rtol=1e-6)
 

@@ -1,6 +1,6 @@
 """How fast the exact geometry is: the slider, growing grids, and whole batches beside the marching reference.
 
-Run as ``python -m kirigami_studio.benchmark.lattice_timing [--json]``.
+Run as ``python -m kirigami_studio.benchmark.lattice_suite [--json]``.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from dataclasses import asdict, dataclass
 import numpy as np
 import torch
 
-from kirigami_studio.generator.threads import one_torch_thread
+from kirigami_studio.generator.sampler import one_torch_thread
 from kirigami_studio.lattice.batched import BatchedLattice
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.marching import march

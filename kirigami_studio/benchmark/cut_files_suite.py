@@ -1,6 +1,6 @@
 """Random designs through every machine profile and both DXF versions: files written, read twice, judged.
 
-python -m kirigami_studio.benchmark.cut_files --count 200 --json
+python -m kirigami_studio.benchmark.cut_files_suite --count 200 --json
 """
 
 from __future__ import annotations
