@@ -67,9 +67,9 @@ class BoardStates(Session):
         reshaping.take(Change("Add rectangle", lambda: combined(now, arm, Combine.ADD, "rectangle")))
         for tool in (Tool.POINTS, Tool.POSE, Tool.STAR, Tool.TEXT):
             target.set_tool(tool)
-            target.strip.set_mode(Combine.ADD)
+            target.tools.set_mode(Combine.ADD)
             self.all_sizes(f"editor-{tool.value}")
-        target.strip.set_mode(Combine.REPLACE)
+        target.tools.set_mode(Combine.REPLACE)
         reshaping.preview("smooth", 0.8)
         self.all_sizes("editor-smoothing")
         target.view.show_preview(None)
@@ -80,16 +80,16 @@ class BoardStates(Session):
         disc = placed_figure(Figure.ELLIPSE, Box(-30.0, -25.0, 30.0, 25.0))
         reshaping.take(Change("Draw ellipse", lambda: disc))
         target.set_tool(Tool.POINTS)
-        target.strip.axis.set_axis(Axis.UPRIGHT)
+        target.tools.axis.set_axis(Axis.UPRIGHT)
         tool = target.view.active
         if not isinstance(tool, PointTool):
             raise SessionError("The points tool is not in use.")
         tool.select({0, 1}, 0)
         target.view.update()
         self.all_sizes("editor-handles")
-        target.strip.axis.set_axis(Axis.BOTH)
+        target.tools.axis.set_axis(Axis.BOTH)
         target.set_tool(Tool.ELLIPSE)
-        target.strip.set_mode(Combine.ADD)
+        target.tools.set_mode(Combine.ADD)
         for place in ((10.0, 10.0), (45.0, 30.0)):
             pointer = PointerEvent(
                 QPointF(*target.view.context.transform.to_pixels(np.array(place)).tolist()), place, place, False
@@ -97,14 +97,14 @@ class BoardStates(Session):
             (target.view.active.press if place[0] < 20 else partial(target.view.active.move, held=True))(pointer)
         self.all_sizes("editor-mirror")
         target.view.active.drop()
-        target.strip.set_mode(Combine.REPLACE)
-        target.strip.axis.set_axis(Axis.NONE)
+        target.tools.set_mode(Combine.REPLACE)
+        target.tools.axis.set_axis(Axis.NONE)
 
     def lost_designs(self) -> None:
         """A turned target whose designs wait to be brought back."""
         target, controller = self.window.target, self.window.controller
         target.set_tool(Tool.POSE)
-        target.strip.options.pose.turn.setValue(20.0)
+        target.tools.options.pose.turn.setValue(20.0)
         self.all_sizes("lost-designs")
         self.window.wiring.lost.bring_back()
         target.set_editing(False)

@@ -88,7 +88,7 @@ class Commands(Beside):
             "mode_add": partial(self._set_mode, Combine.ADD),
             "mode_subtract": partial(self._set_mode, Combine.SUBTRACT),
             "axis": self._cycle_axis,
-            "grid": window.target.strip.grid.click,
+            "grid": window.target.tools.grid.click,
             "clear": controller.targeting.clear,
             "generate": controller.generate,
             "cancel": controller.cancel,
@@ -131,7 +131,7 @@ class Commands(Beside):
             self.window.actions_[name].setEnabled(editing)
 
     def _take_tool(self, tool: Tool, _: bool = False) -> None:
-        if self.window.target.strip.buttons[tool].isEnabled():
+        if self.window.target.tools.buttons[tool].isEnabled():
             self.window.target.set_tool(tool)
         else:
             self.controller.message.emit(
@@ -139,13 +139,13 @@ class Commands(Beside):
             )
 
     def _set_mode(self, mode: Combine) -> None:
-        if self.window.target.strip.modes[mode].isEnabled():
+        if self.window.target.tools.modes[mode].isEnabled():
             self.window.target.set_editing(True)
-            self.window.target.strip.set_mode(mode)
+            self.window.target.tools.set_mode(mode)
 
     def _cycle_axis(self) -> None:
         self.window.target.set_editing(True)
-        self.window.target.strip.axis.cycle()
+        self.window.target.tools.axis.cycle()
 
     def ask_target(self) -> None:
         """Open a target file of the user's choice."""

@@ -75,7 +75,7 @@ class Wiring(QObject):
         window.stage.trim_wanted.connect(controller.trim)
         window.stage.switches_changed.connect(self._show_switches)
         window.stage.plots_wanted.connect(controller.plotting.want)
-        window.stage.says.connect(window.says.setText)
+        window.stage.status.connect(window.says.setText)
         window.stage.overlays_changed.connect(self._show_overlay_actions)
         cuts = window.stage.cuts
         cuts.width_wanted.connect(controller.fabricating.set_hinge_width)
@@ -86,7 +86,7 @@ class Wiring(QObject):
     def _connect_editor(self) -> None:
         window, controller, reshaping = self.window, self.controller, self.reshaping
         window.target.view.context.changed.connect(reshaping.take)
-        window.target.strip.mirror_wanted.connect(reshaping.mirror)
+        window.target.tools.mirror_wanted.connect(reshaping.mirror)
         window.target.refine.previewed.connect(reshaping.preview)
         window.target.refine.refined.connect(reshaping.refine)
         window.target.refine.size_wanted.connect(reshaping.resize)
@@ -123,7 +123,7 @@ class Wiring(QObject):
         controller.showing.stage_changed.connect(self._show_stage)
         controller.showing.gallery_reset.connect(self._show_gallery)
         controller.showing.candidate_found.connect(self._add_candidate)
-        controller.comparing.known.connect(window.stage.show_drawn)
+        controller.comparing.known.connect(window.stage.show_sample)
         controller.finishing.busy_changed.connect(self._show_trimming)
         controller.run.started.connect(self._show_run)
         controller.run.progressed.connect(window.run.show_progress)

@@ -75,7 +75,7 @@ def test_that_arrow_keys_nudge_in_mm(plate: MainWindow, qtbot: QtBot) -> None:
 
 
 def test_that_typed_numbers_place_turn_and_size_the_target(plate: MainWindow, qtbot: QtBot) -> None:
-    pose, refine = plate.target.strip.options.pose, plate.target.refine
+    pose, refine = plate.target.tools.options.pose, plate.target.refine
     assert pose.isVisible()
     for field, text in ((pose.x_, "30"), (pose.y_, "-5")):
         field.selectAll()
@@ -96,7 +96,7 @@ def test_that_typed_numbers_place_turn_and_size_the_target(plate: MainWindow, qt
 def test_that_a_moved_target_combines_where_it_lies_now(plate: MainWindow) -> None:
     drag(plate, (0, 0), (20, 0))
     plate.target.set_tool(Tool.RECTANGLE)
-    plate.target.strip.set_mode(Combine.ADD)
+    plate.target.tools.set_mode(Combine.ADD)
     drag(plate, (30, -20), (50, 20))
     assert bounds(plate) == pytest.approx((0, -20, 50, 20), abs=1e-4)
 
@@ -121,7 +121,7 @@ def test_that_designs_stay_with_a_moved_and_enlarged_target(designed: MainWindow
 def test_that_lost_designs_are_told_and_brought_back_over_several_changes(designed: MainWindow, qtbot: QtBot) -> None:
     before = designed.controller.document
     designed.target.set_tool(Tool.POSE)
-    pose = designed.target.strip.options.pose
+    pose = designed.target.tools.options.pose
     pose.turn.setValue(15.0)
     assert not designed.controller.document.candidates and len(lost(designed)) == 1
     pose.turn.setValue(5.0)
@@ -188,7 +188,7 @@ def test_that_the_sheet_is_cut_at_the_drawn_size_in_one_step(designed: MainWindo
 
 def test_that_family_weight_and_slant_change_the_letters(window: MainWindow, qtbot: QtBot) -> None:
     window.target.set_tool(Tool.TEXT)
-    options = window.target.strip.options
+    options = window.target.tools.options
     family = options.font_.family
     assert family is not None and family.isVisible() and family.count() > 0
     options.text.setText("Hi")

@@ -162,7 +162,7 @@ def handle_place(tool: PointTool, index: int, side: int) -> Place:
 
 
 def test_that_keys_and_buttons_change_the_kind_and_handles_can_be_dragged(plate: MainWindow, qtbot: QtBot) -> None:
-    tool, view, buttons = tool_of(plate), plate.target.view, plate.target.strip.options.nodes.buttons
+    tool, view, buttons = tool_of(plate), plate.target.view, plate.target.tools.options.nodes.buttons
     assert not buttons[Kind.SMOOTH].isEnabled()
     click(plate, (20, 10))
     index = tool.chosen
@@ -224,7 +224,7 @@ def test_that_points_are_the_same_after_undo_other_tools_and_the_project_file(
 
 def test_that_with_a_mirror_the_image_of_a_point_goes_the_mirrored_way(plate: MainWindow) -> None:
     plate.actions_["axis"].trigger()
-    assert plate.target.view.context.mirror.axis is Axis.UPRIGHT and plate.target.strip.axis.isChecked()
+    assert plate.target.view.context.mirror.axis is Axis.UPRIGHT and plate.target.tools.axis.isChecked()
     drag(plate, (20, 10), (30, 20))
     assert corners(plate) == {(-20, -10), (20, -10), (30, 20), (-30, 20)}
     for _ in range(3):
@@ -237,7 +237,7 @@ def test_that_with_a_mirror_the_image_of_a_point_goes_the_mirrored_way(plate: Ma
 def test_that_a_point_on_the_axis_stays_on_it_and_handles_are_mirrored(plate: MainWindow, qtbot: QtBot) -> None:
     made = placed_figure(Figure.ELLIPSE, Box(-20, -10, 20, 10))
     plate.wiring.reshaping.take(Change("Draw ellipse", lambda: made))
-    plate.target.strip.axis.set_axis(Axis.UPRIGHT)
+    plate.target.tools.axis.set_axis(Axis.UPRIGHT)
     tool = tool_of(plate)
     drag(plate, (0, 10), (8, 20))
     assert tool.anchors is not None
@@ -254,7 +254,7 @@ def test_that_a_point_on_the_axis_stays_on_it_and_handles_are_mirrored(plate: Ma
 def test_that_drawn_shapes_and_strokes_are_mirrored_in_one_step(plate: MainWindow, tool: Tool, qtbot: QtBot) -> None:
     plate.controller.targeting.clear()
     plate.target.set_tool(tool)
-    plate.target.strip.axis.set_axis(Axis.UPRIGHT)
+    plate.target.tools.axis.set_axis(Axis.UPRIGHT)
     if tool is Tool.RECTANGLE:
         drag(plate, (-10, -10), (30, 10))
     elif tool is Tool.POLYGON:
@@ -283,7 +283,7 @@ def test_that_the_axis_goes_through_the_middle_of_a_target_that_is_opened(plate:
     context = plate.target.view.context
     plate.target.set_tool(Tool.POSE)
     drag(plate, (0, 0), (25, 10), CTRL)
-    plate.target.strip.axis.set_axis(Axis.BOTH)
+    plate.target.tools.axis.set_axis(Axis.BOTH)
     assert context.mirror.at == pytest.approx((25, 10))
     plate.controller.targeting.open("heart")
     until(lambda: plate.controller.document.target is not None and plate.controller.document.target.name == "heart")
@@ -297,7 +297,7 @@ def test_that_the_axis_goes_through_the_middle_of_a_photo_that_is_opened_and_sta
     context, targeting = plate.target.view.context, plate.controller.targeting
     plate.target.set_tool(Tool.POSE)
     drag(plate, (0, 0), (25, 10), CTRL)
-    plate.target.strip.axis.set_axis(Axis.BOTH)
+    plate.target.tools.axis.set_axis(Axis.BOTH)
     targeting.open(str(photo))
     until(lambda: plate.target.threshold.isVisible())
     ring = placed(plate).ring

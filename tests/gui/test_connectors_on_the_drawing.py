@@ -52,9 +52,9 @@ def test_that_clicks_select_one_connector_or_more(cutting: MainWindow, qtbot: Qt
     page = cutting.stage.cuts
     first, second = lonely(page, 2)
     qtbot.mouseClick(page.view, LEFT, pos=place(page, first))
-    assert page.view.selected == {first} and page.hinges.says.text() == f"Connector {first}"
+    assert page.view.selected == {first} and page.hinges.selection_text.text() == f"Connector {first}"
     qtbot.mouseClick(page.view, LEFT, SHIFT, place(page, second))
-    assert page.view.selected == {first, second} and page.hinges.says.text() == "2 connectors"
+    assert page.view.selected == {first, second} and page.hinges.selection_text.text() == "2 connectors"
     qtbot.mouseClick(page.view, LEFT, SHIFT, place(page, first))
     assert page.view.selected == {second}
     qtbot.mouseClick(page.view, LEFT, pos=QPoint(3, 3))
@@ -266,9 +266,9 @@ def test_that_a_connector_that_is_cut_through_is_called_so(cutting: MainWindow, 
     first, second = lonely(page, 2)
     page.view.gestures.select(frozenset({first}))
     qtbot.keyClick(page.view, Qt.Key.Key_Delete)
-    until(lambda: page.hinges.says.text() == f"Connector {first}: cut through")
+    until(lambda: page.hinges.selection_text.text() == f"Connector {first}: cut through")
     assert not page.hinges.remove.isEnabled() and page.hinges.reset.isEnabled()
     page.view.gestures.select(frozenset({first, second}))
-    assert page.hinges.says.text() == "2 connectors, 1 cut through" and page.hinges.remove.isEnabled()
+    assert page.hinges.selection_text.text() == "2 connectors, 1 cut through" and page.hinges.remove.isEnabled()
     cutting.actions_["undo"].trigger()
-    until(lambda: page.hinges.says.text() == "2 connectors")
+    until(lambda: page.hinges.selection_text.text() == "2 connectors")

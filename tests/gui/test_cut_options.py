@@ -13,6 +13,7 @@ from pytestqt.qtbot import QtBot
 from kirigami_studio.export.profile import PROFILES
 from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions, CutOrder
 from kirigami_studio.gui.main_window import MainWindow
+from kirigami_studio.gui.panels.fabrication_panel import Extent
 from kirigami_studio.gui.panels.more_options import ORDERS, STYLES
 from kirigami_studio.project import store
 from kirigami_studio.project.settings import FabricationSettings
@@ -113,7 +114,7 @@ def test_that_every_control_has_a_name_and_a_tooltip(options: MainWindow) -> Non
 def test_that_a_short_window_scrolls_the_options_instead_of_squeezing_them(options: MainWindow, qtbot: QtBot) -> None:
     options.resize(1280, 720)
     panel = options.fabrication
-    if panel.folded:
+    if panel.extent is Extent.EXPORT:
         qtbot.mouseClick(panel.fold, LEFT)
     qtbot.waitUntil(lambda: panel.scrolled.verticalScrollBar().maximum() > 0)
     assert panel.options.style_.height() >= panel.options.style_.sizeHint().height() - 1

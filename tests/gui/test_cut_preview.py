@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from paint_counter import PaintCounter
 from PySide6.QtCore import QPoint, QPointF, Qt
 from PySide6.QtGui import QColor, QImage
 from PySide6.QtWidgets import QApplication
@@ -209,12 +210,13 @@ def test_that_every_step_of_a_large_job_is_drawn(qtbot: QtBot, benchmark: Benchm
     view.set_overlays(frozenset(CutOverlay))
     steps = itertools.cycle(range(0, len(plan.paths), 7))
     painted: list[int] = []
+    paints = PaintCounter(view)
 
     def step() -> None:
-        before = view.frames_painted
+        before = paints.count
         view.show_step(next(steps))
         view.repaint()
-        painted.append(view.frames_painted - before)
+        painted.append(paints.count - before)
 
     benchmark.pedantic(step, rounds=40)
     assert set(painted) == {1}

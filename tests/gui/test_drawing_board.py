@@ -70,7 +70,7 @@ def placed(window: MainWindow) -> Placed:
 
 def use(window: MainWindow, tool: Tool, mode: Combine = Combine.REPLACE) -> None:
     window.target.set_tool(tool)
-    window.target.strip.set_mode(mode)
+    window.target.tools.set_mode(mode)
     QApplication.processEvents()
 
 
@@ -97,11 +97,11 @@ def test_that_the_editor_takes_the_place_of_the_stage_and_gives_it_back(heart: M
     before = heart.target.view.width()
     heart.actions_["edit_target"].trigger()
     QApplication.processEvents()
-    assert heart.target.view.width() > 2 * before and heart.target.strip.isVisible()
+    assert heart.target.view.width() > 2 * before and heart.target.tools.isVisible()
     assert not heart.stage.isVisible() and not heart.settings.isVisible()
     heart.actions_["edit_target"].trigger()
     QApplication.processEvents()
-    assert heart.stage.isVisible() and heart.settings.isVisible() and not heart.target.strip.isVisible()
+    assert heart.stage.isVisible() and heart.settings.isVisible() and not heart.target.tools.isVisible()
     assert abs(heart.target.view.width() - before) <= 2
 
 
@@ -127,19 +127,19 @@ def test_that_plus_and_minus_belong_to_the_board_only_while_it_is_open(heart: Ma
         assert not heart.target.editing
     heart.actions_["edit_target"].trigger()
     heart.actions_["mode_add"].trigger()
-    assert heart.target.strip.modes[Combine.ADD].isChecked()
+    assert heart.target.tools.modes[Combine.ADD].isChecked()
 
 
 def test_that_leaving_the_editor_says_what_comes_next(plate: MainWindow, qtbot: QtBot) -> None:
     use(plate, Tool.POSE)
     assert plate.says.text().startswith("Drag a square")
-    qtbot.mouseClick(plate.target.strip.finish, LEFT)
+    qtbot.mouseClick(plate.target.tools.finish, LEFT)
     assert not plate.target.editing and plate.says.text().startswith("Press Generate")
 
 
 def test_that_the_text_tool_lets_type_at_once(board: MainWindow, qtbot: QtBot) -> None:
     qtbot.keyClick(board, Qt.Key.Key_X)
-    field = board.target.strip.options.text
+    field = board.target.tools.options.text
     assert board.focusWidget() is field and field.selectedText() == field.text()
     qtbot.keyClicks(field, "AB")
     drag(board, (-40, -20), (40, 20))
@@ -148,13 +148,13 @@ def test_that_the_text_tool_lets_type_at_once(board: MainWindow, qtbot: QtBot) -
 
 
 def test_that_every_tool_has_a_key_a_tooltip_and_a_name(board: MainWindow) -> None:
-    assert set(board.target.strip.buttons) == set(Tool) - {Tool.LOOK}
-    for tool, button in board.target.strip.buttons.items():
+    assert set(board.target.tools.buttons) == set(Tool) - {Tool.LOOK}
+    for tool, button in board.target.tools.buttons.items():
         keys = board.actions_[tool.value].shortcut().toString()
         assert keys and f"({keys})" in button.toolTip()
         assert button.accessibleName() and not button.icon().isNull()
     for mode, name in ((Combine.ADD, "mode_add"), (Combine.SUBTRACT, "mode_subtract"), (Combine.REPLACE, "mode_new")):
-        assert f"({board.actions_[name].shortcut().toString()})" in board.target.strip.modes[mode].toolTip()
+        assert f"({board.actions_[name].shortcut().toString()})" in board.target.tools.modes[mode].toolTip()
 
 
 def test_that_no_two_commands_share_a_key(window: MainWindow) -> None:
@@ -163,7 +163,7 @@ def test_that_no_two_commands_share_a_key(window: MainWindow) -> None:
 
 
 def test_that_without_a_target_there_is_nothing_to_move_or_take_from(board: MainWindow) -> None:
-    strip = board.target.strip
+    strip = board.target.tools
     for button in (strip.buttons[Tool.POINTS], strip.modes[Combine.SUBTRACT], strip.mirror, board.target.refine):
         assert not button.isEnabled()
     board.actions_["points"].trigger()
@@ -184,7 +184,7 @@ def test_that_generating_leaves_the_editor(plate: MainWindow, until: Until) -> N
 @pytest.mark.parametrize("tool", sorted(DRAWING - {Tool.FREEHAND, Tool.POLYGON}, key=lambda tool: tool.value))
 def test_that_a_dragged_box_becomes_a_shape_of_that_size_in_mm(board: MainWindow, tool: Tool) -> None:
     use(board, tool)
-    board.target.strip.options.text.setText("K")
+    board.target.tools.options.text.setText("K")
     drag(board, (-30, -20), (30, 20))
     target = board.controller.document.target
     assert target is not None and target.unit == "mm" and target.size is not None
@@ -211,7 +211,7 @@ def test_that_the_grid_catches_corners_and_ctrl_suspends_it(board: MainWindow) -
     drag(board, (0.2 * step, 0.2 * step), (4.3 * step, 3.2 * step), CTRL)
     assert placed(board).size == pytest.approx((4.1 * step, 3 * step))
     board.actions_["grid"].trigger()
-    assert not board.target.strip.grid.isChecked()
+    assert not board.target.tools.grid.isChecked()
     use(board, Tool.RECTANGLE)
     drag(board, (0.2 * step, 0.2 * step), (4.3 * step, 3.2 * step))
     assert placed(board).size == pytest.approx((4.1 * step, 3 * step))
@@ -219,7 +219,7 @@ def test_that_the_grid_catches_corners_and_ctrl_suspends_it(board: MainWindow) -
 
 def test_that_the_numbers_of_a_star_hold(board: MainWindow) -> None:
     use(board, Tool.STAR)
-    options = board.target.strip.options
+    options = board.target.tools.options
     assert options.corners.isVisible() and options.waist.isVisible() and not options.text.isVisible()
     options.corners.setValue(7)
     options.waist.setValue(60)
@@ -235,7 +235,7 @@ def test_that_shapes_are_added_and_taken_away_where_they_are_drawn(plate: MainWi
     assert plate.controller.history.undo_label == "Add rectangle"
     assert placed(plate).polygon.area == pytest.approx(800 + 900 - 100, rel=1e-6)
     assert plate.target.view.tool is Tool.RECTANGLE
-    plate.target.strip.set_mode(Combine.SUBTRACT)
+    plate.target.tools.set_mode(Combine.SUBTRACT)
     drag(plate, (-30, -20), (0, 20))
     assert plate.controller.history.undo_label == "Take away rectangle"
     assert placed(plate).polygon.bounds == pytest.approx((0, -10, 40, 30), abs=1e-4)
@@ -394,7 +394,7 @@ def test_that_a_half_is_mirrored_and_the_whole_is_flipped(heart: MainWindow, unt
     until(lambda: heart.controller.document.target == silhouettes.load("leaf"))
     heart.target.set_editing(True)
     halves = {}
-    for entry in heart.target.strip.mirror.menu().actions():
+    for entry in heart.target.tools.mirror.menu().actions():
         before = placed(heart)
         entry.trigger()
         after, label = placed(heart), heart.controller.history.undo_label
@@ -448,7 +448,7 @@ def test_that_the_hint_goes_with_the_target(plate: MainWindow) -> None:
 
 def test_that_a_slip_is_forgotten_once_a_shape_can_be_made(plate: MainWindow) -> None:
     use(plate, Tool.RECTANGLE)
-    plate.target.strip.set_mode(Combine.ADD)
+    plate.target.tools.set_mode(Combine.ADD)
     drag(plate, (60, 60), (70, 70))
     assert "lies beside the target" in plate.messages.messages[-1].sentence
     drag(plate, (0, 0), (40, 10))

@@ -22,7 +22,7 @@ from kirigami_studio.gui.look.theme import DARK, LIGHT, Palette
 from kirigami_studio.gui.main_window import MainWindow
 from kirigami_studio.gui.scene.colour_scale import opening_scale, paint_colour_bars, ratio_scale
 from kirigami_studio.gui.scene.fault_items import FaultKind, crossing_place
-from kirigami_studio.gui.scene.layout_labels import heat_tiles, quad_areas
+from kirigami_studio.gui.scene.layout_labels import heat_tiles, quad_areas, smallest_parts
 from kirigami_studio.gui.scene.legends import Chip, legend_boxes, paint_legend
 from kirigami_studio.gui.scene.mismatch_items import boundary_gap
 from kirigami_studio.gui.views.layout_view import USUAL, LayoutView, Overlay
@@ -151,12 +151,13 @@ def test_that_the_smallest_parts_are_those_of_the_cut_plan(designed: MainWindow)
     panels = panels_in_mm(sheet, kept, 100.0, np.zeros(2))
     edge, neck = smallest_edge(panels, 0.0), smallest_neck(panels, 0.0)
     assert edge is not None and neck is not None
-    sizes = [part.size * view.mm_per_unit for part in view.small_parts]
+    parts = smallest_parts(stage.design.panels(stage.design.nodes(stage.design.phi_target)))
+    sizes = [part.size * view.mm_per_unit for part in parts]
     assert sizes[0] == pytest.approx(min(edge.size_mm, neck.size_mm))
-    assert sizes == sorted(sizes) and len({part.panel for part in view.small_parts}) == len(sizes)
+    assert sizes == sorted(sizes) and len({part.panel for part in parts}) == len(sizes)
     for phi in (0.0, 1.1, math.pi):
         quads = stage.design.panels(stage.design.nodes(phi))
-        for part in view.small_parts:
+        for part in parts:
             ends = part.ends(quads)
             assert np.linalg.norm(ends[1] - ends[0]) == pytest.approx(part.size)
     quads = np.array(panels)

@@ -27,7 +27,7 @@ def resized(window: MainWindow, width: int, height: int) -> None:
 def test_that_the_smallest_window_shows_more_than_one_row_of_whole_cards(designed: MainWindow) -> None:
     resized(designed, 1000, 640)
     view = designed.gallery.view
-    assert designed.fabrication.folded
+    assert designed.fabrication.extent is Extent.EXPORT
     assert view.viewport().height() >= 1.5 * view.cards.card.height()
     assert designed.stage.width() >= 330
 
@@ -35,7 +35,7 @@ def test_that_the_smallest_window_shows_more_than_one_row_of_whole_cards(designe
 def test_that_a_roomy_window_shows_all_numbers(designed: MainWindow) -> None:
     resized(designed, 1000, 640)
     resized(designed, 1600, 1000)
-    assert not designed.fabrication.folded and designed.fabrication.numbers["slits"].isVisible()
+    assert designed.fabrication.extent is not Extent.EXPORT and designed.fabrication.numbers["slits"].isVisible()
     assert not designed.fabrication.summary.isVisible()
     assert designed.fabrication.options.fold.isVisible()
 
@@ -85,9 +85,9 @@ def test_that_the_choice_of_how_much_is_shown_lasts(designed: MainWindow, qtbot:
 def test_that_the_user_decides_about_folding(designed: MainWindow, qtbot: QtBot) -> None:
     resized(designed, 1000, 640)
     qtbot.mouseClick(designed.fabrication.fold, Qt.MouseButton.LeftButton)
-    assert not designed.fabrication.folded
+    assert designed.fabrication.extent is not Extent.EXPORT
     resized(designed, 1020, 650)
-    assert not designed.fabrication.folded and designed.fabrication.material.isVisible()
+    assert designed.fabrication.extent is not Extent.EXPORT and designed.fabrication.material.isVisible()
 
 
 def test_that_a_folded_panel_still_says_what_is_wrong(designed: MainWindow, until: Until) -> None:

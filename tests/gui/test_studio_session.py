@@ -13,6 +13,7 @@ import ezdxf
 import numpy as np
 import pytest
 from hand_gestures import middle_of, turn
+from paint_counter import PaintCounter
 from PySide6.QtCore import QPoint, QPointF, Qt
 from pytestqt.qtbot import QtBot
 
@@ -95,14 +96,14 @@ class Sitting:
         """Drag the slider from the target to the flat sheet and half the way back; the drawing follows exactly."""
         slider, view, stage = self.window.stage.deployment.slider, self.window.stage.view, self.window.controller.stage
         assert stage is not None
-        before, painted = self.document, view.frames_painted
+        before, paints = self.document, PaintCounter(view)
         y, left, right = slider.height() // 2, 14, slider.width() - 15
         self.bot.mousePress(slider, LEFT, pos=QPoint(right, y))
         for x in [*np.linspace(right, left, 12).astype(int).tolist(), (left + right) // 2]:
             self.bot.mouseMove(slider, QPoint(x, y))
             view.repaint()
         self.bot.mouseRelease(slider, LEFT, pos=QPoint((left + right) // 2, y))
-        assert view.phi == pytest.approx(math.pi / 2, abs=0.05) and view.frames_painted >= painted + 12
+        assert view.phi == pytest.approx(math.pi / 2, abs=0.05) and paints.count >= 12
         exact = stage.design.pose.apply(deploy(stage.candidate.field).nodes(view.phi))
         assert np.ptp(stage.design.nodes(view.phi) - exact, axis=0) == pytest.approx(0.0, abs=1e-9)
         assert self.document is before

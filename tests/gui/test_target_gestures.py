@@ -131,8 +131,8 @@ def test_that_messages_are_kept_until_closed_and_tell_details_on_demand(
     assert "no such thing" in bar.sentence.text()
     qtbot.mouseClick(bar.copy, LEFT)
     assert "no such thing" in QApplication.clipboard().text()
-    qtbot.mouseClick(bar.shut, LEFT)
-    qtbot.mouseClick(bar.shut, LEFT)
+    qtbot.mouseClick(bar.close_button, LEFT)
+    qtbot.mouseClick(bar.close_button, LEFT)
     assert bar.messages == () and not bar.isVisible()
 
 
@@ -154,9 +154,9 @@ def test_that_a_target_that_is_read_ends_what_was_said_of_those_that_were_not(
 def test_that_several_messages_are_closed_at_once(heart: MainWindow, qtbot: QtBot) -> None:
     bar = heart.messages
     bar.add(Message("The first did not succeed; try again.", Tone.ERROR))
-    assert bar.isVisible() and not bar.shut_all.isVisible()
+    assert bar.isVisible() and not bar.close_all_button.isVisible()
     bar.add(Message("The second did not succeed; try again.", Tone.WARNING))
-    qtbot.mouseClick(bar.shut_all, LEFT)
+    qtbot.mouseClick(bar.close_all_button, LEFT)
     assert bar.messages == () and not bar.isVisible()
 
 

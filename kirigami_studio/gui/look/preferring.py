@@ -17,7 +17,7 @@ from kirigami_studio.project.preferences import Preferences
 class Preferring(QObject):
     """Holds what new projects start with; keeps it in a file once it was told in which."""
 
-    message = Signal(object)  #: Message
+    message = Signal(Message)
 
     def __init__(self, parent: QObject) -> None:
         super().__init__(parent)

@@ -50,14 +50,14 @@ class ComparedView(LayoutView):
 class Side(QWidget):
     """One of the two designs: its name, its layout, its numbers and by how much they differ."""
 
-    def __init__(self, name: str, told: str, button: QToolButton) -> None:
+    def __init__(self, name: str, accessible: str, button: QToolButton) -> None:
         super().__init__()
         self.title = FittingLabel()
         self.title.setObjectName("number")
         self._button = button
         self.view = ComparedView()
         self.view.setObjectName(name)
-        self.view.setAccessibleName(told)
+        self.view.setAccessibleName(accessible)
         self._grid = QGridLayout()
         self._grid.setVerticalSpacing(0)
         self._grid.setHorizontalSpacing(4)
@@ -99,7 +99,7 @@ class Side(QWidget):
     def _fit(self) -> None:
         self.title.fit(self.width() - self._button.sizeHint().width() - 12)
 
-    def tell(self, values: Sequence[str], gaps: Sequence[str]) -> None:
+    def show_numbers(self, values: Sequence[str], gaps: Sequence[str]) -> None:
         """Show the numbers of this design, and by how much they are above or below the other's."""
         for labels, texts in ((self.values, values), (self.gaps, gaps)):
             for label, text in zip(labels, texts, strict=True):
@@ -133,7 +133,7 @@ class ComparePage(QWidget):
         column.addLayout(sides, 1)
         column.addWidget(self.bar)
         for side, other in ((self.left, self.right), (self.right, self.left)):
-            side.view.looked.connect(other.view.look)
+            side.view.view_changed.connect(other.view.set_view)
             self.bar.phi_changed.connect(side.view.set_phi)
         self.bar.phi_changed.connect(self.phi_changed)
 
@@ -169,7 +169,7 @@ class ComparePage(QWidget):
             shared = bounds[0].united(bounds[1])
         for number, side in enumerate(self.sides):
             side.view.share(shared)
-            side.tell(*numbers_told(self._entries[number], self._entries[1 - number], width_mm))
+            side.show_numbers(*number_texts(self._entries[number], self._entries[1 - number], width_mm))
         self.bar.set_ready(chosen is not None)
         if chosen is not None:
             contacts = [one[0].candidate.score.contact for one in pair if one is not None]
@@ -204,10 +204,10 @@ class ComparePage(QWidget):
         """Show everything of both."""
         self.left.view.fit()
 
-    def look(self, zoom: float, shift: QPointF) -> None:
+    def set_view(self, zoom: float, shift: QPointF) -> None:
         """Show one part of both."""
         for side in self.sides:
-            side.view.look(zoom, shift)
+            side.view.set_view(zoom, shift)
 
     def set_palette(self, palette: Palette) -> None:
         """Draw in other colours."""
@@ -228,7 +228,7 @@ def _rows() -> tuple[tuple[str, str], ...]:
     )
 
 
-def numbers_told(one: Entry | None, other: Entry | None, width_mm: float) -> tuple[list[str], list[str]]:
+def number_texts(one: Entry | None, other: Entry | None, width_mm: float) -> tuple[list[str], list[str]]:
     """What is said below one design, and by how much it is above or below another; one text for every row."""
     rows = len(_rows())
     if one is None:
@@ -244,10 +244,10 @@ def numbers_told(one: Entry | None, other: Entry | None, width_mm: float) -> tup
     if other is None:
         return values, [""] * rows
     gaps = [here - there for here, there in zip(mine, _numbers(other, width_mm), strict=True)]
-    told = [
+    gap_texts = [
         f"{gap:+.{digits}f}" if abs(gap) >= 0.5 * 0.1**digits else "=" for gap, digits in zip(gaps, DIGITS, strict=True)
     ]
-    return values, [*told, ""]
+    return values, [*gap_texts, ""]
 
 
 def _numbers(entry: Entry, width_mm: float) -> tuple[float, float, float, float]:

@@ -51,9 +51,9 @@ OVERLAYS = (
 class CutsPage(QWidget):
     """Shows one plan and reports what is wanted of its connectors."""
 
-    width_wanted = Signal(object, float)  #: frozenset of hinges, mm
-    remove_wanted = Signal(object)  #: frozenset of hinges
-    reset_wanted = Signal(object)  #: frozenset of hinges
+    width_wanted = Signal(frozenset, float)  #: numbers of connectors; mm
+    remove_wanted = Signal(frozenset)  #: numbers of connectors
+    reset_wanted = Signal(frozenset)  #: numbers of connectors
     edited = Signal()
 
     def __init__(self, parent: QWidget | None = None) -> None:
@@ -67,7 +67,7 @@ class CutsPage(QWidget):
         for overlay, _, tip in OVERLAYS:
             button = tool_button(f"cut{overlay.value.capitalize()}", tip, checkable=True)
             button.setChecked(overlay in self.view.overlays)
-            button.toggled.connect(self._tell_overlays)
+            button.toggled.connect(self._update_overlays)
             self.toggles[overlay] = button
         column = QVBoxLayout(self)
         column.setContentsMargins(0, 0, 0, 0)
@@ -141,7 +141,7 @@ class CutsPage(QWidget):
         self.toggles[CutOverlay.CONNECTORS].setChecked(True)
         self.view.gestures.select(hinges)
 
-    def _tell_overlays(self) -> None:
+    def _update_overlays(self) -> None:
         self.view.set_overlays(frozenset(overlay for overlay, one in self.toggles.items() if one.isChecked()))
 
 
@@ -159,8 +159,8 @@ class ProblemList(QListWidget):
         self.setIconSize(QSize(16, 16))
         self.setTextElideMode(Qt.TextElideMode.ElideRight)
         self.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
-        self.currentRowChanged.connect(self._tell)
-        self.itemClicked.connect(lambda item: self._tell(self.row(item)))
+        self.currentRowChanged.connect(self._emit_picked)
+        self.itemClicked.connect(lambda item: self._emit_picked(self.row(item)))
         self.hide()
 
     def show_problems(self, problems: tuple[Problem, ...]) -> None:
@@ -174,7 +174,7 @@ class ProblemList(QListWidget):
                 item.setToolTip(f"{problem.text}{place}")
                 self.addItem(item)
             self.setCurrentRow(-1)
-        self._dress()
+        self._update_icons()
         self.setVisible(bool(problems))
         lines = min(len(problems), MOST_LINES)
         self.setFixedHeight(lines * (self.fontMetrics().height() + 8) + 6)
@@ -187,13 +187,13 @@ class ProblemList(QListWidget):
     def set_palette(self, palette: Palette) -> None:
         """Draw in other colours."""
         self._palette = palette
-        self._dress()
+        self._update_icons()
 
-    def _dress(self) -> None:
+    def _update_icons(self) -> None:
         for row, problem in enumerate(self._problems):
             self.item(row).setIcon(icons.icon(ICONS[problem.severity], self._palette, self._palette.warning))
 
-    def _tell(self, row: int) -> None:
+    def _emit_picked(self, row: int) -> None:
         if row >= 0:
             self.picked.emit(row)
 
@@ -233,7 +233,7 @@ class CutBar(QWidget):
         self._timer.setInterval(FRAME_MS)
         self._timer.timeout.connect(self._advance)
         self.play.toggled.connect(self._toggle)
-        self.slider.valueChanged.connect(self._tell)
+        self.slider.valueChanged.connect(self._take_step)
         self.set_steps(None)
 
     @property
@@ -255,12 +255,12 @@ class CutBar(QWidget):
     def set_palette(self, palette: Palette) -> None:
         """Draw in other colours."""
         self._palette = palette
-        self._dress_button()
+        self._update_play_icon()
 
-    def _dress_button(self) -> None:
+    def _update_play_icon(self) -> None:
         self.play.setIcon(icons.icon("pause" if self.play.isChecked() else "play", self._palette))
 
-    def _tell(self, step: int) -> None:
+    def _take_step(self, step: int) -> None:
         self._show_numbers()
         self.step_changed.emit(step)
 
@@ -280,7 +280,7 @@ class CutBar(QWidget):
         self.so_far.setMinimumWidth(metrics.horizontalAdvance(widest))
 
     def _toggle(self, playing: bool) -> None:
-        self._dress_button()
+        self._update_play_icon()
         if playing and self._steps is not None:
             at_end = self.slider.value() == self._steps.last
             self._seconds = 0.0 if at_end else float(self._steps.seconds[self.slider.value()])

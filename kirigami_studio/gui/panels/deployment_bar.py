@@ -92,9 +92,9 @@ class DeploymentBar(QWidget):
         self._timer.timeout.connect(self._advance)
         self.play.toggled.connect(self._toggle)
         self.options.changed.connect(self._play_on)
-        self.slider.phi_changed.connect(self._tell)
+        self.slider.phi_changed.connect(self._take_phi)
         self.number.valueChanged.connect(lambda degrees: self.set_phi(math.radians(degrees)))
-        self._tell(self.slider.phi)
+        self._take_phi(self.slider.phi)
         self.set_ready(False)
 
     @property
@@ -122,18 +122,18 @@ class DeploymentBar(QWidget):
         self._palette = palette
         self.slider.set_palette(palette)
         self.options.set_palette(palette)
-        self._dress_button()
+        self._update_play_icon()
 
-    def _dress_button(self) -> None:
+    def _update_play_icon(self) -> None:
         self.play.setIcon(icons.icon("pause" if self.play.isChecked() else "play", self._palette))
 
-    def _tell(self, phi: float) -> None:
+    def _take_phi(self, phi: float) -> None:
         with QSignalBlocker(self.number):
             self.number.setValue(math.degrees(phi))
         self.phi_changed.emit(phi)
 
     def _toggle(self, playing: bool) -> None:
-        self._dress_button()
+        self._update_play_icon()
         if playing:
             mode, last = self.options.mode, self._last()
             self._phase = phase_of(self.slider.phi, mode, last)
@@ -195,9 +195,9 @@ class PlayOptions(QToolButton):
         menu.addSeparator()
         self.to_target = menu.addAction(tr("&Only as far as the target angle"))
         self.to_target.setCheckable(True)
-        self.to_target.toggled.connect(self._tell)
+        self.to_target.toggled.connect(self._take_choice)
         self.setMenu(menu)
-        self._tell()
+        self._take_choice()
 
     def _add_modes(self, menu: QMenu) -> None:
         words = {
@@ -212,7 +212,7 @@ class PlayOptions(QToolButton):
             action.setCheckable(True)
             action.setActionGroup(group)
             action.setChecked(mode is PlayMode.SWING)
-            action.toggled.connect(self._tell)
+            action.toggled.connect(self._take_choice)
             self.modes[mode] = action
 
     def _add_speeds(self, menu: QMenu) -> None:
@@ -223,7 +223,7 @@ class PlayOptions(QToolButton):
             action.setCheckable(True)
             action.setActionGroup(group)
             action.setChecked(speed == 1.0)
-            action.toggled.connect(self._tell)
+            action.toggled.connect(self._take_choice)
             self.speeds[speed] = action
 
     @property
@@ -250,7 +250,7 @@ class PlayOptions(QToolButton):
         self._palette = palette
         for mode, action in self.modes.items():
             action.setIcon(icons.icon(MODE_ICONS[mode], palette))
-        self._tell()
+        self._take_choice()
 
     def restore(self, settings: QSettings) -> None:
         """Play as the last time."""
@@ -268,7 +268,7 @@ class PlayOptions(QToolButton):
         settings.setValue("playSpeed", f"{self.speed:g}")
         settings.setValue("playToTarget", "yes" if self.to_target.isChecked() else "no")
 
-    def _tell(self, on: bool = True) -> None:
+    def _take_choice(self, on: bool = True) -> None:
         if not on and self.sender() is not self.to_target:
             return  # of two choices that trade places only the new one counts
         usual = self.speed == 1.0

@@ -180,11 +180,6 @@ class FabricationPanel(Card):
         """How much is shown."""
         return self._extent
 
-    @property
-    def folded(self) -> bool:
-        """Whether material and widths are folded away."""
-        return self._extent is Extent.EXPORT
-
     def _show_extent(self, extent: Extent) -> None:
         self._extent = extent
         self.fold.setToolTip(NEXT[extent][1])
@@ -193,7 +188,7 @@ class FabricationPanel(Card):
         self.options.setVisible(extent is Extent.ALL or self.options.fold.isChecked())  # what was opened stays
         self._show_summary()
         self._show_warning()
-        self._dress_fold()
+        self._update_fold_icon()
 
     def restore(self, settings: QSettings) -> None:
         """Show as much as the user chose the last time."""
@@ -206,7 +201,7 @@ class FabricationPanel(Card):
         if self._by_hand:
             settings.setValue("fabrication", self._extent.value)
 
-    def _dress_fold(self) -> None:
+    def _update_fold_icon(self) -> None:
         self.fold.setIcon(icons.icon("down" if self._extent is Extent.ALL else "up", self._palette))
 
     def _length(
@@ -384,7 +379,7 @@ class FabricationPanel(Card):
         for part in (self.options, self.exports, self.opened):
             part.set_palette(palette)
         self.edit_materials.setIcon(icons.icon("material", palette))
-        self._dress_fold()
+        self._update_fold_icon()
 
 
 class OpenedRow(QWidget):

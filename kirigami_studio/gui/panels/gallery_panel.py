@@ -79,7 +79,7 @@ class GalleryPanel(Card):
 class GalleryBar(QWidget):
     """Reports the selection that is wanted, and wishes for more designs."""
 
-    selection_changed = Signal(object)  #: Selection
+    selection_changed = Signal(Selection)
     again_wanted = Signal()
     alike_wanted = Signal(float)  #: nearness
 
@@ -142,7 +142,7 @@ class GalleryBar(QWidget):
         self.least.setAccessibleName(tr("Least sIoU that is shown, in percent"))
         self.least.setToolTip(tr("Show only designs with at least this sIoU, in percent."))
         number_field(self.least)
-        self.least.valueChanged.connect(lambda _: self._tell())
+        self.least.valueChanged.connect(lambda _: self._emit_selection())
         pane = QWidget()
         column = QVBoxLayout(pane)
         column.setContentsMargins(0, 0, 0, 2)
@@ -158,7 +158,7 @@ class GalleryBar(QWidget):
         second.addWidget(caption)
         second.addWidget(self.least)
         for box in (self.feasible, self.pinned, self.rejected, self.pinned_first):
-            box.toggled.connect(lambda _: self._tell())
+            box.toggled.connect(lambda _: self._emit_selection())
         column.addLayout(first)
         column.addLayout(second)
         return pane
@@ -180,9 +180,9 @@ class GalleryBar(QWidget):
         row = QHBoxLayout(pane)
         row.setContentsMargins(0, 0, 0, 2)
         row.setSpacing(8)
-        self.alike_says = QLabel(tr("near"))
-        self.alike_says.setBuddy(self.nearness)
-        row.addWidget(self.alike_says)
+        self.near_label = QLabel(tr("near"))
+        self.near_label.setBuddy(self.nearness)
+        row.addWidget(self.near_label)
         row.addWidget(self.nearness, 1)
         row.addWidget(QLabel(tr("far")))
         row.addWidget(self.draw)
@@ -211,7 +211,7 @@ class GalleryBar(QWidget):
                 box.setChecked(on)
         with QSignalBlocker(self.least):
             self.least.setValue(0.0)
-        self._tell()
+        self._emit_selection()
 
     def set_chosen(self, chosen: tuple[RatioField, int] | None) -> None:
         """The design on the stage and its number: what others can be unlike, or drawn alike."""
@@ -242,9 +242,9 @@ class GalleryBar(QWidget):
         text = tr("Unlike the chosen") if unlike is None else tr("Unlike design {number}", number=unlike[1])
         self.order.setItemText(last, text)
         self._selection = replace(self._selection, order=order, unlike=None if unlike is None else unlike[0])
-        self._tell()
+        self._emit_selection()
 
-    def _tell(self) -> None:
+    def _emit_selection(self) -> None:
         self._selection = replace(
             self._selection,
             pinned_first=self.pinned_first.isChecked(),

@@ -30,8 +30,8 @@ class GenerateBar(QWidget):
         self.progress = QProgressBar()
         self.progress.setTextVisible(False)
         self.progress.setAccessibleName(tr("Progress of the run"))
-        self.says = QLabel()
-        self.says.setObjectName("muted")
+        self.progress_text = QLabel()
+        self.progress_text.setObjectName("muted")
         buttons = QHBoxLayout()
         buttons.setSpacing(8)
         buttons.addWidget(self.generate, 1)
@@ -41,7 +41,7 @@ class GenerateBar(QWidget):
         column.setSpacing(6)
         column.addLayout(buttons)
         column.addWidget(self.progress)
-        column.addWidget(self.says)
+        column.addWidget(self.progress_text)
         self.generate.clicked.connect(self.generate_wanted)
         self.stop.clicked.connect(self.cancel_wanted)
         self.show_idle()
@@ -56,8 +56,8 @@ class GenerateBar(QWidget):
         self.generate.setEnabled(False)
         self.generate.setText(tr("Generating …"))
         self.progress.setRange(0, 0)
-        self.says.setText(tr("Starting {total} designs", total=total))
-        for part in (self.stop, self.progress, self.says):
+        self.progress_text.setText(tr("Starting {total} designs", total=total))
+        for part in (self.stop, self.progress, self.progress_text):
             part.show()
 
     def show_progress(self, done: int, total: int, message: str) -> None:
@@ -67,13 +67,13 @@ class GenerateBar(QWidget):
         self.progress.setRange(0, total if done else 0)
         self.progress.setValue(done)
         self.progress.setUpdatesEnabled(True)
-        self.says.setText(message)
+        self.progress_text.setText(message)
 
     def show_idle(self) -> None:
         """No run is going on."""
         self.generate.setEnabled(True)
         self.generate.setText(tr("Generate"))
-        for part in (self.stop, self.progress, self.says):
+        for part in (self.stop, self.progress, self.progress_text):
             part.hide()
 
     def set_palette(self, palette: Palette) -> None:

@@ -18,6 +18,8 @@ from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.panels.card import FittingLabel, tool_button
 from kirigami_studio.gui.panels.number_field import LengthField, number_field
 
+#: Which connectors of a plan are meant.
+Rule = Callable[[CutPlan], frozenset[int]]
 WIDTH_TIP = tr("Finished width of the selected connectors, mm (0.02 to 20).")
 #: The part of all connectors that counts as being at short or at long cuts.
 QUARTER = 0.25
@@ -62,7 +64,7 @@ def _numbers(chosen: BoolArray) -> frozenset[int]:
 
 
 #: Menu text, tooltip, rule.
-RULES: tuple[tuple[str, str, Callable[[CutPlan], frozenset[int]]], ...] = (
+RULES: tuple[tuple[str, str, Rule], ...] = (
     (tr("&All connectors"), tr("Select every connector of the sheet"), every_hinge),
     (tr("&Edge connectors"), tr("Select the connectors beside the sheet's edge"), edge_hinges),
     (tr("At &short cuts"), tr("Select the quarter of the connectors with the shortest cuts"), hinges_of_short_cuts),
@@ -73,7 +75,7 @@ RULES: tuple[tuple[str, str, Callable[[CutPlan], frozenset[int]]], ...] = (
 class HingeBar(QWidget):
     """Shows how many connectors are selected and reports what is wanted of them."""
 
-    selected = Signal(object)  #: frozenset of int, by a rule
+    selected = Signal(frozenset)  #: numbers of connectors, by a rule
     width_wanted = Signal(float)  #: mm
     remove_wanted = Signal()
     reset_wanted = Signal()
@@ -98,7 +100,7 @@ class HingeBar(QWidget):
             action.triggered.connect(lambda _=False, rule=rule: self._apply(rule))
             self.choices.append(action)
         self.rules.setMenu(menu)
-        self.says = FittingLabel()
+        self.selection_text = FittingLabel()
         self.width_mm = LengthField()
         self.width_mm.setObjectName("hingeWidth")
         self.width_mm.setRange(0.02, 20.0)
@@ -126,7 +128,7 @@ class HingeBar(QWidget):
         row.setContentsMargins(0, 0, 0, 0)
         row.setSpacing(6)
         row.addWidget(self.rules)
-        row.addWidget(self.says)
+        row.addWidget(self.selection_text)
         row.addStretch(1)
         for part in (self.width_mm, self.remove, self.reset):
             row.addWidget(part)
@@ -138,7 +140,7 @@ class HingeBar(QWidget):
         for part in (self.width_mm, self.remove, self.reset):
             part.setEnabled(bool(hinges) and plan is not None)
         cut = hinges & set(plan.options.removed) if plan is not None else frozenset()
-        self.says.set_texts(*_told(hinges, len(cut)))
+        self.selection_text.set_texts(*_selection_texts(hinges, len(cut)))
         self._fit()
         if plan is not None:
             there = [hinge for hinge in sorted(hinges) if hinge not in plan.options.removed]
@@ -157,7 +159,7 @@ class HingeBar(QWidget):
     def _fit(self) -> None:
         """Say what is selected in as many words as there is room for."""
         others = (self.rules, self.width_mm, self.remove, self.reset)
-        self.says.fit(self.width() - sum(part.sizeHint().width() + 6 for part in others) - 8)
+        self.selection_text.fit(self.width() - sum(part.sizeHint().width() + 6 for part in others) - 8)
 
     def set_palette(self, palette: Palette) -> None:
         """Draw in other colours."""
@@ -176,12 +178,12 @@ class HingeBar(QWidget):
         else:
             super().keyPressEvent(event)
 
-    def _apply(self, rule: object) -> None:
-        if self._plan is not None and callable(rule):
+    def _apply(self, rule: Rule) -> None:
+        if self._plan is not None:
             self.selected.emit(rule(self._plan))
 
 
-def _told(hinges: frozenset[int], cut: int) -> tuple[str, ...]:
+def _selection_texts(hinges: frozenset[int], cut: int) -> tuple[str, ...]:
     """What the row says of the selected connectors, ``cut`` of them cut through; longest first."""
     if not hinges:
         return (tr("No connector selected"), tr("None"))

@@ -50,11 +50,11 @@ class MessageBar(QFrame):
         self.position = QLabel()
         self.position.setObjectName("muted")
         self.next = tool_button("nextMessage", tr("Later message."))
-        self.shut = tool_button("closeMessage", tr("Close this message."))
-        self.shut_all = QPushButton(tr("Close all"))
-        self.shut_all.setObjectName("link")
-        self.shut_all.setFocusPolicy(Qt.FocusPolicy.TabFocus)
-        self.shut_all.setToolTip(tr("Close all messages."))
+        self.close_button = tool_button("closeMessage", tr("Close this message."))
+        self.close_all_button = QPushButton(tr("Close all"))
+        self.close_all_button.setObjectName("link")
+        self.close_all_button.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+        self.close_all_button.setToolTip(tr("Close all messages."))
         self.trace = QPlainTextEdit()
         self.trace.setReadOnly(True)
         self.trace.setAccessibleName(tr("Details of the message"))
@@ -65,8 +65,8 @@ class MessageBar(QFrame):
         self.copy.clicked.connect(self._copy)
         self.previous.clicked.connect(lambda: self._go(self._at - 1))
         self.next.clicked.connect(lambda: self._go(self._at + 1))
-        self.shut.clicked.connect(self.close_message)
-        self.shut_all.clicked.connect(lambda: self.dismiss(*Tone))
+        self.close_button.clicked.connect(self.close_message)
+        self.close_all_button.clicked.connect(lambda: self.dismiss(*Tone))
         self.hide()
 
     def _lay_out(self) -> None:
@@ -75,7 +75,15 @@ class MessageBar(QFrame):
         line.addWidget(self.icon, 0, Qt.AlignmentFlag.AlignVCenter)
         line.addWidget(self.sentence, 1)
         line.addLayout(self._actions)
-        for part in (self.details, self.previous, self.position, self.next, self.shut_all, self.copy, self.shut):
+        for part in (
+            self.details,
+            self.previous,
+            self.position,
+            self.next,
+            self.close_all_button,
+            self.copy,
+            self.close_button,
+        ):
             line.addWidget(part, 0, Qt.AlignmentFlag.AlignVCenter)
         column = QVBoxLayout(self)
         column.setContentsMargins(12, 5, 6, 5)
@@ -123,7 +131,7 @@ class MessageBar(QFrame):
             (self.copy, "copy"),
             (self.previous, "previous"),
             (self.next, "next"),
-            (self.shut, "close"),
+            (self.close_button, "close"),
         ):
             button.setIcon(icons.icon(name, palette))
         self._go(self._at)
@@ -140,7 +148,7 @@ class MessageBar(QFrame):
         self.details.setVisible(bool(message.details))
         self.details.setChecked(False)
         several = len(self._messages) > 1
-        for part in (self.previous, self.position, self.next, self.shut_all):
+        for part in (self.previous, self.position, self.next, self.close_all_button):
             part.setVisible(several)
         self.position.setText(tr("{at} of {count}", at=self._at + 1, count=len(self._messages)))
         self.previous.setEnabled(self._at > 0)

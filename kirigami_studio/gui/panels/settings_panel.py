@@ -237,21 +237,21 @@ class SettingsPanel(Card):
         self.keep.setIcon(icons.icon("keep", palette))
 
 
-def _choice(name: str, told: str) -> QComboBox:
+def _choice(name: str, accessible: str) -> QComboBox:
     box = QComboBox()
     box.setObjectName(name)
     box.setFocusPolicy(Qt.FocusPolicy.TabFocus)
     box.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
-    box.setAccessibleName(told)
+    box.setAccessibleName(accessible)
     return box
 
 
-def _whole(name: str, told: str, low: int, high: int, tip: str) -> QSpinBox:
+def _whole(name: str, accessible: str, low: int, high: int, tip: str) -> QSpinBox:
     box = QSpinBox()
     box.setObjectName(name)
     box.setRange(low, high)
     box.setToolTip(tip)
-    box.setAccessibleName(told)
+    box.setAccessibleName(accessible)
     return box
 
 

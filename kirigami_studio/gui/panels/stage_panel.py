@@ -36,7 +36,7 @@ OVERLAYS = (
 )
 BEFORE = tr("Before polish: show the design as the generator drew it (B).")
 NEVER_POLISHED = tr("Before polish (B). Nothing to compare: polishing has not changed this design.")
-NEVER_DRAWN = tr("Before polish (B). Nothing to compare: this design was not drawn by the generator.")
+NEVER_SAMPLED = tr("Before polish (B). Nothing to compare: this design was not drawn by the generator.")
 TRIM = tr("Trim to target (Ctrl+T). Cuts the edge panels along the target; every hinge keeps its material.")
 UNTRIM = tr("Trim to target (Ctrl+T). Press again to bring back what was cut off.")
 TRIMMING = tr("Trim to target: at work. Press again, or Esc, to stop.")
@@ -45,20 +45,20 @@ PLOTS = tr("Plots: match, area, size and gaps at every angle (J).")
 
 
 class StagePanel(Card):
-    """Shows one entry of the gallery at any angle, as it is or as it was drawn."""
+    """Shows one entry of the gallery at any angle, as it is or as the generator sampled it."""
 
-    overlays_changed = Signal(object)
-    before_wanted = Signal(bool)  #: whether the drawn state is to be shown
+    overlays_changed = Signal(frozenset)  #: of Overlay
+    before_wanted = Signal(bool)  #: whether the design is to be shown as sampled
     trim_wanted = Signal(bool)
     plots_wanted = Signal(bool)
-    says = Signal(str)
+    status = Signal(str)
     switches_changed = Signal()  #: the state of :attr:`before`, :attr:`trim`, :attr:`cuts_switch` or the plots
     comparing_changed = Signal(bool)  #: whether two designs are shown side by side
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(tr("Layout"), parent)
         self._entry: Entry | None = None
-        self._drawn: Entry | None = None
+        self._sample: Entry | None = None
         self._target: Outline | None = None
         self._rank = 0
         self._trimmable, self._trimming = True, False
@@ -92,7 +92,7 @@ class StagePanel(Card):
         self.deployment.phi_changed.connect(self.plots.set_phi)
         self.plots.phi_wanted.connect(self.deployment.set_phi)
         self.tour.phi_wanted.connect(self.deployment.set_phi)
-        self.tour.said.connect(self.says)
+        self.tour.status.connect(self.status)
         self.deployment.phi_changed.connect(self.compare.set_phi)
         self.compare.phi_changed.connect(self.deployment.set_phi)
         self.overlays_changed.connect(self.compare.set_overlays)
@@ -103,7 +103,7 @@ class StagePanel(Card):
         for overlay, _, tip in OVERLAYS:
             button = tool_button(f"show{overlay.value.capitalize()}", tip, checkable=True)
             button.setChecked(True)
-            button.toggled.connect(self._tell_overlays)
+            button.toggled.connect(self._update_overlays)
             self.toggles[overlay] = button
             self.header.addWidget(button)
         self._other_overlays: frozenset[Overlay] = USUAL - self.toggles.keys()
@@ -210,13 +210,13 @@ class StagePanel(Card):
 
     @property
     def showing_before(self) -> bool:
-        """Whether the design is shown as it was drawn."""
-        return self._drawn is not None and self.before.isChecked()
+        """Whether the design is shown as the generator sampled it."""
+        return self._sample is not None and self.before.isChecked()
 
     def show_entry(self, entry: Entry | None, target: Outline | None, rank: int) -> None:
         """Show another design; the angle stays, or starts at the target angle for the first one."""
         first = entry is not None and self.view.scene_bounds() is None
-        self._entry, self._target, self._rank, self._drawn = entry, target, rank, None
+        self._entry, self._target, self._rank, self._sample = entry, target, rank, None
         self.tour.forget()
         self.deployment.set_ready(entry is not None)
         self._set_switches()
@@ -227,10 +227,10 @@ class StagePanel(Card):
         if self.before.isChecked():
             self.before_wanted.emit(True)
 
-    def show_drawn(self, candidate: Candidate, drawn: Entry) -> None:
-        """Show how the design on the stage was drawn, if that is still wanted."""
+    def show_sample(self, candidate: Candidate, sample: Entry) -> None:
+        """Show how the design on the stage was sampled, if that is still wanted."""
         if self.before.isChecked() and self._entry is not None and self._entry.candidate == candidate:
-            self._drawn = drawn
+            self._sample = sample
             self._show()
 
     def show_trimming(self, busy: bool) -> None:
@@ -249,7 +249,7 @@ class StagePanel(Card):
         self._show_title()
 
     def _toggle_before(self, on: bool) -> None:
-        self._drawn = None
+        self._sample = None
         self._show()
         self.before_wanted.emit(on)
         self.switches_changed.emit()
@@ -259,7 +259,7 @@ class StagePanel(Card):
         comparable = candidate is not None and candidate.sampled_field is not None
         trimmed = candidate is not None and candidate.trim is not None
         self.before.setEnabled(comparable)
-        never = NEVER_DRAWN if candidate is not None and candidate.polished else NEVER_POLISHED
+        never = NEVER_SAMPLED if candidate is not None and candidate.polished else NEVER_POLISHED
         self.before.setToolTip(BEFORE if comparable or candidate is None else never)
         with QSignalBlocker(self.before):
             self.before.setChecked(comparable and self.before.isChecked())
@@ -275,7 +275,7 @@ class StagePanel(Card):
         if entry is None:
             self.view.show_design(None, None, None)
             return
-        shown = self._drawn or entry
+        shown = self._sample or entry
         trim = shown.candidate.trim
         # Contacts are known of the field that was scored; the one fitted for trimming is free of them.
         score = shown.candidate.score if trim is None or trim.field == shown.candidate.field else None
@@ -297,8 +297,8 @@ class StagePanel(Card):
             return self.cuts.summary
         if self.comparing:
             return self.compare.summary
-        drawn = None if self._drawn is None else self._drawn.candidate
-        return () if self._entry is None else scores_told(self._entry.candidate, drawn)
+        sample = None if self._sample is None else self._sample.candidate
+        return () if self._entry is None else score_texts(self._entry.candidate, sample)
 
     def _fit_numbers(self) -> None:
         """Put the longest text that fits into the header; none fits beside many buttons in a narrow stage."""
@@ -317,7 +317,7 @@ class StagePanel(Card):
             room += 0 if fits else button.sizeHint().width() + self.header.spacing()
         told = self.numbers.fit(room)
         texts = self._texts()
-        special = self._drawn is not None or (self._entry is not None and self._entry.candidate.trim is not None)
+        special = self._sample is not None or (self._entry is not None and self._entry.candidate.trim is not None)
         self.view.set_caption(texts[0] if special and texts and not told else "")
 
     def set_sheet_width(self, width_mm: float) -> None:
@@ -386,21 +386,21 @@ class StagePanel(Card):
             self.toggles[overlay].setChecked(on)
         elif on != (overlay in self._other_overlays):
             self._other_overlays ^= {overlay}
-            self._tell_overlays()
+            self._update_overlays()
 
-    def _tell_overlays(self) -> None:
+    def _update_overlays(self) -> None:
         chosen = frozenset(overlay for overlay, button in self.toggles.items() if button.isChecked())
         chosen |= self._other_overlays
         self.view.set_overlays(chosen)
         self.overlays_changed.emit(chosen)
 
 
-def scores_told(candidate: Candidate, drawn: Candidate | None) -> tuple[str, ...]:
-    """Scores of a design, beside those of its drawn state if that is shown, longest text first."""
+def score_texts(candidate: Candidate, sample: Candidate | None) -> tuple[str, ...]:
+    """Scores of a design, beside those of its sample if that is shown, longest text first."""
     score, trim = candidate.score, candidate.trim
     siou = f"{100 * score.siou:.1f} %"
-    if drawn is not None:
-        before = f"{100 * drawn.score.siou:.1f} %"
+    if sample is not None:
+        before = f"{100 * sample.score.siou:.1f} %"
         long = tr("before polish: sIoU {before}  ·  after: {siou}", before=before, siou=siou)
         return long, tr("before {before}  ·  after {siou}", before=before, siou=siou)
     if trim is not None:

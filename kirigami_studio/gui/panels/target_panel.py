@@ -20,8 +20,8 @@ from kirigami_studio.gui.jobs.steps import Picture
 from kirigami_studio.gui.look import icons
 from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.panels.card import Card, ElidedLabel, muted_label, tool_button
+from kirigami_studio.gui.panels.drawing_tool_bar import DrawingToolBar
 from kirigami_studio.gui.panels.number_field import LengthField, number_field
-from kirigami_studio.gui.panels.tool_strip import ToolStrip
 from kirigami_studio.gui.views.target_view import TargetView, Tool
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.placed import LARGEST_MM, Placed
@@ -59,11 +59,11 @@ class TargetPanel(Card):
         super().__init__(tr("Target"), parent)
         self.view = TargetView()
         self.editing = False
-        self._said = ("", "")
-        self.strip = ToolStrip(self.view.context)
+        self._reach_texts = ("", "")
+        self.tools = DrawingToolBar(self.view.context)
         self.refine = RefineBar()
-        self.header.addWidget(self.strip.options)
-        self.buttons = {tool.value: button for tool, button in self.strip.buttons.items()}
+        self.header.addWidget(self.tools.options)
+        self.buttons = {tool.value: button for tool, button in self.tools.buttons.items()}
         for name, _, tip, checkable in BUTTONS:
             self.buttons[name] = tool_button(name, tip, checkable)
             self.header.addWidget(self.buttons[name])
@@ -81,7 +81,7 @@ class TargetPanel(Card):
         self.reach.setAccessibleName(tr("What the grid may not show"))
         self.reach.setVisible(False)
         self.threshold = ThresholdBar()
-        self.body.addWidget(self.strip)
+        self.body.addWidget(self.tools)
         self.body.addWidget(self.view, 1)
         self.body.addLayout(line)
         self.body.addWidget(self.reach)
@@ -92,9 +92,9 @@ class TargetPanel(Card):
         self.buttons["library"].clicked.connect(self.wants_silhouette)
         self.buttons["clearTarget"].clicked.connect(self.clear_wanted)
         self.buttons["edit"].clicked.connect(self.set_editing)
-        self.strip.tool_wanted.connect(self.set_tool)
-        self.strip.grid_switched.connect(self.set_snapping)
-        self.strip.done.connect(lambda: self.set_editing(False))
+        self.tools.tool_wanted.connect(self.set_tool)
+        self.tools.grid_switched.connect(self.set_snapping)
+        self.tools.done.connect(lambda: self.set_editing(False))
         self.view.tool_left.connect(lambda: self.set_tool(Tool.LOOK))
         self.view.editing_left.connect(lambda: self.set_editing(False))
         self.set_editing(False)
@@ -104,22 +104,22 @@ class TargetPanel(Card):
         """Change what clicks on the target do; every tool but looking opens the editor."""
         if tool is not Tool.LOOK:
             self.set_editing(True)
-        self.strip.show_tool(tool)
+        self.tools.show_tool(tool)
         self.view.set_tool(tool)
         if tool is Tool.TEXT:  # so that typing comes first, then the box
-            self.strip.options.text.setFocus()
-            self.strip.options.text.selectAll()
+            self.tools.options.text.setFocus()
+            self.tools.options.text.selectAll()
 
     def set_editing(self, on: bool) -> None:
         """Show the tools and the board, or the target alone."""
         if not on:
             self.set_tool(Tool.LOOK)
         self.buttons["edit"].setChecked(on)
-        for part in (self.strip, self.refine):
+        for part in (self.tools, self.refine):
             part.setVisible(on)
         if on != self.editing:
             self.editing = on
-            self._say_reach()
+            self._show_reach_text()
             self.view.set_editing(on)
             self.editing_changed.emit(on)
             if not on and self.view.outline is not None:
@@ -128,7 +128,7 @@ class TargetPanel(Card):
     def set_snapping(self, on: bool) -> None:
         """Show the grid and snap to it, or neither."""
         self.view.context.snapping = on
-        self.strip.grid.setChecked(on)
+        self.tools.grid.setChecked(on)
         self.view.update()
 
     def show_target(self, outline: Outline | None, picture: Picture | None = None) -> None:
@@ -144,9 +144,9 @@ class TargetPanel(Card):
         self.view.show_outline(outline, picture)
         if elsewhere and not retraced:  # the axes go through the middle of what is drawn on
             self.view.context.set_axis(self.view.context.mirror.axis)
-        self.strip.show_target(outline is not None)
+        self.tools.show_target(outline is not None)
         self.refine.show_placed(self.view.context.placed)
-        self.strip.options.pose.show_placed(self.view.context.placed)
+        self.tools.options.pose.show_placed(self.view.context.placed)
         self.buttons["clearTarget"].setEnabled(outline is not None)
         self.facts.setVisible(outline is not None)
         self.size_.setVisible(outline is not None)
@@ -164,13 +164,13 @@ class TargetPanel(Card):
         reach = None if placed is None else reach_of(placed.outline, grid)
         self.view.show_reach(reach)
         known = placed is not None and placed.outline.unit == "mm"
-        self._said = ("", "")
+        self._reach_texts = ("", "")
         if placed is not None and reach is not None:
-            self._said = told(reach, placed.outline, placed.scale if known else None)
-        self._say_reach()
+            self._reach_texts = told(reach, placed.outline, placed.scale if known else None)
+        self._show_reach_text()
 
-    def _say_reach(self) -> None:
-        whole, brief = self._said
+    def _show_reach_text(self) -> None:
+        whole, brief = self._reach_texts
         self.reach.setText(whole if self.editing else brief)
         self.reach.setToolTip(whole)
         self.reach.setVisible(bool(whole))
@@ -178,7 +178,7 @@ class TargetPanel(Card):
     def set_palette(self, palette: Palette) -> None:
         """Draw in other colours."""
         self.view.set_palette(palette)
-        self.strip.set_palette(palette)
+        self.tools.set_palette(palette)
         self.refine.set_palette(palette)
         for name, icon, _, _ in BUTTONS:
             self.buttons[name].setIcon(icons.icon(icon, palette))
@@ -211,7 +211,7 @@ class RefineBar(QWidget):
         self._size = (0.0, 0.0)
         self.sliders: dict[str, QSlider] = {}
         for name, caption, tip in SLIDERS:
-            slider = GrooveSlider()
+            slider = JumpSlider()
             slider.setObjectName("threshold")
             slider.setRange(0, REFINE_STEPS)
             slider.setPageStep(REFINE_STEPS // 10)
@@ -275,7 +275,7 @@ class RefineBar(QWidget):
         self.refined.emit(name, self.sliders[name].value() / REFINE_STEPS)
 
 
-class GrooveSlider(QSlider):
+class JumpSlider(QSlider):
     """Goes to the pointer at once and stays down until the button is let go, so that a click shows before it counts."""
 
     def __init__(self) -> None:
@@ -352,7 +352,7 @@ class ThresholdBar(QWidget):
         row.addWidget(self.slider, 1)
         row.addWidget(self.number)
         row.addWidget(self.automatic)
-        self.slider.valueChanged.connect(self._tell)
+        self.slider.valueChanged.connect(self._take_level)
         self.slider.sliderReleased.connect(self.edited)
         self.automatic.clicked.connect(self.automatic_wanted)
 
@@ -364,7 +364,7 @@ class ThresholdBar(QWidget):
             self.number.setText(f"{100 * threshold:.1f} %")
         self.automatic.setEnabled(threshold != automatic)
 
-    def _tell(self, value: int) -> None:
+    def _take_level(self, value: int) -> None:
         self.number.setText(f"{100 * value / GREY_LEVELS:.1f} %")
         self.changed.emit(value / GREY_LEVELS)
         if not self.slider.isSliderDown():

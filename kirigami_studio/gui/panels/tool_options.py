@@ -285,7 +285,7 @@ class AxisButton(QToolButton):
         self._context.set_axis(axis)
         self.choices[axis].setChecked(True)
         self.setChecked(axis is not Axis.NONE)
-        self._dress()
+        self._update_icons()
 
     def cycle(self) -> None:
         """Go on to the next choice."""
@@ -295,9 +295,9 @@ class AxisButton(QToolButton):
     def set_palette(self, palette: Palette) -> None:
         """Draw in other colours."""
         self._palette = palette
-        self._dress()
+        self._update_icons()
 
-    def _dress(self) -> None:
+    def _update_icons(self) -> None:
         axis = self._context.mirror.axis
         self.setIcon(icons.icon(f"axis-{axis.value}", self._palette))
         for choice, action in self.choices.items():

@@ -18,8 +18,8 @@ from kirigami_studio.project.document import Void
 class VoidBar(QWidget):
     """Shows the selected voids and reports what is wanted of them."""
 
-    ratio_wanted = Signal(object, float)  #: frozenset of Void, ratio
-    lock_wanted = Signal(object, bool)  #: frozenset of Void, whether they are to be locked
+    ratio_wanted = Signal(frozenset, float)  #: of Void; ratio
+    lock_wanted = Signal(frozenset, bool)  #: of Void; whether they are to be locked
     all_wanted = Signal(bool)  #: whether every void is to be locked
     refit_wanted = Signal(bool)  #: begin, or stop
 
@@ -27,7 +27,7 @@ class VoidBar(QWidget):
         super().__init__(parent)
         self._voids: frozenset[Void] = frozenset()
         self._fitting = False
-        self.says = FittingLabel()
+        self.selection_text = FittingLabel()
         self.ratio = DecimalField()
         self.ratio.setObjectName("voidRatio")
         self.ratio.setRange(SMALLEST, LARGEST)
@@ -70,7 +70,7 @@ class VoidBar(QWidget):
         row = QHBoxLayout(self)
         row.setContentsMargins(0, 0, 0, 0)
         row.setSpacing(6)
-        row.addWidget(self.says)
+        row.addWidget(self.selection_text)
         row.addStretch(1)
         for part in (self.ratio, self.lock, self.all, self.refit):
             row.addWidget(part)
@@ -96,7 +96,7 @@ class VoidBar(QWidget):
             # It is shown in the place of the smallest value, at which the field rests while nothing is selected.
             self.ratio.setSpecialValueText("" if ready else "x \N{EN DASH}")
             self.ratio.setValue(ratio if ready and ratio is not None else self.ratio.minimum())
-        self.says.set_texts(*_told(voids, locked))
+        self.selection_text.set_texts(*_selection_texts(voids, locked))
         self._fit()
 
     def show_fitting(self, busy: bool) -> None:
@@ -109,7 +109,7 @@ class VoidBar(QWidget):
 
     def _fit(self) -> None:
         others = (self.ratio, self.lock, self.all, self.refit)
-        self.says.fit(self.width() - sum(part.width() + 6 for part in others) - 8)
+        self.selection_text.fit(self.width() - sum(part.width() + 6 for part in others) - 8)
 
     def set_palette(self, palette: Palette) -> None:
         """Draw in other colours."""
@@ -124,7 +124,7 @@ class VoidBar(QWidget):
             super().keyPressEvent(event)
 
 
-def _told(voids: frozenset[Void], locked: frozenset[Void]) -> tuple[str, ...]:
+def _selection_texts(voids: frozenset[Void], locked: frozenset[Void]) -> tuple[str, ...]:
     """What the row says, longest first."""
     if len(voids) == 1:
         ((row, column),) = voids

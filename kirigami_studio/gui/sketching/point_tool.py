@@ -113,7 +113,7 @@ class PointTool(SketchTool):
             if more is not anchors:
                 self._anchors = more
                 self.select(())
-        self._tell()
+        self._emit_kinds()
 
     # selecting -----------------------------------------------------------------------------------------------------
 
@@ -121,9 +121,9 @@ class PointTool(SketchTool):
         """Select points; ``chosen`` is the one that walks and snaps."""
         self.selected = frozenset(indices)  # type: ignore[call-overload]
         self.chosen = chosen if chosen in self.selected else next(iter(sorted(self.selected)), None)
-        self._tell()
+        self._emit_kinds()
 
-    def _tell(self) -> None:
+    def _emit_kinds(self) -> None:
         anchors = self._anchors
         kinds = frozenset() if anchors is None else frozenset(anchors.kinds[index] for index in self.selected)
         self.context.kinds_shown.emit(kinds)
@@ -221,7 +221,7 @@ class PointTool(SketchTool):
         for index in sorted(self.selected | self._images(anchors).keys()):
             anchors = anchors.as_cusp(index) if cusp else anchors.with_kind(index, kind)
         if anchors is not self._anchors:
-            self._commit(anchors, _told(kind, len(self.selected)))
+            self._commit(anchors, _kind_change_name(kind, len(self.selected)))
 
     def key(self, event: QKeyEvent) -> bool:
         anchors = self._anchors
@@ -327,7 +327,7 @@ class PointTool(SketchTool):
             return False
         if self._anchors is not None and len(self._anchors.places) != len(anchors.places):
             self.select(())
-        self._tell()
+        self._emit_kinds()
         return True
 
     # finding and painting ------------------------------------------------------------------------------------------
@@ -373,7 +373,7 @@ def _refusal(error: TargetError) -> Callable[[], Placed]:
     return refuse
 
 
-def _told(kind: Kind, count: int) -> str:
+def _kind_change_name(kind: Kind, count: int) -> str:
     """The change as it follows the word Undo."""
     return {
         Kind.CORNER: tr_n("Make point a corner", "Make points corners", count),
@@ -394,7 +394,7 @@ class Marks:
         Selected points, and those that mirror them.
     dragged : bool
         Whether the line is the one that would come.
-    told : int or None
+    labelled : int or None
         A point whose place is written beside it.
     field : (QPointF, QPointF) or None
         Corners of the field that selects, pixels.
@@ -404,7 +404,7 @@ class Marks:
     selected: frozenset[int]
     images: frozenset[int]
     dragged: bool
-    told: int | None
+    labelled: int | None
     field: tuple[QPointF, QPointF] | None
 
 
@@ -419,8 +419,8 @@ def paint_marks(painter: QPainter, transform: ViewTransform, palette: Palette, m
         painter.setPen(QPen(QColor(palette.accent), 2.4 if index in marks.images else 1.6))
         painter.setBrush(QColor(palette.accent if chosen else palette.canvas))
         _paint_point(painter, QPointF(x, y), anchors.kinds[index])
-    if marks.told is not None:
-        place = anchors.places[marks.told]
+    if marks.labelled is not None:
+        place = anchors.places[marks.labelled]
         x, y = transform.to_pixels(place).tolist()
         paint_label(
             painter, QPointF(x, y), tr("{place:.4g}, {place_2:.4g} mm", place=place[0], place_2=place[1]), palette

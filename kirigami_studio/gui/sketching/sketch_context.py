@@ -17,6 +17,7 @@ from kirigami_studio.gui.scene.view_transform import Bounds, ViewTransform
 from kirigami_studio.outlines.combining import Combine
 from kirigami_studio.outlines.figures import USUAL_WAIST
 from kirigami_studio.outlines.mirroring import Axis, Mirror, mirrored
+from kirigami_studio.outlines.nodes import Kind
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.placed import BOARD_MM, Placed
 
@@ -85,12 +86,12 @@ class Change:
 class SketchContext(QObject):
     """The board with its target; tools read it and report to it."""
 
-    changed = Signal(object)  #: Change
+    changed = Signal(Change)
     repaint = Signal()
     tool_done = Signal()
     mirror_changed = Signal()
-    kind_wanted = Signal(object)  #: Kind that the selected points shall have
-    kinds_shown = Signal(object)  #: frozenset of the kinds of the selected points
+    kind_wanted = Signal(Kind)  #: that the selected points shall have
+    kinds_shown = Signal(frozenset)  #: kinds of the selected points
 
     def __init__(self, parent: QObject | None = None) -> None:
         super().__init__(parent)
@@ -161,7 +162,7 @@ class SketchContext(QObject):
         """Let a new shape replace the target, join it or be taken from it; a replacing tool is then put away."""
         how, target, mirror = self.combine, self.placed, self.mirror
         replaces = how is Combine.REPLACE or target is None
-        gesture = _told(Combine.REPLACE if replaces else how, name)
+        gesture = _change_name(Combine.REPLACE if replaces else how, name)
         if mirror.axis is not Axis.NONE:
             gesture = tr("{gesture} with its mirror image", gesture=gesture)
         self.changed.emit(Change(gesture, lambda: mirrored(target, make(), how, name, mirror)))
@@ -224,7 +225,7 @@ def distance(one: QPointF, other: QPointF) -> float:
     return math.hypot(one.x() - other.x(), one.y() - other.y())
 
 
-def _told(how: Combine, name: str) -> str:
+def _change_name(how: Combine, name: str) -> str:
     """A drawn shape as it follows the word Undo."""
     if how is Combine.REPLACE:
         return tr("Draw freehand") if name == FREEHAND else tr("Draw {name}", name=name)

@@ -51,7 +51,6 @@ class Callout(QWidget):
         self._window = window
         self.palette_: Palette = LIGHT
         self._tip = QPoint()
-        self._body = QRect()
         self.setObjectName("callout")
         self.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         self.title = QLabel()

@@ -33,7 +33,7 @@ class Canvas(QWidget):
     """
 
     zoom_changed = Signal(float)
-    looked = Signal(float, QPointF)  #: zoom and shift (pixels), after a gesture has changed them
+    view_changed = Signal(float, QPointF)  #: zoom and shift (pixels), after a gesture has changed them
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -91,7 +91,7 @@ class Canvas(QWidget):
         """Show everything again."""
         self._zoom, self._shift = 1.0, QPointF(0.0, 0.0)
         self.zoom_changed.emit(self._zoom)
-        self._tell_look()
+        self._emit_view()
         self.update()
 
     def zoom(self, factor: float, about: QPointF | None = None) -> None:
@@ -103,7 +103,7 @@ class Canvas(QWidget):
         self._shift = offset + (self._shift - offset) * factor
         self._zoom = wanted
         self.zoom_changed.emit(self._zoom)
-        self._tell_look()
+        self._emit_view()
         self.update()
 
     def zoom_to(self, place: tuple[float, float], zoom: float) -> None:
@@ -114,7 +114,7 @@ class Canvas(QWidget):
         if transform is not None:
             x, y = transform.to_pixels(np.array(place)).tolist()
             self._shift += self.scene_box().center() - QPointF(x, y)
-            self._tell_look()
+            self._emit_view()
             self.update()
 
     def render_to(self, painter: QPainter, size: QSize) -> None:
@@ -142,14 +142,14 @@ class Canvas(QWidget):
         finally:
             self._overlays = before
 
-    def look(self, zoom: float, shift: QPointF) -> None:
+    def set_view(self, zoom: float, shift: QPointF) -> None:
         """Show the part that another canvas of the same size and scene shows; tells nobody."""
         self._zoom, self._shift = zoom, QPointF(shift)
         self.zoom_changed.emit(self._zoom)
         self.update()
 
-    def _tell_look(self) -> None:
-        self.looked.emit(self._zoom, QPointF(self._shift))
+    def _emit_view(self) -> None:
+        self.view_changed.emit(self._zoom, QPointF(self._shift))
 
     # events --------------------------------------------------------------------------------------------------------
 
@@ -177,7 +177,7 @@ class Canvas(QWidget):
             self._shift += event.position() - self._grip
             self._grip = event.position()
             self.setCursor(Qt.CursorShape.ClosedHandCursor)
-            self._tell_look()
+            self._emit_view()
             self.update()
 
     def mouseReleaseEvent(self, event: QMouseEvent) -> None:  # noqa: N802 - Qt's name

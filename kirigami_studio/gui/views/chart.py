@@ -147,11 +147,11 @@ class Chart(QWidget):
             self.dots.setData([], [])
             return
         degrees, values = read
-        self.numbers.setText(self._told(degrees, values))
+        self.numbers.setText(self._readout(degrees, values))
         known = [value for value in values if math.isfinite(value)]
         self.dots.setData([degrees] * len(known), known)
 
-    def _told(self, degrees: float, values: tuple[float, ...]) -> str:
+    def _readout(self, degrees: float, values: tuple[float, ...]) -> str:
         """The numbers in the longest way that the chart has room for; the angle stands beside the slider too."""
         muted = f'<span style="color:{self._palette.muted}">{degrees:.1f}°</span>'
         text = ""
@@ -161,11 +161,11 @@ class Chart(QWidget):
                 number = _readable(value, self._unit, decimals)
                 parts.append(f'<span style="color:{colour}">{sign}</span> {name} <b>{number}</b>')
             text = "&nbsp; ".join([*parts, *tail])
-            if self._breadth(text) <= self.width():
+            if self._text_width(text) <= self.width():
                 break
         return text
 
-    def _breadth(self, text: str) -> float:
+    def _text_width(self, text: str) -> float:
         """Pixels that the numbers take in one line."""
         page = QTextDocument()
         page.setDocumentMargin(0.0)

@@ -58,7 +58,7 @@ class CutOverlay(Enum):
 class CutView(Canvas):
     """Draws one plan and reports what the mouse and the keyboard want of its connectors."""
 
-    selection_changed = Signal(object)  #: frozenset of int
+    selection_changed = Signal(frozenset)  #: numbers of connectors
     remove_wanted = Signal()
     typed = Signal(str)  #: the first letter of a width
     problem_picked = Signal(int)  #: its number in the report
@@ -73,9 +73,8 @@ class CutView(Canvas):
         self._overlays: frozenset[CutOverlay] = frozenset({CutOverlay.CONNECTORS, CutOverlay.PROBLEMS})
         self._caption = ""
         self._markers: tuple[tuple[object, ...], QPixmap] | None = None
-        self.frames_painted = 0
         self.gestures = HingeGestures(self)
-        self.gestures.changed.connect(self._tell_selection)
+        self.gestures.changed.connect(self._take_selection)
         self.setObjectName("cutView")
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self.setAccessibleName(tr("Cut preview"))
@@ -141,7 +140,6 @@ class CutView(Canvas):
     def paint_scene(self, painter: QPainter, transform: ViewTransform) -> None:
         if self._drawing is None or self._connectors is None:
             return
-        self.frames_painted += 1
         paint_cut_sheet(painter, self._drawing, transform, self.palette_)
         paint_cuts(painter, self._drawing, transform, self.palette_, self._step, QRectF(self.rect()))
         if CutOverlay.TRAVEL in self._overlays:
@@ -225,7 +223,7 @@ class CutView(Canvas):
 
     # gestures ------------------------------------------------------------------------------------------------------
 
-    def _tell_selection(self) -> None:
+    def _take_selection(self) -> None:
         self.update()
         self.selection_changed.emit(self.selected)
 

@@ -25,11 +25,11 @@ SCROLL_BAR = 14
 class GalleryView(QListView):
     """Cards in a grid that fills the width; the current card is the chosen design."""
 
-    chosen = Signal(object)  #: Candidate
-    pin_wanted = Signal(object)  #: Candidate, to be pinned or unpinned
-    reject_wanted = Signal(object)  #: Candidate, to be rejected or taken back
-    compare_wanted = Signal(object)  #: Candidate, to be compared with the chosen one
-    menu_wanted = Signal(object, QPoint)  #: Candidate, place on the screen
+    chosen = Signal(Candidate)
+    pin_wanted = Signal(Candidate)  #: pin it, or unpin it
+    reject_wanted = Signal(Candidate)  #: reject it, or take it back
+    compare_wanted = Signal(Candidate)  #: compare it with the chosen one
+    menu_wanted = Signal(Candidate, QPoint)  #: place on the screen
     clear_wanted = Signal()  #: the filter leaves nothing; show everything
 
     def __init__(self, parent: QWidget | None = None) -> None:
@@ -51,10 +51,10 @@ class GalleryView(QListView):
         # A timer of its own: what QTimer.singleShot(0) posts is handled before the loop looks for clicks and keys.
         self._later = QTimer(self, singleShot=True, interval=0)
         self._later.timeout.connect(self.viewport().update)
-        self._telling = True
+        self._reporting = True
         self._marked: Candidate | None = None
         self._hint = (tr("No designs yet"), tr("Candidates appear here, best first, while they are generated."))
-        self.selectionModel().currentChanged.connect(self._tell)
+        self.selectionModel().currentChanged.connect(self._emit_chosen)
 
     def set_palette(self, palette: Palette) -> None:
         """Draw in other colours."""
@@ -81,33 +81,33 @@ class GalleryView(QListView):
         same = target == self.cards.target
         self.cards.target = target
         self.cards.forget_pictures([entry.design for entry in entries] if same else ())
-        self._telling = False
+        self._reporting = False
         self.model_.replace(entries)
-        self._telling = True
+        self._reporting = True
 
     def add(self, entry: Entry) -> None:
         """Add one candidate at its rank."""
-        self._telling = False
+        self._reporting = False
         self.model_.insert(entry)
-        self._telling = True
+        self._reporting = True
         self.mark(self._marked)
 
     def select(self, selection: Selection) -> None:
         """Show another part of the candidates, or in another order."""
         sorted_anew = selection.order is not self.model_.selection.order
-        self._telling = False
+        self._reporting = False
         self.model_.select(selection)
-        self._telling = True
+        self._reporting = True
         self.mark(self._marked)
         if sorted_anew:
             self.scrollToTop()
 
     def show_marks(self, marks: Mapping[Candidate, Mark], fresh: frozenset[Candidate]) -> None:
         """Show which candidates are pinned or rejected, and which the last further run has added."""
-        self._telling = False
+        self._reporting = False
         self.model_.set_marks(marks)
         self.model_.set_fresh(fresh)
-        self._telling = True
+        self._reporting = True
         self.mark(self._marked)
 
     def show_compared(self, candidate: Candidate | None) -> None:
@@ -119,12 +119,12 @@ class GalleryView(QListView):
         """Highlight the chosen candidate without reporting it as a gesture."""
         self._marked = candidate
         row = self.model_.row_of(candidate) if candidate is not None else -1
-        self._telling = False
+        self._reporting = False
         if row < 0:
             self.selectionModel().clear()
         elif self.currentIndex().row() != row or not self.selectionModel().hasSelection():
             self.setCurrentIndex(self.model_.index(row, 0))
-        self._telling = True
+        self._reporting = True
 
     def beside(self, candidate: Candidate | None) -> Candidate | None:
         """The shown design after ``candidate``, or before it where it is the last; None when there is no other."""
@@ -132,8 +132,8 @@ class GalleryView(QListView):
         rows = [other for other in (row + 1, row - 1) if 0 <= other < self.model_.rowCount()]
         return self.model_.entries[rows[0]].candidate if rows else None
 
-    def _tell(self, current: QModelIndex, previous: QModelIndex) -> None:
-        if self._telling and current.isValid():
+    def _emit_chosen(self, current: QModelIndex, previous: QModelIndex) -> None:
+        if self._reporting and current.isValid():
             self.chosen.emit(current.data(CANDIDATE_ROLE))
 
     def _candidate_at(self, place: QPoint) -> tuple[Candidate | None, CardButton | None]:

@@ -37,7 +37,7 @@ class HingeGestures(QObject):
         self._band: QRectF | None = None
         self._held: HingeDrag | None = None
         self._width_mm: float | None = None
-        self._told: dict[int, float] = {}  # widths that were asked for since the plan was made
+        self._asked_mm: dict[int, float] = {}  # widths that were asked for since the plan was made
 
     @property
     def dragged_mm(self) -> float | None:
@@ -56,7 +56,7 @@ class HingeGestures(QObject):
     def take(self, connectors: Connectors | None) -> None:
         """Another plan: the selection stays as far as its hinges are still there."""
         self.connectors = connectors
-        self._told.clear()
+        self._asked_mm.clear()
         there = 0 if connectors is None else len(connectors)
         self.select(frozenset(hinge for hinge in self._selected if hinge < there))
 
@@ -85,7 +85,7 @@ class HingeGestures(QObject):
         if hinge not in self._selected:
             self.select(frozenset({hinge}))
         if self.connectors is not None:
-            self._held = HingeDrag(hinge, place, self._told.get(hinge, self.connectors.asked_mm(hinge)))
+            self._held = HingeDrag(hinge, place, self._asked_mm.get(hinge, self.connectors.asked_mm(hinge)))
         return True
 
     def double(self, place: QPointF, transform: ViewTransform) -> bool:
@@ -116,7 +116,7 @@ class HingeGestures(QObject):
         width = held.width_at(place, fine)
         if width != self._width_mm:
             self._width_mm = width
-            self._told.update(dict.fromkeys(self._selected, width))
+            self._asked_mm.update(dict.fromkeys(self._selected, width))
             self.width_wanted.emit(width)
             self.changed.emit()
 

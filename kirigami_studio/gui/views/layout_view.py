@@ -117,7 +117,6 @@ class LayoutView(Canvas):
         self._faults: tuple[Fault, ...] = ()
         self._hint = ("generate", tr("No design yet"), tr("Choose a target on the left, then press Generate (Ctrl+G)."))
         self._caption = ""
-        self.frames_painted = 0
         self.voids = VoidGestures(self, self._void_shapes)
         self.setObjectName("layoutView")
         self.setAccessibleName(tr("Layout of the chosen design"))
@@ -211,11 +210,6 @@ class LayoutView(Canvas):
         """Colour bars of the last painted picture."""
         return self._scales
 
-    @property
-    def small_parts(self) -> list[SmallPart]:
-        """The smallest edges and necks, in world units, smallest first."""
-        return self._small
-
     def find_faults(self) -> tuple[Fault, ...]:
         """All faults of the design at the angle that is shown, whether they are marked or not."""
         design = self._design
@@ -302,7 +296,6 @@ class LayoutView(Canvas):
     def paint_scene(self, painter: QPainter, transform: ViewTransform) -> None:
         if self._design is None:
             return
-        self.frames_painted += 1
         nodes = self._design.nodes(self._phi)
         field = self._design.deployment.field
         panels = transform.to_pixels(self._design.panels(nodes))
@@ -387,8 +380,8 @@ class LayoutView(Canvas):
     def paint_notes(self, painter: QPainter) -> None:
         if self._design is None:
             return
-        said = self.legend(painter.fontMetrics())
-        paint_legend(painter, [chip for chip, _ in said], [box for _, box in said], self.palette_)
+        labels = self.legend(painter.fontMetrics())
+        paint_legend(painter, [chip for chip, _ in labels], [box for _, box in labels], self.palette_)
         if self._caption:
             paint_caption(painter, self._caption, self.width(), self.palette_)
         paint_colour_bars(painter, self._scales, self.width() - 10.0, self._bars_top(), self.palette_)
@@ -399,7 +392,7 @@ class FaultTour(QObject):
     """Watches one view; it takes no click away from it that is not on a fault."""
 
     phi_wanted = Signal(float)  #: radians, the angle at which the fault can be seen
-    said = Signal(str)
+    status = Signal(str)
 
     def __init__(self, view: LayoutView) -> None:
         super().__init__(view)
@@ -412,12 +405,12 @@ class FaultTour(QObject):
         """Go to the next fault, or to the one before; after the last one comes the first."""
         found = self._view.find_faults()
         if not found:
-            self.said.emit(tr("No fault: no panel is inverted, and the sheet does not touch itself."))
+            self.status.emit(tr("No fault: no panel is inverted, and the sheet does not touch itself."))
             return
         self._place = (self._place + forth) % len(found) if self._place >= 0 else (0 if forth > 0 else len(found) - 1)
         self.visit(found[self._place])
         words = _words(found[self._place].kind)
-        self.said.emit(tr("Fault {number} of {count}: {what}.", number=self._place + 1, count=len(found), what=words))
+        self.status.emit(tr("Fault {number} of {count}: {what}.", number=self._place + 1, count=len(found), what=words))
 
     def visit(self, fault: Fault) -> None:
         """Show one fault, at the angle at which it is seen."""
@@ -439,7 +432,7 @@ class FaultTour(QObject):
                 self._pressed = None
                 if fault is not None:
                     self.visit(fault)
-                    self.said.emit(_words(fault.kind).capitalize() + ".")
+                    self.status.emit(_words(fault.kind).capitalize() + ".")
         return False
 
 

@@ -46,10 +46,10 @@ class PhiSlider(QSlider):
         self.setMouseTracking(True)
         self.setObjectName("phiSlider")
         self.setAccessibleName(tr("Deployment angle"))
-        self._say_legend()
+        self._update_tooltip()
         self.valueChanged.connect(lambda value: self.phi_changed.emit(self.phi))
-        self.valueChanged.connect(lambda _: self._tell_value())
-        self._tell_value()
+        self.valueChanged.connect(lambda _: self._describe_value())
+        self._describe_value()
 
     @property
     def phi(self) -> float:
@@ -66,7 +66,7 @@ class PhiSlider(QSlider):
     def set_marks(self, target: float, contact: float | None) -> None:
         """Mark the target angle and the first contact, radians."""
         self._target, self._contact = target, contact
-        self._say_legend()
+        self._update_tooltip()
         self.update()
 
     def set_palette(self, palette: Palette) -> None:
@@ -85,7 +85,7 @@ class PhiSlider(QSlider):
         marks.append(WayMark(MarkKind.TURNED, 0.0, "0°", "0°"))
         return tuple(marks[:-1] if self._target == 0.0 else marks)
 
-    def _say_legend(self) -> None:
+    def _update_tooltip(self) -> None:
         lines = [
             tr("Deployment angle in degrees: 180° is the flat sheet as cut, 0° fully turned."),
             tr("Plain bar: free. Thick yellow stripes: the sheet touches itself. Thin orange dashes: past the target."),
@@ -133,7 +133,7 @@ class PhiSlider(QSlider):
                 return mark
         return None
 
-    def _tell_value(self) -> None:
+    def _describe_value(self) -> None:
         """A screen reader would say the slider's whole number, which means nothing to anybody."""
         self.setAccessibleDescription(tr("{angle:.1f}°", angle=math.degrees(self.phi)))
 

@@ -63,7 +63,7 @@ class TargetView(Canvas):
     """Shows one outline on a board in mm and lets the user change it."""
 
     file_dropped = Signal(str)
-    content_dropped = Signal(object)  #: QMimeData with a picture or a text
+    content_dropped = Signal(QMimeData)  #: a picture or a text
     tool_left = Signal()
     editing_left = Signal()
     hint = Signal(str)

@@ -9,7 +9,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 
-from PySide6.QtCore import QEvent, QObject, QPointF, QRectF, Qt, Signal, SignalInstance
+from PySide6.QtCore import QEvent, QObject, QPoint, QPointF, QRectF, Qt, Signal, SignalInstance
 from PySide6.QtGui import QContextMenuEvent, QKeyEvent, QMouseEvent, QPainter, QWheelEvent
 
 from kirigami_studio.gui.look.theme import Palette
@@ -50,17 +50,17 @@ class VoidGestures(QObject):
         The design as it is drawn now, or None.
     """
 
-    hovered = Signal(object)  #: Void or None
-    selection_changed = Signal(object)  #: frozenset of Void
-    nudged = Signal(object, float)  #: frozenset of Void, change of log10 of their ratios
-    pull_begun = Signal(object, object, float)  #: Void, place in the world, angle (radians)
-    pulled = Signal(object)  #: place in the world
-    vertex_begun = Signal(int, float)  #: vertex of the outline, angle (radians)
-    vertex_moved = Signal(object)  #: place in the world
-    let_go = Signal()  #: of a void or a vertex
-    taken_back = Signal()  #: Esc while a void or a vertex is held
-    lock_wanted = Signal(object, bool)  #: frozenset of Void, whether they are to be locked
-    menu_wanted = Signal(object, object)  #: Void, QPoint on the screen
+    hovered = Signal(object)  #: Void | None
+    selection_changed = Signal(frozenset)  #: of Void
+    nudged = Signal(frozenset, float)  #: of Void; change of log10 of their ratios
+    pull_begun = Signal(tuple, tuple, float)  #: Void; place in the world; angle (radians)
+    pulled = Signal(tuple)  #: place in the world
+    vertex_begun = Signal(int, float)  #: vertex of the outline; angle (radians)
+    vertex_moved = Signal(tuple)  #: place in the world
+    drag_ended = Signal()  #: of a void or a vertex
+    drag_cancelled = Signal()  #: Esc while a void or a vertex is held
+    lock_wanted = Signal(frozenset, bool)  #: of Void; whether they are to be locked
+    menu_wanted = Signal(tuple, QPoint)  #: Void; place on the screen
 
     def __init__(self, canvas: Canvas, shapes: Callable[[], VoidShapes | None]) -> None:
         super().__init__(canvas)
@@ -159,7 +159,7 @@ class VoidGestures(QObject):
         self._pressed = self._grasp = self._band = None
         self._dragging = False
         if held:
-            self.let_go.emit()
+            self.drag_ended.emit()
 
     # drawing -------------------------------------------------------------------------------------------------------
 
@@ -308,7 +308,7 @@ class VoidGestures(QObject):
             self._pressed = self._grasp = None
             self._dragging = False
             self._canvas.unsetCursor()
-            self.taken_back.emit()
+            self.drag_cancelled.emit()
 
     def _walk(self, step: Step, shapes: VoidShapes) -> None:
         rows, columns = shapes.corners.shape[:2]

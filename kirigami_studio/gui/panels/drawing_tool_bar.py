@@ -51,10 +51,10 @@ MIRRORS = (
 )
 
 
-class ToolStrip(QWidget):
+class DrawingToolBar(QWidget):
     """Tools, modes, mirror, grid; Done ends editing."""
 
-    tool_wanted = Signal(object)  #: Tool
+    tool_wanted = Signal(Tool)
     mirror_wanted = Signal(str)
     grid_switched = Signal(bool)
     done = Signal()
@@ -87,12 +87,12 @@ class ToolStrip(QWidget):
         row.addWidget(self.axis)
         row.addWidget(self.grid)
         row.addStretch(1)
-        self.finish = QPushButton(tr("Done"))
-        self.finish.setObjectName("small")
-        self.finish.setFocusPolicy(Qt.FocusPolicy.TabFocus)
-        self.finish.setToolTip(tr("Leave the editor (E, or Esc)"))
-        self.finish.clicked.connect(self.done)
-        row.addWidget(self.finish)
+        self.done_button = QPushButton(tr("Done"))
+        self.done_button.setObjectName("small")
+        self.done_button.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+        self.done_button.setToolTip(tr("Leave the editor (E, or Esc)"))
+        self.done_button.clicked.connect(self.done)
+        row.addWidget(self.done_button)
         self.options = ToolOptions(context)
 
     def _button(self, name: str, icon: str, tip: str, checkable: bool = False) -> QToolButton:
