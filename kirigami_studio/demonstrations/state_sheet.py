@@ -358,7 +358,7 @@ class StateSheet(BoardStates):
         note = Note("teapot.kiri", str(self.out / "teapot.kiri"), "2026-11-21T12:03:00+00:00", 1)
         recovery.keep(window.controller.document, note, left)
         filing.recovering.use(folder)
-        self.until(lambda: "ended unexpectedly" in window.messages.sentence.text(), "the lost work was not offered")
+        self.until(lambda: "quit unexpectedly" in window.messages.sentence.text(), "the lost work was not offered")
         self.all_sizes("recovery")
         dict(window.messages.messages[-1].actions)["Discard"]()
         while window.messages.messages:

@@ -47,7 +47,7 @@ class Command:
 
 
 COMMANDS = (
-    Command("new", tr("&New project"), tr("&File"), ("Ctrl+N",), tip=tr("Start empty")),
+    Command("new", tr("&New project"), tr("&File"), ("Ctrl+N",), tip=tr("Start an empty project")),
     Command(
         "open_project",
         tr("Open &project …"),
@@ -58,7 +58,13 @@ COMMANDS = (
         True,
     ),
     Command("save", tr("&Save project"), tr("&File"), ("Ctrl+S",), "save", tr("Save the project"), True),
-    Command("save_as", tr("Save project &as …"), tr("&File"), ("Ctrl+Shift+S",), tip=tr("Save under another name")),
+    Command(
+        "save_as",
+        tr("Save project &as …"),
+        tr("&File"),
+        ("Ctrl+Shift+S",),
+        tip=tr("Save the project under another name"),
+    ),
     Command(
         "open_target", tr("&Open target …"), tr("&File"), ("Ctrl+O",), "open", tr("Open a target silhouette"), gap=True
     ),
@@ -68,7 +74,7 @@ COMMANDS = (
         tr("&File"),
         ("Ctrl+L",),
         "library",
-        tr("Choose a silhouette of the library"),
+        tr("Choose a silhouette from the library"),
     ),
     Command(
         "export",
@@ -76,7 +82,7 @@ COMMANDS = (
         tr("&File"),
         ("Ctrl+E",),
         "export",
-        tr("Write the cut file in mm, or a picture"),
+        tr("Export a cut file in mm, or a picture"),
         gap=True,
     ),
     Command(
@@ -85,33 +91,33 @@ COMMANDS = (
         tr("&File"),
         ("Ctrl+Shift+E",),
         "",
-        tr("Write every kind of file into one folder"),
+        tr("Export every file type to one folder"),
     ),
-    Command("animation", tr("Export an&imation …"), tr("&File"), (), "", tr("Write the deployment as a looping GIF")),
+    Command("animation", tr("Export an&imation …"), tr("&File"), (), "", tr("Export the deployment as a looping GIF")),
     Command("quit", tr("&Quit"), tr("&File"), ("Ctrl+Q",), tip=tr("Close Kirigami Studio"), gap=True),
     Command("undo", tr("&Undo"), tr("&Edit"), ("Ctrl+Z",), "undo", tr("Undo"), True),
     Command("redo", tr("&Redo"), tr("&Edit"), ("Ctrl+Y", "Ctrl+Shift+Z"), "redo", tr("Redo"), True),
-    Command("history", tr("&History …"), tr("&Edit"), ("Ctrl+Shift+H",), tip=tr("List all steps and go to one")),
+    Command("history", tr("&History …"), tr("&Edit"), ("Ctrl+Shift+H",), tip=tr("List all steps and jump to one")),
     Command(
         "paste",
         tr("&Paste target"),
         tr("&Edit"),
         ("Ctrl+V",),
         "",
-        tr("Take a picture, SVG or path as target"),
+        tr("Paste a picture, SVG or path as the target"),
         gap=True,
     ),
     Command(
-        "copy_picture", tr("&Copy picture"), tr("&Edit"), ("Ctrl+Shift+C",), "", tr("Copy a picture of the view in use")
+        "copy_picture", tr("&Copy picture"), tr("&Edit"), ("Ctrl+Shift+C",), "", tr("Copy a picture of the active view")
     ),
     Command(
         "copy_cuts", tr("Copy cuts as S&VG"), tr("&Edit"), ("Ctrl+Alt+C",), "", tr("Copy the cut plan as SVG in mm")
     ),
     Command("clear", tr("Clear tar&get"), tr("&Edit"), (), "clear", tr("Remove the target")),
     Command("edit_target", tr("&Edit target"), tr("D&raw"), ("E",), "edit", tr("Open or leave the drawing board")),
-    Command("points", tr("Move &points"), tr("D&raw"), ("N",), "points", tr("Drag the points of the target"), gap=True),
+    Command("points", tr("Move &points"), tr("D&raw"), ("N",), "points", tr("Drag the target's points"), gap=True),
     Command(
-        "pose", tr("&Move, resize and rotate"), tr("D&raw"), ("V",), "pose", tr("Move, stretch and turn the target")
+        "pose", tr("&Move, resize and rotate"), tr("D&raw"), ("V",), "pose", tr("Move, resize and rotate the target")
     ),
     Command("freehand", tr("&Freehand"), tr("D&raw"), ("D",), "draw", tr("Draw the target in one stroke"), gap=True),
     Command("polygon", tr("P&olygon"), tr("D&raw"), ("P",), "polygon", tr("Draw the target corner by corner")),
@@ -119,13 +125,24 @@ COMMANDS = (
     Command("ellipse", tr("E&llipse"), tr("D&raw"), ("O",), "ellipse", tr("Draw an ellipse or a circle")),
     Command("regular", tr("Re&gular polygon"), tr("D&raw"), ("G",), "regular", tr("Draw a regular polygon")),
     Command("star", tr("&Star"), tr("D&raw"), ("S",), "star", tr("Draw a star")),
-    Command("text", tr("Te&xt"), tr("D&raw"), ("X",), "text", tr("Draw letters that hang together")),
+    Command("text", tr("Te&xt"), tr("D&raw"), ("X",), "text", tr("Draw letters joined into one piece")),
     Command(
-        "mode_new", tr("&New shape"), tr("D&raw"), ("=",), "replace", tr("The next shape replaces the target"), gap=True
+        "mode_new",
+        tr("&New shape"),
+        tr("D&raw"),
+        ("=",),
+        "replace",
+        tr("Replace the target with the next shape"),
+        gap=True,
     ),
-    Command("mode_add", tr("&Add shape"), tr("D&raw"), ("+",), "add", tr("The next shape joins the target")),
+    Command("mode_add", tr("&Add shape"), tr("D&raw"), ("+",), "add", tr("Add the next shape to the target")),
     Command(
-        "mode_subtract", tr("Ta&ke away"), tr("D&raw"), ("-",), "subtract", tr("The next shape is cut off the target")
+        "mode_subtract",
+        tr("Su&btract shape"),
+        tr("D&raw"),
+        ("-",),
+        "subtract",
+        tr("Cut the next shape out of the target"),
     ),
     Command(
         "axis",
@@ -133,7 +150,7 @@ COMMANDS = (
         tr("D&raw"),
         ("Shift+M",),
         "axis-upright",
-        tr("Next choice of mirror axes"),
+        tr("Switch to the next mirror axis"),
         gap=True,
     ),
     Command("grid", tr("Snap to g&rid"), tr("D&raw"), ("Ctrl+Shift+G",), "grid", tr("Show the grid and snap to it")),
@@ -145,7 +162,7 @@ COMMANDS = (
         "generate",
         tr("Design sheets for the target"),
     ),
-    Command("cancel", tr("&Cancel"), tr("&Design"), ("Esc",), "stop", tr("Stop generating")),
+    Command("cancel", tr("&Cancel"), tr("&Design"), ("Esc",), "stop", tr("Stop generating, trimming or fitting")),
     Command(
         "trim",
         tr("&Trim to target"),
@@ -158,19 +175,21 @@ COMMANDS = (
         True,
     ),
     Command(
-        "hand", tr("Edit by &hand"), tr("&Design"), ("H",), "hand", tr("Change voids and outline by hand"), False, True
+        "hand", tr("Edit by &hand"), tr("&Design"), ("H",), "hand", tr("Edit voids and outline by hand"), False, True
     ),
     Command("lock", tr("&Lock voids"), tr("&Design"), ("L",), "lock", tr("Lock or unlock the selected voids")),
-    Command("lock_all", tr("Lock all &voids"), tr("&Design"), tip=tr("No void may be changed by hand")),
-    Command("unlock_all", tr("&Unlock all voids"), tr("&Design"), tip=tr("Every void may be changed by hand")),
-    Command("refit", tr("&Fit again"), tr("&Design"), ("Ctrl+F",), "refit", tr("Improve the design from where it is")),
+    Command("lock_all", tr("Lock all &voids"), tr("&Design"), tip=tr("Lock every void against manual edits")),
+    Command("unlock_all", tr("&Unlock all voids"), tr("&Design"), tip=tr("Unlock every void for manual edits")),
+    Command(
+        "refit", tr("&Fit again"), tr("&Design"), ("Ctrl+F",), "refit", tr("Improve the match from the current design")
+    ),
     Command(
         "materials",
         tr("&Materials …"),
         tr("&Design"),
         ("Ctrl+M",),
         "material",
-        tr("Copy, change and calibrate materials"),
+        tr("Copy, edit and calibrate materials"),
     ),
     Command(
         "next", tr("&Next design"), tr("&Design"), ("Ctrl+Down", "PgDown"), "", tr("Choose the next design"), gap=True
@@ -184,7 +203,7 @@ COMMANDS = (
         tr("&Design"),
         ("Ctrl+R",),
         "again",
-        tr("Add designs drawn from the next seed"),
+        tr("Generate more designs from the next seed"),
         gap=True,
     ),
     Command(
@@ -193,9 +212,9 @@ COMMANDS = (
         tr("&Design"),
         ("Ctrl+Shift+R",),
         "alike",
-        tr("Add designs drawn near the chosen one"),
+        tr("Generate more designs like the chosen one"),
     ),
-    Command("pin", tr("&Pin design"), tr("&Design"), ("I",), "pin", tr("Pin the chosen design, or unpin it"), gap=True),
+    Command("pin", tr("&Pin design"), tr("&Design"), ("I",), "pin", tr("Pin or unpin the chosen design"), gap=True),
     Command(
         "reject", tr("Re&ject design"), tr("&Design"), (), "reject", tr("Reject the chosen design (Del in the gallery)")
     ),
@@ -205,23 +224,23 @@ COMMANDS = (
         tr("S&lower"),
         tr("&View"),
         ("<",),
-        tip=tr("Play the deployment slower, down to a quarter of the usual speed"),
+        tip=tr("Play the deployment slower, down to a quarter of normal speed"),
     ),
     Command(
         "faster",
         tr("Fa&ster"),
         tr("&View"),
         (">",),
-        tip=tr("Play the deployment faster, up to four times the usual speed"),
+        tip=tr("Play the deployment faster, up to four times normal speed"),
     ),
     Command(
         "play_mode",
-        tr("Play to and fro, in a loop or &once"),
+        tr("Next play m&ode"),
         tr("&View"),
         ("Shift+P",),
-        tip=tr("Change how playing goes on"),
+        tip=tr("Switch between back and forth, loop and once"),
     ),
-    Command("to_flat", tr("&Flat sheet (180°)"), tr("&View"), ("Ctrl+Left",), "", tr("Show the compact sheet")),
+    Command("to_flat", tr("&Flat sheet (180°)"), tr("&View"), ("Ctrl+Left",), "", tr("Show the sheet flat")),
     Command("to_target", tr("&Target angle"), tr("&View"), ("Ctrl+Right",), "", tr("Show the target angle")),
     Command(
         "show_target",
@@ -245,7 +264,7 @@ COMMANDS = (
         True,
     ),
     Command(
-        "show_faults", tr("F&aults"), tr("&View"), ("F",), "fault", tr("Mark places that are not physical"), False, True
+        "show_faults", tr("F&aults"), tr("&View"), ("F",), "fault", tr("Mark inverted panels and contacts"), False, True
     ),
     Command(
         "show_ratios",
@@ -273,25 +292,37 @@ COMMANDS = (
         tr("&View"),
         ("Shift+T",),
         "small",
-        tr("Mark the shortest panel edges and narrowest necks, mm between the centre lines of the cuts"),
+        tr("Mark the shortest edges and narrowest necks, in mm between cut centre lines"),
         False,
         True,
     ),
     Command(
-        "show_panel_numbers", tr("Panel &numbers"), tr("&View"), ("Shift+I",), "numbers", tr("Row, column"), False, True
+        "show_panel_numbers",
+        tr("Panel &numbers"),
+        tr("&View"),
+        ("Shift+I",),
+        "numbers",
+        tr("Number panels by row and column"),
+        False,
+        True,
     ),
     Command(
-        "show_void_numbers", tr("Vo&id numbers"), tr("&View"), ("Shift+N",), "numbers", tr("Row, column"), False, True
+        "show_void_numbers",
+        tr("Vo&id numbers"),
+        tr("&View"),
+        ("Shift+N",),
+        "numbers",
+        tr("Number voids by row and column"),
+        False,
+        True,
     ),
-    Command(
-        "next_fault", tr("Ne&xt fault"), tr("&View"), ("F3",), tip=tr("Bring the next fault to the middle, enlarged")
-    ),
+    Command("next_fault", tr("Ne&xt fault"), tr("&View"), ("F3",), tip=tr("Zoom to the next fault")),
     Command(
         "previous_fault",
         tr("Previo&us fault"),
         tr("&View"),
         ("Shift+F3",),
-        tip=tr("Bring the fault before to the middle"),
+        tip=tr("Zoom to the previous fault"),
     ),
     Command(
         "before",
@@ -299,12 +330,12 @@ COMMANDS = (
         tr("&View"),
         ("B",),
         "before",
-        tr("Show the design as it was drawn"),
+        tr("Show the design before polishing"),
         False,
         True,
         True,
     ),
-    Command("cuts", tr("&Cuts"), tr("&View"), ("C",), "cuts", tr("Show the cut plan as it will burn"), False, True),
+    Command("cuts", tr("&Cuts"), tr("&View"), ("C",), "cuts", tr("Show the cut plan at kerf width"), False, True),
     Command(
         "plots", tr("P&lots"), tr("&View"), ("J",), "plots", tr("Show match, size and gaps at every angle"), False, True
     ),
@@ -324,9 +355,9 @@ COMMANDS = (
         tr("&View"),
         ("Shift+K",),
         "swap",
-        tr("Choose the design that is compared"),
+        tr("Make the compared design the chosen one"),
     ),
-    Command("fit", tr("Show &everything"), tr("&View"), ("0",), "fit", tr("Fit the layout into the view"), gap=True),
+    Command("fit", tr("Fit vi&ew"), tr("&View"), ("0",), "fit", tr("Zoom to show everything"), gap=True),
     Command(
         "theme",
         tr("&Dark theme"),
@@ -337,7 +368,7 @@ COMMANDS = (
         True,
         gap=True,
     ),
-    Command("theme_system", tr("Follow the s&ystem"), tr("&View"), (), "", tr("Look as the desktop does"), False, True),
+    Command("theme_system", tr("Follow the s&ystem"), tr("&View"), (), "", tr("Match the system theme"), False, True),
     Command("guide", tr("&Guide"), tr("&Help"), ("F1",), "guide", tr("Open the user guide"), True),
     Command(
         "shortcuts",
@@ -345,10 +376,10 @@ COMMANDS = (
         tr("&Help"),
         ("?", "Ctrl+/"),
         "",
-        tr("List and search all keys and gestures"),
+        tr("Search all keys and gestures"),
     ),
-    Command("tour", tr("&Tour"), tr("&Help"), (), "", tr("Be led through the window in six steps"), gap=True),
-    Command("sample", tr("Open &sample project"), tr("&Help"), (), "", tr("Open a project with designs for the heart")),
+    Command("tour", tr("&Tour"), tr("&Help"), (), "", tr("Take a six-step tour"), gap=True),
+    Command("sample", tr("Open &sample project"), tr("&Help"), (), "", tr("Open a sample project with heart designs")),
 )
 
 

@@ -40,9 +40,9 @@ RECENT = "recent.toml"
 RECOVERY = "recovery"
 SMALLEST_FONT = 9.5
 NO_DISPLAY = tr(
-    "There is no display to open the window on; use the commands (kirigami-studio "
-    "--help), or play a session without one: python -m "
-    "kirigami_studio.demonstrations.offscreen_session --out out."
+    "No display available. Use the command line (kirigami-studio --help), or run an "
+    "off-screen session: python -m kirigami_studio.demonstrations.offscreen_session --out "
+    "out."
 )
 #: Seconds after which a thread that computes in Python lets another one go on that waits for the interpreter.  With
 #: Python's own 5 ms the window stood still for 50 to 160 ms while the worker trimmed a design: a worker that often lets
@@ -190,7 +190,7 @@ def message_for(error: BaseException) -> Message:
     if isinstance(error, KirigamiError):
         return Message(str(error), Tone.ERROR, details)
     sentence = tr(
-        "Something unexpected went wrong: {value}. Your work is kept; save it to be safe.",
+        "Unexpected error: {value}. Your work is intact; save it to be safe.",
         value=error or type(error).__name__,
     )
     return Message(sentence, Tone.ERROR, details)

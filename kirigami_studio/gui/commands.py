@@ -49,7 +49,9 @@ class Commands(Beside):
         self.pasting.file_wanted.connect(self.take_file)
         self.pasting.message.connect(controller.message)
         controller.filing.recovering.recover_wanted.connect(
-            lambda leftover: self.guard(tr("recover another"), partial(controller.filing.recovering.recover, leftover))
+            lambda leftover: self.guard(
+                tr("recover another project"), partial(controller.filing.recovering.recover, leftover)
+            )
         )
         self.picturing = Picturing(window, controller.queue, lambda: controller.cut_request)
         self.pictures = PictureMenu(window, self.picturing, lambda proposal: self.files.picture(proposal))
@@ -112,7 +114,7 @@ class Commands(Beside):
             "guide": self.show_guide,
             "shortcuts": self.show_shortcuts,
             "tour": self.tour.start,
-            "sample": lambda: self.guard(tr("open the sample"), self.open_sample),
+            "sample": lambda: self.guard(tr("open the sample project"), self.open_sample),
         }
         for name, command in commands.items():
             actions[name].triggered.connect(lambda _=False, command=command: command())
@@ -134,9 +136,7 @@ class Commands(Beside):
         if self.window.target.tools.buttons[tool].isEnabled():
             self.window.target.set_tool(tool)
         else:
-            self.controller.message.emit(
-                Message(tr("There is no target to change yet; draw or open one first."), Tone.HINT)
-            )
+            self.controller.message.emit(Message(tr("No target to edit yet. Draw or open one first."), Tone.HINT))
 
     def _set_mode(self, mode: Combine) -> None:
         if self.window.target.tools.modes[mode].isEnabled():
@@ -183,9 +183,7 @@ class Commands(Beside):
     def export(self, extension: str = ".dxf") -> None:
         """Write the cut file, or another kind of file, in a place of the user's choice."""
         if self.controller.stage is None:
-            self.controller.message.emit(
-                Message(tr("There is no design to export yet; generate one first."), Tone.HINT)
-            )
+            self.controller.message.emit(Message(tr("No design to export yet. Generate one first."), Tone.HINT))
             return
         path = self.files.export(f"{self._name()}{extension}")
         if path is not None:
@@ -236,7 +234,7 @@ class Commands(Beside):
             return
         self.controller.message.emit(
             Message(
-                tr("This project has unsaved changes. Save them before you {purpose}?", purpose=purpose),
+                tr("This project has unsaved changes. Save before you {purpose}?", purpose=purpose),
                 Tone.WARNING,
                 actions=(
                     (tr("Save first"), self._save_first),
@@ -253,7 +251,7 @@ class Commands(Beside):
             return True
         self.controller.message.emit(
             Message(
-                tr("This project has unsaved changes. Save them before you quit?"),
+                tr("This project has unsaved changes. Save before you quit?"),
                 Tone.WARNING,
                 actions=((tr("Save and quit"), self._save_and_quit), (tr("Quit without saving"), self._quit)),
             )

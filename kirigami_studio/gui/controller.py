@@ -128,7 +128,7 @@ class Controller(Workbench):
         if self.hand.postpones(lambda: self.trim(on)):
             return
         if self.running:
-            self.message.emit(Message(tr("Wait until the designs are done, then trim the one you choose."), Tone.HINT))
+            self.message.emit(Message(tr("Wait for the run to finish, then trim a design."), Tone.HINT))
         else:
             self.finishing.switch(on)
 
@@ -140,7 +140,7 @@ class Controller(Workbench):
             return
         order = self.cut_request
         if order is None:
-            self.message.emit(Message(tr("There is no design to export yet; generate one first."), Tone.HINT))
+            self.message.emit(Message(tr("No design to export yet. Generate one first."), Tone.HINT))
         else:
             if kind_of(path.suffix).cuts:
                 self.preferring.remember(self.document)
@@ -204,4 +204,4 @@ class Controller(Workbench):
             self.stop_design()
             self.show()
             label = self.history.undo_label
-            self.status.emit(tr("Back at the start.") if label is None else tr("At the step: {label}.", label=label))
+            self.status.emit(tr("Back at the start.") if label is None else tr("Now at step: {label}.", label=label))

@@ -37,8 +37,8 @@ class FileKind:
 
 FILE_KINDS = (
     FileKind(".dxf", tr("DXF cut file, mm"), tr("Cut file in mm, DXF R2010, read back and checked"), True),
-    FileKind(".svg", tr("SVG cut file, mm"), tr("Cut file in mm for laser programs and Inkscape"), True),
-    FileKind(".pdf", tr("PDF cut sheet, mm"), tr("Cut sheet at 1:1, to print or to plot"), True),
+    FileKind(".svg", tr("SVG cut file, mm"), tr("Cut file in mm for laser software and Inkscape"), True),
+    FileKind(".pdf", tr("PDF cut sheet, mm"), tr("Cut sheet at 1:1, to print or plot"), True),
     FileKind(".png", tr("PNG picture"), tr("Picture of the opened sheet over its target"), False),
     FileKind(".gif", tr("GIF animation"), tr("The sheet opening from flat to the target angle"), False),
     FileKind(

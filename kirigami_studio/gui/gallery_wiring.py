@@ -64,10 +64,10 @@ class GalleryWiring(QObject):
         ready = not self.controller.running and candidate in self.controller.document.candidates
         for name, text, wanted in (
             ("pin", tr("Unpin") if mark is Mark.PINNED else tr("Pin"), lambda: self.controller.marking.pin(candidate)),
-            ("reject", tr("Take back") if mark is Mark.REJECTED else tr("Reject"), lambda: self.reject(candidate)),
+            ("reject", tr("Restore") if mark is Mark.REJECTED else tr("Reject"), lambda: self.reject(candidate)),
             ("alike", tr("More like this"), lambda: self._more_like(candidate)),
             ("compare", tr("Compare with chosen"), lambda: self.side_by_side.compare_with(candidate)),
-            ("dice", tr("Use its seed {seed}", seed=candidate.seed), lambda: self._use_seed(candidate)),
+            ("dice", tr("Use seed {seed}", seed=candidate.seed), lambda: self._use_seed(candidate)),
         ):
             action = QAction(icons.icon(name, self.window.palette_), text, menu)
             action.setObjectName(name)
@@ -123,4 +123,4 @@ class GalleryWiring(QObject):
         for name in ("pin", "reject"):
             actions[name].setEnabled(chosen is not None)
         actions["pin"].setText(tr("Un&pin design") if chosen is Mark.PINNED else tr("&Pin design"))
-        actions["reject"].setText(tr("Take design &back") if chosen is Mark.REJECTED else tr("Re&ject design"))
+        actions["reject"].setText(tr("Re&store design") if chosen is Mark.REJECTED else tr("Re&ject design"))

@@ -117,14 +117,14 @@ class HandWiring(QObject):
         if voids:
             self.hand.lock(voids, not voids <= self.controller.document.locked)
         else:
-            self.controller.status.emit(tr("Point at a void, or select some, then press L to lock them."))
+            self.controller.status.emit(tr("Point at a void or select some, then press L to lock them."))
 
     def _show_menu(self, void: Void, place: QPoint) -> None:
         voids, locked = self.gestures.selected, self.controller.document.locked
         self.menu = QMenu(self.window)
         lock = self.menu.addAction(tr("Unlock") if voids <= locked else tr("Lock"))
         lock.triggered.connect(self.toggle_lock)
-        even = self.menu.addAction(tr("Make the ratio 1"))
+        even = self.menu.addAction(tr("Set ratio to 1"))
         even.setEnabled(not voids <= locked)
         even.triggered.connect(lambda: self.hand.set_ratio(voids, 1.0))
         self.menu.addSeparator()

@@ -123,7 +123,7 @@ class Shell(QMainWindow):
 
     def _build_status(self) -> None:
         self.says = QLabel()
-        self.says.setAccessibleName(tr("What happens"))
+        self.says.setAccessibleName(tr("Status"))
         self.says.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
         self.facts = QLabel()
         bar = self.statusBar()

@@ -46,7 +46,7 @@ class SideBySide(QObject):
         """Show a design beside the chosen one."""
         stage = self.controller.stage
         if stage is None or candidate == stage.candidate:
-            sentence = tr("This is the chosen design itself; Ctrl+click another card to compare the two.")
+            sentence = tr("This is the chosen design. Ctrl+click another card to compare.")
             self.controller.message.emit(Message(sentence, Tone.HINT))
             return
         self._compared = candidate
@@ -59,7 +59,7 @@ class SideBySide(QObject):
             self._compared = view.beside(stage.candidate)
         if on and (stage is None or self.compared is None):
             self._show_switches(False)
-            sentence = tr("There is nothing to compare yet; it takes two designs in the gallery.")
+            sentence = tr("Nothing to compare yet. The gallery needs two designs.")
             self.controller.message.emit(Message(sentence, Tone.HINT))
             return
         if on and not self.window.stage.comparing:

@@ -42,38 +42,38 @@ def steps_of(window: Shell, controller: Controller) -> tuple[Step, ...]:
     return (
         Step(
             lambda: window.target,
-            tr("The silhouette you want"),
-            tr("Draw one (D), open a picture or drawing (Ctrl+O), or take one from the library (Ctrl+L)."),
+            tr("Choose a target"),
+            tr("Draw one (D), open a picture or drawing (Ctrl+O), or choose one from the library (Ctrl+L)."),
             (controller.targeting.replaced,),
         ),
         Step(
             lambda: window.run.generate,
-            tr("Designs for it"),
-            tr("Generate (Ctrl+G): the bundled model draws several sheets, each is then fitted to the silhouette."),
+            tr("Generate designs"),
+            tr("Generate (Ctrl+G): the model makes several designs and fits each one to the target."),
             (controller.run.started,),
         ),
         Step(
             lambda: window.gallery,
             tr("Compare"),
-            tr("Candidates arrive best first: sIoU says how well each one matches. Choose one by a click or PgDown."),
+            tr("Designs arrive best first; sIoU shows how well each matches. Click one, or press PgDown."),
             (window.gallery.view.chosen,),
         ),
         Step(
             lambda: stage.deployment,
             tr("Open the sheet"),
-            tr("Drag the angle from 180°, flat as it is cut, to the target; Space plays. Contacts are yellow."),
+            tr("Drag the angle from 180° (flat) to the target, or press Space to play. Contacts are yellow."),
             (slider.sliderPressed, slider.actionTriggered, stage.deployment.play.toggled),
         ),
         Step(
             lambda: stage.cuts_switch,
-            tr("What the machine cuts"),
-            tr("Cuts (C) shows the cut plan in order. Click a connector there to change how wide it stays, in mm."),
+            tr("Check the cuts"),
+            tr("Cuts (C) shows the cut plan in cutting order. Click a connector to change its width in mm."),
             (stage.cuts_switch.clicked,),
         ),
         Step(
             lambda: _shown(window.fabrication.export, window.fabrication),
-            tr("To the machine"),
-            tr("Choose a material and a width in mm, then export a DXF (Ctrl+E): it is read back before it appears."),
+            tr("Export"),
+            tr("Choose a material and a width, then export a DXF (Ctrl+E). The file is read back and checked."),
             (controller.cutting.exported,),
         ),
     )

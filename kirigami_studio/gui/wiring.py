@@ -166,7 +166,7 @@ class Wiring(QObject):
         if has_target:
             self.window.stage.view.set_hint("generate", tr("Ready to design"), tr("Press Generate (Ctrl+G)."))
         else:
-            hint = tr("Open a file (Ctrl+O), choose from the library (Ctrl+L) or draw a silhouette on the left.")
+            hint = tr("Open a file (Ctrl+O), choose from the library (Ctrl+L), or draw a silhouette on the left.")
             self.window.stage.view.set_hint("target", tr("Start with a target"), hint)
 
     def _show_history(self) -> None:
@@ -247,10 +247,8 @@ class Wiring(QObject):
     def _show_run(self, total: int) -> None:
         self.window.run.show_running(total)
         self.window.stage.set_trimmable(False)
-        self.window.gallery.view.set_hint(tr("Generating …"), tr("The first designs appear in a moment."))
-        self.window.stage.view.set_hint(
-            "generate", tr("Generating …"), tr("The best design so far will be shown here.")
-        )
+        self.window.gallery.view.set_hint(tr("Generating …"), tr("The first designs appear shortly."))
+        self.window.stage.view.set_hint("generate", tr("Generating …"), tr("The best design so far appears here."))
         self.window.fabrication.show_waiting()
         self.window.stage.cuts.show_plan(None)
         self.window.actions_["cancel"].setEnabled(True)
@@ -263,7 +261,7 @@ class Wiring(QObject):
         self.window.stage.set_trimmable(True)
         self.window.run.show_ready(has_target)
         self._show_hints(has_target)
-        hint = tr("Candidates appear here, best first, while they are generated.")
+        hint = tr("Designs appear here, best first, as they are generated.")
         self.window.gallery.view.set_hint(tr("No designs yet"), hint)
         self.window.actions_["cancel"].setEnabled(False)
         self.window.actions_["generate"].setEnabled(has_target)

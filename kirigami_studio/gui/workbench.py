@@ -135,7 +135,7 @@ class Workbench(QObject):
 
     def _run_cancelled(self) -> None:
         self.showing.show(self.document)
-        self.status.emit(tr("Generation stopped; nothing was changed."))
+        self.status.emit(tr("Generation stopped; nothing changed."))
         self.stopped.offer(self.run.so_far())
 
     def _run_failed(self, sentence: str, trace: str) -> None:
@@ -250,9 +250,9 @@ class Workbench(QObject):
         """Tell why nothing was changed."""
         self.document_changed.emit(self.document)  # so that the control shows the value that holds
         self.message.emit(Message(str(error), Tone.ERROR))
-        self.status.emit(tr("Nothing was changed."))
+        self.status.emit(tr("Nothing changed."))
 
     def tell_failure(self, sentence: str, trace: str) -> None:
         """Say what went wrong, with the trace behind it."""
         self.message.emit(Message(sentence, Tone.ERROR, trace))
-        self.status.emit(tr("That did not succeed; nothing was changed."))
+        self.status.emit(tr("That failed; nothing changed."))

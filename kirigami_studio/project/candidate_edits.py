@@ -39,7 +39,7 @@ def set_mark(document: Document, index: int, mark: Mark, chosen: int | None = No
         Mark.REJECTED: tr("Reject design {number}", number=index + 1),
         Mark.NONE: tr("Unpin design {number}", number=index + 1)
         if before is Mark.PINNED
-        else tr("Take design {number} back", number=index + 1),
+        else tr("Restore design {number}", number=index + 1),
     }
     return Edit(
         labels[mark], replace(document, marks=tuple(marks), chosen=document.chosen if chosen is None else chosen)

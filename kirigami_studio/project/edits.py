@@ -74,18 +74,18 @@ DECIMALS = 4
 _LABELS = {
     "grid": tr("Change the grid"),
     "phi": tr("Change the target angle"),
-    "k": tr("Change the number of candidates"),
+    "k": tr("Change the number of designs"),
     "seed": tr("Change the seed"),
-    "variant": tr("Change the generator"),
+    "variant": tr("Change the model"),
     "steps": tr("Change the number of sampling steps"),
-    "polish": tr("Change the polish"),
-    "prefer": tr("Change the preference"),
-    "search": tr("Change the search"),
-    "width_mm": tr("Change the sheet's width"),
+    "polish": tr("Change the polish setting"),
+    "prefer": tr("Change the polish preference"),
+    "search": tr("Change the search setting"),
+    "width_mm": tr("Change the sheet width"),
     "material": tr("Change the material"),
     "connector_mm": tr("Change the connector width"),
     "kerf_mm": tr("Change the kerf"),
-    "options": tr("Change the cuts"),
+    "options": tr("Change the cut options"),
     "profile": tr("Change the machine profile"),
     "dxf_version": tr("Change the DXF version"),
     "style": tr("Change the connector style"),
@@ -201,7 +201,7 @@ def choose(document: Document, index: int | None) -> Edit:
     ProjectError
         There is no such candidate.
     """
-    label = tr("Choose no design") if index is None else tr("Choose design {number}", number=index + 1)
+    label = tr("Deselect the design") if index is None else tr("Choose design {number}", number=index + 1)
     return Edit(label, replace(document, chosen=index))
 
 

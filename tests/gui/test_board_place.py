@@ -129,7 +129,7 @@ def test_that_lost_designs_are_told_and_brought_back_over_several_changes(design
     designed.target.refine.sliders["smooth"].setValue(50)
     assert len(lost(designed)) == 1
     label, act = lost(designed)[0].actions[0]
-    assert label == "Bring back"
+    assert label == "Restore"
     act()
     assert designed.controller.document is before
     assert not lost(designed)

@@ -184,7 +184,7 @@ def test_that_hovering_tells_number_and_widths(cutting: MainWindow) -> None:
     page = cutting.stage.cuts
     hinge = lonely(page, 1)[0]
     told = page.view._hover(QPointF(place(page, hinge)))
-    assert told == f"Hinge {hinge}: asked for 0.200 mm, finished 0.200 mm"
+    assert told == f"Connector {hinge}: 0.200 mm requested, 0.200 mm finished"
 
 
 def test_that_hidden_connectors_take_no_clicks(cutting: MainWindow, qtbot: QtBot) -> None:

@@ -237,7 +237,7 @@ def test_that_shapes_are_added_and_taken_away_where_they_are_drawn(plate: MainWi
     assert plate.target.view.tool is Tool.RECTANGLE
     plate.target.tools.set_mode(Combine.SUBTRACT)
     drag(plate, (-30, -20), (0, 20))
-    assert plate.controller.history.undo_label == "Take away rectangle"
+    assert plate.controller.history.undo_label == "Subtract rectangle"
     assert placed(plate).polygon.bounds == pytest.approx((0, -10, 40, 30), abs=1e-4)
     for bounds in ((-20, -10, 40, 30), (-20, -10, 20, 10)):
         plate.actions_["undo"].trigger()

@@ -85,7 +85,7 @@ def test_that_an_unwritable_place_leads_to_a_message(
 def test_that_export_without_a_design_says_what_to_do_first(heart: MainWindow) -> None:
     assert not heart.fabrication.export.isEnabled() and not heart.actions_["export"].isEnabled()
     heart.commands.export()
-    assert "generate one first" in heart.messages.messages[-1].sentence
+    assert "Generate one first" in heart.messages.messages[-1].sentence
 
 
 def test_that_slots_are_summed_up_with_the_length_that_their_file_has(

@@ -49,4 +49,4 @@ def test_that_every_reason_against_a_design_is_told(designs: Document) -> None:
     bad = replace(candidate.score, feasible=False, n_invalid=0, contact=None, overlap_ratio=0.0312)
     assert problems(replace(candidate, score=bad)) == ["Panels overlap by 3.12 % of their area."]
     worse = replace(bad, n_invalid=2)
-    assert problems(replace(candidate, score=worse)) == ["2 invalid panel(s) or void(s)."]
+    assert problems(replace(candidate, score=worse)) == ["Invalid panels or voids: 2."]

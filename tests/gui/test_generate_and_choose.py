@@ -89,7 +89,7 @@ def test_that_a_cancelled_run_leaves_the_document_unchanged(heart: MainWindow, q
     assert heart.controller.document is before
     assert heart.gallery.view.model_.rowCount() == 0
     assert heart.controller.stage is None
-    assert "nothing was changed" in heart.says.text()
+    assert "nothing changed" in heart.says.text()
 
 
 def stop_early(heart: MainWindow, until: Until, count: int = 400) -> None:

@@ -81,10 +81,10 @@ def test_that_shown_rejected_designs_are_taken_back_by_the_same_button(designed:
     designed.gallery.view.setFocus()
     qtbot.keyClick(designed.gallery.view, Qt.Key.Key_Delete)
     assert designed.controller.document.chosen == 0 and designed.gallery.view.model_.rowCount() == 3
-    assert designed.actions_["reject"].text().replace("&", "") == "Take design back"
+    assert designed.actions_["reject"].text().replace("&", "") == "Restore design"
     press_button(designed, qtbot, 0, CardButton.REJECT)
     assert designed.controller.document.marks[0] is Mark.NONE
-    assert designed.controller.history.undo_label == "Take design 1 back"
+    assert designed.controller.history.undo_label == "Restore design 1"
 
 
 def test_that_the_key_pins_the_chosen_design(designed: MainWindow, qtbot: QtBot) -> None:
@@ -124,7 +124,7 @@ def test_that_a_design_of_a_run_under_way_is_not_marked_yet(designed: MainWindow
     stranger = designed.controller.document.candidates[0]
     designed.controller.new_project()
     designed.controller.marking.pin(stranger)
-    assert "wait until the run" in designed.messages.messages[-1].sentence
+    assert "Wait for the run" in designed.messages.messages[-1].sentence
     assert designed.controller.document.marks == ()
 
 

@@ -138,7 +138,7 @@ def test_that_a_measured_coupon_sets_the_kerf(editor: MaterialEditor, qtbot: QtB
     assert library().materials[editor.chosen.key].kerf_mm == pytest.approx(expected.kerf_mm, abs=5e-4)
 
 
-@pytest.mark.parametrize(("typed", "said"), [("wide", "numbers of mm"), ("-1", "gap beside the comb")])
+@pytest.mark.parametrize(("typed", "said"), [("wide", "gaps in mm"), ("-1", "gap beside the comb")])
 def test_that_a_gap_that_cannot_be_is_a_sentence(editor: MaterialEditor, qtbot: QtBot, typed: str, said: str) -> None:
     press(editor, qtbot, "copy")
     before = editor.form.numbers["kerf_mm"].value()

@@ -98,12 +98,12 @@ def test_that_designs_that_are_there_already_are_not_added_again(drawn: MainWind
     controller.run.start(request, before.candidates)
     until(lambda: not controller.running)
     assert controller.document is before and tuple(shown(drawn)) == before.candidates
-    assert drawn.says.text() == "Nothing new: all 3 designs were there already."
+    assert drawn.says.text() == "No new designs; 3 already in the gallery."
 
 
 @pytest.mark.torch
 @pytest.mark.parametrize(
-    ("staying", "told"), [(1, "2 designs added, 1 was there already, "), (2, "1 design added, 2 were there already, ")]
+    ("staying", "told"), [(1, "2 designs added, 1 already there, "), (2, "1 design added, 2 already there, ")]
 )
 def test_that_designs_that_were_there_already_are_counted(
     drawn: MainWindow, until: Until, staying: int, told: str
@@ -116,7 +116,7 @@ def test_that_designs_that_were_there_already_are_counted(
     controller.run.start(request, fewer.candidates)
     until(lambda: not controller.running)
     assert controller.document.candidates == whole.candidates
-    assert drawn.says.text().startswith(told + "best of them sIoU ")
+    assert drawn.says.text().startswith(told + "best sIoU ")
 
 
 @pytest.mark.torch
@@ -196,7 +196,7 @@ def test_that_more_like_this_adds_designs_near_the_chosen_one(drawn: MainWindow,
     assert controller.document.provenance["nearness"] == "0.9"
     assert {one.seed for one in near} == {1}
     tips = [str(drawn.gallery.view.model_.index(row, 0).data(Qt.ItemDataRole.ToolTipRole)) for row in range(4)]
-    assert any("drawn near another design" in tip for tip in tips)
+    assert any("generated near another design" in tip for tip in tips)
 
 
 @pytest.mark.torch
@@ -217,7 +217,7 @@ def test_that_generate_keeps_pinned_designs_of_the_same_grid_only(drawn: MainWin
     assert shown(drawn) == []
     until(lambda: not controller.running)
     assert len(controller.document.candidates) == 3 and set(controller.document.marks) == {Mark.NONE}
-    assert "left behind" in drawn.messages.messages[-1].sentence
+    assert "removed" in drawn.messages.messages[-1].sentence
 
 
 @pytest.mark.torch

@@ -238,7 +238,7 @@ def test_that_a_vertex_that_cannot_move_says_so_and_holds_nothing_back(by_hand: 
     hand, before = by_hand.controller.hand, chosen(by_hand)
     hand.lock_all(True)
     place = take(by_hand, top_of(by_hand), *UP)
-    until(lambda: "does not reach that far" in by_hand.says.text())
+    until(lambda: "can't reach that far" in by_hand.says.text())
     QTest.mouseMove(by_hand.stage.view, place + QPoint(0, -3))
     let_go(by_hand, place)
     done: list[bool] = []

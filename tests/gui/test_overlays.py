@@ -190,7 +190,7 @@ def test_that_a_fault_is_brought_to_the_middle_by_key_and_by_click(designed: Mai
 
 def test_that_a_design_without_faults_says_so(designed: MainWindow, qtbot: QtBot) -> None:
     designed.actions_["next_fault"].trigger()
-    assert designed.says.text().startswith("No fault")
+    assert designed.says.text().startswith("No faults")
 
 
 def test_that_an_overlap_is_marked_where_it_is_at_the_angle_that_is_shown(posed: PosedDesign) -> None:
@@ -233,7 +233,7 @@ def test_that_labels_and_colour_bars_stay_inside_a_narrow_view(qtbot: QtBot) -> 
     picture = QImage(width, 200, QImage.Format.Format_RGB32)
     picture.fill(0xFFFF00FF)
     painter = QPainter(picture)
-    chips = [Chip(LIGHT.text, "off 0.18 mm, at most 2.06 mm"), Chip(LIGHT.extra, "extra")]
+    chips = [Chip(LIGHT.text, "off by 0.18 mm (max 2.06 mm)"), Chip(LIGHT.extra, "extra")]
     boxes = legend_boxes(chips, QFontMetrics(painter.font()), width, 200.0)
     assert all(box.left() > 0 and box.right() < width for box in boxes)
     paint_legend(painter, chips, boxes, LIGHT)

@@ -87,7 +87,7 @@ def test_that_what_is_no_target_leads_to_a_hint(window: MainWindow, content: str
     QGuiApplication.clipboard().setMimeData(text(content))
     window.actions_["paste"].trigger()
     message = window.messages.messages[-1]
-    assert message.tone is Tone.HINT and "copy one of them" in message.sentence
+    assert message.tone is Tone.HINT and "Copy a picture, file, SVG or path" in message.sentence
 
 
 def test_that_a_path_that_is_broken_leads_to_a_sentence(window: MainWindow, until: Until) -> None:

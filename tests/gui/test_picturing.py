@@ -22,7 +22,7 @@ from kirigami_studio.gui.main_window import MainWindow
 from kirigami_studio.gui.views.canvas import Canvas
 
 Until = Callable[[Callable[[], bool]], None]
-NAMES = ["Target silhouette", "Cut preview", "Candidate designs, best first", "Whole window"]
+NAMES = ["Target silhouette", "Cut preview", "Design gallery", "Whole window"]
 SVG = "{http://www.w3.org/2000/svg}"
 
 
@@ -184,4 +184,4 @@ def test_that_without_a_design_nothing_is_copied_and_that_is_said(window: MainWi
     QGuiApplication.clipboard().setText("before")
     window.actions_["copy_cuts"].trigger()
     assert QGuiApplication.clipboard().text() == "before"
-    assert "no design to copy" in window.messages.messages[-1].sentence
+    assert "No design to copy" in window.messages.messages[-1].sentence

@@ -67,7 +67,7 @@ def test_that_a_run_gets_the_preference_and_tells_how_far_polish_and_search_are(
     told = [text for text in said if text.startswith("Polished")]
     assert told and all(re.fullmatch(r"Polished [12] of 2 \(best \d+\.\d %\)", text) for text in told)
     assert max(rises) > 0.0 and rises[0] == 0.0
-    assert any(text.startswith("The search found a design") for text in said)
+    assert any(text.startswith("Search found a design") for text in said)
     candidates = heart.controller.document.candidates
     assert sorted(candidate.index for candidate in candidates) == [0, 1, 2]
     assert all(entry.rise == 0.0 for entry in heart.gallery.view.model_.entries)

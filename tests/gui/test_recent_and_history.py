@@ -75,7 +75,7 @@ def test_that_a_missing_file_is_grey_and_a_present_one_opens(
     menu = window.commands.recent
     menu.aboutToShow.emit()
     until(lambda: not menu.entries[str(gone)].isEnabled())
-    assert menu.entries[str(project_file)].isEnabled() and "not there" in menu.entries[str(gone)].toolTip()
+    assert menu.entries[str(project_file)].isEnabled() and "no longer exists" in menu.entries[str(gone)].toolTip()
     menu.entries[str(project_file)].trigger()
     until(lambda: window.controller.document.candidates == designs.candidates)
     next(action for action in menu.actions() if action.objectName() == "clearRecent").trigger()
@@ -200,7 +200,7 @@ def steps(designed: MainWindow, qtbot: QtBot) -> HistoryList:
 def test_that_the_history_names_every_step_and_a_click_goes_there(
     steps: HistoryList, designed: MainWindow, designs: Document, qtbot: QtBot
 ) -> None:
-    rows, width = steps.steps, "Change the sheet's width"
+    rows, width = steps.steps, "Change the sheet width"
     assert [rows.item(row).text() for row in range(4)] == ["Start", "Choose design 2", width, width]
     assert rows.currentRow() == 3 and "3 steps" in steps.counted.text()
     place = rows.visualItemRect(rows.item(1)).center()

@@ -59,7 +59,7 @@ def kill_a_studio(folder: Path, project: Path) -> None:
 
 
 def asked(window: MainWindow) -> list[Message]:
-    return [one for one in window.messages.messages if "ended unexpectedly" in one.sentence]
+    return [one for one in window.messages.messages if "quit unexpectedly" in one.sentence]
 
 
 def kept_files(folder: Path) -> list[Path]:
@@ -217,7 +217,7 @@ def test_that_a_place_that_cannot_be_written_is_told_once_and_the_work_goes_on(
         heart.controller.change_fabrication(width_mm=width)
         heart.controller.end_drag()
         until(lambda: not heart.controller.queue.busy and not recovering.waiting)
-    told = [one for one in heart.messages.messages if "cannot be kept" in one.sentence]
+    told = [one for one in heart.messages.messages if "Could not save" in one.sentence]
     assert len(told) == 1 and told[0].tone is Tone.WARNING
     assert heart.controller.document.fabrication.width_mm == 90.0
     if obstacle == "file":

@@ -121,7 +121,7 @@ def test_that_filters_leave_designs_out_and_the_head_counts_them(
 def test_that_an_empty_gallery_offers_to_take_the_filter_off(designed: MainWindow, qtbot: QtBot) -> None:
     view, bar = designed.gallery.view, designed.gallery.bar
     bar.pinned.setChecked(True)
-    assert shown(designed) == [] and view.hint[0] == "No design passes the filter"
+    assert shown(designed) == [] and view.hint[0] == "No design matches the filter"
     assert designed.controller.stage is not None and designed.controller.document.chosen == 0
     qtbot.mouseClick(view.viewport(), LEFT, pos=view.viewport().rect().center())
     assert len(shown(designed)) == 3 and not bar.pinned.isChecked()

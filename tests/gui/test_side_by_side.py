@@ -148,7 +148,7 @@ def test_that_the_comparison_ends_with_its_design(designed: MainWindow, qtbot: Q
     until(lambda: not designed.stage.comparing)
     qtbot.keyClick(designed, Qt.Key.Key_K)
     assert not designed.stage.comparing and not designed.actions_["compare"].isChecked()
-    assert "takes two designs" in designed.messages.messages[-1].sentence
+    assert "needs two designs" in designed.messages.messages[-1].sentence
 
 
 def test_that_the_chosen_card_is_not_compared_with_itself(designed: MainWindow, qtbot: QtBot) -> None:

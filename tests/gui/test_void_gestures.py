@@ -292,7 +292,7 @@ def test_that_a_trim_goes_with_the_first_change_and_comes_back_with_undo(by_hand
     assert trimmed.trim is not None and by_hand.stage.view.design.deployment.field == trimmed.trim.field
     turn(by_hand.stage.view, middle_of(by_hand.stage.view, (1, 2)), 1)
     settle(by_hand, until)
-    assert chosen(by_hand).trim is None and "trim is off" in by_hand.says.text()
+    assert chosen(by_hand).trim is None and "Trim removed" in by_hand.says.text()
     seen, now = trimmed.trim.field.ratio, chosen(by_hand).field.ratio  # what was seen is what was changed
     assert np.argwhere(now != seen).tolist() == [[1, 2]] and now[1, 2] > seen[1, 2]
     by_hand.actions_["undo"].trigger()

@@ -173,7 +173,7 @@ def test_that_a_fit_that_finds_nothing_better_is_taken_only_when_asked(
     controller = by_hand.controller
     fit_in_vain(by_hand, until)
     message = by_hand.messages.messages[-1]
-    assert message.sentence.startswith("The fit found nothing better")
+    assert message.sentence.startswith("No better fit found")
     message.actions[0][1]()
     assert chosen(by_hand).polished and controller.history.undo_label == "Fit design 1"
 
@@ -183,7 +183,7 @@ def test_that_a_stopped_fit_changes_nothing(by_hand: MainWindow) -> None:
     by_hand.actions_["refit"].trigger()
     by_hand.actions_["cancel"].trigger()
     assert not by_hand.controller.refitting.busy and by_hand.controller.document == before
-    assert by_hand.says.text() == "Fitting stopped; nothing was changed."
+    assert by_hand.says.text() == "Fitting stopped; nothing changed."
 
 
 def test_that_locks_and_changed_designs_are_saved_and_reopened(
@@ -216,9 +216,9 @@ def test_that_there_is_nothing_to_edit_without_a_design_or_before_its_polish(hea
 def test_that_a_fit_that_is_out_of_date_says_so_instead_of_doing_nothing(by_hand: MainWindow, until: Until) -> None:
     controller, messages = by_hand.controller, by_hand.messages
     fit_in_vain(by_hand, until)
-    assert "stays as it was" in by_hand.says.text()
+    assert "is unchanged" in by_hand.says.text()
     ((label, act),) = messages.messages[-1].actions
-    assert label == "Take it anyway"
+    assert label == "Apply anyway"
     controller.hand.set_ratio(frozenset({(1, 1)}), 2.0)
     controller.hand.commit()
     until(lambda: not controller.hand.busy)
@@ -234,11 +234,11 @@ def test_that_a_fit_is_not_taken_when_voids_were_locked_since(by_hand: MainWindo
     controller.hand.lock(frozenset({(1, 1)}), True)  # the one that the fit has moved
     before = controller.document
     act()
-    assert controller.document is before and "Voids were locked since that fit" in by_hand.says.text()
+    assert controller.document is before and "Voids were locked since the fit" in by_hand.says.text()
     controller.hand.lock(frozenset({(1, 1), (2, 2)}), False)  # fewer locks than the fit has held
     act()
     assert chosen(by_hand).polished and controller.history.undo_label == "Fit design 1"
-    assert by_hand.says.text().startswith("Taken: sIoU ")
+    assert by_hand.says.text().startswith("Fit applied: sIoU ")
 
 
 def test_that_a_void_that_is_locked_during_a_fit_keeps_its_ratio(by_hand: MainWindow, until: Until) -> None:
@@ -246,7 +246,7 @@ def test_that_a_void_that_is_locked_during_a_fit_keeps_its_ratio(by_hand: MainWi
     by_hand.actions_["refit"].trigger()
     controller.hand.lock(frozenset({(1, 1)}), True)
     until(lambda: not controller.refitting.busy)
-    assert chosen(by_hand) == before and "Voids were locked since that fit" in by_hand.says.text()
+    assert chosen(by_hand) == before and "Voids were locked since the fit" in by_hand.says.text()
 
 
 def test_that_fit_again_trims_a_trimmed_design_again_with_what_is_locked_as_it_is_seen(
@@ -278,7 +278,7 @@ def test_that_a_trim_that_cannot_be_made_again_is_said_to_be_off(by_hand: MainWi
     by_hand.actions_["refit"].trigger()
     until(lambda: not controller.refitting.busy)
     assert chosen(by_hand).trim is None and chosen(by_hand).polished
-    assert "Its trim is off: Connectors of 1.2 mm leave nothing to trim" in by_hand.says.text()
+    assert "Trim removed: Connectors of 1.2 mm leave nothing to trim" in by_hand.says.text()
 
 
 def test_that_no_ratio_is_shown_while_no_void_is_selected(by_hand: MainWindow) -> None:

@@ -62,7 +62,7 @@ def test_that_a_deleted_own_material_is_still_cut_and_can_be_taken_over(
     assert fabrication.material.currentText() == "My film"
     assert fabrication.lengths["connector_mm"].value() == 0.41 and fabrication.lengths["kerf_mm"].value() == 0.07
     assert fabrication.numbers["ligament"].text() == "0.41 mm"
-    (message,) = told(window, "is not among yours")
+    (message,) = told(window, "You don't have the material")
     assert "My film" in message.sentence
     # Saving keeps the numbers although they are not in stock.
     window.controller.save(tmp_path / "again.kiri")
@@ -79,8 +79,8 @@ def test_that_the_own_stock_wins_over_what_a_project_knew(window: MainWindow, ow
     window.controller.open_project(own_project)
     until(lambda: window.fabrication.export.isEnabled())
     assert window.fabrication.numbers["ligament"].text() == "0.55 mm"
-    (message,) = told(window, "has other numbers")
-    assert message.details == "connector_mm: 0.41 in the project, 0.55 in stock"
+    (message,) = told(window, "differs from the project's")
+    assert message.details == "connector_mm: 0.41 in the project, 0.55 in your materials"
 
 
 def test_that_a_preset_is_not_carried(designs: Document, tmp_path: Path) -> None:
@@ -156,14 +156,14 @@ def test_that_a_recovered_project_brings_its_photo(
     assert own is not None and store.load_all(own).picture == opened.picture
 
 
-@pytest.mark.parametrize("fault", ["missing", "no picture", "no name", "too large", "no number"])
+@pytest.mark.parametrize("fault", ["missing", "Nothing to paste", "no name", "too large", "no number"])
 def test_that_a_photo_that_cannot_be_read_is_left_out_with_a_sentence(
     fault: str, window: MainWindow, traced_project: Path, until: Until
 ) -> None:
     def spoil(members: dict[str, bytes]) -> None:
         if fault == "missing":
             del members["picture.png"]
-        elif fault == "no picture":
+        elif fault == "Nothing to paste":
             members["picture.json"] = members["picture.json"].replace(b"two greys.png", b"../../evil.png")
         elif fault == "no name":
             members["picture.json"] = members["picture.json"].replace(b"two greys.png", rb"two\u0000greys.png")

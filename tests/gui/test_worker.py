@@ -78,7 +78,7 @@ def test_that_a_cancelled_job_says_so_and_stops(queue: JobQueue, until: Until) -
     ("error", "expected"),
     [
         (TargetError("The file is empty; choose another."), "The file is empty; choose another."),
-        (ZeroDivisionError("division by zero"), "Something unexpected went wrong while dividing: division by zero."),
+        (ZeroDivisionError("division by zero"), "Unexpected error while dividing: division by zero."),
     ],
 )
 def test_that_a_failure_is_a_sentence_with_a_trace(

@@ -24,7 +24,7 @@ from kirigami_studio.project.settings import FabricationSettings
 
 #: Changes that follow each other faster than this (ms) lead to one plan.
 PLAN_DELAY_MS = 120
-TRIM_AGAIN = tr(" Or take the trim off and trim again: it then keeps what these widths need.")
+TRIM_AGAIN = tr(" Or untrim and trim again to make room for these widths.")
 
 
 class Cutting(QObject):
@@ -68,24 +68,24 @@ class Cutting(QObject):
 
     def export(self, request: steps.CutRequest, path: Path) -> None:
         """Write a cut file or a picture, by the extension."""
-        self.status.emit(tr("Writing {name} …", name=path.name))
+        self.status.emit(tr("Exporting {name} …", name=path.name))
         callbacks = JobCallbacks(self._written, on_failed=self._not_written)
-        self._queue.start(tr("writing {name}", name=path.name), partial(steps.exporting, request, path), callbacks)
+        self._queue.start(tr("exporting {name}", name=path.name), partial(steps.exporting, request, path), callbacks)
 
     def export_all(self, request: steps.CutRequest, folder: Path, name: str) -> None:
         """Write everything that there is of a design into a folder."""
-        self.status.emit(tr("Writing into {name} …", name=folder.name))
+        self.status.emit(tr("Exporting to {name} …", name=folder.name))
         work = partial(steps.exporting_all, request, folder, name)
         self._queue.start(
-            tr("writing into {name}", name=folder.name), work, JobCallbacks(self._written, on_failed=self._not_written)
+            tr("exporting to {name}", name=folder.name), work, JobCallbacks(self._written, on_failed=self._not_written)
         )
 
     def export_coupon(self, material: Material, path: Path, settings: FabricationSettings) -> None:
         """Write the calibration coupon of a material."""
-        self.status.emit(tr("Writing {name} …", name=path.name))
+        self.status.emit(tr("Exporting {name} …", name=path.name))
         work = partial(steps.exporting_coupon, material, path, settings)
         self._queue.start(
-            tr("writing {name}", name=path.name), work, JobCallbacks(self._written, on_failed=self._not_written)
+            tr("exporting {name}", name=path.name), work, JobCallbacks(self._written, on_failed=self._not_written)
         )
 
     def _written(self, report: object) -> None:
@@ -94,7 +94,7 @@ class Cutting(QObject):
         path, made = report.path, report.planned
         if made is None:
             self.status.emit(tr("Exported {path}.", path=path))
-            message = Message(tr("{name} was written.", name=path.name), Tone.DONE, str(path))
+            message = Message(tr("{name} exported.", name=path.name), Tone.DONE, str(path))
         else:
             self.status.emit(
                 tr(
@@ -109,7 +109,7 @@ class Cutting(QObject):
         self.exported.emit(report)
 
     def _not_written(self, sentence: str, trace: str) -> None:
-        self.status.emit(tr("The file was not written."))
+        self.status.emit(tr("Export failed."))
         self.message.emit(Message(sentence, Tone.ERROR, trace))
 
 
@@ -120,13 +120,13 @@ def told(path: Path, made: steps.Planned) -> Message:
     if check.ok:
         trimmed = tr(", trimmed outline") if made.removed_share else ""
         sentence = tr(
-            "{name} was written and read back: {count} cuts{trimmed}, no fault.",
+            "{name} exported and checked: {count} cuts{trimmed}, no faults.",
             name=tr("Folder “{name}”", name=path.name) if path.is_dir() else path.name,
             count=len(plan.paths),
             trimmed=trimmed,
         )
         return Message(sentence, Tone.DONE, details)
-    sentence = tr("{name} was written, but cutting it would fail: {text}", name=path.name, text=check.problems[0].text)
+    sentence = tr("{name} exported, but cutting it would fail: {text}", name=path.name, text=check.problems[0].text)
     return Message(sentence, Tone.WARNING, details)
 
 
@@ -198,15 +198,13 @@ class MaterialStore(QObject):
         known = library().materials.get(material.key)
         if known is None:
             sentence = tr(
-                "The material {name} is not among yours; its numbers came with the project and are used.",
+                "You don't have the material {name}; the project's own values are used.",
                 name=material.name,
             )
             keep = (tr("Add to my materials"), partial(self.keep, material))
             self.message.emit(Message(sentence, Tone.WARNING, actions=(keep,)))
         elif known != material:
-            sentence = tr(
-                "Your material {name} has other numbers than this project knew; yours are used.", name=known.name
-            )
+            sentence = tr("Your material {name} differs from the project's; yours is used.", name=known.name)
             self.message.emit(Message(sentence, Tone.WARNING, differences(material, known)))
 
     def keep(self, material: Material) -> None:
@@ -216,7 +214,7 @@ class MaterialStore(QObject):
         except KirigamiError as error:
             self.message.emit(Message(str(error), Tone.ERROR))
             return
-        self.status.emit(tr("{name} is among your materials now.", name=material.name))
+        self.status.emit(tr("Added {name} to your materials.", name=material.name))
         self.stocked.emit(material.key)
 
 
@@ -225,7 +223,7 @@ def differences(carried: Material, known: Material) -> str:
     entries = [name for name in Material.__dataclass_fields__ if getattr(carried, name) != getattr(known, name)]
     return "\n".join(
         tr(
-            "{entry}: {theirs} in the project, {ours} in stock",
+            "{entry}: {theirs} in the project, {ours} in your materials",
             entry=name,
             theirs=_told(carried, name),
             ours=_told(known, name),

@@ -93,7 +93,7 @@ class OneDesign(QObject):
 class TrimJob(OneDesign):
     """Trims at most one design at a time, off the window's thread, and proposes the edit that it leads to."""
 
-    stopped = tr("Trimming stopped; nothing was changed.")
+    stopped = tr("Trimming stopped; nothing changed.")
 
     def switch(self, on: bool) -> None:
         """Trim the chosen design, or bring back what was cut off; while it is being trimmed, stop that."""
@@ -106,7 +106,7 @@ class TrimJob(OneDesign):
             self._start(candidate)
         elif not on and candidate.trim is not None:
             self._replace(replace(candidate, trim=None), tr("Untrim"))
-            self.status.emit(tr("The design is whole again."))
+            self.status.emit(tr("Trim removed."))
 
     def _start(self, candidate: Candidate) -> None:
         document = self._document()
@@ -146,7 +146,7 @@ class TrimJob(OneDesign):
 class Refitting(OneDesign):
     """Fits at most one design at a time, off the window's thread, and proposes the edit that it leads to."""
 
-    stopped = tr("Fitting stopped; nothing was changed.")
+    stopped = tr("Fitting stopped; nothing changed.")
 
     def start(self) -> None:
         """Fit the chosen design by what the settings prefer."""
@@ -156,12 +156,12 @@ class Refitting(OneDesign):
             self.message.emit(Message(tr("Choose a finished design first, then fit it again."), Tone.HINT))
             return
         if len(document.locked) == candidate.field.ratio.size:
-            self.message.emit(Message(tr("Every void is locked; unlock those that the fit may change."), Tone.HINT))
+            self.message.emit(Message(tr("Every void is locked. Unlock the ones to fit."), Tone.HINT))
             return
         prefer, locked, cuts = document.settings.prefer, document.locked, document.fabrication
         work = partial(hand_steps.refitting, candidate, target, prefer, locked, cuts)
         self.begin(tr("fitting the design"), candidate, work)
-        self.status.emit(tr("Fitting {design} … Esc stops.", design=self.name()))
+        self.status.emit(tr("Fitting {design} … Press Esc to stop.", design=self.name()))
 
     def take(self, before: Candidate, report: object) -> None:
         """The worker has made something of the design."""
@@ -170,30 +170,30 @@ class Refitting(OneDesign):
         after = report.decoded.candidate
         numbers = {"before": 100 * before.score.siou, "after": 100 * after.score.siou}
         if report.better:
-            self._replace(before, report, tr("Fitted again: sIoU {before:.1f} % is now {after:.1f} %.", **numbers))
+            self._replace(before, report, tr("Fitted again: sIoU {before:.1f} % → {after:.1f} %.", **numbers))
         else:
-            told = tr("The fit found nothing better: sIoU {after:.2f} % after {before:.2f} %.", **numbers)
-            taken = tr("Taken: sIoU {after:.2f} % after {before:.2f} %.", **numbers)
-            actions = ((tr("Take it anyway"), partial(self._replace, before, report, taken)),)
+            told = tr("No better fit found: sIoU {after:.2f} %, was {before:.2f} %.", **numbers)
+            taken = tr("Fit applied: sIoU {after:.2f} %, was {before:.2f} %.", **numbers)
+            actions = ((tr("Apply anyway"), partial(self._replace, before, report, taken)),)
             self.message.emit(Message(told, Tone.HINT, actions=actions))
-            self.status.emit(tr("Fitted; the design stays as it was."))
+            self.status.emit(tr("Fitting finished; the design is unchanged."))
 
     def _replace(self, before: Candidate, report: hand_steps.Refitted, told: str) -> None:
         """Propose the edit and tell of it, unless the design or its locks have changed since the fit began."""
         after, label = report.decoded.candidate, tr("Fit {design}", design=self.name())
         edit = edits.take_changed(self._document(), before, after, label)
         if edit is None:
-            self.status.emit(tr("The design has changed since that fit; press Fit again (Ctrl+F)."))
+            self.status.emit(tr("The design has changed since the fit. Press Fit again (Ctrl+F)."))
             return
         if edits.moves_locked(self._document(), before, after):
-            self.status.emit(tr("Voids were locked since that fit; press Fit again (Ctrl+F)."))
+            self.status.emit(tr("Voids were locked since the fit. Press Fit again (Ctrl+F)."))
             return
         self._cache.put(after, report.decoded.deployment)
         self.edited.emit(edit)
         if after.trim is not None:
             told = tr("{told} Trimmed again: IoU {iou:.1f} %.", told=told, iou=100 * after.trim.iou)
         elif report.untrimmed:
-            told = tr("{told} Its trim is off: {reason}", told=told, reason=report.untrimmed)
+            told = tr("{told} Trim removed: {reason}", told=told, reason=report.untrimmed)
         self.status.emit(told)
 
 
@@ -223,7 +223,7 @@ class Comparing(QObject):
             self.known.emit(candidate, self._cache.entry(before))
             return
         callbacks = JobCallbacks(partial(self._take, candidate, target), on_failed=self.failed.emit)
-        self._slot.start(tr("scoring the drawn design"), partial(steps.comparing, candidate, target), callbacks)
+        self._slot.start(tr("scoring the unpolished design"), partial(steps.comparing, candidate, target), callbacks)
 
     def stop(self) -> None:
         """Forget what is still being scored."""

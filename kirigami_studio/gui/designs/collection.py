@@ -90,7 +90,7 @@ class Collecting(QObject):
             There are no designs to add to.
         """
         request = self._joining(target)
-        says = tr("Drawing {count} more designs from seed {seed} …", count=request.k, seed=request.seed)
+        says = tr("Generating {count} more designs from seed {seed} …", count=request.k, seed=request.seed)
         return self._joined(request, says)
 
     def alike(self, target: Outline, nearness: float) -> Plan:
@@ -103,16 +103,16 @@ class Collecting(QObject):
         """
         chosen = self._document().candidate
         if chosen is None:
-            raise UsageError(tr("Choose the design that others should be like first."))
+            raise UsageError(tr("Choose a design first, then generate more like it."))
         request = replace(self._joining(target), near=chosen.field, nearness=nearness, search=0)
         number = (self._document().chosen or 0) + 1
-        says = tr("Drawing {count} designs like design {number} …", count=request.k, number=number)
+        says = tr("Generating {count} designs like design {number} …", count=request.k, number=number)
         return self._joined(request, says)
 
     def _joining(self, target: Outline) -> Request:
         document = self._document()
         if not document.candidates:
-            raise UsageError(tr("There is no design to add to yet; press Generate first."))
+            raise UsageError(tr("No designs to add to yet. Press Generate first."))
         first = document.candidates[0]
         same = replace(document.settings, grid=first.field.ratio.shape, phi=first.score.phi, seed=next_seed(document))
         return request_of(target, same)
@@ -140,9 +140,7 @@ class Collecting(QObject):
         self.added = frozenset()
         staying = _staying(document, result.request)
         if not staying and Mark.PINNED in document.marks:
-            sentence = tr(
-                "The pinned designs are for another grid or angle and were left behind; Undo brings them back."
-            )
+            sentence = tr("Pinned designs for another grid or angle were removed. Undo restores them.")
             self.message.emit(Message(sentence, Tone.HINT))
             document = replace(document, marks=())
         brought = Brought(result.candidates, provenance, seed, result.request.target)
@@ -155,7 +153,8 @@ class Collecting(QObject):
         if plan is None or not plan.joins:
             score = result.best.score
             return tr(
-                "{count} designs in {seconds:.1f} s. Best: sIoU {siou:.1f} %, {siou_gain:+.1f} over the uniform sheet.",
+                "Generated {count} in {seconds:.1f} s. Best: sIoU {siou:.1f} %, {siou_gain:+.1f} over "
+                "the uniform sheet.",
                 count=len(result.candidates),
                 seconds=result.seconds,
                 siou=100 * score.siou,
@@ -163,11 +162,11 @@ class Collecting(QObject):
             )
         added = len(set(document.candidates) - set(before.candidates))
         if not added:
-            return tr("Nothing new: all {count} designs were there already.", count=result.repeats)
-        best = tr("best of them sIoU {siou:.1f} %", siou=100 * result.best.score.siou)
+            return tr("No new designs; {count} already in the gallery.", count=result.repeats)
+        best = tr("best sIoU {siou:.1f} %", siou=100 * result.best.score.siou)
         parts = [tr_n("{count} design added", "{count} designs added", added)]
         if result.repeats:
-            parts.append(tr_n("{count} was there already", "{count} were there already", result.repeats))
+            parts.append(tr_n("{count} already there", "{count} already there", result.repeats))
         return ", ".join([*parts, best]) + "."
 
 
@@ -221,7 +220,7 @@ class Marking(QObject):
     def _toggle(self, candidate: Candidate | None, mark: Mark, beside: Candidate | None) -> None:
         document = self._document()
         if candidate is None or candidate not in document.candidates:
-            sentence = tr("Only finished designs can be pinned or rejected; wait until the run is done.")
+            sentence = tr("Only finished designs can be pinned or rejected. Wait for the run to finish.")
             self.message.emit(Message(sentence, Tone.HINT))
             return
         index = document.candidates.index(candidate)
@@ -230,7 +229,7 @@ class Marking(QObject):
         chosen = document.candidates.index(beside) if moves and beside is not None else None
         edit = candidate_edits.set_mark(document, index, wanted, chosen)
         self.edited.emit(edit)
-        self.status.emit(tr("{what}. Undo takes it back.", what=edit.label))
+        self.status.emit(tr("{what}. Undo to revert.", what=edit.label))
 
 
 class StoppedRun(QObject):
@@ -256,8 +255,8 @@ class StoppedRun(QObject):
         self._drawn, self._held = drawn, (document.target, document.candidates)
         count = len(drawn[0].candidates)
         sentence = tr_n(
-            "Generation was stopped after {count} design; not all of the work on it was done.",
-            "Generation was stopped after {count} designs; not all of the work on them was done.",
+            "Stopped after {count} design; it may be unfinished.",
+            "Stopped after {count} designs; some may be unfinished.",
             count,
         )
         action = tr_n("Keep it", "Keep these designs", count)
@@ -303,11 +302,11 @@ class LostDesigns(QObject):
         if lost and self._history.undo_label is not None:
             count = len(before.candidates)
             sentence = tr_n(
-                "The design was for the old target; Undo brings it back.",
-                "The {count} designs were for the old target; Undo brings them back.",
+                "The design for the old target was removed. Undo restores it.",
+                "The {count} designs for the old target were removed. Undo restores them.",
                 count,
             )
-            self._open = Message(sentence, Tone.HINT, actions=((tr("Bring back"), self.bring_back),))
+            self._open = Message(sentence, Tone.HINT, actions=((tr("Restore"), self.bring_back),))
             self.message.emit(self._open)
         elif self._open is not None and (document.candidates or self._history.undo_label is None):
             self.found.emit(self._open)

@@ -92,7 +92,7 @@ class DesignRun(QObject):
         if isinstance(report, Progress):
             self.progressed.emit(report.done, report.total, report.message)
         elif isinstance(report, Started):
-            self.progressed.emit(0, report.total, tr("Starting {total} designs", total=report.total))
+            self.progressed.emit(0, report.total, tr("Starting (0 of {total})", total=report.total))
         elif isinstance(report, CandidateFound | CandidateImproved):
             self._take(report.candidate)
         elif isinstance(report, steps.Decoded):
@@ -116,7 +116,7 @@ class DesignRun(QObject):
         if candidate.index >= self._asked:
             self.told.emit(
                 tr(
-                    "The search found a design with sIoU {siou:.1f} % (best {best:.1f} %).",
+                    "Search found a design with sIoU {siou:.1f} % (best {best:.1f} %).",
                     siou=100 * siou,
                     best=100 * best,
                 )

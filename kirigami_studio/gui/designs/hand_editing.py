@@ -59,9 +59,9 @@ def score_sentence(label: str, before: Candidate, after: Candidate) -> str:
     gain = 100.0 * (after.score.siou - before.score.siou)
     told = tr("{gesture}: sIoU {siou:.1f} % ({gain:+.2f}).", gesture=label, siou=100 * after.score.siou, gain=gain)
     if not after.score.feasible:
-        told = tr("{told} The design is not feasible now.", told=told)
+        told = tr("{told} The design is not feasible.", told=told)
     if before.trim is not None:
-        told = tr("{told} Its trim is off; trim it again when you are done.", told=told)
+        told = tr("{told} Trim removed; trim again when you are done.", told=told)
     return told
 
 
@@ -249,14 +249,14 @@ class HandEditing(QObject):
         self._begin_drag()
         design, document = self._design(), self._document()
         if design is None or phi >= math.pi:
-            self.status.emit(tr("The flat sheet is a rectangle whatever the ratios; open it to move its outline."))
+            self.status.emit(tr("The flat sheet is always a rectangle. Open it to move its outline."))
             return
         held = np.zeros(design.deployment.field.ratio.shape, dtype=np.bool_)
         for void in document.locked:
             held[void] = True
         self._grasped = document.candidate
         self._outline.begin(Grasp(design, phi, vertex, held))
-        self.status.emit(tr("Working out how the outline can move …"))
+        self.status.emit(tr("Preparing the outline …"))
 
     @_in_turn
     def move_vertex(self, place: tuple[float, float]) -> None:
@@ -272,9 +272,11 @@ class HandEditing(QObject):
         self._seen = found.design
         self._draft(found.design.deployment.field, tr("Move outline"))
         if found.arrived:
-            self.status.emit(tr("The outline follows the hand."))
+            self.status.emit(tr("The outline follows the pointer."))
         elif found.stuck:
-            self.status.emit(tr("The outline does not reach that far: ratios, locks or matter stand in the way."))
+            self.status.emit(
+                tr("The outline can't reach that far: ratio limits, locked voids or panel collisions block it.")
+            )
 
     def _arrive(self) -> None:
         """The outline is where the hand has let go of it; now comes what the hand has done since."""
@@ -314,7 +316,7 @@ class HandEditing(QObject):
             self._restore()
         else:
             self._show_draft()
-        self.status.emit(tr("Let go; nothing was changed."))
+        self.status.emit(tr("Drag cancelled."))
 
     # drafts and edits ----------------------------------------------------------------------------------------------
 

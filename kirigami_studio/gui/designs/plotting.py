@@ -78,7 +78,7 @@ class Plotting(QObject):
         while len(self._known) > CAPACITY:
             self._known.popitem(last=False)
         callbacks = JobCallbacks(self._take, self._end, on_failed=self.failed.emit)
-        self._slot.start(tr("reading the curves"), partial(plotting, design, self._target), callbacks)
+        self._slot.start(tr("computing the plots"), partial(plotting, design, self._target), callbacks)
 
     def stop(self) -> None:
         """Read no further."""

@@ -79,7 +79,7 @@ class Showing(QObject):
         missing = self._cache.missing(document.candidates)
         if missing:
             callbacks = JobCallbacks(self._decoded, self._ready, on_failed=self.failed.emit)
-            self._decoding = self._queue.start(tr("decoding the designs"), partial(steps.decoding, missing), callbacks)
+            self._decoding = self._queue.start(tr("computing the layouts"), partial(steps.decoding, missing), callbacks)
         else:
             self._ready()
 

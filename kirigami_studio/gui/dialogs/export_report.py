@@ -46,14 +46,14 @@ class ExportReport(QDialog):
         self.setModal(False)
         self.resize(SIZE)
         self.file = QComboBox()
-        self.file.setAccessibleName(tr("File of the report"))
+        self.file.setAccessibleName(tr("Report file"))
         self.file.addItems([label(one) for one in verifications])
         self.file.setVisible(len(verifications) > 1)
         self.symbol, self.verdict, self.path = QLabel(), QLabel(), ElidedLabel()
         self.verdict.setWordWrap(True)
         self.findings = QListWidget()
         self.findings.setObjectName("reportFindings")
-        self.findings.setAccessibleName(tr("Findings of the export report"))
+        self.findings.setAccessibleName(tr("Export report findings"))
         self.findings.setWordWrap(True)
         self.findings.setIconSize(QSize(18, 18))
         self.findings.setSelectionMode(QListWidget.SelectionMode.NoSelection)
@@ -156,16 +156,14 @@ def verdict(verification: Verification) -> str:
     bad = sum(not finding.ok for finding in verification.findings)
     notes = sum(finding.ok and finding.warning for finding in verification.findings) + len(verification.warnings)
     if not verification.ok:
-        return tr_n(
-            "Do not cut this file: {count} finding is bad.", "Do not cut this file: {count} findings are bad.", bad
-        )
+        return tr_n("Do not cut this file: {count} check failed.", "Do not cut this file: {count} checks failed.", bad)
     if notes:
         return tr_n(
-            "Verified. {count} thing to read before cutting.",
-            "Verified. {count} things to read before cutting.",
+            "Verified, with {count} note to read before cutting.",
+            "Verified, with {count} notes to read before cutting.",
             notes,
         )
-    return tr("Verified: what is in the file is what was planned.")
+    return tr("Verified: the file matches the plan.")
 
 
 def format_facts(verification: Verification) -> dict[str, str]:

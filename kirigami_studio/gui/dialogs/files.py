@@ -71,7 +71,7 @@ class FileChoosers:
         return self._answer(dialog)
 
     def folder(self) -> Path | None:
-        name = QFileDialog.getExistingDirectory(self._window, tr("Export everything into a folder"), self._folder)
+        name = QFileDialog.getExistingDirectory(self._window, tr("Export everything to a folder"), self._folder)
         return self._remembered(name)
 
     def _saver(self, title: str, proposal: str, filters: list[str]) -> QFileDialog:

@@ -55,33 +55,33 @@ class Gesture:
 
 def gestures() -> tuple[Gesture, ...]:
     """The gestures that every view takes, and those of each."""
-    anywhere, board, cuts, numbers = tr("Every drawing"), tr("Drawing board"), tr("Cuts"), tr("Numbers and angle")
-    hand, gallery = tr("Edit by hand"), tr("Candidates")
+    anywhere, board, cuts, numbers = tr("All views"), tr("Drawing board"), tr("Cuts"), tr("Numbers and angle")
+    hand, gallery = tr("Edit by hand"), tr("Designs")
     return (
         Gesture(anywhere, tr("Wheel"), tr("Zoom at the pointer")),
-        Gesture(anywhere, tr("Drag"), tr("Move the picture")),
-        Gesture(anywhere, tr("Double-click"), tr("Show everything")),
-        Gesture(board, tr("Ctrl while drawing"), tr("Leave the grid for a moment")),
-        Gesture(board, tr("Shift while dragging a box"), tr("Keep it regular")),
-        Gesture(board, tr("Drag a point"), tr("Move it; arrow keys move it by small steps, with Shift by large ones")),
-        Gesture(board, tr("Double-click on the outline"), tr("Add a point there")),
-        Gesture(board, tr("Shift at the knob"), tr("Turn in steps of 15°")),
-        Gesture(board, tr("[ and ] with points"), tr("Walk over the points; Ctrl+A selects all, Delete removes")),
+        Gesture(anywhere, tr("Drag"), tr("Pan the view")),
+        Gesture(anywhere, tr("Double-click"), tr("Fit view")),
+        Gesture(board, tr("Ctrl while drawing"), tr("Ignore the grid")),
+        Gesture(board, tr("Shift while dragging a box"), tr("Keep the shape regular")),
+        Gesture(board, tr("Drag a point"), tr("Move it; arrow keys nudge it (Shift: farther)")),
+        Gesture(board, tr("Double-click the outline"), tr("Add a point there")),
+        Gesture(board, tr("Shift while rotating"), tr("Rotate in 15° steps")),
+        Gesture(board, tr("[ and ] with points"), tr("Go through the points; Ctrl+A selects all, Delete removes")),
         Gesture(
-            hand, tr("Wheel or + and -"), tr("Change the ratio of the void; finely with Shift (wheel) or Alt (keys)")
+            hand, tr("Wheel or + and -"), tr("Change the void's ratio; Shift (wheel) or Alt (keys) for fine steps")
         ),
-        Gesture(hand, tr("Drag a void"), tr("Pull its ratio; Esc takes the drag back")),
-        Gesture(hand, tr("Drag a corner of the outline"), tr("The outline follows as far as it can")),
-        Gesture(hand, tr("Alt-click on a void"), tr("Lock or unlock it")),
-        Gesture(hand, tr("Arrow keys"), tr("Walk to the next void")),
-        Gesture(gallery, tr("Ctrl-click on a card"), tr("Compare it with the chosen design")),
-        Gesture(gallery, tr("Delete"), tr("Reject the chosen design; Undo takes it back")),
-        Gesture(cuts, tr("Click on a connector"), tr("Select it; type its width in mm, or press Delete")),
-        Gesture(cuts, tr("Shift-click"), tr("Select one more, or one less")),
-        Gesture(cuts, tr("Shift-drag"), tr("Select what is inside the box; Ctrl+A selects all")),
-        Gesture(cuts, tr("Drag a connector"), tr("Make it wider or narrower; Alt: finely")),
-        Gesture(cuts, tr("Double-click on a connector"), tr("Cut it through, or bring it back")),
-        Gesture(numbers, tr("Arrow keys"), tr("One step; with Page Up and Page Down ten")),
+        Gesture(hand, tr("Drag a void"), tr("Change its ratio; Esc cancels the drag")),
+        Gesture(hand, tr("Drag a corner of the outline"), tr("Move the outline as far as it can go")),
+        Gesture(hand, tr("Alt+click a void"), tr("Lock or unlock it")),
+        Gesture(hand, tr("Arrow keys"), tr("Go to the next void")),
+        Gesture(gallery, tr("Ctrl+click a card"), tr("Compare it with the chosen design")),
+        Gesture(gallery, tr("Delete"), tr("Reject the chosen design; Undo restores it")),
+        Gesture(cuts, tr("Click a connector"), tr("Select it; type a width in mm, or press Delete")),
+        Gesture(cuts, tr("Shift+click"), tr("Add to or remove from the selection")),
+        Gesture(cuts, tr("Shift+drag"), tr("Select everything in the box; Ctrl+A selects all")),
+        Gesture(cuts, tr("Drag a connector"), tr("Widen or narrow it (Alt: fine)")),
+        Gesture(cuts, tr("Double-click a connector"), tr("Cut it through, or restore it")),
+        Gesture(numbers, tr("Arrow keys"), tr("One step; Page Up and Page Down: ten")),
     )
 
 
@@ -92,15 +92,15 @@ class ShortcutSheet(QWidget):
         super().__init__(parent, Qt.WindowType.Window)
         self.setWindowTitle(tr("Keyboard shortcuts"))
         self.search = QLineEdit()
-        self.search.setPlaceholderText(tr("Search for a command, a key or a gesture"))
-        self.search.setAccessibleName(tr("Search the shortcuts"))
-        self.search.setToolTip(tr("Show only lines with these words"))
+        self.search.setPlaceholderText(tr("Search commands, keys and gestures"))
+        self.search.setAccessibleName(tr("Search shortcuts"))
+        self.search.setToolTip(tr("Show only lines that contain these words"))
         self.search.setClearButtonEnabled(True)
         self.list = QTreeWidget()
         self.list.setObjectName("shortcutList")
         self.list.setAccessibleName(tr("Shortcuts and gestures"))
         self.list.setColumnCount(2)
-        self.list.setHeaderLabels([tr("What it does"), tr("Keys or mouse")])
+        self.list.setHeaderLabels([tr("Action"), tr("Keys or mouse")])
         self.list.setRootIsDecorated(False)
         self.list.setUniformRowHeights(True)
         self.list.header().setSectionResizeMode(0, QHeaderView.ResizeMode.Stretch)

@@ -28,7 +28,7 @@ from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.dialogs.material_form import TEXTS, GapRow, MaterialForm
 
 SIZE = QSize(760, 560)
-NEW = tr("Your own copy of a preset can be changed; presets stay as they are.")
+NEW = tr("Presets are read-only. Copy one to change it.")
 
 
 class MaterialEditor(QDialog):
@@ -63,11 +63,15 @@ class MaterialEditor(QDialog):
         self.buttons = {
             name: _button(name, text, tip)
             for name, text, tip in (
-                ("copy", tr("C&opy"), tr("Make a copy of this material that can be changed.")),
-                ("delete", tr("&Delete"), tr("Delete this own material. A preset cannot be deleted.")),
-                ("coupon", tr("Export &coupon …"), tr("Write a small sheet that tells kerf and smallest ligament.")),
-                ("save", tr("&Save"), tr("Save the numbers. A changed number makes the material uncalibrated.")),
-                ("calibrate", tr("&Mark as calibrated"), tr("The numbers were measured today, on a coupon.")),
+                ("copy", tr("C&opy"), tr("Make an editable copy of this material.")),
+                ("delete", tr("&Delete"), tr("Delete this material. Presets cannot be deleted.")),
+                ("coupon", tr("Export &coupon …"), tr("Export a test piece for measuring kerf and smallest ligament.")),
+                ("save", tr("&Save"), tr("Save the values. Changed values are marked as uncalibrated.")),
+                (
+                    "calibrate",
+                    tr("&Mark as calibrated"),
+                    tr("Record that these values were measured today on a coupon."),
+                ),
             )
         }
         self._lay_out()
@@ -134,7 +138,7 @@ class MaterialEditor(QDialog):
             source.key, self._free_key(source.key), {"name": tr("{name} (copy)", name=source.name)}
         )
         material_copies.save_copy(made)
-        self._saved(made.key, tr("{name!r} was saved; change its numbers, then save.", name=made.name))
+        self._saved(made.key, tr("Copied as {name!r}. Edit its values, then save.", name=made.name))
         self.form.texts["name"].setFocus()
 
     def save(self) -> None:
@@ -153,7 +157,7 @@ class MaterialEditor(QDialog):
         key, name = self.chosen.key, self.chosen.name
         material_copies.delete_copy(key)
         self._list(key)
-        self.says.setText(tr("{name!r} was deleted.", name=name))
+        self.says.setText(tr("Deleted {name!r}.", name=name))
         self.stock_changed.emit("")
 
     def _take_kerf(self, kerf_mm: float, sentence: str) -> None:
@@ -185,7 +189,7 @@ class MaterialEditor(QDialog):
         self.list.clear()
         for one, material in self._library.materials.items():
             item = QListWidgetItem(
-                tr("Own  ·  {name}", name=material.name) if one in self._library.own else material.name
+                tr("Custom  ·  {name}", name=material.name) if one in self._library.own else material.name
             )
             item.setData(Qt.ItemDataRole.UserRole, one)
             item.setToolTip(f"{material.name} ({one})\n{material.machine}\n{_state(material)}")
@@ -220,7 +224,7 @@ class MaterialEditor(QDialog):
 def _state(material: Material) -> str:
     """Whether the numbers were measured, in words."""
     if not material.calibrated:
-        return tr("Not calibrated: a starting point. Cut a coupon and measure.")
+        return tr("Not calibrated: starting values only. Cut a coupon and measure it.")
     by, on = material.measured_by, material.measured_on
     return tr("Calibrated") + (tr(" on {on}", on=on) if on else "") + (tr(" by {by}", by=by) if by else "") + "."
 

@@ -31,19 +31,33 @@ class Number:
 
 
 NUMBERS = (
-    Number("thickness_mm", tr("Thickness"), "mm", 0.005, 50.0, 0.05, 3, tr("Thickness of the sheet.")),
+    Number("thickness_mm", tr("Thickness"), "mm", 0.005, 50.0, 0.05, 3, tr("Sheet thickness.")),
     Number("kerf_mm", tr("Kerf"), "mm", 0.0, 5.0, 0.01, 3, tr("Full width of the cut; 0 for a blade.")),
-    Number("connector_mm", tr("Connector"), "mm", 0.02, 20.0, 0.05, 3, tr("Usual finished width of a connector.")),
+    Number("connector_mm", tr("Connector"), "mm", 0.02, 20.0, 0.05, 3, tr("Default finished connector width.")),
     Number(
-        "min_ligament_mm", tr("Smallest ligament"), "mm", 0.005, 20.0, 0.01, 3, tr("Narrower ones are warned about.")
+        "min_ligament_mm",
+        tr("Smallest ligament"),
+        "mm",
+        0.005,
+        20.0,
+        0.01,
+        3,
+        tr("Warn about ligaments narrower than this."),
     ),
-    Number("min_slit_mm", tr("Shortest slit"), "mm", 0.005, 20.0, 0.05, 3, tr("Shorter slits are warned about.")),
+    Number("min_slit_mm", tr("Shortest slit"), "mm", 0.005, 20.0, 0.05, 3, tr("Shortest slit for this material.")),
     Number(
-        "relief_radius_mm", tr("Relief radius"), "mm", 0.0, 5.0, 0.05, 3, tr("Radius of a relief hole at a slit's end.")
+        "relief_radius_mm",
+        tr("Relief radius"),
+        "mm",
+        0.0,
+        5.0,
+        0.05,
+        3,
+        tr("Radius of the relief hole at a slit's end."),
     ),
     Number(
         "strain_limit",
-        tr("Breaks at strain"),
+        tr("Breaking strain"),
         "%",
         0.01,
         500.0,
@@ -55,10 +69,17 @@ NUMBERS = (
     Number("speed_mm_s", tr("Cutting speed"), "mm/s", 0.01, 10_000.0, 5.0, 2, tr("Speed with the beam on.")),
     Number("travel_mm_s", tr("Travel speed"), "mm/s", 0.01, 20_000.0, 20.0, 2, tr("Speed between cuts.")),
     Number(
-        "acceleration_mm_s2", tr("Acceleration"), "mm/s²", 0.1, 200_000.0, 100.0, 1, tr("How fast the head speeds up.")
+        "acceleration_mm_s2",
+        tr("Acceleration"),
+        "mm/s²",
+        0.1,
+        200_000.0,
+        100.0,
+        1,
+        tr("How fast the head accelerates."),
     ),
-    Number("on_delay_s", tr("Delay before a cut"), "ms", 0.0, 10_000.0, 5.0, 1, tr("Waited before each cut."), 1000.0),
-    Number("off_delay_s", tr("Delay after a cut"), "ms", 0.0, 10_000.0, 5.0, 1, tr("Waited after each cut."), 1000.0),
+    Number("on_delay_s", tr("Delay before a cut"), "ms", 0.0, 10_000.0, 5.0, 1, tr("Pause before each cut."), 1000.0),
+    Number("off_delay_s", tr("Delay after a cut"), "ms", 0.0, 10_000.0, 5.0, 1, tr("Pause after each cut."), 1000.0),
     Number(
         "join_tolerance_mm",
         tr("Joins gaps below"),
@@ -67,13 +88,13 @@ NUMBERS = (
         2.0,
         0.01,
         3,
-        tr("Gaps that the machine's program may close."),
+        tr("Gaps that the machine software may close."),
     ),
 )
 TEXTS = (
-    ("name", tr("Name"), tr("What the list of materials shows.")),
-    ("machine", tr("Machine"), tr("The machine that these numbers were found on.")),
-    ("note", tr("Note"), tr("What one should know.")),
+    ("name", tr("Name"), tr("Name shown in the material list.")),
+    ("machine", tr("Machine"), tr("Machine these values were measured on.")),
+    ("note", tr("Note"), tr("Anything worth knowing.")),
 )
 
 
@@ -164,7 +185,7 @@ def _number(number: Number) -> DecimalField:
     box.setAccessibleName(f"{number.label}, {number.unit}")
     box.setToolTip(
         tr(
-            "{tip} Unit: {unit} ({low:g} to {high:g}).",
+            "{tip} Unit: {unit}, {low:g} to {high:g}.",
             tip=number.tip,
             unit=number.unit,
             low=number.low,
@@ -185,17 +206,17 @@ class GapRow(QWidget):
         self.gaps = QLineEdit()
         self.gaps.setObjectName("material_gaps")
         self.gaps.setPlaceholderText(tr("Gaps, mm: 0.29 0.31"))
-        self.gaps.setAccessibleName(tr("Gap beside the coupon's comb in millimetres"))
+        self.gaps.setAccessibleName(tr("Gaps beside the coupon's comb in millimetres"))
         self.gaps.setToolTip(
             tr(
-                "The gap beside the comb of the coupon, in mm, with all its fingers pushed aside; once, or several "
-                "times with spaces between."
+                "Push all fingers of the coupon's comb to one side and measure the gap in mm. "
+                "Separate several readings with spaces."
             )
         )
         self.button = QPushButton(tr("Set &kerf"))
         self.button.setObjectName("material_kerf_from_gaps")
         self.button.setAutoDefault(False)
-        self.button.setToolTip(tr("Turn the measured gaps into this material's kerf."))
+        self.button.setToolTip(tr("Calculate this material's kerf from the measured gaps."))
         row = QHBoxLayout(self)
         row.setContentsMargins(0, 0, 0, 0)
         row.addWidget(self.gaps, 1)
@@ -215,11 +236,11 @@ class GapRow(QWidget):
         try:
             found = kerf_from_gaps([float(word.replace(",", ".")) for word in words])
         except ValueError:
-            self.refused.emit(tr("Gaps are numbers of mm with spaces between, such as 0.29 0.31."))
+            self.refused.emit(tr("Enter gaps in mm separated by spaces, such as 0.29 0.31."))
         except FabricationError as error:
             self.refused.emit(str(error))
         else:
             doubt = tr(" ± {doubt:.3f}", doubt=found.doubt_mm) if found.doubt_mm else ""
             self.measured.emit(
-                found.kerf_mm, tr("Kerf {kerf:.3f}{doubt} mm; save it.", kerf=found.kerf_mm, doubt=doubt)
+                found.kerf_mm, tr("Kerf {kerf:.3f}{doubt} mm. Save to keep it.", kerf=found.kerf_mm, doubt=doubt)
             )

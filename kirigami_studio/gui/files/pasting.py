@@ -18,7 +18,7 @@ from kirigami_studio.gui.messages import Message, Tone
 PATH_BEGINS = re.compile(r"[Mm]\s*[-+.\d]")
 #: How the names of the folders with pasted content begin.
 PASTED = "kirigami-pasted-"
-NOTHING = tr("The clipboard holds no picture, no file, no SVG and no path; copy one of them and paste again.")
+NOTHING = tr("Nothing to paste. Copy a picture, file, SVG or path first.")
 
 
 class Pasting(QObject):
@@ -46,7 +46,7 @@ class Pasting(QObject):
                 self.file_wanted.emit(str(path))
             else:
                 self.message.emit(
-                    Message(tr("The picture cannot be kept in {path}; free some disk space.", path=path), Tone.ERROR)
+                    Message(tr("Could not save the picture to {path}. Free some disk space.", path=path), Tone.ERROR)
                 )
             return
         found = recognised(svg_of(content))

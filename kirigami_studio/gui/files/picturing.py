@@ -65,13 +65,13 @@ class Picturing(QObject):
 
     def write(self, view: QWidget, path: Path) -> None:
         """Write a picture of a view; ``.svg`` is drawn in lines, everything else in pixels."""
-        self.status.emit(tr("Writing {name} …", name=path.name))
+        self.status.emit(tr("Exporting {name} …", name=path.name))
         if path.suffix.lower() == ".svg":
             steps = partial(picture_steps.writing_svg, self.svg(view), path)
         else:
             steps = partial(picture_steps.writing_png, self.record(view), self.scale, path)
         callbacks = JobCallbacks(self._told_written, on_failed=self._tell_failure)
-        self._queue.start(tr("writing {name}", name=path.name), steps, callbacks)
+        self._queue.start(tr("exporting {name}", name=path.name), steps, callbacks)
 
     def copy(self, view: QWidget) -> None:
         """Put a picture of a view on the clipboard."""
@@ -82,9 +82,9 @@ class Picturing(QObject):
         """Put the cut plan on the clipboard as SVG in mm, for a drawing program or a laser program."""
         request = self._request()
         if request is None:
-            self.message.emit(Message(tr("There is no design to copy yet; generate one first."), Tone.HINT))
+            self.message.emit(Message(tr("No design to copy yet. Generate one first."), Tone.HINT))
             return
-        self.status.emit(tr("Planning the cuts to copy …"))
+        self.status.emit(tr("Planning the cuts …"))
         callbacks = JobCallbacks(self._take_cuts, on_failed=self._tell_failure)
         self._queue.start(tr("copying the cuts"), partial(picture_steps.drawing_cuts, request), callbacks)
 
@@ -142,14 +142,18 @@ class Picturing(QObject):
 
     def _told_written(self, path: object) -> None:
         if isinstance(path, Path):
-            self.status.emit(tr("Wrote the picture {path}.", path=path))
+            self.status.emit(tr("Exported picture: {path}.", path=path))
             self.written.emit(path)
 
     def _take_image(self, image: object) -> None:
         if isinstance(image, QImage):
             QGuiApplication.clipboard().setImage(image)
             self.status.emit(
-                tr("Copied a picture of {width} x {height} pixels.", width=image.width(), height=image.height())
+                tr(
+                    "Copied a {width} \N{MULTIPLICATION SIGN} {height} px picture.",
+                    width=image.width(),
+                    height=image.height(),
+                )
             )
             self.copied.emit()
 

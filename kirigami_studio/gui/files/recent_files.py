@@ -69,7 +69,7 @@ class RecentFiles(QObject):
         paths = (*self.present.projects, *self.present.targets)
         if paths:
             callbacks = JobCallbacks(self.missing.emit)
-            self._queue.start(tr("looking for recent files"), partial(_looking, paths), callbacks)
+            self._queue.start(tr("checking recent files"), partial(_looking, paths), callbacks)
 
     def _change(self, change: Callable[[Recent], Recent]) -> None:
         if self._path is None:

@@ -122,7 +122,7 @@ class Recovering(QObject):
             return  # a job that is under way looks again when it ends
         self._latest = None
         if not self._locked(self._own):
-            self._cannot_keep(tr("there is no right to write into {folder}", folder=self._own.parent))
+            self._cannot_keep(tr("no permission to write to {folder}", folder=self._own.parent))
             return
         path = "" if work.path is None else str(work.path.absolute())
         note = Note(_name_of(work), path, recovery.now(), os.getpid())
@@ -130,7 +130,7 @@ class Recovering(QObject):
             self._take_kept, self._look_again, on_failed=lambda sentence, _: self._not_kept(sentence)
         )
         steps = partial(project_steps.keeping, work.document, work.picture, note, self._own)
-        self._job = self._queue.start(tr("keeping the work for a recovery"), steps, callbacks)
+        self._job = self._queue.start(tr("autosaving"), steps, callbacks)
 
     def _locked(self, own: Path) -> bool:
         if self._lock is None:
@@ -160,7 +160,7 @@ class Recovering(QObject):
         """Say it once; the next change tries again."""
         if not self._told:
             self._told = True
-            sentence = tr("Unsaved work cannot be kept for a recovery; save often. The work goes on.")
+            sentence = tr("Autosave is unavailable. Save often.")
             self.message.emit(Message(sentence, Tone.WARNING, reason))
 
     def _forget(self) -> None:
@@ -171,7 +171,9 @@ class Recovering(QObject):
         if self._job is not None:  # it may be writing at this moment
             self._queue.abandon(self._job)
             self._job = None
-            self._queue.start(tr("tidying up"), partial(project_steps.removing, self._own), JobCallbacks())
+            self._queue.start(
+                tr("cleaning up autosave files"), partial(project_steps.removing, self._own), JobCallbacks()
+            )
         _remove(self._own)
         self._drop_pending()
 
@@ -203,16 +205,16 @@ class Recovering(QObject):
         discard = (tr("Discard"), lambda: self.discard(leftover))
         later = (tr("Keep for later"), lambda: self.leave(leftover))
         if leftover.note is None:
-            sentence = tr("Kirigami Studio ended unexpectedly, and the work that it kept cannot be read.")
+            sentence = tr("Kirigami Studio quit unexpectedly, and its autosaved work cannot be read.")
             self.message.emit(Message(sentence, Tone.WARNING, leftover.fault, (discard, later)))
             return
         sentence = tr(
-            "Kirigami Studio ended unexpectedly. Recover {name}, last changed {when}?",
+            "Kirigami Studio quit unexpectedly. Recover {name}, last changed {when}?",
             name=leftover.note.name,
             when=format_time(leftover.note),
         )
         recover = (tr("Recover"), lambda: self.recover_wanted.emit(leftover))
-        details = leftover.note.path or tr("It was never saved.")
+        details = leftover.note.path or tr("Never saved.")
         self.message.emit(Message(sentence, Tone.WARNING, details, (recover, discard, later)))
 
     def recover(self, leftover: Leftover) -> None:
@@ -228,7 +230,7 @@ class Recovering(QObject):
         """Delete the kept work."""
         _remove(leftover.file)
         self.leave(leftover)
-        self.status.emit(tr("The kept work on {name} was discarded.", name=_called(leftover)))
+        self.status.emit(tr("Discarded the autosaved work: {name}.", name=_called(leftover)))
 
     def leave(self, leftover: Leftover) -> None:
         """Ask again at the next start."""
@@ -247,7 +249,7 @@ class Recovering(QObject):
         self._pending = leftover
         path = leftover.note.path if leftover.note is not None else ""
         self.recovered.emit(document, Path(path) if path else None)
-        self.status.emit(tr("Recovered {name}; it is not saved yet.", name=_called(leftover)))
+        self.status.emit(tr("Recovered {name}. Not saved yet.", name=_called(leftover)))
         if self._job is not None:  # what it keeps was given up, and says nothing about what was recovered
             self._queue.abandon(self._job)
             self._job = None

@@ -48,7 +48,7 @@ def saving(document: Document, picture: Picture | None, path: Path, cancel: Canc
         kept = stored(picture)
     except ProjectError as error:
         kept = None
-        yield Left(tr("The photo behind the target was not saved with the project: {reason}.", reason=error))
+        yield Left(tr("The target's photo was not saved with the project: {reason}.", reason=error))
     store.save(document, path, kept)
     yield path
 
@@ -64,7 +64,7 @@ def loading(path: Path, folder: Path, cancel: Cancel) -> Iterator[Left | Project
     try:
         picture = laid_out(opened, folder)
     except (OSError, ProjectError) as error:
-        yield Left(tr("The photo in this project cannot be shown and was left out: {reason}.", reason=error))
+        yield Left(tr("The project's photo could not be loaded and was left out: {reason}.", reason=error))
     yield Project(opened.document, picture)
 
 
@@ -84,7 +84,7 @@ def stored(picture: Picture | None) -> TracedPicture | None:
         if size > LARGEST_PICTURE:
             raise ProjectError(
                 tr(
-                    "{name} has {size:.0f} MB, more than {most}",
+                    "{name} is {size:.0f} MB; the limit is {most} MB",
                     name=path.name,
                     size=size / 2**20,
                     most=LARGEST_PICTURE // 2**20,

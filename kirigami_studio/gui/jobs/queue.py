@@ -96,7 +96,7 @@ class Worker(QObject):
         except Exception as error:  # a thread's last line of defence: it must reach the user, not end the thread
             log.exception("job %d (%s) failed", job.number, job.name)
             sentence = tr(
-                "Something unexpected went wrong while {name}: {value}.",
+                "Unexpected error while {name}: {value}.",
                 name=job.name,
                 value=error or type(error).__name__,
             )

@@ -259,7 +259,7 @@ def exporting_all(request: CutRequest, folder: Path, name: str, cancel: Cancel) 
 
     def stop_if_asked(_: Path) -> None:
         if cancel():
-            raise Cancelled(tr("Writing into {folder} was stopped; what was written before stays.", folder=folder))
+            raise Cancelled(tr("Export to {folder} stopped; files already written are kept.", folder=folder))
 
     made = planned(request)
     found = export_all(export_job(request, made), folder, name, tell=stop_if_asked)
@@ -288,7 +288,7 @@ def exporting_coupon(
 
     if path.suffix.lower() != ".dxf":
         raise UsageError(
-            tr("A coupon is written as .dxf here, got {name}; the command line knows other kinds.", name=path.name)
+            tr("Coupons are exported as .dxf, not {name}. The command line supports other types.", name=path.name)
         )
     plan = plan_coupon(material)
     write_dxf(plan, path, settings.dxf_version, find_profile(settings.profile))

@@ -118,7 +118,7 @@ class ComparePage(QWidget):
         self._entries: tuple[Entry | None, Entry | None] = (None, None)
         self.swap = tool_button("swap", tr("Swap: choose the other design (Shift+K)."))
         self.swap.clicked.connect(self.swap_wanted)
-        self.leave = tool_button("leaveCompare", tr("Leave: show the chosen design alone (K)."))
+        self.leave = tool_button("leaveCompare", tr("Close the comparison (K)."))
         self.leave.clicked.connect(self.leave_wanted)
         self.left = Side("comparedLeft", tr("Layout of the chosen design"), self.swap)
         self.right = Side("comparedRight", tr("Layout of the design it is compared with"), self.leave)
@@ -148,7 +148,7 @@ class ComparePage(QWidget):
         if one is None or other is None:
             return ()
         apart = differences([one.candidate], other.candidate.field)[0]
-        return tr("the sheets differ by {apart:.2f}", apart=apart), tr("differ by {apart:.2f}", apart=apart)
+        return tr("the designs differ by {apart:.2f}", apart=apart), tr("differ by {apart:.2f}", apart=apart)
 
     @property
     def entries(self) -> tuple[Entry | None, Entry | None]:
@@ -179,7 +179,7 @@ class ComparePage(QWidget):
     def _show_side(self, side: Side, one: tuple[Entry, int] | None, target: Outline | None) -> None:
         if one is None:
             side.name("")
-            side.view.set_hint("compare", tr("Nothing to compare with"), tr("Ctrl+click a card of the gallery."))
+            side.view.set_hint("compare", tr("Nothing to compare with"), tr("Ctrl+click a card in the gallery."))
             side.view.show_design(None, None, None)
             return
         entry, number = one
@@ -220,10 +220,10 @@ class ComparePage(QWidget):
 
 def _rows() -> tuple[tuple[str, str], ...]:
     return (
-        (tr("sIoU"), tr("Match with the target, %; beside it the difference from the other design, points.")),
-        (tr("Gain"), tr("Gain over the uniform sheet, points; beside it the difference from the other design.")),
-        (tr("TV"), tr("Total variation of the ratios, lower is calmer; beside it the difference.")),
-        (tr("Panel, mm"), tr("Smallest panel edge or neck, mm; beside it the difference from the other design, mm.")),
+        (tr("sIoU"), tr("Match with the target, %; then the difference from the other design, points.")),
+        (tr("Gain"), tr("Gain over the uniform sheet, points; then the difference from the other design.")),
+        (tr("TV"), tr("Total variation of the ratios, lower is calmer; then the difference from the other design.")),
+        (tr("Panel, mm"), tr("Smallest panel edge or neck, mm; then the difference from the other design.")),
         (tr("Feasible"), tr("Whether the sheet can be built and opens without touching itself.")),
     )
 

@@ -38,13 +38,13 @@ MOST_LINES = 3
 ICONS = {Severity.ERROR: "fault", Severity.WARNING: "warning"}
 WORDS = {Severity.ERROR: tr("Error"), Severity.WARNING: tr("Warning")}
 OVERLAYS = (
-    (CutOverlay.TRAVEL, "travel", tr("Show the moves between cuts, dashed.")),
+    (CutOverlay.TRAVEL, "travel", tr("Show travel moves between cuts, dashed.")),
     (
         CutOverlay.CONNECTORS,
         "connector",
-        tr("Show the connectors. Dark: narrow, light: wide (in the dark theme reversed)."),
+        tr("Show connectors. Dark is narrow, light is wide (reversed in the dark theme)."),
     ),
-    (CutOverlay.PROBLEMS, "fault", tr("Mark what the cut check found.")),
+    (CutOverlay.PROBLEMS, "fault", tr("Mark problems found by the cut check.")),
 )
 
 
@@ -120,7 +120,7 @@ class CutsPage(QWidget):
     def show_refusal(self, sentence: str) -> None:
         """There is no plan for the present numbers; the last one stays in sight, and says so."""
         self.view.set_caption(
-            tr("Not the present numbers: {sentence}", sentence=sentence) if self._plan is not None else ""
+            tr("Preview out of date: {sentence}", sentence=sentence) if self._plan is not None else ""
         )
 
     def set_palette(self, palette: Palette) -> None:
@@ -155,7 +155,7 @@ class ProblemList(QListWidget):
         self._problems: tuple[Problem, ...] = ()
         self._palette: Palette = LIGHT
         self.setObjectName("problemList")
-        self.setAccessibleName(tr("Problems of the cut plan"))
+        self.setAccessibleName(tr("Cut plan problems"))
         self.setIconSize(QSize(16, 16))
         self.setTextElideMode(Qt.TextElideMode.ElideRight)
         self.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
@@ -170,7 +170,7 @@ class ProblemList(QListWidget):
             self.clear()
             for problem in problems:
                 item = QListWidgetItem(f"{WORDS[problem.severity]}: {problem.text}")
-                place = "" if problem.where is None else tr("\nClick to see the place.")
+                place = "" if problem.where is None else tr("\nClick to show the place.")
                 item.setToolTip(f"{problem.text}{place}")
                 self.addItem(item)
             self.setCurrentRow(-1)
@@ -209,13 +209,11 @@ class CutBar(QWidget):
         self._steps: CutSteps | None = None
         self._seconds = 0.0
         self._clock = QElapsedTimer()
-        self.play = tool_button("playCuts", tr("Play or pause the cutting (Space)."), checkable=True)
+        self.play = tool_button("playCuts", tr("Play or pause cutting (Space)."), checkable=True)
         self.slider = QSlider(Qt.Orientation.Horizontal)
         self.slider.setObjectName("cutStep")
         self.slider.setAccessibleName(tr("Cuts made so far"))
-        self.slider.setToolTip(
-            tr("Cuts made so far, in cutting order (arrow keys: one cut; Home and End: none and all)")
-        )
+        self.slider.setToolTip(tr("Cuts made so far, in cutting order (arrow keys: one cut; Home: none; End: all)"))
         self.slider.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self.count, self.so_far = QLabel(), QLabel()
         for label, name in ((self.count, tr("Cuts so far")), (self.so_far, tr("Time and cut length so far"))):

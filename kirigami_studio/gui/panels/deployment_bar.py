@@ -184,7 +184,7 @@ class PlayOptions(QToolButton):
         self.setIconSize(TOOL_ICON)
         self.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         self.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)
-        self.setAccessibleName(tr("How the deployment is played"))
+        self.setAccessibleName(tr("Play options"))
         menu = QMenu(self)
         menu.setToolTipsVisible(True)
         self.modes: dict[PlayMode, QAction] = {}
@@ -193,7 +193,7 @@ class PlayOptions(QToolButton):
         menu.addSeparator()
         self._add_speeds(menu)
         menu.addSeparator()
-        self.to_target = menu.addAction(tr("&Only as far as the target angle"))
+        self.to_target = menu.addAction(tr("&Only to the target angle"))
         self.to_target.setCheckable(True)
         self.to_target.toggled.connect(self._take_choice)
         self.setMenu(menu)
@@ -201,8 +201,8 @@ class PlayOptions(QToolButton):
 
     def _add_modes(self, menu: QMenu) -> None:
         words = {
-            PlayMode.SWING: (tr("&To and fro"), tr("Open and close again and again")),
-            PlayMode.LOOP: (tr("&Loop"), tr("Open again and again from the flat sheet")),
+            PlayMode.SWING: (tr("Back and for&th"), tr("Open and close repeatedly")),
+            PlayMode.LOOP: (tr("&Loop"), tr("Open repeatedly from flat")),
             PlayMode.ONCE: (tr("O&nce"), tr("Open once and stop")),
         }
         group = QActionGroup(self)
@@ -219,7 +219,7 @@ class PlayOptions(QToolButton):
         group = QActionGroup(self)
         for speed in SPEEDS:
             action = menu.addAction(f"{speed:g}{TIMES}")
-            action.setToolTip(tr("{speed:g} times the usual speed", speed=speed))
+            action.setToolTip(tr("{speed:g}\N{MULTIPLICATION SIGN} normal speed", speed=speed))
             action.setCheckable(True)
             action.setActionGroup(group)
             action.setChecked(speed == 1.0)
@@ -276,8 +276,21 @@ class PlayOptions(QToolButton):
         beside, only = Qt.ToolButtonStyle.ToolButtonTextBesideIcon, Qt.ToolButtonStyle.ToolButtonIconOnly
         self.setToolButtonStyle(only if usual else beside)
         self.setIcon(icons.icon(MODE_ICONS[self.mode], self._palette))
-        words = self.modes[self.mode].text().replace("&", "").lower()
-        tip = tr("Playing {mode} at {speed:g} times the usual speed. Speed: < and >, mode: Shift+P.",
-                 mode=words, speed=self.speed)  # fmt: skip
-        self.setToolTip(tip)
+        self.setToolTip(_playing(self.mode, self.speed))
         self.changed.emit()
+
+
+def _playing(mode: PlayMode, speed: float) -> str:
+    """How the deployment is played, and the keys that change it."""
+    if mode is PlayMode.SWING:
+        return tr(
+            "Back and forth at {speed:g}\N{MULTIPLICATION SIGN} speed. < and > change the speed, Shift+P the mode.",
+            speed=speed,
+        )
+    if mode is PlayMode.LOOP:
+        return tr(
+            "Loop at {speed:g}\N{MULTIPLICATION SIGN} speed. < and > change the speed, Shift+P the mode.", speed=speed
+        )
+    return tr(
+        "Once at {speed:g}\N{MULTIPLICATION SIGN} speed. < and > change the speed, Shift+P the mode.", speed=speed
+    )

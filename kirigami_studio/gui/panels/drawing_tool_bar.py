@@ -27,27 +27,27 @@ TOOLS: tuple[tuple[Tool, str, str] | None, ...] = (
     (Tool.POINTS, "points", tr("Move points (N). Select, drag, Delete; handles bend the lines.")),
     (Tool.POSE, "pose", tr("Move, resize and rotate (V). Drag the target or the handles around it.")),
     None,
-    (Tool.FREEHAND, "draw", tr("Draw freehand (D). One stroke; it is smoothed and closed.")),
-    (Tool.POLYGON, "polygon", tr("Draw a polygon (P). Click corners, Enter closes.")),
+    (Tool.FREEHAND, "draw", tr("Draw freehand (D). One stroke, smoothed and closed.")),
+    (Tool.POLYGON, "polygon", tr("Draw a polygon (P). Click corners; Enter closes it.")),
     (Tool.RECTANGLE, "rectangle", tr("Draw a rectangle (R). Shift makes a square.")),
     (Tool.ELLIPSE, "ellipse", tr("Draw an ellipse (O). Shift makes a circle.")),
     (Tool.REGULAR, "regular", tr("Draw a regular polygon (G). Shift keeps it regular.")),
     (Tool.STAR, "star", tr("Draw a star (S). Shift keeps it regular.")),
-    (Tool.TEXT, "text", tr("Draw text (X). Its letters are moved together.")),
+    (Tool.TEXT, "text", tr("Draw text (X). Letters are moved together into one piece.")),
 )
 #: Mode, icon, tooltip.
 MODES = (
-    (Combine.REPLACE, "replace", tr("New (=). What is drawn replaces the target.")),
-    (Combine.ADD, "add", tr("Add (+). What is drawn joins the target.")),
-    (Combine.SUBTRACT, "subtract", tr("Take away (-). What is drawn is cut off the target.")),
+    (Combine.REPLACE, "replace", tr("New (=). What you draw replaces the target.")),
+    (Combine.ADD, "add", tr("Add (+). What you draw is added to the target.")),
+    (Combine.SUBTRACT, "subtract", tr("Subtract (-). What you draw is cut out of the target.")),
 )
 MIRRORS = (
     ("left", tr("Keep &left half")),
     ("right", tr("Keep &right half")),
     ("top", tr("Keep &top half")),
     ("bottom", tr("Keep &bottom half")),
-    ("across", tr("Flip left and right")),
-    ("over", tr("Flip top and bottom")),
+    ("across", tr("Flip horizontally")),
+    ("over", tr("Flip vertically")),
 )
 
 
@@ -78,7 +78,7 @@ class DrawingToolBar(QWidget):
         for how, text in MIRRORS:
             menu.addAction(text).triggered.connect(lambda _=False, how=how: self.mirror_wanted.emit(how))
         self.mirror.setMenu(menu)
-        self.grid = self._button("grid", "grid", tr("Snap to the grid (Ctrl+Shift+G). Ctrl held suspends it."), True)
+        self.grid = self._button("grid", "grid", tr("Snap to the grid (Ctrl+Shift+G). Hold Ctrl to ignore it."), True)
         self.grid.setChecked(context.snapping)
         self.grid.toggled.connect(self.grid_switched)
         self.axis = AxisButton(context)
@@ -90,7 +90,7 @@ class DrawingToolBar(QWidget):
         self.done_button = QPushButton(tr("Done"))
         self.done_button.setObjectName("small")
         self.done_button.setFocusPolicy(Qt.FocusPolicy.TabFocus)
-        self.done_button.setToolTip(tr("Leave the editor (E, or Esc)"))
+        self.done_button.setToolTip(tr("Leave the drawing board (E or Esc)"))
         self.done_button.clicked.connect(self.done)
         row.addWidget(self.done_button)
         self.options = ToolOptions(context)

@@ -28,8 +28,8 @@ class ExportRow(QWidget):
         self.more = QToolButton()
         self.more.setObjectName("moreExports")
         self.more.setFocusPolicy(Qt.FocusPolicy.TabFocus)
-        self.more.setToolTip(tr("Export another kind of file: SVG, PDF, PNG, GIF"))
-        self.more.setAccessibleName(tr("Export another kind of file"))
+        self.more.setToolTip(tr("Export another file type: SVG, PDF, PNG, GIF"))
+        self.more.setAccessibleName(tr("Export another file type"))
         self.more.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)
         self.menu = QMenu(self.more)
         self.menu.setToolTipsVisible(True)
@@ -40,8 +40,8 @@ class ExportRow(QWidget):
             action.triggered.connect(lambda _=False, kind=kind: self.export_wanted.emit(kind.extension))
             self.kinds[kind.extension] = action
         self.menu.addSeparator()
-        self.everything = self.menu.addAction(tr("Everything, into a folder …"))
-        self.everything.setToolTip(tr("Every kind of cut file, pictures and a record of the job (Ctrl+Shift+E)"))
+        self.everything = self.menu.addAction(tr("Everything to a folder …"))
+        self.everything.setToolTip(tr("Every cut file, pictures and a record of the job (Ctrl+Shift+E)"))
         self.everything.triggered.connect(lambda: self.all_wanted.emit())
         self.more.setMenu(self.menu)
         row = QHBoxLayout(self)
@@ -56,7 +56,7 @@ class ExportRow(QWidget):
         """Say in the tooltip what the cut file is written for."""
         self.export.setToolTip(
             tr(
-                "Write the cut file in mm, DXF {version}, and check it (Ctrl+E).\nFor: {profile}.",
+                "Export and check the cut file in mm, DXF {version} (Ctrl+E).\nMachine: {profile}.",
                 version=version,
                 profile=profile,
             )

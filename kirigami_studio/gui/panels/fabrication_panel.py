@@ -57,7 +57,7 @@ LENGTHS = (
         3000.0,
         5.0,
         1,
-        tr("Width of the flat sheet, mm (5 to 3000); the height follows the grid."),
+        tr("Width of the flat sheet, mm (5 to 3000). The grid sets the height."),
     ),
     (
         "connector_mm",
@@ -75,7 +75,7 @@ LENGTHS = (
         5.0,
         0.01,
         3,
-        tr("Full width of the cut, mm; the slits are shortened for it. 0 for a blade."),
+        tr("Full width of the cut, mm; slits are shortened to match. 0 for a blade."),
     ),
 )
 #: Height (pixels) that unfolded numbers keep in a small window, where they scroll.
@@ -103,7 +103,7 @@ class Extent(Enum):
 NEXT = {
     Extent.EXPORT: (Extent.CHOICES, tr("Show material and widths.")),
     Extent.CHOICES: (Extent.ALL, tr("Show cutting numbers and more options.")),
-    Extent.ALL: (Extent.EXPORT, tr("Fold material, widths and numbers away.")),
+    Extent.ALL: (Extent.EXPORT, tr("Hide material, widths and numbers.")),
 }
 
 
@@ -130,7 +130,7 @@ class FabricationPanel(Card):
         self.material.setMinimumContentsLength(8)
         self.material.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
         self.material.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
-        self.edit_materials = tool_button("editMaterials", tr("Copy, change and calibrate materials (Ctrl+M)."))
+        self.edit_materials = tool_button("editMaterials", tr("Copy, edit and calibrate materials (Ctrl+M)."))
         self.edit_materials.clicked.connect(self.materials_wanted)
         self.reload_materials()
         self.material.activated.connect(self._take_material)
@@ -160,7 +160,7 @@ class FabricationPanel(Card):
         self.details.setObjectName("plain")
         self.summary = QLabel()
         self.summary.setObjectName("muted")
-        self.fold = tool_button("foldFabrication", tr("Show more or less of the fabrication."))
+        self.fold = tool_button("foldFabrication", tr("Show more or fewer fabrication settings."))
         self.header.addWidget(self.summary)
         self.header.addWidget(self.fold)
         self.fold.clicked.connect(self._change_by_hand)
@@ -321,7 +321,7 @@ class FabricationPanel(Card):
         self.numbers["length"].setToolTip(format_slots(planned))
         self._sum_up(texts, planned.removed_share)
         found = [*(problem.text for problem in report.problems), *plan.notes]
-        self._warn("\n".join(found) if found else tr("The cut check found no problem."), calm=not found)
+        self._warn("\n".join(found) if found else tr("The cut check found no problems."), calm=not found)
 
     def _sum_up(self, texts: dict[str, str], removed_share: float) -> None:
         """The header's words, with and without the live numbers; that a sheet is trimmed is said in both."""
@@ -331,7 +331,7 @@ class FabricationPanel(Card):
         kind = tr("trimmed") if removed_share else tr("{count} cuts", count=texts["slits"])
         self._summaries = (beside_numbers, f"{texts['size']}  ·  {kind}")
         share = tr(
-            "{removed_share:.1f} % of the sheet is cut off along the target; the cut file has that edge",
+            "{removed_share:.1f} % of the sheet is cut off along the target, also in the cut file",
             removed_share=100 * removed_share,
         )
         self.summary.setToolTip(tr("Trimmed: {share}.", share=share) if removed_share else "")
@@ -345,7 +345,7 @@ class FabricationPanel(Card):
     def show_waiting(self) -> None:
         """Designs are being made; there is no plan to show before one is chosen."""
         self.show_plan(None)
-        self._warn(tr("The cut plan follows when the designs are done."), calm=True)
+        self._warn(tr("The cut plan appears when the run is done."), calm=True)
 
     def show_refusal(self, sentence: str) -> None:
         """Say why no plan can be made with these numbers."""
@@ -410,18 +410,17 @@ class OpenedRow(QWidget):
         opened = _sides(size.opened)
         if size.drawn is None:
             self.text.setText(tr("Opens to {opened} mm", opened=opened))
-            tip = tr("The target has no size in mm. Give it one in the editor (E) to cut at that size.")
+            tip = tr("The target has no size in mm. Set one on the drawing board (E) to cut at that size.")
         elif size.agrees:
             self.text.setText(tr("Opens to {opened} mm, as drawn", opened=opened))
-            tip = tr("The sheet's width fits the drawn size of the target.")
+            tip = tr("The sheet opens to the target's drawn size.")
         else:
             self.text.setText(
                 tr("Opens to {opened}, drawn {drawn} mm", opened=opened, drawn=_sides(size.drawn)),
                 tr("Opens {opened} mm wide, drawn {drawn}", opened=_side(size.opened[0]), drawn=_side(size.drawn[0])),
             )
             tip = tr(
-                "Cut at the drawn size: make the flat sheet {width:.1f} mm wide, so that it opens to the size in mm "
-                "that the target was drawn with.",
+                "Cut at the drawn size: make the flat sheet {width:.1f} mm wide so that it opens to the target's size.",
                 width=size.fitting_width_mm,
             )
         self.link.setToolTip(tip)
@@ -438,7 +437,7 @@ def format_slots(planned: Planned) -> str:
         return ""
     length, factor = readable_length(planned.plan.cut_length_mm), planned.slots_mm / planned.plan.cut_length_mm
     return tr(
-        "As closed slots {factor:.2f} times the open cuts of {length}; the time is that of open cuts.",
+        "Closed slots: {factor:.2f} times the open cut length of {length}. The time is for open cuts.",
         factor=factor,
         length=length,
     )
@@ -449,7 +448,7 @@ def format_times(times: CutTimes) -> str:
     parts = (("cutting", times.cut), ("travel", times.travel), ("switching", times.extra))
     split = ", ".join(f"{readable_time(seconds)} {word}" for word, seconds in parts)
     return tr(
-        "About {readable_time}: {split}.\nThe range allows for half and for twice the acceleration.",
+        "About {readable_time}: {split}.\nRange: half to twice the acceleration.",
         readable_time=readable_time(times.total),
         split=split,
     )

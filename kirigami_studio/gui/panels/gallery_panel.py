@@ -38,7 +38,7 @@ class GalleryPanel(Card):
     """Title, count, bar and cards."""
 
     def __init__(self, parent: QWidget | None = None) -> None:
-        super().__init__(tr("Candidates"), parent, right_inset=4)
+        super().__init__(tr("Designs"), parent, right_inset=4)
         self.view = GalleryView()
         self.bar = GalleryBar()
         self.count = FittingLabel()
@@ -88,10 +88,10 @@ class GalleryBar(QWidget):
         self._selection = Selection()
         self._chosen: tuple[RatioField, int] | None = None
         self.order = self._order_box()
-        self.filter = tool_button("filterGallery", tr("Filter: choose which designs are shown."), checkable=True)
+        self.filter = tool_button("filterGallery", tr("Filter designs."), checkable=True)
         self.again = tool_button("again", tr("More designs (Ctrl+R)."))
         self.alike = tool_button("moreLike", tr("More like the chosen design (Ctrl+Shift+R)."), checkable=True)
-        tip = tr("Compare two designs side by side (K). Ctrl+click a card to say with which.")
+        tip = tr("Compare two designs side by side (K). Ctrl+click a card to compare with it.")
         self.compare = tool_button("compare", tip, checkable=True)
         row = QHBoxLayout()
         row.setSpacing(4)
@@ -116,7 +116,7 @@ class GalleryBar(QWidget):
         box = QComboBox()
         box.setObjectName("galleryOrder")
         box.setFocusPolicy(Qt.FocusPolicy.TabFocus)
-        box.setAccessibleName(tr("Sort the designs by"))
+        box.setAccessibleName(tr("Sort designs by"))
         box.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
         for order, text, tip in _orders():
             box.addItem(text, order)
@@ -129,7 +129,7 @@ class GalleryBar(QWidget):
     def _filter_pane(self) -> QWidget:
         self.feasible = _check("feasibleOnly", tr("Feasible"), tr("Show only designs that can be built."))
         self.pinned = _check("pinnedOnly", tr("Pinned"), tr("Show only pinned designs."))
-        self.rejected = _check("showRejected", tr("Rejected"), tr("Also show rejected designs, dimmed."))
+        self.rejected = _check("showRejected", tr("Rejected"), tr("Also show rejected designs (dimmed)."))
         self.pinned_first = _check("pinnedFirst", tr("Pinned first"), tr("Show pinned designs before all others."))
         self.least = DecimalField()
         self.least.setObjectName("leastSiou")
@@ -139,7 +139,7 @@ class GalleryBar(QWidget):
         self.least.setSpecialValueText(tr("any"))
         self.least.setKeyboardTracking(False)
         self.least.setFixedWidth(84)
-        self.least.setAccessibleName(tr("Least sIoU that is shown, in percent"))
+        self.least.setAccessibleName(tr("Minimum sIoU in percent"))
         self.least.setToolTip(tr("Show only designs with at least this sIoU, in percent."))
         number_field(self.least)
         self.least.valueChanged.connect(lambda _: self._emit_selection())
@@ -169,12 +169,12 @@ class GalleryBar(QWidget):
         self.nearness.setRange(0, STEPS)
         self.nearness.setPageStep(STEPS // 10)
         self.nearness.setValue(round(STEPS * (NEAREST - USUAL) / (NEAREST - FARTHEST)))
-        self.nearness.setAccessibleName(tr("How far from the chosen design new ones may lie"))
-        self.nearness.setToolTip(tr("Left: close variations of the chosen design. Right: only a little like it."))
-        self.draw = QPushButton(tr("Draw"))
+        self.nearness.setAccessibleName(tr("How far from the chosen design new ones may be"))
+        self.nearness.setToolTip(tr("Left: close variations of the chosen design. Right: loosely similar."))
+        self.draw = QPushButton(tr("Add"))
         self.draw.setObjectName("small")
         self.draw.setFocusPolicy(Qt.FocusPolicy.TabFocus)
-        self.draw.setToolTip(tr("Draw designs like the chosen one and add them (Ctrl+Shift+R)."))
+        self.draw.setToolTip(tr("Generate designs like the chosen one and add them (Ctrl+Shift+R)."))
         self.draw.clicked.connect(lambda: self.alike_wanted.emit(self.nearness_value))
         pane = QWidget()
         row = QHBoxLayout(pane)
@@ -224,7 +224,7 @@ class GalleryBar(QWidget):
 
     def show_count(self, count: int) -> None:
         """Tell how many designs would be added."""
-        self.again.setToolTip(tr("Draw {count} more designs with the next seed and add them (Ctrl+R).", count=count))
+        self.again.setToolTip(tr("Generate {count} more designs from the next seed (Ctrl+R).", count=count))
 
     def set_palette(self, palette: Palette) -> None:
         """Draw in other colours."""
@@ -239,7 +239,7 @@ class GalleryBar(QWidget):
             self.order.setCurrentIndex(0)
         unlike = self._chosen if order is SortOrder.UNLIKE else None
         last = self.order.count() - 1
-        text = tr("Unlike the chosen") if unlike is None else tr("Unlike design {number}", number=unlike[1])
+        text = tr("By difference") if unlike is None else tr("Unlike design {number}", number=unlike[1])
         self.order.setItemText(last, text)
         self._selection = replace(self._selection, order=order, unlike=None if unlike is None else unlike[0])
         self._emit_selection()
@@ -275,13 +275,13 @@ def _orders() -> tuple[tuple[SortOrder, str, str], ...]:
         (
             SortOrder.PANEL,
             tr("By panel size"),
-            tr("The sheet whose smallest panel edge or neck is largest first, in mm at the sheet's width."),
+            tr("The largest minimum panel edge or neck first, in mm at the sheet's width."),
         ),
-        (SortOrder.NEWEST, tr("By newest"), tr("Designs that the last run has added first; they carry a dot.")),
+        (SortOrder.NEWEST, tr("Newest first"), tr("Designs added by the last run first, marked with a dot.")),
         (
             SortOrder.UNLIKE,
-            tr("Unlike the chosen"),
-            tr("The design that differs most from the one chosen now first; choose this again to start from another."),
+            tr("By difference"),
+            tr("Most different from the chosen design first. Choose this again to start from another design."),
         ),
     )
 

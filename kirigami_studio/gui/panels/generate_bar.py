@@ -26,10 +26,10 @@ class GenerateBar(QWidget):
         self.stop = QPushButton(tr("Cancel"))
         self.stop.setObjectName("cancel")
         self.stop.setFocusPolicy(Qt.FocusPolicy.TabFocus)
-        self.stop.setToolTip(tr("Stop generating; the project stays as it is (Esc)"))
+        self.stop.setToolTip(tr("Stop generating; the project stays unchanged (Esc)"))
         self.progress = QProgressBar()
         self.progress.setTextVisible(False)
-        self.progress.setAccessibleName(tr("Progress of the run"))
+        self.progress.setAccessibleName(tr("Run progress"))
         self.progress_text = QLabel()
         self.progress_text.setObjectName("muted")
         buttons = QHBoxLayout()
@@ -56,7 +56,7 @@ class GenerateBar(QWidget):
         self.generate.setEnabled(False)
         self.generate.setText(tr("Generating …"))
         self.progress.setRange(0, 0)
-        self.progress_text.setText(tr("Starting {total} designs", total=total))
+        self.progress_text.setText(tr("Starting (0 of {total})", total=total))
         for part in (self.stop, self.progress, self.progress_text):
             part.show()
 

@@ -66,9 +66,9 @@ def _numbers(chosen: BoolArray) -> frozenset[int]:
 #: Menu text, tooltip, rule.
 RULES: tuple[tuple[str, str, Rule], ...] = (
     (tr("&All connectors"), tr("Select every connector of the sheet"), every_hinge),
-    (tr("&Edge connectors"), tr("Select the connectors beside the sheet's edge"), edge_hinges),
-    (tr("At &short cuts"), tr("Select the quarter of the connectors with the shortest cuts"), hinges_of_short_cuts),
-    (tr("At &long cuts"), tr("Select the quarter of the connectors with the longest cuts"), hinges_of_long_cuts),
+    (tr("&Edge connectors"), tr("Select the connectors along the sheet's edge"), edge_hinges),
+    (tr("On &short cuts"), tr("Select the quarter of connectors on the shortest cuts"), hinges_of_short_cuts),
+    (tr("On &long cuts"), tr("Select the quarter of connectors on the longest cuts"), hinges_of_long_cuts),
 )
 
 
@@ -87,8 +87,8 @@ class HingeBar(QWidget):
         self.rules = QToolButton()
         self.rules.setObjectName("hingeRules")
         self.rules.setText(tr("Select ▾"))
-        self.rules.setToolTip(tr("Select connectors by a rule, or click them in the drawing."))
-        self.rules.setAccessibleName(tr("Select connectors by a rule"))
+        self.rules.setToolTip(tr("Select connectors by rule, or click them in the drawing."))
+        self.rules.setAccessibleName(tr("Select connectors by rule"))
         self.rules.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         self.rules.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)
         menu = QMenu(self.rules)
@@ -113,9 +113,7 @@ class HingeBar(QWidget):
         self.width_mm.setFixedWidth(108)
         number_field(self.width_mm)
         self.remove = tool_button("removeHinges", tr("Cut through: leave no connector here (Delete)."))
-        self.reset = tool_button(
-            "resetHinges", tr("Usual width: give the selected connectors the sheet's width again.")
-        )
+        self.reset = tool_button("resetHinges", tr("Reset to the sheet's connector width."))
         self._lay_out()
         self.width_mm.valueChanged.connect(self.width_wanted)
         self.width_mm.editingFinished.connect(self.edited)

@@ -22,7 +22,7 @@ class PictureMenu(QMenu):
         super().__init__(tr("Export pi&cture of"), parent)
         self._picturing = picturing
         self._ask = ask
-        self.menuAction().setStatusTip(tr("Write a view as PNG or SVG"))
+        self.menuAction().setStatusTip(tr("Export a view as PNG or SVG"))
         self.setToolTipsVisible(True)
         self.aboutToShow.connect(self.refresh)
         self.refresh()
@@ -35,14 +35,14 @@ class PictureMenu(QMenu):
         self.addSeparator()
         sizes = QActionGroup(self)
         for scale in SCALES:
-            each = self.addAction(tr("&{scale} x as large (PNG)", scale=scale))
-            each.setToolTip(tr("{scale} pixels of a PNG for each pixel of the view", scale=scale))
+            each = self.addAction(tr("&{scale}\N{MULTIPLICATION SIGN} size (PNG)", scale=scale))
+            each.setToolTip(tr("{scale} PNG pixels per screen pixel", scale=scale))
             each.setCheckable(True)
             each.setChecked(scale == self._picturing.scale)
             each.triggered.connect(partial(self._set_scale, scale))
             sizes.addAction(each)
         self.addSeparator()
-        overlays = self.addAction(tr("With &overlays, as seen"))
+        overlays = self.addAction(tr("Include &overlays"))
         overlays.setObjectName("pictureOverlays")
         overlays.setCheckable(True)
         overlays.setChecked(self._picturing.overlays)
@@ -69,7 +69,7 @@ class RecentMenu(QMenu):
         self._take = take
         self.entries: dict[str, QAction] = {}
         self.setToolTipsVisible(True)
-        self.menuAction().setStatusTip(tr("Projects and targets that were used last"))
+        self.menuAction().setStatusTip(tr("Recently used projects and targets"))
         self.aboutToShow.connect(files.look)
         files.changed.connect(self.show_recent)
         files.missing.connect(self.show_missing)
@@ -94,7 +94,7 @@ class RecentMenu(QMenu):
         """Offer what is there, in grey what is not."""
         for path, action in self.entries.items():
             action.setEnabled(path not in missing)
-            action.setToolTip(tr("{path} is not there any more.", path=path) if path in missing else path)
+            action.setToolTip(tr("{path} no longer exists.", path=path) if path in missing else path)
 
     def _caption(self, title: str) -> QAction:
         """A line that only says what follows; the style draws no titles of sections."""

@@ -18,22 +18,22 @@ TOOLTIP = Qt.ItemDataRole.ToolTipRole
 #: Value, label, what it means.
 STYLES = (
     (ConnectorStyle.STRAIGHT, tr("Straight"), tr("The slit ends in a plain tip.")),
-    (ConnectorStyle.ROUND, tr("Round"), tr("A round hole at the slit's end takes the stress off the tip.")),
-    (ConnectorStyle.TEARDROP, tr("Teardrop"), tr("A drop-shaped hole at the slit's end: round, without a step.")),
+    (ConnectorStyle.ROUND, tr("Round"), tr("A round hole at the slit's end relieves stress.")),
+    (ConnectorStyle.TEARDROP, tr("Teardrop"), tr("A drop-shaped hole at the slit's end: rounded, with no step.")),
     (ConnectorStyle.ARC, tr("Arc"), tr("A short arc across the slit's end guides the connector.")),
     (ConnectorStyle.DOUBLE, tr("Double"), tr("Two narrow connectors side by side that twist like a hinge.")),
 )
 ORDERS = (
-    (CutOrder.SHORTEST, tr("Shortest way"), tr("As little travel as can be found.")),
+    (CutOrder.SHORTEST, tr("Shortest way"), tr("The shortest travel found.")),
     (CutOrder.ROWS, tr("Row by row"), tr("Rows from one side to the other.")),
-    (CutOrder.INSIDE_OUT, tr("Inside out"), tr("From the middle outwards: the sheet stays flat longest.")),
-    (CutOrder.SPREAD, tr("Spread"), tr("Far apart one after the other, to spread the heat.")),
+    (CutOrder.INSIDE_OUT, tr("Inside out"), tr("From the middle outwards; keeps the sheet flat longest.")),
+    (CutOrder.SPREAD, tr("Spread"), tr("Successive cuts far apart, to spread the heat.")),
 )
 VERSIONS = (
-    ("R2010", "R2010", tr("The usual choice: holds the unit mm and light polylines.")),
-    ("R12", "R12", tr("For old programs. Holds no unit: import it as mm.")),
+    ("R2010", "R2010", tr("Recommended. Stores mm as the unit and uses light polylines.")),
+    ("R12", "R12", tr("For old software. Stores no unit: import as mm.")),
 )
-PROFILE_TIP = tr("Machine profile: how colours and layers of cut files are arranged for your machine's program.")
+PROFILE_TIP = tr("Machine profile: the colours and layers your machine's software expects in cut files.")
 
 
 class MoreOptions(QWidget):
@@ -64,7 +64,7 @@ class MoreOptions(QWidget):
         self.tabs.setAccessibleName(tr("Number of tabs"))
         self.tabs.setToolTip(
             tr(
-                "Uncut places of the outline that hold the sheet until it is taken out (0 to {most_tabs}).",
+                "Uncut bridges in the outline that hold the sheet until you remove it (0 to {most_tabs}).",
                 most_tabs=MOST_TABS,
             )
         )

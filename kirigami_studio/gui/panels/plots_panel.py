@@ -37,18 +37,18 @@ class _Row:
 
 def _rows() -> tuple[_Row, ...]:
     return (
-        _Row(tr("Match"), tr("Agreement of the whole sheet with the target at each angle, in its best pose, %"), "%", (
+        _Row(tr("Match"), tr("Match of the whole sheet with the target at each angle, in its best pose, %"), "%", (
             ("sIoU", lambda reading, mm: 100.0 * reading.siou),
             (tr("exact IoU"), lambda reading, mm: 100.0 * reading.iou),
         )),
         _Row(tr("Area"), tr("Area inside the sheet's outline, voids included, mm²"), "mm²", (
             (tr("area"), lambda reading, mm: reading.area * mm * mm),
         )),
-        _Row(tr("Size"), tr("Width and height of the sheet as it lies on the screen, mm"), "mm", (
+        _Row(tr("Size"), tr("Width and height of the sheet as shown, mm"), "mm", (
             (tr("width"), lambda reading, mm: reading.width * mm),
             (tr("height"), lambda reading, mm: reading.height * mm),
         )),
-        _Row(tr("Gap"), tr("Narrowest bottleneck of air between parts of the outline, mm; 0 is contact"), "mm", (
+        _Row(tr("Gap"), tr("Narrowest gap between parts of the outline, mm; 0 means contact"), "mm", (
             (tr("gap"), lambda reading, mm: reading.gap * mm),
         ), True),
     )  # fmt: skip
@@ -75,7 +75,7 @@ class PlotsPanel(QWidget):
         self._turn = QTimer(self, singleShot=True, interval=0)
         self._turn.timeout.connect(self._go_on)
         self.setObjectName("plain")
-        self.setAccessibleName(tr("Plots over the deployment angle"))
+        self.setAccessibleName(tr("Plots by deployment angle"))
         self.placeholder = QLabel()
         self.placeholder.setObjectName("muted")
         self.placeholder.setWordWrap(True)
@@ -151,7 +151,7 @@ class PlotsPanel(QWidget):
         """Show the charts, or say why there are none."""
         curves = self._curves
         shown = self._built and curves is not None and bool(curves.readings)
-        waiting = tr("Reading the design at {count} angles …", count=ANGLES)
+        waiting = tr("Measuring the design at {count} angles …", count=ANGLES)
         self.placeholder.setText("" if shown else waiting if curves is not None else tr("No design yet."))
         self.placeholder.setVisible(not shown)
         self._share_room()
@@ -190,7 +190,7 @@ class PlotsPanel(QWidget):
 
         row = self._rows[len(self.charts)]
         chart = Chart(row.text, row.unit, tuple(name for name, _ in row.series), row.from_zero)
-        chart.setToolTip(tr("{what}. Drag the line or click to go to an angle.", what=row.tip))
+        chart.setToolTip(tr("{what}. Drag the line or click to jump to an angle.", what=row.tip))
         chart.set_palette(self._palette)
         chart.phi_wanted.connect(self.phi_wanted)
         chart.pointed.connect(self._point)

@@ -30,35 +30,32 @@ TOOLTIP = Qt.ItemDataRole.ToolTipRole
 
 #: What is known about a generator by its name; others are listed by name alone.
 VARIANTS = {
-    "prior": (tr("Prior"), tr("As learned from random sheets: the widest choice, rougher fields.")),
-    "accuracy": (tr("Accuracy"), tr("Aligned with the geometry for the closest match.")),
-    "regularity": (tr("Regularity"), tr("Aligned for even panels that are easy to cut, at a little less match.")),
-    "balanced": (tr("Balanced"), tr("Aligned for match and evenness together; the usual choice.")),
+    "prior": (tr("Prior"), tr("Trained on random sheets only: most variety, rougher layouts.")),
+    "accuracy": (tr("Accuracy"), tr("Tuned for the closest match.")),
+    "regularity": (tr("Regularity"), tr("Tuned for even panels that are easy to cut; slightly lower match.")),
+    "balanced": (tr("Balanced"), tr("Tuned for both match and even panels. Recommended.")),
 }
 
 
 #: How thoroughly designs are fitted on the exact geometry: name, steps, what it means.
 POLISH = (
-    (tr("Off"), 0, tr("Designs stay as the generator drew them.")),
-    (tr("Light"), 5, tr("A quick fit: most of the gain, fields stay close to what was drawn.")),
-    (tr("Full"), 15, tr("Nearly converged; the usual choice.")),
-    (tr("Deep"), 60, tr("Until nothing is gained any more; for sharp corners and thin arms.")),
+    (tr("Off"), 0, tr("Keep designs as generated.")),
+    (tr("Light"), 5, tr("A quick fit: most of the improvement, close to the generated design.")),
+    (tr("Full"), 15, tr("Nearly converged. Recommended.")),
+    (tr("Deep"), 60, tr("Continues until nothing improves; for sharp corners and thin arms.")),
 )
 
 #: What a fit prefers among nearly equal matches: name of the preference, label, what it means.
 PREFER = (
-    ("accuracy", tr("Accuracy"), tr("The closest match, whatever the panels look like.")),
-    ("balanced", tr("Balanced"), tr("The usual choice: nearly as close, and about 20 % calmer.")),
-    ("regularity", tr("Regularity"), tr("A third less TV than balanced, for 0.1 to 0.2 % of the match.")),
-    ("calm", tr("Calm"), tr("About half the TV of balanced, for 0.2 to 0.9 % of the match.")),
+    ("accuracy", tr("Accuracy"), tr("The closest match, regardless of panel shape.")),
+    ("balanced", tr("Balanced"), tr("Recommended: nearly as close, and about 20 % calmer.")),
+    ("regularity", tr("Regularity"), tr("A third less TV than Balanced, at 0.1 to 0.2 % less match.")),
+    ("calm", tr("Calm"), tr("About half the TV of Balanced, at 0.2 to 0.9 % less match.")),
 )
 SEARCH = tr(
-    "Look beyond the samples, by way of easier shapes, for one more design. Costs a few "
-    "seconds; helps with thin arms and notches."
+    "Search for one more design by way of easier shapes. Takes a few seconds; helps with thin arms and notches."
 )
-KEEP_SEED = tr(
-    "Keep this seed. On: Generate draws the same designs again. Off: every run takes the next seed and shows it here."
-)
+KEEP_SEED = tr("Keep this seed. On: Generate repeats the same designs. Off: each run uses the next seed.")
 
 
 class SettingsPanel(Card):
@@ -70,7 +67,7 @@ class SettingsPanel(Card):
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(tr("Design"), parent)
-        tip = tr("Voids from {}. More voids follow the target more closely but are smaller ({} to {}).")
+        tip = tr("Voids from {}. More voids match the target more closely but are smaller ({} to {}).")
         self.rows = _whole(
             "rows",
             tr("Rows"),
@@ -87,7 +84,7 @@ class SettingsPanel(Card):
         )
         self.candidates = _whole(
             "candidates",
-            tr("Candidates"),
+            tr("Designs"),
             1,
             LARGEST_K,
             tr("Number of designs to generate and compare (1 to {largest_k}).", largest_k=LARGEST_K),
@@ -97,7 +94,7 @@ class SettingsPanel(Card):
             tr("Seed"),
             0,
             LARGEST_SEED,
-            tr("Start of the random numbers: the same seed gives the same designs."),
+            tr("Random seed. The same seed gives the same designs."),
         )
         self.angle = DecimalField()
         self.angle.setObjectName("targetAngle")
@@ -105,7 +102,9 @@ class SettingsPanel(Card):
         self.angle.setDecimals(1)
         self.angle.setSuffix("°")
         self.angle.setAccessibleName(tr("Target angle in degrees"))
-        self.angle.setToolTip(tr("Deployment angle (degrees) at which the sheet shows the target; 0° is fully turned."))
+        self.angle.setToolTip(
+            tr("Deployment angle at which the sheet matches the target, in degrees; 0° is fully turned.")
+        )
         self.dice = tool_button("newSeed", tr("New random seed."))
         self.dice.setFixedSize(29, 29)
         self.keep = tool_button("keepSeed", KEEP_SEED, checkable=True)
@@ -206,9 +205,7 @@ class SettingsPanel(Card):
             self.polish.addItem(tr("{steps} steps", steps=steps), steps)
             index = self.polish.count() - 1
         self.polish.setCurrentIndex(index)
-        self.polish.setToolTip(
-            tr("How thoroughly designs are fitted to the target: {steps} steps at most.", steps=steps)
-        )
+        self.polish.setToolTip(tr("How thoroughly designs are fitted to the target: up to {steps} steps.", steps=steps))
 
     def _choose_preference(self, name: str, fitted: bool) -> None:
         index = self.prefer.findData(name)
@@ -219,7 +216,7 @@ class SettingsPanel(Card):
         self.prefer.setEnabled(fitted)
         about = self.prefer.itemData(index, TOOLTIP) or ""
         tip = tr("What polishing prefers among nearly equal matches. {about}", about=about).strip()
-        self.prefer.setToolTip(tip if fitted else tr("What polishing prefers; Polish is off."))
+        self.prefer.setToolTip(tip if fitted else tr("What polishing prefers. Turn on Polish to use it."))
 
     def _choose_variant(self, name: str) -> None:
         index = self.variant.findData(name)
@@ -228,7 +225,7 @@ class SettingsPanel(Card):
             index = self.variant.count() - 1
         self.variant.setCurrentIndex(index)
         self.variant.setToolTip(
-            tr("Which generator draws the designs. {get}", get=VARIANTS.get(name, ("", ""))[1]).strip()
+            tr("Model that generates the designs. {get}", get=VARIANTS.get(name, ("", ""))[1]).strip()
         )
 
     def set_palette(self, palette: Palette) -> None:

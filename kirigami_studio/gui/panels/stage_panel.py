@@ -32,15 +32,15 @@ OVERLAYS = (
         "mismatch",
         tr("Show missing and extra area near the target angle (M). Orange stripes: missing; dark stripes: extra."),
     ),
-    (Overlay.FAULTS, "fault", tr("Mark inverted panels and the first contact (F).")),
+    (Overlay.FAULTS, "fault", tr("Mark inverted panels and contacts (F).")),
 )
-BEFORE = tr("Before polish: show the design as the generator drew it (B).")
+BEFORE = tr("Before polish: show the design as generated (B).")
 NEVER_POLISHED = tr("Before polish (B). Nothing to compare: polishing has not changed this design.")
-NEVER_SAMPLED = tr("Before polish (B). Nothing to compare: this design was not drawn by the generator.")
+NEVER_SAMPLED = tr("Before polish (B). Nothing to compare: the model did not generate this design.")
 TRIM = tr("Trim to target (Ctrl+T). Cuts the edge panels along the target; every hinge keeps its material.")
-UNTRIM = tr("Trim to target (Ctrl+T). Press again to bring back what was cut off.")
-TRIMMING = tr("Trim to target: at work. Press again, or Esc, to stop.")
-CUTS = tr("Cuts: show the cut plan as it will burn (C).")
+UNTRIM = tr("Trim to target (Ctrl+T). Press again to untrim.")
+TRIMMING = tr("Trimming … Press again, or Esc, to stop.")
+CUTS = tr("Cuts: show the cut plan at kerf width (C).")
 PLOTS = tr("Plots: match, area, size and gaps at every angle (J).")
 
 
@@ -78,8 +78,8 @@ class StagePanel(Card):
         self.trim = tool_button("trim", TRIM, checkable=True)
         self.trim.clicked.connect(self.trim_wanted)
         tip = tr(
-            "Edit by hand (H). Wheel on a void: its ratio, with Shift in fine steps. Pull a void or a corner of the "
-            "outline. Alt-click or L: lock. Arrows: walk, + and -: ratio."
+            "Edit by hand (H). Scroll over a void to change its ratio (Shift: fine). Drag a void "
+            "or an outline corner. Alt+click or L: lock. Arrows: next void; + and -: ratio."
         )
         self.hand = tool_button("hand", tip, checkable=True)
         self.hand.toggled.connect(self._toggle_hand)
@@ -107,7 +107,7 @@ class StagePanel(Card):
             self.toggles[overlay] = button
             self.header.addWidget(button)
         self._other_overlays: frozenset[Overlay] = USUAL - self.toggles.keys()
-        self.overlays_button = tool_button("overlays", tr("Overlays: what is drawn over the layout."))
+        self.overlays_button = tool_button("overlays", tr("Overlays on the layout."))
         self.overlays_button.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)
         self.overlay_menu = QMenu(self.overlays_button)
         self.overlay_menu.setToolTipsVisible(True)
@@ -119,7 +119,7 @@ class StagePanel(Card):
         self.plots_switch = tool_button("plots", PLOTS, checkable=True)
         self.plots_switch.toggled.connect(self._toggle_plots)
         self.header.addWidget(self.plots_switch)
-        self.whole = tool_button("fit", tr("Show everything (0)."))
+        self.whole = tool_button("fit", tr("Fit view (0)."))
         self.whole.clicked.connect(self.fit)
         self.header.addWidget(self.whole)
         for button in (self.whole, *self.toggles.values()):

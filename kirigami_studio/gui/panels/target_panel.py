@@ -33,15 +33,15 @@ REFINE_STEPS = 100
 GREY_LEVELS = 200
 #: Name, caption, tooltip.
 SLIDERS = (
-    ("simplify", tr("S&implify"), tr("Drop points: the further to the right, the fewer corners stay")),
-    ("smooth", tr("S&mooth"), tr("Round corners and calm edges; the area stays")),
+    ("simplify", tr("S&implify"), tr("Remove points; further right keeps fewer corners")),
+    ("smooth", tr("S&mooth"), tr("Round corners and smooth edges; the area stays the same")),
 )
 #: Tool button name, icon, tooltip, whether it stays down.
 BUTTONS = (
     ("openTarget", "open", tr("Open a target file (Ctrl+O). PNG, JPG, BMP, SVG, DXF or JSON."), False),
     ("library", "library", tr("Choose a silhouette from the library (Ctrl+L)."), False),
-    ("edit", "edit", tr("Draw and edit the target (E). Shapes, points, add and take away."), True),
-    ("clearTarget", "clear", tr("Clear the target. Undo brings it back."), False),
+    ("edit", "edit", tr("Draw and edit the target (E). Shapes, points, add and subtract."), True),
+    ("clearTarget", "clear", tr("Clear the target. Undo restores it."), False),
 )
 #: Said when the editor is left.
 DONE_HINT = tr("Press Generate (Ctrl+G) to design a sheet for this target.")
@@ -78,7 +78,7 @@ class TargetPanel(Card):
         self.notes.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
         self.reach = ElidedLabel()
         self.reach.setObjectName("warning")
-        self.reach.setAccessibleName(tr("What the grid may not show"))
+        self.reach.setAccessibleName(tr("Details that the grid may miss"))
         self.reach.setVisible(False)
         self.threshold = ThresholdBar()
         self.body.addWidget(self.tools)
@@ -223,12 +223,14 @@ class RefineBar(QWidget):
             self.sliders[name] = slider
             row.addWidget(_caption(caption, slider))
             row.addWidget(slider, 1)
-        self.width_ = _length(tr("Width of the target"))
-        self.height_ = _length(tr("Height of the target"))
+        self.width_ = _length(tr("Target width"))
+        self.height_ = _length(tr("Target height"))
         for caption, field in ((tr("Size"), self.width_), ("\N{MULTIPLICATION SIGN}", self.height_)):
             row.addWidget(_caption(caption, field))
             row.addWidget(field)
-        self.proportions = tool_button("keepProportions", tr("Keep proportions. Off: width or height alone."), True)
+        self.proportions = tool_button(
+            "keepProportions", tr("Keep proportions. Off: change width and height separately."), True
+        )
         self.proportions.setChecked(True)
         row.addWidget(self.proportions)
         self.width_.valueChanged.connect(self._take_width)
@@ -332,9 +334,9 @@ class ThresholdBar(QWidget):
         self.slider.setObjectName("threshold")
         self.slider.setRange(1, GREY_LEVELS - 1)
         self.slider.setPageStep(GREY_LEVELS // 20)
-        self.slider.setAccessibleName(tr("Threshold between shape and ground, from black to white"))
+        self.slider.setAccessibleName(tr("Threshold between shape and background, from black to white"))
         self.slider.setToolTip(
-            tr("Grey level that divides shape and ground: 0 % is black, 100 % white (arrow keys: 0.5 %)")
+            tr("Grey level that separates shape from background: 0 % is black, 100 % white (arrow keys: 0.5 %)")
         )
         self.number = QLabel()
         self.number.setObjectName("muted")
@@ -343,7 +345,7 @@ class ThresholdBar(QWidget):
         self.automatic = QPushButton(tr("Auto"))
         self.automatic.setObjectName("small")
         self.automatic.setFocusPolicy(Qt.FocusPolicy.TabFocus)
-        self.automatic.setToolTip(tr("Back to the threshold that was found in the picture"))
+        self.automatic.setToolTip(tr("Reset to the automatic threshold"))
         caption.setBuddy(self.slider)
         row = QHBoxLayout(self)
         row.setContentsMargins(0, 0, 0, 0)
@@ -386,7 +388,5 @@ def _length(name: str) -> LengthField:
     number_field(field)
     field.setKeyboardTracking(False)
     field.setAccessibleName(name)
-    field.setToolTip(
-        tr("{name} in mm; 3 in or 8.5 cm may be typed too. The chain beside it keeps the proportions.", name=name)
-    )
+    field.setToolTip(tr("{name} in mm; 3 in or 8.5 cm work too. The chain keeps proportions.", name=name))
     return field

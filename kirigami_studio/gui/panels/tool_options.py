@@ -41,8 +41,8 @@ class ToolOptions(QWidget):
         self.waist.setDecimals(0)
         self.waist.setSuffix(" %")
         self.waist.setValue(100 * context.waist)
-        self.waist.setAccessibleName(tr("Waist of the star"))
-        self.waist.setToolTip(tr("How far its inner corners are from the middle, as a share of its tips"))
+        self.waist.setAccessibleName(tr("Star waist"))
+        self.waist.setToolTip(tr("Inner radius of the star as a share of its outer radius"))
         for number in (self.corners, self.waist):
             number_field(number)
         self.text = QLineEdit(context.text)
@@ -106,11 +106,11 @@ class NodeOptions(QWidget):
         for kind, tip in (
             (
                 Kind.CORNER,
-                tr("Corner (Shift+C). Handles of the selected points go their own ways (Alt+drag); again: no handles."),
+                tr("Corner (Shift+C). Handles move independently, as with Alt+drag. Press again to remove them."),
             ),
-            (Kind.SMOOTH, tr("Smooth (Shift+S). Both handles of the selected points lie on one line.")),
-            (Kind.SYMMETRIC, tr("Symmetric (Shift+Y). Both handles are also of one length; Shift+drag does the same.")),
-            (Kind.AUTO, tr("Automatic (Shift+A). The neighbours of the selected points set their handles.")),
+            (Kind.SMOOTH, tr("Smooth (Shift+S). Both handles stay in line.")),
+            (Kind.SYMMETRIC, tr("Symmetric (Shift+Y). Handles stay in line and equally long, as with Shift+drag.")),
+            (Kind.AUTO, tr("Automatic (Shift+A). Neighbouring points set the handles.")),
         ):
             button = tool_button(f"node{kind.value.capitalize()}", tip, checkable=True)
             button.clicked.connect(lambda _=False, kind=kind: context.kind_wanted.emit(kind))
@@ -141,9 +141,9 @@ class PoseOptions(QWidget):
         row = QHBoxLayout(self)
         row.setContentsMargins(0, 0, 0, 0)
         row.setSpacing(6)
-        self.x_ = self._field(tr("Middle of the target from left to right, mm on the board"), LARGEST_MM, 1, tr(" mm"))
-        self.y_ = self._field(tr("Middle of the target from bottom to top, mm on the board"), LARGEST_MM, 1, tr(" mm"))
-        self.turn = self._field(tr("Turn the target by this angle, degrees counter-clockwise"), 360.0, 1, "°")
+        self.x_ = self._field(tr("X of the target's middle on the board, mm"), LARGEST_MM, 1, tr(" mm"))
+        self.y_ = self._field(tr("Y of the target's middle on the board, mm"), LARGEST_MM, 1, tr(" mm"))
+        self.turn = self._field(tr("Rotate the target by this angle, degrees counter-clockwise"), 360.0, 1, "°")
         for caption, field in ((tr("&X"), self.x_), (tr("&Y"), self.y_), (tr("T&urn by"), self.turn)):
             label = QLabel(caption)
             label.setObjectName("muted")
@@ -211,7 +211,7 @@ class FontOptions(QWidget):
         self._row.setContentsMargins(0, 0, 0, 0)
         self._row.setSpacing(2)
         self.family: QFontComboBox | None = None
-        self.bold = tool_button("fontBold", tr("Bold letters. Sheets show thick strokes better than thin ones."), True)
+        self.bold = tool_button("fontBold", tr("Bold letters. Thick strokes work better than thin ones."), True)
         self.italic = tool_button("fontItalic", tr("Italic letters."), True)
         self.bold.setChecked(context.bold)
         self.bold.toggled.connect(self._take_style)
@@ -225,8 +225,8 @@ class FontOptions(QWidget):
             return
         self.family = QFontComboBox()
         self.family.setFontFilters(QFontComboBox.FontFilter.ScalableFonts)
-        self.family.setAccessibleName(tr("Font of the text"))
-        self.family.setToolTip(tr("Font of the text. Its letters are moved together until they hang in one piece."))
+        self.family.setAccessibleName(tr("Font"))
+        self.family.setToolTip(tr("Font. Letters are moved together into one piece."))
         self.family.setMaximumWidth(190)
         with QSignalBlocker(self.family):
             self.family.setCurrentFont(QFont(self._context.family) if self._context.family else self.font())
@@ -257,8 +257,8 @@ class AxisButton(QToolButton):
         self.setAccessibleName(tr("Mirror while drawing"))
         self.setToolTip(
             tr(
-                "Mirror while drawing (Shift+M). Shapes, strokes and points are reflected about the dashed axis "
-                "through the middle of the target."
+                "Mirror while drawing (Shift+M). Reflects shapes, strokes and points about the dashed "
+                "axis through the target's middle."
             )
         )
         self.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)

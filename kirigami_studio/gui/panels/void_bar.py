@@ -37,13 +37,13 @@ class VoidBar(QWidget):
         self.ratio.setKeyboardTracking(False)
         self.ratio.setAccessibleName(tr("Ratio of the selected void"))
         self.ratio.setToolTip(
-            tr("Ratio x of the selected void, without unit, 0.1 to 10: left lower edge by left upper.")
+            tr("Ratio x of the selected void, 0.1 to 10: lower left edge divided by upper left edge.")
         )
         self.ratio.setFixedWidth(104)
         number_field(self.ratio)
         self.lock = tool_button(
             "lockVoid",
-            tr("Lock (L). The ratio stays as it is in changes by hand and in Fit again; Generate makes new designs."),
+            tr("Lock (L). Keeps the ratio in manual edits and Fit again; Generate makes new designs."),
             checkable=True,
         )
         self.all = QToolButton()
@@ -59,7 +59,7 @@ class VoidBar(QWidget):
         self.all.setMenu(menu)
         self.refit = tool_button(
             "refit",
-            tr("Fit again. Improve the match from here; locked voids stay, and a trim is made anew (Ctrl+F)."),
+            tr("Fit again (Ctrl+F). Improves the match from here; locked voids stay, a trim is redone."),
             checkable=True,
         )
         self._lay_out()
@@ -130,12 +130,12 @@ def _selection_texts(voids: frozenset[Void], locked: frozenset[Void]) -> tuple[s
         ((row, column),) = voids
         short = tr("Void ({row}, {column})", row=row, column=column)
         if voids <= locked:
-            return tr("{void}: locked against changes by hand", void=short), short, f"({row}, {column})"
-        return tr("{void}: pull it, turn the wheel, or press + and -", void=short), short, f"({row}, {column})"
+            return tr("{void}: locked (L unlocks)", void=short), short, f"({row}, {column})"
+        return tr("{void}: drag, scroll, or press + and -", void=short), short, f"({row}, {column})"
     if voids:
         return (tr_n("{count} void", "{count} voids", len(voids)),)
-    hint = tr("Pull a void or a corner of the outline; the wheel changes a ratio")
+    hint = tr("Drag a void or an outline corner; scroll to change a ratio")
     if locked:
         count = tr_n("{count} void locked", "{count} voids locked", len(locked))
         return tr("{hint}  ·  {count}", hint=hint, count=count), count
-    return hint, tr("Pull a void or the outline")
+    return hint, tr("Drag a void or the outline")

@@ -74,10 +74,10 @@ class Connectors:
         """What a person reads about one hinge."""
         hinges = self.plan.hinges
         if self.removed[hinge]:
-            return tr("Hinge {hinge}: no connector, cut through", hinge=hinge)
+            return tr("Connector {hinge}: cut through", hinge=hinge)
         asked, finished = hinges.requested_mm[hinge], hinges.finished_mm[hinge]
         return tr(
-            "Hinge {hinge}: asked for {asked:.3f} mm, finished {finished:.3f} mm",
+            "Connector {hinge}: {asked:.3f} mm requested, {finished:.3f} mm finished",
             hinge=hinge,
             asked=asked,
             finished=finished,

@@ -23,7 +23,7 @@ class FaultKind(Enum):
     """What is wrong at a place; the value is the sentence for it."""
 
     INVERTED = tr("inverted or collapsed panel")
-    CONTACT = tr("first contact while deploying")
+    CONTACT = tr("first contact during deployment")
     CROSSING = tr("the sheet overlaps itself here")
 
 

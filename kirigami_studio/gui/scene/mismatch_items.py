@@ -139,7 +139,7 @@ def _chips(
     areas: tuple[float, float], mm2: float, off_mm: tuple[float, float], palette: Palette, short: bool
 ) -> list[Chip]:
     missing, extra = (readable_area(mm2 * share) for share in areas)
-    off = tr("off {mean:.2f} mm, at most {most:.2f} mm", mean=off_mm[0], most=off_mm[1])
+    off = tr("off by {mean:.2f} mm (max {most:.2f} mm)", mean=off_mm[0], most=off_mm[1])
     if short:
         texts = tr("missing {area}", area=missing), tr("extra {area}", area=extra)
     else:

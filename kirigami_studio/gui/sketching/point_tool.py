@@ -63,8 +63,8 @@ class PointTool(SketchTool):
     def __init__(self, context: SketchContext) -> None:
         super().__init__(context)
         self.hint = tr(
-            "Drag points or handles; Shift+click or a dragged field selects more. Double-click sets a point or rounds "
-            "it. Arrow keys nudge, Delete removes, [ and ] walk."
+            "Drag points or handles; Shift+click or drag a box to select more. Double-click adds "
+            "or rounds a point. Arrow keys nudge, Delete removes, [ and ] step through."
         )
         self._anchors: Anchors | None = None
         self._shown: Placed | None = None

@@ -48,8 +48,8 @@ class PoseTool(SketchTool):
     def __init__(self, context: SketchContext) -> None:
         super().__init__(context)
         self.hint = tr(
-            "Drag a square to stretch (Shift keeps proportions), the knob to turn (Shift: in steps of 15°), the shape "
-            "to move it; arrow keys nudge by 1 mm (Shift 10, Alt 0.1)."
+            "Drag a square to stretch (Shift: proportional), the knob to rotate (Shift: 15° "
+            "steps), the shape to move it. Arrow keys nudge by 1 mm (Shift 10, Alt 0.1)."
         )
         self._start: PointerEvent | None = None
         self._grip: tuple[int, int] | None = None

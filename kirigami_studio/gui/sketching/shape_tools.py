@@ -44,7 +44,7 @@ PLAIN = Mirror()
 class Freehand(SketchTool):
     """One stroke; it is smoothed and closes itself."""
 
-    hint = tr("Draw the silhouette in one stroke; it closes itself when you let go.")
+    hint = tr("Draw the silhouette in one stroke; it closes when you release.")
 
     def __init__(self, context: SketchContext) -> None:
         super().__init__(context)
@@ -90,7 +90,7 @@ def stroke_of(points: np.ndarray[tuple[int, ...], np.dtype[np.float64]], mirror:
 class Corners(SketchTool):
     """A polygon, click by click."""
 
-    hint = tr("Click the corners; close with Enter or a click on the first one. Backspace takes back.")
+    hint = tr("Click corners; close with Enter or a click on the first one. Backspace removes the last.")
 
     def __init__(self, context: SketchContext) -> None:
         super().__init__(context)
@@ -198,7 +198,7 @@ class FigureTool(BoxTool):
     def __init__(self, context: SketchContext, kind: Figure) -> None:
         super().__init__(context)
         self._kind = kind
-        self.hint = tr("Drag a box for the {value}. Shift keeps it regular, Ctrl leaves the grid.", value=kind.value)
+        self.hint = tr("Drag a box for the {value}. Shift keeps it regular, Ctrl ignores the grid.", value=kind.value)
 
     @property
     def name(self) -> str:
@@ -211,7 +211,7 @@ class FigureTool(BoxTool):
 class TextTool(BoxTool):
     """A word whose letters hang together."""
 
-    hint = tr("Type the text above, then drag a box for it. Letters are moved together: a sheet is one piece.")
+    hint = tr("Type the text above, then drag a box for it. Letters are moved together into one piece.")
 
     @property
     def name(self) -> str:

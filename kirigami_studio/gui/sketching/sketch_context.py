@@ -164,7 +164,7 @@ class SketchContext(QObject):
         replaces = how is Combine.REPLACE or target is None
         gesture = _change_name(Combine.REPLACE if replaces else how, name)
         if mirror.axis is not Axis.NONE:
-            gesture = tr("{gesture} with its mirror image", gesture=gesture)
+            gesture = tr("{gesture}, mirrored", gesture=gesture)
         self.changed.emit(Change(gesture, lambda: mirrored(target, make(), how, name, mirror)))
         if replaces:
             self.tool_done.emit()
@@ -229,7 +229,7 @@ def _change_name(how: Combine, name: str) -> str:
     """A drawn shape as it follows the word Undo."""
     if how is Combine.REPLACE:
         return tr("Draw freehand") if name == FREEHAND else tr("Draw {name}", name=name)
-    return tr("Add {name}", name=name) if how is Combine.ADD else tr("Take away {name}", name=name)
+    return tr("Add {name}", name=name) if how is Combine.ADD else tr("Subtract {name}", name=name)
 
 
 def _key(outline: Outline) -> tuple[object, ...]:

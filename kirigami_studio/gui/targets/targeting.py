@@ -187,7 +187,7 @@ class Targeting(QObject):
         document = self._document()
         if document.target is not None:
             self.replaced.emit(Edit(tr("Clear target"), edits.without_designs(document, None)))
-            self.status.emit(tr("Target cleared. Undo brings it back."))
+            self.status.emit(tr("Target cleared. Undo restores it."))
 
     def _take_traced(self, outline: Outline) -> None:
         self.adjusted.emit(edits.edit_target(self._document(), outline, tr("Change threshold")))

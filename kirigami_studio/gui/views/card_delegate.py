@@ -221,8 +221,8 @@ class CardDelegate(QStyledItemDelegate):
 def button_tip(button: CardButton, mark: Mark) -> str:
     """What a button of a card does."""
     if button is CardButton.PIN:
-        return tr("Unpin this design") if mark is Mark.PINNED else tr("Pin: keep this design when others are generated")
-    return tr("Take this design back") if mark is Mark.REJECTED else tr("Reject: hide this design")
+        return tr("Unpin this design") if mark is Mark.PINNED else tr("Pin: keep this design when you generate again")
+    return tr("Restore this design") if mark is Mark.REJECTED else tr("Reject: hide this design")
 
 
 def card_of(rect: QRect) -> QRect:

@@ -41,9 +41,9 @@ CLOSE_UP = 6.0
 #: Distance (pixels) from a problem's mark that still takes a click.
 PROBLEM_REACH = 11.0
 HINT = tr(
-    "Wheel: zoom. Drag: move. Click a connector: select; Shift-click or Shift-drag: "
-    "select more, Ctrl+A: all. Drag it to size (Alt: fine), or type a width; double-click or Delete "
-    "cuts through, double-click brings back."
+    "Wheel: zoom. Drag: pan. Click a connector to select it; Shift+click or Shift+drag: "
+    "more; Ctrl+A: all. Drag it to resize (Alt: fine) or type a width. Double-click or "
+    "Delete cuts through; double-click again restores."
 )
 
 

@@ -85,7 +85,7 @@ class GalleryModel(QAbstractListModel):
     def _described(self, entry: Entry) -> str:
         lines = [described(entry.candidate, self.number_of(entry.candidate))]
         if entry.rise > 0:
-            lines.append(tr("Polishing has raised sIoU by {rise:.2f} points so far", rise=100 * entry.rise))
+            lines.append(tr("Polishing raised sIoU by {rise:.2f} points so far", rise=100 * entry.rise))
         mark = self.mark_of(entry.candidate)
         if mark is not Mark.NONE:
             lines.append(tr("Pinned") if mark is Mark.PINNED else tr("Rejected"))
@@ -250,8 +250,8 @@ def came_from(candidate: Candidate) -> list[str]:
     told = {
         Origin.SAMPLED: tr("Seed {seed}, sample {index}", seed=candidate.seed, index=candidate.index),
         Origin.SEARCHED: tr("Seed {seed}, found by the search", seed=candidate.seed),
-        Origin.RESAMPLED: tr("Seed {seed}, drawn near another design", seed=candidate.seed),
-        Origin.EDITED: tr("Seed {seed}, sample {index}, changed by hand", seed=candidate.seed, index=candidate.index),
+        Origin.RESAMPLED: tr("Seed {seed}, generated near another design", seed=candidate.seed),
+        Origin.EDITED: tr("Seed {seed}, sample {index}, edited by hand", seed=candidate.seed, index=candidate.index),
     }[candidate.origin]
     parts = [told, tr("polished")] if candidate.polished else [told]
     if candidate.variant:
@@ -267,7 +267,7 @@ def trimming(candidate: Candidate) -> list[str]:
     share = tr("{removed_share:.1f} % of the sheet is cut off", removed_share=100 * trim.removed_share)
     return [
         tr(
-            "Trimmed: IoU {iou:.2f} % ({untrimmed_iou:.2f} % before the cut); {share}",
+            "Trimmed: IoU {iou:.2f} % ({untrimmed_iou:.2f} % untrimmed); {share}",
             iou=100 * trim.iou,
             untrimmed_iou=100 * trim.untrimmed_iou,
             share=share,
@@ -280,7 +280,7 @@ def motion(candidate: Candidate) -> str:
     score = candidate.score
     if score.contact is None:
         return tr("Opens from 180° to {phi:.1f}° without contact", phi=math.degrees(score.phi))
-    return tr("Touches itself while opening, at {phi:.1f}°", phi=math.degrees(score.contact.phi))
+    return tr("Touches itself at {phi:.1f}° while opening", phi=math.degrees(score.contact.phi))
 
 
 def problems(candidate: Candidate) -> list[str]:
@@ -288,10 +288,10 @@ def problems(candidate: Candidate) -> list[str]:
     score = candidate.score
     found = []
     if score.n_invalid:
-        found.append(tr("{n_invalid} invalid panel(s) or void(s).", n_invalid=score.n_invalid))
+        found.append(tr("Invalid panels or voids: {n_invalid}.", n_invalid=score.n_invalid))
     if score.contact is not None:
         x, y = score.contact.where
-        found.append(tr("The first contact is near ({x:.2f}, {y:.2f}) unit cells.", x=x, y=y))
+        found.append(tr("First contact near ({x:.2f}, {y:.2f}) unit cells.", x=x, y=y))
     if not score.feasible and not found:
         found.append(
             tr("Panels overlap by {overlap_ratio:.2f} % of their area.", overlap_ratio=100 * score.overlap_ratio)

@@ -47,13 +47,13 @@ class GalleryView(QListView):
         self.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
         self.setMouseTracking(True)
         self.setObjectName("gallery")
-        self.setAccessibleName(tr("Candidate designs, best first"))
+        self.setAccessibleName(tr("Design gallery"))
         # A timer of its own: what QTimer.singleShot(0) posts is handled before the loop looks for clicks and keys.
         self._later = QTimer(self, singleShot=True, interval=0)
         self._later.timeout.connect(self.viewport().update)
         self._reporting = True
         self._marked: Candidate | None = None
-        self._hint = (tr("No designs yet"), tr("Candidates appear here, best first, while they are generated."))
+        self._hint = (tr("No designs yet"), tr("Designs appear here, best first, as they are generated."))
         self.selectionModel().currentChanged.connect(self._emit_chosen)
 
     def set_palette(self, palette: Palette) -> None:
@@ -73,8 +73,8 @@ class GalleryView(QListView):
         if not hidden:
             return self._hint
         if not self.model_.selection.filters:
-            return tr("All designs are rejected"), tr("Click here to show everything.")
-        return tr("No design passes the filter"), tr("Click here to show everything.")
+            return tr("All designs are rejected"), tr("Click here to show all designs.")
+        return tr("No design matches the filter"), tr("Click here to show all designs.")
 
     def show_entries(self, entries: list[Entry], target: Outline | None) -> None:
         """Show other candidates; those that were there keep their pictures, unless the target is another one."""

@@ -120,7 +120,7 @@ class LayoutView(Canvas):
         self.voids = VoidGestures(self, self._void_shapes)
         self.setObjectName("layoutView")
         self.setAccessibleName(tr("Layout of the chosen design"))
-        self.setToolTip(tr("Wheel: zoom. Drag: move. Double-click: show everything."))
+        self.setToolTip(tr("Wheel: zoom. Drag: pan. Double-click: fit view."))
 
     @property
     def phi(self) -> float:
@@ -405,7 +405,7 @@ class FaultTour(QObject):
         """Go to the next fault, or to the one before; after the last one comes the first."""
         found = self._view.find_faults()
         if not found:
-            self.status.emit(tr("No fault: no panel is inverted, and the sheet does not touch itself."))
+            self.status.emit(tr("No faults: no inverted panels, and the sheet does not touch itself."))
             return
         self._place = (self._place + forth) % len(found) if self._place >= 0 else (0 if forth > 0 else len(found) - 1)
         self.visit(found[self._place])
@@ -439,6 +439,6 @@ class FaultTour(QObject):
 def _words(kind: FaultKind) -> str:
     return {
         FaultKind.INVERTED: tr("inverted or collapsed panel"),
-        FaultKind.CONTACT: tr("first contact while deploying"),
+        FaultKind.CONTACT: tr("first contact during deployment"),
         FaultKind.CROSSING: tr("the sheet overlaps itself here"),
     }[kind]

@@ -88,7 +88,7 @@ class PhiSlider(QSlider):
     def _update_tooltip(self) -> None:
         lines = [
             tr("Deployment angle in degrees: 180° is the flat sheet as cut, 0° fully turned."),
-            tr("Plain bar: free. Thick yellow stripes: the sheet touches itself. Thin orange dashes: past the target."),
+            tr("Plain bar: moves freely. Thick yellow stripes: touches itself. Thin orange dashes: past the target."),
         ]
         if self._contact is not None:
             lines.append(tr("First contact at {angle:.1f}°.", angle=math.degrees(self._contact)))

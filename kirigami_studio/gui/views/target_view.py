@@ -86,7 +86,7 @@ class TargetView(Canvas):
         self.setMouseTracking(True)
         self.setObjectName("targetView")
         self.setAccessibleName(tr("Target silhouette"))
-        self.setToolTip(tr("The shape that the sheet shall show. Drop a PNG, JPG, SVG, DXF or JSON file here."))
+        self.setToolTip(tr("The shape the sheet opens into. Drop a PNG, JPG, SVG, DXF or JSON file here."))
 
     @property
     def outline(self) -> Outline | None:

@@ -339,7 +339,7 @@ def test_that_a_file_without_a_command_is_one_to_open_in_the_window(tmp_path: Pa
     target.write_text("<svg/>", encoding="utf-8")
     hidden = {"DISPLAY", "WAYLAND_DISPLAY", "QT_QPA_PLATFORM"}
     env = {name: value for name, value in os.environ.items() if name not in hidden}
-    for words, said in (([str(target)], "no display to open the window on"), ([f"{target}x"], "invalid choice")):
+    for words, said in (([str(target)], "No display available"), ([f"{target}x"], "invalid choice")):
         command = [sys.executable, "-m", "kirigami_studio", *words]
         done = subprocess.run(command, env=env, capture_output=True, text=True, timeout=60, check=False)
         assert said in done.stderr and done.returncode == (1 if "display" in said else 2)

@@ -50,7 +50,7 @@ def other(like: Candidate, seed: int, siou: float) -> Candidate:
         (Mark.NONE, Mark.PINNED, "Pin design 3"),
         (Mark.NONE, Mark.REJECTED, "Reject design 3"),
         (Mark.PINNED, Mark.NONE, "Unpin design 3"),
-        (Mark.REJECTED, Mark.NONE, "Take design 3 back"),
+        (Mark.REJECTED, Mark.NONE, "Restore design 3"),
         (Mark.PINNED, Mark.REJECTED, "Reject design 3"),
     ],
 )
