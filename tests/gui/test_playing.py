@@ -130,7 +130,7 @@ def test_that_keys_change_mode_and_speed_and_the_choice_is_remembered(
         qtbot.keyClick(designed, Qt.Key.Key_Greater)
     assert options.speed == SPEEDS[-1] and options.text().startswith("4")
     qtbot.keyClick(designed, Qt.Key.Key_P, Qt.KeyboardModifier.ShiftModifier)
-    assert options.mode is PlayMode.LOOP and "loop" in options.toolTip()
+    assert options.mode is PlayMode.LOOP and options.toolTip().startswith("Loop at")
     state = QSettings(str(tmp_path / "state.ini"), QSettings.Format.IniFormat)
     designed.remember(state)
     for _ in range(9):
