@@ -17,7 +17,7 @@ from PySide6.QtWidgets import (
 )
 
 from kirigami_studio.fabricate.findings import Problem, Severity
-from kirigami_studio.foundation.words import tr
+from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.gui.look import icons
 from kirigami_studio.gui.look.readable import readable_length, readable_size, readable_time
 from kirigami_studio.gui.look.theme import LIGHT, Palette
@@ -36,7 +36,6 @@ FRAME_MS = 16
 #: Lines that are shown without scrolling.
 MOST_LINES = 3
 ICONS = {Severity.ERROR: "fault", Severity.WARNING: "warning"}
-WORDS = {Severity.ERROR: tr("Error"), Severity.WARNING: tr("Warning")}
 OVERLAYS = (
     (CutOverlay.TRAVEL, "travel", tr("Show travel moves between cuts, dashed.")),
     (
@@ -99,9 +98,15 @@ class CutsPage(QWidget):
         """What the header says, longest first."""
         if self._plan is None:
             return ()
-        size, count = readable_size(*self._plan.size_mm), len(self._plan.paths)
-        kerf = tr("kerf {kerf_mm:g} mm", kerf_mm=self._plan.kerf_mm)
-        return tr("{size}  ·  {count} cuts  ·  {kerf}", size=size, count=count, kerf=kerf), f"{size}  ·  {kerf}", size
+        size, count, kerf_mm = readable_size(*self._plan.size_mm), len(self._plan.paths), self._plan.kerf_mm
+        long = tr_n(
+            "{size}  ·  {count} cut  ·  kerf {kerf_mm:g} mm",
+            "{size}  ·  {count} cuts  ·  kerf {kerf_mm:g} mm",
+            count,
+            size=size,
+            kerf_mm=kerf_mm,
+        )
+        return long, tr("{size}  ·  kerf {kerf_mm:g} mm", size=size, kerf_mm=kerf_mm), size
 
     def show_plan(self, planned: Planned | None) -> None:
         """Show another plan, or the empty state; a new picture of one sheet keeps its place."""
@@ -169,9 +174,17 @@ class ProblemList(QListWidget):
         with QSignalBlocker(self):
             self.clear()
             for problem in problems:
-                item = QListWidgetItem(f"{WORDS[problem.severity]}: {problem.text}")
-                place = "" if problem.where is None else tr("\nClick to show the place.")
-                item.setToolTip(f"{problem.text}{place}")
+                error = problem.severity is Severity.ERROR
+                item = QListWidgetItem(
+                    tr("Error: {problem}", problem=problem.text)
+                    if error
+                    else tr("Warning: {problem}", problem=problem.text)
+                )
+                item.setToolTip(
+                    problem.text
+                    if problem.where is None
+                    else tr("{problem}\nClick to show the place.", problem=problem.text)
+                )
                 self.addItem(item)
             self.setCurrentRow(-1)
         self._update_icons()

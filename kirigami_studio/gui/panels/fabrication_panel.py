@@ -18,7 +18,7 @@ from PySide6.QtWidgets import (
 
 from kirigami_studio.evaluate.opened_size import OpenedSize
 from kirigami_studio.fabricate.material import library
-from kirigami_studio.foundation.words import tr
+from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.gui.look import icons
 from kirigami_studio.gui.look.readable import (
     TIMES,
@@ -48,11 +48,12 @@ if TYPE_CHECKING:
     from kirigami_studio.fabricate.timing import CutTimes
     from kirigami_studio.gui.jobs.steps import Planned
 
-#: Field, label, lowest, highest, step (mm), decimals, tooltip.
+#: Field, label, accessible name, lowest, highest, step (mm), decimals, tooltip.
 LENGTHS = (
     (
         "width_mm",
         tr("&Width, mm"),
+        tr("Width in millimetres"),
         5.0,
         3000.0,
         5.0,
@@ -62,6 +63,7 @@ LENGTHS = (
     (
         "connector_mm",
         tr("&Connector, mm"),
+        tr("Connector in millimetres"),
         0.02,
         20.0,
         0.05,
@@ -71,6 +73,7 @@ LENGTHS = (
     (
         "kerf_mm",
         tr("&Kerf, mm"),
+        tr("Kerf in millimetres"),
         0.0,
         5.0,
         0.01,
@@ -134,7 +137,7 @@ class FabricationPanel(Card):
         self.edit_materials.clicked.connect(self.materials_wanted)
         self.reload_materials()
         self.material.activated.connect(self._take_material)
-        self.lengths = {row[0]: self._length(*row) for row in LENGTHS}
+        self.lengths = {row[0]: self._length(row[0], *row[2:]) for row in LENGTHS}
         self.numbers = {key: QLabel(UNKNOWN) for key, _ in NUMBERS}
         self.warnings = muted_label()
         self.warnings.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
@@ -205,7 +208,7 @@ class FabricationPanel(Card):
         self.fold.setIcon(icons.icon("down" if self._extent is Extent.ALL else "up", self._palette))
 
     def _length(
-        self, field: str, label: str, low: float, high: float, step: float, digits: int, tip: str
+        self, field: str, accessible: str, low: float, high: float, step: float, digits: int, tip: str
     ) -> LengthField:
         box = LengthField()
         box.setObjectName(field)
@@ -213,7 +216,7 @@ class FabricationPanel(Card):
         box.setSingleStep(step)
         box.setDecimals(digits)
         box.setToolTip(tip)
-        box.setAccessibleName(label.replace("&", "").replace(", mm", " in millimetres"))
+        box.setAccessibleName(accessible)
         box.setKeyboardTracking(False)
         compact(box, 82)
         box.valueChanged.connect(lambda value: self.changed.emit({field: value}))
@@ -313,28 +316,30 @@ class FabricationPanel(Card):
             "length": readable_length(planned.slots_mm or plan.cut_length_mm),
             "time": readable_range(plan.times.low, plan.times.high),
             "pieces": f"{report.pieces}",
-            "ligament": tr("{min_ligament_mm:.2f} mm", min_ligament_mm=report.min_ligament_mm),
+            "ligament": tr("{width_mm:.2f} mm", width_mm=report.min_ligament_mm),
         }
         for key, text in texts.items():
             self.numbers[key].setText(text)
         self.numbers["time"].setToolTip(format_times(plan.times))
         self.numbers["length"].setToolTip(format_slots(planned))
-        self._sum_up(texts, planned.removed_share)
+        self._sum_up(texts["size"], len(plan.paths), planned.removed_share)
         found = [*(problem.text for problem in report.problems), *plan.notes]
         self._warn("\n".join(found) if found else tr("The cut check found no problems."), calm=not found)
 
-    def _sum_up(self, texts: dict[str, str], removed_share: float) -> None:
+    def _sum_up(self, size: str, cuts: int, removed_share: float) -> None:
         """The header's words, with and without the live numbers; that a sheet is trimmed is said in both."""
-        beside_numbers = (
-            tr("trimmed, {removed_share:.1f} % cut off", removed_share=100 * removed_share) if removed_share else ""
-        )
-        kind = tr("trimmed") if removed_share else tr("{count} cuts", count=texts["slits"])
-        self._summaries = (beside_numbers, f"{texts['size']}  ·  {kind}")
-        share = tr(
-            "{removed_share:.1f} % of the sheet is cut off along the target, also in the cut file",
-            removed_share=100 * removed_share,
-        )
-        self.summary.setToolTip(tr("Trimmed: {share}.", share=share) if removed_share else "")
+        percent = 100 * removed_share
+        if removed_share:
+            beside_numbers = tr("trimmed, {percent:.1f} % cut off", percent=percent)
+            self._summaries = (beside_numbers, tr("{size}  ·  trimmed", size=size))
+            tip = tr(
+                "Trimmed: {percent:.1f} % of the sheet is cut off along the target, also in the cut file.",
+                percent=percent,
+            )
+        else:
+            self._summaries = ("", tr_n("{size}  ·  {count} cut", "{size}  ·  {count} cuts", cuts, size=size))
+            tip = ""
+        self.summary.setToolTip(tip)
         self._show_summary()
 
     def _show_summary(self) -> None:
@@ -445,12 +450,12 @@ def format_slots(planned: Planned) -> str:
 
 def format_times(times: CutTimes) -> str:
     """What the time consists of."""
-    parts = (("cutting", times.cut), ("travel", times.travel), ("switching", times.extra))
-    split = ", ".join(f"{readable_time(seconds)} {word}" for word, seconds in parts)
     return tr(
-        "About {readable_time}: {split}.\nRange: half to twice the acceleration.",
-        readable_time=readable_time(times.total),
-        split=split,
+        "About {total}: {cut} cutting, {travel} travel, {extra} switching.\nRange: half to twice the acceleration.",
+        total=readable_time(times.total),
+        cut=readable_time(times.cut),
+        travel=readable_time(times.travel),
+        extra=readable_time(times.extra),
     )
 
 

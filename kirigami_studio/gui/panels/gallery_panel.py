@@ -19,7 +19,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from kirigami_studio.foundation.words import tr
+from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.gui.designs.selecting import Selection, SortOrder, counted
 from kirigami_studio.gui.look import icons
 from kirigami_studio.gui.look.theme import Palette
@@ -224,7 +224,13 @@ class GalleryBar(QWidget):
 
     def show_count(self, count: int) -> None:
         """Tell how many designs would be added."""
-        self.again.setToolTip(tr("Generate {count} more designs from the next seed (Ctrl+R).", count=count))
+        self.again.setToolTip(
+            tr_n(
+                "Generate {count} more design from the next seed (Ctrl+R).",
+                "Generate {count} more designs from the next seed (Ctrl+R).",
+                count,
+            )
+        )
 
     def set_palette(self, palette: Palette) -> None:
         """Draw in other colours."""

@@ -12,7 +12,7 @@ from PySide6.QtWidgets import QHBoxLayout, QMenu, QToolButton, QWidget
 from kirigami_studio.fabricate.cut_plan import CutPlan, Layer
 from kirigami_studio.fabricate.slits import SHEET_EDGE
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray
-from kirigami_studio.foundation.words import tr
+from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.gui.look import icons
 from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.panels.card import FittingLabel, tool_button
@@ -185,8 +185,17 @@ def _selection_texts(hinges: frozenset[int], cut: int) -> tuple[str, ...]:
     """What the row says of the selected connectors, ``cut`` of them cut through; longest first."""
     if not hinges:
         return (tr("No connector selected"), tr("None"))
-    if len(hinges) == 1:
-        named, short = tr("Connector {hinges}", hinges=min(hinges)), f"{min(hinges)}"
-        return (tr("{connector}: cut through", connector=named), named, short) if cut else (named, short)
-    named, short = tr("{count} connectors", count=len(hinges)), f"{len(hinges)}"
-    return (tr("{connectors}, {cut} cut through", connectors=named, cut=cut), named, short) if cut else (named, short)
+    count, number = len(hinges), min(hinges)
+    if count == 1:
+        named = tr("Connector {number}", number=number)
+        return (
+            (tr("Connector {number}: cut through", number=number), named, f"{number}") if cut else (named, f"{number}")
+        )
+    named = tr_n("{count} connector", "{count} connectors", count)
+    if not cut:
+        return named, f"{count}"
+    return (
+        tr_n("{count} connector, {cut} cut through", "{count} connectors, {cut} cut through", count, cut=cut),
+        named,
+        f"{count}",
+    )

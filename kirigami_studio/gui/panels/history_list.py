@@ -58,8 +58,13 @@ class HistoryList(QWidget):
             item.setToolTip(tr("Undone. Click to redo.") if row > history.position else "")
         self.steps.scrollToItem(self.steps.item(history.position))
         undone = len(history.steps) - history.position
-        done = tr_n("{count} step", "{count} steps", history.position)
-        self.counted.setText(done if not undone else f"{done}, {tr_n('{count} undone', '{count} undone', undone)}")
+        if undone:
+            text = tr_n(
+                "{count} step, {undone} undone", "{count} steps, {undone} undone", history.position, undone=undone
+            )
+        else:
+            text = tr_n("{count} step", "{count} steps", history.position)
+        self.counted.setText(text)
 
     def keyPressEvent(self, event: QKeyEvent) -> None:  # noqa: N802 - Qt's name
         if event.key() == Qt.Key.Key_Escape:

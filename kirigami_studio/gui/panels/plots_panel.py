@@ -190,7 +190,7 @@ class PlotsPanel(QWidget):
 
         row = self._rows[len(self.charts)]
         chart = Chart(row.text, row.unit, tuple(name for name, _ in row.series), row.from_zero)
-        chart.setToolTip(tr("{what}. Drag the line or click to jump to an angle.", what=row.tip))
+        chart.setToolTip(tr("{what}\nDrag the line or click to jump to an angle.", what=row.tip))
         chart.set_palette(self._palette)
         chart.phi_wanted.connect(self.phi_wanted)
         chart.pointed.connect(self._point)

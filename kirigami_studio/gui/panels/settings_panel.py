@@ -16,7 +16,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from kirigami_studio.foundation.words import tr
+from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.gui.look import icons
 from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.panels.card import Card, captioned, compact, tool_button
@@ -67,27 +67,36 @@ class SettingsPanel(Card):
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(tr("Design"), parent)
-        tip = tr("Voids from {}. More voids match the target more closely but are smaller ({} to {}).")
         self.rows = _whole(
             "rows",
             tr("Rows"),
             SMALLEST_GRID,
             LARGEST_GRID,
-            tip.format(tr("top to bottom"), SMALLEST_GRID, LARGEST_GRID),
+            tr(
+                "Rows of voids, from top to bottom. More voids match the target more closely but are smaller "
+                "({low} to {high}).",
+                low=SMALLEST_GRID,
+                high=LARGEST_GRID,
+            ),
         )
         self.columns = _whole(
             "columns",
             tr("Columns"),
             SMALLEST_GRID,
             LARGEST_GRID,
-            tip.format(tr("left to right"), SMALLEST_GRID, LARGEST_GRID),
+            tr(
+                "Columns of voids, from left to right. More voids match the target more closely but are smaller "
+                "({low} to {high}).",
+                low=SMALLEST_GRID,
+                high=LARGEST_GRID,
+            ),
         )
         self.candidates = _whole(
             "candidates",
             tr("Designs"),
             1,
             LARGEST_K,
-            tr("Number of designs to generate and compare (1 to {largest_k}).", largest_k=LARGEST_K),
+            tr("Number of designs to generate and compare (1 to {most}).", most=LARGEST_K),
         )
         self.seed = _whole(
             "seed",
@@ -202,7 +211,7 @@ class SettingsPanel(Card):
     def _choose_polish(self, steps: int) -> None:
         index = self.polish.findData(steps)
         if index < 0:
-            self.polish.addItem(tr("{steps} steps", steps=steps), steps)
+            self.polish.addItem(tr_n("{count} step", "{count} steps", steps), steps)
             index = self.polish.count() - 1
         self.polish.setCurrentIndex(index)
         self.polish.setToolTip(tr("How thoroughly designs are fitted to the target: up to {steps} steps.", steps=steps))
@@ -225,7 +234,7 @@ class SettingsPanel(Card):
             index = self.variant.count() - 1
         self.variant.setCurrentIndex(index)
         self.variant.setToolTip(
-            tr("Model that generates the designs. {get}", get=VARIANTS.get(name, ("", ""))[1]).strip()
+            tr("Model that generates the designs. {about}", about=VARIANTS.get(name, ("", ""))[1]).strip()
         )
 
     def set_palette(self, palette: Palette) -> None:

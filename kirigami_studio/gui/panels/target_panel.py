@@ -15,7 +15,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from kirigami_studio.foundation.words import tr
+from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.gui.jobs.steps import Picture
 from kirigami_studio.gui.look import icons
 from kirigami_studio.gui.look.theme import Palette
@@ -31,10 +31,10 @@ from kirigami_studio.outlines.reach import reach_of, told
 REFINE_STEPS = 100
 #: Slider steps from black to white; the ends would leave no shape.
 GREY_LEVELS = 200
-#: Name, caption, tooltip.
+#: Name, caption, accessible name, tooltip.
 SLIDERS = (
-    ("simplify", tr("S&implify"), tr("Remove points; further right keeps fewer corners")),
-    ("smooth", tr("S&mooth"), tr("Round corners and smooth edges; the area stays the same")),
+    ("simplify", tr("S&implify"), tr("Simplify the target"), tr("Remove points; further right keeps fewer corners")),
+    ("smooth", tr("S&mooth"), tr("Smooth the target"), tr("Round corners and smooth edges; the area stays the same")),
 )
 #: Tool button name, icon, tooltip, whether it stays down.
 BUTTONS = (
@@ -190,7 +190,7 @@ class TargetPanel(Card):
 def measured(outline: Outline) -> str:
     """Source size when it has a unit, else the number of corners."""
     if outline.size is None or not outline.unit:
-        return tr("{count} points", count=len(outline.points))
+        return tr_n("{count} point", "{count} points", len(outline.points))
     width, height = outline.size
     return f"{width:.4g} \N{MULTIPLICATION SIGN} {height:.4g} {outline.unit}"
 
@@ -210,12 +210,12 @@ class RefineBar(QWidget):
         self._ratio = 1.0
         self._size = (0.0, 0.0)
         self.sliders: dict[str, QSlider] = {}
-        for name, caption, tip in SLIDERS:
+        for name, caption, accessible, tip in SLIDERS:
             slider = JumpSlider()
             slider.setObjectName("threshold")
             slider.setRange(0, REFINE_STEPS)
             slider.setPageStep(REFINE_STEPS // 10)
-            slider.setAccessibleName(tr("{replace} the target", replace=caption.replace("&", "")))
+            slider.setAccessibleName(accessible)
             slider.setToolTip(tip)
             slider.setMinimumWidth(60)
             slider.valueChanged.connect(lambda value, name=name: self._slide(name, value))
@@ -223,8 +223,12 @@ class RefineBar(QWidget):
             self.sliders[name] = slider
             row.addWidget(_caption(caption, slider))
             row.addWidget(slider, 1)
-        self.width_ = _length(tr("Target width"))
-        self.height_ = _length(tr("Target height"))
+        self.width_ = _length(
+            tr("Target width"), tr("Target width in mm; 3 in or 8.5 cm work too. The chain keeps proportions.")
+        )
+        self.height_ = _length(
+            tr("Target height"), tr("Target height in mm; 3 in or 8.5 cm work too. The chain keeps proportions.")
+        )
         for caption, field in ((tr("Size"), self.width_), ("\N{MULTIPLICATION SIGN}", self.height_)):
             row.addWidget(_caption(caption, field))
             row.addWidget(field)
@@ -380,7 +384,7 @@ def _caption(text: str, buddy: QWidget) -> QLabel:
     return label
 
 
-def _length(name: str) -> LengthField:
+def _length(name: str, tip: str) -> LengthField:
     field = LengthField()
     field.setRange(0.1, LARGEST_MM)
     field.setDecimals(1)
@@ -388,5 +392,5 @@ def _length(name: str) -> LengthField:
     number_field(field)
     field.setKeyboardTracking(False)
     field.setAccessibleName(name)
-    field.setToolTip(tr("{name} in mm; 3 in or 8.5 cm work too. The chain keeps proportions.", name=name))
+    field.setToolTip(tip)
     return field

@@ -130,8 +130,10 @@ def _selection_texts(voids: frozenset[Void], locked: frozenset[Void]) -> tuple[s
         ((row, column),) = voids
         short = tr("Void ({row}, {column})", row=row, column=column)
         if voids <= locked:
-            return tr("{void}: locked (L unlocks)", void=short), short, f"({row}, {column})"
-        return tr("{void}: drag, scroll, or press + and -", void=short), short, f"({row}, {column})"
+            long = tr("Void ({row}, {column}): locked (L unlocks)", row=row, column=column)
+        else:
+            long = tr("Void ({row}, {column}): drag, scroll, or press + and -", row=row, column=column)
+        return long, short, f"({row}, {column})"
     if voids:
         return (tr_n("{count} void", "{count} voids", len(voids)),)
     hint = tr("Drag a void or an outline corner; scroll to change a ratio")

@@ -12,7 +12,6 @@ from PySide6.QtGui import QColor, QPainter, QPainterPath, QPen
 from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.evaluate.score import Score
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray
-from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.look.theme import Palette
 
 #: Panels below this part of the median panel area count as collapsed; far below what any cutter can hold.
@@ -20,11 +19,11 @@ COLLAPSED_SHARE = 1e-6
 
 
 class FaultKind(Enum):
-    """What is wrong at a place; the value is the sentence for it."""
+    """What is wrong at a place."""
 
-    INVERTED = tr("inverted or collapsed panel")
-    CONTACT = tr("first contact during deployment")
-    CROSSING = tr("the sheet overlaps itself here")
+    INVERTED = "inverted"  #: a panel is turned inside out or has no area
+    CONTACT = "contact"  #: the sheet first touches itself while it opens
+    CROSSING = "crossing"  #: the sheet overlaps itself
 
 
 @dataclass(frozen=True, slots=True)

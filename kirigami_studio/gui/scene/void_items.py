@@ -163,24 +163,34 @@ class VoidFacts:
     def lines(self) -> tuple[str, str]:
         """What the small label says."""
         row, column = self.void
-        first = tr("Void ({row}, {column})   x {ratio:.3f}", row=row, column=column, ratio=self.ratio)
         if self.locked:
-            first = tr("{facts}   locked", facts=first)
+            first = tr("Void ({row}, {column})   x {ratio:.3f}   locked", row=row, column=column, ratio=self.ratio)
+        else:
+            first = tr("Void ({row}, {column})   x {ratio:.3f}", row=row, column=column, ratio=self.ratio)
         angle, edges = math.degrees(self.angle), self._edges()
         return first, tr("{angle:.1f}°   {edges} mm", angle=angle, edges=edges)
 
     def sentence(self) -> str:
         """What the status line says."""
-        row, column = self.void
-        told = tr(
-            "Void ({row}, {column}): ratio x {ratio:.3f}, angle {angle:.1f}° at its left corner, edges {edges} mm",
+        (row, column), angle, edges = self.void, math.degrees(self.angle), self._edges()
+        if self.locked:
+            return tr(
+                "Void ({row}, {column}): ratio x {ratio:.3f}, angle {angle:.1f}° at its left corner, edges {edges} mm, "
+                "locked.",
+                row=row,
+                column=column,
+                ratio=self.ratio,
+                angle=angle,
+                edges=edges,
+            )
+        return tr(
+            "Void ({row}, {column}): ratio x {ratio:.3f}, angle {angle:.1f}° at its left corner, edges {edges} mm.",
             row=row,
             column=column,
             ratio=self.ratio,
-            angle=math.degrees(self.angle),
-            edges=self._edges(),
+            angle=angle,
+            edges=edges,
         )
-        return tr("{facts}, locked.", facts=told) if self.locked else tr("{facts}.", facts=told)
 
     def _edges(self) -> str:
         """Opposite edges are equal: a void is a parallelogram."""

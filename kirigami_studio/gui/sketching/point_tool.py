@@ -379,7 +379,7 @@ def _kind_change_name(kind: Kind, count: int) -> str:
         Kind.CORNER: tr_n("Make point a corner", "Make points corners", count),
         Kind.SMOOTH: tr_n("Make point smooth", "Make points smooth", count),
         Kind.SYMMETRIC: tr_n("Make point symmetric", "Make points symmetric", count),
-        Kind.AUTO: tr_n("Make point smooth", "Make points smooth", count),
+        Kind.AUTO: tr_n("Make point automatic", "Make points automatic", count),
     }[kind]
 
 

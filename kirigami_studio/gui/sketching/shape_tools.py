@@ -16,6 +16,8 @@ from kirigami_studio.gui.scene.target_items import paint_proposal, paint_size, p
 from kirigami_studio.gui.scene.view_transform import ViewTransform
 from kirigami_studio.gui.sketching.sketch_context import (
     FREEHAND,
+    POLYGON,
+    TEXT,
     Place,
     PointerEvent,
     SketchContext,
@@ -127,7 +129,7 @@ class Corners(SketchTool):
         ring = corners if whole is None else whole
         self.drop()
         if len(corners):
-            self.context.draw(lambda: Placed.from_ring(ring, "polygon"), "polygon")
+            self.context.draw(lambda: Placed.from_ring(ring, POLYGON), POLYGON)
 
     def paint(self, painter: QPainter, transform: ViewTransform, palette: Palette) -> None:
         if not self._spots:
@@ -198,7 +200,7 @@ class FigureTool(BoxTool):
     def __init__(self, context: SketchContext, kind: Figure) -> None:
         super().__init__(context)
         self._kind = kind
-        self.hint = tr("Drag a box for the {value}. Shift keeps it regular, Ctrl ignores the grid.", value=kind.value)
+        self.hint = tr("Drag a box for the shape. Shift keeps it regular, Ctrl ignores the grid.")
 
     @property
     def name(self) -> str:
@@ -215,13 +217,13 @@ class TextTool(BoxTool):
 
     @property
     def name(self) -> str:
-        return "text"
+        return TEXT
 
     def shape(self, box: Box) -> Placed:
         text = self.context.text.strip()
         context = self.context
         ring, notes = lettered(letters(text, context.family, context.bold, context.italic), box)
-        return Placed.from_ring(ring, text or "text", notes)
+        return Placed.from_ring(ring, text or TEXT, notes)
 
 
 def letters(text: str, family: str = "", bold: bool = True, italic: bool = False) -> list[list[FloatArray]]:

@@ -15,7 +15,7 @@ from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.scene.view_transform import Bounds, ViewTransform
 from kirigami_studio.outlines.combining import Combine
-from kirigami_studio.outlines.figures import USUAL_WAIST
+from kirigami_studio.outlines.figures import USUAL_WAIST, Figure
 from kirigami_studio.outlines.mirroring import Axis, Mirror, mirrored
 from kirigami_studio.outlines.nodes import Kind
 from kirigami_studio.outlines.outline import Outline
@@ -28,8 +28,18 @@ BOARD = Bounds(-0.5 * BOARD_MM, -0.5 * BOARD_MM, 0.5 * BOARD_MM, 0.5 * BOARD_MM)
 CLOSEST_LINES = 14.0
 #: Placed outlines that are remembered, so that undo puts a target back where it was.
 CAPACITY = 256
-#: What a target is called that was drawn in one stroke.
-FREEHAND = "drawing"
+#: What a target is called that was drawn in one stroke, corner by corner, or as text.
+FREEHAND, POLYGON, TEXT = "drawing", "polygon", "text"
+#: What the Undo menu says when a shape is drawn, added or subtracted, by the shape's name.
+SHAPE_LABELS = {
+    FREEHAND: (tr("Draw freehand"), tr("Add freehand shape"), tr("Subtract freehand shape")),
+    POLYGON: (tr("Draw polygon"), tr("Add polygon"), tr("Subtract polygon")),
+    TEXT: (tr("Draw text"), tr("Add text"), tr("Subtract text")),
+    Figure.RECTANGLE.value: (tr("Draw rectangle"), tr("Add rectangle"), tr("Subtract rectangle")),
+    Figure.ELLIPSE.value: (tr("Draw ellipse"), tr("Add ellipse"), tr("Subtract ellipse")),
+    Figure.REGULAR.value: (tr("Draw regular polygon"), tr("Add regular polygon"), tr("Subtract regular polygon")),
+    Figure.STAR.value: (tr("Draw star"), tr("Add star"), tr("Subtract star")),
+}
 SHIFT, ALT = Qt.KeyboardModifier.ShiftModifier, Qt.KeyboardModifier.AltModifier
 #: Arrow keys move by the first, with Shift by the second, with Alt by the third, mm.
 NUDGE_MM, FAR_MM, NEAR_MM = 1.0, 10.0, 0.1
@@ -226,10 +236,9 @@ def distance(one: QPointF, other: QPointF) -> float:
 
 
 def _change_name(how: Combine, name: str) -> str:
-    """A drawn shape as it follows the word Undo."""
-    if how is Combine.REPLACE:
-        return tr("Draw freehand") if name == FREEHAND else tr("Draw {name}", name=name)
-    return tr("Add {name}", name=name) if how is Combine.ADD else tr("Subtract {name}", name=name)
+    """What the Undo menu says of a drawn shape."""
+    draw, add, subtract = SHAPE_LABELS[name]
+    return {Combine.REPLACE: draw, Combine.ADD: add, Combine.SUBTRACT: subtract}[how]
 
 
 def _key(outline: Outline) -> tuple[object, ...]:

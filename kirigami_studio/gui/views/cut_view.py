@@ -30,9 +30,9 @@ from kirigami_studio.gui.views.hinge_gestures import HingeGestures, adds
 #: Layers in a person's words, for the legend.
 LAYER_NAMES = {
     Layer.RELIEF: tr("relief ends"),
-    Layer.SLITS: "slits",
+    Layer.SLITS: tr("slits"),
     Layer.EDGE_SLITS: tr("edge slits"),
-    Layer.OUTLINE: "outline",
+    Layer.OUTLINE: tr("outline"),
 }
 #: Narrower than this (pixels) the legend leaves the outline out.
 ROOM_FOR_OUTLINE = 480
@@ -189,8 +189,12 @@ class CutView(Canvas):
         paint_scale_bar(painter, transform.scale, end, self.palette_)
         caption = self._caption
         if self.gestures.dragged_mm is not None:
-            named = tr_n("connector", "{count} connectors", len(self.selected))
-            caption = tr("{named}: {width:.3f} mm", named=named, width=self.gestures.dragged_mm)
+            caption = tr_n(
+                "Connector: {width_mm:.3f} mm",
+                "{count} connectors: {width_mm:.3f} mm",
+                len(self.selected),
+                width_mm=self.gestures.dragged_mm,
+            )
         if caption:
             paint_caption(painter, caption, self.width(), self.palette_)
 
@@ -212,13 +216,11 @@ class CutView(Canvas):
         chips = [Chip(layer_colour(layer, self.palette_), LAYER_NAMES[layer]) for layer in layers]
         if CutOverlay.CONNECTORS in self._overlays and len(self._connectors):
             low, high = self._connectors.span_mm
-            one = not self._connectors.varied
-            widths = tr("{low:.2f} mm", low=low) if one else tr("{low:.2f}\N{EN DASH}{high:.2f} mm", low=low, high=high)
-            chips.append(
-                Chip(
-                    self.palette_.widths[:1] if one else self.palette_.widths, tr("connectors {widths}", widths=widths)
-                )
-            )
+            if self._connectors.varied:
+                text = tr("connectors {low:.2f}\N{EN DASH}{high:.2f} mm", low=low, high=high)
+                chips.append(Chip(self.palette_.widths, text))
+            else:
+                chips.append(Chip(self.palette_.widths[:1], tr("connectors {width_mm:.2f} mm", width_mm=low)))
         return chips
 
     # gestures ------------------------------------------------------------------------------------------------------

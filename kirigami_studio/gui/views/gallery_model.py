@@ -246,17 +246,15 @@ def described(candidate: Candidate, rank: int) -> str:
 
 
 def came_from(candidate: Candidate) -> list[str]:
-    """Tell which generator drew a design, from which seed, and how."""
-    told = {
+    """Tell which model generated a design, from which seed, and how."""
+    origin = {
         Origin.SAMPLED: tr("Seed {seed}, sample {index}", seed=candidate.seed, index=candidate.index),
         Origin.SEARCHED: tr("Seed {seed}, found by the search", seed=candidate.seed),
         Origin.RESAMPLED: tr("Seed {seed}, generated near another design", seed=candidate.seed),
         Origin.EDITED: tr("Seed {seed}, sample {index}, edited by hand", seed=candidate.seed, index=candidate.index),
     }[candidate.origin]
-    parts = [told, tr("polished")] if candidate.polished else [told]
-    if candidate.variant:
-        parts.append(tr("model {name}", name=candidate.variant))
-    return [", ".join(parts)]
+    polished = [tr("Polished")] if candidate.polished else []
+    return [origin, *polished, *([tr("Model: {name}", name=candidate.variant)] if candidate.variant else [])]
 
 
 def trimming(candidate: Candidate) -> list[str]:
@@ -264,13 +262,12 @@ def trimming(candidate: Candidate) -> list[str]:
     trim = candidate.trim
     if trim is None:
         return []
-    share = tr("{removed_share:.1f} % of the sheet is cut off", removed_share=100 * trim.removed_share)
     return [
         tr(
-            "Trimmed: IoU {iou:.2f} % ({untrimmed_iou:.2f} % untrimmed); {share}",
+            "Trimmed: IoU {iou:.2f} % ({untrimmed_iou:.2f} % untrimmed); {removed_share:.1f} % of the sheet is cut off",
             iou=100 * trim.iou,
             untrimmed_iou=100 * trim.untrimmed_iou,
-            share=share,
+            removed_share=100 * trim.removed_share,
         )
     ]
 

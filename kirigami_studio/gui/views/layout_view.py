@@ -91,6 +91,12 @@ class Overlay(Enum):
 
 #: What is shown until something else is asked for.
 USUAL = frozenset({Overlay.TARGET, Overlay.MISMATCH, Overlay.FAULTS})
+#: What the status line says of a fault that was clicked.
+FAULT_SENTENCES = {
+    FaultKind.INVERTED: tr("Inverted or collapsed panel."),
+    FaultKind.CONTACT: tr("First contact during deployment."),
+    FaultKind.CROSSING: tr("The sheet overlaps itself here."),
+}
 #: Overlays that a colour bar explains.
 BAR_TITLES = {Overlay.RATIOS: RATIO_TITLE, Overlay.OPENINGS: OPENING_TITLE}
 
@@ -409,8 +415,7 @@ class FaultTour(QObject):
             return
         self._place = (self._place + forth) % len(found) if self._place >= 0 else (0 if forth > 0 else len(found) - 1)
         self.visit(found[self._place])
-        words = _words(found[self._place].kind)
-        self.status.emit(tr("Fault {number} of {count}: {what}.", number=self._place + 1, count=len(found), what=words))
+        self.status.emit(numbered_fault(found[self._place].kind, self._place + 1, len(found)))
 
     def visit(self, fault: Fault) -> None:
         """Show one fault, at the angle at which it is seen."""
@@ -432,13 +437,14 @@ class FaultTour(QObject):
                 self._pressed = None
                 if fault is not None:
                     self.visit(fault)
-                    self.status.emit(_words(fault.kind).capitalize() + ".")
+                    self.status.emit(FAULT_SENTENCES[fault.kind])
         return False
 
 
-def _words(kind: FaultKind) -> str:
-    return {
-        FaultKind.INVERTED: tr("inverted or collapsed panel"),
-        FaultKind.CONTACT: tr("first contact during deployment"),
-        FaultKind.CROSSING: tr("the sheet overlaps itself here"),
-    }[kind]
+def numbered_fault(kind: FaultKind, number: int, count: int) -> str:
+    """One of all faults, for the status line; ``number`` counts from 1."""
+    if kind is FaultKind.INVERTED:
+        return tr("Fault {number} of {count}: inverted or collapsed panel.", number=number, count=count)
+    if kind is FaultKind.CONTACT:
+        return tr("Fault {number} of {count}: first contact during deployment.", number=number, count=count)
+    return tr("Fault {number} of {count}: the sheet overlaps itself here.", number=number, count=count)
