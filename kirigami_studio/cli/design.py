@@ -15,7 +15,7 @@ from kirigami_studio.cli.inputs import are_many_targets, parse_grid, read_target
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.trimming import KEEP
 from kirigami_studio.export.exporter import ExportJob
-from kirigami_studio.export.png import write_png
+from kirigami_studio.export.picture import write_png
 from kirigami_studio.export.registry import export
 from kirigami_studio.export.svg import write_layout_svg
 from kirigami_studio.foundation.errors import Cancelled, FabricationError

@@ -14,9 +14,9 @@ from kirigami_studio.export.dxf_check import check_file
 from kirigami_studio.export.export_set import ExportSet, export_all
 from kirigami_studio.export.exporter import ExportJob
 from kirigami_studio.export.profile import find_profile
+from kirigami_studio.export.provenance import sidecar_path, write_sidecar
 from kirigami_studio.export.registry import export as export_file
 from kirigami_studio.export.registry import find_exporter
-from kirigami_studio.export.sidecar import sidecar_path, write_sidecar
 from kirigami_studio.export.verification import FORMATS, Verification, verify_export
 from kirigami_studio.fabricate.checks import Report, check_plan
 from kirigami_studio.fabricate.cut_plan import CutPlan

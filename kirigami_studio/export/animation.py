@@ -11,8 +11,8 @@ import numpy as np
 from PIL import Image
 
 from kirigami_studio.export.exporter import ExportJob
-from kirigami_studio.export.facts import origin_facts
 from kirigami_studio.export.picture import PictureFrame, draw_polygons
+from kirigami_studio.export.provenance import origin_facts
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import ExportError
 from kirigami_studio.foundation.files import write_atomically

@@ -1,6 +1,7 @@
 """Cut plan -> DXF in millimetres: one polyline for each cut, in cutting order, the same bytes every time.
 
-The file is read back with ezdxf and compared with the plan before it takes its name.
+Every file is read back with ezdxf and compared with the plan before it takes its name.  :func:`write_reference` draws
+the same sheet with numbered connectors and notes beside it, to look at and not to cut.
 """
 
 from __future__ import annotations
@@ -18,9 +19,9 @@ from ezdxf.document import Drawing
 from ezdxf.filemanagement import new
 
 from kirigami_studio.export.dxf_reading import read_with_ezdxf
-from kirigami_studio.export.facts import facts_of
 from kirigami_studio.export.file_content import FileContent, bent_otherwise
 from kirigami_studio.export.profile import BLUE, DEFAULT_PROFILE, WHITE, Profile, find_profile
+from kirigami_studio.export.provenance import facts_of
 from kirigami_studio.export.strokes import Stroke, extent, layer_colours, strokes_of
 from kirigami_studio.fabricate.cut_plan import CutPlan
 from kirigami_studio.foundation.errors import ExportError
@@ -31,20 +32,13 @@ VERSIONS = ("R2010", "R12")
 UNAVOIDABLE_LAYERS = frozenset({"0", "Defpoints"})
 #: Coordinates survive the text form exactly; anything above this (mm) is a fault.
 SAME_MM = 1e-9
-
-_FIXED_METADATA = threading.Lock()
-
-
-@contextmanager
-def _fixed_metadata() -> Iterator[None]:
-    """Let ezdxf write a fixed date and identity, so that the same plan gives the same bytes."""
-    with _FIXED_METADATA:
-        before = options.write_fixed_meta_data_for_testing
-        options.write_fixed_meta_data_for_testing = True
-        try:
-            yield
-        finally:
-            options.write_fixed_meta_data_for_testing = before
+CONNECTOR_LAYER, NOTE_LAYER = "CONNECTORS", "NOTES"
+#: Radius (mm) of a connector's circle: large enough to be seen.
+CIRCLE_MM = 0.6
+NUMBER_MM, NOTE_MM = 0.8, 3.0
+#: Distance (mm) of the notes from the sheet, and of their lines.
+NOTE_GAP_MM, NOTE_LINE_MM = 10.0, 5.0
+PROFILE = "lightburn"
 
 
 def write_dxf(
@@ -130,6 +124,21 @@ def strokes_dxf(
     return document.encode(text.getvalue())
 
 
+_FIXED_METADATA = threading.Lock()
+
+
+@contextmanager
+def _fixed_metadata() -> Iterator[None]:
+    """Let ezdxf write a fixed date and identity, so that the same plan gives the same bytes."""
+    with _FIXED_METADATA:
+        before = options.write_fixed_meta_data_for_testing
+        options.write_fixed_meta_data_for_testing = True
+        try:
+            yield
+        finally:
+            options.write_fixed_meta_data_for_testing = before
+
+
 def _sort_classes(document: Drawing) -> None:
     """Put the CLASSES section in a fixed order; ezdxf fills it from a set, whose order differs between runs."""
     section = document.classes
@@ -188,20 +197,6 @@ def check_written(path: Path, strokes: Sequence[Stroke], size: tuple[float, floa
         raise ExportError(f"The DXF did not pass its own check: {fault}. Nothing was written; please report it.")
 
 
-def check_marked(path: Path, strokes: Sequence[Stroke], marks: Mapping[str, int]) -> None:
-    """Read a drawing with marks back: the strokes as they were meant, and as many marks of each kind.
-
-    Raises
-    ------
-    ExportError
-        With the first difference.
-    """
-    content = read_with_ezdxf(path)
-    wrong = [kind for kind, count in marks.items() if content.others.count(kind) != count]
-    if wrong or len(content.strokes) != len(strokes) or any(map(_stroke_difference, content.strokes, strokes)):
-        raise ExportError("The drawing did not read back as it was meant. Nothing was written; please report it.")
-
-
 def _first_difference(
     content: FileContent, strokes: Sequence[Stroke], size: tuple[float, float], version: str
 ) -> str | None:
@@ -231,15 +226,6 @@ def _stroke_difference(found: Stroke, meant: Stroke) -> str | None:
     if bent_otherwise([found], [meant], SAME_MM):
         return "has other arcs than were meant"
     return None
-
-
-CONNECTOR_LAYER, NOTE_LAYER = "CONNECTORS", "NOTES"
-#: Radius (mm) of a connector's circle: large enough to be seen.
-CIRCLE_MM = 0.6
-NUMBER_MM, NOTE_MM = 0.8, 3.0
-#: Distance (mm) of the notes from the sheet, and of their lines.
-NOTE_GAP_MM, NOTE_LINE_MM = 10.0, 5.0
-PROFILE = "lightburn"
 
 
 def write_reference(plan: CutPlan, path: str | Path) -> Path:
@@ -277,3 +263,17 @@ def _mark(document: Drawing, plan: CutPlan, facts: dict[str, str]) -> None:
 def _write(document: Drawing, text: str, x: float, y: float, height: float) -> None:
     attributes = {"layer": NOTE_LAYER, "height": height, "insert": (x, y)}
     document.modelspace().add_text(text, dxfattribs=attributes)
+
+
+def check_marked(path: Path, strokes: Sequence[Stroke], marks: Mapping[str, int]) -> None:
+    """Read a drawing with marks back: the strokes as they were meant, and as many marks of each kind.
+
+    Raises
+    ------
+    ExportError
+        With the first difference.
+    """
+    content = read_with_ezdxf(path)
+    wrong = [kind for kind, count in marks.items() if content.others.count(kind) != count]
+    if wrong or len(content.strokes) != len(strokes) or any(map(_stroke_difference, content.strokes, strokes)):
+        raise ExportError("The drawing did not read back as it was meant. Nothing was written; please report it.")

@@ -1,4 +1,8 @@
-"""Judge any cut file: units, layers, doubles, gaps in the outline, pieces and the narrowest ligament."""
+"""Judge any cut file: units, layers, duplicates, gaps in the outline, pieces and the narrowest ligament.
+
+:func:`check_file` reads a DXF of any origin.  A file written here says how many tabs its outline has and how many cuts
+end on other cuts, and is held to that; in a foreign file the outline is the largest closed contour.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +17,7 @@ import shapely
 from shapely.geometry import LineString, Polygon
 from shapely.geometry.base import BaseGeometry
 
-from kirigami_studio.export.dxf_content import DxfContent, FilePath, read_content
+from kirigami_studio.export.dxf_reading import DxfContent, FilePath, read_content
 from kirigami_studio.fabricate.checks import OVERLAP_TOLERANCE_MM
 from kirigami_studio.fabricate.cut_plan import LARGEST_SHEET_MM, SMALLEST_SHEET_MM, Layer
 from kirigami_studio.fabricate.findings import Problem, Severity
@@ -24,89 +28,10 @@ from kirigami_studio.foundation.errors import ExportError
 
 #: A tab may differ from the width that the file speaks of by this much (mm).
 TAB_TOLERANCE_MM = 1e-3
-
-
-def tabbed_outline(content: DxfContent, problems: list[Problem]) -> Polygon | None:
-    """Return the area inside the outline with its tabs closed; note gaps that are no tabs.
-
-    Parameters
-    ----------
-    content : DxfContent
-        Its facts hold ``TABS``, ``TAB_MM`` and ``KERF_MM``.
-    problems : list of Problem
-        Findings are added to it.
-    """
-    parts = [drawn for drawn in content.paths if drawn.layer == Layer.OUTLINE.value]
-    if not parts and content.facts["TABS"].isdecimal():
-        # A file with everything on one layer: its outline comes last.
-        parts = content.paths[-int(content.facts["TABS"]) :]
-    closed = sum(drawn.closed for drawn in parts)
-    if closed or f"{len(parts)}" != content.facts["TABS"]:
-        text = (
-            f"The file speaks of {content.facts['TABS']} tabs, but its outline consists of {len(parts)} paths, "
-            f"{closed} of them closed; write the file again."
-        )
-        x, y = parts[0].points[-1] if parts else (0.0, 0.0)
-        problems.append(Problem(text, Severity.ERROR, (float(x), float(y))))
-        return None
-    wanted = _number(content, "TAB_MM") + _number(content, "KERF_MM")
-    ends = np.array([drawn.points[[0, -1]] for drawn in parts]).reshape(-1, 2)
-    away = np.linalg.norm(ends[:, None] - ends, axis=2)
-    np.fill_diagonal(away, np.inf)
-    gaps = away.min(axis=1)
-    # Not above, so that a fact that is no number counts as a fault.
-    if not np.all(np.abs(gaps - wanted) <= TAB_TOLERANCE_MM):
-        worst = int(np.argmax(np.abs(gaps - wanted)))
-        x, y = ends[worst]
-        text = (
-            f"The outline is open by {gaps[worst]:.3f} mm at x = {x:.2f}, y = {y:.2f}, where the file speaks of tabs "
-            f"with gaps of {wanted:.3f} mm; write the file again."
-        )
-        problems.append(Problem(text, Severity.ERROR, (float(x), float(y))))
-        return None
-    return Polygon(joined_ring([drawn.points for drawn in parts]))
-
-
-def _number(content: DxfContent, key: str) -> float:
-    try:
-        return float(content.facts.get(key, "nan"))
-    except ValueError:
-        return math.nan
-
-
 #: Cuts may end this far (mm) beyond the outline: edge cuts run over it on purpose.
 REACH_MM = 1.0
 #: Contact with the outline below this (mm) is rounding.
 TOUCH_MM = 1e-3
-
-
-def placement_problems(paths: Sequence[FilePath], outline: Polygon | None) -> list[Problem]:
-    """List cuts outside the outline, slits that cross it, coordinates below the origin, and cuts after the outline."""
-    problems: list[Problem] = []
-    low = np.concatenate([drawn.points for drawn in paths]).min(axis=0)
-    if low.min() < -TOUCH_MM:
-        text = f"Coordinates go down to ({low[0]:.2f}, {low[1]:.2f}); some machines cut off what lies below the origin."
-        problems.append(Problem(text, Severity.WARNING))
-    if outline is None:
-        return problems
-    inside, reach = outline.buffer(-TOUCH_MM), outline.buffer(REACH_MM)
-    lines = [LineString(drawn.points) for drawn in paths]
-    for drawn, line in zip(paths, lines, strict=True):
-        x, y = drawn.points[0]
-        if not line.within(reach):
-            text = f"The cut at x = {x:.2f}, y = {y:.2f} leaves the sheet; move it inside the outline or delete it."
-            problems.append(Problem(text, Severity.ERROR, (float(x), float(y))))
-        elif drawn.layer == Layer.SLITS.value and not line.within(inside):
-            text = f"The slit at x = {x:.2f}, y = {y:.2f} reaches the outline; no connector is left at its end."
-            problems.append(Problem(text, Severity.ERROR, (float(x), float(y))))
-    ring = outline.exterior.buffer(TOUCH_MM)
-    on_ring = np.array([bool(shapely.within(line, ring)) for line in lines])
-    if on_ring.any() and not on_ring[-1]:
-        text = "Cuts come after the outline in the file; the sheet may move once it is free, so cut the outline last."
-        problems.append(Problem(text, Severity.WARNING))
-    return problems
-
-
 #: Machine programs choose the operation by these words in a layer's name (MeerK40t, K40 Whisperer).
 TRAP_WORDS = ("CUT", "ENGRAVE")
 #: Ends nearer than this (mm) count as the same point.
@@ -300,6 +225,81 @@ def _open_outline(chains: Sequence[LineString]) -> Problem:
     x, y = chain.coords[0]
     text = f"The outline is open by {gap:.3f} mm at x = {x:.2f}, y = {y:.2f}; close it."
     return Problem(text, Severity.ERROR, (float(x), float(y)))
+
+
+def tabbed_outline(content: DxfContent, problems: list[Problem]) -> Polygon | None:
+    """Return the area inside the outline with its tabs closed; note gaps that are no tabs.
+
+    Parameters
+    ----------
+    content : DxfContent
+        Its facts hold ``TABS``, ``TAB_MM`` and ``KERF_MM``.
+    problems : list of Problem
+        Findings are added to it.
+    """
+    parts = [drawn for drawn in content.paths if drawn.layer == Layer.OUTLINE.value]
+    if not parts and content.facts["TABS"].isdecimal():
+        # A file with everything on one layer: its outline comes last.
+        parts = content.paths[-int(content.facts["TABS"]) :]
+    closed = sum(drawn.closed for drawn in parts)
+    if closed or f"{len(parts)}" != content.facts["TABS"]:
+        text = (
+            f"The file speaks of {content.facts['TABS']} tabs, but its outline consists of {len(parts)} paths, "
+            f"{closed} of them closed; write the file again."
+        )
+        x, y = parts[0].points[-1] if parts else (0.0, 0.0)
+        problems.append(Problem(text, Severity.ERROR, (float(x), float(y))))
+        return None
+    wanted = _number(content, "TAB_MM") + _number(content, "KERF_MM")
+    ends = np.array([drawn.points[[0, -1]] for drawn in parts]).reshape(-1, 2)
+    away = np.linalg.norm(ends[:, None] - ends, axis=2)
+    np.fill_diagonal(away, np.inf)
+    gaps = away.min(axis=1)
+    # Not above, so that a fact that is no number counts as a fault.
+    if not np.all(np.abs(gaps - wanted) <= TAB_TOLERANCE_MM):
+        worst = int(np.argmax(np.abs(gaps - wanted)))
+        x, y = ends[worst]
+        text = (
+            f"The outline is open by {gaps[worst]:.3f} mm at x = {x:.2f}, y = {y:.2f}, where the file speaks of tabs "
+            f"with gaps of {wanted:.3f} mm; write the file again."
+        )
+        problems.append(Problem(text, Severity.ERROR, (float(x), float(y))))
+        return None
+    return Polygon(joined_ring([drawn.points for drawn in parts]))
+
+
+def _number(content: DxfContent, key: str) -> float:
+    try:
+        return float(content.facts.get(key, "nan"))
+    except ValueError:
+        return math.nan
+
+
+def placement_problems(paths: Sequence[FilePath], outline: Polygon | None) -> list[Problem]:
+    """List cuts outside the outline, slits that cross it, coordinates below the origin, and cuts after the outline."""
+    problems: list[Problem] = []
+    low = np.concatenate([drawn.points for drawn in paths]).min(axis=0)
+    if low.min() < -TOUCH_MM:
+        text = f"Coordinates go down to ({low[0]:.2f}, {low[1]:.2f}); some machines cut off what lies below the origin."
+        problems.append(Problem(text, Severity.WARNING))
+    if outline is None:
+        return problems
+    inside, reach = outline.buffer(-TOUCH_MM), outline.buffer(REACH_MM)
+    lines = [LineString(drawn.points) for drawn in paths]
+    for drawn, line in zip(paths, lines, strict=True):
+        x, y = drawn.points[0]
+        if not line.within(reach):
+            text = f"The cut at x = {x:.2f}, y = {y:.2f} leaves the sheet; move it inside the outline or delete it."
+            problems.append(Problem(text, Severity.ERROR, (float(x), float(y))))
+        elif drawn.layer == Layer.SLITS.value and not line.within(inside):
+            text = f"The slit at x = {x:.2f}, y = {y:.2f} reaches the outline; no connector is left at its end."
+            problems.append(Problem(text, Severity.ERROR, (float(x), float(y))))
+    ring = outline.exterior.buffer(TOUCH_MM)
+    on_ring = np.array([bool(shapely.within(line, ring)) for line in lines])
+    if on_ring.any() and not on_ring[-1]:
+        text = "Cuts come after the outline in the file; the sheet may move once it is free, so cut the outline last."
+        problems.append(Problem(text, Severity.WARNING))
+    return problems
 
 
 def _physics(

@@ -1,19 +1,57 @@
-"""The first reader of DXF: ezdxf, with its audit."""
+"""Two readers of DXF that use ezdxf: a strict one for files written here, and a lenient one for files of any origin.
+
+:func:`read_with_ezdxf` reads polylines as they were written and fails on anything ezdxf's audit objects to; it is the
+first reader of a verification (the second one, ``group_codes``, shares no code with it).  :func:`read_content` takes
+whatever a file holds, turns curves into chords in mm, and notes what a cutter would stumble over.
+"""
 
 from __future__ import annotations
 
+import math
+from collections import Counter
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
+from ezdxf import recover, units
 from ezdxf.document import Drawing
+from ezdxf.entities.dxfentity import DXFEntity
 from ezdxf.entities.lwpolyline import LWPolyline
 from ezdxf.entities.polyline import Polyline
+from ezdxf.enums import InsertUnits
 from ezdxf.filemanagement import readfile
+from ezdxf.lldxf.const import DXFError
+from ezdxf.path import make_path
 
-from kirigami_studio.export.dxf_content import PARSER_FAULTS
 from kirigami_studio.export.file_content import FileContent
 from kirigami_studio.export.strokes import Stroke
+from kirigami_studio.fabricate.findings import Problem, Severity
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import ExportError
+
+#: Largest file that is read (bytes); a 64 x 64 design is below 2 MB.
+LARGEST_FILE = 100_000_000
+#: Chord tolerance (mm) for curves.
+FLATTEN_MM = 0.005
+#: Facts about a file's making that its check needs; R12 files keep them among ezdxf's own records.
+RECORDED_FACTS = ("KERF_MM", "TABS", "TAB_MM", "JOINS")
+#: What ezdxf raises on damaged files, depending on where the damage is.
+PARSER_FAULTS = (
+    DXFError,
+    ArithmeticError,
+    AssertionError,
+    AttributeError,
+    LookupError,
+    RecursionError,
+    StopIteration,
+    TypeError,
+    ValueError,
+)
+#: Ends of a closed curve nearer than this (mm) are the same point.
+ROUNDING_MM = 1e-9
+CURVES = frozenset({"LINE", "LWPOLYLINE", "POLYLINE", "ARC", "CIRCLE", "ELLIPSE", "SPLINE"})
+#: Curves that many machines read wrongly or not at all.
+RISKY_CURVES = frozenset({"ELLIPSE", "SPLINE"})
 
 
 def read_with_ezdxf(path: Path) -> FileContent:
@@ -59,3 +97,188 @@ def _content(document: Drawing) -> FileContent:
         layers={layer.dxf.name: layer.dxf.color for layer in document.layers},
         others=tuple(others),
     )
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class FilePath:
+    """One curve of the file.
+
+    Attributes
+    ----------
+    points : (P, 2) float, mm
+        The first point of a closed path is repeated at the end.
+    layer : str
+    closed : bool
+        Closed by its own flag or kind, not merely by ends that meet.
+    """
+
+    points: FloatArray
+    layer: str
+    closed: bool
+
+
+@dataclass(slots=True)
+class DxfContent:
+    """What a DXF holds, with the problems seen while reading.
+
+    Attributes
+    ----------
+    paths : list of FilePath
+    unit : str
+        Name of the file's unit, "none" when it has none.
+    layers : tuple of str
+        Layers that hold entities.
+    facts : dict of str to str
+        The file's own custom records, such as ``KERF_MM``.
+    problems : list of Problem
+    """
+
+    paths: list[FilePath] = field(default_factory=list)
+    unit: str = "none"
+    layers: tuple[str, ...] = ()
+    facts: dict[str, str] = field(default_factory=dict)
+    problems: list[Problem] = field(default_factory=list)
+
+
+def read_content(path: Path) -> DxfContent:
+    """Read the model space of a DXF.
+
+    Raises
+    ------
+    ExportError
+        The file is missing, too large, or not a DXF.
+    """
+    content = DxfContent()
+    document = _open(path, content)
+    try:
+        _collect(document, content)
+    except PARSER_FAULTS as error:
+        raise ExportError(f"{path} is a damaged DXF; export it again from its program.") from error
+    return content
+
+
+def _open(path: Path, content: DxfContent) -> Drawing:
+    try:
+        if path.stat().st_size > LARGEST_FILE:
+            raise ExportError(f"{path} is larger than {LARGEST_FILE // 1_000_000} MB; it cannot be a cut file.")
+        try:
+            return readfile(path)
+        except PARSER_FAULTS:
+            document, _ = recover.readfile(path)
+            content.problems.append(Problem("The file is damaged; only a part could be read. Export it again."))
+            return document
+    except OSError as error:
+        # ezdxf raises a bare OSError for a file that is no DXF at all.
+        reason = error.strerror or "it is not a DXF file"
+        raise ExportError(f"Cannot read {path}: {reason}. Choose a DXF file.") from error
+    except PARSER_FAULTS as error:
+        raise ExportError(f"{path} is not a readable DXF; export it again from its program.") from error
+
+
+def _collect(document: Drawing, content: DxfContent) -> None:
+    """Fill ``content`` from the document's header and model space."""
+    factor = _unit_factor(document, content)
+    content.facts = _facts(document)
+    entities = list(document.modelspace())
+    content.layers = tuple(sorted({_layer(entity) for entity in entities}))
+    others: Counter[str] = Counter()
+    risky: Counter[str] = Counter()
+    for entity in entities:
+        kind = entity.dxftype()
+        if kind not in CURVES:
+            others[kind] += 1
+            continue
+        if kind in RISKY_CURVES:
+            risky[kind] += 1
+        _add_path(content, entity, factor)
+    for kind, count in sorted(others.items()):
+        content.problems.append(
+            Problem(f"The file holds {count} {kind}, which machines drop or burn as they like; remove them.")
+        )
+    for kind, count in sorted(risky.items()):
+        text = f"The file holds {count} {kind}, which some machines read wrongly; use lines and arcs."
+        content.problems.append(Problem(text, Severity.WARNING))
+
+
+def _layer(entity: DXFEntity) -> str:
+    return str(entity.dxf.get("layer", "0")) if entity.dxf.is_supported("layer") else "0"
+
+
+def _unit_factor(document: Drawing, content: DxfContent) -> float:
+    """Return mm for one drawing unit; note a unit that is missing or not mm."""
+    code = int(document.header.get("$INSUNITS", 0))
+    if code == units.MM:
+        content.unit = "mm"
+        return 1.0
+    if code == 0:
+        text = "The file does not say its unit; it was read as mm, and must be imported as mm."
+        content.problems.append(Problem(text, Severity.WARNING))
+        return 1.0
+    try:
+        content.unit = units.decode(code) or str(code)
+        factor = float(units.conversion_factor(InsertUnits(code), InsertUnits.Millimeters))
+    except (ValueError, KeyError, IndexError, TypeError):
+        content.problems.append(Problem(f"The file's unit code {code} is unknown; set it to 4 (mm)."))
+        return 1.0
+    text = f"The file's unit is {content.unit} instead of mm; many machines ignore that and cut another size."
+    content.problems.append(Problem(text, Severity.WARNING))
+    return factor
+
+
+def _facts(document: Drawing) -> dict[str, str]:
+    facts = {str(key): str(value) for key, value in document.header.custom_vars}
+    record = document.ezdxf_metadata()
+    for key in RECORDED_FACTS:
+        if key not in facts and key in record:
+            facts[key] = str(record[key])
+    return facts
+
+
+def _add_path(content: DxfContent, entity: DXFEntity, factor: float) -> None:
+    layer = _layer(entity)
+    name = f"{entity.dxftype()} {entity.dxf.get('handle', '?')} on layer {layer}"
+    try:
+        points = _flattened(entity, factor)
+    except PARSER_FAULTS:
+        content.problems.append(Problem(f"The {name} cannot be read as a curve; draw it again."))
+        return
+    if not np.all(np.isfinite(points)):
+        content.problems.append(Problem(f"The {name} has a coordinate that is not a number; draw it again."))
+        return
+    length = float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum()) if len(points) > 1 else 0.0
+    if length < 1e-6:
+        where = (float(points[0, 0]), float(points[0, 1])) if len(points) else None
+        content.problems.append(Problem(f"The {name} has no length; remove it.", Severity.ERROR, where))
+        return
+    closed = _is_closed(entity)
+    content.paths.append(FilePath(_met(points) if closed else points, layer, closed))
+
+
+def _flattened(entity: DXFEntity, factor: float) -> FloatArray:
+    """Points of a curve in mm: (P, 2); raises what ezdxf raises for impossible curves."""
+    if isinstance(entity, LWPolyline) and not entity.has_arc:
+        corners = [(x, y) for x, y in entity.vertices()]
+        points = corners + corners[:1] if entity.closed else corners
+    elif isinstance(entity, Polyline) and not entity.is_2d_polyline and not entity.is_3d_polyline:
+        raise ValueError("meshes are no curves")
+    else:
+        for value in entity.dxf.all_existing_dxf_attribs().values():
+            if isinstance(value, float) and not math.isfinite(value):
+                return np.array([[math.nan, math.nan]])
+        points = [(v.x, v.y) for v in make_path(entity).flattening(FLATTEN_MM / factor)]
+    return np.array(points, dtype=np.float64).reshape(-1, 2) * factor
+
+
+def _met(points: FloatArray) -> FloatArray:
+    """Points of a closed curve, where flattening arcs may miss the first one by a rounding error at the end."""
+    if np.abs(points[-1] - points[0]).max() > ROUNDING_MM:
+        return points
+    return np.concatenate([points[:-1], points[:1]])
+
+
+def _is_closed(entity: DXFEntity) -> bool:
+    if isinstance(entity, LWPolyline):
+        return bool(entity.closed)
+    if isinstance(entity, Polyline):
+        return bool(entity.is_closed)
+    return entity.dxftype() == "CIRCLE"

@@ -9,8 +9,8 @@ from pathlib import Path
 from kirigami_studio.export.dxf import write_reference
 from kirigami_studio.export.exporter import ExportJob
 from kirigami_studio.export.profile import find_profile
+from kirigami_studio.export.provenance import sidecar_path, write_sidecar
 from kirigami_studio.export.registry import export
-from kirigami_studio.export.sidecar import sidecar_path, write_sidecar
 from kirigami_studio.export.svg import write_layout_svg
 from kirigami_studio.export.verification import Verification, verify_export
 

@@ -15,8 +15,8 @@ from functools import partial
 from pathlib import Path
 
 from kirigami_studio.export.dxf import check_written, strokes_dxf
-from kirigami_studio.export.facts import facts_of
 from kirigami_studio.export.profile import Profile
+from kirigami_studio.export.provenance import facts_of
 from kirigami_studio.export.strokes import Stroke, extent, strokes_of
 from kirigami_studio.fabricate.cut_plan import CutPlan
 from kirigami_studio.foundation.errors import ExportError

@@ -1,7 +1,8 @@
 """Cut plan -> LightBurn project (.lbrn2): named layers with priorities in the order of cutting, connectors on T1.
 
 The file is XML; a path is a list of vertices (``V x y``, with handles where a curve leaves or arrives) and a list of
-primitives between them (``L`` line, ``B`` Bezier curve).  Arcs become Bezier curves of a quarter turn at most.
+primitives between them (``L`` line, ``B`` Bezier curve).  Arcs become Bezier curves of a quarter turn at most.  The
+written file is read back, and the length on each layer compared with the plan.
 """
 
 from __future__ import annotations
@@ -15,10 +16,10 @@ from xml.etree import ElementTree
 import numpy as np
 
 from kirigami_studio.export.exporter import ExportJob
-from kirigami_studio.export.facts import facts_of
 from kirigami_studio.export.profile import find_profile
+from kirigami_studio.export.provenance import facts_of
 from kirigami_studio.export.strokes import layer_colours, strokes_of
-from kirigami_studio.fabricate.bulges import arc_of
+from kirigami_studio.fabricate.cut_path import arc_of
 from kirigami_studio.fabricate.cut_plan import CutPath, CutPlan, Layer
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import ExportError
@@ -33,6 +34,11 @@ MARKER_RADIUS_MM = 0.5
 LARGEST_TURN = math.pi / 2.0
 #: Share by which a length may differ after reading back: arcs as Bezier curves, measured along chords.
 SAME_LENGTH = 5e-4
+#: Chords that a Bezier curve of a quarter turn is measured with; they miss 3e-5 of it.
+CHORDS = 64
+_NUMBER = r"(-?\d+(?:\.\d+)?)"
+_VERTEX = re.compile(rf"V{_NUMBER} {_NUMBER}(?:c0x{_NUMBER}(?:c0y{_NUMBER})?)?(?:c1x{_NUMBER}(?:c1y{_NUMBER})?)?")
+_PRIMITIVE = re.compile(r"([LB])(\d+) (\d+)")
 
 
 @dataclass(frozen=True, slots=True)
@@ -172,13 +178,6 @@ def _curves(start: FloatArray, stop: FloatArray, bulge: float) -> list[tuple[Flo
 def _turned(arm: FloatArray, angle: float) -> FloatArray:
     c, s = math.cos(angle), math.sin(angle)
     return np.array([c * arm[0] - s * arm[1], s * arm[0] + c * arm[1]])
-
-
-#: Chords that a Bezier curve of a quarter turn is measured with; they miss 3e-5 of it.
-CHORDS = 64
-_NUMBER = r"(-?\d+(?:\.\d+)?)"
-_VERTEX = re.compile(rf"V{_NUMBER} {_NUMBER}(?:c0x{_NUMBER}(?:c0y{_NUMBER})?)?(?:c1x{_NUMBER}(?:c1y{_NUMBER})?)?")
-_PRIMITIVE = re.compile(r"([LB])(\d+) (\d+)")
 
 
 def layer_lengths(path: Path) -> dict[str, float]:

@@ -1,7 +1,8 @@
 """Cut plan -> PDF at 1:1 for scissors, paper and checking by eye, with a ruler to see whether the printer scaled it.
 
 One page as large as the sheet, or pages of a paper size that overlap, with crosses to lay them upon each other, joining
-lines to cut along, and a map of all pages first.
+lines to cut along, and a map of all pages first.  The written file is read back: page sizes, and the length of the
+lines of each layer.
 """
 
 from __future__ import annotations
@@ -20,12 +21,12 @@ from reportlab.pdfgen.canvas import Canvas
 from shapely.geometry import LineString
 
 from kirigami_studio import __version__
-from kirigami_studio.export import palette
+from kirigami_studio.export import picture
 from kirigami_studio.export.exporter import ExportJob
-from kirigami_studio.export.facts import facts_of
-from kirigami_studio.export.palette import Colour
 from kirigami_studio.export.paper import FOOTER_MM, MARGIN_MM, NO_PAPER, Box, Tile, Tiling, find_paper, tile
+from kirigami_studio.export.picture import Colour
 from kirigami_studio.export.profile import find_profile
+from kirigami_studio.export.provenance import facts_of
 from kirigami_studio.fabricate.cut_plan import CutPlan
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import ExportError
@@ -41,8 +42,11 @@ SAME_LENGTH = 1e-5
 ROUNDING_MM = 1e-6
 #: Page sizes may differ by this (mm).
 SAME_SIZE_MM = 1e-3
-
 Line = tuple[FloatArray, bool, Colour]
+MM_PER_POINT = 25.4 / 72.0
+_BOX = re.compile(rb"/MediaBox \[ 0 0 ([\d.]+) ([\d.]+) \]")
+_STREAM = re.compile(rb"stream\r?\n(.*?)endstream", re.DOTALL)
+_TEXT = re.compile(rb"BT.*?ET", re.DOTALL)
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,7 +76,7 @@ def write_pdf(plan: CutPlan, path: str | Path, paper: str = NO_PAPER) -> None:
     ExportError
         Unknown paper, too many pages, an unwritable place, or a file that did not read back.
     """
-    lines = [(cut.flattened, cut.closed, palette.LAYER_COLOUR[cut.layer]) for cut in plan.paths]
+    lines = [(cut.flattened, cut.closed, picture.LAYER_COLOUR[cut.layer]) for cut in plan.paths]
     tiling = one_page(plan) if find_paper(paper) is None else tile(plan.bounds_mm, paper)
     content = _pdf_bytes(plan, lines, tiling)
     write_atomically(Path(path), content, lambda written: _verify(written, plan, tiling))
@@ -160,7 +164,7 @@ def _draw_joints(canvas: Any, part: Tile) -> None:
     ys = [y for y in (part.cell[1], part.cell[3]) if np.isfinite(y)]
     ends = [(np.array([[x, low_y], [x, high_y]])) for x in xs] + [np.array([[low_x, y], [high_x, y]]) for y in ys]
     to_page = _placed(part.window)
-    _stroke_colour(canvas, palette.INK)
+    _stroke_colour(canvas, picture.INK)
     canvas.setDash(2.0 * mm, 2.0 * mm)
     for line in ends:
         _draw(canvas, to_page(line), closed=False)
@@ -181,7 +185,7 @@ def _draw_map(canvas: Any, plan: CutPlan, tiling: Tiling) -> None:
     scale = float(np.min(room / (high - low)))
     corner = np.array([MARGIN_MM, MARGIN_MM + FOOTER_MM])
     canvas.setLineWidth(CUT_LINE_MM * mm)
-    _stroke_colour(canvas, palette.INK)
+    _stroke_colour(canvas, picture.INK)
     width, height = plan.bounds_mm
     sheet = np.array([[0.0, 0.0], [width, 0.0], [width, height], [0.0, height]])
     _draw(canvas, corner + (sheet - low) * scale, closed=True)
@@ -201,7 +205,7 @@ def _draw_map(canvas: Any, plan: CutPlan, tiling: Tiling) -> None:
 def _draw_ruler(canvas: Any, plan: CutPlan, place: str) -> None:
     left, base = MARGIN_MM, MARGIN_MM
     canvas.setLineWidth(CUT_LINE_MM * mm)
-    _stroke_colour(canvas, palette.INK)
+    _stroke_colour(canvas, picture.INK)
     canvas.line(left * mm, base * mm, (left + RULER_MM) * mm, base * mm)
     for tick in range(0, int(RULER_MM) + 1, 10):
         canvas.line((left + tick) * mm, base * mm, (left + tick) * mm, (base + 2.0) * mm)
@@ -226,7 +230,7 @@ def _verify(path: Path, plan: CutPlan, tiling: Tiling) -> None:
     if len(pages) != len(tiling.tiles) + (len(tiling.tiles) > 1):
         raise ExportError(f"The PDF did not read back: {len(pages)} pages for {len(tiling.tiles)} parts.")
     for layer in plan.layers:
-        colour = palette.LAYER_COLOUR[layer]
+        colour = picture.LAYER_COLOUR[layer]
         shown = zip(pages[-len(tiling.tiles) :], tiling.tiles, strict=True)
         found = sum(_length_in_cell(page, part, colour) for page, part in shown)
         meant = sum(cut.length for cut in plan.on_layer(layer))
@@ -245,12 +249,6 @@ def _length_in_cell(page: Page, part: Tile, colour: Colour) -> float:
     low = np.maximum(part.cell[:2], -1e6)
     high = np.minimum(part.cell[2:], 1e6)
     return float(sum(line.intersection(shapely.box(*low, *high)).length for line in lines))
-
-
-MM_PER_POINT = 25.4 / 72.0
-_BOX = re.compile(rb"/MediaBox \[ 0 0 ([\d.]+) ([\d.]+) \]")
-_STREAM = re.compile(rb"stream\r?\n(.*?)endstream", re.DOTALL)
-_TEXT = re.compile(rb"BT.*?ET", re.DOTALL)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -1,18 +1,107 @@
-"""Panels over a target as an antialiased bitmap: what the preview and every frame of the animation show."""
+"""The deployed layout over its target as an antialiased bitmap: the PNG preview, and every frame of the animation.
+
+The colours of all exported pictures and drawings are here, as red, green, blue from 0 to 255.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from io import BytesIO
+from pathlib import Path
+from types import MappingProxyType
 
 import numpy as np
 from PIL import Image, ImageDraw
+from PIL.PngImagePlugin import PngInfo
 
-from kirigami_studio.export import palette
+from kirigami_studio.export.exporter import ExportJob
+from kirigami_studio.export.provenance import origin_facts
+from kirigami_studio.fabricate.cut_plan import Layer
 from kirigami_studio.foundation.arrays import FloatArray
+from kirigami_studio.foundation.errors import ExportError
+from kirigami_studio.foundation.files import write_atomically
 
+Colour = tuple[int, int, int]
+PAPER: Colour = (255, 255, 255)
+PANEL: Colour = (176, 200, 226)
+PANEL_EDGE: Colour = (44, 72, 105)
+VOID: Colour = (250, 250, 247)
+TARGET_FILL: Colour = (255, 232, 204)
+TARGET_EDGE: Colour = (217, 95, 2)
+INK: Colour = (40, 40, 40)
+LAYER_COLOUR: Mapping[Layer, Colour] = MappingProxyType(
+    {Layer.RELIEF: (220, 120, 0), Layer.SLITS: (255, 0, 0), Layer.EDGE_SLITS: (0, 160, 0), Layer.OUTLINE: (0, 0, 255)}
+)
 #: Pictures are drawn this many times larger and then reduced.
 SUPERSAMPLING = 3
+LONGEST_SIDE = 900
+
+
+@dataclass(frozen=True, slots=True)
+class PngExporter:
+    """Preview as PNG."""
+
+    extension: str = ".png"
+    name: str = "PNG picture of the deployed layout"
+
+    def write(self, job: ExportJob, path: Path) -> None:
+        """Write the layout at the job's angle."""
+        write_png(job, path)
+
+
+def write_png(job: ExportJob, path: str | Path, longest: int = LONGEST_SIDE) -> None:
+    """Write the layout at the target angle over the target.
+
+    Raises
+    ------
+    ExportError
+        The place cannot be written, or the file did not read back.
+    """
+    image = preview(job, longest)
+    stream = BytesIO()
+    image.save(stream, format="PNG", optimize=True, pnginfo=text_chunks(origin_facts(job.provenance)))
+
+    def verify(written: Path) -> None:
+        with Image.open(written) as read:
+            read.load()
+            if read.size != image.size:
+                raise ExportError(f"The PNG did not read back: {read.size} instead of {image.size} pixels.")
+
+    write_atomically(Path(path), stream.getvalue(), verify)
+
+
+def text_chunks(facts: Mapping[str, str]) -> PngInfo:
+    """Facts as a PNG keeps them, each under its name."""
+    texts = PngInfo()
+    for name, text in facts.items():
+        texts.add_itxt(name, text)
+    return texts
+
+
+def preview(job: ExportJob, longest: int = LONGEST_SIDE) -> Image.Image:
+    """Draw the layout at the target angle over the target."""
+    panels = job.posed.parts(job.phi)
+    clouds = panels if job.target is None else [*panels, job.target]
+    return draw_polygons(panels, PictureFrame.around(clouds, longest), job.target)
+
+
+def draw_polygons(polygons: Sequence[FloatArray], frame: PictureFrame, target: FloatArray | None = None) -> Image.Image:
+    """Draw panels, each (P, 2), over a target outline (L, 2); the target's outline is repeated on top."""
+    factor = SUPERSAMPLING
+    size = (frame.pixels[0] * factor, frame.pixels[1] * factor)
+    image = Image.new("RGB", size, PAPER)
+    draw = ImageDraw.Draw(image)
+    if target is not None:
+        draw.polygon(frame.pixel(target, factor), fill=TARGET_FILL)
+    for polygon in polygons:
+        corners = frame.pixel(polygon, factor)
+        draw.polygon(corners, fill=PANEL)
+        draw.line([*corners, corners[0]], fill=PANEL_EDGE, width=factor, joint="curve")
+    if target is not None:
+        loop = frame.pixel(target, factor)
+        draw.line([*loop, loop[0]], fill=TARGET_EDGE, width=2 * factor, joint="curve")
+    return image.resize(frame.pixels, Image.Resampling.BOX)
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,19 +141,6 @@ class PictureFrame:
         return list(zip(x.tolist(), y.tolist(), strict=True))
 
 
-def draw_polygons(polygons: Sequence[FloatArray], frame: PictureFrame, target: FloatArray | None = None) -> Image.Image:
-    """Draw panels, each (P, 2), over a target outline (L, 2); the target's outline is repeated on top."""
-    factor = SUPERSAMPLING
-    size = (frame.pixels[0] * factor, frame.pixels[1] * factor)
-    image = Image.new("RGB", size, palette.PAPER)
-    draw = ImageDraw.Draw(image)
-    if target is not None:
-        draw.polygon(frame.pixel(target, factor), fill=palette.TARGET_FILL)
-    for polygon in polygons:
-        corners = frame.pixel(polygon, factor)
-        draw.polygon(corners, fill=palette.PANEL)
-        draw.line([*corners, corners[0]], fill=palette.PANEL_EDGE, width=factor, joint="curve")
-    if target is not None:
-        loop = frame.pixel(target, factor)
-        draw.line([*loop, loop[0]], fill=palette.TARGET_EDGE, width=2 * factor, joint="curve")
-    return image.resize(frame.pixels, Image.Resampling.BOX)
+def hexadecimal(colour: Colour) -> str:
+    """Return ``#rrggbb``."""
+    return "#{:02x}{:02x}{:02x}".format(*colour)

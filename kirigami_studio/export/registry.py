@@ -12,7 +12,7 @@ from kirigami_studio.export.exporter import Exporter, ExportJob
 from kirigami_studio.export.layer_files import layer_folder, write_layer_files
 from kirigami_studio.export.lightburn import LightBurnExporter
 from kirigami_studio.export.pdf import PdfExporter
-from kirigami_studio.export.png import PngExporter
+from kirigami_studio.export.picture import PngExporter
 from kirigami_studio.export.profile import find_profile
 from kirigami_studio.export.svg import SvgExporter
 from kirigami_studio.foundation.errors import ExportError

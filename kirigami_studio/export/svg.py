@@ -10,11 +10,11 @@ from xml.etree import ElementTree
 
 import numpy as np
 
-from kirigami_studio.export import palette
+from kirigami_studio.export import picture
 from kirigami_studio.export.exporter import ExportJob
-from kirigami_studio.export.facts import facts_of, origin_facts
-from kirigami_studio.export.palette import hexadecimal
+from kirigami_studio.export.picture import hexadecimal
 from kirigami_studio.export.profile import BLUE, GREEN, MAGENTA, RED, WHITE, Profile, find_profile
+from kirigami_studio.export.provenance import facts_of, origin_facts
 from kirigami_studio.export.strokes import Stroke, extent, strokes_of
 from kirigami_studio.fabricate.cut_plan import DECIMALS, CutPlan
 from kirigami_studio.foundation.arrays import FloatArray
@@ -124,12 +124,12 @@ def write_layout_svg(job: ExportJob, path: str | Path, width_mm: float = 100.0) 
     root = _root(width, height, f"Kirigami layout at {np.degrees(job.phi):g} degrees")
     _describe(root, origin_facts(job.provenance))
     groups: list[tuple[str, dict[str, str], list[FloatArray]]] = [
-        ("TARGET_AREA", {"fill": hexadecimal(palette.TARGET_FILL)}, [] if target is None else [target]),
-        ("VOIDS", {"fill": hexadecimal(palette.VOID)}, list(nodes[tables.void_nodes].reshape(-1, 4, 2))),
-        ("PANELS", {"fill": hexadecimal(palette.PANEL), "stroke": hexadecimal(palette.PANEL_EDGE),
+        ("TARGET_AREA", {"fill": hexadecimal(picture.TARGET_FILL)}, [] if target is None else [target]),
+        ("VOIDS", {"fill": hexadecimal(picture.VOID)}, list(nodes[tables.void_nodes].reshape(-1, 4, 2))),
+        ("PANELS", {"fill": hexadecimal(picture.PANEL), "stroke": hexadecimal(picture.PANEL_EDGE),
                     "stroke-width": "0.15", "stroke-linejoin": "round"},
          panels),
-        ("TARGET", {"fill": "none", "stroke": hexadecimal(palette.TARGET_EDGE), "stroke-width": "0.5"},
+        ("TARGET", {"fill": "none", "stroke": hexadecimal(picture.TARGET_EDGE), "stroke-width": "0.5"},
          [] if target is None else [target]),
     ]  # fmt: skip
     count = 0

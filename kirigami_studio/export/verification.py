@@ -17,62 +17,13 @@ from kirigami_studio.export.layer_files import by_layer, layer_folder, layer_pat
 from kirigami_studio.export.profile import Profile, find_profile
 from kirigami_studio.export.strokes import Stroke, extent, layer_colours, strokes_of
 from kirigami_studio.export.svg_reading import read_with_svgelements, read_with_xml
-from kirigami_studio.fabricate.bulges import MEASURED_CHORD_MM
-from kirigami_studio.fabricate.checks import OVERLAP_TOLERANCE_MM
+from kirigami_studio.fabricate.checks import OVERLAP_TOLERANCE_MM, WIDTH_TOLERANCE_MM
+from kirigami_studio.fabricate.cut_path import MEASURED_CHORD_MM
 from kirigami_studio.fabricate.cut_plan import CutPlan, Layer
 from kirigami_studio.fabricate.finished_sheet import overlap_length, remaining_pieces, smallest_ligament
 from kirigami_studio.fabricate.joints import Pair, joined_pairs
-from kirigami_studio.fabricate.sheet_checks import WIDTH_TOLERANCE_MM
 from kirigami_studio.fabricate.tabs import joined_ring
 from kirigami_studio.foundation.errors import ExportError
-
-
-@dataclass(frozen=True, slots=True)
-class Physics:
-    """The sheet after cutting.
-
-    Attributes
-    ----------
-    pieces : int
-    min_ligament_mm : float or None
-        None when there is nothing to measure.
-    overlap_mm : float
-    """
-
-    pieces: int
-    min_ligament_mm: float | None
-    overlap_mm: float
-
-
-def file_physics(strokes: Sequence[Stroke], plan: CutPlan, profile: Profile) -> Physics:
-    """Cut the sheet along the strokes of a file.
-
-    Parameters
-    ----------
-    strokes : sequence of Stroke
-        As read, in file order.
-    plan : CutPlan
-        Its kerf, and which of the strokes are the outline (by number, for the names are the profile's).
-    profile : Profile
-    """
-    outlines = 1 if profile.slots else len(plan.on_layer(Layer.OUTLINE))
-    drawn = [stroke.drawn(MEASURED_CHORD_MM) for stroke in strokes]
-    lines = [LineString(points) for points in drawn]
-    inner, rim = lines[:-outlines], drawn[-outlines:]
-    boundary = Polygon(rim[0] if outlines == 1 else joined_ring(rim))
-    kerf = 0.0 if profile.slots else plan.kerf_mm
-    loops = [Polygon(line) for line, stroke in zip(inner, strokes, strict=False) if stroke.closed]
-    sheet: BaseGeometry = boundary.difference(shapely.union_all(loops))
-    pieces = remaining_pieces(sheet, inner, kerf)
-    ligament = smallest_ligament(inner, boundary.exterior, kerf, _meant(inner, plan)) if inner else None
-    return Physics(len(pieces), None if ligament is None else ligament.width_mm, max(overlap_length(lines), 0.0))
-
-
-def _meant(lines: Sequence[LineString], plan: CutPlan) -> set[Pair]:
-    """Which of the file's cuts meet on purpose, by number; none where the file's cuts are not those of the plan."""
-    paths = [path for path in plan.paths if path.layer is not Layer.OUTLINE]
-    return joined_pairs(plan, paths, lines) if len(paths) == len(lines) else set()
-
 
 Reader = Callable[[Path], FileContent]
 #: Stands in a sentence for the name of who read the file.
@@ -251,15 +202,6 @@ def _reader_findings(content: FileContent, strokes: Sequence[Stroke], version: s
     return found
 
 
-def _size_finding(content: FileContent, strokes: Sequence[Stroke], kind: Format) -> Finding:
-    width, height = extent(strokes)
-    if content.extent is None:
-        return Finding("The file's size is missing in its header for {reader}.", False)
-    right = max(abs(content.extent[0] - width), abs(content.extent[1] - height)) <= kind.shift_mm
-    text = f"The file's size is {content.extent[0]:.3f} x {content.extent[1]:.3f} mm for {{reader}}"
-    return Finding(f"{text}, planned are {width:.3f} x {height:.3f} mm.", right)
-
-
 def _unit_finding(content: FileContent, version: str) -> Finding:
     if version == "R12" and content.unit is None:
         return Finding("There is no unit in the file for {reader}: import it as mm.", True, warning=True)
@@ -292,6 +234,62 @@ def _layer_finding(content: FileContent, strokes: Sequence[Stroke]) -> Finding:
         return Finding(f"{text}, in that order.", True)
     wanted = ", ".join(f"{name} in colour {colour}" for name, colour in meant.items())
     return Finding(f"{text}; planned are {wanted}.", False)
+
+
+def _size_finding(content: FileContent, strokes: Sequence[Stroke], kind: Format) -> Finding:
+    width, height = extent(strokes)
+    if content.extent is None:
+        return Finding("The file's size is missing in its header for {reader}.", False)
+    right = max(abs(content.extent[0] - width), abs(content.extent[1] - height)) <= kind.shift_mm
+    text = f"The file's size is {content.extent[0]:.3f} x {content.extent[1]:.3f} mm for {{reader}}"
+    return Finding(f"{text}, planned are {width:.3f} x {height:.3f} mm.", right)
+
+
+@dataclass(frozen=True, slots=True)
+class Physics:
+    """The sheet after cutting.
+
+    Attributes
+    ----------
+    pieces : int
+    min_ligament_mm : float or None
+        None when there is nothing to measure.
+    overlap_mm : float
+    """
+
+    pieces: int
+    min_ligament_mm: float | None
+    overlap_mm: float
+
+
+def file_physics(strokes: Sequence[Stroke], plan: CutPlan, profile: Profile) -> Physics:
+    """Cut the sheet along the strokes of a file.
+
+    Parameters
+    ----------
+    strokes : sequence of Stroke
+        As read, in file order.
+    plan : CutPlan
+        Its kerf, and which of the strokes are the outline (by number, for the names are the profile's).
+    profile : Profile
+    """
+    outlines = 1 if profile.slots else len(plan.on_layer(Layer.OUTLINE))
+    drawn = [stroke.drawn(MEASURED_CHORD_MM) for stroke in strokes]
+    lines = [LineString(points) for points in drawn]
+    inner, rim = lines[:-outlines], drawn[-outlines:]
+    boundary = Polygon(rim[0] if outlines == 1 else joined_ring(rim))
+    kerf = 0.0 if profile.slots else plan.kerf_mm
+    loops = [Polygon(line) for line, stroke in zip(inner, strokes, strict=False) if stroke.closed]
+    sheet: BaseGeometry = boundary.difference(shapely.union_all(loops))
+    pieces = remaining_pieces(sheet, inner, kerf)
+    ligament = smallest_ligament(inner, boundary.exterior, kerf, _meant(inner, plan)) if inner else None
+    return Physics(len(pieces), None if ligament is None else ligament.width_mm, max(overlap_length(lines), 0.0))
+
+
+def _meant(lines: Sequence[LineString], plan: CutPlan) -> set[Pair]:
+    """Which of the file's cuts meet on purpose, by number; none where the file's cuts are not those of the plan."""
+    paths = [path for path in plan.paths if path.layer is not Layer.OUTLINE]
+    return joined_pairs(plan, paths, lines) if len(paths) == len(lines) else set()
 
 
 def _physics_findings(physics: Physics, plan: CutPlan) -> list[Finding]:

@@ -1,4 +1,4 @@
-"""Shorten cuts at their T-junctions so that the finished connector has the width asked for.
+"""Where cuts end, kerf allowed for: short of their T-junctions inside the sheet, beyond the outline at its edge.
 
 A tip burns half a kerf ahead of its centre line and the through cut half a kerf towards it, so the centre line stops
 where its perpendicular distance to the through cut is ``width + kerf``; along a cut that meets it at an angle theta
@@ -22,6 +22,10 @@ from kirigami_studio.foundation.errors import FabricationError
 
 #: A cut shorter than this (mm), or than twice the kerf, is a burned dot and separates nothing.
 SHORTEST_CUT_MM = 0.1
+#: How far (mm) edge cuts run beyond the outline's centre line.
+OVERCUT_MM = 0.2
+#: An edge cut flatter to the edge than this (sine) turns square to it for the overcut, which would get long otherwise.
+FLATTEST_STRAIGHT_OVERCUT = 0.5
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -129,14 +133,6 @@ def shorten(
     return shortened
 
 
-def edge_directions(points: FloatArray, size: tuple[float, float]) -> FloatArray:
-    """Direction of the sheet side nearest to each point: (P, 2) unit vectors along x or y."""
-    x, y = points[:, 0], points[:, 1]
-    to_vertical = np.minimum(x, size[0] - x)
-    to_horizontal = np.minimum(y, size[1] - y)
-    return np.where((to_vertical < to_horizontal)[:, None], [0.0, 1.0], [1.0, 0.0])
-
-
 def _refuse_cuts_without_room(
     table: CutTable, length: FloatArray, trims: FloatArray, widths: FloatArray, kerf_mm: float
 ) -> None:
@@ -151,3 +147,51 @@ def _refuse_cuts_without_room(
         f"the sheet at least {math.ceil(100.0 * needed[worst] / length[worst]) / 100.0:.2f} times wider or the "
         f"connectors narrower ({int(np.sum(length < needed))} cuts are too short)."
     )
+
+
+def outline_path(size: tuple[float, float], kerf_mm: float) -> FloatArray:
+    """Centre line of the outline cut: the nominal sheet grown by half a kerf, (4, 2) mm, counter-clockwise."""
+    half = 0.5 * kerf_mm
+    left, bottom, right, top = -half, -half, size[0] + half, size[1] + half
+    return np.array([(left, bottom), (right, bottom), (right, top), (left, top)])
+
+
+def edge_cut_paths(
+    lines: FloatArray, table: CutTable, size: tuple[float, float], kerf_mm: float, overcut_mm: float
+) -> list[FloatArray]:
+    """Lengthen the edge cuts over the outline.
+
+    Parameters
+    ----------
+    lines : (C, 2, 2) float, mm
+        Shortened cuts; those from ``table.slit_count`` on start at the sheet's edge.
+    overcut_mm : float
+        Distance beyond the outline's centre line, measured square to the edge.
+
+    Returns
+    -------
+    paths : list of (P, 2) float, mm
+        From outside inwards: two points, three where a flat cut turns square to the edge.
+    """
+    paths = []
+    mouths = lines[table.slit_count :, 0]
+    sides = edge_directions(mouths, size)
+    reach = 0.5 * kerf_mm + overcut_mm
+    for mouth, tip, side in zip(mouths, lines[table.slit_count :, 1], sides, strict=True):
+        outwards = np.array([side[1], side[0]])
+        outwards *= np.sign(np.dot(mouth - tip, outwards))
+        direction = (mouth - tip) / np.linalg.norm(mouth - tip)
+        sine = float(np.dot(direction, outwards))
+        if sine >= FLATTEST_STRAIGHT_OVERCUT:
+            paths.append(np.stack([mouth + direction * (reach / sine), tip]))
+        else:
+            paths.append(np.stack([mouth + outwards * reach, mouth, tip]))
+    return paths
+
+
+def edge_directions(points: FloatArray, size: tuple[float, float]) -> FloatArray:
+    """Direction of the sheet side nearest to each point: (P, 2) unit vectors along x or y."""
+    x, y = points[:, 0], points[:, 1]
+    to_vertical = np.minimum(x, size[0] - x)
+    to_horizontal = np.minimum(y, size[1] - y)
+    return np.where((to_vertical < to_horizontal)[:, None], [0.0, 1.0], [1.0, 0.0])

@@ -19,10 +19,9 @@ from dataclasses import asdict, dataclass
 
 import numpy as np
 
-from kirigami_studio.fabricate.connectors import SHORTEST_CUT_MM, Hinges
+from kirigami_studio.fabricate.connectors import OVERCUT_MM, SHORTEST_CUT_MM, Hinges, outline_path
 from kirigami_studio.fabricate.cut_path import CutPath, Layer, check_length
 from kirigami_studio.fabricate.cut_plan import DECIMALS, CutPlan
-from kirigami_studio.fabricate.kerf import OVERCUT_MM, outline_path
 from kirigami_studio.fabricate.material import Material
 from kirigami_studio.fabricate.ordering import in_cutting_order
 from kirigami_studio.foundation.arrays import FloatArray

@@ -1,4 +1,8 @@
-"""One path of the beam or blade: points and arcs in the direction of cutting, on one layer."""
+"""One path of the beam or blade: points and arcs in the direction of cutting, on one layer.
+
+Arcs are written as DXF has them: a *bulge* for each edge, the tangent of a quarter of the arc's angle, 0 for a straight
+edge and positive for an arc to the left (counter-clockwise).
+"""
 
 from __future__ import annotations
 
@@ -8,28 +12,15 @@ from enum import Enum
 from functools import cached_property
 
 import numpy as np
+from shapely.geometry import LineString
 
-from kirigami_studio.fabricate.bulges import flattened
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import FabricationError
 
-
-def check_length(what: str, value: float, zero_allowed: bool = False) -> float:
-    """Return a length in mm as float, or refuse it by name.
-
-    Raises
-    ------
-    FabricationError
-        Not a number, not finite, negative, or zero where that makes no sense.
-    """
-    try:
-        length = float(value)
-    except (TypeError, ValueError):
-        raise FabricationError(f"{what} must be a number of millimetres, got {value!r}.") from None
-    if not math.isfinite(length) or length < 0 or (length == 0 and not zero_allowed):
-        bound = "0 mm or more" if zero_allowed else "above 0 mm"
-        raise FabricationError(f"{what} must be {bound}, got {length:g} mm; type a positive width in millimetres.")
-    return length
+#: Largest distance (mm) between an arc and the chords that stand for it.
+CHORD_MM = 0.005
+#: The same where finished widths are measured, which are promised to a micrometre.
+MEASURED_CHORD_MM = 2e-4
 
 
 class Layer(Enum):
@@ -54,7 +45,7 @@ class CutPath:
     cut : int
         Number of the cut in :class:`CutTable`, -1 for the outline.
     bulges : (P,) float or None
-        Arcs, see ``bulges``; None where all edges are straight.
+        Arcs, as the head of this module says; None where all edges are straight.
     """
 
     points: FloatArray
@@ -100,3 +91,76 @@ class CutPath:
         """A closed path that begins at another of its points."""
         bulges = None if self.bulges is None else np.roll(self.bulges, -vertex)
         return replace(self, points=np.roll(self.points, -vertex, axis=0), bulges=bulges)
+
+
+def check_length(what: str, value: float, zero_allowed: bool = False) -> float:
+    """Return a length in mm as float, or refuse it by name.
+
+    Raises
+    ------
+    FabricationError
+        Not a number, not finite, negative, or zero where that makes no sense.
+    """
+    try:
+        length = float(value)
+    except (TypeError, ValueError):
+        raise FabricationError(f"{what} must be a number of millimetres, got {value!r}.") from None
+    if not math.isfinite(length) or length < 0 or (length == 0 and not zero_allowed):
+        bound = "0 mm or more" if zero_allowed else "above 0 mm"
+        raise FabricationError(f"{what} must be {bound}, got {length:g} mm; type a positive width in millimetres.")
+    return length
+
+
+def flattened(points: FloatArray, bulges: FloatArray, closed: bool, chord_mm: float = CHORD_MM) -> FloatArray:
+    """Replace arcs by chords.
+
+    Parameters
+    ----------
+    points : (P, 2) float, mm
+        The first point of a closed path is not repeated.
+    bulges : (P,) float
+        Of the edge from each point to the next, 0 for a straight one, positive for an arc to the left (counter-
+        clockwise); the last one counts only where the path is closed.
+    closed : bool
+    chord_mm : float
+
+    Returns
+    -------
+    vertices : (V, 2) float, mm
+        The given points and those between; a closed path is not repeated at its first point.
+    """
+    following = [*points[1:], points[0]]
+    parts = [points[:1]]
+    for start, stop, bulge in zip(points, following, bulges, strict=True):
+        parts += [_between(start, stop, float(bulge), chord_mm), stop[None]]
+    edges = len(points) if closed else len(points) - 1
+    return np.concatenate(parts[: 2 * edges] if closed else parts[: 2 * edges + 1])
+
+
+def measured_line(points: FloatArray, bulges: FloatArray | None, closed: bool) -> LineString:
+    """A centre line (mm) with chords for arcs so fine that widths can be measured on it; arguments as above."""
+    line = points if bulges is None else flattened(points, bulges, closed, MEASURED_CHORD_MM)
+    return LineString(np.concatenate([line, line[:1]]) if closed else line)
+
+
+def arc_of(start: FloatArray, stop: FloatArray, bulge: float) -> tuple[FloatArray, float]:
+    """Centre (2,) and radius of the arc of an edge; the bulge is not 0."""
+    x, y = float(stop[0] - start[0]), float(stop[1] - start[1])
+    height = (1.0 - bulge**2) / (4.0 * bulge)
+    centre = np.array([0.5 * (start[0] + stop[0]) - y * height, 0.5 * (start[1] + stop[1]) + x * height])
+    return centre, math.hypot(x, y) * (1.0 + bulge**2) / (4.0 * abs(bulge))
+
+
+def _between(start: FloatArray, stop: FloatArray, bulge: float, chord_mm: float) -> FloatArray:
+    """Points on an arc, its ends left out: (V, 2)."""
+    if bulge == 0.0:
+        return np.empty((0, 2))
+    centre, radius = arc_of(start, stop, bulge)
+    angle = 4.0 * math.atan(bulge)
+    largest = 2.0 * math.acos(max(0.0, 1.0 - chord_mm / radius))
+    count = max(2, math.ceil(abs(angle) / largest))
+    x, y = float(start[0] - centre[0]), float(start[1] - centre[1])
+    turned = complex(x, y) * np.exp(1j * angle / count * np.arange(1, count))
+    points = np.empty((count - 1, 2))
+    points[:, 0], points[:, 1] = centre[0] + turned.real, centre[1] + turned.imag
+    return points

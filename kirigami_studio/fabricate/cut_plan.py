@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -13,18 +14,16 @@ import shapely
 from shapely.geometry import LineString, Polygon
 
 from kirigami_studio.fabricate import timing
-from kirigami_studio.fabricate.connectors import Hinges, hinge_widths, shorten
+from kirigami_studio.fabricate.connectors import OVERCUT_MM, Hinges, edge_cut_paths, hinge_widths, outline_path, shorten
 from kirigami_studio.fabricate.cut_path import CutPath as CutPath
 from kirigami_studio.fabricate.cut_path import Layer as Layer
 from kirigami_studio.fabricate.cut_path import check_length
+from kirigami_studio.fabricate.endings import seats
 from kirigami_studio.fabricate.hinged_cuts import HingedCuts, hinged_cuts, relief_radius
-from kirigami_studio.fabricate.kerf import OVERCUT_MM, edge_cut_paths, outline_path
 from kirigami_studio.fabricate.material import Material, default_material
-from kirigami_studio.fabricate.notes import plan_notes
-from kirigami_studio.fabricate.options import CutOptions
+from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions
 from kirigami_studio.fabricate.ordering import in_cutting_order
 from kirigami_studio.fabricate.panel_sizes import panels_in_mm
-from kirigami_studio.fabricate.seats import seats
 from kirigami_studio.fabricate.slits import SHEET_EDGE, CutTable, cut_table, sheet_lines
 from kirigami_studio.fabricate.tabs import joined_ring, tabbed
 from kirigami_studio.fabricate.trimmed_sheet import CutPiece, kept_area, trimmed_cuts
@@ -36,6 +35,8 @@ SMALLEST_SHEET_MM = 5.0
 LARGEST_SHEET_MM = 3000.0
 #: Coordinates are rounded to this many decimals (mm), so that equal points are equal in every file.
 DECIMALS = 4
+#: A connector counts as wider than asked above this difference (mm).
+WIDER_MM = 1e-3
 
 
 @dataclass(frozen=True, eq=False)
@@ -210,6 +211,14 @@ def plan_cuts(
     )
 
 
+def _check_size(size: tuple[float, float]) -> None:
+    if min(size) < SMALLEST_SHEET_MM or max(size) > LARGEST_SHEET_MM:
+        raise FabricationError(
+            f"A sheet of {size[0]:g} x {size[1]:g} mm cannot be planned; both sides must lie between "
+            f"{SMALLEST_SHEET_MM:g} and {LARGEST_SHEET_MM:g} mm, so change the sheet width."
+        )
+
+
 def _plain_cuts(
     shortened: FloatArray, table: CutTable, size: tuple[float, float], kerf: float, overcut: float
 ) -> tuple[Polygon, list[CutPiece]]:
@@ -259,9 +268,59 @@ def _design_hash(deployment: Deployment, kept: Sequence[FloatArray | None]) -> s
     return hashlib.sha256(content).hexdigest()[:16]
 
 
-def _check_size(size: tuple[float, float]) -> None:
-    if min(size) < SMALLEST_SHEET_MM or max(size) > LARGEST_SHEET_MM:
-        raise FabricationError(
-            f"A sheet of {size[0]:g} x {size[1]:g} mm cannot be planned; both sides must lie between "
-            f"{SMALLEST_SHEET_MM:g} and {LARGEST_SHEET_MM:g} mm, so change the sheet width."
+def plan_notes(
+    hinges: Hinges,
+    material: Material,
+    connector_mm: float,
+    kerf_mm: float,
+    style: ConnectorStyle,
+    straight: Counter[str],
+) -> tuple[str, ...]:
+    """Say what is worth knowing about a plan.
+
+    Parameters
+    ----------
+    hinges : Hinges
+    material : Material
+    connector_mm, kerf_mm : float
+        Finished width asked for, and full cut width.
+    style : ConnectorStyle
+    straight : Counter of str
+        How many hinges stayed straight against the wish, by reason.
+    """
+    notes = []
+    if not material.calibrated:
+        notes.append(f"The preset {material.name!r} is uncalibrated: cut a test piece first.")
+    narrowest = float(hinges.requested_mm[~hinges.removed].min(initial=np.inf))
+    if narrowest < material.min_ligament_mm:
+        notes.append(
+            f"Connectors of {narrowest:g} mm are below the {material.min_ligament_mm:g} mm that {material.name!r} "
+            f"is known to bear; they may tear."
         )
+    if straight:
+        why = " and ".join(f"{count} because {reason}" for reason, count in sorted(straight.items()))
+        notes.append(
+            f"{straight.total()} of {len(hinges)} slit ends are straight instead of {style.value}: {why}; a larger "
+            f"sheet, narrower connectors or a calmer design make room."
+        )
+    notes += _wider(hinges)
+    if connector_mm + kerf_mm < 2.0 * material.join_tolerance_mm:
+        notes.append(
+            f"Cut ends lie {connector_mm + kerf_mm:.3f} mm apart: programs that join gaps up to "
+            f"{material.join_tolerance_mm:g} mm may close them; switch joining off when importing."
+        )
+    return tuple(notes)
+
+
+def _wider(hinges: Hinges) -> list[str]:
+    more = np.where(hinges.removed, 0.0, hinges.finished_mm - hinges.requested_mm)
+    wider = more > WIDER_MM
+    if not np.any(wider):
+        return []
+    worst = int(np.argmax(more))
+    x, y = hinges.position[worst]
+    return [
+        f"{int(wider.sum())} of {len(hinges)} connectors come out wider than asked, because the slit they rest on "
+        f"ends before them (widest {hinges.finished_mm[wider].max():.3f} mm near x = {x:.1f}, "
+        f"y = {y:.1f} mm); a larger sheet or narrower connectors avoid it."
+    ]

@@ -1,4 +1,8 @@
-"""All cuts of a sheet with the ends that their hinges get: straight, shaped, or cut through."""
+"""All cuts of a sheet with the ends that their hinges get: straight, shaped, or cut through; and what they leave.
+
+:func:`hinged_cuts` finds the cut that ends at every hinge, cuts through where connectors are removed, fits the shapes
+of the connector style, and :meth:`HingedCuts.widths` measures every connector between the cuts as they will be made.
+"""
 
 from __future__ import annotations
 
@@ -7,14 +11,16 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from shapely.geometry import Polygon
+import numpy.typing as npt
+import shapely
+from shapely.geometry import LineString, Point, Polygon
+from shapely.geometry.base import BaseGeometry
 
-from kirigami_studio.fabricate.fitting import Fitting, Place, cut_through, places_of_ends
+from kirigami_studio.fabricate.endings import Seat
+from kirigami_studio.fabricate.fitting import Fitting, Place
 from kirigami_studio.fabricate.material import Material
-from kirigami_studio.fabricate.measuring import SlitEnd, measured_widths, straight_end
 from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions
-from kirigami_studio.fabricate.seats import Seat
-from kirigami_studio.fabricate.slits import CutTable
+from kirigami_studio.fabricate.slits import SHEET_EDGE, CutTable
 from kirigami_studio.fabricate.trimmed_sheet import CutPiece
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import FabricationError
@@ -23,6 +29,12 @@ from kirigami_studio.foundation.errors import FabricationError
 HOLED = (ConnectorStyle.ROUND, ConnectorStyle.TEARDROP)
 #: A removed connector narrower than this (mm) is gone.
 GONE_MM = 1e-3
+#: A junction nearer than this (mm) to the through cut lies on it.
+ON_CUT_MM = 1e-6
+#: A slit flatter to the edge than this (sine) turns square to it.
+FLATTEST = 0.5
+#: The outline counts as the far side of a connector up to so many gaps beside it.
+BESIDE_GAPS = 3.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -144,3 +156,170 @@ def hinged_cuts(
         made.append(shape.piece)
         flexure[hinge] = shape.ending.flexure_mm
     return HingedCuts(tuple(made), tuple(hinge_seats), tuple(places), shapes, flexure, fitting.reasons())
+
+
+def places_of_ends(pieces: Sequence[CutPiece], tips: FloatArray, table: CutTable) -> list[Place]:
+    """Find the piece and the end that stops at every hinge's tip (H, 2).
+
+    Raises
+    ------
+    FabricationError
+        A tip that no piece ends at.
+    """
+    by_cut: dict[int, list[int]] = {}
+    for index, piece in enumerate(pieces):
+        by_cut.setdefault(piece.cut, []).append(index)
+    places = []
+    for hinge, cut in enumerate(table.hinge_cut.tolist()):
+        found = [
+            (float(np.linalg.norm(pieces[index].points[-1 if last else 0] - tips[hinge])), index, last)
+            for index in by_cut.get(cut, [])
+            for last in (False, True)
+        ]
+        if not found:
+            x, y = tips[hinge]
+            raise FabricationError(f"No cut is left at x = {x:.2f}, y = {y:.2f} mm; keep more material when trimming.")
+        _, index, last = min(found)
+        places.append((index, last))
+    return places
+
+
+def cut_through(
+    pieces: Sequence[CutPiece],
+    removed: Sequence[int],
+    places: Sequence[Place],
+    hinge_seats: Sequence[Seat],
+    table: CutTable,
+    outline: Polygon,
+    overcut_mm: float,
+) -> tuple[list[CutPiece], list[Place]]:
+    """Lengthen the slits of removed hinges to the cut that they rest on.
+
+    A slit that rests on the sheet's edge runs over it like an edge cut, and like one begins outside.
+
+    Returns
+    -------
+    pieces : list of CutPiece
+    places : list of Place
+        Where the slit of each hinge ends now.
+    """
+    changed, now = list(pieces), list(places)
+    groups = lines_by_cut(pieces)
+    for hinge in removed:
+        index, last = now[hinge]
+        piece, seat = changed[index], hinge_seats[hinge]
+        tip = piece.points[-1 if last else 0]
+        cut = groups.get(int(table.hinge_through[hinge]))
+        onto_edge = table.hinge_through[hinge] == SHEET_EDGE or cut is None
+        if onto_edge:
+            added = _over_edge(tip, -seat.along, outline, overcut_mm)
+        elif shapely.distance(cut, Point(seat.junction)) <= ON_CUT_MM:
+            added = [seat.junction]
+        else:
+            added = [tip, shapely.get_coordinates(shapely.shortest_line(cut, Point(tip)))[0]]
+        kept = piece.points[:-1] if last else piece.points[1:]
+        points = np.array([*kept, *added] if last else [*added[::-1], *kept])
+        if onto_edge and last and not piece.opens:
+            points = points[::-1]
+            now = [(number, not end) if number == index else (number, end) for number, end in now]
+        changed[index] = replace(piece, points=points, opens=piece.opens or onto_edge)
+    return changed, now
+
+
+def _over_edge(tip: FloatArray, heading: FloatArray, outline: Polygon, overcut_mm: float) -> list[FloatArray]:
+    """From a tip over the outline by the overcut: straight on, or square to the edge where the slit is flat to it."""
+    foot = shapely.get_coordinates(shapely.shortest_line(outline.exterior, Point(tip)))[0]
+    height = float(np.linalg.norm(foot - tip))
+    outwards = (foot - tip) / height
+    sine = float(np.dot(heading, outwards))
+    if sine >= FLATTEST:
+        ahead = LineString([tip, tip + heading * (2.0 * height / FLATTEST)])
+        met = shapely.intersection(ahead, outline.exterior)
+        if not shapely.is_empty(met):
+            first = tip + heading * shapely.distance(met, Point(tip))
+            return [first + heading * (overcut_mm / sine)]
+    return [tip, foot + outwards * overcut_mm]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SlitEnd:
+    """What is cut at one hinge.
+
+    Attributes
+    ----------
+    line : LineString, mm
+        The shape that the slit ends in, or the half of its last straight piece.
+    places : (P, 2) float, mm
+        The points of the shape, or the slit's tip.
+    """
+
+    line: LineString
+    places: FloatArray
+
+
+def straight_end(piece: CutPiece, last: bool) -> SlitEnd:
+    """The bare end of a cut, its last or its first one."""
+    tip, before = (piece.points[-1], piece.points[-2]) if last else (piece.points[0], piece.points[1])
+    return SlitEnd(LineString([tip, 0.5 * (tip + before)]), tip[None])
+
+
+def measured_widths(
+    ends: Sequence[SlitEnd],
+    hinge_seats: Sequence[Seat],
+    table: CutTable,
+    pieces: Sequence[CutPiece],
+    outline: Polygon,
+    kerf_mm: float,
+) -> FloatArray:
+    """Measure each connector: distance of the slit's end to the cut that it rests on, less the kerf.
+
+    Parameters
+    ----------
+    ends : sequence of SlitEnd
+        Of every hinge.
+    hinge_seats : sequence of Seat
+    table : CutTable
+    pieces : sequence of CutPiece
+        All cuts but the outline.
+    outline : Polygon, mm
+        Inside the centre line of the outline cut.
+    kerf_mm : float
+
+    Returns
+    -------
+    finished : (H,) float, mm
+        Where the through cut was trimmed away, up to the outline that took its place.
+    """
+    shapes: npt.NDArray[np.object_] = np.array([end.line for end in ends], dtype=object)
+    groups = lines_by_cut(pieces)
+    against = np.array([groups.get(int(cut)) for cut in table.hinge_through], dtype=object)
+    distance = shapely.distance(shapes, against)
+    whole = {piece.cut for piece in pieces} - {piece.cut for piece in pieces if piece.opens}
+    for hinge, through in enumerate(table.hinge_through.tolist()):
+        if through != SHEET_EDGE and through in whole:
+            continue
+        edge = shapely.intersection(outline.exterior, _beside(ends[hinge], hinge_seats[hinge]))
+        distance[hinge] = np.nanmin([distance[hinge], shapely.distance(shapes[hinge], edge), np.inf])
+        if np.isinf(distance[hinge]):
+            distance[hinge] = shapely.distance(shapes[hinge], outline.exterior)
+    finished: FloatArray = distance - kerf_mm
+    return finished
+
+
+def lines_by_cut(pieces: Sequence[CutPiece]) -> Mapping[int, BaseGeometry]:
+    """All that is cut of every cut, shapes at its ends included, as one geometry."""
+    if not pieces:
+        return {}
+    ordered = sorted(pieces, key=lambda piece: piece.cut)
+    numbers, index = np.unique([piece.cut for piece in ordered], return_inverse=True)
+    lines = np.array([piece.line for piece in ordered], dtype=object)
+    united: npt.NDArray[np.object_] = np.asarray(shapely.multilinestrings(lines, indices=index))
+    return dict(zip(numbers.tolist(), united, strict=True))
+
+
+def _beside(end: SlitEnd, seat: Seat) -> Polygon:
+    """The area that the far side of a connector lies in: from half the gap to as far again behind the through cut."""
+    along = (end.places - seat.junction) @ seat.side
+    low, high = along.min() - BESIDE_GAPS * seat.gap_mm, along.max() + BESIDE_GAPS * seat.gap_mm
+    near, far = seat.junction + 0.5 * seat.gap_mm * seat.normal, seat.junction - seat.gap_mm * seat.normal
+    return Polygon([near + low * seat.side, near + high * seat.side, far + high * seat.side, far + low * seat.side])

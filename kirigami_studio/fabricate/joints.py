@@ -8,7 +8,7 @@ import numpy as np
 import shapely
 from shapely.geometry import LineString
 
-from kirigami_studio.fabricate.bulges import measured_line
+from kirigami_studio.fabricate.cut_path import measured_line
 from kirigami_studio.fabricate.cut_plan import CutPath, CutPlan, Layer
 
 #: Coordinates are rounded to half of this (mm): what is nearer touches.

@@ -17,7 +17,7 @@ import shapely
 from shapely.geometry import LineString, Point, Polygon
 from shapely.geometry.base import BaseGeometry
 
-from kirigami_studio.fabricate.bulges import measured_line
+from kirigami_studio.fabricate.cut_path import measured_line
 from kirigami_studio.fabricate.finished_sheet import overlap_length, remaining_pieces
 from kirigami_studio.fabricate.slits import CutTable
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray
@@ -64,7 +64,7 @@ class CutPiece:
     opens : bool
         Whether it crosses the outline; it then begins outside.
     bulges : (P,) float or None
-        Arcs, see ``bulges``.
+        Arcs, see :mod:`~kirigami_studio.fabricate.cut_path`.
     closed : bool
         Whether it is a relief hole; its first point is not repeated.
     """

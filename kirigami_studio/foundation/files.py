@@ -43,7 +43,9 @@ def write_atomically(path: Path, content: bytes, verify: Callable[[Path], None] 
             raise ExportError("file.is_a_folder", path=path)
         mode = stat.S_IMODE(place.stat().st_mode) if place.exists() else NEW_FILE_MODE
         # Part of the name, since that of the file may already be as long as a name can be.
-        handle, name = tempfile.mkstemp(prefix=f".{place.stem[:40]}.", suffix=place.suffix, dir=place.parent)
+        # Only a reader that judges by the ending gets it: what a killed writer leaves must not look like a real file.
+        ending = place.suffix if verify is not None else ""
+        handle, name = tempfile.mkstemp(prefix=f".{place.stem[:40]}.", suffix=ending, dir=place.parent)
         temporary = Path(name)
         with os.fdopen(handle, "wb") as stream:
             stream.write(content)

@@ -13,7 +13,7 @@ from pytestqt.qtbot import QtBot
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.trimming import trim
-from kirigami_studio.export import animation, png
+from kirigami_studio.export import animation, picture
 from kirigami_studio.export.exporter import ExportJob
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.gui.designs.design_cache import DesignCache
@@ -60,9 +60,9 @@ def in_files(job: ExportJob, monkeypatch: pytest.MonkeyPatch) -> tuple[list[list
 
     with monkeypatch.context() as patch:
         patch.setattr(animation, "draw_polygons", watch)
-        patch.setattr(png, "draw_polygons", watch)
+        patch.setattr(picture, "draw_polygons", watch)
         list(animation.animation_frames(job, FRAMES, 60))
-        png.preview(job, 60)
+        picture.preview(job, 60)
     return drawn[:-1], drawn[-1]
 
 
@@ -86,10 +86,10 @@ def test_that_screen_picture_and_animation_show_the_same_panels_at_every_angle(
     view.show_design(DesignCache().entry(candidate).design, candidate.score, designs.target)
     transform = ViewTransform(256.0, (128.0, 64.0))
     job = ExportJob.of(candidate, designs.target.points)
-    frames, picture = in_files(job, monkeypatch)
+    frames, still = in_files(job, monkeypatch)
     angles = [*animation.frame_angles(job.phi, FRAMES).tolist(), job.phi]
     assert angles[0] == math.pi and len(frames) == FRAMES
-    for phi, panels in zip(angles, [*frames, picture], strict=True):
+    for phi, panels in zip(angles, [*frames, still], strict=True):
         shown = on_screen(view, phi, transform, monkeypatch)
         assert len(shown) == len(panels)
         for part, expected in zip(shown, panels, strict=True):

@@ -70,8 +70,8 @@ def writing_png(recording: Recording, scale: int, path: Path, cancel: Cancel) ->
     """Draw a view and write it as PNG; every fact becomes a text chunk."""
     from PIL import Image
 
-    from kirigami_studio.export.facts import origin_facts
-    from kirigami_studio.export.png import text_chunks
+    from kirigami_studio.export.picture import text_chunks
+    from kirigami_studio.export.provenance import origin_facts
     from kirigami_studio.foundation.files import write_atomically
 
     image = recording.image(scale)

@@ -15,11 +15,11 @@ from svgelements import SVG
 from svgelements import Path as SvgPath
 
 from kirigami_studio.evaluate.similarity import Similarity
-from kirigami_studio.export import palette
+from kirigami_studio.export import picture
 from kirigami_studio.export.animation import frame_angles, write_animation
 from kirigami_studio.export.exporter import ExportJob
 from kirigami_studio.export.pdf import write_pdf
-from kirigami_studio.export.png import preview, write_png
+from kirigami_studio.export.picture import preview, write_png
 from kirigami_studio.export.profile import find_profile
 from kirigami_studio.export.svg import write_cut_svg, write_layout_svg
 from kirigami_studio.fabricate.cut_plan import Layer, plan_cuts
@@ -108,14 +108,14 @@ def test_that_the_same_job_gives_the_same_bytes(extension: str, job: ExportJob, 
 def test_that_the_preview_covers_the_target_with_panels(job: ExportJob) -> None:
     pixels = np.asarray(preview(job, longest=300)).reshape(-1, 3).astype(int)
 
-    def share(colour: palette.Colour) -> float:
+    def share(colour: picture.Colour) -> float:
         return float(np.mean(np.abs(pixels - colour).max(axis=1) <= 2))
 
-    assert share(palette.PANEL) > 0.3
-    assert share(palette.TARGET_FILL) < 0.02
+    assert share(picture.PANEL) > 0.3
+    assert share(picture.TARGET_FILL) < 0.02
     elsewhere = ExportJob(job.deployment, 1.5, None, job.target, job.transform)
     pixels = np.asarray(preview(elsewhere, longest=300)).reshape(-1, 3).astype(int)
-    assert share(palette.TARGET_FILL) > 0.05
+    assert share(picture.TARGET_FILL) > 0.05
 
 
 def test_that_the_png_reads_back_at_the_size_asked_for(job: ExportJob, tmp_path: Path) -> None:
@@ -136,7 +136,7 @@ def test_that_the_animation_runs_from_compact_to_the_target_in_one_constant_fram
             image.seek(index)
             assert max(image.size) == 120
             pixels = np.asarray(image.convert("RGB")).reshape(-1, 3).astype(int)
-            filled.append(float(np.mean(np.abs(pixels - palette.PANEL).max(axis=1) <= 12)))
+            filled.append(float(np.mean(np.abs(pixels - picture.PANEL).max(axis=1) <= 12)))
     assert min(filled) > 0.1
 
 

@@ -14,18 +14,18 @@ import ezdxf
 import numpy as np
 import pytest
 
-from kirigami_studio.export import verified
 from kirigami_studio.export.dxf import write_dxf, write_reference
 from kirigami_studio.export.dxf_check import check_file
 from kirigami_studio.export.export_set import export_all
 from kirigami_studio.export.exporter import ExportJob
 from kirigami_studio.export.profile import PROFILES
+from kirigami_studio.export.provenance import write_sidecar
 from kirigami_studio.export.registry import export
-from kirigami_studio.export.sidecar import write_sidecar
 from kirigami_studio.export.verification import verify_export
 from kirigami_studio.fabricate.cut_plan import plan_cuts
 from kirigami_studio.fabricate.material import Material
 from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions, CutOrder
+from kirigami_studio.foundation import files
 from kirigami_studio.foundation.errors import ExportError
 from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.lattice.ratio_field import RatioField
@@ -158,7 +158,7 @@ def test_that_a_full_disk_leaves_the_old_file(
             raise OSError(errno.ENOSPC, "No space left on device")
         fsync(handle)
 
-    monkeypatch.setattr(verified.os, "fsync", full)
+    monkeypatch.setattr(files.os, "fsync", full)
     with pytest.raises(ExportError, match="No space left on device"):
         export_all(replace(job, plan=replace(job.required_plan, notes=("another",))), tmp_path)
     assert {path.name for path in tmp_path.iterdir()} == set(before)

@@ -7,7 +7,7 @@ import pytest
 from shapely.geometry import box
 
 from kirigami_studio.export.dxf_check import placement_problems
-from kirigami_studio.export.dxf_content import FilePath
+from kirigami_studio.export.dxf_reading import FilePath
 from kirigami_studio.fabricate.findings import Severity
 
 SHEET = box(0, 0, 50, 40)

@@ -12,7 +12,7 @@ import pytest
 
 from kirigami_studio.export.dxf import write_dxf
 from kirigami_studio.export.dxf_check import FileReport, check_file
-from kirigami_studio.export.dxf_content import read_content
+from kirigami_studio.export.dxf_reading import read_content
 from kirigami_studio.fabricate.cut_plan import CutPath, CutPlan, Layer, plan_cuts
 from kirigami_studio.fabricate.joints import joint_count
 from kirigami_studio.fabricate.material import find_material

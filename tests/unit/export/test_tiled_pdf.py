@@ -13,7 +13,7 @@ from pypdf import PageObject, PdfReader
 from pypdf.generic import ContentStream
 from shapely.geometry import LineString
 
-from kirigami_studio.export import palette, pdf
+from kirigami_studio.export import pdf, picture
 from kirigami_studio.export.exporter import ExportJob
 from kirigami_studio.export.paper import PAPERS, tile
 from kirigami_studio.export.pdf import read_pages
@@ -84,7 +84,7 @@ def test_that_the_pages_together_hold_every_cut(
     totals = assembled(tmp_path / "sheet.pdf")
     for layer in plan.layers:
         meant = sum(path.length for path in plan.on_layer(layer))
-        assert totals[palette.LAYER_COLOUR[layer]] == pytest.approx(meant, rel=1e-3)
+        assert totals[picture.LAYER_COLOUR[layer]] == pytest.approx(meant, rel=1e-3)
 
 
 def test_that_every_page_has_a_ruler_of_its_length_and_its_number(make_design: MakeDesign, tmp_path: Path) -> None:

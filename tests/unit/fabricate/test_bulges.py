@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from ezdxf.math import bulge_to_arc
 
-from kirigami_studio.fabricate.bulges import CHORD_MM, arc_of, flattened
+from kirigami_studio.fabricate.cut_path import CHORD_MM, arc_of, flattened
 
 CIRCLE = np.array([[-1.0, 2.0], [3.0, 2.0]])
 

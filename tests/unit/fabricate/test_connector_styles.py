@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 from cut_sheets import bitten, connector_distances, covered_hinges, drawn_line, finished_pieces, mouths
 
-from kirigami_studio.fabricate.bulges import arc_of
 from kirigami_studio.fabricate.checks import check_plan
+from kirigami_studio.fabricate.cut_path import arc_of
 from kirigami_studio.fabricate.cut_plan import CutPath, CutPlan, Layer, plan_cuts
 from kirigami_studio.fabricate.findings import Severity
 from kirigami_studio.fabricate.joints import ending_on_others, touching
