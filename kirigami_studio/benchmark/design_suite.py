@@ -14,8 +14,7 @@ from PIL import Image, ImageDraw, ImageFont
 from kirigami_studio.benchmark.generator_suite import SUCCESS_SIOU, bootstrap_interval
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.export.exporter import ExportJob
-from kirigami_studio.export.picture import PAPER
-from kirigami_studio.export.picture import PictureFrame, draw_polygons
+from kirigami_studio.export.picture import PAPER, PictureFrame, draw_polygons
 from kirigami_studio.foundation.files import write_atomically
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.pipeline.rank import rank_key
