@@ -1,9 +1,64 @@
 """The command line: the engine that the window drives, for scripts, batches and checks.
 
 ``kirigami-studio`` without a sub-command opens the window.  Exit codes: 0 done, 1 the work failed (one sentence on
-standard error), 2 wrong usage.  Hosts only: commands read inputs, call one stage or the pipeline, and print.
+standard error), 2 wrong usage.  Sub-commands read inputs, call one stage or the pipeline, and print.
 """
 
-from kirigami_studio.cli.entry import main
+from __future__ import annotations
 
-__all__ = ["main"]
+import os
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from kirigami_studio.cli.parser import build_parser
+from kirigami_studio.foundation.errors import KirigamiError, UsageError
+
+#: What a frozen program is started with to be a polishing worker, see ``pipeline.pool``.
+WORKER_FLAG = "--worker"
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run one sub-command; returns the exit code (argparse itself exits with 2 on unknown words)."""
+    words = list(sys.argv[1:] if argv is None else argv)
+    if words == [WORKER_FLAG]:
+        from kirigami_studio.pipeline.worker import serve
+
+        return serve()
+    # A file manager starts the program with the name of a file alone; no sub-command has a dot.
+    shown = words if len(words) == 1 and Path(words[0]).suffix and Path(words[0]).is_file() else []
+    arguments = build_parser().parse_args([] if shown else words)
+    arguments.shown = shown
+    try:
+        code = int(arguments.run(arguments))
+        sys.stdout.flush()
+        return code
+    except UsageError as error:
+        return _fail(error, 2)
+    except KirigamiError as error:
+        return _fail(error, 1)
+    except KeyboardInterrupt:
+        return _fail(KirigamiError("cli.interrupted"), 1)
+    except MemoryError:
+        return _fail(KirigamiError("cli.out_of_memory"), 1)
+    except BrokenPipeError:
+        # The reader of our output went away (``| head``): not an error, but nothing more may be printed.
+        _drop_output()
+        return 0
+    except OSError as error:
+        # Files that the packages write have problems of their own; what is left is mostly standard output.
+        _drop_output()
+        reason = error.strerror or str(error)
+        if error.filename:
+            return _fail(KirigamiError("cli.file_not_usable", path=error.filename, reason=reason), 1)
+        return _fail(KirigamiError("cli.output_not_usable", reason=reason), 1)
+
+
+def _drop_output() -> None:
+    """Discard what is still buffered, so that the interpreter does not fail on it when it ends."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
+def _fail(problem: KirigamiError, code: int) -> int:
+    sys.stderr.write(f"kirigami-studio: {problem}\n")
+    return code

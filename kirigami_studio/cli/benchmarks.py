@@ -8,7 +8,8 @@ from collections.abc import Callable
 from pathlib import Path
 
 from kirigami_studio.cli.console import ProgressLine, plain, print_json, say
-from kirigami_studio.cli.inputs import parse_grid, read_targets
+from kirigami_studio.cli.inputs import read_targets
+from kirigami_studio.cli.option_types import parse_grid
 from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.foundation.files import write_atomically
 from kirigami_studio.lattice.deployment import deploy

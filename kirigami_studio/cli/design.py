@@ -8,10 +8,10 @@ import math
 from dataclasses import replace
 from pathlib import Path
 
-from kirigami_studio.cli.batches import for_each
 from kirigami_studio.cli.console import ProgressLine, plain, print_json, say
 from kirigami_studio.cli.fabrication import checked_plan, material_settings
-from kirigami_studio.cli.inputs import are_many_targets, parse_grid, read_targets
+from kirigami_studio.cli.inputs import are_many_targets, for_each, read_targets
+from kirigami_studio.cli.option_types import parse_grid
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.trimming import KEEP
 from kirigami_studio.export.exporter import ExportJob
@@ -62,8 +62,8 @@ def design(arguments: argparse.Namespace) -> int:
         )
         result = _run(request, line)
         if request.trim and result.best.trim is None:
-            why = "the budget ended before" if result.budget_ended else "all of them cross themselves; try another seed"
-            raise FabricationError(f"No design could be trimmed: {why}. Leave --trim out to get them untrimmed.")
+            budget_ended = result.budget_ended
+            raise FabricationError("design.trimming_cut_short" if budget_ended else "design.none_trimmed")
         folder = None if arguments.out is None else Path(arguments.out)
         if folder is not None and batch:
             folder = folder / _folder_name(name, used)
@@ -80,7 +80,7 @@ def design(arguments: argparse.Namespace) -> int:
 
 
 def summary(result: Result) -> dict[str, object]:
-    """The JSON answer of ``design`` without the files; only runs with a budget tell whether it ended them."""
+    """The JSON answer of ``design`` without the files; only runs with a budget say whether it ended them."""
     answer: dict[str, object] = {
         "candidates": [candidate_json(candidate) for candidate in result.candidates],
         "best": candidate_json(result.best),
@@ -161,7 +161,7 @@ def _run(request: Request, line: ProgressLine) -> Result:
         elif isinstance(event, Finished):
             line.clear()
             return event.result
-    raise Cancelled("The run ended without a result.")
+    raise Cancelled("design.no_result")
 
 
 def _in_cells(length_mm: float, fabrication: FabricationSettings, grid: tuple[int, int]) -> float:

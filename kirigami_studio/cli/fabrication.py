@@ -50,7 +50,7 @@ def checked_plan(candidate: Candidate, fabrication: FabricationSettings) -> tupl
     report = check_plan(plan, phi=candidate.final_phi)
     for problem in report.problems:
         if problem.severity is Severity.ERROR:
-            raise FabricationError(problem.text)
+            raise FabricationError("export.cannot_be_cut", reason=problem.text)
     return plan, report
 
 
@@ -156,7 +156,7 @@ def animate(arguments: argparse.Namespace) -> int:
     """Write the deployment as an animated GIF."""
     path = Path(arguments.out)
     if path.suffix.lower() != ".gif":
-        raise UsageError(f"animate writes .gif files, got {path.name}.")
+        raise UsageError("animate.not_a_gif", name=path.name)
     document = load(arguments.project)
     frames = write_animation(_job(document), path, FRAMES)
     if arguments.json:
@@ -169,7 +169,7 @@ def animate(arguments: argparse.Namespace) -> int:
 def _chosen(document: Document) -> Candidate:
     candidate = document.candidate
     if candidate is None or document.target is None:
-        raise ProjectError("This project has no chosen design yet; generate candidates and choose one first.")
+        raise ProjectError("export.no_chosen_design")
     return candidate
 
 
@@ -198,7 +198,7 @@ def _overridden(saved: FabricationSettings, arguments: argparse.Namespace) -> Fa
             changes["profile"] = find_profile(given["profile"]).key
         return replace(saved, **changes, options=_cut_options(saved.options, given))
     except (FabricationError, ExportError) as error:
-        raise UsageError(str(error)) from error
+        raise UsageError(error.code, **error.fields) from error
 
 
 def _cut_options(saved: CutOptions, given: dict[str, Any]) -> CutOptions:
@@ -212,7 +212,7 @@ def _cut_options(saved: CutOptions, given: dict[str, Any]) -> CutOptions:
 
 
 def _with_hinges(saved: CutOptions, given: dict[str, Any]) -> CutOptions:
-    """The project's own connectors, and the command line's on top of them."""
+    """The project's choices for single connectors with the command line's on top."""
     widths = sorted(_hinge_width(text) for text in given.get("hinge_mm", ()))
     removed = sorted(given.get("remove", ()))
     CutOptions(hinge_mm=tuple(widths), removed=tuple(removed))  # refuses what contradicts itself
@@ -229,7 +229,7 @@ def _check_hinges(candidate: Candidate, options: CutOptions) -> None:
     count = cut_table(candidate.field.rows, candidate.field.columns).hinge_count
     beyond = [hinge for hinge in (*(hinge for hinge, _ in options.hinge_mm), *options.removed) if hinge >= count]
     if beyond:
-        raise UsageError(f"There is no hinge {beyond[0]}: this sheet has hinges 0 to {count - 1}.")
+        raise UsageError("export.no_such_connector", number=beyond[0], last=count - 1)
 
 
 def _hinge_width(text: str) -> tuple[int, float]:
@@ -238,4 +238,4 @@ def _hinge_width(text: str) -> tuple[int, float]:
     try:
         return int(number), float(width)
     except ValueError:
-        raise UsageError(f"--hinge-mm takes a connector and its width in mm, such as 3=0.8, got {text!r}.") from None
+        raise UsageError("export.connector_and_width", text=text) from None

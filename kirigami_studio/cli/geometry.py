@@ -7,17 +7,17 @@ import json
 import math
 from pathlib import Path
 
-from kirigami_studio.cli.batches import for_each
 from kirigami_studio.cli.console import plain, print_json, say
 from kirigami_studio.cli.inputs import (
     Named,
     are_many_targets,
+    for_each,
     is_batch,
-    parse_grid,
     read_fields,
     read_mask,
     read_targets,
 )
+from kirigami_studio.cli.option_types import parse_grid
 from kirigami_studio.evaluate.feasibility import invalid_quads, overlap_ratio, path_contact
 from kirigami_studio.evaluate.mask_siou import mask_siou
 from kirigami_studio.evaluate.score import evaluate
@@ -67,14 +67,12 @@ def score(arguments: argparse.Namespace) -> int:
     """Print how well each field shows its target."""
     *ratio_sources, target_source = arguments.inputs
     if not ratio_sources:
-        raise UsageError("score needs ratio fields and then a target: score RATIOS [RATIOS ...] TARGET.")
+        raise UsageError("score.nothing_to_score")
     phi = target_angle(arguments.phi)
     fields = list(read_fields(ratio_sources))
     targets = list(read_targets([target_source]))
     if 1 not in (len(fields), len(targets)) and len(fields) != len(targets):
-        raise UsageError(
-            f"score pairs as many ratio fields as targets, or one with many; got {len(fields)} and {len(targets)}."
-        )
+        raise UsageError("score.numbers_differ", fields=len(fields), targets=len(targets))
     pairs = max(len(fields), len(targets))
     fields = fields * (pairs if len(fields) == 1 else 1)
     targets = targets * (pairs if len(targets) == 1 else 1)
@@ -117,13 +115,13 @@ def siou(arguments: argparse.Namespace) -> int:
 def target_angle(phi: float) -> float:
     """Accept a target angle in [0, pi)."""
     if not 0.0 <= phi < math.pi:
-        raise AngleError(f"The target angle must lie in [0, pi) radians, got {phi:g}; 0 is the usual choice.")
+        raise AngleError("settings.angle_out_of_range", value=phi)
     return phi
 
 
 def _check_grid(grid: str | None, field: RatioField, name: str) -> None:
     if grid is not None and parse_grid(grid) != (field.rows, field.columns):
-        raise RatioError(f"{name} holds a {field.rows} x {field.columns} field, not {grid}.")
+        raise RatioError("decode.other_grid", name=name, rows=field.rows, columns=field.columns, grid=grid)
 
 
 def _deliver(arguments: argparse.Namespace, answer: dict[str, object], name: str, batch: bool, kind: str) -> None:

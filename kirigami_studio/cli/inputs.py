@@ -1,12 +1,14 @@
-"""Read targets and ratio fields from whatever the command line names: files, folders, archives, library names."""
+"""Targets and ratio fields from whatever the command line names: files, folders, archives, library names.
+
+Sub-commands take one input or a batch: in a batch, an input that fails is reported in its place and the others still
+get their answer.
+"""
 
 from __future__ import annotations
 
 import json
-import math
 import os
-import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -15,6 +17,7 @@ from typing import Generic, TypeVar
 import numpy as np
 import numpy.typing as npt
 
+from kirigami_studio.cli.console import print_json
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray
 from kirigami_studio.foundation.errors import GridError, KirigamiError, RatioError, TargetError, UsageError
 from kirigami_studio.lattice.ratio_field import RatioField
@@ -45,41 +48,6 @@ class Named(Generic[Value]):
     read: Callable[[], Value]
 
 
-def parse_grid(text: str) -> tuple[int, int]:
-    """Read ``10x10`` as (rows, columns).
-
-    Raises
-    ------
-    GridError
-        Not two whole numbers joined by an x.
-    """
-    match = re.fullmatch(r"\s*(\d{1,4})\s*[xX]\s*(\d{1,4})\s*", text)
-    if match is None:
-        raise GridError(f"A grid is written ROWSxCOLUMNS, for example 10x10; got '{text}'.")
-    return int(match[1]), int(match[2])
-
-
-def parse_angle(text: str) -> float:
-    """Read an angle in radians (``0.5``, ``pi/3``) or in degrees (``30deg``).
-
-    Raises
-    ------
-    UsageError
-        Not such a number.
-    """
-    match = re.fullmatch(
-        r"\s*(?:(\d*\.?\d+(?:e-?\d+)?)\s*(deg)?|(\d*\.?\d+)?\s*\*?\s*pi\s*(?:/\s*(\d*\.?\d+))?)\s*", text
-    )
-    if match is None:
-        raise UsageError(f"An angle is a number of radians (0.5, pi/3) or degrees (30deg), got '{text}'.")
-    number, unit, factor, divisor = match.groups()
-    if number is not None:
-        return math.radians(float(number)) if unit else float(number)
-    if divisor is not None and float(divisor) == 0:
-        raise UsageError(f"An angle cannot be divided by zero: '{text}'.")
-    return float(factor or 1) * math.pi / float(divisor or 1)
-
-
 def is_batch(sources: Sequence[str]) -> bool:
     """Whether these sources stand for many inputs (several paths, a folder or an archive)."""
     return len(sources) > 1 or (len(sources) == 1 and (_is_folder(sources[0]) or sources[0].lower().endswith(".npz")))
@@ -95,13 +63,40 @@ def _is_folder(source: str) -> bool:
     return bool(source) and os.path.isdir(source)  # noqa: PTH112
 
 
+def for_each(inputs: Iterable[Named[Value]], batch: bool, work: Callable[[str, Value], None]) -> int:
+    """Read and work through the inputs; returns the exit code 0.
+
+    Raises
+    ------
+    UsageError
+        At once: the request itself is wrong, whatever the input.
+    KirigamiError
+        A single input failed; or, after the whole batch, some did, each with a line ``{"source", "error"}``.
+    """
+    total = failed = 0
+    for named in inputs:
+        total += 1
+        try:
+            work(named.name, named.read())
+        except UsageError:
+            raise
+        except KirigamiError as error:
+            if not batch:
+                raise
+            failed += 1
+            print_json({"source": named.name, "error": str(error)})
+    if failed:
+        raise KirigamiError("batch.some_inputs_failed", failed=failed, total=total)
+    return 0
+
+
 def read_targets(sources: Sequence[str], threshold: float | None = None) -> Iterator[Named[Outline]]:
     """Yield every target that the sources name, in order.
 
     ``threshold`` (grey level, 0..1) replaces the automatic one for images that are named singly.
     """
     if threshold is not None and not 0.0 < threshold < 1.0:
-        raise UsageError(f"The threshold must lie between 0 and 1, got {threshold:g}.")
+        raise UsageError("option.threshold", value=threshold)
     for source in sources:
         path = Path(source)
         if path.suffix.lower() == ".npz":
@@ -128,7 +123,7 @@ def read_fields(sources: Sequence[str]) -> Iterator[Named[RatioField]]:
         elif _is_folder(source):
             files = sorted(file for file in path.iterdir() if file.suffix.lower() in RATIO_SUFFIXES)
             if not files:
-                raise RatioError(f"The folder {path} holds no ratio fields (.json, .npy or .npz).")
+                raise RatioError("ratios.none_in_folder", folder=path)
             yield from read_fields([str(file) for file in files])
         else:
             yield Named(source, partial(read_field, path))
@@ -144,21 +139,22 @@ def read_field(path: Path) -> RatioField:
     """
     suffix = path.suffix.lower()
     if suffix not in RATIO_SUFFIXES:
-        raise RatioError(f"Ratio fields are read from .json or .npy files, got {path.name}.")
+        raise RatioError("ratios.unknown_extension", name=path.name)
     try:
         if path.stat().st_size > LARGEST_FILE:
-            raise RatioError(f"{path} is larger than {LARGEST_FILE >> 20} MB, which no ratio field is.")
+            raise RatioError("ratios.file_too_large", path=path, limit=LARGEST_FILE >> 20)
         if suffix == ".npy":
             content: object = np.load(path, allow_pickle=False)
         else:
             content = json.loads(path.read_text(encoding="utf-8-sig"))
     except (OSError, ValueError, EOFError, RecursionError) as error:
-        reason = error.strerror if isinstance(error, OSError) and error.strerror else "it is damaged or of another kind"
-        raise RatioError(f"Cannot read ratios from {path}: {reason}.") from error
+        if isinstance(error, OSError) and error.strerror:
+            raise RatioError("ratios.not_readable", path=path, reason=error.strerror) from error
+        raise RatioError("ratios.damaged", path=path) from error
     if isinstance(content, dict):
         content = content.get("ratio")
     if not isinstance(content, (list, np.ndarray)):
-        raise RatioError(f'{path.name} must hold {{"ratio": [[...], ...]}}, row 0 on top.')
+        raise RatioError("ratios.not_a_table", name=path.name)
     return _field_of(content, path.name)
 
 
@@ -167,7 +163,7 @@ def _field_of(values: object, name: str) -> RatioField:
     try:
         return RatioField(values)  # type: ignore[arg-type]  # checked by the constructor
     except (RatioError, GridError) as error:
-        raise RatioError(f"{name}: {error}") from error
+        raise RatioError("input.not_valid", name=name, reason=error) from error
 
 
 def read_mask(path: Path) -> BoolArray:
@@ -187,7 +183,7 @@ def read_mask(path: Path) -> BoolArray:
             deep = image.mode.startswith(("I", "F"))
             grey = np.asarray(image if deep else image.convert("L"), dtype=np.float64)
     except (OSError, UnidentifiedImageError, ValueError, Image.DecompressionBombError) as error:
-        raise TargetError(f"Cannot read the mask image {path}: it is missing, damaged or not an image.") from error
+        raise TargetError("mask.not_readable", path=path) from error
     return _inside(grey)
 
 
@@ -203,29 +199,29 @@ def _outline_of(mask: npt.NDArray[np.generic], name: str) -> Outline:
         levels = np.asarray(mask, dtype=np.float64)
         if not np.all(np.isfinite(levels)):
             row, column = np.argwhere(~np.isfinite(levels))[0]
-            raise TargetError(f"The mask is not finite in row {row}, column {column}; every pixel must be a number.")
+            raise TargetError("mask.not_finite", row=int(row), column=int(column))
         return outline_of_mask(_inside(levels), name)
     except KirigamiError as error:
-        raise TargetError(f"{name}: {error}") from error
+        raise TargetError("input.not_valid", name=name, reason=error) from error
 
 
 def _archive(path: Path, key: str, dimensions: int) -> npt.NDArray[np.generic]:
     """Read one array of an .npz archive."""
     try:
         if path.stat().st_size > LARGEST_FILE:
-            raise UsageError(f"{path} is larger than {LARGEST_FILE >> 20} MB; split it.")
+            raise UsageError("archive.too_large", path=path, limit=LARGEST_FILE >> 20)
         with np.load(path, allow_pickle=False) as archive:
             if key not in archive:
-                raise UsageError(f"{path.name} must hold an array '{key}'; it holds {', '.join(archive) or 'nothing'}.")
+                raise UsageError("archive.array_missing", name=path.name, key=key, found=", ".join(archive))
             values = np.asarray(archive[key])
     except (OSError, ValueError, EOFError, KeyError) as error:
-        raise KirigamiError(f"Cannot read {path}: it is missing, damaged or not an .npz archive.") from error
+        raise KirigamiError("archive.not_readable", path=path) from error
     except Exception as error:
         if isinstance(error, KirigamiError):
             raise
-        raise KirigamiError(f"Cannot read {path}: it is damaged or not an .npz archive.") from error
+        raise KirigamiError("archive.not_readable", path=path) from error
     if values.ndim != dimensions or values.dtype.kind not in "biuf":
-        raise UsageError(f"'{key}' in {path.name} must be an (N, rows, columns) array of numbers, got {values.shape}.")
+        raise UsageError("archive.not_numbers", key=key, name=path.name, shape=values.shape, dtype=str(values.dtype))
     if not len(values):
-        raise UsageError(f"'{key}' in {path.name} has no entries.")
+        raise UsageError("archive.no_entries", key=key, name=path.name)
     return values

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from kirigami_studio.cli.console import ProgressLine, print_json, say
-from kirigami_studio.cli.inputs import parse_grid
+from kirigami_studio.cli.option_types import parse_grid
 from kirigami_studio.foundation.errors import UsageError
 
 if TYPE_CHECKING:

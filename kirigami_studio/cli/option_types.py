@@ -1,16 +1,52 @@
-"""Kinds of values on the command line: text -> number, with argparse's kind of error."""
+"""Values of options: text -> grid, angle or number; numbers are refused in the way of ``argparse``."""
 
 from __future__ import annotations
 
 import argparse
 import math
+import re
 
-from kirigami_studio.cli.inputs import parse_angle
-from kirigami_studio.foundation.errors import UsageError
+from kirigami_studio.foundation.errors import GridError, UsageError
+from kirigami_studio.foundation.words import tr
+
+
+def parse_grid(text: str) -> tuple[int, int]:
+    """Read ``10x10`` as (rows, columns).
+
+    Raises
+    ------
+    GridError
+        Not two whole numbers joined by an x.
+    """
+    match = re.fullmatch(r"\s*(\d{1,4})\s*[xX]\s*(\d{1,4})\s*", text)
+    if match is None:
+        raise GridError("option.grid", text=text)
+    return int(match[1]), int(match[2])
+
+
+def parse_angle(text: str) -> float:
+    """Read an angle in radians (``0.5``, ``pi/3``) or in degrees (``30deg``).
+
+    Raises
+    ------
+    UsageError
+        Not such a number.
+    """
+    match = re.fullmatch(
+        r"\s*(?:(\d*\.?\d+(?:e-?\d+)?)\s*(deg)?|(\d*\.?\d+)?\s*\*?\s*pi\s*(?:/\s*(\d*\.?\d+))?)\s*", text
+    )
+    if match is None:
+        raise UsageError("option.angle", text=text)
+    number, unit, factor, divisor = match.groups()
+    if number is not None:
+        return math.radians(float(number)) if unit else float(number)
+    if divisor is not None and float(divisor) == 0:
+        raise UsageError("option.angle_divided_by_zero", text=text)
+    return float(factor or 1) * math.pi / float(divisor or 1)
 
 
 def angle(text: str) -> float:
-    """``parse_angle`` with argparse's kind of error."""
+    """An angle as :func:`parse_angle` reads it, refused in the way of ``argparse``."""
     try:
         return parse_angle(text)
     except UsageError as error:
@@ -21,7 +57,7 @@ def positive(text: str) -> float:
     """A finite number above 0."""
     value = number(text)
     if value <= 0:
-        raise argparse.ArgumentTypeError(f"must be above 0, got {text}")
+        raise argparse.ArgumentTypeError(tr("must be above 0, got {text}", text=text))
     return value
 
 
@@ -30,9 +66,9 @@ def number(text: str) -> float:
     try:
         value = float(text)
     except ValueError:
-        raise argparse.ArgumentTypeError(f"must be a number, got '{text}'") from None
+        raise argparse.ArgumentTypeError(tr("must be a number, got '{text}'", text=text)) from None
     if not math.isfinite(value):
-        raise argparse.ArgumentTypeError(f"must be finite, got {text}")
+        raise argparse.ArgumentTypeError(tr("must be finite, got {text}", text=text))
     return value
 
 
@@ -40,7 +76,7 @@ def amount(text: str) -> float:
     """A finite number, 0 or more."""
     value = number(text)
     if value < 0:
-        raise argparse.ArgumentTypeError(f"must be 0 or more, got {text}")
+        raise argparse.ArgumentTypeError(tr("must be 0 or more, got {text}", text=text))
     return value
 
 
@@ -49,9 +85,9 @@ def whole(text: str) -> int:
     try:
         value = int(text)
     except ValueError:
-        raise argparse.ArgumentTypeError(f"must be a whole number, got '{text}'") from None
+        raise argparse.ArgumentTypeError(tr("must be a whole number, got '{text}'", text=text)) from None
     if value < 0:
-        raise argparse.ArgumentTypeError(f"must be 0 or more, got {text}")
+        raise argparse.ArgumentTypeError(tr("must be 0 or more, got {text}", text=text))
     return value
 
 
@@ -59,5 +95,5 @@ def count(text: str) -> int:
     """A whole number, 1 or more."""
     value = whole(text)
     if value < 1:
-        raise argparse.ArgumentTypeError(f"must be 1 or more, got {text}")
+        raise argparse.ArgumentTypeError(tr("must be 1 or more, got {text}", text=text))
     return value

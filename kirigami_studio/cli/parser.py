@@ -17,7 +17,7 @@ Option = tuple[tuple[str, ...], dict[str, Any]]
 
 
 @dataclass(frozen=True, slots=True)
-class Command:
+class SubCommand:
     """One sub-command.
 
     Attributes
@@ -76,8 +76,8 @@ CUTS = (
     ),
 )
 
-COMMANDS: tuple[Command, ...] = (
-    Command("design", "from a target silhouette to ranked candidates and a cut file", "design:design", (
+SUB_COMMANDS: tuple[SubCommand, ...] = (
+    SubCommand("design", "from a target silhouette to ranked candidates and a cut file", "design:design", (
         option("targets", nargs="+", metavar="TARGET",
                help="image, SVG, DXF, JSON, library name, folder or .npz of masks"),
         option("--out", default=None, help="folder for design.kiri, cut.dxf, layout.svg, preview.png, candidates.json"),
@@ -109,25 +109,25 @@ COMMANDS: tuple[Command, ...] = (
         "kirigami-studio design drawing.svg --k 8 --grid 12x12 --json",
         "kirigami-studio design masks.npz --k 1 --json",
     )),
-    Command("decode", "exact layout of ratio fields", "geometry:decode", (
+    SubCommand("decode", "exact layout of ratio fields", "geometry:decode", (
         option("ratios", nargs="+", metavar="RATIOS", help=".json, .npy, folder or .npz with 'ratios'"),
         PHI,
         option("--grid", default=None, help="expected grid, ROWSxCOLUMNS (default: from the file)"),
         option("--out", default=None, help="also write the JSON here (a folder for many inputs)"),
         JSON,
     ), ("kirigami-studio decode ratios.json --phi pi/2 --json",)),
-    Command("score", "how well ratio fields show a target", "geometry:score", (
+    SubCommand("score", "how well ratio fields show a target", "geometry:score", (
         option("inputs", nargs="+", metavar="RATIOS... TARGET", help="ratio fields, then one target (or as many)"),
         PHI,
         JSON,
     ), ("kirigami-studio score ratios.json heart --json", "kirigami-studio score fields.npz masks.npz")),
-    Command("siou", "similarity-aligned IoU of two mask images", "geometry:siou", (
+    SubCommand("siou", "similarity-aligned IoU of two mask images", "geometry:siou", (
         option("mask_a", help="mask image, bright inside"),
         option("mask_b", help="mask image, bright inside"),
         option("--crop", action="store_true", help="ignore what leaves the image, as the paper's released evaluator"),
         JSON,
     ), ("kirigami-studio siou result.png target.png",)),
-    Command("export", "write a saved project as a cut or picture file", "fabrication:export", (
+    SubCommand("export", "write a saved project as a cut or picture file", "fabrication:export", (
         option("project", help="a .kiri project"),
         option("--out", required=True, help="file to write: .dxf .svg .pdf .lbrn2 .png .gif; a folder with --all"),
         option("--all", action="store_true", help="write the whole set, verified, into the folder --out"),
@@ -142,17 +142,17 @@ COMMANDS: tuple[Command, ...] = (
     ), ("kirigami-studio export heart.kiri --out heart.dxf --width-mm 80 --connector-mm 0.6",
         "kirigami-studio export heart.kiri --out heart/ --all --profile k40 --paper a4",
         "kirigami-studio export heart.kiri --out heart.dxf --style round --tabs 4 --hinge-mm 3=0.8 7=1 --remove 12")),
-    Command("check", "re-read a cut file and list what is wrong with it", "fabrication:check", (
+    SubCommand("check", "re-read a cut file and list what is wrong with it", "fabrication:check", (
         option("file", help="a .dxf file"),
         JSON,
     ), ("kirigami-studio check heart.dxf",)),
-    Command("animate", "deployment from the compact sheet to the target angle", "fabrication:animate", (
+    SubCommand("animate", "deployment from the compact sheet to the target angle", "fabrication:animate", (
         option("project", help="a .kiri project"),
         option("--out", required=True, help="a .gif file to write"),
         JSON,
     ), ("kirigami-studio animate heart.kiri --out heart.gif",)),
-    Command("targets", "list the library silhouettes", "listing:targets", (JSON,), ("kirigami-studio targets",)),
-    Command("materials", "list the materials, or keep a changed or calibrated copy of one", "materials:materials", (
+    SubCommand("targets", "list the library silhouettes", "library:targets", (JSON,), ("kirigami-studio targets",)),
+    SubCommand("materials", "list the materials, or keep a changed or calibrated copy of one", "library:materials", (
         option("--copy", default=None, metavar="KEY", help="save a copy of this material among your own"),
         option("--as", dest="key", default=None, metavar="NEW", help="key of the copy (default: KEY, which it hides)"),
         option("--set", action="append", default=[], metavar="NAME=VALUE",
@@ -164,7 +164,7 @@ COMMANDS: tuple[Command, ...] = (
     ), ("kirigami-studio materials",
         "kirigami-studio materials --copy film-uv --as my-film --set kerf_mm=0.028 --calibrated --by Ada",
         "kirigami-studio materials --delete my-film")),
-    Command("coupon", "write a calibration coupon, or turn what was measured on it into a kerf", "materials:coupon", (
+    SubCommand("coupon", "write a calibration coupon, or turn what was measured on it into a kerf", "library:coupon", (
         option("--out", default=None, help="file to write: .dxf .svg .pdf"),
         option("--gap-mm", type=amount, nargs="+", default=None,
                help="measured: the gap beside the comb with its fingers pushed aside, once or several times"),
@@ -173,9 +173,9 @@ COMMANDS: tuple[Command, ...] = (
         option("--dxf-version", default="R2010", choices=("R2010", "R12"), help="DXF dialect (default R2010)"),
         JSON,
     ), ("kirigami-studio coupon --material film-uv --out coupon.dxf", "kirigami-studio coupon --gap-mm 0.29 0.31")),
-    Command("variants", "list the bundled generator variants", "listing:variants", (JSON,),
+    SubCommand("variants", "list the bundled generator variants", "library:variants", (JSON,),
             ("kirigami-studio variants",)),
-    Command("dataset", "generate and verify training data by the paper's protocol", "learning:dataset", (
+    SubCommand("dataset", "generate and verify training data by the paper's protocol", "learning:dataset", (
         option("family", choices=("sobol", "structured", "drawn"),
                help="distribution of the ratio fields; drawn: fits of shapes that people draw, for training only"),
         option("--out", required=True, help="folder for FAMILY-SPLIT.npz; drawn: for drawn.npz, which is added to"),
@@ -189,7 +189,8 @@ COMMANDS: tuple[Command, ...] = (
         JSON,
     ), ("kirigami-studio dataset sobol --out data --split test",
         "kirigami-studio dataset drawn --out runs/drawn --processes 2")),
-    Command("train prior", "train a generator; resumes from the checkpoint in its folder", "learning:train", (
+    SubCommand("train prior", "train a generator; resumes from the checkpoint in its folder",
+        "learning:train", (
         option("--out", required=True, help="run folder: checkpoint, log, weights"),
         option("--steps", type=count, default=12_000, help="optimiser steps in all (default 12000)"),
         option("--minutes", type=number, default=None, help="stop with a checkpoint after this time"),
@@ -220,7 +221,8 @@ COMMANDS: tuple[Command, ...] = (
         "the paper's network and settings, 400 epochs of 5000 targets (on a GPU):",
         "kirigami-studio train prior --backbone unet --coupling ot --batch 64 --noises 1 --learning-rate 2e-5 "
         "--weight-decay 0.05 --outline-weight 0 --steps 31250 --out runs/unet")),
-    Command("train align", "align a prior with match and regularity, through sampler and geometry", "learning:align", (
+    SubCommand("train align", "align a prior with match and regularity, through sampler and geometry",
+        "learning:align", (
         option("--out", required=True, help="run folder: checkpoint, log, weights"),
         option("--start", default="bundled", metavar="WEIGHTS",
                help="prior to align: 'bundled' (default), or the .safetensors of a run"),
@@ -247,7 +249,8 @@ COMMANDS: tuple[Command, ...] = (
     ), ("kirigami-studio train align --out runs/aligned",
         "kirigami-studio train align --go-on bundled --seed 1 --out runs/further",
         "kirigami-studio train align --start runs/prior/prior.safetensors --minutes 30 --out runs/aligned")),
-    Command("train grpo", "align a generator with a reward, by the paper's rule; resumes as well", "learning:grpo", (
+    SubCommand("train grpo", "align a generator with a reward, by the paper's rule; resumes as well",
+        "learning:grpo", (
         option("--out", required=True, help="run folder: checkpoint, log, weights"),
         option("--reward", choices=("accuracy", "regularity", "balanced"), default="accuracy",
                help="what to prefer (default accuracy)"),
@@ -274,7 +277,7 @@ COMMANDS: tuple[Command, ...] = (
         JSON,
     ), ("kirigami-studio train grpo --reward accuracy --start bundled --calls 10000 --out runs/accuracy",
         "kirigami-studio train grpo --reward balanced --start runs/prior/prior.safetensors --out runs/both")),
-    Command("benchmark", "measure the generator, the polish, the lattice or cut plans", "benchmarks:benchmark", (
+    SubCommand("benchmark", "measure the generator, the polish, the lattice or cut plans", "benchmarks:benchmark", (
         option("suite", choices=(
             "generator", "variants", "spread", "nearness", "robustness", "generation-speed",
             "polish", "designs", "regularity", "speed", "lattice", "fabrication",
@@ -332,11 +335,11 @@ def build_parser() -> argparse.ArgumentParser:
     parser.set_defaults(run=open_window)
     commands = parser.add_subparsers(title="commands", metavar="COMMAND")
     groups: dict[str, Any] = {}
-    for command in COMMANDS:
+    for command in SUB_COMMANDS:
         first, _, second = command.name.partition(" ")
         if second and first not in groups:
             shown = [
-                example for member in COMMANDS if member.name.startswith(f"{first} ") for example in member.examples
+                example for member in SUB_COMMANDS if member.name.startswith(f"{first} ") for example in member.examples
             ]
             group = _add(commands, first, GROUPS[first], shown)
             groups[first] = group.add_subparsers(title="commands", metavar="COMMAND", required=True)

@@ -1,5 +1,65 @@
-"""Sentences of the command line, by the code of the problem."""
+"""Sentences of the command line, by the code of the problem: options, inputs, and what each sub-command refuses."""
 
 from __future__ import annotations
 
-SENTENCES: dict[str, str | tuple[str, str]] = {}
+from kirigami_studio.foundation.words import mark
+
+SENTENCES: dict[str, str | tuple[str, str]] = {
+    "cli.interrupted": mark("Stopped. No file was left half written."),
+    "cli.out_of_memory": mark("Not enough memory. Ask for fewer or smaller inputs."),
+    "cli.file_not_usable": mark("Cannot read or write {path}: {reason}."),
+    "cli.output_not_usable": mark("Cannot read or write the output: {reason}."),
+    # Options
+    "option.grid": mark("A grid is written ROWSxCOLUMNS, for example 10x10; got '{text:.40}'."),
+    "option.angle": mark("An angle is a number of radians (0.5, pi/3) or degrees (30deg); got '{text:.40}'."),
+    "option.angle_divided_by_zero": mark("An angle cannot be divided by zero: '{text:.40}'."),
+    "option.threshold": mark("The threshold must be between 0 and 1, got {value:g}."),
+    # Inputs
+    "input.not_valid": mark("{name}: {reason}"),
+    "batch.some_inputs_failed": mark("{failed} of {total} inputs failed. The entry 'error' on their lines says why."),
+    "ratios.none_in_folder": mark("The folder {folder} has no ratio fields (.json, .npy or .npz)."),
+    "ratios.unknown_extension": mark("Ratio fields are read from .json or .npy files, got {name}."),
+    "ratios.file_too_large": mark("{path} is larger than {limit} MB; ratio fields are smaller."),
+    "ratios.not_readable": mark("Cannot read ratios from {path}: {reason}."),
+    "ratios.damaged": mark("Cannot read ratios from {path}: the file is damaged or of another kind."),
+    "ratios.not_a_table": mark('{name} must contain {{"ratio": [[...], ...]}}, the top row first.'),
+    "mask.not_readable": mark("Cannot read the mask image {path}: it is missing, damaged or not an image."),
+    "mask.not_finite": mark("The mask is not finite in row {row}, column {column}; every pixel must be a number."),
+    "archive.not_readable": mark("Cannot read {path}: it is missing, damaged or not an .npz archive."),
+    "archive.too_large": mark("{path} is larger than {limit} MB. Split it."),
+    "archive.array_missing": mark("{name} must contain an array named '{key}'; its arrays: {found:.80}"),
+    "archive.not_numbers": mark(
+        "The array '{key}' in {name} must be numbers of shape (N, rows, columns), got {dtype:.40} of shape "
+        "{shape!s:.60}."
+    ),
+    "archive.no_entries": mark("The array '{key}' in {name} has no entries."),
+    # Sub-commands
+    "design.trimming_cut_short": mark(
+        "The budget ended before a design was trimmed. Allow more time, or leave --trim out to get untrimmed designs."
+    ),
+    "design.none_trimmed": mark(
+        "No design could be trimmed: all of them cross themselves. Try another seed, or leave --trim out to get "
+        "untrimmed designs."
+    ),
+    "design.no_result": mark("The run ended without a result."),
+    "decode.other_grid": mark("{name} is a {rows} x {columns} field, not {grid}."),
+    "score.nothing_to_score": mark("Name ratio fields and then a target: score RATIOS [RATIOS ...] TARGET."),
+    "score.numbers_differ": mark(
+        "Give as many ratio fields as targets, or one of either; got {fields} ratio fields and {targets} targets."
+    ),
+    "export.cannot_be_cut": mark("{reason}"),
+    "export.no_chosen_design": mark("This project has no chosen design. Generate designs and choose one first."),
+    "export.no_such_connector": mark("There is no connector {number}: this sheet has connectors 0 to {last}."),
+    "export.connector_and_width": mark(
+        "--hinge-mm takes a connector and its width in mm, for example 3=0.8; got '{text}'."
+    ),
+    "animate.not_a_gif": mark("animate writes .gif files, got {name}."),
+    "materials.copy_and_delete": mark("Either copy a material or delete one, not both."),
+    "materials.options_without_copy": mark(
+        "--as, --set and --calibrated need --copy KEY, which names the material to copy."
+    ),
+    "materials.calibrated_by_nobody": mark("--calibrated needs --by NAME: who measured the coupon."),
+    "materials.not_name_and_value": mark("--set takes NAME=VALUE, for example kerf_mm=0.03; got '{entry:.60}'."),
+    "coupon.nothing_to_do": mark("Give --out FILE to write a coupon, or --gap-mm with the gaps measured on one."),
+    "coupon.unknown_extension": mark("A coupon is written as .dxf, .svg or .pdf, got {name}."),
+}

@@ -16,12 +16,11 @@ from kirigami_studio.cli.inputs import (
     Named,
     are_many_targets,
     is_batch,
-    parse_angle,
-    parse_grid,
     read_fields,
     read_mask,
     read_targets,
 )
+from kirigami_studio.cli.option_types import parse_angle, parse_grid
 from kirigami_studio.foundation.errors import GridError, KirigamiError, RatioError, TargetError, UsageError
 
 

@@ -63,8 +63,8 @@ def test_that_broken_own_files_are_said_in_the_list(capsys: pytest.CaptureFixtur
     ("code", "argv", "expected"),
     [
         (2, ["--copy", "film-uv", "--delete", "x"], "not both"),
-        (2, ["--as", "x"], "belong to --copy"),
-        (2, ["--set", "kerf_mm=1"], "belong to --copy"),
+        (2, ["--as", "x"], "need --copy KEY"),
+        (2, ["--set", "kerf_mm=1"], "need --copy KEY"),
         (2, ["--copy", "film-uv", "--set", "kerf_mm"], "NAME=VALUE"),
         (2, ["--copy", "film-uv", "--calibrated"], "--by NAME"),
         (1, ["--copy", "oak"], "no material 'oak'"),
@@ -105,7 +105,7 @@ def test_that_measured_gaps_become_a_kerf(capsys: pytest.CaptureFixture[str]) ->
 @pytest.mark.parametrize(
     ("code", "argv", "expected"),
     [
-        (2, [], "needs --out"),
+        (2, [], "Give --out"),
         (2, ["--out", "coupon.gif"], ".dxf, .svg or .pdf"),
         (1, ["--out", "coupon.dxf", "--material", "oak"], "no material 'oak'"),
         (1, ["--out", "coupon.dxf", "--kerf-mm", "2"], "kerfs up to 0.5 mm"),

@@ -1,21 +1,41 @@
-"""``materials`` and ``coupon``: list, copy, change, calibrate and delete materials, and measure one."""
+"""``targets``, ``variants``, ``materials`` and ``coupon``: what there is to choose from, and materials of one's own."""
 
 from __future__ import annotations
 
 import argparse
+from collections.abc import Sequence
 from datetime import date
 from pathlib import Path
 
 from kirigami_studio.cli.console import print_json, say
-from kirigami_studio.export.dxf import write_dxf
-from kirigami_studio.export.pdf import write_pdf
-from kirigami_studio.export.profile import DEFAULT_PROFILE, find_profile
-from kirigami_studio.export.svg import write_cut_svg
 from kirigami_studio.fabricate.checks import check_plan
 from kirigami_studio.fabricate.coupon import kerf_from_gaps, plan_coupon
 from kirigami_studio.fabricate.material import Material, default_material, find_material, library
 from kirigami_studio.fabricate.material_copies import changed_copy, delete_copy, mark_calibrated, save_copy
 from kirigami_studio.foundation.errors import UsageError
+
+
+def targets(arguments: argparse.Namespace) -> int:
+    """List the library silhouettes."""
+    from kirigami_studio.outlines.silhouettes import names
+
+    return _listing(arguments, "targets", names())
+
+
+def variants(arguments: argparse.Namespace) -> int:
+    """List the generator variants without loading any weights."""
+    from kirigami_studio.generator.weights import variants as bundled
+
+    return _listing(arguments, "variants", bundled())
+
+
+def _listing(arguments: argparse.Namespace, key: str, names: Sequence[str]) -> int:
+    if arguments.json:
+        print_json({key: list(names)})
+    else:
+        for name in names:
+            say(name)
+    return 0
 
 
 def materials(arguments: argparse.Namespace) -> int:
@@ -30,13 +50,13 @@ def materials(arguments: argparse.Namespace) -> int:
 
 
 def _refuse_loose_options(arguments: argparse.Namespace) -> None:
-    """Options that mean nothing without ``--copy`` or beside ``--delete``."""
+    """Refuse options that mean nothing without ``--copy`` or beside ``--delete``."""
     if arguments.copy is not None and arguments.delete is not None:
-        raise UsageError("Either copy a material or delete one, not both.")
+        raise UsageError("materials.copy_and_delete")
     if arguments.copy is None and (arguments.key is not None or arguments.set or arguments.calibrated):
-        raise UsageError("--as, --set and --calibrated belong to --copy KEY; name the material to copy.")
+        raise UsageError("materials.options_without_copy")
     if arguments.calibrated and arguments.by is None:
-        raise UsageError("--calibrated needs --by NAME: who measured the coupon.")
+        raise UsageError("materials.calibrated_by_nobody")
 
 
 def _copy(arguments: argparse.Namespace) -> int:
@@ -45,7 +65,7 @@ def _copy(arguments: argparse.Namespace) -> int:
     for entry in arguments.set:
         name, equals, value = entry.partition("=")
         if not equals or not value.strip():
-            raise UsageError(f"--set takes NAME=VALUE, for example kerf_mm=0.03, got {entry!r}.")
+            raise UsageError("materials.not_name_and_value", entry=entry)
         changes[name.strip()] = value.strip()
     key = arguments.copy if arguments.key is None else arguments.key
     made = changed_copy(arguments.copy, key, changes)
@@ -85,10 +105,15 @@ def _line(material: Material, own: bool) -> str:
 
 def coupon(arguments: argparse.Namespace) -> int:
     """Write the calibration coupon of a material, or turn what was measured on it into a kerf."""
+    from kirigami_studio.export.dxf import write_dxf
+    from kirigami_studio.export.pdf import write_pdf
+    from kirigami_studio.export.profile import DEFAULT_PROFILE, find_profile
+    from kirigami_studio.export.svg import write_cut_svg
+
     if arguments.gap_mm:
         return _measured(arguments)
     if arguments.out is None:
-        raise UsageError("coupon needs --out FILE for the coupon, or --gap-mm for what was measured on it.")
+        raise UsageError("coupon.nothing_to_do")
     profile = find_profile(arguments.profile or DEFAULT_PROFILE)
     path = Path(arguments.out)
     material = default_material() if arguments.material is None else find_material(arguments.material)
@@ -101,7 +126,7 @@ def coupon(arguments: argparse.Namespace) -> int:
         case ".pdf":
             write_pdf(plan, path)
         case _:
-            raise UsageError(f"A coupon is written as .dxf, .svg or .pdf, got {path.name}.")
+            raise UsageError("coupon.unknown_extension", name=path.name)
     report = check_plan(plan)
     content: dict[str, object] = {
         "files": [str(path)],
