@@ -61,8 +61,8 @@ class WatchedTools(WatchedSession):
         """64 designs of 24 x 24 voids, all of them in sight."""
         view = self.window.gallery.view
         self.open("open a large project in a large window", "large.kiri", MANY)
-        self.step("widen the gallery to see all its cards", self.widen, lambda: not view.cards.owing)
-        self.step("scroll through the wide gallery", self.look_through, lambda: not view.cards.owing)
+        self.step("widen the gallery to see all its cards", self.widen, lambda: not view.cards.pending)
+        self.step("scroll through the wide gallery", self.look_through, lambda: not view.cards.pending)
         self.window.columns.setSizes([560, 1400, 600])
         self.window.controller.history.mark_saved()
 

@@ -88,7 +88,7 @@ def test_that_the_picture_rests_while_legends_come_and_go_with_the_angle(designe
 def test_that_a_plain_picture_shows_what_the_screen_shows(designed: MainWindow) -> None:
     view = fill(designed, (1440, 700))
     before = view.transform()
-    with view.plain():
+    with view.without_overlays():
         assert view.transform() == before
 
 

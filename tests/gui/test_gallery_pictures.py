@@ -26,7 +26,7 @@ def test_that_cards_wait_for_their_pictures_and_get_them(
         return draw(*arguments)  # type: ignore[arg-type]
 
     def begun() -> None:
-        owed.append(cards.owing)
+        owed.append(cards.pending)
         begin()
 
     monkeypatch.setattr(card_delegate, "DRAWING", 0.0)
@@ -35,20 +35,20 @@ def test_that_cards_wait_for_their_pictures_and_get_them(
     window.controller.open_project(project_file)
     until(lambda: len(drawn) == 3)
     assert len(set(drawn)) == 3  # one in each painting
-    until(lambda: not cards.owing)
+    until(lambda: not cards.pending)
     assert True in owed
 
 
 def test_that_no_card_waits_in_a_usual_window(designed: MainWindow, until: Until) -> None:
     view = designed.gallery.view
-    until(lambda: not view.cards.owing and len(view.cards._pictures) == 3)
+    until(lambda: not view.cards.pending and len(view.cards._pictures) == 3)
     picture = view.viewport().grab()
-    assert not view.cards.owing and picture.width() == view.viewport().width()
+    assert not view.cards.pending and picture.width() == view.viewport().width()
 
 
 def test_that_pictures_outlive_a_change_and_go_with_their_designs(designed: MainWindow, until: Until) -> None:
     cards = designed.gallery.view.cards
-    until(lambda: not cards.owing and len(cards._pictures) == 3)
+    until(lambda: not cards.pending and len(cards._pictures) == 3)
     before = dict(cards._pictures)
     designed.actions_["pin"].trigger()
     designed.actions_["next"].trigger()

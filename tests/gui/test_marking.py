@@ -133,10 +133,10 @@ def test_that_hovering_a_card_shows_its_buttons_and_leaving_hides_them(designed:
     rect = view.visualRect(view.model_.index(1, 0))
     before = view.grab(rect).toImage()
     qtbot.mouseMove(view.viewport(), button_boxes(rect)[CardButton.PIN].center())
-    qtbot.waitUntil(lambda: view.cards.hovered is CardButton.PIN)
+    qtbot.waitUntil(lambda: view.cards.hovered_button is CardButton.PIN)
     boxes = button_boxes(rect)
     assert view.grab(boxes[CardButton.REJECT]).toImage() != before.copy(
         boxes[CardButton.REJECT].translated(-rect.topLeft())
     )
     qtbot.mouseMove(view.viewport(), QPoint(1, 1))
-    qtbot.waitUntil(lambda: view.cards.hovered is None)
+    qtbot.waitUntil(lambda: view.cards.hovered_button is None)

@@ -112,7 +112,7 @@ def test_that_overlays_can_be_left_out_and_stay_on_the_screen(designed: MainWind
     picturing.overlays = False
     bare = pixels(picturing.record(view).image(1))
     assert (np.abs(seen - bare).max(axis=2) > 30).sum() > 500, "the target's outline and the mismatch are gone"
-    assert view.overlays == overlays and not view.picturing
+    assert view.overlays == overlays and not view.rendering
     designed.actions_["cuts"].trigger()
     cuts = designed.stage.cuts.view
     cuts.gestures.select(frozenset({1, 2}))
@@ -142,7 +142,7 @@ def test_that_a_picture_of_the_window_shows_its_views_on_plain_ground(
     canvas = QColor(designed.palette_.canvas).getRgb()[:3]
     assert (drawn[empty] == canvas).all()
     assert not (seen[empty] == canvas).all(), "the screen has its dots"
-    assert not view.picturing
+    assert not view.rendering
 
 
 def test_that_copying_takes_the_view_in_use(designed: MainWindow, picturing: Picturing, qtbot: QtBot) -> None:

@@ -13,7 +13,7 @@ from pytestqt.qtbot import QtBot
 
 from kirigami_studio.gui.main_window import MainWindow
 from kirigami_studio.gui.panels.deployment_bar import SPEEDS, DeploymentBar, PlayMode, phase_of, phi_at
-from kirigami_studio.gui.views.phi_slider import MarkKind, PhiSlider, Stretch, stretches
+from kirigami_studio.gui.views.phi_slider import MarkKind, PhiSlider, TrackPart, track_parts
 
 LEFT = Qt.MouseButton.LeftButton
 Until = Callable[[Callable[[], bool]], None]
@@ -36,10 +36,10 @@ def place_of(slider: PhiSlider, phi: float) -> int:
 
 
 def test_that_the_way_is_free_then_in_contact_then_past_the_target() -> None:
-    assert stretches(0.0, None) == ((Stretch.FREE, math.pi, 0.0),)
-    assert [kind for kind, _, _ in stretches(0.6, None)] == [Stretch.FREE, Stretch.PAST]
-    parts = stretches(0.6, 1.3)
-    assert [kind for kind, _, _ in parts] == [Stretch.FREE, Stretch.CONTACT, Stretch.PAST]
+    assert track_parts(0.0, None) == ((TrackPart.FREE, math.pi, 0.0),)
+    assert [kind for kind, _, _ in track_parts(0.6, None)] == [TrackPart.FREE, TrackPart.PAST]
+    parts = track_parts(0.6, 1.3)
+    assert [kind for kind, _, _ in parts] == [TrackPart.FREE, TrackPart.CONTACT, TrackPart.PAST]
     assert [first for _, first, _ in parts] == [math.pi, 1.3, 0.6] and parts[-1][2] == 0.0
 
 
@@ -48,18 +48,18 @@ def test_that_the_three_stretches_differ_in_brightness_and_in_shape(bar: Deploym
     slider = bar.slider
     picture = slider.grab().toImage()
     columns = {}
-    for kind, first, last in stretches(0.6, 1.3):
+    for kind, first, last in track_parts(0.6, 1.3):
         x = place_of(slider, 0.5 * (first + last))
         columns[kind] = [
             [picture.pixelColor(x + step, y).lightness() for y in range(8, 23)] for step in range(8)
         ]  # fmt: skip
     heights = {kind: np.ptp(np.array(rows), axis=1) for kind, rows in columns.items()}
     along = {kind: np.ptp(np.array(rows)[:, 7]) for kind, rows in columns.items()}
-    assert along[Stretch.FREE] < 10  # plain
-    assert along[Stretch.CONTACT] > 60 and along[Stretch.PAST] > 60  # stripes, dashes
-    assert min(heights[Stretch.FREE]) > 10
+    assert along[TrackPart.FREE] < 10  # plain
+    assert along[TrackPart.CONTACT] > 60 and along[TrackPart.PAST] > 60  # stripes, dashes
+    assert min(heights[TrackPart.FREE]) > 10
     thick = [
-        sum(abs(np.array(columns[kind][0]) - columns[kind][0][0]) > 20) for kind in (Stretch.CONTACT, Stretch.PAST)
+        sum(abs(np.array(columns[kind][0]) - columns[kind][0][0]) > 20) for kind in (TrackPart.CONTACT, TrackPart.PAST)
     ]
     assert thick[0] > thick[1] + 3
 

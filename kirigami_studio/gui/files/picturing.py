@@ -118,17 +118,17 @@ class Picturing(QObject):
 
     def _paint(self, painter: QPainter, view: QWidget) -> None:
         if isinstance(view, Canvas):
-            with nullcontext() if self.overlays else view.plain():
+            with nullcontext() if self.overlays else view.without_overlays():
                 view.render_to(painter, view.size())
         else:
             canvases = view.findChildren(Canvas)
             for canvas in canvases:
-                canvas.picturing = True
+                canvas.rendering = True
             try:
                 view.render(painter, QPoint(0, 0))
             finally:
                 for canvas in canvases:
-                    canvas.picturing = False
+                    canvas.rendering = False
 
     def _facts(self) -> Mapping[str, str]:
         """Where the design on the stage comes from."""

@@ -15,7 +15,7 @@ from kirigami_studio.project.preferences import Preferences
 
 
 class Preferring(QObject):
-    """Holds what new projects start with; keeps it in a file once it was told in which."""
+    """Holds what new projects start with, and saves it once the path of its file is known."""
 
     message = Signal(Message)
 
@@ -35,17 +35,17 @@ class Preferring(QObject):
 
     def remember(self, document: Document) -> None:
         """A cut file of this document was written."""
-        self._keep(self.present.on_machine_of(document))
+        self._save(self.present.on_machine_of(document))
 
     def choose_theme(self, theme: str) -> None:
         """The window is to look like this from now on: "system", "light" or "dark"."""
-        self._keep(replace(self.present, theme=theme))
+        self._save(replace(self.present, theme=theme))
 
     def note_tour(self) -> None:
         """The guided tour was offered; it comes by itself only once."""
-        self._keep(replace(self.present, tour_seen=True))
+        self._save(replace(self.present, tour_seen=True))
 
-    def _keep(self, wanted: Preferences) -> None:
+    def _save(self, wanted: Preferences) -> None:
         if wanted == self.present:
             return
         self.present = wanted

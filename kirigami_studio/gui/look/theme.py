@@ -22,7 +22,7 @@ from kirigami_studio.foundation.resources import resource
 class Palette:
     """Colours by role, as ``#rrggbb``.
 
-    ``window`` to ``muted`` and the accents dress widgets; ``canvas`` onwards is what the drawing code uses.
+    ``window`` to ``muted`` and the accents are for widgets; ``canvas`` onwards is what the drawing code uses.
     """
 
     name: str

@@ -57,7 +57,7 @@ def tool_button(name: str, tip: str, checkable: bool = False) -> QToolButton:
 
 
 class ElidedLabel(QLabel):
-    """Small print on one line, shorter or with an ellipsis where the room ends; the tooltip has it whole."""
+    """One muted line, shorter or with an ellipsis where it does not fit; the tooltip has it whole."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -66,13 +66,13 @@ class ElidedLabel(QLabel):
         self._shorter: tuple[str, ...] = ()
 
     def setText(self, text: str, *shorter: str) -> None:  # noqa: N802 - Qt's name
-        """Say a text, or the first of its ``shorter`` versions that the room is enough for."""
+        """Set a text, and ``shorter`` versions of which the first that fits is shown."""
         self._shorter = shorter
         super().setText(text)
         self.setToolTip(text)
 
     def drawn_text(self) -> str:
-        """What is drawn in the room that there is."""
+        """What is shown at the present width."""
         metrics, versions = self.fontMetrics(), (self.text(), *self._shorter)
         fitting = next((text for text in versions if metrics.horizontalAdvance(text) <= self.width()), versions[-1])
         return metrics.elidedText(fitting, Qt.TextElideMode.ElideMiddle, self.width())
@@ -87,7 +87,7 @@ class ElidedLabel(QLabel):
 
 
 class FittingLabel(QLabel):
-    """Small print in as many words as there is room for, or none."""
+    """Shows the longest of several texts that fits, or none."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -95,7 +95,7 @@ class FittingLabel(QLabel):
         self._texts: tuple[str, ...] = ()
 
     def set_texts(self, *texts: str) -> None:
-        """Versions of what it says, longest first."""
+        """The texts to choose from, longest first."""
         self._texts = texts
 
     def minimumSizeHint(self) -> QSize:  # noqa: N802 - Qt's name
@@ -111,7 +111,7 @@ class FittingLabel(QLabel):
 
 
 class ScrolledWhenShort(QScrollArea):
-    """As high as its content where there is room, scrolled where there is not."""
+    """As high as its content where that fits, scrolled where it does not."""
 
     def __init__(self, content: QWidget, least: int) -> None:
         super().__init__()
@@ -160,7 +160,7 @@ def captioned(text: str, buddy: QWidget, content: QWidget | QLayout) -> QVBoxLay
 
 
 def muted_label(text: str = "") -> QLabel:
-    """Small print that wraps."""
+    """A muted label that wraps."""
     label = QLabel(text)
     label.setObjectName("muted")
     label.setWordWrap(True)

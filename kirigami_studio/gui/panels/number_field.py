@@ -32,13 +32,13 @@ Answer = tuple[QValidator.State, str, int]
 
 
 def number_field(box: QAbstractSpinBox) -> None:
-    """Give a field its margin and its manners: it turns by the wheel only while it has the focus."""
+    """Give a field its margin; the wheel changes it only while it has the focus, and the window keeps its keys."""
     box.lineEdit().setTextMargins(6, 0, 0, 0)
     box.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
-    box.installEventFilter(_Courtesy(box))
+    box.installEventFilter(_WheelAndKeys(box))
 
 
-class _Courtesy(QObject):
+class _WheelAndKeys(QObject):
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802 - Qt's name
         if isinstance(watched, QAbstractSpinBox):
             if event.type() == QEvent.Type.Wheel and not watched.hasFocus():

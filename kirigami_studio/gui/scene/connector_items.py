@@ -71,7 +71,7 @@ class Connectors:
         return math.nan if self.removed[hinge] else float(self.plan.hinges.requested_mm[hinge])
 
     def described(self, hinge: int) -> str:
-        """What a person reads about one hinge."""
+        """Text for one hinge, for tooltips."""
         hinges = self.plan.hinges
         if self.removed[hinge]:
             return tr("Connector {hinge}: cut through", hinge=hinge)

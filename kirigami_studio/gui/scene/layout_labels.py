@@ -47,12 +47,12 @@ def paint_shaded(painter: QPainter, quads: FloatArray, values: FloatArray, scale
 
 
 def heat_tiles(panels: FloatArray, rows: int, columns: int) -> FloatArray:
-    """One quadrilateral around each void: the middles of its four panels, so that closed voids have a place too.
+    """One quadrilateral around each void: the middles of its four panels, so that closed voids have an area too.
 
     Parameters
     ----------
     panels : ((rows + 1)(columns + 1), 4, 2) float
-        Any frame.
+        In any coordinates.
 
     Returns
     -------
@@ -148,7 +148,7 @@ class SmallPart:
     size: float
 
     def ends(self, panels: FloatArray) -> FloatArray:
-        """Both ends (2, 2) of it in panels (K, 4, 2) of any frame that keeps angles."""
+        """Both ends (2, 2) of it in panels (K, 4, 2) in any coordinates that keep angles."""
         from kirigami_studio.fabricate.panel_sizes import edges_of, necks_of
 
         sizes = edges_of if self.kind is PartKind.EDGE else necks_of

@@ -2,28 +2,26 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
-
-from kirigami_studio.foundation.arrays import FloatArray
-
-if TYPE_CHECKING:
-    from shapely.geometry.base import BaseGeometry
-from collections.abc import Sequence
-from functools import lru_cache
-
 from PySide6.QtCore import QPointF, Qt
 from PySide6.QtGui import QBrush, QColor, QPainter, QPen, QPixmap
 
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.look.readable import readable_area
 from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.scene.legends import Chip
 from kirigami_studio.gui.scene.paths import area_path
 from kirigami_studio.gui.scene.view_transform import ViewTransform
+
+if TYPE_CHECKING:
+    from shapely.geometry.base import BaseGeometry
 
 #: Places on each boundary at which the distance is measured, beside its corners.
 STATIONS = 256

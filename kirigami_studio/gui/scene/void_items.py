@@ -161,7 +161,7 @@ class VoidFacts:
         return cls(void, ratio, phi if even else math.pi - phi, (one, two, three, four), locked)
 
     def lines(self) -> tuple[str, str]:
-        """What the small label says."""
+        """The lines of the label at the pointer."""
         row, column = self.void
         if self.locked:
             first = tr("Void ({row}, {column})   x {ratio:.3f}   locked", row=row, column=column, ratio=self.ratio)
@@ -171,7 +171,7 @@ class VoidFacts:
         return first, tr("{angle:.1f}°   {edges} mm", angle=angle, edges=edges)
 
     def sentence(self) -> str:
-        """What the status line says."""
+        """The text for the status line."""
         (row, column), angle, edges = self.void, math.degrees(self.angle), self._edges()
         if self.locked:
             return tr(

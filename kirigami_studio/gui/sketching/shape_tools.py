@@ -85,7 +85,7 @@ def stroke_of(points: np.ndarray[tuple[int, ...], np.dtype[np.float64]], mirror:
     whole = mirror.completed(points)
     if whole is None:
         return stroked(points)
-    closing = whole[:1] + CLOSING_SHARE * (whole[-1:] - whole[:1])  # almost there: no gap that would be told
+    closing = whole[:1] + CLOSING_SHARE * (whole[-1:] - whole[:1])  # almost closed: a gap too small to be reported
     return mirror.evened(stroked(np.concatenate([whole, closing])))
 
 

@@ -94,7 +94,7 @@ class Change:
 
 
 class SketchContext(QObject):
-    """The board with its target; tools read it and report to it."""
+    """The drawing board with its target; tools read it and report to it."""
 
     changed = Signal(Change)
     repaint = Signal()
@@ -169,7 +169,7 @@ class SketchContext(QObject):
         return np.array(way) * length, f"nudge {self._nudges}"
 
     def draw(self, make: Callable[[], Placed], name: str) -> None:
-        """Let a new shape replace the target, join it or be taken from it; a replacing tool is then put away."""
+        """Let a new shape replace the target, join it or be taken from it; a tool that replaces is left afterwards."""
         how, target, mirror = self.combine, self.placed, self.mirror
         replaces = how is Combine.REPLACE or target is None
         gesture = _change_name(Combine.REPLACE if replaces else how, name)
@@ -242,5 +242,5 @@ def _change_name(how: Combine, name: str) -> str:
 
 
 def _key(outline: Outline) -> tuple[object, ...]:
-    """What tells drawn outlines apart, equal ones too."""
+    """The key of a drawn outline; equal outlines at other places have other keys."""
     return outline, outline.size, outline.place, outline.nodes

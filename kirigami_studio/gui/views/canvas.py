@@ -1,4 +1,4 @@
-"""What every drawing area shares: background grid, fit, zoom, pan and the text of its empty state."""
+"""The base of every drawing area: background dots, fit, zoom, pan and the text of its empty state."""
 
 from __future__ import annotations
 
@@ -42,32 +42,32 @@ class Canvas(QWidget):
         self._shift = QPointF(0.0, 0.0)
         self._grip: QPointF | None = None
         self._overlays: frozenset[Enum] = frozenset()
-        self.picturing = False  #: whether it is being drawn into something else than the screen
+        self.rendering = False  #: whether it is drawn into a picture instead of the screen
         self._background: tuple[tuple[int, int, float, str], QPixmap] | None = None
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
         self.setFocusPolicy(Qt.FocusPolicy.ClickFocus)
 
-    # what subclasses say -------------------------------------------------------------------------------------------
+    # for subclasses to override --------------------------------------------------------------------------------------
 
     def scene_bounds(self) -> Bounds | None:
         """World box to be shown; None when there is nothing yet."""
         return None
 
     def scene_box(self) -> QRectF:
-        """Pixels in which everything is shown; the rest is for notes."""
+        """Part of the view (pixels) that the scene is fitted into; the rest is for legends."""
         return QRectF(self.rect())
 
     def paint_scene(self, painter: QPainter, transform: ViewTransform) -> None:
         """Draw the scene."""
 
     def paint_notes(self, painter: QPainter) -> None:
-        """Draw text on top, in pixels."""
+        """Draw legends and captions on top, in pixels."""
 
     def empty_state(self) -> tuple[str, str, str]:
         """Icon, headline and hint shown while there is nothing."""
         return "info", "", ""
 
-    # for everyone --------------------------------------------------------------------------------------------------
+    # public ----------------------------------------------------------------------------------------------------------
 
     def set_palette(self, palette: Palette) -> None:
         """Draw in other colours."""
@@ -118,9 +118,9 @@ class Canvas(QWidget):
             self.update()
 
     def render_to(self, painter: QPainter, size: QSize) -> None:
-        """Draw what is seen into anything that can be drawn into, as large as ``size`` allows, on a plain ground."""
+        """Render the view into any paint device, as large as ``size`` allows, without the background dots."""
         factor = min(size.width() / max(self.width(), 1), size.height() / max(self.height(), 1))
-        self.picturing = True
+        self.rendering = True
         painter.save()
         painter.scale(factor, factor)
         painter.setClipRect(self.rect())
@@ -131,11 +131,11 @@ class Canvas(QWidget):
             self._paint_content(painter)
         finally:
             painter.restore()
-            self.picturing = False
+            self.rendering = False
 
     @contextmanager
-    def plain(self) -> Iterator[None]:
-        """While this lasts, nothing is drawn over the scene."""
+    def without_overlays(self) -> Iterator[None]:
+        """Draw no overlays inside this context."""
         before, self._overlays = self._overlays, frozenset()
         try:
             yield
@@ -143,7 +143,7 @@ class Canvas(QWidget):
             self._overlays = before
 
     def set_view(self, zoom: float, shift: QPointF) -> None:
-        """Show the part that another canvas of the same size and scene shows; tells nobody."""
+        """Show the part that another canvas of the same size and scene shows; no signal is emitted for it."""
         self._zoom, self._shift = zoom, QPointF(shift)
         self.zoom_changed.emit(self._zoom)
         self.update()
@@ -205,7 +205,7 @@ class Canvas(QWidget):
         self.paint_notes(painter)
 
     def _paint_background(self, painter: QPainter) -> None:
-        if self.picturing:
+        if self.rendering:
             self._paint_ground(painter)
             return
         key = (self.width(), self.height(), self.devicePixelRatioF(), self.palette_.name)
@@ -214,7 +214,7 @@ class Canvas(QWidget):
         painter.drawPixmap(0, 0, self._background[1])
 
     def _background_picture(self) -> QPixmap:
-        """Border and dots; kept, because a thousand round dots take longer to draw than the sheet.
+        """Border and dots; cached, because a thousand round dots take longer to draw than the sheet.
 
         One row of dots is drawn and laid down as often as there are rows: a view of 1700 x 1300 has 4500 of them.
         """

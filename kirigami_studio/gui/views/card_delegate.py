@@ -1,4 +1,4 @@
-"""One card of the gallery: picture, numbers, what is thought of the design, and its buttons under the mouse."""
+"""One card of the gallery: picture, numbers, mark, and its buttons under the mouse."""
 
 from __future__ import annotations
 
@@ -40,8 +40,8 @@ BUTTON = 24
 DOT = 7
 #: Opacity of a rejected design's picture.
 DIMMED = 0.3
-#: Seconds in which new pictures are drawn at a time; a large window shows dozens of cards, a large design takes 7 ms.
-DRAWING = 0.015
+#: Seconds for new pictures in one paint event; a large window shows dozens of cards, a large design takes 7 ms.
+PAINT_SECONDS = 0.015
 Index = QModelIndex | QPersistentModelIndex
 
 
@@ -60,17 +60,17 @@ class CardDelegate(QStyledItemDelegate):
         self.palette_: Palette = LIGHT
         self.target: Outline | None = None
         self.card = QSize(SMALLEST_CARD, SMALLEST_CARD + TEXT_HEIGHT - 26)
-        self.under: Candidate | None = None  #: the design under the mouse
-        self.hovered: CardButton | None = None  #: the button there
+        self.under_mouse: Candidate | None = None  #: the design under the mouse
+        self.hovered_button: CardButton | None = None  #: the button there
         self.compared: Candidate | None = None  #: the design that is compared with the chosen one
         self._pictures: dict[tuple[PosedDesign, int, float, str], QPixmap] = {}
-        self._drawn_until = math.inf
-        self.owing = False  #: whether cards were painted without their pictures since :meth:`begin`
+        self._paint_until = math.inf
+        self.pending = False  #: whether cards still lack their pictures since :meth:`begin`
 
     def begin(self) -> None:
-        """The view starts painting: some pictures may be drawn, the rest at its next turn."""
-        self._drawn_until = math.inf
-        self.owing = False
+        """A paint event starts: some pictures are drawn in it, the rest in the next one."""
+        self._paint_until = math.inf
+        self.pending = False
 
     def forget_pictures(self, kept: Collection[PosedDesign] = ()) -> None:
         """Drop all thumbnails but those of some designs; they are painted again when needed."""
@@ -116,7 +116,7 @@ class CardDelegate(QStyledItemDelegate):
         elif rise >= SMALLEST_RISE:
             self._paint_chip(painter, card, f"{100 * rise:+.1f}")
         self._paint_numbers(painter, card, candidate, index.data(VALUE_ROLE))
-        if candidate is self.under:
+        if candidate is self.under_mouse:
             self._paint_buttons(painter, rect, mark)
         painter.restore()
 
@@ -130,14 +130,14 @@ class CardDelegate(QStyledItemDelegate):
         painter.drawRoundedRect(QRectF(card).adjusted(1, 1, -1, -1), 8, 8)
 
     def _picture(self, design: PosedDesign, size: QSize, ratio: float) -> QPixmap | None:
-        """The design's picture, None where it has to wait for the view's next turn."""
+        """The design's picture, None where it has to wait for the next paint event."""
         key = (design, size.width(), ratio, self.palette_.name)
         if key not in self._pictures:
             now = time.perf_counter()
-            if now > self._drawn_until:
-                self.owing = True
+            if now > self._paint_until:
+                self.pending = True
                 return None
-            self._drawn_until = min(self._drawn_until, now + DRAWING)
+            self._paint_until = min(self._paint_until, now + PAINT_SECONDS)
             self._pictures[key] = candidate_pixmap(design, self.target, size, ratio, self.palette_)
         return self._pictures[key]
 
@@ -166,7 +166,7 @@ class CardDelegate(QStyledItemDelegate):
     def _paint_buttons(self, painter: QPainter, rect: QRect, mark: Mark) -> None:
         ratio = painter.device().devicePixelRatio()
         for button, box in button_boxes(rect).items():
-            over = button is self.hovered
+            over = button is self.hovered_button
             on = mark is (Mark.PINNED if button is CardButton.PIN else Mark.REJECTED)
             painter.setPen(QPen(QColor(self.palette_.accent if over or on else self.palette_.strong_border), 1.0))
             painter.setBrush(QColor(self.palette_.accent_soft if over or on else self.palette_.surface))

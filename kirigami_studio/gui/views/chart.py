@@ -1,4 +1,4 @@
-"""One chart over the deployment angle: curves, a line at the present angle that can be dragged, numbers on top."""
+"""One chart over the deployment angle: curves, a draggable line at the present angle, the values there."""
 
 from __future__ import annotations
 
@@ -92,7 +92,7 @@ class Chart(QWidget):
             self.plot.setYRange(low, high if high > low else low + 1.0, padding=0.08)
 
     def set_phi(self, phi: float) -> None:
-        """Move the line, radians; nobody is told."""
+        """Move the line, radians, without a signal."""
         self.line.setValue(math.degrees(phi))
 
     def set_target(self, phi: float) -> None:

@@ -1,4 +1,4 @@
-"""The cut plan as it will burn: kerf-true cuts, connectors, problems, and the job up to any step."""
+"""The cut plan at kerf width: cuts, connectors, problems, and the job up to any step."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from kirigami_studio.gui.scene.view_transform import Bounds, ViewTransform
 from kirigami_studio.gui.views.canvas import Canvas
 from kirigami_studio.gui.views.hinge_gestures import HingeGestures, adds
 
-#: Layers in a person's words, for the legend.
+#: Layer names for the legend.
 LAYER_NAMES = {
     Layer.RELIEF: tr("relief ends"),
     Layer.SLITS: tr("slits"),
@@ -101,7 +101,7 @@ class CutView(Canvas):
         self._connectors = None if plan is None else Connectors(plan)
         self._problems, self._problem = problems, -1
         self._step = 0 if plan is None else len(plan.paths)
-        self.gestures.take(self._connectors)
+        self.gestures.set_connectors(self._connectors)
         self.update()
 
     def show_step(self, step: int) -> None:
@@ -144,7 +144,7 @@ class CutView(Canvas):
         paint_cuts(painter, self._drawing, transform, self.palette_, self._step, QRectF(self.rect()))
         if CutOverlay.TRAVEL in self._overlays:
             paint_travel(painter, self._drawing, transform, self.palette_, self._step)
-        if CutOverlay.CONNECTORS in self._overlays and self.picturing:
+        if CutOverlay.CONNECTORS in self._overlays and self.rendering:
             paint_connectors(painter, self._connectors, transform, self.palette_, self.selected)
         elif CutOverlay.CONNECTORS in self._overlays:
             painter.drawPixmap(0, 0, self._connector_picture(self._connectors, transform))
@@ -157,7 +157,7 @@ class CutView(Canvas):
             painter.drawRect(self.gestures.band)
 
     def _connector_picture(self, connectors: Connectors, transform: ViewTransform) -> QPixmap:
-        """The markers; kept while the job is played, because a thousand round dots take longer than all cuts."""
+        """The markers; cached while the job is played, because a thousand round dots take longer than all cuts."""
         ratio = self.devicePixelRatioF()
         key = (connectors, transform, self.selected, self.palette_.name, self.width(), self.height(), ratio)
         if self._markers is None or self._markers[0] != key:
@@ -259,7 +259,7 @@ class CutView(Canvas):
 
     def mouseDoubleClickEvent(self, event: QMouseEvent) -> None:  # noqa: N802 - Qt's name
         transform, shown = self.transform(), CutOverlay.CONNECTORS in self._overlays
-        if not (shown and transform is not None and self.gestures.double(event.position(), transform)):
+        if not (shown and transform is not None and self.gestures.double_click(event.position(), transform)):
             super().mouseDoubleClickEvent(event)
 
     def mouseReleaseEvent(self, event: QMouseEvent) -> None:  # noqa: N802 - Qt's name

@@ -102,10 +102,10 @@ class GalleryModel(QAbstractListModel):
         before = self._shown
         self._all = list(entries)
         after = self._arranged()
-        kept = len(before) == len(after) and all(
+        same = len(before) == len(after) and all(
             same_sample(old.candidate, new.candidate) for old, new in zip(before, after, strict=True)
         )
-        if kept and after:
+        if same and after:
             self._shown = after
             self.dataChanged.emit(self.index(0, 0), self.index(len(after) - 1, 0))
         else:
@@ -150,20 +150,20 @@ class GalleryModel(QAbstractListModel):
             self._rearrange()
 
     def set_marks(self, marks: Mapping[Candidate, Mark]) -> None:
-        """Tell which designs are pinned or rejected; the others are neither."""
+        """Set which designs are pinned or rejected; the others are neither."""
         wanted: dict[Candidate, Mark] = {candidate: mark for candidate, mark in marks.items() if mark is not Mark.NONE}
         if wanted != self._marks:
             self._marks = wanted
             self._rearrange()
 
     def set_fresh(self, fresh: frozenset[Candidate]) -> None:
-        """Tell which designs the last further run has added."""
+        """Set which designs the last further run has added."""
         if fresh != self._fresh:
             self._fresh = fresh
             self._rearrange()
 
     def set_width_mm(self, width_mm: float) -> None:
-        """Tell how wide the sheet is, for sizes of panels."""
+        """Set the width of the sheet, for sizes of panels."""
         if width_mm != self._width_mm:
             self._width_mm = width_mm
             if self._shown:
@@ -223,7 +223,7 @@ def _place_of(entries: list[Entry], candidate: Candidate | None) -> int:
 
 
 def described(candidate: Candidate, rank: int) -> str:
-    """Tell everything about a candidate in words, for tooltips and screen readers."""
+    """Describe a candidate in words, for tooltips and screen readers."""
     score = candidate.score
     lines = [
         tr(
@@ -246,7 +246,7 @@ def described(candidate: Candidate, rank: int) -> str:
 
 
 def came_from(candidate: Candidate) -> list[str]:
-    """Tell which model generated a design, from which seed, and how."""
+    """Which model generated a design, from which seed, and how."""
     origin = {
         Origin.SAMPLED: tr("Seed {seed}, sample {index}", seed=candidate.seed, index=candidate.index),
         Origin.SEARCHED: tr("Seed {seed}, found by the search", seed=candidate.seed),
@@ -258,7 +258,7 @@ def came_from(candidate: Candidate) -> list[str]:
 
 
 def trimming(candidate: Candidate) -> list[str]:
-    """Tell how a trimmed design scores, apart from the untrimmed one."""
+    """How a trimmed design scores, apart from the untrimmed one."""
     trim = candidate.trim
     if trim is None:
         return []
@@ -273,7 +273,7 @@ def trimming(candidate: Candidate) -> list[str]:
 
 
 def motion(candidate: Candidate) -> str:
-    """Tell how far the sheet opens before it touches itself."""
+    """How far the sheet opens before it touches itself."""
     score = candidate.score
     if score.contact is None:
         return tr("Opens from 180° to {phi:.1f}° without contact", phi=math.degrees(score.phi))

@@ -18,7 +18,7 @@ from kirigami_studio.gui.views.gallery_model import CANDIDATE_ROLE, GalleryModel
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.document import Mark
 
-#: Room that is always kept for the scroll bar, so that cards do not jump when it appears.
+#: Pixels always reserved for the scroll bar, so that cards do not jump when it appears.
 SCROLL_BAR = 14
 
 
@@ -169,8 +169,8 @@ class GalleryView(QListView):
 
     def _hover(self, candidate: Candidate | None, button: CardButton | None) -> None:
         """Show the buttons of the card under the mouse, and which of them is meant."""
-        if (candidate, button) != (self.cards.under, self.cards.hovered):
-            self.cards.under, self.cards.hovered = candidate, button
+        if (candidate, button) != (self.cards.under_mouse, self.cards.hovered_button):
+            self.cards.under_mouse, self.cards.hovered_button = candidate, button
             self.viewport().update()
 
     def keyPressEvent(self, event: QKeyEvent) -> None:  # noqa: N802 - Qt's name
@@ -203,7 +203,7 @@ class GalleryView(QListView):
     def paintEvent(self, event: QPaintEvent) -> None:  # noqa: N802 - Qt's name
         self.cards.begin()
         super().paintEvent(event)
-        if self.cards.owing:
+        if self.cards.pending:
             self._later.start()
         if self.model_.rowCount() > 0:
             return

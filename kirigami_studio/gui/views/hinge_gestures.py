@@ -53,7 +53,7 @@ class HingeGestures(QObject):
         """The rubber band, pixels."""
         return self._band
 
-    def take(self, connectors: Connectors | None) -> None:
+    def set_connectors(self, connectors: Connectors | None) -> None:
         """Another plan: the selection stays as far as its hinges are still there."""
         self.connectors = connectors
         self._asked_mm.clear()
@@ -88,7 +88,7 @@ class HingeGestures(QObject):
             self._held = HingeDrag(hinge, place, self._asked_mm.get(hinge, self.connectors.asked_mm(hinge)))
         return True
 
-    def double(self, place: QPointF, transform: ViewTransform) -> bool:
+    def double_click(self, place: QPointF, transform: ViewTransform) -> bool:
         """A double click; on a connector it is cut through, or brought back where it was."""
         hinge = None if self.connectors is None else self.connectors.nearest(place, transform)
         if hinge is None or self.connectors is None:
@@ -120,7 +120,7 @@ class HingeGestures(QObject):
             self.width_wanted.emit(width)
             self.changed.emit()
 
-    def _let_go(self, held: HingeDrag) -> None:
+    def _end_drag(self, held: HingeDrag) -> None:
         """A drag is over; a click on one of many selects that one."""
         self._held = None
         if self._width_mm is None:
@@ -133,7 +133,7 @@ class HingeGestures(QObject):
     def release(self, place: QPointF, transform: ViewTransform) -> None:
         """The button came up: the band selects; a click beside all connectors forgets the selection."""
         if self._held is not None:
-            self._let_go(self._held)
+            self._end_drag(self._held)
             return
         pressed, band = self._pressed, self._band
         self._pressed, self._band = None, None

@@ -179,7 +179,7 @@ class LayoutView(Canvas):
         self._largest_opening = float(quad_areas(design.voids(design.nodes(0.5 * math.pi))).max())
 
     def show_draft(self, design: PosedDesign) -> None:
-        """Show what a hand is making of the design; the picture stays where it is."""
+        """Show a design that is being edited by hand, without fitting the view again."""
         self._design = design
         self._areas, self._faults, self._contact = None, (), None
         self._inverted = inverted_panels(design.panels(design.nodes(design.phi_target)))
@@ -202,7 +202,7 @@ class LayoutView(Canvas):
         self.update()
 
     def set_sheet_width(self, width_mm: float) -> None:
-        """Tell how wide the flat sheet is, mm: all lengths on the drawing follow from it."""
+        """Set the width of the flat sheet, mm: all lengths on the drawing follow from it."""
         self._width_mm = width_mm
         self.update()
 
@@ -279,7 +279,7 @@ class LayoutView(Canvas):
         return CAPTION_HEIGHT if self._caption else 10.0
 
     def _fitting(self, ways: list[list[Chip]], metrics: QFontMetrics) -> list[Chip]:
-        """The first way of saying it that fits into one row, else the last."""
+        """The first of these legends that fits into one row, else the last."""
         for chips in ways:
             rows = {box.top() for box in legend_boxes(chips, metrics, self.width(), self.height())}
             if len(rows) <= 1 and self.width() >= NARROW:

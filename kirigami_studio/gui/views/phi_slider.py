@@ -74,15 +74,15 @@ class PhiSlider(QSlider):
         self.palette_ = palette
         self.update()
 
-    def marks(self) -> tuple[WayMark, ...]:
+    def marks(self) -> tuple[TrackMark, ...]:
         """All marks, the most important first."""
         degrees = f"{math.degrees(self._target):.0f}°"
-        marks = [WayMark(MarkKind.TARGET, self._target, tr("{angle} target", angle=degrees), degrees)]
+        marks = [TrackMark(MarkKind.TARGET, self._target, tr("{angle} target", angle=degrees), degrees)]
         if self._contact is not None:
             degrees = f"{math.degrees(self._contact):.0f}°"
-            marks.append(WayMark(MarkKind.CONTACT, self._contact, tr("{angle} contact", angle=degrees), degrees))
-        marks.append(WayMark(MarkKind.FLAT, math.pi, tr("180° flat"), "180°"))
-        marks.append(WayMark(MarkKind.TURNED, 0.0, "0°", "0°"))
+            marks.append(TrackMark(MarkKind.CONTACT, self._contact, tr("{angle} contact", angle=degrees), degrees))
+        marks.append(TrackMark(MarkKind.FLAT, math.pi, tr("180° flat"), "180°"))
+        marks.append(TrackMark(MarkKind.TURNED, 0.0, "0°", "0°"))
         return tuple(marks[:-1] if self._target == 0.0 else marks)
 
     def _update_tooltip(self) -> None:
@@ -123,7 +123,7 @@ class PhiSlider(QSlider):
     def mouseReleaseEvent(self, event: QMouseEvent) -> None:  # noqa: N802 - Qt's name
         self.setSliderDown(False)
 
-    def mark_at(self, place: QPointF) -> WayMark | None:
+    def mark_at(self, place: QPointF) -> TrackMark | None:
         """The mark whose sign or label lies under a pixel, if any."""
         if place.y() < MIDDLE + BELOW:
             return None
@@ -163,12 +163,12 @@ class PhiSlider(QSlider):
         painter.end()
 
     def _paint_track(self, painter: QPainter) -> None:
-        parts = stretches(self._target, self._contact)
+        parts = track_parts(self._target, self._contact)
         for kind, first, last in parts:
             left, right = self._x(first), self._x(last)
             box = QRectF(left, MIDDLE - 5.0, right - left, 10.0)
-            paint_stretch(painter, kind, box, self.palette_, self.isEnabled())
-        free_until = next((last for kind, _, last in parts if kind is Stretch.FREE), math.pi)
+            paint_track_part(painter, kind, box, self.palette_, self.isEnabled())
+        free_until = next((last for kind, _, last in parts if kind is TrackPart.FREE), math.pi)
         if self.isEnabled():
             left, right = self._x(math.pi), self._x(max(self.phi, free_until))
             painter.setPen(Qt.PenStyle.NoPen)
@@ -182,11 +182,11 @@ class PhiSlider(QSlider):
             painter.setPen(QColor(self.palette_.muted if ends or not self.isEnabled() else self.palette_.text))
             painter.drawText(box, int(Qt.AlignmentFlag.AlignCenter), text)
 
-    def _placed_marks(self) -> list[tuple[WayMark, QRectF, str]]:
+    def _placed_marks(self) -> list[tuple[TrackMark, QRectF, str]]:
         """Marks with their label and its box; one that would run into a more important one is short or empty."""
         metrics = self.fontMetrics()
         roomy = self.width() >= ROOM_FOR_WORDS
-        placed: list[tuple[WayMark, QRectF, str]] = []
+        placed: list[tuple[TrackMark, QRectF, str]] = []
         for mark in self.marks():
             for text in (mark.words, mark.short) if roomy else (mark.short,):
                 width = metrics.horizontalAdvance(text) + 2.0
@@ -206,8 +206,8 @@ def value_at(phi: float) -> int:
     return round(LAST * (1.0 - phi / math.pi))
 
 
-class Stretch(Enum):
-    """What a part of the way is like; each has a colour, a thickness and a pattern of its own."""
+class TrackPart(Enum):
+    """What a part of the track stands for; each has its own colour, thickness and pattern."""
 
     FREE = "free"
     CONTACT = "contact"
@@ -215,7 +215,7 @@ class Stretch(Enum):
 
 
 class MarkKind(Enum):
-    """What a mark on the way stands for."""
+    """What a mark on the track stands for."""
 
     FLAT = "flat"
     CONTACT = "contact"
@@ -224,8 +224,8 @@ class MarkKind(Enum):
 
 
 @dataclass(frozen=True, slots=True)
-class WayMark:
-    """A place on the way that a person may want to go to.
+class TrackMark:
+    """An angle on the track that a click goes to.
 
     Attributes
     ----------
@@ -241,29 +241,29 @@ class WayMark:
     short: str
 
 
-def stretches(target: float, contact: float | None) -> tuple[tuple[Stretch, float, float], ...]:
-    """Parts of the way with their first and last angle, radians; those without length are left out.
+def track_parts(target: float, contact: float | None) -> tuple[tuple[TrackPart, float, float], ...]:
+    """Parts of the track with their first and last angle, radians; those without length are left out.
 
     Contacts are looked for up to the target angle only, so that what comes after it is said to be past the target.
     """
     free_until = target if contact is None else max(contact, target)
     parts = (
-        (Stretch.FREE, math.pi, free_until),
-        (Stretch.CONTACT, free_until, target),
-        (Stretch.PAST, target, 0.0),
+        (TrackPart.FREE, math.pi, free_until),
+        (TrackPart.CONTACT, free_until, target),
+        (TrackPart.PAST, target, 0.0),
     )
     return tuple(part for part in parts if part[1] > part[2])
 
 
-def paint_stretch(painter: QPainter, kind: Stretch, box: QRectF, palette: Palette, enabled: bool) -> None:
+def paint_track_part(painter: QPainter, kind: TrackPart, box: QRectF, palette: Palette, enabled: bool) -> None:
     """Draw one part: a plain bar when free, thick and striped in contact, thin dashes past the target."""
     middle = box.center().y()
-    if kind is Stretch.FREE or not enabled:
+    if kind is TrackPart.FREE or not enabled:
         painter.setPen(Qt.PenStyle.NoPen)
         painter.setBrush(QColor(palette.strong_border))
         bar = QRectF(box.left(), middle - 0.5 * FREE_HEIGHT, box.width(), FREE_HEIGHT)
         painter.drawRoundedRect(bar, 2.5, 2.5)
-    elif kind is Stretch.CONTACT:
+    elif kind is TrackPart.CONTACT:
         _paint_striped(painter, QRectF(box.left(), middle - 0.5 * CONTACT_HEIGHT, box.width(), CONTACT_HEIGHT), palette)
     else:
         pen = QPen(QColor(palette.target), 2.6, Qt.PenStyle.CustomDashLine, Qt.PenCapStyle.FlatCap)

@@ -221,7 +221,7 @@ class TargetView(Canvas):
 
     # the pointer and the keys --------------------------------------------------------------------------------------
 
-    def _spot(self, event: QMouseEvent) -> PointerEvent:
+    def _pointer_event(self, event: QMouseEvent) -> PointerEvent:
         self.context.transform = self.transform() or self.context.transform
         return self.context.pointer(event.position(), event.modifiers())
 
@@ -229,14 +229,14 @@ class TargetView(Canvas):
         if self._tool is Tool.LOOK or event.button() is not Qt.MouseButton.LeftButton:
             super().mousePressEvent(event)
             return
-        self.active.press(self._spot(event))
+        self.active.press(self._pointer_event(event))
         self.update()
 
     def mouseMoveEvent(self, event: QMouseEvent) -> None:  # noqa: N802 - Qt's name
         if self._tool is Tool.LOOK or event.buttons() & Qt.MouseButton.MiddleButton:
             super().mouseMoveEvent(event)
             return
-        self.active.move(self._spot(event), bool(event.buttons() & Qt.MouseButton.LeftButton))
+        self.active.move(self._pointer_event(event), bool(event.buttons() & Qt.MouseButton.LeftButton))
         self.update()
 
     def mouseReleaseEvent(self, event: QMouseEvent) -> None:  # noqa: N802 - Qt's name
@@ -244,14 +244,14 @@ class TargetView(Canvas):
             super().mouseReleaseEvent(event)
             self.setCursor(self.active.cursor)
             return
-        self.active.release(self._spot(event))
+        self.active.release(self._pointer_event(event))
         self.update()
 
     def mouseDoubleClickEvent(self, event: QMouseEvent) -> None:  # noqa: N802 - Qt's name
         if self._tool is Tool.LOOK:
             super().mouseDoubleClickEvent(event)
             return
-        self.active.double_click(self._spot(event))
+        self.active.double_click(self._pointer_event(event))
         self.update()
 
     def keyPressEvent(self, event: QKeyEvent) -> None:  # noqa: N802 - Qt's name

@@ -1,6 +1,6 @@
-"""What the mouse and the keyboard do to the voids of a layout view: point, pull, turn, lock, move the outline.
+"""Mouse and keyboard gestures on the voids of a layout view: point, drag, wheel, lock, move the outline.
 
-Pointing works always.  The rest belongs to the mode "edit by hand"; what it does not use pans and zooms as ever.
+Pointing always works.  The rest belongs to the mode "edit by hand"; events that it does not use pan and zoom.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ _TURNS = {Qt.Key.Key_Plus: 1, Qt.Key.Key_Equal: 1, Qt.Key.Key_Minus: -1, Qt.Key.
 
 
 class VoidGestures(QObject):
-    """Holds what is pointed at and selected, and turns events of one canvas into wishes.
+    """Holds what is pointed at and selected, and turns events of one canvas into requests.
 
     Parameters
     ----------
@@ -74,7 +74,7 @@ class VoidGestures(QObject):
         self._pointer = QPointF()
         self._pressed: QPointF | None = None
         self._grasp: Callable[[float], None] | None = None  # begins, at an angle, the drag that a press may become
-        self._moves: SignalInstance = self.pulled  # who is told where the drag goes
+        self._moves: SignalInstance = self.pulled  # emitted with each place of the drag
         self._dragging = False
         self._band: QRectF | None = None
         canvas.setMouseTracking(True)
@@ -154,7 +154,7 @@ class VoidGestures(QObject):
             self._leave()
 
     def drop(self) -> None:
-        """Let go of whatever is held."""
+        """End the gesture under way."""
         held = self.dragging
         self._pressed = self._grasp = self._band = None
         self._dragging = False
@@ -191,9 +191,9 @@ class VoidGestures(QObject):
         if isinstance(event, QKeyEvent):
             return self._take_key(event)
         if isinstance(event, QWheelEvent):
-            return self._turn(event)
+            return self._take_wheel(event)
         if isinstance(event, QContextMenuEvent):
-            return self._ask_menu(event)
+            return self._request_menu(event)
         if kind == QEvent.Type.ToolTip:
             return self._hovered is not None  # the label at the pointer has the word
         if kind == QEvent.Type.Leave:
@@ -202,7 +202,7 @@ class VoidGestures(QObject):
             if kind == QEvent.Type.MouseButtonPress:
                 return self._press(event)
             if kind == QEvent.Type.MouseButtonDblClick:
-                return self.active and self._meant(event.position())
+                return self.active and self._hits(event.position())
             if kind == QEvent.Type.MouseMove:
                 return self._move(event)
             if kind == QEvent.Type.MouseButtonRelease:
@@ -267,7 +267,7 @@ class VoidGestures(QObject):
         self._point(event.position())
         return True
 
-    def _turn(self, event: QWheelEvent) -> bool:
+    def _take_wheel(self, event: QWheelEvent) -> bool:
         self._point(event.position())
         if not self.active or self._hovered is None or event.modifiers() & Qt.KeyboardModifier.ControlModifier:
             return False
@@ -282,9 +282,9 @@ class VoidGestures(QObject):
         return True
 
     def _take_key(self, event: QKeyEvent) -> bool:
-        """Arrows walk from void to void, + and - change the ratio; the window's own keys of that name wait."""
+        """Arrows walk from void to void, + and - change the ratio; these keys are then not the window's."""
         if self._dragging and event.key() == Qt.Key.Key_Escape:
-            self._take_back(event)
+            self._cancel_drag(event)
             return True
         step = step_of(event) if self.active else None
         shapes = self._shapes()
@@ -301,8 +301,8 @@ class VoidGestures(QObject):
             self._walk(step, shapes)
         return True
 
-    def _take_back(self, event: QKeyEvent) -> None:
-        """Esc belongs to the drag: first the question whose key it is, then the key."""
+    def _cancel_drag(self, event: QKeyEvent) -> None:
+        """Esc cancels the drag: Qt asks first whose key it is (ShortcutOverride), then sends it."""
         event.accept()
         if event.type() == QEvent.Type.KeyPress:
             self._pressed = self._grasp = None
@@ -316,7 +316,7 @@ class VoidGestures(QObject):
         row, column = (0, 0) if start is None else (start[0] + step.down, start[1] + step.right)
         self.select(frozenset({(min(max(row, 0), rows - 1), min(max(column, 0), columns - 1))}))
 
-    def _ask_menu(self, event: QContextMenuEvent) -> bool:
+    def _request_menu(self, event: QContextMenuEvent) -> bool:
         self._point(QPointF(event.pos()))
         if not self.active or self._hovered is None:
             return False
@@ -327,7 +327,7 @@ class VoidGestures(QObject):
 
     # pointing ------------------------------------------------------------------------------------------------------
 
-    def _meant(self, place: QPointF) -> bool:
+    def _hits(self, place: QPointF) -> bool:
         self._point(place)
         return self._hovered is not None or self._vertex is not None
 
