@@ -18,7 +18,7 @@ from kirigami_studio.pipeline.request import Request
 from kirigami_studio.pipeline.run import best_of
 from kirigami_studio.polish.continuation import fit_shape
 from kirigami_studio.polish.levenberg import Fit, polish
-from kirigami_studio.polish.regularity import PREFERENCES
+from kirigami_studio.polish.preferences import PREFERENCES
 
 
 def measure_polish(

@@ -23,7 +23,7 @@ from kirigami_studio.pipeline.threads import one_blas_thread
 from kirigami_studio.polish.boundary_target import BoundaryTarget
 from kirigami_studio.polish.levenberg import SAMPLES, polish
 from kirigami_studio.polish.objective import Objective
-from kirigami_studio.polish.regularity import Regularity, RegularTerms
+from kirigami_studio.polish.preferences import Preference, PreferenceTerms
 from kirigami_studio.polish.sensitivity import OutlineModel
 
 #: Candidates of the timed runs, and steps of the timed fits.
@@ -140,7 +140,7 @@ def _step_seconds(candidate: Candidate, target: Outline) -> float:
     """One step without corrections: derivative, normal equations, solution and the decoding of the trial."""
     rows, columns = candidate.field.rows, candidate.field.columns
     model, z = OutlineModel(rows, columns, 0.0), candidate.field.log10.ravel()
-    objective = Objective(model, BoundaryTarget.of(target, SAMPLES), RegularTerms(Regularity(), z, rows, columns))
+    objective = Objective(model, BoundaryTarget.of(target, SAMPLES), PreferenceTerms(Preference(), z, rows, columns))
     pose = candidate.score.transform
     look = objective.look(np.concatenate([z, [math.log(pose.scale), pose.angle, *pose.shift]]))
 

@@ -22,9 +22,8 @@ from kirigami_studio.foundation.errors import Cancelled, FabricationError
 from kirigami_studio.foundation.files import check_folder, write_atomically
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.pipeline.events import Finished, Progress, Result
-from kirigami_studio.pipeline.provenance import provenance
 from kirigami_studio.pipeline.redesign import keep_for_connectors
-from kirigami_studio.pipeline.request import POLISH_STEPS, Request
+from kirigami_studio.pipeline.request import POLISH_STEPS, Request, provenance
 from kirigami_studio.pipeline.run import run
 from kirigami_studio.project.cutting import material_for
 from kirigami_studio.project.design_facts import design_facts, with_run

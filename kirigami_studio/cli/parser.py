@@ -11,7 +11,7 @@ from typing import Any
 from kirigami_studio import __version__
 from kirigami_studio.cli.option_types import amount, angle, count, number, positive, whole
 from kirigami_studio.fabricate.options import ConnectorStyle, CutOrder
-from kirigami_studio.polish.regularity import PREFERENCES
+from kirigami_studio.polish.preferences import PREFERENCES
 
 Option = tuple[tuple[str, ...], dict[str, Any]]
 

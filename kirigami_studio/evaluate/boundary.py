@@ -27,15 +27,15 @@ def checked_polygon(points: npt.ArrayLike) -> FloatArray:
     try:
         array = np.ascontiguousarray(points, dtype=np.float64)
     except (TypeError, ValueError):
-        raise KirigamiError("A silhouette must be a table of numbers, one x, y pair a row.") from None
+        raise KirigamiError("silhouette.not_a_table") from None
     if array.ndim != 2 or array.shape[1] != 2 or array.shape[0] < 3:
-        raise KirigamiError(f"A silhouette needs at least three x, y pairs, got an array of shape {array.shape}.")
+        raise KirigamiError("silhouette.too_few_points", shape=array.shape)
     if not np.isfinite(array).all():
         row = int(np.argwhere(~np.isfinite(array))[0, 0])
-        raise KirigamiError(f"Point {row} of the silhouette is ({array[row, 0]}, {array[row, 1]}); it must be finite.")
+        raise KirigamiError("silhouette.not_finite", point=row, x=float(array[row, 0]), y=float(array[row, 1]))
     extent = float(np.ptp(array, axis=0).max())
     if abs(moments(as_plane(array))[0]) <= FLAT * extent * extent:
-        raise KirigamiError("The silhouette has no area: its points lie on a line or its halves cancel.")
+        raise KirigamiError("silhouette.no_area")
     return array
 
 

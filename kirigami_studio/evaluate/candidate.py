@@ -15,9 +15,9 @@ from kirigami_studio.lattice.ratio_field import RatioField
 class Origin(Enum):
     """How a design came to be."""
 
-    SAMPLED = "sampled"  #: drawn by the generator for the target
+    SAMPLED = "sampled"  #: by the generator for the target
     SEARCHED = "searched"  #: found by the search that follows the samples
-    RESAMPLED = "resampled"  #: drawn by the generator near another design
+    RESAMPLED = "resampled"  #: by the generator near another design
     EDITED = "edited"  #: changed by hand
 
 
@@ -31,7 +31,7 @@ class Candidate:
     score : Score
         Against the request's target at the request's angle.
     seed : int
-        Seed of the run that drew it.
+        Seed of the run that sampled it.
     index : int
         Its place in that run's sampling order.
     polished : bool
@@ -41,10 +41,10 @@ class Candidate:
     trim : Trim or None
         The same design fitted to cover the target and trimmed, where that was asked for; its score is its own.
     variant : str
-        Generator that drew it, "" where that is not known.
+        Generator that sampled it, "" where that is not known.
     origin : Origin
     made_with : tuple of (name, text)
-        Settings of the run that drew it, by their names in a provenance; empty where they are not known.  The same
+        Settings of the run that sampled it, by their names in a provenance; empty where they are not known.  The same
         design is the same whatever is known of its run: this takes no part in comparisons.
     """
 

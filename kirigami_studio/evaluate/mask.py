@@ -42,15 +42,17 @@ class FittedMask:
     to_source: Similarity
 
     @classmethod
-    def from_array(cls, mask: npt.ArrayLike, name: str = "mask") -> FittedMask:
+    def from_array(cls, mask: npt.ArrayLike, number: int = 1) -> FittedMask:
         """Crop and scale a 2-D mask of booleans, 0/1 or 0..255 grey levels (foreground above half of the range).
+
+        Problems name it by its ``number``.
 
         Raises
         ------
         KirigamiError
             Not a 2-D array of finite numbers, or no foreground.
         """
-        source = foreground(mask, name)
+        source = _foreground(mask, number)
         rows, columns = np.flatnonzero(source.any(axis=1)), np.flatnonzero(source.any(axis=0))
         top, left = int(rows[0]), int(columns[0])
         cropped = source[top : rows[-1] + 1, left : columns[-1] + 1]
@@ -69,9 +71,7 @@ class FittedMask:
         coverage = (sampled >= 0.5).astype(np.float64)
         coverage.setflags(write=False)
         if not coverage.any():
-            raise KirigamiError(
-                f"The {name} shows only lines thinner than 1/{MASK_SIZE} of its length; draw it bolder."
-            )
+            raise KirigamiError("mask.too_thin", number=number, size=MASK_SIZE)
         middle = complex(left + 0.5 * width, source.shape[0] - top - 0.5 * height)
         shift = middle - factor * complex(0.5 * size[1], 0.5 * size[0])
         canvas = tuple(
@@ -119,7 +119,7 @@ class FittedMask:
                 loops.append((area, points[::-1]))
         return [points for _, points in sorted(loops, key=lambda item: -item[0])]
 
-    def drawn(self, pose: Similarity, shape: tuple[int, ...], margin: int = 0) -> FloatArray:
+    def posed(self, pose: Similarity, shape: tuple[int, ...], margin: int = 0) -> FloatArray:
         """Coverage after ``pose``, in the pixels of another mask of ``shape`` widened by ``margin``; bilinear.
 
         Returns
@@ -141,7 +141,7 @@ class FittedMask:
         return complex(column.mean() + 0.5, self.coverage.shape[0] - 0.5 - row.mean())
 
 
-def foreground(mask: npt.ArrayLike, name: str = "mask") -> BoolArray:
+def _foreground(mask: npt.ArrayLike, number: int) -> BoolArray:
     """Threshold a 2-D mask at half of its range (1 for booleans and 0/1, 255 beyond that).
 
     Raises
@@ -152,16 +152,14 @@ def foreground(mask: npt.ArrayLike, name: str = "mask") -> BoolArray:
     try:
         array = np.asarray(mask)
     except ValueError:
-        raise KirigamiError(f"The {name} must be a 2-D array of numbers, got rows of different lengths.") from None
+        raise KirigamiError("mask.ragged", number=number) from None
     if array.ndim != 2 or array.size == 0 or array.dtype.kind not in "buif":
-        raise KirigamiError(f"The {name} must be a 2-D array of numbers, got shape {array.shape} of {array.dtype}.")
+        raise KirigamiError("mask.not_a_table", number=number, shape=array.shape, kind=array.dtype)
     values = array.astype(np.float64)
     if not np.isfinite(values).all():
         row, column = np.argwhere(~np.isfinite(values))[0]
-        raise KirigamiError(f"The {name} holds {values[row, column]} at row {row}, column {column}; use 0 and 1.")
+        raise KirigamiError("mask.not_finite", number=number, value=values[row, column], row=row, column=column)
     filled: BoolArray = values >= (0.5 if values.max() <= 1.0 else 127.5)
     if not filled.any():
-        raise KirigamiError(
-            f"The {name} is empty: no pixel of its {values.shape[0]} x {values.shape[1]} is foreground."
-        )
+        raise KirigamiError("mask.empty", number=number, rows=values.shape[0], columns=values.shape[1])
     return filled

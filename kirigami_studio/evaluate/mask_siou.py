@@ -48,7 +48,7 @@ def mask_siou(a: npt.ArrayLike, b: npt.ArrayLike, *, crop: bool = False) -> tupl
     a, b : (H, W) bool, 0/1 or 0..255
         Masks of any size; row 0 on top.
     crop : bool
-        Leave out all that leaves the canvas of the mask drawn into, as the paper's released evaluator does; only for
+        Leave out all that leaves the canvas of the fixed mask, as the paper's released evaluator does; only for
         comparison with its numbers, since it flatters poor matches by up to 0.18.
 
     Returns
@@ -63,7 +63,7 @@ def mask_siou(a: npt.ArrayLike, b: npt.ArrayLike, *, crop: bool = False) -> tupl
     KirigamiError
         A mask that is empty, not 2-D, or not finite.
     """
-    first, second = FittedMask.from_array(a, "first mask"), FittedMask.from_array(b, "second mask")
+    first, second = FittedMask.from_array(a, 1), FittedMask.from_array(b, 2)
     # One order for both calls: the search then takes the same path whichever mask is named first.
     swapped = first.key > second.key
     value, laid = _best_pose(second, first, crop) if swapped else _best_pose(first, second, crop)
@@ -78,10 +78,10 @@ def _best_pose(moving: FittedMask, fixed: FittedMask, crop: bool) -> tuple[float
     if not (moving.solid and fixed.solid):
         poses += _pixel_poses(moving, fixed)
 
-    def drawn(pose: Similarity) -> float:
-        return 0.5 * (_drawn_iou(moving, fixed, pose, crop) + _drawn_iou(fixed, moving, pose.inverse(), crop))
+    def both_ways(pose: Similarity) -> float:
+        return 0.5 * (_posed_iou(moving, fixed, pose, crop) + _posed_iou(fixed, moving, pose.inverse(), crop))
 
-    values = [drawn(pose) for pose in poses]
+    values = [both_ways(pose) for pose in poses]
     best = int(np.argmax(values))
     return values[best], poses[best]
 
@@ -154,28 +154,28 @@ def _climbed(fixed: FittedMask, start: Similarity, value: Callable[[Similarity],
 
 def _soft_iou(moving: FittedMask, fixed: FittedMask, pose: Similarity) -> float:
     """IoU with fractional coverage, for climbing from afar: the smaller coverage is common."""
-    seen = moving.drawn(pose, fixed.coverage.shape)
+    seen = moving.posed(pose, fixed.coverage.shape)
     common = float(np.minimum(seen, fixed.coverage).sum())
     return common / (moving.area * pose.scale**2 + fixed.area - common)
 
 
-def _drawn_iou(moving: FittedMask, fixed: FittedMask, pose: Similarity, crop: bool) -> float:
-    """IoU of the moving mask, drawn into the pixels of the fixed one, with room for all that sticks out."""
+def _posed_iou(moving: FittedMask, fixed: FittedMask, pose: Similarity, crop: bool) -> float:
+    """IoU of the moving mask in its pose, in the pixels of the fixed one, with room for all that sticks out."""
     height, width = moving.coverage.shape
     corners = pose.apply([(0.0, 0.0), (width, 0.0), (width, height), (0.0, height)])
     beyond = float(np.maximum(-corners, corners - fixed.coverage.shape[::-1]).max())
     margin = max(0, math.ceil(beyond)) + RIM
-    drawn = moving.drawn(pose, fixed.coverage.shape, margin) >= 0.5
+    seen = moving.posed(pose, fixed.coverage.shape, margin) >= 0.5
     still = np.pad(fixed.filled, margin)
     rows, columns = (slice(max(0, part.start + margin), part.stop + margin) for part in fixed.canvas)
     if crop:
-        drawn, still = drawn[rows, columns], still[rows, columns]
+        seen, still = seen[rows, columns], still[rows, columns]
     else:
-        rim = np.zeros(drawn.shape, dtype=np.bool_)
+        rim = np.zeros(seen.shape, dtype=np.bool_)
         rim[_widened(rows), _widened(columns)] = True
         rim[rows, columns] = False
-        drawn, still = drawn & ~rim, still & ~rim
-    return float(raster_iou(drawn, still))
+        seen, still = seen & ~rim, still & ~rim
+    return float(raster_iou(seen, still))
 
 
 def _widened(part: slice) -> slice:

@@ -57,7 +57,7 @@ def opened_size(deployment: Deployment, pose: Similarity, target: Outline, width
         A width that is not above 0.
     """
     if not width_mm > 0:
-        raise UsageError(f"The sheet's width must be above 0 mm, got {width_mm:g}.")
+        raise UsageError("opened_size.width_not_positive", width_mm=width_mm)
     # Panels are rigid: a cell of the flat sheet has the same length in the opened one.
     flat = float(np.ptp(deployment.compact[:, 0])) * pose.scale
     width, height = np.ptp(target.points, axis=0).tolist()

@@ -34,10 +34,7 @@ class Similarity:
         scale, angle = float(self.scale), float(self.angle)
         shift = (float(self.shift[0]), float(self.shift[1]))
         if not (math.isfinite(scale) and scale > 0 and math.isfinite(angle) and all(map(math.isfinite, shift))):
-            raise KirigamiError(
-                f"A similarity needs a positive scale and finite numbers, got scale {scale:g}, angle {angle:g}, "
-                f"shift ({shift[0]:g}, {shift[1]:g})."
-            )
+            raise KirigamiError("similarity.not_finite", scale=scale, angle=angle, x=shift[0], y=shift[1])
         object.__setattr__(self, "scale", scale)
         object.__setattr__(self, "angle", cmath.phase(cmath.exp(1j * angle)) if abs(angle) > math.pi else angle)
         object.__setattr__(self, "shift", shift)

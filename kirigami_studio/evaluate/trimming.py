@@ -36,7 +36,7 @@ from kirigami_studio.outlines.outline import Outline
 
 #: Depth (unit cells) of the material that stays at every hinge unless something else is asked for.
 KEEP = 0.15
-#: Between these depths hinges are held and panels can still be trimmed.
+#: Between these depths hinges hold and panels can still be trimmed.
 SMALLEST_KEEP, LARGEST_KEEP = 0.02, 0.4
 
 
@@ -122,7 +122,7 @@ def trim(
     phi, keep = check_phi(phi), check_keep(keep)
     sheet = Polygon(deployment.outline(phi))
     if not sheet.is_valid:
-        raise KirigamiError("This layout crosses itself at the target angle, so it cannot be trimmed; choose another.")
+        raise KirigamiError("trim.crosses_itself")
     place = Polygon(pose.inverse().apply(target.points))
     panels = edge_panels(deployment.field.rows, deployment.field.columns)
     corners = deployment.compact[panels.corners]
@@ -160,9 +160,7 @@ def check_keep(keep: float) -> float:
     except (TypeError, ValueError):
         depth = math.nan
     if not SMALLEST_KEEP <= depth <= LARGEST_KEEP:
-        raise UsageError(
-            f"The material kept at hinges must be {SMALLEST_KEEP:g} to {LARGEST_KEEP:g} cells deep, got {keep!r}."
-        )
+        raise UsageError("trim.keep_out_of_range", least=SMALLEST_KEEP, most=LARGEST_KEEP, keep=keep)
     return depth
 
 
@@ -203,4 +201,4 @@ def _ring(shape: Polygon) -> FloatArray:
 
 def _stop_if(cancel: Callable[[], bool]) -> None:
     if cancel():
-        raise Cancelled("Trimming was stopped.")
+        raise Cancelled("trim.stopped")

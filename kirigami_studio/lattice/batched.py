@@ -19,7 +19,7 @@ from torch import Tensor
 from kirigami_studio.foundation.arrays import FloatArray, IntArray
 from kirigami_studio.foundation.errors import RatioError
 from kirigami_studio.lattice.compact import barycentric_stencil
-from kirigami_studio.lattice.outline_map import even_part_of_outline
+from kirigami_studio.lattice.deployment import even_part_of_outline
 from kirigami_studio.lattice.topology import topology
 
 
@@ -93,7 +93,7 @@ class BatchedLattice:
     def _weights(self, ratio: Tensor) -> Tensor:
         """Stencil weights of designs (B, m, n), both ends of every free node: (B, 2 K)."""
         if ratio.ndim != 3 or tuple(ratio.shape[1:]) != (self.rows, self.columns):
-            raise RatioError(f"Ratios must have shape (B, {self.rows}, {self.columns}), got {tuple(ratio.shape)}.")
+            raise RatioError("ratios.wrong_batch_shape", rows=self.rows, columns=self.columns, shape=tuple(ratio.shape))
         x = ratio.to(self.device, self.dtype).flatten(1).index_select(1, self._void)
         return torch.stack([x / (1 + x), 1 / (1 + x)], dim=-1).flatten(1)
 

@@ -84,7 +84,7 @@ def _cell_size(cell: tuple[float, float]) -> FloatArray:
     except (TypeError, ValueError, OverflowError):
         size = frozen([])
     if size.shape != (2,) or not np.all(np.isfinite(size) & (size > 0)):
-        raise UsageError(f"A cell needs a width and a height above 0, got {cell!r}.")
+        raise UsageError("cell.not_positive", cell=cell)
     return size
 
 

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -23,6 +24,9 @@ from kirigami_studio.lattice.topology import Topology, topology
 
 #: Below this angle (radians) the edge hinges count as zipped and leave the outline.
 ZIPPED_BELOW = 1e-9
+
+#: Columns of the identity mapped at a time: keeps 64 x 64 grids below 100 MB.
+BLOCK = 512
 
 
 def check_phi(phi: float) -> float:
@@ -36,9 +40,9 @@ def check_phi(phi: float) -> float:
     try:
         angle = float(phi)
     except (TypeError, ValueError):
-        raise AngleError(f"The deployment angle must be a number of radians, got {phi!r}.") from None
+        raise AngleError("angle.not_a_number", phi=phi) from None
     if not 0.0 <= angle <= math.pi:
-        raise AngleError(f"The deployment angle must lie in [0, pi] radians (pi = compact), got {angle:g}.")
+        raise AngleError("angle.out_of_range", phi=angle)
     return angle
 
 
@@ -142,3 +146,20 @@ def even_panel_part(nodes: FloatArray, tables: Topology) -> FloatArray:
     u_v[:, 1:] = u_h[1:] + np.where(even_panel[..., None], v[:, 1:] - h[1:], 0.0)
     u_v[:, 0] = u_h[1:, 0] + np.where(even_panel[:, :1], v[:, 0] - h[1:, 0], 0.0)
     return np.concatenate([u_h.reshape(-1, nodes.shape[-1]), u_v.reshape(-1, nodes.shape[-1])])
+
+
+@lru_cache(maxsize=16)
+def even_part_of_outline(rows: int, columns: int) -> FloatArray:
+    """Matrix E with U = E P on the outline loop: (L, N) float, read-only.
+
+    L is 4 (rows + columns) + 4, N the number of nodes; V follows as the loop's nodes less the root less U.
+    """
+    tables = topology(rows, columns)
+    loop = tables.outline_nodes
+    matrix = np.empty((loop.size, tables.node_count))
+    for start in range(0, tables.node_count, BLOCK):
+        width = min(BLOCK, tables.node_count - start)
+        basis = np.eye(tables.node_count, width, -start)
+        matrix[:, start : start + width] = even_panel_part(basis, tables)[loop]
+    matrix.setflags(write=False)
+    return matrix

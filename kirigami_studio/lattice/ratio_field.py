@@ -1,4 +1,4 @@
-"""The design variables: one positive side ratio per void."""
+"""The design variables: the ratio field x, one positive side ratio per void (paper, Sec. 2.1)."""
 
 from __future__ import annotations
 
@@ -26,9 +26,9 @@ def check_grid(rows: int, columns: int) -> None:
         With both numbers in the sentence.
     """
     if not all(isinstance(count, (int, np.integer)) and not isinstance(count, bool) for count in (rows, columns)):
-        raise GridError(f"A grid must have whole numbers of voids each way, got {rows!r} x {columns!r}.")
+        raise GridError("grid.not_whole_numbers", rows=rows, columns=columns)
     if not all(SMALLEST_GRID <= count <= LARGEST_GRID for count in (rows, columns)):
-        raise GridError(f"A grid must have {SMALLEST_GRID} to {LARGEST_GRID} voids each way, got {rows} x {columns}.")
+        raise GridError("grid.out_of_range", least=SMALLEST_GRID, most=LARGEST_GRID, rows=rows, columns=columns)
 
 
 def frozen(values: npt.ArrayLike) -> FloatArray:
@@ -53,20 +53,24 @@ class RatioField:
     def __post_init__(self) -> None:
         ratio = _table(self.ratio)
         if ratio.ndim != 2:
-            raise RatioError(f"Ratios must have shape (m, n), got {ratio.shape}.")
+            raise RatioError("ratios.wrong_shape", shape=ratio.shape)
         check_grid(*ratio.shape)
         if not np.all(np.isfinite(ratio)):
             row, column = np.argwhere(~np.isfinite(ratio))[0]
-            raise RatioError(f"Ratio at void ({row}, {column}) is {ratio[row, column]}; it must be finite.")
+            raise RatioError("ratio.not_finite", row=row, column=column, ratio=float(ratio[row, column]))
         if not np.all(ratio > 0):
             row, column = np.argwhere(ratio <= 0)[0]
-            raise RatioError(f"Ratio at void ({row}, {column}) is {ratio[row, column]:g}; it must be above 0.")
+            raise RatioError("ratio.not_positive", row=row, column=column, ratio=float(ratio[row, column]))
         outside = (ratio < SMALLEST_RATIO) | (ratio > LARGEST_RATIO)
         if np.any(outside):
             row, column = np.argwhere(outside)[0]
             raise RatioError(
-                f"Ratio at void ({row}, {column}) is {ratio[row, column]:g}; it must lie in "
-                f"{SMALLEST_RATIO:g} to {LARGEST_RATIO:g}, where the layout is exact."
+                "ratio.out_of_range",
+                row=row,
+                column=column,
+                ratio=float(ratio[row, column]),
+                least=SMALLEST_RATIO,
+                most=LARGEST_RATIO,
             )
         object.__setattr__(self, "ratio", ratio)
 
@@ -107,11 +111,11 @@ class RatioField:
 
 
 def _table(values: npt.ArrayLike) -> FloatArray:
-    """Read-only float64 copy, or a sentence instead of numpy's own error."""
+    """Read-only float64 copy; a named problem instead of numpy's own errors."""
     try:
         table = np.asarray(values)
         if table.dtype.kind not in "iuf" and table.size:
             raise TypeError("text, truth values, complex numbers or whole numbers without bound")
         return frozen(table)
     except (TypeError, ValueError, OverflowError):
-        raise RatioError("Ratios must be an (m, n) table of numbers.") from None
+        raise RatioError("ratios.not_a_table") from None

@@ -54,7 +54,7 @@ class Result:
     candidates : tuple of Candidate
     forward_evaluations : int
         Number of decoded designs, the paper's #F: for each sample one to score it and those that the generator looked
-        at while it drew, and those that polishing and search tried.
+        at while it sampled, and those that polishing and search tried.
     seconds : float
         Wall time of the run; the only part that differs between two equal requests without a budget.
     budget_ended : bool

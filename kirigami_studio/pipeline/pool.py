@@ -23,10 +23,9 @@ from typing import IO
 
 import kirigami_studio
 from kirigami_studio.foundation.log import topic
-from kirigami_studio.pipeline.messages import Assignment, Done, Failed, Ready, Report, Stop
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.pipeline.tasks import Answer, Task
-from kirigami_studio.pipeline.worker import WORKER_FLAG
+from kirigami_studio.pipeline.worker import WORKER_FLAG, Assignment, Done, Failed, Ready, Report, Stop
 
 log: logging.Logger = topic("pipeline")
 
@@ -123,7 +122,7 @@ class Pool:
         self._reports: SimpleQueue[tuple[Worker, Report | None]] = SimpleQueue()
         self._broken = self.size < 2
         self._batch = 0
-        self._held = False
+        self._winding_down = False
         self._taken = threading.Lock()
 
     @property
@@ -162,16 +161,16 @@ class Pool:
         if self._broken or not self._taken.acquire(blocking=False):
             return
         self._batch += 1
-        self._held = False
+        self._winding_down = False
         try:
             yield from self._served(request, deque(tasks), self._batch, wait)
         finally:
-            self.hold()
+            self.wind_down()
             self._taken.release()
 
-    def hold(self) -> None:
+    def wind_down(self) -> None:
         """Begin no more tasks of this batch, and answer those under way with the best so far, within one step."""
-        self._held = True
+        self._winding_down = True
         for worker in self.workers:
             if worker.assignment is not None:
                 worker.send(Stop(self._batch))
@@ -186,9 +185,9 @@ class Pool:
         self, request: Request, waiting: deque[tuple[int, Task]], batch: int, wait: float
     ) -> Iterator[tuple[int, Answer] | None]:
         self.start()
-        while self.workers and (self._under_way(batch) or (waiting and not self._held)):
+        while self.workers and (self._under_way(batch) or (waiting and not self._winding_down)):
             for worker in self.workers:
-                if waiting and not self._held and worker.ready and worker.assignment is None:
+                if waiting and not self._winding_down and worker.ready and worker.assignment is None:
                     number, task = waiting.popleft()
                     worker.assignment = Assignment(batch, number, request, task)
                     worker.send(worker.assignment)  # a dead one is noticed by its listener

@@ -9,7 +9,7 @@ from collections.abc import Iterable
 
 from kirigami_studio.evaluate.candidate import Candidate
 
-#: The sIoU (0..1) that who prefers this gives away for a total variation (per void) that is lower by 1.
+#: The sIoU (0..1) that this preference gives away for a total variation (per void) that is lower by 1.
 WORTH = {"accuracy": 0.0, "balanced": 0.0, "regularity": 0.005, "calm": 0.03}
 #: The sIoU that a fit may lose at most, whatever it gains: less still counts as equal.
 MOST_LOST = 0.003
@@ -26,9 +26,9 @@ def rank_key(candidate: Candidate) -> tuple[bool, float, float, float, int]:
 def improves(after: Candidate, before: Candidate, prefer: str) -> bool:
     """Whether a fitted design may take the place of the one it came from.
 
-    A fit that prefers calm panels gives away some match; it is worth its place if that is no more than ``MOST_LOST``
-    and what was gained in total variation outweighs it.  ``prefer`` is a key of
-    :data:`kirigami_studio.polish.regularity.PREFERENCES`.
+    A fit that prefers low total variation gives away some match; it is worth its place if that is no more than
+    ``MOST_LOST`` and what was gained in total variation outweighs it.  ``prefer`` is a key of
+    :data:`kirigami_studio.polish.preferences.PREFERENCES`.
     """
     worth = WORTH[prefer]
 

@@ -25,7 +25,7 @@ from kirigami_studio.pipeline.rank import improves
 from kirigami_studio.pipeline.threads import one_blas_thread
 from kirigami_studio.polish.covering import fit_cover
 from kirigami_studio.polish.levenberg import polish
-from kirigami_studio.polish.regularity import PREFERENCES
+from kirigami_studio.polish.preferences import PREFERENCES
 
 #: Steps of the fit before trimming.
 COVER_STEPS = 12
@@ -168,7 +168,7 @@ def refitted(
     candidate : Candidate
     target : Outline
     prefer : str
-        A key of :data:`kirigami_studio.polish.regularity.PREFERENCES`.
+        A key of :data:`kirigami_studio.polish.preferences.PREFERENCES`.
     locked : collection of (row, column)
         Voids that keep the ratios that are seen: those of the trim, if the candidate is trimmed.
     keep : callable
@@ -185,11 +185,10 @@ def refitted(
     table = np.zeros(candidate.field.ratio.shape, dtype=np.bool_)
     for void in locked:
         table[void] = True
-    kept = table if table.any() else None
     start = RatioField(np.where(table, candidate.final_field.ratio, candidate.field.ratio))
     score, preference = candidate.score, PREFERENCES[prefer]
     with one_blas_thread():
-        fit = polish(start, target, score.phi, REFIT_STEPS, preference, score.transform, cancel, held=kept)
+        fit = polish(start, target, score.phi, REFIT_STEPS, preference, score.transform, cancel, locked=table)
         _stop_if(cancel)
         found = evaluate_near(deploy(fit.field), target, score.phi, fit.pose)
     first = candidate.sampled_field or candidate.field
@@ -198,7 +197,7 @@ def refitted(
     if candidate.trim is None:
         return Refit(fitted, better)
     try:
-        again = trimmed(fitted, target, keep(), cancel, kept)
+        again = trimmed(fitted, target, keep(), cancel, table)
     except KirigamiError as problem:
         return Refit(fitted, better, problem)
     _stop_if(cancel)

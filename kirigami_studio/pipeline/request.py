@@ -1,16 +1,18 @@
-"""What a person asked for: everything that decides the result, and nothing else."""
+"""What a person asked for: everything that decides the result, and what files repeat of it."""
 
 from __future__ import annotations
 
+import hashlib
 import math
 from dataclasses import dataclass
 
+from kirigami_studio import __version__
 from kirigami_studio.evaluate.trimming import KEEP, check_keep
 from kirigami_studio.foundation.errors import AngleError, UsageError
 from kirigami_studio.lattice.ratio_field import RatioField, check_grid
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.polish.panel_size import check_least
-from kirigami_studio.polish.regularity import PREFERENCES
+from kirigami_studio.polish.preferences import PREFERENCES
 
 LARGEST_K = 1024
 LARGEST_STEPS = 64
@@ -40,9 +42,9 @@ class Request:
         :func:`kirigami_studio.generator.flow.integrate`.
     polish : int, 0..200
         Steps of the fit on the exact geometry that every candidate gets after sampling, in one or two rounds;
-        0 leaves them as drawn.
+        0 leaves them as sampled.
     prefer : str
-        What the fits prefer among nearly equal matches, see :data:`kirigami_studio.polish.regularity.PREFERENCES`.
+        What the fits prefer among nearly equal matches, see :data:`kirigami_studio.polish.preferences.PREFERENCES`.
     least_panel : float, unit cells, 0..0.9
         Panel edges and necks that fits try not to fall below; 0 for any size.
     search : int, 0..8
@@ -56,7 +58,7 @@ class Request:
     near : RatioField, optional
         A design of the same grid that the samples are to be like.
     nearness : float, 0..1 without 1
-        How near they are to lie: the time of the flow at which they start from that design.  0 draws from noise alone,
+        How near they are to lie: the time of the flow at which they start from that design.  0 starts from noise alone,
         in that design's pose.
     """
 
@@ -80,18 +82,18 @@ class Request:
     def __post_init__(self) -> None:
         check_grid(*self.grid)
         if not 0.0 <= self.phi < math.pi:
-            raise AngleError(f"The target angle must lie in [0, pi) radians, got {self.phi:g}; 0 is the usual choice.")
-        for name, value, low, high in (
-            ("candidates (k)", self.k, 1, LARGEST_K),
-            ("sampling steps", self.steps, 1, LARGEST_STEPS),
-            ("the seed", self.seed, 0, 2**63 - 1),
-            ("polishing steps", self.polish, 0, LARGEST_POLISH),
-            ("the search effort", self.search, 0, LARGEST_SEARCH),
+            raise AngleError("request.angle_out_of_range", phi=self.phi)
+        for code, value, least, most in (
+            ("request.k_out_of_range", self.k, 1, LARGEST_K),
+            ("request.steps_out_of_range", self.steps, 1, LARGEST_STEPS),
+            ("request.seed_out_of_range", self.seed, 0, 2**63 - 1),
+            ("request.polish_out_of_range", self.polish, 0, LARGEST_POLISH),
+            ("request.search_out_of_range", self.search, 0, LARGEST_SEARCH),
         ):
-            if isinstance(value, bool) or not isinstance(value, int) or not low <= value <= high:
-                raise UsageError(f"The number for {name} must be a whole number from {low} to {high}, got {value!r}.")
+            if isinstance(value, bool) or not isinstance(value, int) or not least <= value <= most:
+                raise UsageError(code, value=value, least=least, most=most)
         if self.prefer not in PREFERENCES:
-            raise UsageError(f"A fit can prefer {', '.join(PREFERENCES)}, not {self.prefer!r}.")
+            raise UsageError("request.unknown_preference", prefer=self.prefer, choices=", ".join(PREFERENCES))
         check_least(self.least_panel)
         check_keep(self.keep)
         self._check_near()
@@ -99,15 +101,48 @@ class Request:
         if budget is None:
             return
         if isinstance(budget, bool) or not isinstance(budget, int | float) or not 0.0 < budget < math.inf:
-            raise UsageError(f"The time budget must be a finite number of seconds above 0, got {budget!r}.")
+            raise UsageError("request.budget_not_positive", budget=budget)
 
     def _check_near(self) -> None:
         nearness = self.nearness
         if isinstance(nearness, bool) or not isinstance(nearness, int | float) or not 0.0 <= nearness < 1.0:
-            raise UsageError(f"The nearness must be a number from 0 to less than 1, got {nearness!r}.")
+            raise UsageError("request.nearness_out_of_range", nearness=nearness)
         if self.near is None:
             if nearness:
-                raise UsageError("A nearness needs the design that the samples are to be near.")
+                raise UsageError("request.nearness_without_design")
         elif self.near.ratio.shape != tuple(self.grid):
-            near, wanted = (" x ".join(map(str, grid)) for grid in (self.near.ratio.shape, self.grid))
-            raise UsageError(f"Samples near a design have its grid of {near} voids, not {wanted}.")
+            (rows, columns), near = self.grid, self.near
+            raise UsageError(
+                "request.near_other_grid", near_rows=near.rows, near_columns=near.columns, rows=rows, columns=columns
+            )
+
+
+def provenance(request: Request, digest: str) -> dict[str, str]:
+    """Describe a run so that it can be repeated, for projects and exported files; what was not asked for is left out.
+
+    The generator's weights have the SHA-256 ``digest``.
+
+    A design that the samples are near is named by the start of the SHA-256 of its ratios, row by row, as doubles.
+    """
+    known = {
+        "application": f"kirigami-studio {__version__}",
+        "model": request.variant,
+        "model_sha256": digest,
+        "k": str(request.k),
+        "steps": str(request.steps),
+        "polish": str(request.polish),
+    }
+    if request.polish or request.search:
+        known["prefer"] = request.prefer
+    if request.least_panel:
+        known["least_panel"] = f"{request.least_panel:g}"
+    if request.trim:
+        known["trim_keep"] = f"{request.keep:g}"
+    if request.search:
+        known["search"] = str(request.search)
+    if request.near is not None:
+        known["near"] = hashlib.sha256(request.near.ratio.tobytes()).hexdigest()[:16]
+        known["nearness"] = f"{request.nearness:g}"
+    if request.budget_seconds is not None:
+        known["budget_seconds"] = f"{request.budget_seconds:g}"
+    return known

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.foundation.errors import Cancelled
+from kirigami_studio.foundation.words import mark, tr
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.outlines.outline import Outline
@@ -60,17 +61,33 @@ class Watch:
         """Whether work should end with the best so far, for either reason."""
         return self.expired() or self.cancel()
 
-    def check(self, sentence: str) -> None:
+    def check(self, code: str, done: int, total: int) -> None:
         """End the run if the user asked for it.
 
         Raises
         ------
         Cancelled
-            With ``sentence``, which tells how far it came.
+            With ``code``, and how far the run came.
         """
         if self.cancel():
-            raise Cancelled(f"{sentence}; nothing was changed.")
+            raise Cancelled(code, done=done, total=total)
 
+
+@dataclass(frozen=True, slots=True)
+class Stage:
+    """A part of a run that works on several designs: what it says on the way, and the code for its cancellation."""
+
+    words: str
+    stopped: str
+
+    def progress(self, done: int, total: int) -> Progress:
+        """How far it is."""
+        return Progress(done, total, tr(self.words, done=done, total=total))
+
+
+POLISHING = Stage(mark("Polishing: {done} of {total} done"), "run.stopped_polishing")
+SEARCHING = Stage(mark("Searching: {done} of {total} done"), "run.stopped_searching")
+TRIMMING = Stage(mark("Trimming: {done} of {total} done"), "run.stopped_trimming")
 
 #: Seconds of one step of a fit at 10 x 10, which grow with the number of voids to this power.
 STEP_SECONDS, STEP_GROWTH = 3e-3, 1.5
@@ -97,7 +114,7 @@ def work_seconds(request: Request) -> float:
 
 
 def gains(pool: Pool, request: Request) -> bool:
-    """Whether ``pool`` would do the request's fits sooner, or without holding up this process."""
+    """Whether ``pool`` would do the request's fits sooner, or without blocking this process."""
     busy = request.polish > 0 or request.search > 0
     return busy and pool.usable and (pool.ready or work_seconds(request) > WORTH_STARTING)
 
@@ -131,7 +148,7 @@ def _by_workers(
             yield report
             if stopped_at is None and watch.expired():
                 stopped_at = time.perf_counter()
-                pool.hold()
+                pool.wind_down()
             if stopped_at is not None and time.perf_counter() > stopped_at + GRACE:
                 return
 
@@ -163,7 +180,7 @@ def run(request: Request, cancel: Callable[[], bool] = never, pool: Pool | None 
 
     The result does not depend on who polishes, on the number of workers, or on the order in which they end; only a
     budget makes it depend on the clock.  All ``k`` samples are returned: a duplicate of a better sample is kept as it
-    was drawn, and what a search finds is added as number ``k``.
+    was sampled, and what a search finds is added as number ``k``.
 
     Parameters
     ----------
@@ -189,7 +206,7 @@ def run(request: Request, cancel: Callable[[], bool] = never, pool: Pool | None 
     watch = Watch(cancel, time.perf_counter(), request.budget_seconds)
     work = _Work(request, watch, _gaining(pool or shared_pool(), request))
     yield Started(request.k)
-    yield Progress(0, request.k, "Loading the generator")
+    yield Progress(0, request.k, tr("Loading the generator"))
     fields = sample(request)
     work.evaluations += request.k * decodings(request)
     yield from work.score(fields)
@@ -204,25 +221,25 @@ def run(request: Request, cancel: Callable[[], bool] = never, pool: Pool | None 
 
 
 def sample(request: Request) -> tuple[RatioField, ...]:
-    """Draw the request's fields; torch is imported here, on the first run, and not when the program starts."""
+    """Sample the request's fields; torch is imported here, on the first run, and not when the program starts."""
     from kirigami_studio.generator.sampler import Near, draw_fields
     from kirigami_studio.generator.weights import load_model
 
     model = load_model(request.variant)
-    drawn = model, request.target, request.grid, request.k, request.seed, request.steps, request.phi
+    wanted = model, request.target, request.grid, request.k, request.seed, request.steps, request.phi
     if request.near is None:
-        return draw_fields(*drawn)
-    near = Near(request.near, lying(request.near, request.target, request.phi), request.nearness)
-    return draw_fields(*drawn, near=near)
+        return draw_fields(*wanted)
+    near = Near(request.near, rotation_of_target(request.near, request.target, request.phi), request.nearness)
+    return draw_fields(*wanted, near=near)
 
 
-def lying(field: RatioField, target: Outline, phi: float) -> float:
+def rotation_of_target(field: RatioField, target: Outline, phi: float) -> float:
     """Rotation, radians, that brings the target into the pose in which a design shows it."""
     return -evaluate(deploy(field), target, phi).transform.angle
 
 
 def decodings(request: Request) -> int:
-    """How often the generator decodes a sample while it draws it; scoring it is one more."""
+    """How often the generator decodes a sample while it samples it; scoring it is one more."""
     from kirigami_studio.generator.weights import load_model
 
     return load_model(request.variant).decodings(request.steps)
@@ -241,7 +258,7 @@ class _Work:
         """Score all samples, the first batch even when the budget is used up."""
         total = len(fields)
         for start in range(0, total, SCORED_TOGETHER):
-            self.watch.check(f"Stopped after {start} of {total} candidates")
+            self.watch.check("run.stopped_scoring", start, total)
             if start and self.watch.expired():
                 self.cut_short = True
                 return
@@ -249,7 +266,8 @@ class _Work:
                 self.found.append(candidate)
                 self.evaluations += 1
                 yield CandidateFound(candidate.index, candidate)
-            yield Progress(len(self.found), total, f"Candidate {len(self.found)} of {total}")
+            done = len(self.found)
+            yield Progress(done, total, tr("Candidate {done} of {total}", done=done, total=total))
 
     def polish(self) -> Iterator[Event]:
         """Fit the candidates that differ, best first: a few steps for all of them, then the rest for all."""
@@ -267,7 +285,7 @@ class _Work:
         return [PolishTask(candidate, left if candidate.polished else self.request.polish) for candidate in now]
 
     def _polished(self, tasks: Sequence[PolishTask], done: int, total: int) -> Iterator[Event]:
-        for report in self._carried_out(tasks, "polishing", done, total):
+        for report in self._carried_out(tasks, POLISHING, done, total):
             if isinstance(report, Progress):
                 yield report
                 continue
@@ -276,12 +294,12 @@ class _Work:
             if answer.candidate is not None:
                 self.found[tasks[number].candidate.index] = answer.candidate
                 yield CandidateImproved(answer.candidate.index, answer.candidate)
-            yield Progress(done, total, f"Polishing, {done} of {total} done")
+            yield POLISHING.progress(done, total)
 
     def search(self) -> Iterator[Event]:
         """Look for a better design from the best that differ and from scratch."""
         starts = tuple(candidate.field for candidate in worth_a_fit(self.found)[:SEARCH_STARTS])
-        for report in self._carried_out([SearchTask(self.request.k, starts)], "searching", 0, 1):
+        for report in self._carried_out([SearchTask(self.request.k, starts)], SEARCHING, 0, 1):
             if isinstance(report, Progress):
                 yield report
             elif report[1].candidate is not None:
@@ -291,7 +309,7 @@ class _Work:
     def trim(self) -> Iterator[Event]:
         """Trim the best that differ."""
         chosen = worth_a_fit(self.found)[:TRIMMED]
-        for report in self._carried_out([TrimTask(candidate) for candidate in chosen], "trimming", 0, len(chosen)):
+        for report in self._carried_out([TrimTask(candidate) for candidate in chosen], TRIMMING, 0, len(chosen)):
             if isinstance(report, Progress):
                 yield report
             elif report[1].candidate is not None:
@@ -300,14 +318,14 @@ class _Work:
                 yield CandidateImproved(report[1].candidate.index, report[1].candidate)
 
     def _carried_out(
-        self, tasks: Sequence[Task], doing: str, done: int, total: int
+        self, tasks: Sequence[Task], stage: Stage, done: int, total: int
     ) -> Iterator[Progress | tuple[int, Answer]]:
         """Answers as they come, with signs of life in between."""
         told = time.perf_counter()
-        yield Progress(done, total, f"{doing.capitalize()}, {done} of {total} done")
+        yield stage.progress(done, total)
         with closing(answers(self.pool, self.request, tasks, self.watch)) as reports:
             for report in reports:
-                self.watch.check(f"Stopped while {doing}, with {done} of {total} done")
+                self.watch.check(stage.stopped, done, total)
                 now = time.perf_counter()
                 if report is not None:
                     done += 1
@@ -315,8 +333,8 @@ class _Work:
                     yield report
                 elif now - told > HEARTBEAT:
                     told = now
-                    yield Progress(done, total, f"{doing.capitalize()}, {done} of {total} done")
-        self.watch.check(f"Stopped while {doing}, with {done} of {total} done")
+                    yield stage.progress(done, total)
+        self.watch.check(stage.stopped, done, total)
         self.cut_short = self.cut_short or self.watch.expired()
 
 
@@ -333,4 +351,4 @@ def best_of(request: Request, cancel: Callable[[], bool] = never, pool: Pool | N
     for event in run(request, cancel, pool):
         if isinstance(event, Finished):
             return event.result
-    raise Cancelled("The run ended without a result.")
+    raise Cancelled("run.no_result")

@@ -16,7 +16,7 @@ from kirigami_studio.pipeline.request import Request
 from kirigami_studio.pipeline.threads import one_blas_thread
 from kirigami_studio.polish.continuation import fit_shape
 from kirigami_studio.polish.levenberg import polish
-from kirigami_studio.polish.regularity import PREFERENCES
+from kirigami_studio.polish.preferences import PREFERENCES
 
 
 @dataclass(frozen=True, slots=True)
@@ -127,7 +127,7 @@ def scored(
 ) -> list[Candidate]:
     """Decode fields exactly and score them against the request's target; their numbers count up from ``first``.
 
-    Unless told otherwise they are samples, drawn near another design where the request names one.
+    Unless told otherwise they are samples, near another design where the request names one.
     """
     if origin is None:
         origin = Origin.SAMPLED if request.near is None else Origin.RESAMPLED

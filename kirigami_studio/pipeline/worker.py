@@ -1,4 +1,6 @@
-"""The worker process: takes orders on standard input, answers on standard output, ends when its input ends.
+"""The worker process: takes assignments on standard input, reports on standard output, ends when its input ends.
+
+Messages both ways are pickled one after the other.
 
 A process of its own and not ``multiprocessing``: nothing is imported again from the program that starts it, so scripts
 without a guard, the window, frozen programs and machines without shared semaphores are all the same to it; and when the
@@ -11,11 +13,56 @@ import os
 import pickle
 import signal
 import threading
+from dataclasses import dataclass
 from queue import SimpleQueue
 from typing import BinaryIO
 
-from kirigami_studio.pipeline.messages import Assignment, Done, Failed, Ready, Report, Stop
-from kirigami_studio.pipeline.tasks import carry_out
+from kirigami_studio.pipeline.request import Request
+from kirigami_studio.pipeline.tasks import Answer, Task, carry_out
+
+
+@dataclass(frozen=True, slots=True)
+class Ready:
+    """A worker has imported what it needs."""
+
+
+@dataclass(frozen=True, slots=True)
+class Assignment:
+    """Do task ``number`` of batch ``batch``."""
+
+    batch: int
+    number: int
+    request: Request
+    task: Task
+
+
+@dataclass(frozen=True, slots=True)
+class Stop:
+    """Answer assignments of ``batch`` and all before it with the best so far, within one step."""
+
+    batch: int
+
+
+@dataclass(frozen=True, slots=True)
+class Done:
+    """The answer to an assignment."""
+
+    batch: int
+    number: int
+    answer: Answer
+
+
+@dataclass(frozen=True, slots=True)
+class Failed:
+    """An assignment ended with an error, which the run raises as if it had done the work itself."""
+
+    batch: int
+    number: int
+    error: Exception
+
+
+Report = Ready | Done | Failed
+
 
 #: The argument that makes a frozen program be a worker.
 WORKER_FLAG = "--worker"
@@ -28,7 +75,7 @@ def serve() -> int:
     answers = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)
     inbox = _Inbox(os.fdopen(os.dup(0), "rb"))
-    threading.Thread(target=inbox.listen, name="orders", daemon=True).start()
+    threading.Thread(target=inbox.listen, name="assignments", daemon=True).start()
     _say(answers, Ready())
     while True:
         assignment = inbox.assignments.get()
@@ -36,7 +83,7 @@ def serve() -> int:
 
 
 class _Inbox:
-    """Orders in turn, and which of them are to stop."""
+    """Assignments in turn, and which of them are to stop."""
 
     def __init__(self, source: BinaryIO) -> None:
         self.assignments: SimpleQueue[Assignment] = SimpleQueue()

@@ -28,7 +28,7 @@ from kirigami_studio.lattice.resize import resize_fields
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.polish.levenberg import Fit, check_fit, polish
 from kirigami_studio.polish.panel_size import check_least
-from kirigami_studio.polish.regularity import Regularity
+from kirigami_studio.polish.preferences import Preference
 from kirigami_studio.polish.symmetry import Symmetry, shared_symmetries
 
 #: Vertices of a thickened shape may move by this (unit-area lengths): round corners need no more.
@@ -99,7 +99,7 @@ def fit_shape(
     starts: Sequence[RatioField] = (),
     effort: int = 1,
     cancel: Callable[[], bool] = lambda: False,
-    regularity: Regularity | None = None,
+    preference: Preference | None = None,
     least_panel: float = 0.0,
 ) -> list[Fit]:
     """Search for the fields whose outline at ``phi`` matches ``target`` best.
@@ -115,7 +115,7 @@ def fit_shape(
         Multiplies the number of rotations and of fits that are carried to the end.
     cancel : callable
         Asked before every step; the best so far are returned.
-    regularity, least_panel
+    preference, least_panel
         As for :func:`polish`.
 
     Returns
@@ -131,17 +131,17 @@ def fit_shape(
     check_grid(*grid)
     phi = check_fit(phi, LAST_STEPS, NEAR)
     if not isinstance(effort, int) or isinstance(effort, bool) or not 1 <= effort <= LARGEST_EFFORT:
-        raise UsageError(f"The effort must be a whole number from 1 to {LARGEST_EFFORT}, got {effort!r}.")
-    search = _Search(target, phi, cancel, regularity or Regularity(), check_least(least_panel))
+        raise UsageError("search.effort_out_of_range", most=LARGEST_EFFORT, effort=effort)
+    search = _Search(target, phi, cancel, preference or Preference(), check_least(least_panel))
     coarse = _coarser(grid)
     found = search.first_looks(coarse, effort)
     found += [search.from_guess(lifted(start, coarse)) for start in starts]
-    best = search.finished(_best(found, KEPT * effort))
+    best = search.completed(_best(found, KEPT * effort))
     if coarse != grid:
         raised = [look for one in best for look in search.lifted(one, grid)]
         raised += [search.from_guess(lifted(start, grid)) for start in starts]
-        best = search.finished(_best(raised, KEPT * effort))
-    best = search.finished(best, FINE)
+        best = search.completed(_best(raised, KEPT * effort))
+    best = search.completed(best, FINE)
     best = _best([search.aligned(one) for one in (*best, search.plain(grid))], len(best))
     return [replace(one.fit, evaluations=search.evaluations) for one in best]
 
@@ -160,11 +160,11 @@ class _Search:
         target: Outline,
         phi: float,
         cancel: Callable[[], bool],
-        regularity: Regularity,
+        preference: Preference,
         least_panel: float,
     ) -> None:
         self.target, self.phi, self.cancel = target, phi, cancel
-        self.regularity, self.least_panel = regularity, least_panel
+        self.preference, self.least_panel = preference, least_panel
         self.evaluations = 0
 
     def first_looks(self, grid: tuple[int, int], effort: int) -> list[_Found]:
@@ -218,7 +218,7 @@ class _Search:
         routes = [thickened(self.target, margins) for margins in LIFTED_ROUTES]
         return [self._along(route, field, pose, coarse.symmetry) for route in routes]
 
-    def finished(self, found: list[_Found], trust: float = NEAR) -> list[_Found]:
+    def completed(self, found: list[_Found], trust: float = NEAR) -> list[_Found]:
         """The fits carried to the end, best first."""
         ends = [self._fit(one.fit.field, one.fit.pose, LAST_STEPS, trust, one.symmetry) for one in found]
         return _best([_best([end, one], 1)[0] for end, one in zip(ends, found, strict=True)], len(ends))
@@ -243,7 +243,7 @@ class _Search:
             target,
             self.phi,
             steps,
-            self.regularity,
+            self.preference,
             pose,
             self.cancel,
             trust=trust,

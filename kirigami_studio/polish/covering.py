@@ -62,7 +62,7 @@ def fit_cover(
     pose: Similarity | None = None,
     keep: float = KEEP,
     cancel: Callable[[], bool] = lambda: False,
-    held: BoolArray | None = None,
+    locked: BoolArray | None = None,
 ) -> Cover:
     """Fit a polished field so that its trimmed silhouette matches best.
 
@@ -79,13 +79,13 @@ def fit_cover(
         See :func:`trim`.
     cancel : callable
         Asked before every step; the best so far is returned.
-    held : (m, n) bool, optional
+    locked : (m, n) bool, optional
         Voids whose ratio stays exactly as it is.
 
     Raises
     ------
     AngleError, UsageError
-        An angle, a number of steps, a depth or a table of held voids that makes no sense.
+        An angle, a number of steps, a depth or a table of locked voids that makes no sense.
     KirigamiError
         The field's outline crosses itself.
     """
@@ -94,7 +94,7 @@ def fit_cover(
     pose = pose or align(deployment.outline(phi), target.points)
     best = _trimmed(Fit(field, pose, 0.0, 0, 0), target, phi, keep, cancel)
     fit = polish(
-        field, target, phi, steps, pose=_grown(pose, GROWN), cancel=cancel, trust=TRUST, excess=EXCESS, held=held
+        field, target, phi, steps, pose=_grown(pose, GROWN), cancel=cancel, trust=TRUST, excess=EXCESS, locked=locked
     )
     if fit.steps and path_contact(deploy(fit.field), phi) is None and not cancel():
         other = _trimmed(fit, target, phi, keep, cancel)

@@ -27,7 +27,7 @@ from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.polish.boundary_target import BoundaryTarget
 from kirigami_studio.polish.objective import POSE, TRUST, Look, Objective, Quadratic
 from kirigami_studio.polish.panel_size import check_least
-from kirigami_studio.polish.regularity import Regularity, RegularTerms
+from kirigami_studio.polish.preferences import Preference, PreferenceTerms
 from kirigami_studio.polish.sensitivity import OutlineModel
 from kirigami_studio.polish.symmetry import Symmetry
 
@@ -73,7 +73,7 @@ def polish(
     target: Outline,
     phi: float = 0.0,
     steps: int = 10,
-    regularity: Regularity | None = None,
+    preference: Preference | None = None,
     pose: Similarity | None = None,
     cancel: Callable[[], bool] = lambda: False,
     *,
@@ -81,7 +81,7 @@ def polish(
     least_panel: float = 0.0,
     symmetry: Symmetry | None = None,
     excess: float = 1.0,
-    held: BoolArray | None = None,
+    locked: BoolArray | None = None,
 ) -> Fit:
     """Fit ``field`` to ``target`` by at most ``steps`` accepted steps.
 
@@ -92,7 +92,7 @@ def polish(
     target : Outline
     phi : float, radians, in [0, pi)
     steps : int
-    regularity : Regularity, optional
+    preference : Preference, optional
     pose : Similarity, optional
         Layout frame at ``phi`` to target frame; aligned by IoU when missing.
     cancel : callable
@@ -105,7 +105,7 @@ def polish(
         The field keeps this symmetry of the lattice; the pose should lay the target's own upon it.
     excess : float, 0..1
         Weight of what sticks out of the target, relative to what is missed; below 1 for a layout that will be trimmed.
-    held : (m, n) bool, optional
+    locked : (m, n) bool, optional
         Voids whose ratio stays exactly as it is, even outside [0.1, 10].
 
     Raises
@@ -113,26 +113,26 @@ def polish(
     AngleError
         ``phi`` is not in [0, pi): the closed sheet is a rectangle whatever the ratios.
     UsageError
-        ``steps``, ``trust``, ``least_panel`` or ``excess`` is not a number that a fit can have, ``held`` is not a
-        table of the field's shape, or both voids are held and a symmetry is asked for.
+        ``steps``, ``trust``, ``least_panel`` or ``excess`` is not a number that a fit can have, ``locked`` is not a
+        table of the field's shape, or voids are locked and a symmetry is asked for.
     """
     phi = check_fit(phi, steps, trust)
-    kept = check_held(held, field)
-    if symmetry is not None and kept.any():
-        raise UsageError("Held voids and a symmetry of the field cannot be kept at once; choose one of them.")
+    locked = check_locked(locked, field)
+    if symmetry is not None and locked.any():
+        raise UsageError("fit.locks_and_symmetry")
     model = OutlineModel(field.rows, field.columns, phi)
-    allowed = _allowed(symmetry, field, kept)
+    allowed = _allowed(symmetry, field, locked)
     start = allowed(field.log10.ravel())
     pose = pose or align(model.outline(start), target.points)
-    terms = RegularTerms(regularity or Regularity(), start, field.rows, field.columns)
+    terms = PreferenceTerms(preference or Preference(), start, field.rows, field.columns)
     objective = Objective(model, BoundaryTarget.of(target, SAMPLES), terms, trust, check_least(least_panel), excess)
     state = np.concatenate([start, [math.log(pose.scale), pose.angle, *pose.shift]])
-    descent = _Descent(objective, state, allowed, kept.ravel())
+    descent = _Descent(objective, state, allowed, locked.ravel())
     while descent.steps < steps and not cancel() and descent.advance():
         pass
     last = descent.here.state[-POSE:]
     return Fit(
-        _with_held(_field_of(descent.here.state, model), field, kept),
+        _with_locked(_field_of(descent.here.state, model), field, locked),
         Similarity(math.exp(last[0]), last[1], (last[2], last[3])),
         descent.here.cost,
         descent.steps,
@@ -145,23 +145,23 @@ def _field_of(state: FloatArray, model: OutlineModel) -> RatioField:
     return RatioField.from_log10(np.round(state[:-POSE], 9).reshape(model.rows, model.columns))
 
 
-def _with_held(found: RatioField, field: RatioField, kept: BoolArray) -> RatioField:
-    """The ratios found, and every digit of those that were held."""
-    return RatioField(np.where(kept, field.ratio, found.ratio)) if kept.any() else found
+def _with_locked(found: RatioField, field: RatioField, locked: BoolArray) -> RatioField:
+    """The ratios found, and every digit of those that were locked."""
+    return RatioField(np.where(locked, field.ratio, found.ratio)) if locked.any() else found
 
 
-def _allowed(symmetry: Symmetry | None, field: RatioField, kept: BoolArray) -> Callable[[FloatArray], FloatArray]:
-    """The map from any z (m * n,) to one within the bounds and of the symmetry; held voids stay where they are."""
-    start, held = field.log10.ravel(), kept.ravel()
+def _allowed(symmetry: Symmetry | None, field: RatioField, locked: BoolArray) -> Callable[[FloatArray], FloatArray]:
+    """The map from any z (m * n,) to one within the bounds and of the symmetry; locked voids stay where they are."""
+    start, fixed = field.log10.ravel(), locked.ravel()
 
     def allowed(z: FloatArray) -> FloatArray:
         balanced = z if symmetry is None else symmetry.symmetric(z.reshape(field.rows, field.columns)).ravel()
-        return np.where(held, start, np.clip(balanced, -LOG_RATIO_LIMIT, LOG_RATIO_LIMIT))
+        return np.where(fixed, start, np.clip(balanced, -LOG_RATIO_LIMIT, LOG_RATIO_LIMIT))
 
     return allowed
 
 
-def check_held(held: BoolArray | None, field: RatioField) -> BoolArray:
+def check_locked(locked: BoolArray | None, field: RatioField) -> BoolArray:
     """A table of the field's shape that says which voids stay as they are; none of them unless told.
 
     Raises
@@ -169,11 +169,11 @@ def check_held(held: BoolArray | None, field: RatioField) -> BoolArray:
     UsageError
         It has another shape, or holds something else than truth values.
     """
-    if held is None:
+    if locked is None:
         return np.zeros(field.ratio.shape, dtype=np.bool_)
-    table = np.asarray(held)
+    table = np.asarray(locked)
     if table.shape != field.ratio.shape or table.dtype != np.bool_:
-        raise UsageError(f"Held voids must be truth values in a table of shape {field.ratio.shape}, got {table.shape}.")
+        raise UsageError("fit.locks_wrong_table", shape=field.ratio.shape, got=table.shape, kind=table.dtype)
     return table
 
 
@@ -181,11 +181,11 @@ def check_fit(phi: float, steps: int, trust: float) -> float:
     """The angle, once everything is known to make sense."""
     angle = check_phi(phi)
     if angle >= math.pi:
-        raise AngleError("A fit needs a deployed state: the angle must be below pi radians (pi = compact).")
+        raise AngleError("fit.angle_compact")
     if not isinstance(steps, int | np.integer) or isinstance(steps, bool) or steps < 0:
-        raise UsageError(f"The number of steps must be a whole number of at least 0, got {steps!r}.")
+        raise UsageError("fit.steps_not_whole", steps=steps)
     if not (math.isfinite(trust) and trust > 0.0):
-        raise UsageError(f"The trusted distance must be a finite number above 0, got {trust:g}.")
+        raise UsageError("fit.trust_not_positive", trust=trust)
     return angle
 
 
@@ -193,10 +193,10 @@ class _Descent:
     """The moving state of one fit."""
 
     def __init__(
-        self, objective: Objective, state: FloatArray, allowed: Callable[[FloatArray], FloatArray], kept: BoolArray
+        self, objective: Objective, state: FloatArray, allowed: Callable[[FloatArray], FloatArray], locked: BoolArray
     ) -> None:
         self.objective, self._allowed = objective, allowed
-        self._kept = np.concatenate([kept, np.zeros(POSE, dtype=np.bool_)])
+        self._locked = np.concatenate([locked, np.zeros(POSE, dtype=np.bool_)])
         self.here = objective.look(state)
         # A start that touches itself is free to move until it no longer does.
         self._guarded = self._is_clear(self.here)
@@ -250,8 +250,8 @@ class _Descent:
         """Damped Gauss-Newton step with the ratios at their bounds held where the gradient pushes outwards."""
         bounds = np.full(look.state.size, np.inf)
         bounds[:-POSE] = LOG_RATIO_LIMIT
-        held = ((look.state >= bounds) & (model.gradient < 0)) | ((look.state <= -bounds) & (model.gradient > 0))
-        free = np.flatnonzero(~(held | self._kept))
+        outward = ((look.state >= bounds) & (model.gradient < 0)) | ((look.state <= -bounds) & (model.gradient > 0))
+        free = np.flatnonzero(~(outward | self._locked))
         matrix = model.hessian[np.ix_(free, free)]
         diagonal = np.diagonal(matrix).copy()
         matrix[np.diag_indices_from(matrix)] += self.damping * (diagonal + 1e-3 * diagonal.mean())

@@ -1,4 +1,4 @@
-"""What a fit minimises: boundary distances both ways, robustly, with regular fields preferred.
+"""What a fit minimises: boundary distances both ways, robustly, and what the fit prefers of the ratios.
 
 Residuals, all in unit-area lengths and weighted by the boundary length that they stand for:
 
@@ -6,7 +6,7 @@ Residuals, all in unit-area lengths and weighted by the boundary length that the
 * from even samples of the target boundary to the layout (nothing may be missed),
 
 down-weighted beyond a trusted distance so that their sum grows like an area and not like its square, terms on z, see
-``regularity``, and a penalty on panels too small to cut, see ``panel_size``.
+``preferences``, and a penalty on panels too small to cut, see ``panel_size``.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from kirigami_studio.lattice.topology import topology
 from kirigami_studio.polish.boundary_target import BoundaryTarget, unit_normals
 from kirigami_studio.polish.matching import EDGE_SHARES, Matching, matched
 from kirigami_studio.polish.panel_size import PENALTY, PanelSizes, panel_sizes, shortage
-from kirigami_studio.polish.regularity import RegularTerms
+from kirigami_studio.polish.preferences import PreferenceTerms
 from kirigami_studio.polish.sensitivity import OutlineModel
 
 #: Boundary length that an outer hinge stands for, as a share of the mean outline edge's.
@@ -47,7 +47,7 @@ def check_excess(excess: float) -> float:
         Not a number from 0 to 1.
     """
     if not 0.0 <= excess <= 1.0:
-        raise UsageError(f"The weight of what sticks out must be a number from 0 to 1, got {excess!r}.")
+        raise UsageError("fit.excess_out_of_range", excess=excess)
     return float(excess)
 
 
@@ -151,7 +151,7 @@ class Objective:
     ----------
     model : OutlineModel
     target : BoundaryTarget
-    terms : RegularTerms
+    terms : PreferenceTerms
     trust : float
         Distance (unit-area lengths) beyond which a residual counts linearly.
     least : float, unit cells
@@ -164,7 +164,7 @@ class Objective:
         self,
         model: OutlineModel,
         target: BoundaryTarget,
-        terms: RegularTerms,
+        terms: PreferenceTerms,
         trust: float = TRUST,
         least: float = 0.0,
         excess: float = 1.0,

@@ -86,7 +86,7 @@ def check_least(least: float) -> float:
         Not a number from 0 to 0.9 cells.
     """
     if not (math.isfinite(least) and 0.0 <= least <= LARGEST_LEAST):
-        raise UsageError(f"The least panel size must be a number from 0 to {LARGEST_LEAST:g} cells, got {least!r}.")
+        raise UsageError("fit.least_panel_out_of_range", most=LARGEST_LEAST, least=least)
     return float(least)
 
 

@@ -18,8 +18,7 @@ from scipy.sparse import csr_matrix
 
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray, IntArray
 from kirigami_studio.lattice.compact import barycentric_stencil
-from kirigami_studio.lattice.deployment import ZIPPED_BELOW, rotate
-from kirigami_studio.lattice.outline_map import even_part_of_outline
+from kirigami_studio.lattice.deployment import ZIPPED_BELOW, even_part_of_outline, rotate
 from kirigami_studio.lattice.topology import topology
 
 LN10 = math.log(10.0)

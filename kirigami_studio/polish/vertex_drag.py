@@ -27,7 +27,7 @@ from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.foundation.paper import LOG_RATIO_LIMIT
 from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.lattice.ratio_field import RatioField
-from kirigami_studio.polish.levenberg import check_fit, check_held
+from kirigami_studio.polish.levenberg import check_fit, check_locked
 from kirigami_studio.polish.sensitivity import OutlineModel
 
 #: Weight of the other vertices and of the change of z, relative to the vertex that is moved.
@@ -55,18 +55,18 @@ class VertexDrag:
         Angle at which the outline is seen.
     vertex : int
         Number in ``Deployment.outline(phi)``.
-    held : (m, n) bool, optional
+    locked : (m, n) bool, optional
         Voids whose ratio stays exactly as it is.
 
     Raises
     ------
     UsageError
-        There is no such vertex, or ``held`` is not a table of the field's shape.
+        There is no such vertex, or ``locked`` is not a table of the field's shape.
     AngleError
         ``phi`` is not in [0, pi): the closed sheet is a rectangle whatever the ratios.
     """
 
-    def __init__(self, field: RatioField, phi: float, vertex: int, held: BoolArray | None = None) -> None:
+    def __init__(self, field: RatioField, phi: float, vertex: int, locked: BoolArray | None = None) -> None:
         phi = check_fit(phi, 0, 1.0)
         self._field, self._model = field, OutlineModel(field.rows, field.columns, phi)
         self._given = field.ratio
@@ -74,9 +74,9 @@ class VertexDrag:
         self._deployment = deploy(field)
         self._outline = self._deployment.outline(phi)
         if not 0 <= vertex < len(self._outline):
-            raise UsageError(f"The outline has vertices 0 to {len(self._outline) - 1}, got {vertex}.")
+            raise UsageError("drag.no_such_vertex", last=len(self._outline) - 1, vertex=vertex)
         self._vertex = vertex
-        self._free = np.flatnonzero(~check_held(held, field).ravel())
+        self._free = np.flatnonzero(~check_locked(locked, field).ravel())
         self._low, self._high = np.minimum(self._start, -LOG_RATIO_LIMIT), np.maximum(self._start, LOG_RATIO_LIMIT)
         self._weight = np.full(len(self._outline), HOLD / len(self._outline))
         self._weight[vertex] = 1.0
@@ -170,7 +170,7 @@ class VertexDrag:
         return moved
 
     def _step(self, place: FloatArray, slopes: FloatArray) -> FloatArray:
-        """The Gauss-Newton step (m * n,): held voids stay, and those at a bound that would be pushed beyond it."""
+        """The Gauss-Newton step (m * n,): locked voids stay, and those at a bound that would be pushed beyond it."""
         gradient = self.gradient(self._z, self._here, place, slopes)
         inward = ~((self._z >= self._high) & (gradient < 0.0)) & ~((self._z <= self._low) & (gradient > 0.0))
         free = self._free[inward[self._free]]

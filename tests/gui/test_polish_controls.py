@@ -11,7 +11,7 @@ from pytestqt.qtbot import QtBot
 
 from kirigami_studio.gui.main_window import MainWindow
 from kirigami_studio.gui.panels.settings_panel import PREFER, TOOLTIP
-from kirigami_studio.polish.regularity import PREFERENCES
+from kirigami_studio.polish.preferences import PREFERENCES
 
 Until = Callable[[Callable[[], bool]], None]
 LEFT = Qt.MouseButton.LeftButton

@@ -14,7 +14,7 @@ from kirigami_studio.outlines.silhouettes import load
 from kirigami_studio.polish.boundary_target import BoundaryTarget
 from kirigami_studio.polish.levenberg import SAMPLES, polish
 from kirigami_studio.polish.objective import Objective
-from kirigami_studio.polish.regularity import Regularity, RegularTerms
+from kirigami_studio.polish.preferences import Preference, PreferenceTerms
 from kirigami_studio.polish.sensitivity import OutlineModel
 
 STEP = 1e-6
@@ -25,7 +25,7 @@ STEP = 1e-6
 def test_that_the_gradient_is_the_slope_of_the_cost(field: RatioField, phi: float, seed: int) -> None:
     model = OutlineModel(field.rows, field.columns, phi)
     z = field.log10.ravel()
-    terms = RegularTerms(Regularity(1e-3, 1e-3, 1e-3), np.zeros_like(z), field.rows, field.columns)
+    terms = PreferenceTerms(Preference(1e-3, 1e-3, 1e-3), np.zeros_like(z), field.rows, field.columns)
     objective = Objective(model, BoundaryTarget.of(load("heart"), SAMPLES), terms)
     rng = np.random.default_rng(seed)
     state = np.concatenate([z, [-np.log(field.rows + field.columns), *rng.uniform(-0.5, 0.5, 3)]])

@@ -15,9 +15,8 @@ from kirigami_studio.gui.jobs.adding_steps import adding
 from kirigami_studio.gui.jobs.queue import JobCallbacks, JobQueue, LatestJob
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.pipeline.events import CandidateFound, CandidateImproved, Finished, Progress, Result, Started
-from kirigami_studio.pipeline.provenance import provenance
 from kirigami_studio.pipeline.rank import rank_key, ranked
-from kirigami_studio.pipeline.request import Request
+from kirigami_studio.pipeline.request import Request, provenance
 from kirigami_studio.pipeline.variety import distinct
 from kirigami_studio.project.settings import DesignSettings
 

@@ -17,7 +17,7 @@ from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.outlines.silhouettes import load
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.polish.levenberg import polish
-from kirigami_studio.polish.regularity import PREFERENCES
+from kirigami_studio.polish.preferences import PREFERENCES
 
 pytestmark = pytest.mark.torch
 

@@ -38,5 +38,5 @@ def test_that_without_a_size_in_mm_there_is_nothing_to_fit() -> None:
     deployment = deploy(RatioField.uniform(4, 4))
     size = opened_size(deployment, evaluate(deployment, target).transform, target, 100.0)
     assert size.drawn is None and size.fitting_width_mm is None and not size.agrees and min(size.opened) > 0
-    with pytest.raises(UsageError, match="above 0"):
+    with pytest.raises(UsageError, match="above 0 mm, got"):
         opened_size(deployment, evaluate(deployment, target).transform, target, 0.0)

@@ -1,4 +1,4 @@
-"""Regularity numbers against hand-made sums."""
+"""Total variation against hand-made sums."""
 
 from __future__ import annotations
 

@@ -14,9 +14,8 @@ from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.silhouettes import load
-from kirigami_studio.pipeline.provenance import provenance
-from kirigami_studio.pipeline.request import Request
-from kirigami_studio.pipeline.run import best_of, lying
+from kirigami_studio.pipeline.request import Request, provenance
+from kirigami_studio.pipeline.run import best_of, rotation_of_target
 from kirigami_studio.pipeline.variety import distances
 
 pytestmark = pytest.mark.torch
@@ -54,7 +53,7 @@ def test_that_the_design_is_drawn_near_in_the_pose_in_which_it_shows_the_target(
     c, s = math.cos(2.1), math.sin(2.1)
     turned = Outline.from_points(heart.points @ np.array([[c, s], [-s, c]]), "turned heart")
     design = best_of(Request(heart, k=4)).candidates[1]
-    here, there = lying(design.field, heart, 0.0), lying(design.field, turned, 0.0)
+    here, there = (rotation_of_target(design.field, target, 0.0) for target in (heart, turned))
     assert math.cos(here - there - 2.1) == pytest.approx(1.0, abs=2e-3)
     for target in (heart, turned):
         drawn = best_of(Request(target, k=4, near=design.field, nearness=0.9)).candidates
@@ -81,16 +80,22 @@ def test_that_polishing_keeps_the_origin_and_provenance_names_the_design() -> No
 
 
 @pytest.mark.parametrize(
-    ("near", "nearness", "sentence"),
+    ("near", "nearness", "code"),
     [
-        (RatioField.uniform(4, 5), 0.5, "grid of 4 x 5 voids, not 6 x 6"),
-        (RatioField.uniform(6, 6), 1.0, "from 0 to less than 1"),
-        (RatioField.uniform(6, 6), -0.1, "from 0 to less than 1"),
-        (RatioField.uniform(6, 6), math.nan, "from 0 to less than 1"),
-        (RatioField.uniform(6, 6), True, "from 0 to less than 1"),
-        (None, 0.5, "needs the design"),
+        (RatioField.uniform(4, 5), 0.5, "request.near_other_grid"),
+        (RatioField.uniform(6, 6), 1.0, "request.nearness_out_of_range"),
+        (RatioField.uniform(6, 6), -0.1, "request.nearness_out_of_range"),
+        (RatioField.uniform(6, 6), math.nan, "request.nearness_out_of_range"),
+        (RatioField.uniform(6, 6), True, "request.nearness_out_of_range"),
+        (None, 0.5, "request.nearness_without_design"),
     ],
 )
-def test_that_a_request_that_makes_no_sense_is_refused(near: RatioField | None, nearness: float, sentence: str) -> None:
-    with pytest.raises(UsageError, match=sentence):
+def test_that_a_request_that_makes_no_sense_is_refused(near: RatioField | None, nearness: float, code: str) -> None:
+    with pytest.raises(UsageError) as caught:
         Request(load("heart"), (6, 6), near=near, nearness=nearness)
+    assert caught.value.code == code
+
+
+def test_that_a_design_of_another_grid_is_refused_with_both_grids() -> None:
+    with pytest.raises(UsageError, match="grid of 4 x 5 voids, not 6 x 6"):
+        Request(load("heart"), (6, 6), near=RatioField.uniform(4, 5), nearness=0.5)

@@ -16,11 +16,11 @@ from kirigami_studio.foundation.errors import Cancelled
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.outlines.silhouettes import load
 from kirigami_studio.pipeline import worker
-from kirigami_studio.pipeline.messages import Ready
 from kirigami_studio.pipeline.pool import Pool, worker_command
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.pipeline.run import Watch, answers, gains
 from kirigami_studio.pipeline.tasks import Answer, PolishTask, Task, scored
+from kirigami_studio.pipeline.worker import Ready
 
 pytestmark = pytest.mark.slow
 COUNT = 6
@@ -175,8 +175,9 @@ def test_that_a_second_run_at_the_same_time_works_by_itself(
 
 
 def test_that_a_cancelled_watch_says_how_far_it_came() -> None:
-    with pytest.raises(Cancelled, match="after 3; nothing was changed"):
-        Watch(lambda: True, time.perf_counter()).check("Stopped after 3")
+    with pytest.raises(Cancelled, match="Stopped after 3 of 8 candidates; nothing changed") as caught:
+        Watch(lambda: True, time.perf_counter()).check("run.stopped_scoring", 3, 8)
+    assert (caught.value.code, caught.value.fields) == ("run.stopped_scoring", {"done": 3, "total": 8})
 
 
 def test_that_closing_the_pool_leaves_no_process(request_for_heart: Request, tasks: list[Task]) -> None:

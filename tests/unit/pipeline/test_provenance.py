@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from kirigami_studio.outlines import silhouettes
-from kirigami_studio.pipeline.provenance import provenance
-from kirigami_studio.pipeline.request import Request
+from kirigami_studio.pipeline.request import Request, provenance
 
 
 def test_that_model_number_steps_and_fit_of_a_run_are_told() -> None:

@@ -15,7 +15,7 @@ from kirigami_studio.outlines import silhouettes
 from kirigami_studio.pipeline.rank import MOST_LOST, WORTH, improves, rank_key
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.pipeline.run import best_of
-from kirigami_studio.polish.regularity import PREFERENCES
+from kirigami_studio.polish.preferences import PREFERENCES
 
 
 @pytest.fixture(scope="module")

@@ -144,9 +144,10 @@ def test_that_all_candidates_get_their_first_steps_before_any_gets_more(request_
 
 def test_that_polishing_can_be_cancelled(request_for_heart: Request) -> None:
     seen = []
-    with pytest.raises(Cancelled, match="while polishing, with 1 of 4 done"):
+    with pytest.raises(Cancelled, match="while polishing, with 1 of 4 done") as caught:
         cancel = lambda: any(isinstance(event, CandidateImproved) for event in seen)  # noqa: E731
         seen.extend(run(replace(request_for_heart, polish=5), cancel))
+    assert caught.value.code == "run.stopped_polishing"
 
 
 def test_that_workers_and_one_process_give_the_same_result(request_for_heart: Request) -> None:

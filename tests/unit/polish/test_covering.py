@@ -16,7 +16,7 @@ from kirigami_studio.polish.boundary_target import BoundaryTarget
 from kirigami_studio.polish.covering import fit_cover
 from kirigami_studio.polish.levenberg import Fit, polish
 from kirigami_studio.polish.objective import Objective, outer_hinges
-from kirigami_studio.polish.regularity import Regularity, RegularTerms
+from kirigami_studio.polish.preferences import Preference, PreferenceTerms
 from kirigami_studio.polish.sensitivity import OutlineModel
 
 
@@ -77,7 +77,7 @@ def test_that_with_little_weight_on_excess_less_of_the_target_is_missed(polished
 def test_that_the_gradient_with_little_weight_on_excess_is_that_of_differences(phi: float, drop: Outline) -> None:
     model = OutlineModel(4, 5, phi)
     z = np.random.default_rng(1).uniform(-0.3, 0.3, 20)
-    terms = RegularTerms(Regularity(), z, 4, 5)
+    terms = PreferenceTerms(Preference(), z, 4, 5)
     objective = Objective(model, BoundaryTarget.of(drop, 64), terms, 0.01, excess=0.1)
     state = np.concatenate([z, [np.log(0.19), 0.2, -0.5, 0.5]])
     gradient = objective.quadratic(objective.look(state), objective.slopes(state)).gradient

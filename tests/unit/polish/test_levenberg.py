@@ -19,7 +19,7 @@ from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.silhouettes import load
 from kirigami_studio.polish.levenberg import Fit, polish
-from kirigami_studio.polish.regularity import Regularity
+from kirigami_studio.polish.preferences import Preference
 from kirigami_studio.polish.symmetry import Symmetry
 
 
@@ -64,7 +64,7 @@ def test_that_every_further_step_lowers_the_cost(grid: tuple[int, int]) -> None:
 
 
 def test_that_ratios_stay_within_a_tenth_and_ten() -> None:
-    fit = polish(RatioField.uniform(4, 4), load("star"), steps=30, regularity=Regularity(0.0, 0.0))
+    fit = polish(RatioField.uniform(4, 4), load("star"), steps=30, preference=Preference(0.0, 0.0))
     assert fit.field.ratio.min() >= 0.1 - 1e-9
     assert fit.field.ratio.max() <= 10.0 + 1e-9
     assert np.abs(np.abs(fit.field.log10) - 1.0).min() < 1e-6, "a bound was reached, so this test can fail"
@@ -106,24 +106,24 @@ def test_that_a_cancelled_fit_returns_the_best_so_far() -> None:
 
 def test_that_stronger_smoothing_gives_a_smoother_field() -> None:
     target = load("star")
-    rough = polish(RatioField.uniform(8, 8), target, steps=10, regularity=Regularity(1e-6, 1e-7))
-    smooth = polish(RatioField.uniform(8, 8), target, steps=10, regularity=Regularity(1e-6, 1e-3))
+    rough = polish(RatioField.uniform(8, 8), target, steps=10, preference=Preference(1e-6, 1e-7))
+    smooth = polish(RatioField.uniform(8, 8), target, steps=10, preference=Preference(1e-6, 1e-3))
     second = [np.square(np.diff(fit.field.log10[::2], axis=0)).sum() for fit in (rough, smooth)]
     assert second[1] < 0.5 * second[0]
 
 
 def test_that_a_pull_to_the_start_keeps_the_field_near_it() -> None:
     start = smooth_field(6, 6)
-    fit = polish(start, load("circle"), steps=10, regularity=Regularity(start=1.0, smooth=0.0))
+    fit = polish(start, load("circle"), steps=10, preference=Preference(start=1.0, smooth=0.0))
     assert np.abs(fit.field.log10 - start.log10).max() < 0.05
 
 
 def test_that_a_weight_on_total_variation_lowers_it_at_little_cost_of_shape() -> None:
     target = load("heart")
     plain = polish(RatioField.uniform(8, 8), target, steps=15)
-    calm = polish(plain.field, target, steps=15, regularity=Regularity(0.0, 1e-6, 1e-3), pose=plain.pose)
-    assert total_variation(calm.field) < 0.8 * total_variation(plain.field)
-    assert iou(calm, target) > iou(plain, target) - 0.03
+    even = polish(plain.field, target, steps=15, preference=Preference(0.0, 1e-6, 1e-3), pose=plain.pose)
+    assert total_variation(even.field) < 0.8 * total_variation(plain.field)
+    assert iou(even, target) > iou(plain, target) - 0.03
 
 
 @pytest.mark.parametrize("phi", [math.nan, -0.1, math.pi, 4.0])
@@ -141,7 +141,7 @@ def test_that_a_count_of_steps_must_be_a_whole_number(steps: int) -> None:
 @pytest.mark.parametrize("weights", [(-1.0, 0.0), (0.0, math.nan), (math.inf, 0.0)])
 def test_that_weights_must_be_finite_and_not_negative(weights: tuple[float, float]) -> None:
     with pytest.raises(UsageError, match="weight"):
-        Regularity(*weights)
+        Preference(*weights)
 
 
 def test_that_a_fit_is_a_frozen_value() -> None:
@@ -155,23 +155,23 @@ def test_that_held_voids_keep_every_digit_while_the_others_improve_the_match() -
     ratio = field.ratio.copy()
     ratio[1, 1] = 14.0  # even outside the bounds of the fit
     field = RatioField(ratio)
-    held = np.zeros((6, 6), dtype=bool)
-    held[1, 1] = held[4, 2] = held[0, 0] = True
-    fit = polish(field, target, steps=8, held=held)
-    assert np.array_equal(fit.field.ratio[held], field.ratio[held])
-    assert not np.any(fit.field.ratio[~held] == field.ratio[~held])
-    assert iou(fit, target) > iou(polish(field, target, steps=0, held=held), target) + 0.02
+    locked = np.zeros((6, 6), dtype=bool)
+    locked[1, 1] = locked[4, 2] = locked[0, 0] = True
+    fit = polish(field, target, steps=8, locked=locked)
+    assert np.array_equal(fit.field.ratio[locked], field.ratio[locked])
+    assert not np.any(fit.field.ratio[~locked] == field.ratio[~locked])
+    assert iou(fit, target) > iou(polish(field, target, steps=0, locked=locked), target) + 0.02
 
 
 def test_that_holding_nothing_is_the_same_fit_bit_for_bit() -> None:
     target, field = load("star"), smooth_field(5, 6, 1)
-    plain, none = polish(field, target, steps=5), polish(field, target, steps=5, held=np.zeros((5, 6), dtype=bool))
+    plain, none = polish(field, target, steps=5), polish(field, target, steps=5, locked=np.zeros((5, 6), dtype=bool))
     assert plain == none
 
 
 def test_that_holding_everything_leaves_the_pose_alone_to_be_fitted() -> None:
     target, field = load("heart"), smooth_field(4, 4, 3)
-    fit = polish(field, target, steps=5, held=np.ones((4, 4), dtype=bool))
+    fit = polish(field, target, steps=5, locked=np.ones((4, 4), dtype=bool))
     assert fit.field == field
     assert fit.cost <= polish(field, target, steps=0).cost
 
@@ -179,6 +179,6 @@ def test_that_holding_everything_leaves_the_pose_alone_to_be_fitted() -> None:
 def test_that_held_voids_must_fit_the_field_and_go_with_no_symmetry() -> None:
     field = smooth_field(4, 4)
     with pytest.raises(UsageError, match=r"shape \(4, 4\), got \(3, 3\)"):
-        polish(field, load("heart"), held=np.zeros((3, 3), dtype=bool))
+        polish(field, load("heart"), locked=np.zeros((3, 3), dtype=bool))
     with pytest.raises(UsageError, match="symmetry"):
-        polish(field, load("heart"), held=np.ones((4, 4), dtype=bool), symmetry=Symmetry.HALF_TURN)
+        polish(field, load("heart"), locked=np.ones((4, 4), dtype=bool), symmetry=Symmetry.HALF_TURN)

@@ -19,7 +19,7 @@ from kirigami_studio.polish.vertex_drag import ARRIVED, CHANGE, HOLD, VertexDrag
 GRIDS = st.tuples(st.integers(2, 7), st.integers(2, 7))
 
 
-def calm_field(rows: int, columns: int, seed: int, spread: float = 0.08) -> RatioField:
+def gentle_field(rows: int, columns: int, seed: int, spread: float = 0.08) -> RatioField:
     return RatioField.from_log10(spread * np.random.default_rng(seed).normal(size=(rows, columns)))
 
 
@@ -30,7 +30,7 @@ def outward(outline: np.ndarray, vertex: int) -> np.ndarray:
 
 @pytest.mark.parametrize("phi", [0.0, 0.7])
 def test_that_the_gradient_is_the_one_of_finite_differences(phi: float) -> None:
-    field = calm_field(4, 5, 3)
+    field = gentle_field(4, 5, 3)
     drag = VertexDrag(field, phi, 6)
     z = field.log10.ravel() + 0.05 * np.random.default_rng(1).normal(size=20)
     place = deploy(field).outline(phi)[6] + (0.2, -0.1)
@@ -44,14 +44,14 @@ def test_that_the_gradient_is_the_one_of_finite_differences(phi: float) -> None:
 
 @pytest.mark.parametrize(("grid", "phi"), [((4, 5), 0.0), ((7, 6), 0.7), ((12, 12), 1.2)])
 def test_that_the_step_is_the_one_of_the_normal_equations(grid: tuple[int, int], phi: float) -> None:
-    field, vertex = calm_field(*grid, 3), 6
-    held = np.zeros(grid, dtype=bool)
-    held[1, 1:3] = True
+    field, vertex = gentle_field(*grid, 3), 6
+    locked = np.zeros(grid, dtype=bool)
+    locked[1, 1:3] = True
     outline, slopes = OutlineModel(*grid, phi).linearised(field.log10.ravel())
-    drag = VertexDrag(field, phi, vertex, held)
+    drag = VertexDrag(field, phi, vertex, locked)
     for near in (0.01, 0.013):  # from the start, then from where z differs from it; one derivative serves both
         z, place = drag.field.log10.ravel(), outline[vertex] + near * outward(outline, vertex)
-        free = np.flatnonzero(~held.ravel())
+        free = np.flatnonzero(~locked.ravel())
         weight = np.full(len(outline), HOLD / len(outline))
         weight[vertex] = 1.0
         rows = (np.sqrt(weight)[:, None, None] * slopes[..., free]).reshape(-1, free.size)
@@ -65,7 +65,7 @@ def test_that_the_step_is_the_one_of_the_normal_equations(grid: tuple[int, int],
 
 
 def test_that_the_motion_at_hand_is_the_one_of_the_field() -> None:
-    field = calm_field(5, 4, 8)
+    field = gentle_field(5, 4, 8)
     drag = VertexDrag(field, 0.4, 3)
     assert np.array_equal(drag.deployment.outline(0.4), deploy(field).outline(0.4))
     found = drag.move(drag.place + 0.1)
@@ -76,7 +76,7 @@ def test_that_the_motion_at_hand_is_the_one_of_the_field() -> None:
 @given(GRIDS, st.integers(0, 1000), st.sampled_from([0.0, 0.5, 1.5]), st.floats(-0.1, 0.1))
 def test_that_a_vertex_arrives_where_it_can_be(grid: tuple[int, int], seed: int, phi: float, far: float) -> None:
     # Where another field of the neighbourhood has the vertex, it can be brought to.
-    field = calm_field(*grid, seed)
+    field = gentle_field(*grid, seed)
     there = RatioField.from_log10(field.log10 + far * np.random.default_rng(seed + 1).normal(size=grid))
     vertex = seed % len(deploy(field).outline(phi))
     place = deploy(there).outline(phi)[vertex]
@@ -94,7 +94,7 @@ def test_that_a_vertex_arrives_where_it_can_be(grid: tuple[int, int], seed: int,
 def test_that_no_drag_however_wild_leaves_the_physical(
     grid: tuple[int, int], seed: int, phi: float, far: float
 ) -> None:
-    field = calm_field(*grid, seed)
+    field = gentle_field(*grid, seed)
     sound = not invalid_quads(deploy(field), phi) and path_contact(deploy(field), phi) is None
     outline = deploy(field).outline(phi)
     vertex = seed % len(outline)
@@ -109,22 +109,22 @@ def test_that_no_drag_however_wild_leaves_the_physical(
 @settings(max_examples=20, deadline=None)
 @given(GRIDS, st.integers(0, 1000))
 def test_that_held_voids_keep_every_digit(grid: tuple[int, int], seed: int) -> None:
-    field, draw = calm_field(*grid, seed), np.random.default_rng(seed)
-    held = draw.random(grid) < 0.5
+    field, draw = gentle_field(*grid, seed), np.random.default_rng(seed)
+    locked = draw.random(grid) < 0.5
     outline = deploy(field).outline(0.0)
     vertex = int(draw.integers(len(outline)))
-    found = VertexDrag(field, 0.0, vertex, held).move(outline[vertex] + 0.3 * outward(outline, vertex))
-    assert np.array_equal(found.ratio[held], field.ratio[held])
+    found = VertexDrag(field, 0.0, vertex, locked).move(outline[vertex] + 0.3 * outward(outline, vertex))
+    assert np.array_equal(found.ratio[locked], field.ratio[locked])
 
 
 def test_that_nothing_moves_when_everything_is_held() -> None:
-    field = calm_field(4, 4, 1)
+    field = gentle_field(4, 4, 1)
     place = deploy(field).outline(0.0)[3] + (0.5, 0.5)
     assert VertexDrag(field, 0.0, 3, np.ones((4, 4), dtype=bool)).move(place) == field
 
 
 def test_that_the_outline_far_from_the_vertex_hardly_moves() -> None:
-    field = calm_field(10, 10, 2)
+    field = gentle_field(10, 10, 2)
     before = deploy(field).outline(0.0)
     vertex = 8
     place = before[vertex] + 0.3 * outward(before, vertex)
@@ -137,7 +137,7 @@ def test_that_the_outline_far_from_the_vertex_hardly_moves() -> None:
 
 
 def test_that_small_steps_of_the_hand_end_where_one_large_one_does() -> None:
-    field = calm_field(6, 6, 4)
+    field = gentle_field(6, 6, 4)
     outline = deploy(field).outline(0.0)
     place = outline[5] + 0.25 * outward(outline, 5)
     small, large = VertexDrag(field, 0.0, 5), VertexDrag(field, 0.0, 5)
@@ -151,7 +151,7 @@ def test_that_small_steps_of_the_hand_end_where_one_large_one_does() -> None:
 
 
 def test_that_senseless_drags_are_refused() -> None:
-    field = calm_field(3, 3, 0)
+    field = gentle_field(3, 3, 0)
     with pytest.raises(AngleError):
         VertexDrag(field, math.pi, 0)
     with pytest.raises(UsageError, match="vertices 0 to 15, got 16"):
