@@ -66,7 +66,7 @@ lint: setup
 	$(BIN)/lint-imports
 
 bench: setup
-	$(BIN)/python -m kirigami_studio.benchmark.lattice_suite
+	$(BIN)/python -m kirigami_studio benchmark lattice
 
 # MeerK40t pins what it likes, so it lives apart; the tests find it here.
 CONSUMERS := .venv-consumers

@@ -7,5 +7,5 @@ suite
 reference path
     The slow, readable way of computing the same thing; speeds are quoted as ratios to it.
 
-May import every room but ``gui`` and ``training``, which are strangers.
+May import every package but ``gui`` and ``training``.
 """

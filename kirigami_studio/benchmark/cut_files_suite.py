@@ -1,17 +1,11 @@
-"""Random designs through every machine profile and both DXF versions: files written, read twice, judged.
-
-python -m kirigami_studio.benchmark.cut_files_suite --count 200 --json
-"""
+"""Random designs through every machine profile and both DXF versions: files written, read twice, judged."""
 
 from __future__ import annotations
 
-import argparse
-import json
-import sys
 import tempfile
 import time
-from collections.abc import Iterator
-from dataclasses import asdict, dataclass, replace
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -73,8 +67,10 @@ class CutFileFigures:
         ]
 
 
-def cut_file_figures(count: int = 200, seed: int = 0) -> CutFileFigures:
-    """Write and verify ``count`` random designs in every profile."""
+def measure_cut_files(
+    count: int, seed: int, report: Callable[[int, int], None] = lambda done, total: None
+) -> CutFileFigures:
+    """Write and verify ``count`` random designs in every profile; ``report`` gets the designs done and their number."""
     passed, failures = 0, []
     writing: list[float] = []
     verifying: list[float] = []
@@ -88,16 +84,17 @@ def cut_file_figures(count: int = 200, seed: int = 0) -> CutFileFigures:
                     made = replace(job, profile=profile, dxf_version=version)
                     path = export(made, Path(folder) / f"{profile}{extension}")
                     written = time.perf_counter()
-                    report = verify_export(job.required_plan, path, profile, version)
+                    found = verify_export(job.required_plan, path, profile, version)
                     writing.append(written - start)
                     verifying.append(time.perf_counter() - written)
                     if profile == "slots":
-                        ratios.append(report.cut_length_mm / job.required_plan.cut_length_mm)
-                    if report.ok:
+                        ratios.append(found.cut_length_mm / job.required_plan.cut_length_mm)
+                    if found.ok:
                         passed += 1
                     else:
-                        bad = next(finding.text for finding in report.findings if not finding.ok)
+                        bad = next(finding.text for finding in found.findings if not finding.ok)
                         failures.append(f"Design {number}, {profile}, {version} {extension}: {bad}")
+            report(number + 1, len(jobs))
     return CutFileFigures(
         designs=len(jobs),
         files=len(writing),
@@ -124,19 +121,3 @@ def _jobs(count: int, seed: int) -> Iterator[ExportJob]:
         except KirigamiError:
             continue
         yield ExportJob(design, plan=plan)
-
-
-def main(arguments: list[str] | None = None) -> int:
-    """Print the figures, as sentences or as one JSON object; 1 when a file did not pass."""
-    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
-    parser.add_argument("--count", type=int, default=200, help="designs (default 200)")
-    parser.add_argument("--seed", type=int, default=0, help="of the designs (default 0)")
-    parser.add_argument("--json", action="store_true", help="print one JSON object")
-    wanted = parser.parse_args(arguments)
-    figures = cut_file_figures(wanted.count, wanted.seed)
-    sys.stdout.write((json.dumps(asdict(figures)) if wanted.json else "\n".join(figures.sentences())) + "\n")
-    return 0 if figures.passed == figures.files else 1
-
-
-if __name__ == "__main__":
-    sys.exit(main())

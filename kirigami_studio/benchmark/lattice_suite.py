@@ -1,18 +1,12 @@
-"""How fast the exact geometry is: the slider, growing grids, and whole batches beside the marching reference.
-
-Run as ``python -m kirigami_studio.benchmark.lattice_suite [--json]``.
-"""
+"""How fast the exact geometry is: the slider, growing grids, and whole batches beside the marching reference."""
 
 from __future__ import annotations
 
-import argparse
-import json
 import math
 import statistics
-import sys
 import time
 from collections.abc import Callable, Iterator
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 
 import numpy as np
 import torch
@@ -158,25 +152,9 @@ class LatticeTiming:
         )
 
 
-def measure() -> LatticeTiming:
+def measure_lattice() -> LatticeTiming:
     """Run the whole suite: a few seconds."""
     return LatticeTiming(time_slider(), time_growth(), time_batch())
-
-
-def lattice_timings() -> dict[str, object]:
-    """Run the whole suite and return its figures as plain numbers, for JSON."""
-    return asdict(measure())
-
-
-def main(arguments: list[str] | None = None) -> int:
-    """Print the figures, as sentences or as one JSON object."""
-    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
-    parser.add_argument("--json", action="store_true", help="print one JSON object")
-    wanted = parser.parse_args(arguments)
-    timing = measure()
-    text = json.dumps(asdict(timing)) if wanted.json else "\n".join(timing.sentences())
-    sys.stdout.write(text + "\n")
-    return 0
 
 
 def _random_field(size: int, seed: int = 0) -> RatioField:
@@ -198,7 +176,3 @@ def _processor_time(field: RatioField) -> float:
     start = time.process_time()
     deploy(field).outline(0.0)
     return time.process_time() - start
-
-
-if __name__ == "__main__":
-    sys.exit(main())

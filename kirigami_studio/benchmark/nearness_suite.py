@@ -59,7 +59,7 @@ def measure_nearness(
         No targets.
     """
     if not targets:
-        raise UsageError("Nearness is measured on at least one target.")
+        raise UsageError("benchmark.no_targets")
     names = (FRESH, *(f"{near:g}" for near in nearness))
     rows: dict[str, list[dict[str, float]]] = {name: [] for name in names}
     designs = []

@@ -60,11 +60,9 @@ def measure_polish(
         No outlines, or not one start for each.
     """
     if not outlines:
-        raise UsageError("A measurement of fits needs at least one outline, got none.")
+        raise UsageError("benchmark.no_targets")
     if starts is not None and len(starts) != len(outlines):
-        raise UsageError(
-            f"Fits need one start for each outline, got {len(starts)} starts for {len(outlines)} outlines."
-        )
+        raise UsageError("benchmark.starts_differ", starts=len(starts), outlines=len(outlines))
     scores: list[Score] = []
     seconds: list[float] = []
     evaluations: list[int] = []

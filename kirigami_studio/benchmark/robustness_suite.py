@@ -145,7 +145,7 @@ def measure_robustness(
         No shapes, or a variant that is not bundled.
     """
     if not shapes:
-        raise UsageError("A measurement of robustness needs at least one shape, got none.")
+        raise UsageError("benchmark.no_targets")
     cases = {"clean": Disturbance(), **DISTURBANCES}
     scores: dict[str, list[list[Score]]] = {name: [] for name in cases}
     total, done = len(shapes) * len(cases) * len(seeds), 0

@@ -69,7 +69,7 @@ def generation_timings(
     """
     shapes = [load(name) for name in names()[: TARGETS + 1]] if targets is None else list(targets)
     if len(shapes) < 2 or not variants:
-        raise UsageError(f"Timings need a variant and two targets, got {len(variants)} and {len(shapes)}.")
+        raise UsageError("benchmark.too_few_to_time", variants=len(variants), targets=len(shapes))
     timed: dict[str, object] = {}
     for number, variant in enumerate(variants):
         timed[variant] = _timings(variant, shapes, steps, grid, number)

@@ -75,7 +75,7 @@ def measure_variants(
         No targets, or a variant that is not bundled.
     """
     if not targets:
-        raise UsageError("A comparison of variants needs at least one target, got none.")
+        raise UsageError("benchmark.no_targets")
     names = with_reference(variants)
     scores: dict[str, list[list[Score]]] = {name: [] for name in names}
     total = len(targets) * len(names) * len(seeds)
@@ -167,8 +167,10 @@ def measure_spread(
     UsageError
         No targets, fewer than two samples, or a variant that is not bundled.
     """
-    if not targets or k < 2:
-        raise UsageError(f"A spread needs targets and at least 2 samples of each, got {len(targets)} and {k}.")
+    if not targets:
+        raise UsageError("benchmark.no_targets")
+    if k < 2:
+        raise UsageError("benchmark.spread_of_one", k=k)
     names = with_reference(variants)
     found: dict[str, dict[str, list[dict[str, float]]]] = {name: {poses: [] for poses in POSES} for name in names}
     total, done = len(targets) * len(names) * len(POSES), 0

@@ -1,10 +1,11 @@
-"""``benchmark``: every figure that README and model card quote, from one command each."""
+"""``benchmark SUITE``: every figure that README and model card quote, from one command each."""
 
 from __future__ import annotations
 
 import argparse
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import asdict
 from pathlib import Path
 
 from kirigami_studio.cli.console import ProgressLine, plain, print_json, say
@@ -17,179 +18,94 @@ from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.read_image import outline_of_mask
 from kirigami_studio.outlines.silhouettes import load, names
-from kirigami_studio.pipeline.request import POLISH_STEPS
 
-#: Samples and targets of a family where ``--k`` and ``--count`` do not say.
-SPREAD_K, SPREAD_TARGETS, ROBUSTNESS_TARGETS = 32, 50, 100
-#: Designs that are drawn near each other where ``--k`` does not say.
-NEARNESS_K = 8
-#: Designs that are planned and checked where ``--count`` does not say.
-FABRICATED_DESIGNS = 200
+Report = Callable[[int, int], None]
 
 
-def benchmark(arguments: argparse.Namespace) -> int:
-    """Run one suite, print its figures and write them where asked."""
-    line = ProgressLine()
-    results = SUITES[arguments.suite](arguments, line)
-    line.clear()
-    if arguments.out is not None:
-        write_atomically(Path(arguments.out), (json.dumps(plain(results), indent=2) + "\n").encode())
-    if arguments.json:
-        print_json(results)
-    else:
-        say(json.dumps(plain(results), indent=2))
-    return 0
-
-
-def _generator_suite(arguments: argparse.Namespace, line: ProgressLine) -> dict[str, object]:
+def generator(arguments: argparse.Namespace) -> int:
     """A bundled variant on the named targets, or on the test splits of both families."""
     from kirigami_studio.benchmark.generator_suite import measure_generator
 
-    results: dict[str, object] = {}
-    for family, outlines in _target_sets(arguments).items():
-        results[family] = measure_generator(
+    return _on_targets(
+        arguments,
+        lambda outlines, report: measure_generator(
             outlines,
             arguments.variant,
-            k=arguments.k or 1,
+            k=arguments.k,
             steps=arguments.steps,
             polish=arguments.polish,
             grid=parse_grid(arguments.grid),
             seeds=tuple(arguments.seeds),
-            report=lambda done, total, family=family: line.show(f"{family}: {done} of {total}"),  # type: ignore[misc]
-        )
-    return results
+            report=report,
+        ),
+    )
 
 
-def _polish_suite(arguments: argparse.Namespace, line: ProgressLine) -> dict[str, object]:
-    """The fit alone, from the uniform sheet or by continuation."""
-    from kirigami_studio.benchmark.polish_suite import measure_polish
-
-    return {
-        family: measure_polish(
-            outlines,
-            grid=parse_grid(arguments.grid),
-            steps=arguments.polish or 40,
-            effort=arguments.effort,
-            report=lambda done, total, family=family: line.show(f"{family}: {done} of {total}"),  # type: ignore[misc]
-        )
-        for family, outlines in _target_sets(arguments).items()
-    }
-
-
-def _designs_suite(arguments: argparse.Namespace, line: ProgressLine) -> dict[str, object]:
-    """The whole program on targets, shape by shape, with pictures where asked for."""
-    from kirigami_studio.benchmark.design_suite import design_figures, make_designs, worst_of, write_contact_sheet
-    from kirigami_studio.pipeline.request import Request
-
-    results: dict[str, object] = {}
-    for family, outlines in _target_sets(arguments).items():
-        requests = [
-            [
-                Request(
-                    outline,
-                    parse_grid(grid),
-                    k=arguments.k or 1,
-                    seed=arguments.seeds[0],
-                    variant=arguments.variant,
-                    steps=arguments.steps,
-                    polish=arguments.polish,
-                    prefer=arguments.prefer,
-                    search=arguments.effort or 0,
-                    trim=arguments.trim,
-                )
-                for grid in arguments.grid.split(",")
-            ]
-            for outline in outlines
-        ]
-        made = make_designs(requests, lambda done, total, family=family: line.show(f"{family}: {done} of {total}"))  # type: ignore[misc]
-        results[family] = design_figures(made)
-        if arguments.picture is not None:
-            shown = made if arguments.worst is None else worst_of(made, arguments.worst)
-            write_contact_sheet(shown, Path(arguments.picture))
-    return results
-
-
-def _regularity_suite(arguments: argparse.Namespace, line: ProgressLine) -> dict[str, object]:
-    """Agreement and total variation, unpolished and at every preference."""
-    from kirigami_studio.benchmark.polish_suite import measure_regularity
-
-    return {
-        family: measure_regularity(
-            outlines,
-            arguments.variant,
-            polish=arguments.polish or POLISH_STEPS,
-            grid=parse_grid(arguments.grid),
-            seed=arguments.seeds[0],
-            report=lambda done, total, family=family: line.show(f"{family}: {done} of {total}"),  # type: ignore[misc]
-        )
-        for family, outlines in _target_sets(arguments).items()
-    }
-
-
-def _variants_suite(arguments: argparse.Namespace, line: ProgressLine) -> dict[str, object]:
+def variants(arguments: argparse.Namespace) -> int:
     """Bundled variants side by side, each beside the prior."""
     from kirigami_studio.benchmark.variants_suite import measure_variants
 
-    variants = _variants(arguments)
-    return {
-        family: measure_variants(
+    named = _variants(arguments)
+    return _on_targets(
+        arguments,
+        lambda outlines, report: measure_variants(
             outlines,
-            variants,
-            k=arguments.k or 1,
+            named,
+            k=arguments.k,
             steps=arguments.steps,
             grid=parse_grid(arguments.grid),
             seeds=tuple(arguments.seeds),
-            report=lambda done, total, family=family: line.show(f"{family}: {done} of {total}"),  # type: ignore[misc]
-        )
-        for family, outlines in _target_sets(arguments).items()
-    }
+            report=report,
+        ),
+    )
 
 
-def _spread_suite(arguments: argparse.Namespace, line: ProgressLine) -> dict[str, object]:
+def spread(arguments: argparse.Namespace) -> int:
     """How much the samples for one target differ, variant by variant."""
     from kirigami_studio.benchmark.variants_suite import measure_spread
 
-    variants = _variants(arguments)
-    return {
-        family: measure_spread(
+    named = _variants(arguments)
+    return _on_targets(
+        arguments,
+        lambda outlines, report: measure_spread(
             outlines,
-            variants,
-            k=arguments.k or SPREAD_K,
+            named,
+            k=arguments.k,
             steps=arguments.steps,
             grid=parse_grid(arguments.grid),
-            seed=arguments.seeds[0],
-            report=lambda done, total, family=family: line.show(f"{family}: {done} of {total}"),  # type: ignore[misc]
-        )
-        for family, outlines in _target_sets(arguments, SPREAD_TARGETS).items()
-    }
+            seed=arguments.seed,
+            report=report,
+        ),
+    )
 
 
-def _nearness_suite(arguments: argparse.Namespace, line: ProgressLine) -> dict[str, object]:
+def nearness(arguments: argparse.Namespace) -> int:
     """How near samples lie to a design that they were asked to be like."""
     from kirigami_studio.benchmark.nearness_suite import measure_nearness
 
-    return {
-        family: measure_nearness(
+    return _on_targets(
+        arguments,
+        lambda outlines, report: measure_nearness(
             outlines,
             arguments.variant,
-            k=arguments.k or NEARNESS_K,
+            k=arguments.k,
             steps=arguments.steps,
             polish=arguments.polish,
             grid=parse_grid(arguments.grid),
-            seed=arguments.seeds[0],
-            report=lambda done, total, family=family: line.show(f"{family}: {done} of {total}"),  # type: ignore[misc]
-        )
-        for family, outlines in _target_sets(arguments, SPREAD_TARGETS).items()
-    }
+            seed=arguments.seed,
+            report=report,
+        ),
+    )
 
 
-def _robustness_suite(arguments: argparse.Namespace, line: ProgressLine) -> dict[str, object]:
+def robustness(arguments: argparse.Namespace) -> int:
     """What turned, shaky, coarse and fine drawings cost, variant by variant."""
     from kirigami_studio.benchmark.robustness_suite import measure_robustness
 
+    named = _variants(arguments)
+    line = ProgressLine()
     # The suite draws the exact shapes into pixels itself.
-    sets = _target_sets(arguments, ROBUSTNESS_TARGETS, exact=True)
-    return {
+    figures: dict[str, object] = {
         family: {
             variant: measure_robustness(
                 outlines,
@@ -198,53 +114,163 @@ def _robustness_suite(arguments: argparse.Namespace, line: ProgressLine) -> dict
                 polish=arguments.polish,
                 grid=parse_grid(arguments.grid),
                 seeds=tuple(arguments.seeds),
-                report=lambda done, total, of=f"{family}, {variant}": line.show(f"{of}: {done} of {total}"),  # type: ignore[misc]
+                report=_shown_on(line, f"{family}, {variant}"),
             )
-            for variant in _variants(arguments)
+            for variant in named
         }
-        for family, outlines in sets.items()
+        for family, outlines in _target_sets(arguments, exact=True).items()
     }
+    return _print_figures(arguments, line, figures)
 
 
-def _generation_speed_suite(arguments: argparse.Namespace, line: ProgressLine) -> dict[str, object]:
+def polish(arguments: argparse.Namespace) -> int:
+    """The fit alone, from the uniform sheet or by continuation."""
+    from kirigami_studio.benchmark.polish_suite import measure_polish
+
+    return _on_targets(
+        arguments,
+        lambda outlines, report: measure_polish(
+            outlines,
+            grid=parse_grid(arguments.grid),
+            steps=arguments.polish,
+            effort=arguments.effort,
+            report=report,
+        ),
+    )
+
+
+def regularity(arguments: argparse.Namespace) -> int:
+    """Match and total variation, unpolished and at every preference."""
+    from kirigami_studio.benchmark.polish_suite import measure_regularity
+
+    return _on_targets(
+        arguments,
+        lambda outlines, report: measure_regularity(
+            outlines,
+            arguments.variant,
+            polish=arguments.polish,
+            grid=parse_grid(arguments.grid),
+            seed=arguments.seed,
+            report=report,
+        ),
+    )
+
+
+def designs(arguments: argparse.Namespace) -> int:
+    """The whole program on targets, shape by shape, with pictures where asked for."""
+    from kirigami_studio.benchmark.design_suite import design_figures, make_designs, worst_of, write_contact_sheet
+    from kirigami_studio.pipeline.request import Request
+
+    def measure(outlines: Sequence[Outline], report: Report) -> dict[str, object]:
+        requests = [
+            [
+                Request(
+                    outline,
+                    parse_grid(grid),
+                    k=arguments.k,
+                    seed=arguments.seed,
+                    variant=arguments.variant,
+                    steps=arguments.steps,
+                    polish=arguments.polish,
+                    prefer=arguments.prefer,
+                    search=arguments.effort,
+                    trim=arguments.trim,
+                )
+                for grid in arguments.grid.split(",")
+            ]
+            for outline in outlines
+        ]
+        made = make_designs(requests, report)
+        if arguments.picture is not None:
+            shown = made if arguments.worst is None else worst_of(made, arguments.worst)
+            write_contact_sheet(shown, Path(arguments.picture))
+        return design_figures(made)
+
+    return _on_targets(arguments, measure)
+
+
+def generation_speed(arguments: argparse.Namespace) -> int:
     """Timings of loading and sampling, variant by variant."""
     from kirigami_studio.benchmark.speed_suite import generation_timings
 
-    line.show("Timing the generator")
-    return generation_timings(
-        _variants(arguments),
-        steps=arguments.steps,
-        grid=parse_grid(arguments.grid),
-        report=lambda done, total: line.show(f"Timing the generator: {done} of {total} variants"),
-    )
+    line = ProgressLine()
+    report = _shown_on(line, "Timing the generator")
+    report(0, len(named := _variants(arguments)))
+    figures = generation_timings(named, steps=arguments.steps, grid=parse_grid(arguments.grid), report=report)
+    return _print_figures(arguments, line, figures)
 
 
-def _speed_suite(arguments: argparse.Namespace, line: ProgressLine) -> dict[str, object]:
+def speed(arguments: argparse.Namespace) -> int:
     """Timings of scoring and polishing."""
     from kirigami_studio.benchmark.speed_suite import polish_timings
 
+    line = ProgressLine()
     line.show("Timing scores and fits")
-    return polish_timings()
+    return _print_figures(arguments, line, polish_timings())
 
 
-def _lattice_suite(arguments: argparse.Namespace, line: ProgressLine) -> dict[str, object]:
+def lattice(arguments: argparse.Namespace) -> int:
     """Timings of the exact geometry, with the ratio to the marching reference."""
-    from kirigami_studio.benchmark.lattice_suite import lattice_timings
+    from kirigami_studio.benchmark.lattice_suite import measure_lattice
 
+    line = ProgressLine()
     line.show("Timing the lattice")
-    return dict(lattice_timings())
+    timing = measure_lattice()
+    return _print_figures(arguments, line, asdict(timing), timing.sentences())
 
 
-def _fabrication_suite(arguments: argparse.Namespace, line: ProgressLine) -> dict[str, object]:
+def fabrication(arguments: argparse.Namespace) -> int:
     """Timings of plan, check and DXF, travel of the orders of cutting, and random designs planned and checked."""
     from kirigami_studio.benchmark.fabrication_suite import measure_fabrication
 
+    line = ProgressLine()
     line.show("Timing plans and orders")
-    return measure_fabrication(
-        arguments.count or FABRICATED_DESIGNS,
-        arguments.seeds[0],
-        report=lambda done, total: line.show(f"Random designs: {done} of {total}"),
-    )
+    figures = measure_fabrication(arguments.count, arguments.seed, _shown_on(line, "Random designs"))
+    return _print_figures(arguments, line, figures)
+
+
+def cut_files(arguments: argparse.Namespace) -> int:
+    """Random designs through every machine profile, read back by two readers; 1 when a file did not pass."""
+    from kirigami_studio.benchmark.cut_files_suite import measure_cut_files
+
+    line = ProgressLine()
+    figures = measure_cut_files(arguments.count, arguments.seed, _shown_on(line, "Random designs"))
+    _print_figures(arguments, line, asdict(figures), figures.sentences())
+    return 0 if figures.passed == figures.files else 1
+
+
+def _on_targets(
+    arguments: argparse.Namespace, measure: Callable[[Sequence[Outline], Report], dict[str, object]]
+) -> int:
+    """Measure every set of targets by itself."""
+    line = ProgressLine()
+    figures: dict[str, object] = {
+        family: measure(outlines, _shown_on(line, family))
+        for family, outlines in _target_sets(arguments, arguments.exact).items()
+    }
+    return _print_figures(arguments, line, figures)
+
+
+def _shown_on(line: ProgressLine, what: str) -> Report:
+    return lambda done, total: line.show(f"{what}: {done} of {total}")
+
+
+def _print_figures(
+    arguments: argparse.Namespace,
+    line: ProgressLine,
+    figures: dict[str, object],
+    sentences: Iterable[str] | None = None,
+) -> int:
+    """Print a suite's figures, for a person as sentences where it has them, and write them where asked."""
+    line.clear()
+    indented = json.dumps(plain(figures), indent=2)
+    if arguments.out is not None:
+        write_atomically(Path(arguments.out), f"{indented}\n".encode())
+    if arguments.json:
+        print_json(figures)
+    else:
+        say(indented if sentences is None else "\n".join(sentences))
+    return 0
 
 
 def _variants(arguments: argparse.Namespace) -> tuple[str, ...]:
@@ -266,43 +292,24 @@ def _variants(arguments: argparse.Namespace) -> tuple[str, ...]:
     return named
 
 
-def _target_sets(
-    arguments: argparse.Namespace, usual: int | None = None, exact: bool = False
-) -> dict[str, list[Outline]]:
-    """Named lists of targets: ``--targets``, or a split of both families, of ``usual`` size unless told otherwise."""
+def _target_sets(arguments: argparse.Namespace, exact: bool) -> dict[str, list[Outline]]:
+    """Named lists of targets: those of ``--targets``, or ``--count`` of a split of both families."""
     if arguments.targets == ["library"]:
         return {"library": [load(name) for name in names()]}
     if arguments.targets:
         found = [named.read() for named in read_targets(arguments.targets)]
         if not found:
-            raise UsageError("No targets were found to measure on.")
+            raise UsageError("benchmark.no_targets_found")
         return {"targets": found}
     from kirigami_studio.training.dataset import SPLITS, generate_split
 
-    size, offset = SPLITS[arguments.split]
-    count = arguments.count or usual or size
+    _, offset = SPLITS[arguments.split]
     sets = {}
     for family in ("structured", "sobol"):
-        split = generate_split(family, count, arguments.data_seed * len(SPLITS) + offset)
-        if exact or arguments.exact:
+        split = generate_split(family, arguments.count, arguments.data_seed * len(SPLITS) + offset)
+        if exact:
             layouts = [deploy(RatioField(ratio)).outline(0.0) for ratio in split.ratios]
             sets[family] = [Outline.from_points(layout, f"{family} {k}") for k, layout in enumerate(layouts)]
         else:
             sets[family] = [outline_of_mask(mask, f"{family} {number}") for number, mask in enumerate(split.masks)]
     return sets
-
-
-SUITES: dict[str, Callable[[argparse.Namespace, ProgressLine], dict[str, object]]] = {
-    "generator": _generator_suite,
-    "variants": _variants_suite,
-    "spread": _spread_suite,
-    "nearness": _nearness_suite,
-    "robustness": _robustness_suite,
-    "generation-speed": _generation_speed_suite,
-    "polish": _polish_suite,
-    "designs": _designs_suite,
-    "regularity": _regularity_suite,
-    "speed": _speed_suite,
-    "lattice": _lattice_suite,
-    "fabrication": _fabrication_suite,
-}

@@ -1,4 +1,4 @@
-"""``train prior`` and ``dataset``: the room beside the app, loaded only when asked for."""
+"""``train`` and ``dataset``; training is loaded only when one of them is called."""
 
 from __future__ import annotations
 
@@ -11,11 +11,9 @@ from kirigami_studio.cli.option_types import parse_grid
 from kirigami_studio.foundation.errors import UsageError
 
 if TYPE_CHECKING:
-    from kirigami_studio.generator.velocity import Shape
-    from kirigami_studio.training.train_flow import Sources
-if TYPE_CHECKING:
-    from kirigami_studio.generator.velocity import Network
+    from kirigami_studio.generator.velocity import Network, Shape
     from kirigami_studio.generator.weights import Model
+    from kirigami_studio.training.train_flow import Sources
 
 #: Fits of drawn shapes by default: about 3800 shapes, each fitted twice, of which nine in ten come near enough.
 DRAWN_COUNT = 7_000
@@ -58,7 +56,7 @@ def _drawn(arguments: argparse.Namespace, grid: tuple[int, int]) -> int:
     from kirigami_studio.training.fitted_fields import FittedFields, fit_shapes
 
     if arguments.split not in ("all", "train"):
-        raise UsageError("Drawn shapes are for training only; leave --split out.")
+        raise UsageError("training.fits_are_not_split")
     count = DRAWN_COUNT if arguments.count is None else arguments.count
     path = Path(arguments.out) / "drawn.npz"
     line = ProgressLine()
@@ -127,18 +125,16 @@ def _shape(arguments: argparse.Namespace) -> Shape:
 
     if arguments.backbone != "unet":
         if arguments.channels is not None:
-            raise UsageError("--channels belong to --backbone unet; leave them out.")
+            raise UsageError("training.channels_without_unet")
         return NetworkShape(loop_points=0) if arguments.feedback is False else NetworkShape()
     if arguments.feedback:
-        raise UsageError("--feedback belongs to the perceptron: the U-Net sees the target's mask only; leave it out.")
+        raise UsageError("training.feedback_with_unet")
     if arguments.channels is None:
         return UNetShape()
     try:
         channels = tuple(int(word) for word in arguments.channels.split(","))
     except ValueError:
-        raise UsageError(
-            f"--channels must be whole numbers by commas, such as 64,128,256,384, got '{arguments.channels}'."
-        ) from None
+        raise UsageError("training.channels_not_whole", channels=arguments.channels) from None
     return UNetShape(channels=channels)
 
 
@@ -148,7 +144,7 @@ def _sources(arguments: argparse.Namespace) -> Sources:
     from kirigami_studio.training.train_flow import Sources
 
     if not 0.0 < arguments.fit_share < 1.0:
-        raise UsageError(f"--fit-share must be between 0 and 1, got {arguments.fit_share:g}.")
+        raise UsageError("training.fit_share_out_of_range", share=arguments.fit_share)
     start = None if arguments.warm_start is None else starting_model(arguments.warm_start)
     return Sources(start, None if arguments.fits is None else FittedFields.load(Path(arguments.fits)))
 
@@ -214,9 +210,9 @@ def align(arguments: argparse.Namespace) -> int:
     from kirigami_studio.training.validation import preference_figures
 
     seconds = seconds_allowed(arguments)
-    for name in ("other_sheets", "pictured"):
-        if (share := getattr(arguments, name)) > 1.0:
-            raise UsageError(f"--{name.replace('_', '-')} is a share from 0 to 1, got {share:g}.")
+    for option, share in (("--other-sheets", arguments.other_sheets), ("--pictured", arguments.pictured)):
+        if share > 1.0:
+            raise UsageError("training.share_above_one", option=option, share=share)
     device = training_device(arguments.device, arguments.threads)
     prior = starting_model(arguments.start)
     begin = None if arguments.go_on is None else starting_model(arguments.go_on, "accuracy")
@@ -260,7 +256,7 @@ def seconds_allowed(arguments: argparse.Namespace) -> float:
     if arguments.minutes is None:
         return float("inf")
     if arguments.minutes <= 0:
-        raise UsageError(f"--minutes must be above 0, got {arguments.minutes:g}.")
+        raise UsageError("training.minutes_not_positive", minutes=arguments.minutes)
     return 60.0 * float(arguments.minutes)
 
 

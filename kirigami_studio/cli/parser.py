@@ -11,6 +11,7 @@ from typing import Any
 from kirigami_studio import __version__
 from kirigami_studio.cli.option_types import amount, angle, count, number, positive, whole
 from kirigami_studio.fabricate.options import ConnectorStyle, CutOrder
+from kirigami_studio.pipeline.request import POLISH_STEPS
 from kirigami_studio.polish.preferences import PREFERENCES
 
 Option = tuple[tuple[str, ...], dict[str, Any]]
@@ -75,6 +76,39 @@ CUTS = (
         help="connectors to leave out, by number, beside the project's own",
     ),
 )
+
+#: What the suites of ``benchmark`` have in common; each takes only what is its own.
+GRID = option("--grid", default="10x10", help="voids, ROWSxCOLUMNS (default 10x10)")
+VARIANT = option("--variant", default="balanced", help="generator variant (default balanced)")
+VARIANTS = option("--variants", default=None, metavar="NAMES", help="by commas (default: all that are bundled)")
+STEPS = option("--steps", type=count, default=4, help="sampling steps (default 4)")
+POLISH = option("--polish", type=whole, default=0, help="steps of the fit (default 0: none)")
+SEEDS = option("--seeds", type=whole, nargs="+", default=[0, 1, 2], help="sampling seeds (default 0 1 2)")
+SEED = option("--seed", type=whole, default=0, help="default 0")
+EXACT = option("--exact", action="store_true", help="exact outlines instead of contours of their 128-pixel masks")
+RANDOM_DESIGNS = option("--count", type=count, default=200, help="random designs (default 200)")
+FIGURES = (option("--out", default=None, help="also write the results here (.json)"), JSON)
+
+
+def targets_of_a_suite(usual: int) -> tuple[Option, ...]:
+    """Options that choose what a suite measures on; ``usual`` targets of each family unless told otherwise."""
+    return (
+        option("--targets", nargs="+", default=None, help="'library', files or folders (default: the test splits)"),
+        option(
+            "--split",
+            default="test",
+            choices=("test", "validation"),
+            help="which designs of both families are the targets (default test)",
+        ),
+        option("--count", type=count, default=usual, help=f"targets of each family (default {usual})"),
+        option("--data-seed", type=whole, default=0, help="seed of the splits (default 0)"),
+    )
+
+
+def samples(usual: int) -> Option:
+    """How many samples a suite draws for each target."""
+    return option("--k", type=count, default=usual, help=f"samples a target (default {usual})")
+
 
 SUB_COMMANDS: tuple[SubCommand, ...] = (
     SubCommand("design", "from a target silhouette to ranked candidates and a cut file", "design:design", (
@@ -277,51 +311,66 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
         JSON,
     ), ("kirigami-studio train grpo --reward accuracy --start bundled --calls 10000 --out runs/accuracy",
         "kirigami-studio train grpo --reward balanced --start runs/prior/prior.safetensors --out runs/both")),
-    SubCommand("benchmark", "measure the generator, the polish, the lattice or cut plans", "benchmarks:benchmark", (
-        option("suite", choices=(
-            "generator", "variants", "spread", "nearness", "robustness", "generation-speed",
-            "polish", "designs", "regularity", "speed", "lattice", "fabrication",
-        ), help="what to measure"),
-        option("--targets", nargs="+", default=None, help="'library', files or folders (default: the test splits)"),
-        option("--grid", default="10x10", help="voids, ROWSxCOLUMNS (default 10x10); designs: several, by commas"),
-        option("--polish", type=whole, default=0, help="steps of the fit (default: 0 for samples, 40 for fits)"),
-        option("--effort", type=whole, default=None, help="polish, designs: search with this effort"),
-        option("--prefer", choices=tuple(PREFERENCES), default="balanced", help="designs: what fits prefer"),
-        option("--trim", action="store_true", help="designs: also trim the best design of each target"),
-        option("--picture", default=None, help="designs: draw all of them into this .png"),
-        option("--worst", type=count, default=None, help="designs: draw only so many, those with the lowest sIoU"),
-        option("--split", default="test", choices=("test", "validation"),
-               help="which designs of both families are the targets (default test)"),
-        option("--exact", action="store_true",
-               help="splits: exact outlines instead of contours of their 128-pixel masks"),
-        option("--out", default=None, help="also write the results here (.json)"),
-        option("--variant", default="balanced",
-               help="generator, designs, regularity: generator variant (default balanced)"),
-        option("--variants", default=None, metavar="NAMES",
-               help="variants, spread, robustness, generation-speed: by commas (default: all that are bundled)"),
-        option("--count", type=count, default=None,
-               help="targets of each family (default 500; spread and nearness: 50, robustness: 100); fabrication: "
-               "designs (200)"),
-        option("--k", type=count, default=None, help="samples a target (default 1; spread: 32, nearness: 8)"),
-        option("--steps", type=count, default=4, help="sampling steps (default 4)"),
-        option("--seeds", type=whole, nargs="+", default=[0, 1, 2], help="sampling seeds (default 0 1 2)"),
-        option("--data-seed", type=whole, default=0, help="seed of the splits (default 0)"),
-        JSON,
+    SubCommand("benchmark generator", "one bundled variant on a set of targets", "benchmarks:generator", (
+        *targets_of_a_suite(500), EXACT, GRID, VARIANT, samples(1), STEPS, POLISH, SEEDS, *FIGURES,
     ), ("kirigami-studio benchmark generator --count 100 --json",
-        "kirigami-studio benchmark variants --split validation --count 100",
-        "kirigami-studio benchmark spread --variants prior --out spread.json",
-        "kirigami-studio benchmark robustness --count 50",
-        "kirigami-studio benchmark designs --targets drawings --k 32 --picture worst.png --worst 12",
         "kirigami-studio benchmark generator --targets library --k 8 --polish 15 --seeds 0",
-        "kirigami-studio benchmark polish --targets library --effort 1",
-        "kirigami-studio benchmark designs --targets library --k 8 --polish 15 --effort 1 --trim --picture all.png",
-        "kirigami-studio benchmark generator --k 4 --polish 15 --seeds 0 --exact",
-        "kirigami-studio benchmark lattice",
-        "kirigami-studio benchmark fabrication")),
+        "kirigami-studio benchmark generator --k 4 --polish 15 --seeds 0 --exact")),
+    SubCommand("benchmark variants", "bundled variants side by side, each beside the prior", "benchmarks:variants", (
+        *targets_of_a_suite(500), EXACT, GRID, VARIANTS, samples(1), STEPS, SEEDS, *FIGURES,
+    ), ("kirigami-studio benchmark variants --split validation --count 100",)),
+    SubCommand("benchmark spread", "how much the samples for one target differ", "benchmarks:spread", (
+        *targets_of_a_suite(50), EXACT, GRID, VARIANTS, samples(32), STEPS, SEED, *FIGURES,
+    ), ("kirigami-studio benchmark spread --variants prior --out spread.json",)),
+    SubCommand("benchmark nearness", "how near samples lie to the design they are to be like", "benchmarks:nearness", (
+        *targets_of_a_suite(50), EXACT, GRID, VARIANT, samples(8), STEPS, POLISH, SEED, *FIGURES,
+    ), ("kirigami-studio benchmark nearness --targets library",)),
+    SubCommand("benchmark robustness", "what turned, shaky and coarse drawings cost", "benchmarks:robustness", (
+        *targets_of_a_suite(100), GRID, VARIANTS, STEPS, POLISH, SEEDS, *FIGURES,
+    ), ("kirigami-studio benchmark robustness --count 50",)),
+    SubCommand("benchmark polish", "the fit alone, from the uniform sheet or by continuation", "benchmarks:polish", (
+        *targets_of_a_suite(500), EXACT, GRID,
+        option("--polish", type=whole, default=40, help="steps of the plain fit (default 40)"),
+        option("--effort", type=whole, default=None, help="search with this effort instead of the plain fit"),
+        *FIGURES,
+    ), ("kirigami-studio benchmark polish --targets library --effort 1",)),
+    SubCommand("benchmark regularity", "match and total variation by the fit's preference", "benchmarks:regularity", (
+        *targets_of_a_suite(500), EXACT, GRID, VARIANT,
+        option("--polish", type=count, default=POLISH_STEPS, help=f"steps of the fit (default {POLISH_STEPS})"),
+        SEED, *FIGURES,
+    ), ("kirigami-studio benchmark regularity --exact --count 100",)),
+    SubCommand("benchmark designs", "the whole program on a set of targets, shape by shape", "benchmarks:designs", (
+        *targets_of_a_suite(500), EXACT,
+        option("--grid", default="10x10", help="voids, ROWSxCOLUMNS, or several by commas (default 10x10)"),
+        VARIANT, samples(1), STEPS, POLISH, SEED,
+        option("--prefer", choices=tuple(PREFERENCES), default="balanced", help="what fits prefer (default balanced)"),
+        option("--effort", type=whole, default=0, help="search with this effort (default 0: not at all)"),
+        option("--trim", action="store_true", help="also trim the best design of each target"),
+        option("--picture", default=None, help="draw all designs into this .png"),
+        option("--worst", type=count, default=None, help="draw only so many, those with the lowest sIoU"),
+        *FIGURES,
+    ), ("kirigami-studio benchmark designs --targets drawings --k 32 --picture worst.png --worst 12",
+        "kirigami-studio benchmark designs --targets library --k 8 --polish 15 --effort 1 --trim --picture all.png")),
+    SubCommand("benchmark generation-speed", "timings of loading and sampling", "benchmarks:generation_speed", (
+        VARIANTS, GRID, STEPS, *FIGURES,
+    ), ("kirigami-studio benchmark generation-speed",)),
+    SubCommand("benchmark speed", "timings of scoring and fitting", "benchmarks:speed", FIGURES,
+            ("kirigami-studio benchmark speed",)),
+    SubCommand("benchmark lattice", "timings of the exact geometry", "benchmarks:lattice", FIGURES,
+            ("kirigami-studio benchmark lattice",)),
+    SubCommand("benchmark fabrication", "timings of cut plans, travel of cutting orders", "benchmarks:fabrication", (
+        RANDOM_DESIGNS, SEED, *FIGURES,
+    ), ("kirigami-studio benchmark fabrication",)),
+    SubCommand("benchmark cut-files", "random designs in every machine profile, read back", "benchmarks:cut_files", (
+        RANDOM_DESIGNS, SEED, *FIGURES,
+    ), ("kirigami-studio benchmark cut-files --count 20",)),
 )  # fmt: skip
 
 #: First words of the commands with two, and what they have in common.
-GROUPS = {"train": "train a generator or align it with a reward"}
+GROUPS = {
+    "train": "train a generator or align it with a reward",
+    "benchmark": "measure the generator, the polish, the lattice or cut plans",
+}
 
 
 def build_parser() -> argparse.ArgumentParser:
@@ -346,6 +395,8 @@ def build_parser() -> argparse.ArgumentParser:
         child = _add(groups[first] if second else commands, second or first, command.about, command.examples)
         for names, settings in command.options:
             child.add_argument(*names, **settings)
+        # A suite that has --variants must not take another suite's --variant for it.
+        child.allow_abbrev = first != "benchmark"
         child.set_defaults(run=_late(command.run))
     return parser
 

@@ -216,13 +216,14 @@ class UNetShape:
     def __post_init__(self) -> None:
         object.__setattr__(self, "channels", tuple(self.channels))
         if not self.channels or any(width < 4 or width % 2 for width in self.channels):
-            raise UsageError(
-                f"The U-Net's channels must be even numbers of at least 4, one for each level, got {self.channels}."
-            )
+            raise UsageError("model.unet_channels", channels=", ".join(str(width) for width in self.channels) or "none")
         if self.latent < 1 or self.latent % 2 ** (len(self.channels) - 1) or self.mask % self.latent:
             raise UsageError(
-                f"A U-Net of {len(self.channels)} levels cannot halve {self.latent} pixels {len(self.channels) - 1} "
-                f"times, or its mask of {self.mask} pixels is not a multiple of them; give fewer levels."
+                "model.unet_levels",
+                levels=len(self.channels),
+                halvings=len(self.channels) - 1,
+                latent=self.latent,
+                mask=self.mask,
             )
 
     @property

@@ -138,5 +138,5 @@ def shape_from_json(backbone: str, record: dict[str, Any]) -> Shape:
         A backbone that this version does not know.
     """
     if backbone not in SHAPES:
-        raise ModelError(f"These weights are of a kind of network, '{backbone}', that this version does not know.")
+        raise ModelError("model.unknown_backbone", backbone=backbone)
     return SHAPES[backbone](**record)

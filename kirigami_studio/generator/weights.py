@@ -98,22 +98,17 @@ def load_model(variant: str, folder: Path | None = None) -> Model:
     try:
         content = path.read_bytes()
     except OSError as error:
-        raise ModelError(
-            f"The weights {path.name} of variant '{variant}' are missing; install Kirigami Studio again."
-        ) from error
+        raise ModelError("model.weights_missing", file=path.name, variant=variant) from error
     digest = hashlib.sha256(content).hexdigest()
     if digest != entry["sha256"]:
-        raise ModelError(
-            f"The weights {path.name} are damaged (checksum {digest[:12]}, expected {str(entry['sha256'])[:12]}); "
-            "install Kirigami Studio again."
-        )
+        raise ModelError("model.weights_damaged", file=path.name, found=digest[:12], expected=str(entry["sha256"])[:12])
     try:
         network = network_of(shape_from_json(entry.get("backbone", PERCEPTRON), entry["shape"]))
         network.load_state_dict({name: value.float() for name, value in load_tensors(content).items()})
     except ModelError:
         raise
     except Exception as error:  # safetensors and torch raise many kinds; all mean the same to the user
-        raise ModelError(f"The weights {path.name} do not fit the network that the manifest describes.") from error
+        raise ModelError("model.weights_do_not_fit", file=path.name) from error
     return Model(variant, network.eval().requires_grad_(False), digest, float(entry.get("preference", 0.0)))
 
 
@@ -128,7 +123,7 @@ def load_weights(path: Path) -> Model:
     for variant, entry in _manifest(path.parent)["variants"].items():
         if entry["file"] == path.name:
             return load_model(variant, path.parent)
-    raise ModelError(f"The list of generator models in {path.parent} does not know {path.name}.")
+    raise ModelError("model.weights_not_listed", folder=path.parent, file=path.name)
 
 
 def store_model(variant: str, network: Network, folder: Path, about: dict[str, object]) -> Path:
@@ -187,14 +182,14 @@ def _manifest(folder: Path) -> dict[str, Any]:
     try:
         manifest = json.loads((folder / MANIFEST).read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:
-        raise ModelError(f"No readable list of generator models in {folder}; install Kirigami Studio again.") from error
+        raise ModelError("model.list_unreadable", folder=folder) from error
     if not isinstance(manifest, dict) or manifest.get("format") != FORMAT or "variants" not in manifest:
-        raise ModelError(f"The list of generator models in {folder} is of a format this version cannot read.")
+        raise ModelError("model.list_of_other_format", folder=folder)
     return manifest
 
 
 def _entry(variant: str, folder: Path) -> dict[str, Any]:
     offered: dict[str, dict[str, Any]] = _manifest(folder)["variants"]
     if variant not in offered:
-        raise UsageError(f"There is no generator variant '{variant}'; available: {', '.join(offered)}.")
+        raise UsageError("model.unknown_variant", variant=variant, choices=", ".join(offered))
     return offered[variant]

@@ -85,7 +85,7 @@ def generate_split(
         Unknown family or a count below 1.
     """
     if count < 1:
-        raise UsageError(f"A data set needs at least 1 sample, got {count}.")
+        raise UsageError("training.no_samples_wanted", count_wanted=count)
     discarded: Counter[str] = Counter()
     ratios: list[FloatArray] = []
     masks: list[BoolArray] = []
@@ -105,7 +105,7 @@ def generate_split(
                 about = {"family": family, "seed": seed, "grid": list(grid), "phi": 0.0, "discarded": dict(discarded)}
                 return Split(np.stack(ratios), np.stack(masks), about)
         report(len(ratios))
-    raise KirigamiError("The field sequence ended early.")
+    raise KirigamiError("training.fields_ended")
 
 
 def verify(split: Split, seed: int = 0) -> float:
@@ -125,7 +125,7 @@ def verify(split: Split, seed: int = 0) -> float:
         stored = split.masks[index]
         worst = min(worst, float((again & stored).sum() / (again | stored).sum()))
     if worst < VERIFIED_IOU:
-        raise KirigamiError(f"Verification failed: a stored mask agrees with its design to IoU {worst:.4f} only.")
+        raise KirigamiError("training.mask_differs", iou=worst)
     return worst
 
 
@@ -140,7 +140,7 @@ def _batches(family: str, grid: tuple[int, int], seed: int) -> Iterator[FloatArr
         rng: Generator = np.random.default_rng(seed)
         while True:
             yield structured_fields(BATCH, *grid, rng)
-    raise UsageError(f"Unknown family '{family}'; choose one of {', '.join(FAMILIES)}.")
+    raise UsageError("training.unknown_family", family=family, choices=", ".join(FAMILIES))
 
 
 def _fault(field: RatioField, mask: BoolArray) -> str | None:

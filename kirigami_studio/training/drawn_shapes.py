@@ -78,7 +78,7 @@ def _solid(shape: shapely.Geometry) -> Polygon:
     """The largest piece without its holes."""
     pieces = [piece for piece in shapely.get_parts(shapely.make_valid(shape)) if isinstance(piece, Polygon)]
     if not pieces or max(pieces, key=shapely.area).area < 1e-6:
-        raise TargetError("The drawing has no area.")
+        raise TargetError("training.shape_without_area")
     return Polygon(max(pieces, key=shapely.area).exterior)
 
 

@@ -112,7 +112,7 @@ class FittedFields:
                 arrays = {name: archive[name] for name in ARRAYS}
                 about = json.loads(str(archive["about"]))
         except (OSError, ValueError, KeyError, EOFError) as error:
-            raise KirigamiError(f"Cannot read fitted fields from {path}; make them by 'dataset drawn'.") from error
+            raise KirigamiError("training.fits_unreadable", path=path) from error
         return cls(**arrays, about=about)
 
     @property
@@ -159,7 +159,7 @@ def fit_shapes(
     fits = FittedFields.load(path) if path.exists() else _nothing(grid, made_by)
     other = [name for name, value in made_by.items() if fits.about.get(name) != value]
     if other:
-        raise KirigamiError(f"The fits in {path} were made with another {' and '.join(other)}; choose another folder.")
+        raise KirigamiError("training.fits_differ", path=path, settings=", ".join(other))
     done = {int(number) for number in fits.about["blocks"]}  # type: ignore[attr-defined]
     work = partial(fitted_block, seed=seed, grid=grid, variant=variant, size=block_size)
     blocks = _each(work, (number for number in count_from(0) if number not in done), processes)
@@ -305,11 +305,16 @@ class FittedBatches:
 
     def __init__(self, fits: FittedFields, lattice: BatchedLattice, seed: int) -> None:
         rows, columns = fits.z.shape[1:]
-        if (rows, columns) != (lattice.rows, lattice.columns) or not len(fits.z):
+        if (rows, columns) != (lattice.rows, lattice.columns):
             raise UsageError(
-                f"Training on {lattice.rows}x{lattice.columns} voids needs fits of that grid, "
-                f"got {len(fits.z)} of {rows}x{columns}."
+                "training.fits_of_other_grid",
+                rows=lattice.rows,
+                columns=lattice.columns,
+                fit_rows=rows,
+                fit_columns=columns,
             )
+        if not len(fits.z):
+            raise UsageError("training.no_fits")
         self.fits, self.lattice, self.seed = fits, lattice, seed
         # Quarter turns of the outline are exact on even square grids only.
         self.turns = 4 if rows == columns and rows % 2 == 0 else 1

@@ -81,7 +81,7 @@ def pair_noise(coupling: str, noise: Tensor, z: Tensor, conditions: Tensor, cond
     if coupling == "independent":
         return noise
     if coupling not in COUPLINGS:
-        raise UsageError(f"Unknown coupling '{coupling}'; choose one of {', '.join(COUPLINGS)}.")
+        raise UsageError("training.unknown_coupling", coupling=coupling, choices=", ".join(COUPLINGS))
     cost = torch.cdist(z, noise).square()
     if coupling == "conditional-ot":
         # Noise b was drawn for target b: moving it to another target costs the squared distance between the two.

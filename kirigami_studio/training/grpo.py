@@ -103,22 +103,27 @@ class GrpoSettings:
     def __post_init__(self) -> None:
         Reward(self.reward)
         if self.advantages not in ADVANTAGES:
-            raise UsageError(f"There are no '{self.advantages}' advantages; choose one of {', '.join(ADVANTAGES)}.")
+            raise UsageError("training.unknown_advantages", advantages=self.advantages, choices=", ".join(ADVANTAGES))
         if self.group < 2:
-            raise UsageError(f"A group needs at least 2 designs to compare, got {self.group}.")
+            raise UsageError("training.group_too_small", group=self.group)
         if min(self.batch, self.rollout_steps) < 1:
-            raise UsageError("Targets of a step and Euler steps of a rollout must be 1 or more.")
+            raise UsageError("training.rollout_too_small", batch=self.batch, rollout_steps=self.rollout_steps)
         if min(self.temperature, self.learning_rate) <= 0.0:
-            raise UsageError("The reward temperature and the learning rate must be above 0.")
-        if not 0.0 <= self.average_decay < 1.0:
             raise UsageError(
-                f"The decay of averaged weights must be 0 or more and below 1, got {self.average_decay:g}."
+                "training.rates_not_positive", temperature=self.temperature, learning_rate=self.learning_rate
             )
+        if not 0.0 <= self.average_decay < 1.0:
+            raise UsageError("training.decay_out_of_range", decay=self.average_decay)
         if min(self.weight_clip, self.reference, self.least_spread) < 0.0:
-            raise UsageError("The bound on weights, the pull to the prior and the least spread must be 0 or more.")
+            raise UsageError(
+                "training.negative_bounds",
+                weight_clip=self.weight_clip,
+                reference=self.reference,
+                least_spread=self.least_spread,
+            )
         needed = self.scaling_calls + self.group
         if self.calls < needed:
-            raise UsageError(f"These settings need at least {needed} environment calls, got {self.calls}.")
+            raise UsageError("training.too_few_calls", needed=needed, calls=self.calls)
 
     @property
     def scaling_calls(self) -> int:
@@ -204,7 +209,7 @@ def train_grpo(
         The checkpoint belongs to other settings, or ``start`` does, or training diverged.
     """
     if start.digest != settings.start:
-        raise ModelError("The weights to start from are not those that the settings name.")
+        raise ModelError("training.other_start")
     run = _Run(settings, opened(folder), device, start)
     began = time.perf_counter()
 
@@ -343,9 +348,7 @@ class _Run:
             wanted = self._prior_velocity(path.x_t, t, self.prior.code(seen).repeated(group))
             loss = loss + self.settings.reference * (velocity - wanted).square().mean()
         if not torch.isfinite(loss):
-            raise ModelError(
-                "Training diverged: the loss is no longer a number. Start again with a lower learning rate."
-            )
+            raise ModelError("training.diverged")
         self.learner.learn(loss, self.settings.average_decay)
         return float(loss.detach())
 

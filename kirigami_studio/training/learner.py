@@ -69,7 +69,7 @@ class Checkpoint:
             content = torch.load(path, map_location="cpu", weights_only=True)
             return cls(**content)
         except Exception as error:  # torch raises many kinds on a damaged file
-            raise ModelError(f"The checkpoint {path} cannot be read; delete it to start afresh.") from error
+            raise ModelError("training.checkpoint_unreadable", path=path) from error
 
     def check_settings(self, wanted: dict[str, Any], path: Path) -> None:
         """Refuse to go on with other settings than those the checkpoint at ``path`` was made with.
@@ -81,7 +81,7 @@ class Checkpoint:
         """
         if self.settings != wanted:
             names = ", ".join(name for name in wanted if self.settings.get(name) != wanted[name])
-            raise ModelError(f"The checkpoint {path} was made with other settings ({names}); choose another folder.")
+            raise ModelError("training.checkpoint_differs", path=path, settings=names)
 
 
 #: Name of the resumable state in a run folder.
@@ -172,7 +172,7 @@ def opened(folder: Path) -> Path:
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise ExportError(f"Cannot make the run folder {folder}: {error.strerror}. Choose another folder.") from error
+        raise ExportError("training.folder_not_made", folder=folder, reason=error.strerror) from error
     return folder / CHECKPOINT
 
 
@@ -192,16 +192,16 @@ def training_device(name: str, threads: int = 1) -> torch.device:
         The device does not exist on this machine, or fewer than one thread was asked for.
     """
     if threads < 1:
-        raise UsageError(f"Training needs at least 1 thread, got {threads}.")
+        raise UsageError("training.no_threads", threads=threads)
     torch.set_num_threads(threads)
     if name == "auto":
         return torch.device("cuda" if torch.cuda.is_available() else "cpu")
     if name == "cuda" and not torch.cuda.is_available():
-        raise UsageError("No CUDA device is available to this torch build; use --device cpu or install a GPU build.")
+        raise UsageError("training.no_cuda")
     try:
         return torch.device(name)
     except RuntimeError as error:
-        raise UsageError(f"Unknown device '{name}'; use auto, cpu or cuda.") from error
+        raise UsageError("training.unknown_device", device=name) from error
 
 
 def grown_state(network: Network, shape: Shape) -> dict[str, Tensor]:
@@ -216,7 +216,7 @@ def grown_state(network: Network, shape: Shape) -> dict[str, Tensor]:
     if network.shape == shape:
         return state
     if not isinstance(shape, NetworkShape) or not _sees_more(network.shape, shape):
-        raise ModelError("The weights to begin with belong to a network of another shape.")
+        raise ModelError("training.other_network")
     grown = network_of(shape).state_dict()
     for name, value in grown.items():
         old = state.get(name)

@@ -96,7 +96,7 @@ class Reward:
 
     def __post_init__(self) -> None:
         if self.name not in REWARDS:
-            raise UsageError(f"There is no reward '{self.name}'; choose one of {', '.join(REWARDS)}.")
+            raise UsageError("training.unknown_reward", reward=self.name, choices=", ".join(REWARDS))
 
     def __call__(self, verdict: Verdict) -> float:
         """R of one design; higher is better."""

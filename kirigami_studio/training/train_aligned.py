@@ -139,9 +139,9 @@ def train_aligned(
         The checkpoint belongs to other settings, or the prior is not the one that the settings name.
     """
     if prior.digest != settings.prior:
-        raise ModelError("The prior to align is not the one that the settings name.")
+        raise ModelError("training.other_start")
     if (begin.digest if begin else "") != settings.begin:
-        raise ModelError("The weights to begin with are not those that the settings name.")
+        raise ModelError("training.other_start")
     run = AlignRun(settings, opened(folder), device, prior, begin)
     began = time.perf_counter()
     running: dict[str, float] = {}

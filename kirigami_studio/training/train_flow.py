@@ -121,7 +121,7 @@ class Sources:
         """
         found = (self.start.digest if self.start else "", self.fits.digest if self.fits else "")
         if found != (settings.warm_start, settings.fits):
-            raise ModelError("The weights or fits to train with are not those that the settings name.")
+            raise ModelError("training.other_start")
         if self.start:
             grown_state(self.start.network, settings.shape)
 

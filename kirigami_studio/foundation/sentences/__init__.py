@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from kirigami_studio.foundation.sentences import (
+    benchmark,
     cli,
     evaluate,
     export,
@@ -30,6 +31,7 @@ from kirigami_studio.foundation.words import tr, tr_n
 SENTENCES: Mapping[str, str | tuple[str, str]] = {
     code: text
     for package in (
+        benchmark,
         cli,
         evaluate,
         export,

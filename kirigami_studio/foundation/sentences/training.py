@@ -1,5 +1,69 @@
-"""Sentences of ``training``, by the code of the problem."""
+"""Sentences of training: data sets, settings, checkpoints and weights to start from, by the code of the problem."""
 
 from __future__ import annotations
 
-SENTENCES: dict[str, str | tuple[str, str]] = {}
+from kirigami_studio.foundation.words import mark
+
+SENTENCES: dict[str, str | tuple[str, str]] = {
+    "training.unknown_family": mark("There is no family of designs called '{family:.40}'. Choose one of {choices}."),
+    "training.no_samples_wanted": mark("A data set needs at least 1 sample, got {count_wanted}."),
+    "training.fields_ended": mark("The data set could not be filled: no more fields to try."),
+    "training.mask_differs": mark(
+        "The data set is wrong: a stored mask agrees with its design to IoU {iou:.4f} only. Generate it again."
+    ),
+    "training.shape_without_area": mark("The shape has no area."),
+    "training.fits_unreadable": mark("Cannot read fits from {path}. Make them with 'kirigami-studio dataset drawn'."),
+    "training.fits_differ": mark(
+        "The fits in {path} were made with other settings ({settings}). Choose another folder."
+    ),
+    "training.fits_of_other_grid": mark(
+        "Training on {rows} x {columns} voids needs fits of that grid, but these are of {fit_rows} x {fit_columns}."
+    ),
+    "training.no_fits": mark("There are no fits to train on. Make some with 'kirigami-studio dataset drawn'."),
+    "training.unknown_coupling": mark("There is no coupling called '{coupling:.40}'. Choose one of {choices}."),
+    "training.unknown_advantages": mark("There are no advantages called '{advantages:.40}'. Choose one of {choices}."),
+    "training.group_too_small": mark("A group needs at least 2 designs to compare, got {group}."),
+    "training.rollout_too_small": mark(
+        "Targets of a step and sampling steps must be 1 or more, got {batch} and {rollout_steps}."
+    ),
+    "training.rates_not_positive": mark(
+        "Temperature and learning rate must be above 0, got {temperature:g} and {learning_rate:g}."
+    ),
+    "training.decay_out_of_range": mark("The decay of averaged weights must be from 0 to below 1, got {decay:g}."),
+    "training.negative_bounds": mark(
+        "Weight clip, reference and least spread must be 0 or more, got {weight_clip:g}, {reference:g} and "
+        "{least_spread:g}."
+    ),
+    "training.too_few_calls": mark("These settings need at least {needed} environment calls, got {calls}."),
+    "training.unknown_reward": mark("There is no reward called '{reward:.40}'. Choose one of {choices}."),
+    "training.other_start": mark(
+        "These are not the weights or fits that the settings name. Start with those, or in another folder."
+    ),
+    "training.other_network": mark(
+        "The weights to start from belong to a network of another shape. Start from others."
+    ),
+    "training.diverged": mark(
+        "Training diverged: the loss is no longer a number. Start again with a lower learning rate."
+    ),
+    "training.checkpoint_unreadable": mark("Cannot read the checkpoint {path}. Delete it to start afresh."),
+    "training.checkpoint_differs": mark(
+        "The checkpoint {path} was made with other settings ({settings}). Choose another folder."
+    ),
+    "training.folder_not_made": mark("Cannot make the run folder {folder}: {reason}. Choose another folder."),
+    "training.no_threads": mark("Training needs at least 1 thread, got {threads}."),
+    "training.no_cuda": mark("No CUDA device is available. Use --device cpu, or install a GPU build of torch."),
+    "training.unknown_device": mark("There is no device called '{device:.40}'. Use auto, cpu or cuda."),
+    "training.fits_are_not_split": mark("Fits of drawn shapes are for training only. Leave out --split."),
+    "training.channels_without_unet": mark(
+        "--channels belongs to --backbone unet. Leave it out, or choose that backbone."
+    ),
+    "training.feedback_with_unet": mark(
+        "--feedback belongs to the perceptron: the U-Net sees only the target's mask. Leave it out."
+    ),
+    "training.channels_not_whole": mark(
+        "--channels must be whole numbers separated by commas, such as 64,128,256,384, got '{channels:.40}'."
+    ),
+    "training.fit_share_out_of_range": mark("--fit-share must be between 0 and 1, got {share:g}."),
+    "training.share_above_one": mark("{option} is a share from 0 to 1, got {share:g}."),
+    "training.minutes_not_positive": mark("--minutes must be above 0, got {minutes:g}."),
+}

@@ -33,7 +33,9 @@ def test_that_loads_pass_the_cache_by_and_scoring_comes_on_top_of_sampling() -> 
 
 
 def test_that_timing_nothing_is_a_sentence() -> None:
-    with pytest.raises(UsageError, match="two targets, got 1 and 1"):
+    with pytest.raises(UsageError) as caught:
         generation_timings(["prior"], [load("heart")])
-    with pytest.raises(UsageError, match="a variant"):
+    assert caught.value.code == "benchmark.too_few_to_time"
+    with pytest.raises(UsageError) as caught:
         generation_timings([])
+    assert caught.value.code == "benchmark.too_few_to_time"

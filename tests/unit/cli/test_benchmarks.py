@@ -9,7 +9,10 @@ from typing import Any
 import pytest
 from PIL import Image
 
+from kirigami_studio.benchmark import cut_files_suite
+from kirigami_studio.benchmark.cut_files_suite import CutFileFigures
 from kirigami_studio.cli import main
+from kirigami_studio.export.profile import PROFILES
 
 pytestmark = pytest.mark.torch
 
@@ -56,7 +59,44 @@ def test_that_a_picture_can_show_the_worst_only(capsys: pytest.CaptureFixture[st
 def test_that_an_unknown_variant_is_wrong_usage_before_anything_is_measured(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    for suite in ("variants", "spread", "robustness", "generation-speed"):
-        assert main(["benchmark", suite, "--variants", "prior,none", "--count", "1"]) == 2
+    for words in (["variants", "--count", "1"], ["spread"], ["robustness"], ["generation-speed"]):
+        assert main(["benchmark", *words, "--variants", "prior,none"]) == 2
         captured = capsys.readouterr()
         assert captured.out == "" and "no generator variant 'none'" in captured.err
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["generator", "--variants", "prior"], "--variants"), (["variants", "--variant", "prior"], "--variant"),
+        (["spread", "--polish", "3"], "--polish"), (["robustness", "--exact"], "--exact"),
+        (["nearness", "--seeds", "0", "1"], "--seeds"), (["polish", "--trim"], "--trim"),
+        (["regularity", "--k", "2"], "--k"), (["designs", "--variants", "prior"], "--variants"),
+        (["generation-speed", "--count", "1"], "--count"), (["speed", "--grid", "4x4"], "--grid"),
+        (["lattice", "--seed", "1"], "--seed"), (["fabrication", "--targets", "heart"], "--targets"),
+        (["cut-files", "--grid", "4x4"], "--grid"), (["everything"], "everything"), ([], "COMMAND"),
+    ],
+)  # fmt: skip
+def test_that_each_suite_takes_its_own_options_only(
+    capsys: pytest.CaptureFixture[str], words: list[str], said: str
+) -> None:
+    with pytest.raises(SystemExit) as stopped:
+        main(["benchmark", *words])
+    assert stopped.value.code == 2
+    assert said in capsys.readouterr().err.splitlines()[-1]
+
+
+def test_that_cut_files_are_counted_for_a_person_and_as_json(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(cut_files_suite, "PROFILES", {"slots": PROFILES["slots"]})
+    found = figures(capsys, "cut-files", "--count", "1", "--seed", "1")
+    assert (found["designs"], found["files"], found["passed"], found["failures"]) == (1, 3, 3, [])
+    assert main(["benchmark", "cut-files", "--count", "1", "--seed", "1"]) == 0
+    assert "3 of 3 files of 1 designs passed" in capsys.readouterr().out
+
+
+def test_that_a_cut_file_that_does_not_pass_fails_the_command(monkeypatch: pytest.MonkeyPatch) -> None:
+    bad = CutFileFigures(1, 3, 2, 0, ("Design 0, slots, R12 .dxf: a line is missing",), 0.1, 0.1, (1.5, 1.6, 1.7))
+    monkeypatch.setattr(cut_files_suite, "measure_cut_files", lambda *given: bad)
+    assert main(["benchmark", "cut-files"]) == 1

@@ -97,4 +97,4 @@ def test_that_fits_of_another_grid_are_refused(capsys: pytest.CaptureFixture[str
     )  # fmt: skip
     smaller.save(tmp_path / "small.npz")
     assert main(["train", "prior", "--fits", str(tmp_path / "small.npz"), "--out", str(tmp_path / "out")]) == 2
-    assert "8x8" in capsys.readouterr().err
+    assert "8 x 8" in capsys.readouterr().err

@@ -181,16 +181,19 @@ def test_that_other_settings_weights_or_folders_are_refused(tmp_path: Path, star
     align(replace(tiny, calls=6), tmp_path, start)
     with pytest.raises(ModelError, match=r"other settings \(calls, temperature\)"):
         align(replace(tiny, temperature=1.0), tmp_path, start)
-    with pytest.raises(ModelError, match="settings name"):
+    with pytest.raises(ModelError) as caught:
         align(replace(tiny, start="other"), tmp_path, start)
+    assert caught.value.code == "training.other_start"
     (tmp_path / "file").write_text("in the way")
-    with pytest.raises(ExportError, match="Choose another folder"):
+    with pytest.raises(ExportError) as blocked:
         align(tiny, tmp_path / "file" / "run", start)
+    assert blocked.value.code == "training.folder_not_made"
 
 
 def test_that_a_network_that_diverged_says_so(tmp_path: Path, start: Model, tiny: GrpoSettings) -> None:
-    with pytest.raises(ModelError, match="lower learning rate"):
+    with pytest.raises(ModelError) as caught:
         align(replace(tiny, learning_rate=1e30), tmp_path, start)
+    assert caught.value.code == "training.diverged"
 
 
 @pytest.mark.parametrize(

@@ -158,17 +158,20 @@ def test_that_the_prior_is_not_written_to(tmp_path: Path, prior: Model, tiny: Al
 def test_that_another_prior_other_settings_or_folders_are_refused(
     tmp_path: Path, prior: Model, tiny: AlignSettings
 ) -> None:
-    with pytest.raises(ModelError, match="settings name"):
+    with pytest.raises(ModelError) as caught:
         align(replace(tiny, prior="other"), tmp_path / "none", prior)
+    assert caught.value.code == "training.other_start"
     assert not (tmp_path / "none").exists()
     align(replace(tiny, steps=1), tmp_path, prior)
     with pytest.raises(ModelError, match=r"other settings \(steps, anchor_weight\)"):
         align(replace(tiny, anchor_weight=1.0), tmp_path, prior)
-    with pytest.raises(ModelError, match="another shape"):
+    with pytest.raises(ModelError) as caught:
         align(replace(tiny, shape=replace(tiny.shape, width=40)), tmp_path / "wide", prior)
+    assert caught.value.code == "training.other_network"
     (tmp_path / "file").write_text("in the way")
-    with pytest.raises(ExportError, match="Choose another folder"):
+    with pytest.raises(ExportError) as blocked:
         align(tiny, tmp_path / "file" / "run", prior)
+    assert blocked.value.code == "training.folder_not_made"
 
 
 def test_that_sheets_follow_from_seed_and_step(tmp_path: Path, prior: Model, tiny: AlignSettings) -> None:
