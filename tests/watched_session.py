@@ -105,7 +105,7 @@ class WatchedSession:
         self.set_up(4, FULL_POLISH, search=False)
         self.step("generate 4 and polish fully", self.generate, self.generated)
         self.step("choose another design", lambda: self.press("next"), self.planned)
-        self.step("trim", lambda: self.press("trim"), lambda: not controller.finishing.busy and self.planned())
+        self.step("trim", lambda: self.press("trim"), lambda: not controller.trimming.busy and self.planned())
         self.step("undo", lambda: [self.press("undo") for _ in range(3)], self.planned)
         self.step("redo", lambda: [self.press("redo") for _ in range(3)], self.planned)
         self.step("scrub", self.scrub)

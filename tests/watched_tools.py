@@ -44,7 +44,7 @@ class WatchedTools(WatchedSession):
         super().__init__(folder)
         self.folder = folder
         self.window.resize(*WINDOW)
-        self.window.controller.filing.recovering.use(folder / "recovery")
+        self.window.controller.filing.recovery.use(folder / "recovery")
 
     def play(self) -> None:
         self.large_gallery()
@@ -162,7 +162,7 @@ class WatchedTools(WatchedSession):
 
     def many_saved(self) -> None:
         """256 designs: opened, changed, kept for a recovery, saved."""
-        recovering = self.window.controller.filing.recovering
+        recovering = self.window.controller.filing.recovery
         self.window.controller.history.mark_saved()
         self.open(f"open {MOST} designs", "many.kiri", MOST)
         recovering.quiet_ms = 0

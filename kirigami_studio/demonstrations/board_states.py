@@ -106,7 +106,7 @@ class BoardStates(Session):
         target.set_tool(Tool.POSE)
         target.tools.options.pose.turn.setValue(20.0)
         self.all_sizes("lost-designs")
-        self.window.wiring.lost.bring_back()
+        self.window.wiring.discarded.bring_back()
         target.set_editing(False)
         if not controller.document.candidates:
             raise SessionError("The designs did not come back.")

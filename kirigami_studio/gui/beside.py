@@ -10,7 +10,7 @@ from PySide6.QtGui import QDesktopServices
 
 from kirigami_studio.gui.controller import Controller
 from kirigami_studio.gui.dialogs.files import FileChoosers, FileQuestions
-from kirigami_studio.gui.jobs.steps import Exported
+from kirigami_studio.gui.jobs.cut_jobs import Exported
 from kirigami_studio.gui.shell import Shell
 from kirigami_studio.gui.tour import Tour
 
@@ -62,7 +62,7 @@ class Beside(QObject):
         """Write the calibration coupon of a material in a place of the user's choice."""
         path = self.files.export(f"coupon-{material.key}.dxf")
         if path is not None:
-            self.controller.cutting.export_coupon(material, path, self.controller.document.fabrication)
+            self.controller.cutting.export_coupon(material, path)
 
     def show_report(self, exported: Exported) -> None:
         """Show what two readers found in a written cut file, in the place of an earlier report."""
@@ -97,7 +97,7 @@ class Beside(QObject):
         if self.history is None:
             self.history = HistoryList(self.window)
             self.history.step_wanted.connect(self.controller.go_to)
-            self.controller.document_changed.connect(self._update_history)
+            self.controller.session.document_changed.connect(self._update_history)
         self.history.show()
         self._update_history()
         self.history.raise_()

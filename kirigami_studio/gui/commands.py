@@ -16,8 +16,8 @@ from kirigami_studio.gui.actions import insert_menu
 from kirigami_studio.gui.beside import Beside
 from kirigami_studio.gui.controller import Controller
 from kirigami_studio.gui.dressing import Dressing
-from kirigami_studio.gui.files.pasting import Pasting
-from kirigami_studio.gui.files.picturing import Picturing
+from kirigami_studio.gui.files.pasting import PasteReader
+from kirigami_studio.gui.files.picturing import PictureMaker
 from kirigami_studio.gui.messages import Message, Tone
 from kirigami_studio.gui.panels.menus import PictureMenu, RecentMenu
 from kirigami_studio.gui.shell import Shell
@@ -45,23 +45,20 @@ class Commands(Beside):
         self.recent = RecentMenu(window, controller.filing.recent, self.take_file)
         insert_menu(window, "save", self.recent)
         self.dressing = Dressing(window, controller.preferring)
-        self.pasting = Pasting(self)
+        self.pasting = PasteReader(controller.session, self)
         self.pasting.file_wanted.connect(self.take_file)
-        self.pasting.message.connect(controller.message)
-        controller.filing.recovering.recover_wanted.connect(
+        controller.filing.recovery.recover_wanted.connect(
             lambda leftover: self.guard(
-                tr("recover another project"), partial(controller.filing.recovering.recover, leftover)
+                tr("recover another project"), partial(controller.filing.recovery.recover, leftover)
             )
         )
-        self.picturing = Picturing(window, controller.queue, lambda: controller.cut_request)
+        self.picturing = PictureMaker(window, controller.session, controller.cutting)
         self.pictures = PictureMenu(window, self.picturing, lambda proposal: self.files.picture(proposal))
         insert_menu(window, "animation", self.pictures)
-        self.picturing.message.connect(controller.message)
-        self.picturing.status.connect(controller.status)
-        controller.filing.stocking.stocked.connect(self.take_materials)
+        controller.filing.materials.material_added.connect(self.take_materials)
         self._closing = self._quit_when_saved = False
         controller.saved.connect(lambda _: self._saved())
-        controller.filing.storing.failed.connect(self._stay)
+        controller.filing.projects.save_failed.connect(self._stay)
         self._connect_actions()
 
     def _connect_actions(self) -> None:
@@ -92,7 +89,7 @@ class Commands(Beside):
             "axis": self._cycle_axis,
             "grid": window.target.tools.grid.click,
             "clear": controller.targeting.clear,
-            "generate": controller.generate,
+            "generate": controller.generation.generate,
             "cancel": controller.cancel,
             "trim": window.stage.trim.click,
             "before": window.stage.before.click,
@@ -136,7 +133,7 @@ class Commands(Beside):
         if self.window.target.tools.buttons[tool].isEnabled():
             self.window.target.set_tool(tool)
         else:
-            self.controller.message.emit(Message(tr("No target to edit yet. Draw or open one first."), Tone.HINT))
+            self.controller.session.post(Message(tr("No target to edit yet. Draw or open one first."), Tone.HINT))
 
     def _set_mode(self, mode: Combine) -> None:
         if self.window.target.tools.modes[mode].isEnabled():
@@ -183,7 +180,7 @@ class Commands(Beside):
     def export(self, extension: str = ".dxf") -> None:
         """Write the cut file, or another kind of file, in a place of the user's choice."""
         if self.controller.stage is None:
-            self.controller.message.emit(Message(tr("No design to export yet. Generate one first."), Tone.HINT))
+            self.controller.session.post(Message(tr("No design to export yet. Generate one first."), Tone.HINT))
             return
         path = self.files.export(f"{self._name()}{extension}")
         if path is not None:
@@ -232,7 +229,7 @@ class Commands(Beside):
         if not self.controller.history.unsaved:
             then()
             return
-        self.controller.message.emit(
+        self.controller.session.post(
             Message(
                 tr("This project has unsaved changes. Save before you {purpose}?", purpose=purpose),
                 Tone.WARNING,
@@ -249,7 +246,7 @@ class Commands(Beside):
             return False
         if self._closing or not self.controller.history.unsaved:
             return True
-        self.controller.message.emit(
+        self.controller.session.post(
             Message(
                 tr("This project has unsaved changes. Save before you quit?"),
                 Tone.WARNING,

@@ -1,44 +1,145 @@
-"""What a person can ask of the studio: each gesture becomes a named edit, a job, or a sentence on why not."""
+"""What a person can ask of the studio: the parts, and what concerns several of them.
+
+A request of one part goes to that part (``controller.generation.generate``, ``controller.fabrication.change``); here is
+what has to stop, save or replace the work of several.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
 from typing import Unpack
 
+from PySide6.QtCore import QObject, Signal
+
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.errors import KirigamiError
+from kirigami_studio.foundation.resources import resource_root
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui.designs.collection import Plan
+from kirigami_studio.gui.cutting import CutPlanner, FabricationEditor
+from kirigami_studio.gui.designs.chosen_design import Refitter, SampledScores, TrimSwitch
+from kirigami_studio.gui.designs.collection import DesignMarks
+from kirigami_studio.gui.designs.curves import CurveReader
+from kirigami_studio.gui.designs.generation import Generation
+from kirigami_studio.gui.designs.hand_editor import HandEditor
 from kirigami_studio.gui.file_kinds import kind_of
-from kirigami_studio.gui.jobs import steps
-from kirigami_studio.gui.jobs.queue import JobCallbacks
+from kirigami_studio.gui.files.filing import Filing
+from kirigami_studio.gui.jobs import importing
+from kirigami_studio.gui.jobs.queue import JobCallbacks, JobQueue
+from kirigami_studio.gui.look.preferring import Preferring
 from kirigami_studio.gui.messages import Message, Tone
-from kirigami_studio.gui.workbench import Workbench
-from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.gui.session import Entry, Session
+from kirigami_studio.gui.targeting import Targeting
 from kirigami_studio.project import edits
-from kirigami_studio.project.edits import FabricationChange, SettingsChange
+from kirigami_studio.project.document import Document
+from kirigami_studio.project.edits import Edit, SettingsChange
+from kirigami_studio.project.history import History
 
 
-class Controller(Workbench):
-    """The commands of the window."""
+class Controller(QObject):
+    """Owns the session and the parts that work on it.
+
+    Attributes
+    ----------
+    session : Session
+        Document, history, stage; the parts speak to the user through it.
+    hand, trimming, refitting, sampled, marks, curves
+        What is done to the chosen design, or found out about it.
+    generation, run
+        Making designs, and the run that makes them.
+    fabrication, cutting
+        The numbers a design is cut with, and its cut plan and files.
+    targeting, filing, preferring
+        The target, the project's files, the preferences.
+    """
+
+    saved = Signal(Path)
+    opened = Signal(Path)
+    variants_known = Signal(tuple)  #: of str, the generators on offer
+
+    def __init__(self, parent: QObject | None = None) -> None:
+        super().__init__(parent)
+        self.session = session = Session(self)
+        self.hand = HandEditor(session, self)
+        self.trimming = TrimSwitch(session, self)
+        self.refitting = Refitter(session, self)
+        self.sampled = SampledScores(session, self)
+        self.marks = DesignMarks(session)
+        self.curves = CurveReader(session, self)
+        self.generation = Generation(session, self.hand, self)
+        self.run = self.generation.run
+        self.fabrication = FabricationEditor(session)
+        self.cutting = CutPlanner(session, self)
+        self.targeting = Targeting(session, self)
+        self.filing = Filing(session, self.targeting, self)
+        self.preferring = Preferring(self)
+        self._connect()
+
+    def _connect(self) -> None:
+        self.session.display.stage_changed.connect(self._stop_work_on_others)
+        self.hand.drafted.connect(self._stop_work_on_design)
+        self.generation.begun.connect(self._stop_work_on_design)
+        self.targeting.replaced.connect(self._replace_target)
+        self.targeting.adjusted.connect(self._adjust_target)
+        self.targeting.begun.connect(self._begin)
+        self.filing.saved.connect(self._note_saved)
+        self.filing.opened.connect(self._show_opened)
+        self.filing.recovered.connect(self._show_recovered)
+        self.preferring.message.connect(self.session.post)
+
+    @property
+    def document(self) -> Document:
+        """The present document."""
+        return self.session.document
+
+    @property
+    def history(self) -> History:
+        """The present document with the way back and forth."""
+        return self.session.history
+
+    @property
+    def queue(self) -> JobQueue:
+        """Runs the long work."""
+        return self.session.queue
+
+    @property
+    def path(self) -> Path | None:
+        """Where the project was saved or opened."""
+        return self.session.path
+
+    @property
+    def stage(self) -> Entry | None:
+        """The design that is shown large."""
+        return self.session.stage
+
+    @property
+    def running(self) -> bool:
+        """Whether candidates are being generated."""
+        return self.run.running
+
+    def close(self) -> None:
+        """Stop all work; the window is going away."""
+        self.cutting.close()
+        self.hand.close()
+        self.queue.close()
+        self.filing.close()
+
+    # the start -----------------------------------------------------------------------------------------------------
 
     def use_preferences(self, path: Path) -> None:
         """Start with what was preferred the last time, and remember what is from now on."""
         untouched = self.document == self.preferring.new_document()
         self.preferring.load(path)
         if untouched:
-            self._restart(self.preferring.new_document())
-            self.show()
+            self.session.restart(self.preferring.new_document(), self.path)
 
     def warm_up(self) -> None:
         """Import in the worker what the first run needs, and learn which generators there are."""
-        callbacks = JobCallbacks(self._take_warmth, on_failed=self.tell_failure)
-        self.queue.start(tr("loading the generator"), steps.warming, callbacks)
+        callbacks = JobCallbacks(self._take_variants, on_failed=self.session.report_failure)
+        self.queue.start(tr("loading the generator"), importing.warming, callbacks)
 
-    def _take_warmth(self, report: object) -> None:
-        if isinstance(report, tuple):
-            self.variants_known.emit(report)
+    def _take_variants(self, variants: tuple[str, ...]) -> None:
+        if variants:
+            self.variants_known.emit(variants)
 
     def start_with(self, source: str) -> None:
         """Read the first target; it is where the history starts, not a change to be undone or saved."""
@@ -49,134 +150,113 @@ class Controller(Workbench):
     def change_settings(self, **changes: Unpack[SettingsChange]) -> None:
         """Change how the next run searches."""
         try:
-            self.apply(edits.set_settings(self.document, **changes))
+            self.session.apply(edits.set_settings(self.document, **changes))
         except KirigamiError as error:
-            self.refuse(error)
-
-    def change_fabrication(self, **changes: Unpack[FabricationChange]) -> None:
-        """Change how the design is cut."""
-        self.fabricating.change(**changes)
+            self.session.refuse(error)
 
     def end_drag(self) -> None:
         """A number was typed or dragged to its end: the next change is an undo step of its own."""
         self.history.end_drag()
 
-    # generate ------------------------------------------------------------------------------------------------------
-
-    def generate(self) -> None:
-        """Start a run for the present target and settings; pinned designs stay where they fit."""
-        if not self.hand.postpones(self.generate):
-            self._start(self.collecting.anew)
-
-    def again(self) -> None:
-        """Draw more designs, from the next seed, beside those there are."""
-        if not self.hand.postpones(self.again):
-            self._start(self.collecting.more)
-
-    def more_like(self, nearness: float) -> None:
-        """Draw more designs near the chosen one, beside those there are."""
-        if not self.hand.postpones(lambda: self.more_like(nearness)):
-            self._start(lambda target: self.collecting.alike(target, nearness))
-
-    def _start(self, planned: Callable[[Outline], Plan]) -> None:
-        if self.running:
-            return
-        if self.document.target is None:
-            self.message.emit(Message(tr("Choose or draw a target first, then press Generate."), Tone.HINT))
-            return
-        try:
-            plan = planned(self.document.target)
-        except KirigamiError as error:
-            self.refuse(error)
-            return
-        self.stop_finish()
-        self.showing.begin_run(plan.kept, plan.joins)
-        self.run.start(plan.request, plan.kept if plan.joins else None)
-        self.status.emit(plan.says)
+    # designs -------------------------------------------------------------------------------------------------------
 
     def cancel(self) -> None:
-        """Ask the run, or the trimming of a design, to stop; the document stays as it is."""
+        """Ask the run, or the work on a design, to stop; the document stays as it is."""
         if self.running:
-            self.run.cancel()
-            self.status.emit(tr("Stopping …"))
-        elif self.finishing.busy:
-            self.finishing.cancel()
+            self.generation.cancel()
+        elif self.trimming.busy:
+            self.trimming.cancel()
         elif self.refitting.busy:
             self.refitting.cancel()
-
-    # choose --------------------------------------------------------------------------------------------------------
 
     def choose(self, candidate: Candidate) -> None:
         """Put a candidate on the stage; during a run it is only looked at."""
         if self.hand.postpones(lambda: self.choose(candidate)):
             return
         if self.running:
-            self.showing.look_at(candidate)
+            self.session.display.look_at(candidate)
         elif candidate in self.document.candidates:
-            self.apply(edits.choose(self.document, self.document.candidates.index(candidate)))
+            self.session.apply(edits.choose(self.document, self.document.candidates.index(candidate)))
 
-    def compare(self, on: bool) -> None:
-        """Find out how the design on the stage was drawn, or stop doing so."""
+    def show_before(self, on: bool) -> None:
+        """Find out how the design on the stage was sampled, or stop doing so."""
         stage = self.stage
         if on and stage is not None:
-            self.comparing.look_up(stage.candidate, self.document.target)
+            self.sampled.look_up(stage.candidate, self.document.target)
         else:
-            self.comparing.stop()
+            self.sampled.stop()
 
     def trim(self, on: bool) -> None:
         """Trim the chosen design to the target, or take its trim off."""
         if self.hand.postpones(lambda: self.trim(on)):
             return
         if self.running:
-            self.message.emit(Message(tr("Wait for the run to finish, then trim a design."), Tone.HINT))
+            text = tr("Wait for the run to finish, then trim a design.")
+            self.session.post(Message(text, Tone.HINT))
         else:
-            self.finishing.switch(on)
+            self.trimming.switch(on)
 
-    # cut -----------------------------------------------------------------------------------------------------------
+    def refit(self) -> None:
+        """Fit the chosen design again."""
+        if not self.running and not self.hand.postpones(self.refit):
+            self.trimming.job.stop()
+            self.refitting.start()
+
+    def _stop_work_on_others(self, entry: Entry | None) -> None:
+        """Another design is on the stage: work on the one before is no longer wanted."""
+        candidate = None if entry is None else entry.candidate
+        self.trimming.job.stop_unless(candidate)
+        self.refitting.job.stop_unless(candidate)
+
+    def _stop_work_on_design(self) -> None:
+        """The design is about to change: what is being made of it belongs to the old one."""
+        self.trimming.job.stop()
+        self.refitting.job.stop()
+
+    # cuts ----------------------------------------------------------------------------------------------------------
 
     def export(self, path: Path) -> None:
         """Write the chosen design's cut file or picture; the extension says which."""
         if self.hand.postpones(lambda: self.export(path)):
             return
-        order = self.cut_request
-        if order is None:
-            self.message.emit(Message(tr("No design to export yet. Generate one first."), Tone.HINT))
+        request = self.cutting.request
+        if request is None:
+            text = tr("No design to export yet. Generate one first.")
+            self.session.post(Message(text, Tone.HINT))
         else:
             if kind_of(path.suffix).cuts:
                 self.preferring.remember(self.document)
-            self.cutting.export(order, path)
+            self.cutting.export(request, path)
 
     def export_all(self, folder: Path, name: str) -> None:
         """Write everything that there is of the chosen design into a folder."""
         if self.hand.postpones(lambda: self.export_all(folder, name)):
             return
-        order = self.cut_request
-        if order is not None:
-            self.cutting.export_all(order, folder, name)
+        request = self.cutting.request
+        if request is not None:
+            self.cutting.export_all(request, folder, name)
 
     def replan(self) -> None:
         """A material has changed on disk."""
-        self.document_changed.emit(self.document)
-        self.plan_soon()
+        self.session.document_changed.emit(self.document)
+        self.cutting.plan_soon()
 
-    # project -------------------------------------------------------------------------------------------------------
+    # the project ---------------------------------------------------------------------------------------------------
 
     def save(self, path: Path) -> None:
         """Write the project file."""
         if not self.hand.postpones(lambda: self.save(path)):
-            self.filing.storing.save(self.document, path)
+            self.filing.projects.save(path)
 
     def open_project(self, path: Path) -> None:
         """Read a project file."""
-        self.filing.storing.open(path)
+        self.filing.projects.open(path)
 
     def new_project(self) -> None:
         """Forget everything and start empty."""
-        self.stop_design()
-        self.path = None
-        self._restart(self.preferring.new_document())
-        self.show()
-        self.status.emit(tr("New project. Choose or draw a target."))
+        self._stop_all()
+        self.session.restart(self.preferring.new_document(), None)
+        self.session.set_status(tr("New project. Choose or draw a target."))
 
     def undo(self) -> None:
         """Go one step back."""
@@ -184,24 +264,70 @@ class Controller(Workbench):
             return
         label = self.history.undo_label
         if self.history.undo():
-            self.stop_design()
-            self.show()
-            self.status.emit(tr("Undone: {label}.", label=label))
+            self._show_step(tr("Undone: {label}.", label=label))
 
     def redo(self) -> None:
-        """Go one undone step forth."""
+        """Go one undone step forward."""
         if self.hand.postpones(self.redo):
             return
         label = self.history.redo_label
         if self.history.redo():
-            self.stop_design()
-            self.show()
-            self.status.emit(tr("Redone: {label}.", label=label))
+            self._show_step(tr("Redone: {label}.", label=label))
 
     def go_to(self, position: int) -> None:
         """Undo or redo until so many steps of the history are done."""
         if not self.hand.postpones(lambda: self.go_to(position)) and self.history.go_to(position):
-            self.stop_design()
-            self.show()
             label = self.history.undo_label
-            self.status.emit(tr("Back at the start.") if label is None else tr("Now at step: {label}.", label=label))
+            self._show_step(tr("Back at the start.") if label is None else tr("Now at step: {label}.", label=label))
+
+    def _show_step(self, status: str) -> None:
+        self._stop_all()
+        self.session.announce()
+        self.session.set_status(status)
+
+    def _note_saved(self, path: Path, document: Document) -> None:
+        self.session.path = path
+        self.history.mark_saved(document)
+        self.saved.emit(path)
+        self.session.document_changed.emit(self.document)
+        self.session.set_status(tr("Saved {path}.", path=path))
+
+    def _show_opened(self, path: Path, document: Document) -> None:
+        self._stop_all()
+        bundled = path.is_relative_to(resource_root())
+        self.session.restart(document, None if bundled else path)  # a bundled one is saved elsewhere
+        self.opened.emit(path)
+        self.session.set_status(tr("Opened {path}.", path=path))
+
+    def _show_recovered(self, document: Document, path: Path | None) -> None:
+        self._stop_all()
+        self.session.restart(document, path, saved=False)
+
+    def _stop_all(self) -> None:
+        """Another document comes: what is on its way belongs to the old one."""
+        self.targeting.stop()
+        self.hand.stop()
+        self._stop_work_on_design()
+        self.run.abandon()
+
+    # the target ----------------------------------------------------------------------------------------------------
+
+    def _begin(self, document: Document) -> None:
+        self.session.restart(document, self.path)
+
+    def _replace_target(self, edit: Edit) -> None:
+        before, was_running = self.document, self.running
+        self._stop_all()
+        self.session.apply(edit)
+        self._show_after_run(was_running, before)
+
+    def _adjust_target(self, edit: Edit) -> None:
+        before, was_running = self.document, self.running
+        self.run.abandon()
+        self.session.apply(edit)
+        self._show_after_run(was_running, before)
+
+    def _show_after_run(self, was_running: bool, before: Document) -> None:
+        """A run was given up for an edit that has changed nothing: its designs must not stay in sight."""
+        if was_running and self.document is before:
+            self.session.display.show()

@@ -9,8 +9,8 @@ from PySide6.QtWidgets import QMenu
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.controller import Controller
-from kirigami_studio.gui.designs.design_cache import Entry
 from kirigami_studio.gui.look import icons
+from kirigami_studio.gui.session import Entry
 from kirigami_studio.gui.shell import Shell
 from kirigami_studio.gui.side_by_side import SideBySide
 from kirigami_studio.project.document import Document, Mark
@@ -26,20 +26,20 @@ class GalleryWiring(QObject):
         self.menu: QMenu | None = None
         self.side_by_side = SideBySide(window, controller, self)
         view, bar = window.gallery.view, window.gallery.bar
-        view.pin_wanted.connect(controller.marking.pin)
+        view.pin_wanted.connect(controller.marks.pin)
         view.reject_wanted.connect(self.reject)
         view.menu_wanted.connect(self.show_menu)
-        bar.again_wanted.connect(controller.again)
-        bar.alike_wanted.connect(controller.more_like)
+        bar.again_wanted.connect(controller.generation.again)
+        bar.alike_wanted.connect(controller.generation.more_like)
         window.settings.keep_changed.connect(self._keep_seed)
         actions = window.actions_
-        actions["again"].triggered.connect(lambda _=False: controller.again())
-        actions["more_like"].triggered.connect(lambda _=False: controller.more_like(bar.nearness_value))
-        actions["pin"].triggered.connect(lambda _=False: controller.marking.pin(self._candidate))
+        actions["again"].triggered.connect(lambda _=False: controller.generation.again())
+        actions["more_like"].triggered.connect(lambda _=False: controller.generation.more_like(bar.nearness_value))
+        actions["pin"].triggered.connect(lambda _=False: controller.marks.pin(self._candidate))
         actions["reject"].triggered.connect(lambda _=False: self.reject(self._candidate))
-        controller.document_changed.connect(self._show_document)
-        controller.showing.stage_changed.connect(self._show_stage)
-        controller.showing.gallery_reset.connect(lambda _: self._show_chosen())
+        controller.session.document_changed.connect(self._show_document)
+        controller.session.display.stage_changed.connect(self._show_stage)
+        controller.session.display.gallery_reset.connect(lambda _: self._show_chosen())
         controller.run.started.connect(lambda _: self._show_ready())
         controller.run.ended.connect(lambda _: self._show_ready())
         self._show_document(controller.document)
@@ -53,7 +53,7 @@ class GalleryWiring(QObject):
         """Reject a design; where that hides the chosen one, the next card is chosen instead."""
         view = self.window.gallery.view
         hides = not view.model_.selection.show_rejected
-        self.controller.marking.reject(candidate, view.beside(candidate) if hides else None)
+        self.controller.marks.reject(candidate, view.beside(candidate) if hides else None)
 
     def show_menu(self, candidate: Candidate, place: QPoint) -> None:
         """Offer what can be done to one design, beside its card."""
@@ -63,7 +63,7 @@ class GalleryWiring(QObject):
         mark = self.window.gallery.view.model_.mark_of(candidate)
         ready = not self.controller.running and candidate in self.controller.document.candidates
         for name, text, wanted in (
-            ("pin", tr("Unpin") if mark is Mark.PINNED else tr("Pin"), lambda: self.controller.marking.pin(candidate)),
+            ("pin", tr("Unpin") if mark is Mark.PINNED else tr("Pin"), lambda: self.controller.marks.pin(candidate)),
             ("reject", tr("Restore") if mark is Mark.REJECTED else tr("Reject"), lambda: self.reject(candidate)),
             ("alike", tr("More like this"), lambda: self._more_like(candidate)),
             ("compare", tr("Compare with chosen"), lambda: self.side_by_side.compare_with(candidate)),
@@ -83,14 +83,14 @@ class GalleryWiring(QObject):
 
     def _more_like(self, candidate: Candidate) -> None:
         self.controller.choose(candidate)
-        self.controller.more_like(self.window.gallery.bar.nearness_value)
+        self.controller.generation.more_like(self.window.gallery.bar.nearness_value)
 
     def _use_seed(self, candidate: Candidate) -> None:
         self.controller.change_settings(seed=candidate.seed)
         self.controller.end_drag()
 
     def _keep_seed(self, keeps: bool) -> None:
-        self.controller.collecting.keeps_seed = keeps
+        self.controller.generation.planner.keeps_seed = keeps
 
     # news ----------------------------------------------------------------------------------------------------------
 
@@ -98,7 +98,7 @@ class GalleryWiring(QObject):
         gallery = self.window.gallery
         gallery.view.model_.set_width_mm(document.fabrication.width_mm)
         marks = dict(zip(document.candidates, document.marks, strict=True))
-        gallery.view.show_marks(marks, self.controller.collecting.added)
+        gallery.view.show_marks(marks, self.controller.generation.planner.added)
         gallery.bar.show_count(document.settings.k)
         self._show_ready()
         self._show_chosen()

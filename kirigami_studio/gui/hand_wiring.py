@@ -47,8 +47,8 @@ class HandWiring(QObject):
         bar.lock_wanted.connect(hand.lock)
         bar.all_wanted.connect(hand.lock_all)
         bar.refit_wanted.connect(self._refit)
-        controller.document_changed.connect(lambda _: self._refresh())
-        controller.showing.stage_changed.connect(lambda _: self._refresh())
+        controller.session.document_changed.connect(lambda _: self._refresh())
+        controller.session.display.stage_changed.connect(lambda _: self._refresh())
         controller.refitting.busy_changed.connect(self._show_fitting)
         controller.run.started.connect(lambda _: self._refresh())
         controller.run.ended.connect(lambda _: self._refresh())
@@ -117,7 +117,7 @@ class HandWiring(QObject):
         if voids:
             self.hand.lock(voids, not voids <= self.controller.document.locked)
         else:
-            self.controller.status.emit(tr("Point at a void or select some, then press L to lock them."))
+            self.controller.session.set_status(tr("Point at a void or select some, then press L to lock them."))
 
     def _show_menu(self, void: Void, place: QPoint) -> None:
         voids, locked = self.gestures.selected, self.controller.document.locked
@@ -137,9 +137,8 @@ class HandWiring(QObject):
         controller = self.controller
         if not on:
             controller.cancel()
-        elif not controller.running and not self.hand.postpones(lambda: self._refit(True)):
-            controller.finishing.stop()
-            controller.refitting.start()
+        else:
+            controller.refit()
         self.bar.show_fitting(controller.refitting.busy)
 
     def _show_fitting(self, busy: bool) -> None:

@@ -7,8 +7,8 @@ from PySide6.QtCore import QObject, QSignalBlocker
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.controller import Controller
-from kirigami_studio.gui.designs.design_cache import Entry
 from kirigami_studio.gui.messages import Message, Tone
+from kirigami_studio.gui.session import Entry
 from kirigami_studio.gui.shell import Shell
 from kirigami_studio.outlines.outline import Outline
 
@@ -31,10 +31,10 @@ class SideBySide(QObject):
         stage.compare.swap_wanted.connect(self.swap)
         stage.compare.leave_wanted.connect(lambda: self.show(False))
         stage.comparing_changed.connect(self._show_switches)
-        controller.showing.stage_changed.connect(self._take_stage)
-        controller.showing.gallery_reset.connect(lambda _: self._show_pair())
-        controller.showing.candidate_found.connect(lambda _: self._show_pair())
-        controller.document_changed.connect(lambda _: self._show_pair())
+        controller.session.display.stage_changed.connect(self._take_stage)
+        controller.session.display.gallery_reset.connect(lambda _: self._show_pair())
+        controller.session.display.candidate_found.connect(lambda _: self._show_pair())
+        controller.session.document_changed.connect(lambda _: self._show_pair())
         self._show_switches(stage.comparing)
 
     @property
@@ -47,7 +47,7 @@ class SideBySide(QObject):
         stage = self.controller.stage
         if stage is None or candidate == stage.candidate:
             sentence = tr("This is the chosen design. Ctrl+click another card to compare.")
-            self.controller.message.emit(Message(sentence, Tone.HINT))
+            self.controller.session.post(Message(sentence, Tone.HINT))
             return
         self._compared = candidate
         self.show(True)
@@ -60,7 +60,7 @@ class SideBySide(QObject):
         if on and (stage is None or self.compared is None):
             self._show_switches(False)
             sentence = tr("Nothing to compare yet. The gallery needs two designs.")
-            self.controller.message.emit(Message(sentence, Tone.HINT))
+            self.controller.session.post(Message(sentence, Tone.HINT))
             return
         if on and not self.window.stage.comparing:
             self.window.stage.compare.fit()

@@ -9,14 +9,14 @@ from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.commands import OVERLAY_ACTIONS, Commands
 from kirigami_studio.gui.controller import Controller
-from kirigami_studio.gui.designs.collection import LostDesigns
-from kirigami_studio.gui.designs.design_cache import Entry
+from kirigami_studio.gui.designs.collection import DiscardedDesigns
 from kirigami_studio.gui.gallery_wiring import GalleryWiring
 from kirigami_studio.gui.hand_wiring import HandWiring
-from kirigami_studio.gui.jobs.steps import Planned
+from kirigami_studio.gui.jobs.cut_jobs import Planned
 from kirigami_studio.gui.messages import Message, Tone
+from kirigami_studio.gui.reshaping import OpenedSizes, TargetReshaper
+from kirigami_studio.gui.session import Entry
 from kirigami_studio.gui.shell import Shell
-from kirigami_studio.gui.targets.reshaping import Reshaping, Sizing
 from kirigami_studio.gui.views.layout_view import Overlay
 from kirigami_studio.project.document import Document
 
@@ -29,13 +29,13 @@ class Wiring(QObject):
         self.window = window
         self.controller = controller
         self.commands = commands
-        self.reshaping = Reshaping(window.target.view.context, lambda: controller.document, self)
+        self.reshaping = TargetReshaper(window.target.view.context, controller.session, self)
         self._slips: list[Message] = []
-        self.lost = LostDesigns(controller.history, self)
+        self.discarded = DiscardedDesigns(controller.session, self)
         self.gallery = GalleryWiring(window, controller, self)
-        self.sizing = Sizing(self)
+        self.sizing = OpenedSizes(self)
         self.sizing.known.connect(window.fabrication.opened.show_size)
-        self.sizing.width_wanted.connect(controller.fabricating.cut_at_drawn_size)
+        self.sizing.width_wanted.connect(controller.fabrication.cut_at_drawn_size)
         window.fabrication.opened.link_wanted.connect(self.sizing.link)
         self._shown = Document()
         self._connect_panels()
@@ -59,28 +59,28 @@ class Wiring(QObject):
         window.target.view.hint.connect(lambda text: window.says.setText(text) if text else None)
         window.target.threshold.changed.connect(controller.targeting.change_threshold)
         window.target.threshold.automatic_wanted.connect(lambda: controller.targeting.change_threshold(None))
-        window.target.threshold.edited.connect(controller.targeting.tracing.end_drag)
+        window.target.threshold.edited.connect(controller.targeting.tracer.end_drag)
         window.settings.changed.connect(lambda changes: controller.change_settings(**changes))
         window.settings.edited.connect(controller.end_drag)
-        window.run.generate_wanted.connect(controller.generate)
+        window.run.generate_wanted.connect(controller.generation.generate)
         window.run.cancel_wanted.connect(controller.cancel)
         window.gallery.view.chosen.connect(controller.choose)
-        window.fabrication.changed.connect(lambda changes: controller.change_fabrication(**changes))
-        window.fabrication.options_changed.connect(lambda changes: controller.fabricating.change_options(**changes))
+        window.fabrication.changed.connect(lambda changes: controller.fabrication.change(**changes))
+        window.fabrication.options_changed.connect(lambda changes: controller.fabrication.change_options(**changes))
         window.fabrication.edited.connect(controller.end_drag)
         window.fabrication.materials_wanted.connect(self.commands.show_materials)
         window.fabrication.export_wanted.connect(self.commands.export)
         window.fabrication.exports.all_wanted.connect(self.commands.export_all)
-        window.stage.before_wanted.connect(controller.compare)
+        window.stage.before_wanted.connect(controller.show_before)
         window.stage.trim_wanted.connect(controller.trim)
         window.stage.switches_changed.connect(self._show_switches)
-        window.stage.plots_wanted.connect(controller.plotting.want)
+        window.stage.plots_wanted.connect(controller.curves.want)
         window.stage.status.connect(window.says.setText)
         window.stage.overlays_changed.connect(self._show_overlay_actions)
         cuts = window.stage.cuts
-        cuts.width_wanted.connect(controller.fabricating.set_hinge_width)
-        cuts.remove_wanted.connect(controller.fabricating.remove_hinges)
-        cuts.reset_wanted.connect(controller.fabricating.reset_hinges)
+        cuts.width_wanted.connect(controller.fabrication.set_hinge_width)
+        cuts.remove_wanted.connect(controller.fabrication.remove_hinges)
+        cuts.reset_wanted.connect(controller.fabrication.reset_hinges)
         cuts.edited.connect(controller.end_drag)
 
     def _connect_editor(self) -> None:
@@ -92,21 +92,18 @@ class Wiring(QObject):
         window.target.refine.size_wanted.connect(reshaping.resize)
         reshaping.edited.connect(controller.targeting.reshape)
         reshaping.edited.connect(lambda _: self._forget_slips())
-        controller.targeting.reading.failed.connect(self._note_unread)
+        controller.targeting.reader.failed.connect(self._note_unread)
         controller.targeting.source_read.connect(lambda _: self._forget_slips())
         reshaping.refused.connect(self._refuse)
         reshaping.previewed.connect(window.target.view.show_preview)
-        controller.document_changed.connect(self.lost.follow)
-        self.lost.message.connect(window.messages.add)
-        self.lost.found.connect(window.messages.drop)
-        self.lost.undo_wanted.connect(controller.undo)
+        self.discarded.undo_wanted.connect(controller.undo)
         reshaping.restarted.connect(window.target.refine.restart)
         controller.run.started.connect(lambda _: window.target.set_editing(False))
 
     def _refuse(self, error: KirigamiError) -> None:
         """A shape could not be made; the sentence is of use until one can."""
         self._slips.append(Message(str(error), Tone.ERROR))
-        self.controller.refuse(error)
+        self.controller.session.refuse(error)
 
     def _note_unread(self, sentence: str, trace: str) -> None:
         """A file could not be read as a target; the sentence is of use until there is another one."""
@@ -119,23 +116,23 @@ class Wiring(QObject):
 
     def _connect_controller(self) -> None:
         window, controller = self.window, self.controller
-        controller.document_changed.connect(self._show_document)
-        controller.showing.stage_changed.connect(self._show_stage)
-        controller.showing.gallery_reset.connect(self._show_gallery)
-        controller.showing.candidate_found.connect(self._add_candidate)
-        controller.comparing.known.connect(window.stage.show_sample)
-        controller.finishing.busy_changed.connect(self._show_trimming)
+        controller.session.document_changed.connect(self._show_document)
+        controller.session.display.stage_changed.connect(self._show_stage)
+        controller.session.display.gallery_reset.connect(self._show_gallery)
+        controller.session.display.candidate_found.connect(self._add_candidate)
+        controller.sampled.known.connect(window.stage.show_sample)
+        controller.trimming.busy_changed.connect(self._show_trimming)
         controller.run.started.connect(self._show_run)
         controller.run.progressed.connect(window.run.show_progress)
         controller.run.ended.connect(self._end_run)
         controller.cutting.planned.connect(self._show_plan)
         controller.cutting.refused.connect(self._show_refusal)
         controller.cutting.exported.connect(self.commands.show_report)
-        controller.plotting.grown.connect(window.stage.plots.show_curves)
-        controller.stopped.withdrawn.connect(window.messages.drop)
+        controller.curves.grown.connect(window.stage.plots.show_curves)
+        controller.session.message_withdrawn.connect(window.messages.drop)
         controller.variants_known.connect(window.settings.set_variants)
-        controller.message.connect(window.messages.add)
-        controller.status.connect(window.says.setText)
+        controller.session.message_posted.connect(window.messages.add)
+        controller.session.status_changed.connect(window.says.setText)
 
     # news ----------------------------------------------------------------------------------------------------------
 
@@ -144,7 +141,7 @@ class Wiring(QObject):
         self._shown = document
         moved = everything or document.target is not before.target
         if moved:
-            window.target.show_target(document.target, self.controller.targeting.tracing.picture_of(document.target))
+            window.target.show_target(document.target, self.controller.targeting.tracer.picture_of(document.target))
             self.reshaping.follow()
             has_target = document.target is not None
             window.run.show_ready(has_target)
@@ -191,7 +188,7 @@ class Wiring(QObject):
         target = self.controller.document.target
         self.window.stage.show_entry(entry, target, rank)
         self.sizing.follow(entry, self.controller.document)
-        self.controller.plotting.show(None if entry is None else entry.design, target)
+        self.controller.curves.show(None if entry is None else entry.design, target)
         view.mark(None if entry is None else entry.candidate)
         for name in ("export", "export_all"):
             self.window.actions_[name].setEnabled(entry is not None)

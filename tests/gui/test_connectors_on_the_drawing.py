@@ -119,14 +119,14 @@ def test_that_steps_of_the_number_are_one_undo_step(cutting: MainWindow) -> None
 
 def test_that_delete_cuts_through_and_reset_brings_the_usual_width_back(cutting: MainWindow, qtbot: QtBot) -> None:
     page = cutting.stage.cuts
-    cutting.controller.fabricating.set_hinge_width(frozenset({4, 9}), 0.5)
+    cutting.controller.fabrication.set_hinge_width(frozenset({4, 9}), 0.5)
     page.view.setFocus()
     page.view.gestures.select(frozenset({4}))
     qtbot.keyClick(page.view, Qt.Key.Key_Delete)
     options = fabrication(cutting).options
     assert options.removed == (4,) and options.hinge_mm == ((9, 0.5),)
     assert cutting.controller.history.undo_label == "Cut through connector 4"
-    cutting.controller.fabricating.reset_hinges(frozenset({4, 9}))
+    cutting.controller.fabrication.reset_hinges(frozenset({4, 9}))
     assert fabrication(cutting).options.removed == () and fabrication(cutting).options.hinge_mm == ()
     cutting.actions_["undo"].trigger()
     assert fabrication(cutting).options.removed == (4,)

@@ -124,7 +124,7 @@ def test_that_show_in_folder_opens_the_files_folder(
 
 
 def test_that_the_chosen_profile_and_version_reach_the_file(designed: MainWindow, until: Until, tmp_path: Path) -> None:
-    designed.controller.change_fabrication(profile="lightburn", dxf_version="R12")
+    designed.controller.fabrication.change(profile="lightburn", dxf_version="R12")
     export(designed, tmp_path / "cut.dxf", until)
     drawing = ezdxf.readfile(tmp_path / "cut.dxf")
     assert drawing.dxfversion == "AC1009"
@@ -134,7 +134,7 @@ def test_that_the_chosen_profile_and_version_reach_the_file(designed: MainWindow
 def test_that_one_file_for_each_layer_is_reported_as_its_folder(
     designed: MainWindow, until: Until, tmp_path: Path
 ) -> None:
-    designed.controller.change_fabrication(profile="layers")
+    designed.controller.fabrication.change(profile="layers")
     report = export(designed, tmp_path / "cut.dxf", until)
     assert report.shown.ok and report.shown.path == tmp_path / "cut"
     assert len(list((tmp_path / "cut").iterdir())) == 3
@@ -146,7 +146,7 @@ def test_that_a_new_project_starts_with_the_machine_of_the_last_export(
     kept = tmp_path / "preferences.toml"
     designed.controller.use_preferences(kept)
     assert not kept.exists() and designed.controller.document.candidates
-    designed.controller.change_fabrication(profile="lightburn")
+    designed.controller.fabrication.change(profile="lightburn")
     assert not kept.exists()
     export(designed, tmp_path / "cut.dxf", until)
     assert preferences.load(kept) == Preferences("lightburn", "R2010")

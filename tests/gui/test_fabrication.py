@@ -93,7 +93,7 @@ def test_that_slots_are_summed_up_with_the_length_that_their_file_has(
 ) -> None:
     panel, said = designed.fabrication, designed.fabrication.numbers["length"]
     open_cuts = said.text()
-    designed.controller.change_fabrication(profile="slots")
+    designed.controller.fabrication.change(profile="slots")
     until(lambda: said.text() != open_cuts)
     designed.controller.export(tmp_path / "slots.dxf")
     until(lambda: designed.commands.report is not None)

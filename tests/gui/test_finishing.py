@@ -55,7 +55,7 @@ def studio(window: MainWindow, polished: Document, until: Until, tmp_path: Path)
 def trimmed(studio: MainWindow, qtbot: QtBot, until: Until) -> MainWindow:
     """That studio with the first design trimmed."""
     qtbot.mouseClick(studio.stage.trim, LEFT)
-    until(lambda: not studio.controller.finishing.busy)
+    until(lambda: not studio.controller.trimming.busy)
     until(lambda: "trimmed" in studio.fabrication.summary.text())
     return studio
 
@@ -161,11 +161,11 @@ def test_that_a_trimmed_design_exports_one_closed_outline_that_is_no_rectangle(
 def test_that_a_trim_without_room_is_refused_in_one_sentence_and_the_switch_goes_back(
     studio: MainWindow, qtbot: QtBot, until: Until
 ) -> None:
-    studio.controller.change_fabrication(connector_mm=15.0)
+    studio.controller.fabrication.change(connector_mm=15.0)
     before = studio.controller.document
     qtbot.mouseClick(studio.stage.trim, LEFT)
-    assert studio.stage.trim.isChecked() and studio.controller.finishing.busy
-    until(lambda: not studio.controller.finishing.busy)
+    assert studio.stage.trim.isChecked() and studio.controller.trimming.busy
+    until(lambda: not studio.controller.trimming.busy)
     message = studio.messages.messages[-1]
     assert message.tone is Tone.ERROR and "wide" in message.sentence
     assert studio.controller.document is before and not studio.stage.trim.isChecked()
@@ -174,12 +174,12 @@ def test_that_a_trim_without_room_is_refused_in_one_sentence_and_the_switch_goes
 def test_that_widths_that_the_trim_has_no_room_for_are_refused_with_a_way_out(
     trimmed: MainWindow, until: Until, qtbot: QtBot
 ) -> None:
-    trimmed.controller.change_fabrication(connector_mm=4.5)
+    trimmed.controller.fabrication.change(connector_mm=4.5)
     until(lambda: not trimmed.fabrication.export.isEnabled())
     assert "trim again" in trimmed.fabrication.warnings.text() and trimmed.fabrication.summary.text() == ""
     qtbot.mouseClick(trimmed.stage.trim, LEFT)
     qtbot.mouseClick(trimmed.stage.trim, LEFT)
-    until(lambda: not trimmed.controller.finishing.busy)
+    until(lambda: not trimmed.controller.trimming.busy)
     until(lambda: trimmed.fabrication.export.isEnabled() and "trimmed" in trimmed.fabrication.summary.text())
 
 
@@ -188,7 +188,7 @@ def test_that_another_choice_forgets_the_trim_that_was_on_its_way(
 ) -> None:
     qtbot.mouseClick(studio.stage.trim, LEFT)
     studio.actions_["next"].trigger()
-    assert not studio.controller.finishing.busy and not studio.stage.trim.isChecked()
+    assert not studio.controller.trimming.busy and not studio.stage.trim.isChecked()
     until(lambda: not studio.controller.queue.busy)
     assert all(candidate.trim is None for candidate in studio.controller.document.candidates)
     assert studio.controller.document.chosen == 1
@@ -202,6 +202,6 @@ def test_that_trimming_can_be_stopped(studio: MainWindow, qtbot: QtBot, until: U
         qtbot.mouseClick(studio.stage.trim, LEFT)
     else:
         qtbot.keyClick(studio, Qt.Key.Key_Escape)
-    assert not studio.controller.finishing.busy and not studio.stage.trim.isChecked()
+    assert not studio.controller.trimming.busy and not studio.stage.trim.isChecked()
     until(lambda: not studio.controller.queue.busy)
     assert studio.controller.document is before and "stopped" in studio.says.text()

@@ -81,7 +81,7 @@ def test_that_esc_stops_a_run_before_it_ends_the_tour(heart: MainWindow, until: 
     tour.start()
     escape, cancel = tour._escape, heart.actions_["cancel"]
     assert escape.isEnabled() and not cancel.isEnabled()
-    heart.controller.generate()
+    heart.controller.generation.generate()
     assert tour.at == 1 or tour.running
     assert cancel.isEnabled() and not escape.isEnabled()
     cancel.trigger()

@@ -24,7 +24,7 @@ from PySide6.QtWidgets import (
 )
 from pytestqt.qtbot import QtBot
 
-from kirigami_studio.gui.jobs.steps import Exported
+from kirigami_studio.gui.jobs.cut_jobs import Exported
 from kirigami_studio.gui.look.theme import DARK, LIGHT, Palette
 from kirigami_studio.gui.main_window import MainWindow
 from kirigami_studio.gui.views.canvas import Canvas

@@ -8,7 +8,7 @@ from pytestqt.modeltest import ModelTester
 from pytestqt.qtbot import QtBot
 
 from kirigami_studio.evaluate.posed_design import PosedDesign
-from kirigami_studio.gui.designs.design_cache import Entry
+from kirigami_studio.gui.session import Entry
 from kirigami_studio.gui.views.gallery_model import GalleryModel, problems
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.project.document import Document

@@ -69,10 +69,10 @@ def test_that_designs_still_being_decoded_do_not_mix_with_those_of_a_run(
             assert controller.document.candidates and controller.stage is None
             controller.change_settings(k=2)
             controller.change_settings(polish=0)
-            controller.showing.gallery_reset.connect(lambda _: shown.append(view.model_.rowCount()))
-            controller.generate()
+            controller.session.display.gallery_reset.connect(lambda _: shown.append(view.model_.rowCount()))
+            controller.generation.generate()
 
-    controller.status.connect(generate_at_once)
+    controller.session.status_changed.connect(generate_at_once)
     controller.open_project(project_file)
     until(lambda: not controller.running and controller.stage is not None)
     assert shown == [0, 2]
@@ -189,7 +189,7 @@ def test_that_an_unknown_model_is_refused_with_a_sentence(heart: MainWindow, unt
 
 def test_that_generate_without_a_target_says_what_to_do_first(window: MainWindow) -> None:
     assert not window.run.generate.isEnabled() and not window.actions_["generate"].isEnabled()
-    window.controller.generate()
+    window.controller.generation.generate()
     assert "target first" in window.messages.messages[-1].sentence
     assert not window.controller.running
 

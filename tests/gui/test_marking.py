@@ -113,7 +113,7 @@ def test_that_the_menu_of_a_card_leaves_the_choice_alone(designed: MainWindow, q
 
 
 def test_that_marks_are_saved_and_opened(designed: MainWindow, tmp_path: Path, until: Until) -> None:
-    designed.controller.marking.pin(designed.controller.document.candidates[2])
+    designed.controller.marks.pin(designed.controller.document.candidates[2])
     path = tmp_path / "marked.kiri"
     designed.controller.save(path)
     until(lambda: path.exists() and not designed.controller.history.unsaved)
@@ -123,7 +123,7 @@ def test_that_marks_are_saved_and_opened(designed: MainWindow, tmp_path: Path, u
 def test_that_a_design_of_a_run_under_way_is_not_marked_yet(designed: MainWindow) -> None:
     stranger = designed.controller.document.candidates[0]
     designed.controller.new_project()
-    designed.controller.marking.pin(stranger)
+    designed.controller.marks.pin(stranger)
     assert "Wait for the run" in designed.messages.messages[-1].sentence
     assert designed.controller.document.marks == ()
 

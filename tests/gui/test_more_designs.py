@@ -13,9 +13,9 @@ from pytestqt.qtbot import QtBot
 
 from kirigami_studio.evaluate.candidate import Candidate, Origin
 from kirigami_studio.generator.weights import digest_of
-from kirigami_studio.gui.designs.collection import next_seed
+from kirigami_studio.gui.designs.generation import next_seed
 from kirigami_studio.gui.designs.selecting import SortOrder
-from kirigami_studio.gui.jobs.adding_steps import adding
+from kirigami_studio.gui.jobs.design_jobs import adding
 from kirigami_studio.gui.main_window import MainWindow
 from kirigami_studio.gui.messages import Tone
 from kirigami_studio.gui.views.gallery_model import FRESH_ROLE
@@ -57,7 +57,7 @@ def test_that_again_adds_designs_of_the_next_seed_and_keeps_choice_and_marks(
 ) -> None:
     controller = drawn.controller
     controller.choose(controller.document.candidates[2])
-    controller.marking.pin(controller.document.candidates[1])
+    controller.marks.pin(controller.document.candidates[1])
     before = controller.document
     qtbot.mouseClick(drawn.gallery.bar.again, LEFT)
     assert controller.running and len(shown(drawn)) == 3
@@ -88,7 +88,7 @@ def test_that_again_adds_designs_of_the_next_seed_and_keeps_choice_and_marks(
 @pytest.mark.torch
 def test_that_designs_that_are_there_already_are_not_added_again(drawn: MainWindow, until: Until) -> None:
     controller = drawn.controller
-    request = replace(controller.collecting.more(silhouettes.load("heart")).request, seed=0)
+    request = replace(controller.generation.planner.more(silhouettes.load("heart")).request, seed=0)
     found = [event.result for event in adding(request, (), lambda: False) if isinstance(event, Finished)]
     assert found[0].candidates == controller.document.candidates
     others = controller.document.candidates[1:]
@@ -112,7 +112,7 @@ def test_that_designs_that_were_there_already_are_counted(
     whole = controller.document
     fewer = replace(whole, candidates=whole.candidates[:staying], marks=whole.marks[:staying], chosen=0)
     controller.history.apply(Edit("Leave some", fewer))
-    request = replace(controller.collecting.more(silhouettes.load("heart")).request, seed=0)
+    request = replace(controller.generation.planner.more(silhouettes.load("heart")).request, seed=0)
     controller.run.start(request, fewer.candidates)
     until(lambda: not controller.running)
     assert controller.document.candidates == whole.candidates
@@ -203,8 +203,8 @@ def test_that_more_like_this_adds_designs_near_the_chosen_one(drawn: MainWindow,
 def test_that_generate_keeps_pinned_designs_of_the_same_grid_only(drawn: MainWindow, until: Until) -> None:
     controller = drawn.controller
     pinned = controller.document.candidates[2]
-    controller.marking.pin(pinned)
-    controller.marking.reject(controller.document.candidates[1], None)
+    controller.marks.pin(pinned)
+    controller.marks.reject(controller.document.candidates[1], None)
     controller.change_settings(seed=5)
     drawn.actions_["generate"].trigger()
     assert shown(drawn) == [pinned]
@@ -235,7 +235,7 @@ def test_that_a_seed_that_is_not_kept_moves_on_with_every_run(drawn: MainWindow,
 
 def test_that_there_must_be_designs_to_add_to(heart: MainWindow) -> None:
     assert not heart.gallery.bar.again.isEnabled() and not heart.actions_["more_like"].isEnabled()
-    for wish in (heart.controller.again, lambda: heart.controller.more_like(0.5)):
+    for wish in (heart.controller.generation.again, lambda: heart.controller.generation.more_like(0.5)):
         wish()
         message = heart.messages.messages[-1]
         assert (

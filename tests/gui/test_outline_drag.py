@@ -16,9 +16,9 @@ from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.evaluate.similarity import Similarity
-from kirigami_studio.gui.jobs import drag_steps
-from kirigami_studio.gui.jobs.drag_steps import Follower, Grasp
+from kirigami_studio.gui.jobs import vertex_drag
 from kirigami_studio.gui.jobs.queue import JobCallbacks, JobQueue
+from kirigami_studio.gui.jobs.vertex_drag import Follower, Grasp
 from kirigami_studio.gui.main_window import MainWindow
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
@@ -286,8 +286,8 @@ def test_that_a_follower_stops_when_asked_and_after_letting_go_when_its_time_is_
     assert not next(steps).stuck
     asked.append(True)
     assert list(steps) == [] and follower.waiting
-    monkeypatch.setattr(drag_steps, "LAST_WAY", 0.0)
+    monkeypatch.setattr(vertex_drag, "LAST_SECONDS", 0.0)
     follower.let_go()
     found = list(follower.steps(lambda: False))
-    assert [one.stuck for one in found] == [False] * (drag_steps.LAST_STEPS - 1) + [True]
+    assert [one.stuck for one in found] == [False] * (vertex_drag.LAST_STEPS - 1) + [True]
     assert not found[-1].arrived and not follower.waiting

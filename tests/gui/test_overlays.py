@@ -75,7 +75,7 @@ def test_that_lengths_follow_the_width_of_the_flat_sheet(designed: MainWindow) -
     corners = stage.design.deployment.compact
     across = np.ptp(stage.design.pose.apply(corners) @ _back(stage.design.pose.angle), axis=0)[0]
     assert view.mm_per_unit * across == pytest.approx(100.0)
-    designed.controller.change_fabrication(width_mm=250.0)
+    designed.controller.fabrication.change(width_mm=250.0)
     assert view.mm_per_unit * across == pytest.approx(250.0)
 
 

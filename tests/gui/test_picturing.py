@@ -16,8 +16,8 @@ from PySide6.QtWidgets import QWidget
 from pytestqt.qtbot import QtBot
 
 from kirigami_studio.export.svg_reading import read_with_svgelements
-from kirigami_studio.gui.files.picturing import Picturing
-from kirigami_studio.gui.jobs import picture_steps
+from kirigami_studio.gui.files.picturing import PictureMaker
+from kirigami_studio.gui.jobs import picture_jobs
 from kirigami_studio.gui.main_window import MainWindow
 from kirigami_studio.gui.views.canvas import Canvas
 
@@ -27,7 +27,7 @@ SVG = "{http://www.w3.org/2000/svg}"
 
 
 @pytest.fixture
-def picturing(designed: MainWindow) -> Iterator[Picturing]:
+def picturing(designed: MainWindow) -> Iterator[PictureMaker]:
     yield designed.commands.picturing
     QGuiApplication.clipboard().clear()  # Qt's off-screen clipboard outlives the application otherwise, and falls
 
@@ -46,7 +46,7 @@ def pixels(image: QImage) -> np.ndarray:
 
 @pytest.mark.parametrize("scale", [1, 2, 4])
 def test_that_a_png_is_as_large_as_asked_and_names_the_origin(
-    scale: int, designed: MainWindow, picturing: Picturing, tmp_path: Path, qtbot: QtBot
+    scale: int, designed: MainWindow, picturing: PictureMaker, tmp_path: Path, qtbot: QtBot
 ) -> None:
     view = designed.stage.view
     picturing.scale = scale
@@ -85,7 +85,7 @@ def test_that_an_svg_draws_in_lines_and_agrees_with_the_screen(
 
 
 def test_that_every_view_in_sight_can_be_written(
-    designed: MainWindow, picturing: Picturing, tmp_path: Path, qtbot: QtBot, files: object
+    designed: MainWindow, picturing: PictureMaker, tmp_path: Path, qtbot: QtBot, files: object
 ) -> None:
     designed.actions_["cuts"].trigger()
     assert sorted(picturing.views(), key=NAMES.index) == NAMES
@@ -106,7 +106,7 @@ def test_that_every_view_in_sight_can_be_written(
     assert "target silhouette.png" in files.proposals  # type: ignore[attr-defined]
 
 
-def test_that_overlays_can_be_left_out_and_stay_on_the_screen(designed: MainWindow, picturing: Picturing) -> None:
+def test_that_overlays_can_be_left_out_and_stay_on_the_screen(designed: MainWindow, picturing: PictureMaker) -> None:
     view = designed.stage.view
     seen, overlays = pixels(picturing.record(view).image(1)), view.overlays
     picturing.overlays = False
@@ -121,19 +121,19 @@ def test_that_overlays_can_be_left_out_and_stay_on_the_screen(designed: MainWind
 
 
 def test_that_a_picture_painted_in_bands_is_the_picture_painted_at_once(
-    designed: MainWindow, picturing: Picturing, monkeypatch: pytest.MonkeyPatch
+    designed: MainWindow, picturing: PictureMaker, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     recording = picturing.record(designed)
-    monkeypatch.setattr(picture_steps, "BAND", 10**9)
+    monkeypatch.setattr(picture_jobs, "BAND", 10**9)
     whole = pixels(recording.image(2))
-    monkeypatch.setattr(picture_steps, "BAND", 37 * 2 * designed.width())
+    monkeypatch.setattr(picture_jobs, "BAND", 37 * 2 * designed.width())
     differences = np.abs(pixels(recording.image(2)) - whole).max(axis=2)
     # Where a curve crosses from one band to the next, its edge may be shaded a little otherwise.
     assert (differences > 24).sum() == 0 and (differences > 0).mean() < 0.002
 
 
 def test_that_a_picture_of_the_window_shows_its_views_on_plain_ground(
-    designed: MainWindow, picturing: Picturing
+    designed: MainWindow, picturing: PictureMaker
 ) -> None:
     view = designed.stage.view
     drawn, seen = pixels(picturing.record(designed).image(1)), pixels(designed.grab().toImage())
@@ -145,7 +145,7 @@ def test_that_a_picture_of_the_window_shows_its_views_on_plain_ground(
     assert not view.rendering
 
 
-def test_that_copying_takes_the_view_in_use(designed: MainWindow, picturing: Picturing, qtbot: QtBot) -> None:
+def test_that_copying_takes_the_view_in_use(designed: MainWindow, picturing: PictureMaker, qtbot: QtBot) -> None:
     both = Qt.KeyboardModifier.ControlModifier | Qt.KeyboardModifier.ShiftModifier
     for view in (designed.stage.view, designed.gallery.view):
         view.setFocus()
@@ -159,7 +159,7 @@ def test_that_copying_takes_the_view_in_use(designed: MainWindow, picturing: Pic
 
 
 def test_that_copied_cuts_are_the_exported_file(
-    designed: MainWindow, picturing: Picturing, tmp_path: Path, qtbot: QtBot, until: Until
+    designed: MainWindow, picturing: PictureMaker, tmp_path: Path, qtbot: QtBot, until: Until
 ) -> None:
     with qtbot.waitSignal(picturing.copied, timeout=30_000):
         qtbot.keyClick(designed, Qt.Key.Key_C, Qt.KeyboardModifier.ControlModifier | Qt.KeyboardModifier.AltModifier)

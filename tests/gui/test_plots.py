@@ -18,7 +18,7 @@ from pytestqt.qtbot import QtBot
 
 from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.evaluate.score import evaluate
-from kirigami_studio.gui.jobs.plot_steps import ANGLES, Reading, batches, plotting
+from kirigami_studio.gui.jobs.plot_jobs import ANGLES, Reading, batches, plotting
 from kirigami_studio.gui.look.theme import DARK, LIGHT
 from kirigami_studio.gui.main_window import MainWindow
 from kirigami_studio.lattice.deployment import deploy
@@ -85,7 +85,7 @@ def test_that_the_curves_of_100_voids_are_read_while_one_looks(capsys: pytest.Ca
 
 
 def test_that_nothing_is_read_while_the_plots_are_closed(designed: MainWindow, until: Until) -> None:
-    plotting_, stage = designed.controller.plotting, designed.stage
+    plotting_, stage = designed.controller.curves, designed.stage
     assert not plotting_.busy and not stage.plots.isVisible() and not stage.plots.charts
     designed.actions_["plots"].trigger()
     assert plotting_.busy and stage.plots.isVisible()
@@ -109,11 +109,11 @@ def test_that_charts_are_made_one_in_each_turn_and_then_drawn(designed: MainWind
 def test_that_another_design_gets_curves_of_its_own_and_old_ones_are_kept(plotted: MainWindow, until: Until) -> None:
     stage, first = plotted.stage, plotted.stage.plots.charts[0].curves[0].getData()[1].copy()
     plotted.actions_["next"].trigger()
-    assert not stage.plots.complete and plotted.controller.plotting.busy
+    assert not stage.plots.complete and plotted.controller.curves.busy
     until(lambda: stage.plots.complete)
     assert not np.allclose(stage.plots.charts[0].curves[0].getData()[1], first)
     plotted.actions_["previous"].trigger()
-    assert stage.plots.complete and not plotted.controller.plotting.busy
+    assert stage.plots.complete and not plotted.controller.curves.busy
     assert stage.plots.charts[0].curves[0].getData()[1] == pytest.approx(first)
 
 
@@ -175,7 +175,7 @@ def test_that_numbers_are_those_of_the_angle_they_name_and_in_mm(plotted: MainWi
     cell = 100.0 / (entry.design.deployment.field.columns + 1)
     assert area == pytest.approx(entry.design.deployment.area(math.radians(60.0)) * cell**2)
     assert f"{area:.0f} mm²" in stage.plots.charts[1].numbers.text() and "60.0°" in stage.plots.charts[1].numbers.text()
-    plotted.controller.change_fabrication(width_mm=200.0)
+    plotted.controller.fabrication.change(width_mm=200.0)
     assert (stage.plots.charts[1].nearest or (0, (0,)))[1][0] == pytest.approx(4 * area)
 
 

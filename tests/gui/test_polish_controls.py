@@ -57,8 +57,8 @@ def test_that_a_run_gets_the_preference_and_tells_how_far_polish_and_search_are(
     said: list[str] = []
     rises: list[float] = []
     results: list[object] = []
-    heart.controller.status.connect(said.append)
-    heart.controller.showing.candidate_found.connect(lambda entry: rises.append(entry.rise))
+    heart.controller.session.status_changed.connect(said.append)
+    heart.controller.session.display.candidate_found.connect(lambda entry: rises.append(entry.rise))
     heart.controller.run.completed.connect(lambda result, _: results.append(result))
     qtbot.mouseClick(heart.run.generate, LEFT)
     until(lambda: not heart.controller.running)

@@ -82,7 +82,7 @@ def test_that_a_save_and_quit_that_was_called_off_does_not_quit_later(
     heart.actions_["save"].trigger()
     until(lambda: not heart.controller.history.unsaved)
     assert heart.isVisible()
-    heart.controller.change_fabrication(width_mm=77.0)
+    heart.controller.fabrication.change(width_mm=77.0)
     assert not heart.close()
     dict(heart.messages.messages[-1].actions)["Save and quit"]()
     until(lambda: not heart.isVisible())
@@ -104,7 +104,7 @@ def test_that_work_that_went_on_while_the_file_was_written_is_asked_about_before
     designed.actions_["next"].trigger()
     assert not designed.close()
     dict(designed.messages.messages[-1].actions)["Save and quit"]()
-    designed.controller.change_fabrication(width_mm=77.0)  # before the worker has written
+    designed.controller.fabrication.change(width_mm=77.0)  # before the worker has written
     until(lambda: not designed.controller.queue.busy)
     assert designed.isVisible() and designed.controller.history.unsaved
     assert [label for label, _ in designed.messages.messages[-1].actions] == ["Save and quit", "Quit without saving"]

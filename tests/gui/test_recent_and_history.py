@@ -115,7 +115,7 @@ def test_that_a_spoilt_list_is_told_and_left_as_it_is(text: str, tmp_path: Path,
 
 def second_session(window: MainWindow, kept: Path) -> RecentFiles:
     """The list as another session of the program has it."""
-    other = RecentFiles(window.controller.queue, window)
+    other = RecentFiles(window.controller.session, window)
     other.load(kept)
     return other
 
@@ -189,7 +189,7 @@ def steps(designed: MainWindow, qtbot: QtBot) -> HistoryList:
     """The list of the history, over a project with three steps."""
     designed.actions_["next"].trigger()
     for width in (88.0, 99.0):
-        designed.controller.change_fabrication(width_mm=width)
+        designed.controller.fabrication.change(width_mm=width)
         designed.controller.end_drag()
     qtbot.keyClick(designed, Qt.Key.Key_H, Qt.KeyboardModifier.ControlModifier | Qt.KeyboardModifier.ShiftModifier)
     shown = designed.commands.history

@@ -30,11 +30,11 @@ from kirigami_studio.gui.application import create_application, create_window
 
 application = create_application(["studio"])
 window = create_window()
-recovering = window.controller.filing.recovering
+recovering = window.controller.filing.recovery
 recovering.quiet_ms = 20
 recovering.use(Path(sys.argv[1]))
 def change(path):
-    window.controller.change_fabrication(width_mm=123.0)
+    window.controller.fabrication.change(width_mm=123.0)
 def tell(document):
     print(document.fabrication.width_mm, flush=True)
 window.controller.opened.connect(change)
@@ -78,7 +78,7 @@ def test_that_a_killed_studio_loses_nothing(
     (left,) = kept_files(folder)
     assert recovery.read_note(left).path == str(project_file)
 
-    window.controller.filing.recovering.use(folder)
+    window.controller.filing.recovery.use(folder)
     until(lambda: bool(asked(window)))
     (message,) = asked(window)
     assert "heart.kiri" in message.sentence and [label for label, _ in message.actions] == [
@@ -94,7 +94,7 @@ def test_that_a_killed_studio_loses_nothing(
     assert store.load(project_file).fabrication.width_mm == 100.0, "the project itself is only written by Save"
     # The old file goes once this session keeps the work itself, so that a second crash loses nothing either.
     until(lambda: not left.exists())
-    own = controller.filing.recovering.file
+    own = controller.filing.recovery.file
     assert own is not None and kept_files(folder) == [own] and store.load(own) == controller.document
     window.actions_["save"].trigger()
     until(lambda: not controller.history.unsaved)
@@ -102,14 +102,14 @@ def test_that_a_killed_studio_loses_nothing(
 
 
 def test_that_two_studios_do_not_recover_each_others_work(designed: MainWindow, folder: Path, until: Until) -> None:
-    designed.controller.filing.recovering.quiet_ms = 0
-    designed.controller.filing.recovering.use(folder)
-    designed.controller.change_fabrication(width_mm=88.0)
+    designed.controller.filing.recovery.quiet_ms = 0
+    designed.controller.filing.recovery.use(folder)
+    designed.controller.fabrication.change(width_mm=88.0)
     until(lambda: len(kept_files(folder)) == 1)
     other = Controller()
     told: list[Message] = []
     other.message.connect(told.append)
-    other.filing.recovering.use(folder)
+    other.filing.recovery.use(folder)
     assert not other.board.busy, "there is nothing to look at: the only file belongs to a living session"
     other.close()
     assert told == [] and len(kept_files(folder)) == 1
@@ -119,12 +119,12 @@ def test_that_two_studios_do_not_recover_each_others_work(designed: MainWindow, 
 
 def test_that_closing_as_usual_leaves_nothing_to_recover(qtbot: QtBot, folder: Path) -> None:
     controller = Controller()
-    controller.filing.recovering.quiet_ms = 0
-    controller.filing.recovering.use(folder)
-    with qtbot.waitSignal(controller.filing.recovering.kept):
-        controller.change_fabrication(width_mm=88.0)
+    controller.filing.recovery.quiet_ms = 0
+    controller.filing.recovery.use(folder)
+    with qtbot.waitSignal(controller.filing.recovery.kept):
+        controller.fabrication.change(width_mm=88.0)
     assert len(kept_files(folder)) == 1
-    controller.change_fabrication(width_mm=89.0)
+    controller.fabrication.change(width_mm=89.0)
     controller.close()
     assert list(folder.iterdir()) == []
     assert [timer for timer in controller.findChildren(QTimer) if timer.isActive()] == []
@@ -132,12 +132,12 @@ def test_that_closing_as_usual_leaves_nothing_to_recover(qtbot: QtBot, folder: P
 
 def test_that_steady_changes_do_not_put_the_keeping_off_for_ever(qtbot: QtBot, folder: Path) -> None:
     controller = Controller()
-    recovering = controller.filing.recovering
+    recovering = controller.filing.recovery
     recovering.quiet_ms, recovering.longest_ms = 60_000, 200
     recovering.use(folder)
     steady = QTimer()
     widths = iter(range(50, 5000))
-    steady.timeout.connect(lambda: controller.change_fabrication(width_mm=float(next(widths))))
+    steady.timeout.connect(lambda: controller.fabrication.change(width_mm=float(next(widths))))
     with qtbot.waitSignal(recovering.kept, timeout=10_000):
         steady.start(10)
     steady.stop()
@@ -149,7 +149,7 @@ def test_that_discarded_work_is_gone_and_work_kept_for_later_is_asked_about_agai
 ) -> None:
     for name in ("one", "two"):
         recovery.keep(designs, Note(name, "", recovery.now(), 1), folder / f"{name}.kiri")
-    recovering = window.controller.filing.recovering
+    recovering = window.controller.filing.recovery
     recovering.use(folder)
     until(lambda: len(asked(window)) == 2)
     first, second = (next(one for one in asked(window) if f"Recover {name}" in one.sentence) for name in ("one", "two"))
@@ -167,9 +167,9 @@ def test_that_recovering_asks_before_it_takes_the_place_of_unsaved_work(
     designed: MainWindow, designs: Document, folder: Path, until: Until
 ) -> None:
     recovery.keep(edits.choose(designs, 2).document, Note("other", "", recovery.now(), 1), folder / "other.kiri")
-    designed.controller.change_fabrication(width_mm=88.0)
+    designed.controller.fabrication.change(width_mm=88.0)
     before = designed.controller.document
-    designed.controller.filing.recovering.use(folder)
+    designed.controller.filing.recovery.use(folder)
     until(lambda: len(asked(designed)) == 1)
     dict(asked(designed)[0].actions)["Recover"]()
     assert designed.controller.document is before
@@ -184,7 +184,7 @@ def test_that_recovered_work_stays_until_it_is_kept_itself_not_the_work_before_i
 ) -> None:
     left = folder / "other.kiri"
     recovery.keep(edits.choose(designs, 2).document, Note("other", "", recovery.now(), 1), left)
-    recovering = designed.controller.filing.recovering
+    recovering = designed.controller.filing.recovery
     recovering.use(folder)
     until(lambda: len(asked(designed)) == 1)
     kept: list[tuple[Document, bool]] = []
@@ -192,7 +192,7 @@ def test_that_recovered_work_stays_until_it_is_kept_itself_not_the_work_before_i
     recovering.quiet_ms = 0
 
     dict(asked(designed)[0].actions)["Recover"]()
-    designed.controller.change_fabrication(width_mm=88.0)
+    designed.controller.fabrication.change(width_mm=88.0)
     recovering._keep()  # as the timer does, while the recovered work is being read
     until(lambda: not left.exists())
     own = recovering.file
@@ -204,7 +204,7 @@ def test_that_recovered_work_stays_until_it_is_kept_itself_not_the_work_before_i
 def test_that_a_place_that_cannot_be_written_is_told_once_and_the_work_goes_on(
     obstacle: str, heart: MainWindow, folder: Path, until: Until
 ) -> None:
-    recovering = heart.controller.filing.recovering
+    recovering = heart.controller.filing.recovery
     recovering.quiet_ms = 0
     if obstacle == "folder":  # a file stands where the folder should be
         folder.parent.mkdir()
@@ -214,7 +214,7 @@ def test_that_a_place_that_cannot_be_written_is_told_once_and_the_work_goes_on(
     if obstacle == "file":  # a folder stands where the file should be
         recovering.file.mkdir(parents=True)
     for width in (88.0, 89.0, 90.0):
-        heart.controller.change_fabrication(width_mm=width)
+        heart.controller.fabrication.change(width_mm=width)
         heart.controller.end_drag()
         until(lambda: not heart.controller.queue.busy and not recovering.waiting)
     told = [one for one in heart.messages.messages if "Could not save" in one.sentence]
@@ -227,7 +227,7 @@ def test_that_a_place_that_cannot_be_written_is_told_once_and_the_work_goes_on(
 def test_that_damaged_work_is_named_and_can_be_discarded(window: MainWindow, folder: Path, until: Until) -> None:
     folder.mkdir(parents=True)
     (folder / "torn.kiri").write_bytes(b"PK\x03\x04 torn")
-    window.controller.filing.recovering.use(folder)
+    window.controller.filing.recovery.use(folder)
     until(lambda: len(asked(window)) == 1)
     (message,) = asked(window)
     assert [label for label, _ in message.actions] == ["Discard", "Keep for later"] and "damaged" in message.details
@@ -247,11 +247,11 @@ def test_that_kept_work_is_a_whole_project(designs: Document, tmp_path: Path) ->
 
 def test_that_saving_counts_for_what_was_written_not_for_what_came_after(designed: MainWindow, until: Until) -> None:
     controller = designed.controller
-    controller.change_fabrication(width_mm=88.0)
+    controller.fabrication.change(width_mm=88.0)
     path = controller.path
     assert path is not None
     controller.save(path)
     controller.end_drag()
-    controller.change_fabrication(width_mm=99.0)  # before the worker has written
+    controller.fabrication.change(width_mm=99.0)  # before the worker has written
     until(lambda: not controller.queue.busy)
     assert controller.history.unsaved and store.load(path).fabrication.width_mm == 88.0

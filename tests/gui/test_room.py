@@ -93,7 +93,7 @@ def test_that_the_user_decides_about_folding(designed: MainWindow, qtbot: QtBot)
 def test_that_a_folded_panel_still_says_what_is_wrong(designed: MainWindow, until: Until) -> None:
     resized(designed, 1000, 640)
     assert "cuts" in designed.fabrication.summary.text()
-    designed.controller.change_fabrication(connector_mm=20.0)
+    designed.controller.fabrication.change(connector_mm=20.0)
     until(lambda: not designed.fabrication.export.isEnabled())
     assert designed.fabrication.warnings.isVisible() and "connector" in designed.fabrication.warnings.text()
     assert designed.fabrication.summary.text() == ""

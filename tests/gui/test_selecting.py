@@ -12,9 +12,10 @@ from pytestqt.modeltest import ModelTester
 from pytestqt.qtbot import QtBot
 
 from kirigami_studio.evaluate.candidate import Candidate
-from kirigami_studio.gui.designs.design_cache import Entry
-from kirigami_studio.gui.designs.selecting import Selection, SortOrder, least_panel
+from kirigami_studio.fabricate.panel_sizes import least_panel_share
+from kirigami_studio.gui.designs.selecting import Selection, SortOrder
 from kirigami_studio.gui.main_window import MainWindow
+from kirigami_studio.gui.session import Entry
 from kirigami_studio.gui.views.gallery_model import NUMBER_ROLE, VALUE_ROLE, GalleryModel
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.pipeline.variety import distances
@@ -47,7 +48,7 @@ def check_order(designed: MainWindow, designs: Document, order: SortOrder) -> No
         SortOrder.SIOU: lambda one: -one.score.siou,
         SortOrder.GAIN: lambda one: -one.score.siou_gain,
         SortOrder.TV: lambda one: one.score.tv,
-        SortOrder.PANEL: lambda one: -least_panel(deploy(one.field)),
+        SortOrder.PANEL: lambda one: -least_panel_share(deploy(one.field)),
         SortOrder.NEWEST: lambda one: designs.candidates.index(one),
         SortOrder.UNLIKE: lambda one: -float(distances(chosen, [one.field])[0]),
     }[order]
@@ -73,7 +74,7 @@ def test_that_the_smallest_panel_is_the_shortest_edge_or_neck_found_one_by_one(d
                     along = np.linspace(0.0, 1.0, 2001)[:, None]
                     sizes.append(np.linalg.norm(panel[here] - (start + along * (end - start)), axis=1).min())
             sizes.extend(np.linalg.norm(panel - np.roll(panel, 1, axis=0), axis=1))
-        assert least_panel(sheet) == pytest.approx(min(sizes) / np.ptp(sheet.compact[:, 0]), rel=1e-5)
+        assert least_panel_share(sheet) == pytest.approx(min(sizes) / np.ptp(sheet.compact[:, 0]), rel=1e-5)
 
 
 def test_that_cards_tell_the_number_they_are_sorted_by_at_the_sheets_width(
@@ -82,8 +83,8 @@ def test_that_cards_tell_the_number_they_are_sorted_by_at_the_sheets_width(
     model = designed.gallery.view.model_
     assert model.data(model.index(0, 0), VALUE_ROLE) == f"TV {designs.candidates[0].score.tv:.2f}"
     sort_by(designed, SortOrder.PANEL)
-    designed.controller.change_fabrication(width_mm=250.0)
-    sizes = [250.0 * least_panel(deploy(one.field)) for one in shown(designed)]
+    designed.controller.fabrication.change(width_mm=250.0)
+    sizes = [250.0 * least_panel_share(deploy(one.field)) for one in shown(designed)]
     told = [model.data(model.index(row, 0), VALUE_ROLE) for row in range(3)]
     assert told == [f"panel {size:.1f} mm" for size in sizes]
     tip = str(model.data(model.index(0, 0), Qt.ItemDataRole.ToolTipRole))
@@ -111,7 +112,7 @@ def test_that_filters_leave_designs_out_and_the_head_counts_them(
     assert shown(designed) == list(designs.candidates[:2])
     feasible = sum(one.score.feasible for one in designs.candidates[:2])
     assert designed.gallery.count.text() == f"2 of 3 shown · {feasible} feasible"
-    designed.controller.marking.pin(best)
+    designed.controller.marks.pin(best)
     bar.pinned.setChecked(True)
     assert shown(designed) == [best]
     qtbot.mouseClick(bar.filter, LEFT)

@@ -76,7 +76,7 @@ def test_that_the_project_states_offer_lost_work_and_leave_none(
     sheet: StateSheet, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("kirigami_studio.demonstrations.state_sheet.SIZES", SIZES[1:2])
-    sheet.window.controller.change_fabrication(width_mm=88.0)
+    sheet.window.controller.fabrication.change(width_mm=88.0)
     sheet.project()
     assert sheet.window.messages.messages == () and not list((tmp_path / "recovery").glob("left*"))
     for name in ("recovery-1280x720-dark", "menu-recent-light", "menu-pictures-dark", "history-light"):

@@ -13,7 +13,7 @@ from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
-from kirigami_studio.gui.jobs.steps import Picture, reading_target
+from kirigami_studio.gui.jobs.target_jobs import reading_target
 from kirigami_studio.gui.main_window import MainWindow
 from kirigami_studio.gui.sketching.sketch_context import Change
 from kirigami_studio.gui.views.target_view import Tool
@@ -161,7 +161,7 @@ def test_that_a_picture_goes_along_when_its_contour_is_moved_and_enlarged(
     until(lambda: traced.controller.document.target is not before)
     # The new contour of the picture lies where the picture lies now.
     assert view.context.placed.scale == pytest.approx(
-        view.underlay.pixel * traced.controller.targeting.tracing.picture_of(view.outline).traced.scale  # type: ignore
+        view.underlay.pixel * traced.controller.targeting.tracer.picture_of(view.outline).traced.scale  # type: ignore
     )
     for _ in range(3):
         traced.actions_["undo"].trigger()
@@ -173,8 +173,9 @@ def test_that_the_worker_reduces_a_large_photo_for_drawing(tmp_path: Path) -> No
     grey = np.full((1200, 2400), 230, dtype=np.uint8)
     grey[300:900, 600:1800] = 20
     Image.fromarray(grey).save(path)
-    picture = next(iter(reading_target(str(path), lambda: False)))
-    assert isinstance(picture, Picture) and picture.seen is not None
+    (found,) = reading_target(str(path), lambda: False)
+    picture = found.picture
+    assert picture is not None and picture.seen is not None
     assert (picture.seen.width(), picture.seen.height()) == (1600, 800)
     assert picture.traced is not None and picture.traced.picture == (2400, 1200)
     assert picture == replace(picture, seen=None), "what is drawn does not make it another picture"

@@ -27,8 +27,8 @@ from pytestqt.qtbot import QtBot
 
 from kirigami_studio.evaluate.candidate import Origin
 from kirigami_studio.evaluate.score import evaluate
-from kirigami_studio.gui.designs import hand_editing
-from kirigami_studio.gui.designs.hand_editing import JOINS_WITHIN
+from kirigami_studio.gui.designs import hand_editor
+from kirigami_studio.gui.designs.hand_editor import JOINS_WITHIN
 from kirigami_studio.gui.main_window import MainWindow
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.project.edits import Edit
@@ -89,7 +89,7 @@ def test_that_notches_on_one_void_that_follow_soon_are_one_step_though_each_is_s
     by_hand: MainWindow, until: Until, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     assert JOINS_WITHIN == 1.0
-    monkeypatch.setattr(hand_editing, "JOINS_WITHIN", 60.0)  # a slow machine is no pause of the hand
+    monkeypatch.setattr(hand_editor, "JOINS_WITHIN", 60.0)  # a slow machine is no pause of the hand
     view, history, before = by_hand.stage.view, by_hand.controller.history, chosen(by_hand)
     for notches in (1, 1, -3):
         turn(view, middle_of(view, (1, 2)), notches)
@@ -110,12 +110,12 @@ def test_that_a_notch_after_a_pause_or_after_undo_is_a_step_of_its_own(
     by_hand: MainWindow, until: Until, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     view, history = by_hand.stage.view, by_hand.controller.history
-    monkeypatch.setattr(hand_editing, "JOINS_WITHIN", 0.0)
+    monkeypatch.setattr(hand_editor, "JOINS_WITHIN", 0.0)
     for _ in range(2):
         turn(view, middle_of(view, (1, 2)), 1)
         settle(by_hand, until)
     assert len(history.steps) == 2
-    monkeypatch.setattr(hand_editing, "JOINS_WITHIN", 60.0)
+    monkeypatch.setattr(hand_editor, "JOINS_WITHIN", 60.0)
     by_hand.actions_["undo"].trigger()
     turn(view, middle_of(view, (1, 2)), -1)
     settle(by_hand, until)
@@ -125,10 +125,11 @@ def test_that_a_notch_after_a_pause_or_after_undo_is_a_step_of_its_own(
 def test_that_notches_that_wait_for_one_score_are_scored_once(
     by_hand: MainWindow, until: Until, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(hand_editing, "JOINS_WITHIN", 60.0)
+    monkeypatch.setattr(hand_editor, "JOINS_WITHIN", 60.0)
     view, hand, before = by_hand.stage.view, by_hand.controller.hand, ratio(by_hand, (1, 2))
-    taken: list[Edit] = []
-    hand.edited.connect(taken.append)
+    session, taken = by_hand.controller.session, list[Edit]()
+    apply = session.apply
+    monkeypatch.setattr(session, "apply", lambda edit: (taken.append(edit), apply(edit))[1])
     for _ in range(4):
         turn(view, middle_of(view, (1, 2)), 1)
         hand.commit()

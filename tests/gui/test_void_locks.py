@@ -274,7 +274,7 @@ def test_that_a_trim_that_cannot_be_made_again_is_said_to_be_off(by_hand: MainWi
     controller = by_hand.controller
     by_hand.actions_["trim"].trigger()
     until(lambda: chosen(by_hand).trim is not None)
-    controller.change_fabrication(width_mm=12.0, connector_mm=1.2)
+    controller.fabrication.change(width_mm=12.0, connector_mm=1.2)
     by_hand.actions_["refit"].trigger()
     until(lambda: not controller.refitting.busy)
     assert chosen(by_hand).trim is None and chosen(by_hand).polished

@@ -72,14 +72,14 @@ def test_that_garbage_is_collected_after_the_rooms_are_imported() -> None:
 
 IMPORTED = """
 import sys
-from kirigami_studio.gui.jobs import importing, steps
+from kirigami_studio.gui.jobs import design_jobs, importing
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.outlines import silhouettes
 request = Request(silhouettes.load("heart"), (4, 4), k=2, polish=1, trim=True)
 importing.import_generator()
 before = set(sys.modules)
 assert "torch" in before
-for event in steps.generating(request, lambda: False):
+for event in design_jobs.generating(request, lambda: False):
     pass
 print(sorted(set(sys.modules) - before))
 """

@@ -146,13 +146,13 @@ def test_that_a_recovered_project_brings_its_photo(
     opened = store.load_all(traced_project)
     note = recovery.Note("traced.kiri", str(traced_project), recovery.now(), 1)
     recovery.keep(opened.document, note, tmp_path / "state" / "left.kiri", opened.picture)
-    window.controller.filing.recovering.use(tmp_path / "state")
+    window.controller.filing.recovery.use(tmp_path / "state")
     until(lambda: bool(told(window, "Recover traced.kiri")))
     dict(told(window, "Recover traced.kiri")[0].actions)["Recover"]()
     until(lambda: window.target.threshold.isVisible())
     assert window.target.threshold.slider.value() == 160
     until(lambda: not (tmp_path / "state" / "left.kiri").exists())
-    own = window.controller.filing.recovering.file
+    own = window.controller.filing.recovery.file
     assert own is not None and store.load_all(own).picture == opened.picture
 
 

@@ -1,4 +1,8 @@
-"""The chosen design as the generator drew it, before any fit improved it."""
+"""Work on the chosen design in the worker: trim it, fit it again, score it as the generator sampled it.
+
+:class:`TrimSwitch` and :class:`Refitter` each run at most one :class:`ChosenDesignJob` and make one edit of its result;
+:class:`SampledScores` changes nothing.
+"""
 
 from __future__ import annotations
 
@@ -6,233 +10,247 @@ from collections import OrderedDict
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
+from typing import Generic, TypeVar
 
 from PySide6.QtCore import QObject, Signal
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui.designs.design_cache import DesignCache
-from kirigami_studio.gui.jobs import hand_steps, steps
-from kirigami_studio.gui.jobs.queue import JobCallbacks, JobQueue, LatestJob, Steps
+from kirigami_studio.gui.jobs.design_jobs import Decoded, Refitted, refitting, scoring_sample, trimming
+from kirigami_studio.gui.jobs.queue import JobCallbacks, LatestJob, Steps
 from kirigami_studio.gui.messages import Message, Tone
+from kirigami_studio.gui.session import Entry, Session
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project import edits
 from kirigami_studio.project.document import Document
 
+T = TypeVar("T")
+#: Designs whose sampled state is kept.
+CAPACITY = 256
 
-class OneDesign(QObject):
-    """Runs at most one job; what it brings is told by :meth:`take`, which a kind of work defines."""
 
-    busy_changed = Signal(bool)
-    edited = Signal(object)  #: Edit
-    failed = Signal(str, str)  #: sentence, trace
-    message = Signal(object)  #: Message
-    status = Signal(str)
+class ChosenDesignJob(Generic[T]):
+    """At most one job on the chosen design; its only report ends it.
 
-    #: What the status line says after :meth:`cancel`.
-    stopped = ""
+    Parameters
+    ----------
+    session : Session
+    on_busy : callable
+        Hears whether a design is being worked on.
+    on_report : callable
+        Gets the candidate that the job was begun with, and the report.
+    """
 
-    def __init__(self, queue: JobQueue, cache: DesignCache, document: Callable[[], Document], parent: QObject) -> None:
-        super().__init__(parent)
-        self._cache, self._document = cache, document
-        self._slot = LatestJob(queue)
+    def __init__(
+        self, session: Session, on_busy: Callable[[bool], None], on_report: Callable[[Candidate, T], None]
+    ) -> None:
+        self._session, self._on_busy, self._on_report = session, on_busy, on_report
+        self._job = LatestJob[T](session.queue)
         self._candidate: Candidate | None = None
 
     @property
     def busy(self) -> bool:
         """Whether a design is being worked on."""
-        return self._slot.busy
+        return self._job.busy
 
-    def cancel(self) -> None:
-        """Stop because the user says so."""
+    def start(self, name: str, candidate: Candidate, steps: Steps[T]) -> None:
+        """Start a job on a design; ``name`` follows the word "while"."""
         self.stop()
-        self.status.emit(self.stopped)
+        self._candidate = candidate
+        self._job.start(name, steps, JobCallbacks(self._take, self._end, self._end, self._fail))
+        self._on_busy(True)
 
     def stop(self) -> None:
-        """Forget what is still being made."""
+        """Stop, and ignore what is still being made."""
         if self.busy:
-            self._slot.stop()
-            self._over()
+            self._job.stop()
+            self._end()
 
     def stop_unless(self, candidate: Candidate | None) -> None:
         """Go on only while this design is the one on the stage."""
         if candidate != self._candidate:
             self.stop()
 
-    def take(self, before: Candidate, report: object) -> None:
-        """The job that was begun with ``before`` has brought something."""
-        raise TypeError(f"{type(self).__name__} does not say what comes of its work.")
-
-    def begin(self, name: str, candidate: Candidate, work: Steps) -> None:
-        """Start a job on a design; ``name`` follows the word "while"."""
-        self.stop()
-        self._candidate = candidate
-        self._slot.start(name, work, JobCallbacks(self._take, self._over, self._over, self._fail))
-        self.busy_changed.emit(True)
-
-    def name(self) -> str:
-        """The chosen design in a sentence."""
-        chosen = self._document().chosen
-        return tr("the design") if chosen is None else tr("design {number}", number=chosen + 1)
-
-    def _take(self, report: object) -> None:
+    def _take(self, report: T) -> None:
         before = self._candidate
-        self.stop()  # the report is the end
+        self.stop()
         if before is not None:
-            self.take(before, report)
+            self._on_report(before, report)
 
     def _fail(self, sentence: str, trace: str) -> None:
-        self._over()
-        self.failed.emit(sentence, trace)
+        self._end()
+        self._session.report_failure(sentence, trace)
 
-    def _over(self) -> None:
+    def _end(self) -> None:
         self._candidate = None
-        self.busy_changed.emit(False)
+        self._on_busy(False)
 
 
-class TrimJob(OneDesign):
-    """Trims at most one design at a time, off the window's thread, and proposes the edit that it leads to."""
+def chosen_name(document: Document) -> str:
+    """The chosen design in a sentence."""
+    return tr("the design") if document.chosen is None else tr("design {number}", number=document.chosen + 1)
 
-    stopped = tr("Trimming stopped; nothing changed.")
+
+class TrimSwitch(QObject):
+    """Trims the chosen design along the target, or takes its trim off."""
+
+    busy_changed = Signal(bool)
+
+    def __init__(self, session: Session, parent: QObject) -> None:
+        super().__init__(parent)
+        self._session = session
+        self.job = ChosenDesignJob[Decoded](session, self.busy_changed.emit, self._take)
+
+    @property
+    def busy(self) -> bool:
+        """Whether a design is being trimmed."""
+        return self.job.busy
 
     def switch(self, on: bool) -> None:
         """Trim the chosen design, or bring back what was cut off; while it is being trimmed, stop that."""
-        candidate = self._document().candidate
+        candidate = self._session.document.candidate
         if not on and self.busy:
             self.cancel()
         elif candidate is None:
-            self.message.emit(Message(tr("Choose a finished design first, then trim it."), Tone.HINT))
+            self._session.post(Message(tr("Choose a finished design first, then trim it."), Tone.HINT))
         elif on and candidate.trim is None:
             self._start(candidate)
         elif not on and candidate.trim is not None:
-            self._replace(replace(candidate, trim=None), tr("Untrim"))
-            self.status.emit(tr("Trim removed."))
+            label = tr("Untrim {design}", design=chosen_name(self._session.document))
+            self._replace(replace(candidate, trim=None), label)
+            self._session.set_status(tr("Trim removed."))
+
+    def cancel(self) -> None:
+        """Stop because the user says so."""
+        self.job.stop()
+        self._session.set_status(tr("Trimming stopped; nothing changed."))
 
     def _start(self, candidate: Candidate) -> None:
-        document = self._document()
+        document = self._session.document
         if document.target is None:
             return
-        work = partial(steps.trimming, candidate, document.target, document.fabrication)
-        self.begin(tr("trimming the design"), candidate, work)
-        self.status.emit(tr("Trimming {name} …", name=self.name()))
+        steps = partial(trimming, candidate, document.target, document.fabrication)
+        self.job.start(tr("trimming the design"), candidate, steps)
+        self._session.set_status(tr("Trimming {name} …", name=chosen_name(document)))
 
-    def take(self, before: Candidate, report: object) -> None:
-        """The worker has made something of the design."""
-        if not isinstance(report, steps.Decoded) or before != self._document().candidate:
-            return
+    def _take(self, before: Candidate, report: Decoded) -> None:
         after, trim = report.candidate, report.candidate.trim
-        if trim is None:
+        if before != self._session.document.candidate or trim is None:
             return
-        self._cache.put(after, report.deployment)
-        self._replace(after, tr("Trim"))
-        scores = tr(
-            "Trimmed IoU {iou:.1f} %, untrimmed sIoU {siou:.1f} %", iou=100 * trim.iou, siou=100 * after.score.siou
-        )
-        self.status.emit(
+        self._session.cache.put(after, report.deployment)
+        self._replace(after, tr("Trim {design}", design=chosen_name(self._session.document)))
+        self._session.set_status(
             tr(
-                "{scores}; {removed_share:.1f} % of the sheet is cut off.",
-                scores=scores,
+                "Trimmed IoU {iou:.1f} %, untrimmed sIoU {siou:.1f} %; {removed_share:.1f} % of the sheet is cut off.",
+                iou=100 * trim.iou,
+                siou=100 * after.score.siou,
                 removed_share=100 * trim.removed_share,
             )
         )
 
-    def _replace(self, candidate: Candidate, gesture: str) -> None:
-        document = self._document()
+    def _replace(self, candidate: Candidate, label: str) -> None:
+        document = self._session.document
         if document.chosen is not None:
-            label = f"{gesture} {self.name()}"
-            self.edited.emit(edits.replace_candidate(document, document.chosen, candidate, label))
+            self._session.apply(edits.replace_candidate(document, document.chosen, candidate, label))
 
 
-class Refitting(OneDesign):
-    """Fits at most one design at a time, off the window's thread, and proposes the edit that it leads to."""
+class Refitter(QObject):
+    """Fits the chosen design again by what the settings prefer."""
 
-    stopped = tr("Fitting stopped; nothing changed.")
+    busy_changed = Signal(bool)
+
+    def __init__(self, session: Session, parent: QObject) -> None:
+        super().__init__(parent)
+        self._session = session
+        self.job = ChosenDesignJob[Refitted](session, self.busy_changed.emit, self._take)
+
+    @property
+    def busy(self) -> bool:
+        """Whether a design is being fitted."""
+        return self.job.busy
 
     def start(self) -> None:
-        """Fit the chosen design by what the settings prefer."""
-        document = self._document()
+        """Fit the chosen design."""
+        document = self._session.document
         candidate, target = document.candidate, document.target
         if candidate is None or target is None:
-            self.message.emit(Message(tr("Choose a finished design first, then fit it again."), Tone.HINT))
+            self._session.post(Message(tr("Choose a finished design first, then fit it again."), Tone.HINT))
             return
         if len(document.locked) == candidate.field.ratio.size:
-            self.message.emit(Message(tr("Every void is locked. Unlock the ones to fit."), Tone.HINT))
+            self._session.post(Message(tr("Every void is locked. Unlock the ones to fit."), Tone.HINT))
             return
         prefer, locked, cuts = document.settings.prefer, document.locked, document.fabrication
-        work = partial(hand_steps.refitting, candidate, target, prefer, locked, cuts)
-        self.begin(tr("fitting the design"), candidate, work)
-        self.status.emit(tr("Fitting {design} … Press Esc to stop.", design=self.name()))
+        steps = partial(refitting, candidate, target, prefer, locked, cuts)
+        self.job.start(tr("fitting the design"), candidate, steps)
+        self._session.set_status(tr("Fitting {design} … Press Esc to stop.", design=chosen_name(document)))
 
-    def take(self, before: Candidate, report: object) -> None:
-        """The worker has made something of the design."""
-        if not isinstance(report, hand_steps.Refitted):
-            return
+    def cancel(self) -> None:
+        """Stop because the user says so."""
+        self.job.stop()
+        self._session.set_status(tr("Fitting stopped; nothing changed."))
+
+    def _take(self, before: Candidate, report: Refitted) -> None:
         after = report.decoded.candidate
         numbers = {"before": 100 * before.score.siou, "after": 100 * after.score.siou}
         if report.better:
             self._replace(before, report, tr("Fitted again: sIoU {before:.1f} % → {after:.1f} %.", **numbers))
         else:
-            told = tr("No better fit found: sIoU {after:.2f} %, was {before:.2f} %.", **numbers)
+            sentence = tr("No better fit found: sIoU {after:.2f} %, was {before:.2f} %.", **numbers)
             taken = tr("Fit applied: sIoU {after:.2f} %, was {before:.2f} %.", **numbers)
             actions = ((tr("Apply anyway"), partial(self._replace, before, report, taken)),)
-            self.message.emit(Message(told, Tone.HINT, actions=actions))
-            self.status.emit(tr("Fitting finished; the design is unchanged."))
+            self._session.post(Message(sentence, Tone.HINT, actions=actions))
+            self._session.set_status(tr("Fitting finished; the design is unchanged."))
 
-    def _replace(self, before: Candidate, report: hand_steps.Refitted, told: str) -> None:
-        """Propose the edit and tell of it, unless the design or its locks have changed since the fit began."""
-        after, label = report.decoded.candidate, tr("Fit {design}", design=self.name())
-        edit = edits.take_changed(self._document(), before, after, label)
+    def _replace(self, before: Candidate, report: Refitted, sentence: str) -> None:
+        """Replace the design, unless it or its locks have changed since the fit began."""
+        session, after = self._session, report.decoded.candidate
+        label = tr("Fit {design}", design=chosen_name(session.document))
+        edit = edits.take_changed(session.document, before, after, label)
         if edit is None:
-            self.status.emit(tr("The design has changed since the fit. Press Fit again (Ctrl+F)."))
+            session.set_status(tr("The design has changed since the fit. Press Fit again (Ctrl+F)."))
             return
-        if edits.moves_locked(self._document(), before, after):
-            self.status.emit(tr("Voids were locked since the fit. Press Fit again (Ctrl+F)."))
+        if edits.moves_locked(session.document, before, after):
+            session.set_status(tr("Voids were locked since the fit. Press Fit again (Ctrl+F)."))
             return
-        self._cache.put(after, report.decoded.deployment)
-        self.edited.emit(edit)
+        session.cache.put(after, report.decoded.deployment)
+        session.apply(edit)
         if after.trim is not None:
-            told = tr("{told} Trimmed again: IoU {iou:.1f} %.", told=told, iou=100 * after.trim.iou)
+            sentence = tr("{told} Trimmed again: IoU {iou:.1f} %.", told=sentence, iou=100 * after.trim.iou)
         elif report.untrimmed:
-            told = tr("{told} Trim removed: {reason}", told=told, reason=report.untrimmed)
-        self.status.emit(told)
+            sentence = tr("{told} Trim removed: {reason}", told=sentence, reason=report.untrimmed)
+        session.set_status(sentence)
 
 
-#: Drawn states that are kept.
-CAPACITY = 256
+class SampledScores(QObject):
+    """Scores the design on the stage as the generator sampled it, before any fit; the newest request wins."""
 
+    known = Signal(Candidate, Entry)  #: as it is, as it was sampled
 
-class Comparing(QObject):
-    """Scores drawn states on demand; the newest wish replaces an older one."""
-
-    known = Signal(object, object)  #: Candidate as it is, Entry as it was drawn
-    failed = Signal(str, str)  #: sentence, trace
-
-    def __init__(self, queue: JobQueue, cache: DesignCache, parent: QObject) -> None:
+    def __init__(self, session: Session, parent: QObject) -> None:
         super().__init__(parent)
-        self._cache = cache
-        self._drawn: OrderedDict[tuple[Candidate, Outline], Candidate] = OrderedDict()
-        self._slot = LatestJob(queue)
+        self._session = session
+        self._sampled: OrderedDict[tuple[Candidate, Outline], Candidate] = OrderedDict()
+        self._job = LatestJob[Decoded](session.queue)
 
     def look_up(self, candidate: Candidate, target: Outline | None) -> None:
-        """Tell how a candidate was drawn, at once when that is known."""
+        """Find out how a candidate was sampled, at once when that is known."""
         self.stop()
         if candidate.sampled_field is None or target is None:
             return
-        before = self._drawn.get((candidate, target))
+        before = self._sampled.get((candidate, target))
         if before is not None:
-            self.known.emit(candidate, self._cache.entry(before))
+            self.known.emit(candidate, self._session.cache.entry(before))
             return
-        callbacks = JobCallbacks(partial(self._take, candidate, target), on_failed=self.failed.emit)
-        self._slot.start(tr("scoring the unpolished design"), partial(steps.comparing, candidate, target), callbacks)
+        callbacks = JobCallbacks(partial(self._take, candidate, target), on_failed=self._session.report_failure)
+        self._job.start(tr("scoring the unpolished design"), partial(scoring_sample, candidate, target), callbacks)
 
     def stop(self) -> None:
         """Forget what is still being scored."""
-        self._slot.stop()
+        self._job.stop()
 
-    def _take(self, candidate: Candidate, target: Outline, report: object) -> None:
-        if isinstance(report, steps.Decoded):
-            self._cache.put(report.candidate, report.deployment)
-            self._drawn[candidate, target] = report.candidate
-            while len(self._drawn) > CAPACITY:
-                self._drawn.popitem(last=False)
-            self.known.emit(candidate, self._cache.entry(report.candidate))
+    def _take(self, candidate: Candidate, target: Outline, report: Decoded) -> None:
+        self._session.cache.put(report.candidate, report.deployment)
+        self._sampled[candidate, target] = report.candidate
+        while len(self._sampled) > CAPACITY:
+            self._sampled.popitem(last=False)
+        self.known.emit(candidate, self._session.cache.entry(report.candidate))

@@ -1,16 +1,15 @@
-"""A vertex of the outline in the hand: the window says where it is wanted, a thread of its own brings it there.
+"""Dragging a vertex of the outline: the window says where it is wanted, a thread of its own moves it there.
 
-Steps are taken in a thread that gestures have to themselves, not in the one of long work: there a plan of cuts, a fit
-or a trim is one step that may last seconds, and the vertex would stand still so long.  Nor are they taken in the
-window's thread when they are cheap: the first step of a drag never is, because it needs a derivative.  The thread is
-made at the first drag and ends with the window.
+Steps are taken in a thread that gestures have to themselves, not in that of long work: there a cut plan, a fit or a
+trim is one step that may last seconds, and the vertex would stand still so long.  Nor are they taken in the window's
+thread when they are cheap: the first step of a drag never is, because it needs a derivative.  The thread is made at the
+first drag and ends with the window.
 
 No sheet is too large.  Processor seconds until the first answer, of which half is spent once for each kind of grid, and
 for each step after it: 0.13 and 0.004 at 24 x 24 voids, 0.85 and 0.014 at 40 x 40, 5.5 and 0.03 at 64 x 64.
 
-While a step is being taken, only the newest place is kept; what it has made is shown when it is finished, and only the
-newest where there are several.  When the hand has let go, steps go on until the last place is reached; then the drag
-has ended.
+While a step is being taken, only the newest place is kept; its result is shown when it is finished, and only the newest
+where there are several.  After the release, steps go on until the last place is reached; then the drag has ended.
 """
 
 from __future__ import annotations
@@ -18,57 +17,57 @@ from __future__ import annotations
 from PySide6.QtCore import QObject, Signal
 
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui.jobs.drag_steps import Followed, Follower, Grasp
 from kirigami_studio.gui.jobs.queue import JobCallbacks, JobQueue, LatestJob
+from kirigami_studio.gui.jobs.vertex_drag import Followed, Follower, Grasp
 
 
 class OutlineDrag(QObject):
     """At most one drag at a time; owns the thread of gestures."""
 
-    followed = Signal(object)  #: Followed
-    ended = Signal()  #: the hand has let go and the last place is reached
+    followed = Signal(Followed)
+    ended = Signal()  #: released, and the last place is reached
     failed = Signal(str, str)  #: sentence, trace
 
     def __init__(self, parent: QObject) -> None:
         super().__init__(parent)
         self._queue: JobQueue | None = None
-        self._slot: LatestJob | None = None
+        self._job: LatestJob[Followed] | None = None
         self._follower: Follower | None = None
         self._shown: Followed | None = None
         self._held = False
 
     @property
     def active(self) -> bool:
-        """Whether a vertex is held or still on its way."""
+        """Whether a vertex is being dragged or still on its way."""
         return self._follower is not None
 
     @property
     def arriving(self) -> bool:
-        """Whether the hand has let go and the vertex is still on its way."""
+        """Whether the vertex was released and is still on its way."""
         return self.active and not self._held
 
     def begin(self, grasp: Grasp) -> None:
-        """Take hold of a vertex."""
+        """Begin to drag a vertex."""
         self.stop()
         self._follower, self._held = Follower(grasp), True
 
     def move(self, place: tuple[float, float]) -> None:
-        """The hand has moved to a place in the world."""
+        """The pointer has moved to a place in the world."""
         if self._follower is not None and self._held:
             self._follower.want(place)
             self._go_on()
 
     def let_go(self) -> None:
-        """The hand has let go; :attr:`ended` follows when the vertex has arrived."""
+        """The button was released; :attr:`ended` follows when the vertex has arrived."""
         if self._follower is not None:
             self._held = False
             self._follower.let_go()
             self._go_on()
 
     def stop(self) -> None:
-        """Forget the drag; nothing more is told about it."""
-        if self._slot is not None:
-            self._slot.stop()
+        """Forget the drag; nothing more is reported about it."""
+        if self._job is not None:
+            self._job.stop()
         self._follower = self._shown = None
         self._held = False
 
@@ -80,19 +79,19 @@ class OutlineDrag(QObject):
 
     def _go_on(self) -> None:
         follower = self._follower
-        if follower is None or (self._slot is not None and self._slot.busy):
+        if follower is None or (self._job is not None and self._job.busy):
             return
         if follower.waiting:
-            if self._slot is None:
+            if self._job is None:
                 self._queue = JobQueue(self, "kirigami-gestures")
-                self._slot = LatestJob(self._queue)
+                self._job = LatestJob[Followed](self._queue)
             callbacks = JobCallbacks(self._show, self._go_on, on_failed=self._fail)
-            self._slot.start(tr("moving the outline"), follower.steps, callbacks)
+            self._job.start(tr("moving the outline"), follower.steps, callbacks)
         elif not self._held:
             self.stop()
             self.ended.emit()
 
-    def _show(self, _: object) -> None:
+    def _show(self, _: Followed) -> None:
         """A step is finished; what it has made may have been shown already, with what came before it."""
         newest = None if self._follower is None else self._follower.newest
         if newest is not None and newest is not self._shown:

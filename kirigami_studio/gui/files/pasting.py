@@ -13,6 +13,7 @@ from PySide6.QtGui import QImage
 
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.messages import Message, Tone
+from kirigami_studio.gui.session import Session
 
 #: How SVG path data begins: a move to a number.
 PATH_BEGINS = re.compile(r"[Mm]\s*[-+.\d]")
@@ -21,14 +22,14 @@ PASTED = "kirigami-pasted-"
 NOTHING = tr("Nothing to paste. Copy a picture, file, SVG or path first.")
 
 
-class Pasting(QObject):
+class PasteReader(QObject):
     """Keeps pasted content in files of its own until the window closes: a picture's threshold can still be moved."""
 
     file_wanted = Signal(str)
-    message = Signal(object)  #: Message
 
-    def __init__(self, parent: QObject) -> None:
+    def __init__(self, session: Session, parent: QObject) -> None:
         super().__init__(parent)
+        self._session = session
         self._folder = tempfile.TemporaryDirectory(prefix=PASTED)
         self._count = 0
         self.destroyed.connect(self._folder.cleanup)
@@ -45,13 +46,13 @@ class Pasting(QObject):
             if picture.save(str(path)):
                 self.file_wanted.emit(str(path))
             else:
-                self.message.emit(
+                self._session.post(
                     Message(tr("Could not save the picture to {path}. Free some disk space.", path=path), Tone.ERROR)
                 )
             return
         found = recognised(svg_of(content))
         if found is None:
-            self.message.emit(Message(NOTHING, Tone.HINT))
+            self._session.post(Message(NOTHING, Tone.HINT))
             return
         extension, text = found
         path = self._place(extension)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from contextlib import nullcontext
 from functools import partial
 from pathlib import Path
@@ -12,11 +12,12 @@ from PySide6.QtGui import QGuiApplication, QImage, QPainter, QPicture
 from PySide6.QtWidgets import QGraphicsView, QWidget
 
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui.jobs import picture_steps
-from kirigami_studio.gui.jobs.picture_steps import Recording
-from kirigami_studio.gui.jobs.queue import JobCallbacks, JobQueue
-from kirigami_studio.gui.jobs.steps import CutRequest
+from kirigami_studio.gui.cutting import CutPlanner
+from kirigami_studio.gui.jobs import picture_jobs
+from kirigami_studio.gui.jobs.picture_jobs import Recording
+from kirigami_studio.gui.jobs.queue import JobCallbacks
 from kirigami_studio.gui.messages import Message, Tone
+from kirigami_studio.gui.session import Session
 from kirigami_studio.gui.views.canvas import Canvas
 from kirigami_studio.gui.views.gallery_view import GalleryView
 
@@ -27,23 +28,15 @@ VIEWS = (Canvas, QGraphicsView, GalleryView)
 SVG_TYPE = "image/svg+xml"
 
 
-class Picturing(QObject):
+class PictureMaker(QObject):
     """Draws views anew in any size; what takes long, encoding and writing, is the worker's."""
 
-    written = Signal(object)  #: Path
+    written = Signal(Path)
     copied = Signal()
-    message = Signal(object)  #: Message
-    status = Signal(str)
 
-    def __init__(
-        self,
-        window: QWidget,
-        queue: JobQueue,
-        request: Callable[[], CutRequest | None],
-    ) -> None:
+    def __init__(self, window: QWidget, session: Session, cutting: CutPlanner) -> None:
         super().__init__(window)
-        self._window, self._queue = window, queue
-        self._request = request
+        self._window, self._session, self._cutting = window, session, cutting
         self.scale = 2
         self.overlays = True
 
@@ -65,28 +58,30 @@ class Picturing(QObject):
 
     def write(self, view: QWidget, path: Path) -> None:
         """Write a picture of a view; ``.svg`` is drawn in lines, everything else in pixels."""
-        self.status.emit(tr("Exporting {name} …", name=path.name))
+        self._session.set_status(tr("Exporting {name} …", name=path.name))
         if path.suffix.lower() == ".svg":
-            steps = partial(picture_steps.writing_svg, self.svg(view), path)
+            steps = partial(picture_jobs.writing_svg, self.svg(view), path)
         else:
-            steps = partial(picture_steps.writing_png, self.record(view), self.scale, path)
-        callbacks = JobCallbacks(self._told_written, on_failed=self._tell_failure)
-        self._queue.start(tr("exporting {name}", name=path.name), steps, callbacks)
+            steps = partial(picture_jobs.writing_png, self.record(view), self.scale, path)
+        callbacks = JobCallbacks(self._report_written, on_failed=self._report_failure)
+        self._session.queue.start(tr("exporting {name}", name=path.name), steps, callbacks)
 
     def copy(self, view: QWidget) -> None:
         """Put a picture of a view on the clipboard."""
-        steps = partial(picture_steps.drawing, self.record(view), self.scale)
-        self._queue.start(tr("copying a picture"), steps, JobCallbacks(self._take_image, on_failed=self._tell_failure))
+        steps = partial(picture_jobs.drawing, self.record(view), self.scale)
+        self._session.queue.start(
+            tr("copying a picture"), steps, JobCallbacks(self._take_image, on_failed=self._report_failure)
+        )
 
     def copy_cuts(self) -> None:
         """Put the cut plan on the clipboard as SVG in mm, for a drawing program or a laser program."""
-        request = self._request()
+        request = self._cutting.request
         if request is None:
-            self.message.emit(Message(tr("No design to copy yet. Generate one first."), Tone.HINT))
+            self._session.post(Message(tr("No design to copy yet. Generate one first."), Tone.HINT))
             return
-        self.status.emit(tr("Planning the cuts …"))
-        callbacks = JobCallbacks(self._take_cuts, on_failed=self._tell_failure)
-        self._queue.start(tr("copying the cuts"), partial(picture_steps.drawing_cuts, request), callbacks)
+        self._session.set_status(tr("Planning the cuts …"))
+        callbacks = JobCallbacks(self._take_cuts, on_failed=self._report_failure)
+        self._session.queue.start(tr("copying the cuts"), partial(picture_jobs.drawing_cuts, request), callbacks)
 
     # drawing -------------------------------------------------------------------------------------------------------
 
@@ -132,36 +127,33 @@ class Picturing(QObject):
 
     def _facts(self) -> Mapping[str, str]:
         """Where the design on the stage comes from."""
-        request = self._request()
+        request = self._cutting.request
         return {} if request is None else request.facts
 
     # news ----------------------------------------------------------------------------------------------------------
 
-    def _tell_failure(self, sentence: str, trace: str) -> None:
-        self.message.emit(Message(sentence, Tone.ERROR, trace))
+    def _report_failure(self, sentence: str, trace: str) -> None:
+        self._session.post(Message(sentence, Tone.ERROR, trace))
 
-    def _told_written(self, path: object) -> None:
-        if isinstance(path, Path):
-            self.status.emit(tr("Exported picture: {path}.", path=path))
-            self.written.emit(path)
+    def _report_written(self, path: Path) -> None:
+        self._session.set_status(tr("Exported picture: {path}.", path=path))
+        self.written.emit(path)
 
-    def _take_image(self, image: object) -> None:
-        if isinstance(image, QImage):
-            QGuiApplication.clipboard().setImage(image)
-            self.status.emit(
-                tr(
-                    "Copied a {width} \N{MULTIPLICATION SIGN} {height} px picture.",
-                    width=image.width(),
-                    height=image.height(),
-                )
+    def _take_image(self, image: QImage) -> None:
+        QGuiApplication.clipboard().setImage(image)
+        self._session.set_status(
+            tr(
+                "Copied a {width} \N{MULTIPLICATION SIGN} {height} px picture.",
+                width=image.width(),
+                height=image.height(),
             )
-            self.copied.emit()
+        )
+        self.copied.emit()
 
-    def _take_cuts(self, content: object) -> None:
-        if isinstance(content, bytes):
-            data = QMimeData()
-            data.setData(SVG_TYPE, content)
-            data.setText(content.decode("utf-8"))
-            QGuiApplication.clipboard().setMimeData(data)
-            self.status.emit(tr("Copied the cuts as SVG in mm."))
-            self.copied.emit()
+    def _take_cuts(self, content: bytes) -> None:
+        data = QMimeData()
+        data.setData(SVG_TYPE, content)
+        data.setText(content.decode("utf-8"))
+        QGuiApplication.clipboard().setMimeData(data)
+        self._session.set_status(tr("Copied the cuts as SVG in mm."))
+        self.copied.emit()

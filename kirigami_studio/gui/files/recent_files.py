@@ -14,8 +14,9 @@ from PySide6.QtCore import QLockFile, QObject, Signal
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.files.pasting import PASTED
-from kirigami_studio.gui.jobs.queue import Cancel, JobCallbacks, JobQueue
+from kirigami_studio.gui.jobs.queue import Cancel, JobCallbacks
 from kirigami_studio.gui.messages import Message, Tone
+from kirigami_studio.gui.session import Session
 from kirigami_studio.project import recent
 from kirigami_studio.project.recent import Recent
 
@@ -29,13 +30,12 @@ STALE_MS = 5000
 class RecentFiles(QObject):
     """Holds the list; whether its files are still there is looked up in the worker, for a network may be slow."""
 
-    changed = Signal(object)  #: Recent
+    changed = Signal(Recent)
     missing = Signal(frozenset)  #: paths, str, that are not there any more
-    message = Signal(object)  #: Message
 
-    def __init__(self, queue: JobQueue, parent: QObject) -> None:
+    def __init__(self, session: Session, parent: QObject) -> None:
         super().__init__(parent)
-        self._queue = queue
+        self._session = session
         self._path: Path | None = None
         self.present = Recent()
 
@@ -44,7 +44,7 @@ class RecentFiles(QObject):
         try:
             self.present = recent.load(path)
         except KirigamiError as error:
-            self.message.emit(Message(str(error), Tone.WARNING))
+            self._session.post(Message(str(error), Tone.WARNING))
         else:
             self._path = path
             self.changed.emit(self.present)
@@ -69,7 +69,7 @@ class RecentFiles(QObject):
         paths = (*self.present.projects, *self.present.targets)
         if paths:
             callbacks = JobCallbacks(self.missing.emit)
-            self._queue.start(tr("checking recent files"), partial(_looking, paths), callbacks)
+            self._session.queue.start(tr("checking recent files"), partial(_looking, paths), callbacks)
 
     def _change(self, change: Callable[[Recent], Recent]) -> None:
         if self._path is None:
@@ -79,7 +79,7 @@ class RecentFiles(QObject):
             self._take(changed_file(self._path, change))
         except KirigamiError as error:
             self._path = None  # once is enough
-            self.message.emit(Message(str(error), Tone.WARNING))
+            self._session.post(Message(str(error), Tone.WARNING))
             self._take(change(self.present))
 
     def _read_again(self) -> None:
@@ -88,7 +88,7 @@ class RecentFiles(QObject):
                 self._take(recent.load(self._path))
             except KirigamiError as error:
                 self._path = None
-                self.message.emit(Message(str(error), Tone.WARNING))
+                self._session.post(Message(str(error), Tone.WARNING))
 
     def _take(self, known: Recent) -> None:
         if known != self.present:

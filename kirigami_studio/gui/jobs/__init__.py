@@ -1,5 +1,7 @@
-"""Long work beside the window: one worker thread that steps Qt-free generators and reports what they yield.
+"""Long work beside the window: one worker thread runs generators, and the window takes what they report.
 
-Vocabulary: a *job* is a generator with a number, a name and a cancel flag; the *board* lives in the window's thread,
-starts jobs and hands their reports to whoever asked.
+A *job* is a generator with a number, a name and a cancel flag; a *report* is what it yields.  :mod:`queue` runs jobs;
+the other modules hold the generators by topic.  They know no widgets.  Packages that are slow to import (torch,
+scikit-image, ezdxf) are imported inside the functions: the first import then happens in the worker, after the window
+is shown.
 """

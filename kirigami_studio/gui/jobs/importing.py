@@ -1,11 +1,11 @@
-"""Importing large rooms in the worker without holding the window up.
+"""Importing large packages in the worker without freezing the UI; warming up before the first run.
 
-Python code gives the interpreter's lock away every few milliseconds; three things do not, and each is a freeze: mapping
-a large library, a collection of garbage among hundreds of thousands of objects that imports have made, and the
-collections that come later and look at all of them again.  ``tests/performance/test_ui_freeze.py`` measured 315 ms
-while the generator was loaded and 170 to 200 ms in later collections, without what is done here.
+Python code releases the interpreter's lock every few milliseconds; three things do not, and each is a UI freeze:
+mapping a large library, a garbage collection among the hundreds of thousands of objects that imports have made, and the
+later collections that look at all of them again.  Measured with ``tests/performance/test_ui_freeze.py``: 315 ms while
+the generator was loaded and 170 to 200 ms in later collections, without what is done here.
 
-Each room is imported once: what is garbage at that moment is never collected, so this must not be done at every job.
+Each package is imported once: what is garbage at that moment is never collected, so this must not be done at every job.
 """
 
 from __future__ import annotations
@@ -15,10 +15,12 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import cache
 
+from kirigami_studio.gui.jobs.queue import Cancel
+
 
 @contextmanager
 def quietly() -> Iterator[None]:
-    """Collect no garbage while rooms are imported, and never again look at what has been made until then."""
+    """Collect no garbage during imports, and exempt everything made until then from later collections."""
     collecting = gc.isenabled()
     gc.disable()
     try:
@@ -31,7 +33,7 @@ def quietly() -> Iterator[None]:
 
 @cache
 def settle() -> None:
-    """The first window stands: what the start has made stays, and no collection need look at it again.
+    """The first window is built: what the start has made stays, and is exempt from later collections.
 
     Without it the first collections after the start took 50 ms each.
     """
@@ -61,3 +63,19 @@ def import_generator() -> None:
         map_libraries()
         from kirigami_studio.generator import sampler as _sampler  # noqa: F401
         from kirigami_studio.pipeline import run as _run  # noqa: F401
+
+
+def warming(cancel: Cancel) -> Iterator[tuple[str, ...]]:
+    """Import what the first run needs, before anyone waits for it; the last report is the generators on offer.
+
+    There is a report after every import, so that a file which is opened meanwhile need not wait for all of them.
+    """
+    import_pictures()
+    yield ()
+    import_exporters()
+    yield ()
+    import_generator()
+    yield ()
+    from kirigami_studio.generator.weights import variants
+
+    yield variants()

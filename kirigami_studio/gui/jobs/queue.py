@@ -1,4 +1,7 @@
-"""Starts jobs and brings their reports back into the window's thread."""
+"""Starts jobs in a worker thread and brings their reports back into the window's thread.
+
+A job is typed by what it reports: ``Steps[T]`` yields values of type T, ``JobCallbacks[T]`` takes them.
+"""
 
 from __future__ import annotations
 
@@ -11,6 +14,7 @@ from collections import deque
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from functools import partial
+from typing import Any, Generic, TypeVar
 
 from PySide6.QtCore import QMetaObject, QObject, Qt, QThread, QTimer, Signal, Slot
 
@@ -20,8 +24,20 @@ from kirigami_studio.foundation.words import tr
 
 log: logging.Logger = topic("gui.jobs")
 
+T = TypeVar("T")
+#: Whether the job has been asked to stop.
 Cancel = Callable[[], bool]
-Steps = Callable[[Cancel], Iterator[object]]
+#: The work of a job: a generator whose reports are of type T.
+Steps = Callable[[Cancel], Iterator[T]]
+
+
+def single(work: Callable[[Cancel], T]) -> Steps[T]:
+    """The steps of a job that reports once: what ``work`` returns."""
+
+    def steps(cancel: Cancel) -> Iterator[T]:
+        yield work(cancel)
+
+    return steps
 
 
 @dataclass(slots=True, eq=False)
@@ -42,7 +58,7 @@ class Job:
 
     number: int
     name: str
-    steps: Steps
+    steps: Steps[object]
     flag: threading.Event = field(default_factory=threading.Event)
     iterator: Iterator[object] | None = None
 
@@ -107,20 +123,20 @@ class Worker(QObject):
         return False
 
 
-#: Seconds of telling in one turn of the event loop: reports of many designs come all at once, and between two turns the
-#: window takes what was clicked and typed meanwhile.
+#: Seconds for which reports are delivered in one turn of the event loop: reports of many designs arrive all at once,
+#: and between two turns the window takes what was clicked and typed meanwhile.
 TURN = 0.01
 
 
 def _ignore(*_: object) -> None:
-    """Nobody asked."""
+    """No callback is wanted."""
 
 
 @dataclass(frozen=True, slots=True)
-class JobCallbacks:
-    """Who is told about a job, in the window's thread."""
+class JobCallbacks(Generic[T]):
+    """What is called with the reports and at the end of a job, in the window's thread."""
 
-    on_report: Callable[[object], None] = _ignore
+    on_report: Callable[[T], None] = _ignore
     on_finished: Callable[[], None] = _ignore
     on_cancelled: Callable[[], None] = _ignore
     on_failed: Callable[[str, str], None] = _ignore
@@ -134,12 +150,12 @@ class JobQueue(QObject):
     def __init__(self, parent: QObject | None = None, name: str = "kirigami-worker") -> None:
         super().__init__(parent)
         self._numbers = itertools.count(1)
-        self._open: dict[int, tuple[Job, JobCallbacks]] = {}
-        self._heard: deque[Callable[[], None]] = deque()
+        self._open: dict[int, tuple[Job, JobCallbacks[Any]]] = {}
+        self._pending: deque[Callable[[], None]] = deque()
         self._turn = QTimer(self)
         self._turn.setSingleShot(True)
         self._turn.setInterval(0)
-        self._turn.timeout.connect(self._tell)
+        self._turn.timeout.connect(self._deliver)
         self._thread = QThread(self)
         self._thread.setObjectName(name)
         self._worker = Worker()
@@ -155,7 +171,7 @@ class JobQueue(QObject):
         """Whether any job is open."""
         return bool(self._open)
 
-    def start(self, name: str, steps: Steps, callbacks: JobCallbacks) -> int:
+    def start(self, name: str, steps: Steps[T], callbacks: JobCallbacks[T]) -> int:
         """Queue a job and return its number; ``name`` follows the word "while" in messages."""
         job = Job(next(self._numbers), name, steps)
         self._open[job.number] = (job, callbacks)
@@ -179,56 +195,58 @@ class JobQueue(QObject):
         for job, _ in self._open.values():
             job.flag.set()
         self._open.clear()
-        self._heard.clear()
+        self._pending.clear()
         self._turn.stop()
         self._thread.quit()
         self._thread.wait()
 
     @Slot(int, object)
-    def _report(self, number: int, report: object) -> None:
-        self._hear(number, partial(self._pass_on, number, report))
+    def _report(self, number: int, report: Any) -> None:
+        self._deliver_later(number, partial(self._pass_on, number, report))
 
     @Slot(int)
     def _finish(self, number: int) -> None:
-        self._hear(number, partial(self._close_job, number, lambda callbacks: callbacks.on_finished()))
+        self._deliver_later(number, partial(self._close_job, number, lambda callbacks: callbacks.on_finished()))
 
     @Slot(int)
     def _cancel(self, number: int) -> None:
-        self._hear(number, partial(self._close_job, number, lambda callbacks: callbacks.on_cancelled()))
+        self._deliver_later(number, partial(self._close_job, number, lambda callbacks: callbacks.on_cancelled()))
 
     @Slot(int, str, str)
     def _fail(self, number: int, sentence: str, trace: str) -> None:
-        self._hear(number, partial(self._close_job, number, lambda callbacks: callbacks.on_failed(sentence, trace)))
+        self._deliver_later(
+            number, partial(self._close_job, number, lambda callbacks: callbacks.on_failed(sentence, trace))
+        )
 
-    def _hear(self, number: int, word: Callable[[], None]) -> None:
-        """Keep what the worker says until it is told, in the order in which it was said."""
+    def _deliver_later(self, number: int, call: Callable[[], None]) -> None:
+        """Keep what the worker reports until it is delivered, in the order in which it was reported."""
         if number in self._open:
-            self._heard.append(word)
+            self._pending.append(call)
             self._turn.start()
 
     @Slot()
-    def _tell(self) -> None:
+    def _deliver(self) -> None:
         end = time.perf_counter() + TURN
-        while self._heard and time.perf_counter() < end:
-            word = self._heard.popleft()
-            self._turn.start()  # not after it: a word may open a dialog, which hears on
-            word()
+        while self._pending and time.perf_counter() < end:
+            call = self._pending.popleft()
+            self._turn.start()  # before the call: it may open a dialog, whose event loop delivers further
+            call()
 
-    def _pass_on(self, number: int, report: object) -> None:
+    def _pass_on(self, number: int, report: Any) -> None:
         if number in self._open:
             self._open[number][1].on_report(report)
 
-    def _close_job(self, number: int, tell: Callable[[JobCallbacks], None]) -> None:
+    def _close_job(self, number: int, end: Callable[[JobCallbacks[Any]], None]) -> None:
         if number not in self._open:
             return
         _, callbacks = self._open.pop(number)
-        tell(callbacks)
+        end(callbacks)
         if not self._open:
             self.idle.emit()
 
 
-class LatestJob:
-    """Holds at most one job of a board; it is empty again before anybody is told how the job ended."""
+class LatestJob(Generic[T]):
+    """Holds at most one job of a queue; it is empty again before a callback hears how the job ended."""
 
     def __init__(self, queue: JobQueue) -> None:
         self._queue = queue
@@ -239,7 +257,7 @@ class LatestJob:
         """Whether a job is open here."""
         return self._number is not None
 
-    def start(self, name: str, steps: Steps, callbacks: JobCallbacks) -> None:
+    def start(self, name: str, steps: Steps[T], callbacks: JobCallbacks[T]) -> None:
         """Stop the job that is here and begin another; ``name`` follows the word "while" in messages."""
         self.stop()
         own = JobCallbacks(
@@ -261,6 +279,6 @@ class LatestJob:
             self._queue.abandon(self._number)
             self._number = None
 
-    def _end(self, tell: Callable[..., None], *said: str) -> None:
+    def _end(self, callback: Callable[..., None], *failure: str) -> None:
         self._number = None
-        tell(*said)
+        callback(*failure)

@@ -8,14 +8,15 @@ from PySide6.QtCore import QPointF, QSize, Qt, Signal
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QLabel, QToolButton, QVBoxLayout, QWidget
 
+from kirigami_studio.fabricate.panel_sizes import least_panel_share
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui.designs.design_cache import Entry
-from kirigami_studio.gui.designs.selecting import differences, least_panel
+from kirigami_studio.gui.designs.selecting import differences
 from kirigami_studio.gui.look import icons
 from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.panels.card import FittingLabel, tool_button
 from kirigami_studio.gui.panels.deployment_bar import DeploymentBar
 from kirigami_studio.gui.scene.view_transform import Bounds
+from kirigami_studio.gui.session import Entry
 from kirigami_studio.gui.views.layout_view import LayoutView, Overlay
 from kirigami_studio.outlines.outline import Outline
 
@@ -252,4 +253,4 @@ def number_texts(one: Entry | None, other: Entry | None, width_mm: float) -> tup
 
 def _numbers(entry: Entry, width_mm: float) -> tuple[float, float, float, float]:
     score = entry.candidate.score
-    return 100.0 * score.siou, 100.0 * score.siou_gain, score.tv, width_mm * least_panel(entry.design.deployment)
+    return 100.0 * score.siou, 100.0 * score.siou_gain, score.tv, width_mm * least_panel_share(entry.design.deployment)

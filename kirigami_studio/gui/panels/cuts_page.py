@@ -28,7 +28,7 @@ from kirigami_studio.gui.views.cut_view import CutOverlay, CutView
 
 if TYPE_CHECKING:
     from kirigami_studio.fabricate.cut_plan import CutPlan
-    from kirigami_studio.gui.jobs.steps import Planned
+    from kirigami_studio.gui.jobs.cut_jobs import Planned
 
 #: Seconds in which a whole job is played, however long it takes to cut.
 PLAY_SECONDS = 12.0

@@ -46,7 +46,7 @@ from kirigami_studio.project.settings import FabricationSettings
 
 if TYPE_CHECKING:
     from kirigami_studio.fabricate.timing import CutTimes
-    from kirigami_studio.gui.jobs.steps import Planned
+    from kirigami_studio.gui.jobs.cut_jobs import Planned
 
 #: Field, label, accessible name, lowest, highest, step (mm), decimals, tooltip.
 LENGTHS = (

@@ -10,7 +10,7 @@ from PySide6.QtGui import QAction, QActionGroup
 from PySide6.QtWidgets import QLabel, QMenu, QWidget, QWidgetAction
 
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui.files.picturing import SCALES, Picturing
+from kirigami_studio.gui.files.picturing import SCALES, PictureMaker
 from kirigami_studio.gui.files.recent_files import RecentFiles
 from kirigami_studio.project.recent import Recent
 
@@ -18,7 +18,7 @@ from kirigami_studio.project.recent import Recent
 class PictureMenu(QMenu):
     """Asks where to, and lets the pictures be made."""
 
-    def __init__(self, parent: QWidget, picturing: Picturing, ask: Callable[[str], Path | None]) -> None:
+    def __init__(self, parent: QWidget, picturing: PictureMaker, ask: Callable[[str], Path | None]) -> None:
         super().__init__(tr("Export pi&cture of"), parent)
         self._picturing = picturing
         self._ask = ask

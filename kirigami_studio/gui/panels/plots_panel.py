@@ -13,8 +13,8 @@ from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QButtonGroup, QHBoxLayout, QLabel, QSizePolicy, QToolButton, QVBoxLayout, QWidget
 
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui.designs.plotting import Curves
-from kirigami_studio.gui.jobs.plot_steps import ANGLES, Reading
+from kirigami_studio.gui.designs.curves import Curves
+from kirigami_studio.gui.jobs.plot_jobs import ANGLES, Reading
 from kirigami_studio.gui.look.theme import LIGHT, Palette
 
 if TYPE_CHECKING:

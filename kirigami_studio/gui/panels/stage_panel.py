@@ -8,7 +8,6 @@ from PySide6.QtWidgets import QMenu, QSplitter, QStackedWidget, QToolButton, QVB
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui.designs.design_cache import Entry
 from kirigami_studio.gui.look import icons
 from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.panels.card import INSET, Card, FittingLabel, tool_button
@@ -17,6 +16,7 @@ from kirigami_studio.gui.panels.cuts_page import CutBar, CutsPage
 from kirigami_studio.gui.panels.deployment_bar import DeploymentBar
 from kirigami_studio.gui.panels.plots_panel import PlotsPanel
 from kirigami_studio.gui.panels.void_bar import VoidBar
+from kirigami_studio.gui.session import Entry
 from kirigami_studio.gui.views.gallery_model import described
 from kirigami_studio.gui.views.layout_view import USUAL, FaultTour, LayoutView, Overlay
 from kirigami_studio.outlines.outline import Outline

@@ -16,7 +16,7 @@ from PySide6.QtWidgets import (
 )
 
 from kirigami_studio.foundation.words import tr, tr_n
-from kirigami_studio.gui.jobs.steps import Picture
+from kirigami_studio.gui.jobs.target_jobs import Picture
 from kirigami_studio.gui.look import icons
 from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.panels.card import Card, ElidedLabel, muted_label, tool_button

@@ -7,7 +7,7 @@ from PySide6.QtGui import QKeyEvent, QResizeEvent
 from PySide6.QtWidgets import QHBoxLayout, QMenu, QToolButton, QWidget
 
 from kirigami_studio.foundation.words import tr, tr_n
-from kirigami_studio.gui.designs.hand_pull import LARGEST, SMALLEST
+from kirigami_studio.gui.designs.hand_editor import LARGEST, SMALLEST
 from kirigami_studio.gui.look import icons
 from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.panels.card import FittingLabel, tool_button

@@ -9,9 +9,10 @@ from collections.abc import Mapping
 from PySide6.QtCore import QAbstractListModel, QModelIndex, QObject, QPersistentModelIndex, Qt, Signal
 
 from kirigami_studio.evaluate.candidate import Candidate, Origin
+from kirigami_studio.fabricate.panel_sizes import least_panel_share
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui.designs.design_cache import Entry, same_sample
-from kirigami_studio.gui.designs.selecting import Selection, Shown, arranged, format_value, least_panel
+from kirigami_studio.gui.designs.selecting import Selection, Shown, arranged, format_value
+from kirigami_studio.gui.session import Entry, same_sample
 from kirigami_studio.pipeline.rank import rank_key
 from kirigami_studio.project.document import Mark
 
@@ -94,7 +95,7 @@ class GalleryModel(QAbstractListModel):
         return "\n".join(lines)
 
     def _size(self, entry: Entry) -> str:
-        size = self._width_mm * least_panel(entry.design.deployment)
+        size = self._width_mm * least_panel_share(entry.design.deployment)
         return tr("Smallest panel: {size:.2f} mm on a sheet {width:g} mm wide", size=size, width=self._width_mm)
 
     def replace(self, entries: list[Entry]) -> None:

@@ -18,7 +18,7 @@ from PySide6.QtGui import (
 from PySide6.QtWidgets import QWidget
 
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui.jobs.steps import Picture
+from kirigami_studio.gui.jobs.target_jobs import Picture
 from kirigami_studio.gui.scene.target_items import (
     paint_axes,
     paint_grid,

@@ -11,8 +11,9 @@ from PySide6.QtCore import QObject, Signal
 
 from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui.jobs.plot_steps import Reading, plotting
-from kirigami_studio.gui.jobs.queue import JobCallbacks, JobQueue, LatestJob
+from kirigami_studio.gui.jobs.plot_jobs import Reading, plotting
+from kirigami_studio.gui.jobs.queue import JobCallbacks, LatestJob
+from kirigami_studio.gui.session import Session
 from kirigami_studio.outlines.outline import Outline
 
 #: Curves that are kept.
@@ -32,24 +33,24 @@ class Curves:
     complete: bool = False
 
 
-class Plotting(QObject):
+class CurveReader(QObject):
     """Reads at most one design at a time; another design on the stage takes its place."""
 
     grown = Signal(object)  #: Curves of the design on the stage, or None
-    failed = Signal(str, str)  #: sentence, trace
 
-    def __init__(self, queue: JobQueue, parent: QObject) -> None:
+    def __init__(self, session: Session, parent: QObject) -> None:
         super().__init__(parent)
+        self._session = session
         self._design: PosedDesign | None = None
         self._target: Outline | None = None
         self._wanted = False
-        self._slot = LatestJob(queue)
+        self._job = LatestJob[tuple[Reading, ...]](session.queue)
         self._known: OrderedDict[tuple[PosedDesign, Outline | None], Curves] = OrderedDict()
 
     @property
     def busy(self) -> bool:
         """Whether a design is being read."""
-        return self._slot.busy
+        return self._job.busy
 
     def show(self, design: PosedDesign | None, target: Outline | None) -> None:
         """Another design, or none, is on the stage."""
@@ -58,7 +59,7 @@ class Plotting(QObject):
             self._begin()
 
     def want(self, wanted: bool) -> None:
-        """Whether anybody looks at the curves."""
+        """Whether the plots are open."""
         self._wanted = wanted
         self._begin()
 
@@ -77,16 +78,15 @@ class Plotting(QObject):
         self.grown.emit(begun)
         while len(self._known) > CAPACITY:
             self._known.popitem(last=False)
-        callbacks = JobCallbacks(self._take, self._end, on_failed=self.failed.emit)
-        self._slot.start(tr("computing the plots"), partial(plotting, design, self._target), callbacks)
+        callbacks = JobCallbacks(self._take, self._end, on_failed=self._session.report_failure)
+        self._job.start(tr("computing the plots"), partial(plotting, design, self._target), callbacks)
 
     def stop(self) -> None:
         """Read no further."""
-        self._slot.stop()
+        self._job.stop()
 
-    def _take(self, report: object) -> None:
-        if isinstance(report, tuple):
-            self._grow(report, complete=False)
+    def _take(self, readings: tuple[Reading, ...]) -> None:
+        self._grow(readings, complete=False)
 
     def _end(self) -> None:
         self._grow((), complete=True)

@@ -1,7 +1,7 @@
-"""What the gesture thread does while a vertex of the outline is held: step after step towards the newest place.
+"""The job of dragging a vertex of the outline: step after step towards the newest place of the pointer.
 
 A :class:`Follower` is written to by the window and read by the worker, without a lock: a place is one attribute that is
-replaced as a whole, and so is the newest result.  Places that were replaced before a step began are never looked at.
+replaced as a whole, and so is the newest result.  Places that were replaced before a step began are skipped.
 """
 
 from __future__ import annotations
@@ -20,8 +20,8 @@ if TYPE_CHECKING:
 
 #: Most steps towards one place: two or three bring a vertex one cell further; at the edge of its reach they are short.
 MOST_STEPS = 100
-#: Processor seconds that the vertex is given to arrive after the hand has let go, and steps it gets in any case.
-LAST_WAY, LAST_STEPS = 1.0, 4
+#: Processor seconds that the vertex has to arrive after the release, and steps that it gets in any case.
+LAST_SECONDS, LAST_STEPS = 1.0, 4
 #: A step that brings the vertex less than this (unit cells) nearer has not helped.
 NEARER = 1e-3
 #: Steps in a row that do not help before the vertex is as near as it gets: the second has a new derivative.
@@ -30,14 +30,14 @@ IN_VAIN = 2
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Grasp:
-    """A vertex as it was taken hold of.
+    """A vertex when its drag began.
 
     Attributes
     ----------
     design : PosedDesign
-        As it was seen; its pose is kept for the whole drag.
+        As it was shown; its pose is kept for the whole drag.
     phi : float, radians, in [0, pi)
-        Angle that was seen.
+        Angle that was shown.
     vertex : int
         Number in ``Deployment.outline(phi)``.
     held : (m, n) bool
@@ -58,9 +58,9 @@ class Followed:
     ----------
     design : PosedDesign
     arrived : bool
-        Whether the vertex is where the hand wanted it when the step began.
+        Whether the vertex is where the pointer was when the step began.
     stuck : bool
-        Whether it comes no nearer: ratios, locks or matter stand in the way.
+        Whether it comes no nearer: ratio limits, locked voids or panel collisions block it.
     """
 
     design: PosedDesign
@@ -69,7 +69,7 @@ class Followed:
 
 
 class Follower:
-    """Brings one vertex after the hand.
+    """Moves one vertex after the pointer.
 
     Attributes
     ----------
@@ -86,16 +86,16 @@ class Follower:
         self.newest: Followed | None = None
 
     def want(self, place: tuple[float, float]) -> None:
-        """The hand is at a place (x, y) in the world now."""
+        """The pointer is at a place (x, y) in the world now."""
         self._wanted = (self._wanted[0] + 1, place)
 
     def let_go(self) -> None:
-        """The place that is wanted now is the last; the vertex goes there, or as far as it gets in the time it has."""
+        """The button was released: the present place is the last; the vertex goes there, or as far as time allows."""
         self._last = True
 
     @property
     def waiting(self) -> bool:
-        """Whether there is a place for which not all has been done."""
+        """Whether there is a place that has not been served."""
         return self._wanted[0] != self._served
 
     def steps(self, cancel: Cancel) -> Iterator[Followed]:
@@ -109,7 +109,7 @@ class Follower:
             found, gain = self._step(place)
             self._spent += last * (time.thread_time() - began)
             taken, in_vain = taken + 1, 0 if gain >= NEARER else in_vain + 1
-            late = self._spent >= LAST_WAY and last and taken >= LAST_STEPS
+            late = self._spent >= LAST_SECONDS and last and taken >= LAST_STEPS
             stuck = not found.arrived and (in_vain == IN_VAIN or taken == MOST_STEPS or late)
             if found.arrived or stuck:
                 self._served = number

@@ -1,9 +1,9 @@
-"""What the worker does about pictures of views: draw them large, write them, draw the cuts for the clipboard.
+"""Jobs on pictures of views: draw them large, write them, draw the cuts for the clipboard.
 
 A view is recorded in the window's thread, which takes a few milliseconds; the recording is played back here, where it
 may take as long as a large picture takes.  Qt allows painting into pictures in any thread, but the interpreter's lock
-is kept while Qt paints: a whole window four times as large took 0.4 to 0.8 s in one go, during which the window stood
-still.  Hence it is painted in bands, and its pixels are handed on without a copy.
+is kept while Qt paints: painting a whole window four times as large in one go was a UI freeze of 0.4 to 0.8 s.  Hence
+it is painted in bands, and its pixels are handed on without a copy.
 """
 
 from __future__ import annotations
@@ -16,8 +16,8 @@ from pathlib import Path
 from PySide6.QtCore import QSize
 from PySide6.QtGui import QColor, QImage, QPainter, QPicture
 
+from kirigami_studio.gui.jobs.cut_jobs import CutRequest, export_job, planned
 from kirigami_studio.gui.jobs.queue import Cancel
-from kirigami_studio.gui.jobs.steps import CutRequest, export_job, planned
 
 #: Pixels that are painted at a time; each band costs the whole recording again, less what lies outside it.
 BAND = 1_000_000

@@ -1,71 +1,78 @@
-"""What the worker does about project files: write and read them with the picture that the target was traced from."""
+"""Jobs on project files: save and open them with the picture behind the target, keep and recover unsaved work."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from kirigami_studio.foundation.errors import ProjectError
+from kirigami_studio.foundation.errors import KirigamiError, ProjectError
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui.jobs.picture_reading import reduced_picture
 from kirigami_studio.gui.jobs.queue import Cancel
-from kirigami_studio.gui.jobs.steps import Picture
+from kirigami_studio.gui.jobs.target_jobs import Picture, reduced_picture
 from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.project import recovery
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.picture_record import LARGEST_PICTURE, TracedPicture
+from kirigami_studio.project.recovery import Note
 
 if TYPE_CHECKING:
     from kirigami_studio.project.store import Opened
-from contextlib import suppress
-
-from kirigami_studio.foundation.errors import KirigamiError
-from kirigami_studio.project import recovery
-from kirigami_studio.project.recovery import Note
 
 
 @dataclass(frozen=True, slots=True)
-class Left:
-    """Something that is not in the project file, or could not be read from it: one sentence."""
+class Saved:
+    """A project file that was written; ``left_out`` says what could not be saved with it, a sentence, or ""."""
 
-    sentence: str
+    path: Path
+    left_out: str = ""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Project:
-    """A project that was read."""
+    """A project that was read.
+
+    Attributes
+    ----------
+    document : Document
+    picture : Picture or None
+        Behind its target.
+    notes : tuple of str
+        What could not be read, a sentence each.
+    """
 
     document: Document
     picture: Picture | None
+    notes: tuple[str, ...] = ()
 
 
-def saving(document: Document, picture: Picture | None, path: Path, cancel: Cancel) -> Iterator[Left | Path]:
+def saving(document: Document, picture: Picture | None, path: Path, cancel: Cancel) -> Iterator[Saved]:
     """Write the project file."""
     from kirigami_studio.project import store
 
+    kept, left_out = None, ""
     try:
         kept = stored(picture)
     except ProjectError as error:
-        kept = None
-        yield Left(tr("The target's photo was not saved with the project: {reason}.", reason=error))
+        left_out = tr("The target's photo was not saved with the project: {reason}.", reason=error)
     store.save(document, path, kept)
-    yield path
+    yield Saved(path, left_out)
 
 
-def loading(path: Path, folder: Path, cancel: Cancel) -> Iterator[Left | Project]:
-    """Read a project file; its picture is laid into a folder of its own inside ``folder``."""
+def loading(path: Path, folder: Path, cancel: Cancel) -> Iterator[Project]:
+    """Read a project file; its picture is written into a folder of its own inside ``folder``."""
     from kirigami_studio.project import store
 
     opened = store.load_all(path)
-    for note in opened.notes:
-        yield Left(note)
-    picture = None
+    picture, notes = None, opened.notes
     try:
-        picture = laid_out(opened, folder)
+        picture = extracted_picture(opened, folder)
     except (OSError, ProjectError) as error:
-        yield Left(tr("The project's photo could not be loaded and was left out: {reason}.", reason=error))
-    yield Project(opened.document, picture)
+        left_out = tr("The project's photo could not be loaded and was left out: {reason}.", reason=error)
+        notes = (*notes, left_out)
+    yield Project(opened.document, picture, notes)
 
 
 def stored(picture: Picture | None) -> TracedPicture | None:
@@ -97,7 +104,7 @@ def stored(picture: Picture | None) -> TracedPicture | None:
     return TracedPicture(path.name, content, *levels, traced.scale, traced.centre, traced.picture)
 
 
-def laid_out(opened: Opened, folder: Path) -> Picture | None:
+def extracted_picture(opened: Opened, folder: Path) -> Picture | None:
     """The picture of a project as a file that can be traced again; None if it keeps none."""
     from kirigami_studio.outlines.read_image import Traced
 
@@ -113,7 +120,7 @@ def laid_out(opened: Opened, folder: Path) -> Picture | None:
 
 @dataclass(frozen=True, slots=True)
 class Leftover:
-    """Work that a session kept which has not ended as it should.
+    """Unsaved work of a session that ended unexpectedly.
 
     Attributes
     ----------
@@ -130,7 +137,7 @@ class Leftover:
 
 
 def keeping(document: Document, picture: Picture | None, note: Note, path: Path, cancel: Cancel) -> Iterator[Document]:
-    """Keep a document, and yield it once it is on disk; a picture that cannot be kept is told when it is saved."""
+    """Keep a document, and yield it once it is on disk; a picture that cannot be kept is reported when it is saved."""
     kept = None
     with suppress(ProjectError):
         kept = stored(picture)
@@ -138,18 +145,13 @@ def keeping(document: Document, picture: Picture | None, note: Note, path: Path,
     yield document
 
 
-def looking(files: tuple[Path, ...], cancel: Cancel) -> Iterator[Leftover]:
+def reading_leftovers(files: tuple[Path, ...], cancel: Cancel) -> Iterator[Leftover]:
     """Find out what the files of earlier sessions keep."""
     for file in files:
         try:
             yield Leftover(file, recovery.read_note(file))
         except KirigamiError as error:
             yield Leftover(file, None, str(error))
-
-
-def recovering(leftover: Leftover, folder: Path, cancel: Cancel) -> Iterator[Left | Project]:
-    """Read the work that was kept; its picture is laid into a folder."""
-    yield from loading(leftover.file, folder, cancel)
 
 
 def removing(file: Path, cancel: Cancel) -> Iterator[Path]:

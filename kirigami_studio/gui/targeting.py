@@ -1,44 +1,42 @@
-"""Which target is designed for: read from a file, traced, drawn, cleared; each becomes an edit."""
+"""The target that is designed for: read from a file, traced from a picture, drawn, cleared; each becomes an edit."""
 
 from __future__ import annotations
 
 from collections import OrderedDict
 from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING, cast
+from pathlib import Path
+from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject, Signal
 
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui.jobs import steps
-from kirigami_studio.gui.jobs.queue import JobCallbacks, JobQueue, LatestJob
-from kirigami_studio.gui.jobs.steps import Picture
+from kirigami_studio.gui.jobs.queue import JobCallbacks, LatestJob
+from kirigami_studio.gui.jobs.target_jobs import Picture, TargetRead, reading_target, tracing
+from kirigami_studio.gui.session import Session
 from kirigami_studio.outlines.outline import Outline
-
-if TYPE_CHECKING:
-    from kirigami_studio.outlines.read_image import Traced
-from collections.abc import Callable
-from pathlib import Path
-
 from kirigami_studio.project import edits
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.edits import Edit
+
+if TYPE_CHECKING:
+    from kirigami_studio.outlines.read_image import Traced
 
 #: Outlines whose picture is remembered, so that undo brings its threshold back too.
 CAPACITY = 256
 
 
-class Tracing(QObject):
-    """Traces one picture at a time; while it does, only the latest wish is kept."""
+class PictureTracer(QObject):
+    """Traces one picture at a time; while it does, only the latest threshold is kept."""
 
-    traced = Signal(object)  #: Outline
+    traced = Signal(Outline)
     refused = Signal(str)
     settled = Signal()  #: the drag is over and its last threshold is traced
 
-    def __init__(self, queue: JobQueue, parent: QObject) -> None:
+    def __init__(self, session: Session, parent: QObject) -> None:
         super().__init__(parent)
         self._pictures: OrderedDict[Outline, Picture] = OrderedDict()
-        self._slot = LatestJob(queue)
+        self._job: LatestJob[Traced] = LatestJob(session.queue)
         self._wanted: Picture | None = None
         self._drag_over = False
 
@@ -56,7 +54,7 @@ class Tracing(QObject):
     def retrace(self, picture: Picture, threshold: float | None) -> None:
         """Trace a picture at another threshold (0 black .. 1 white), None for the automatic one."""
         self._wanted = replace(picture, threshold=picture.automatic if threshold is None else threshold)
-        if not self._slot.busy:
+        if not self._job.busy:
             self._start(self._wanted)
 
     def end_drag(self) -> None:
@@ -67,20 +65,17 @@ class Tracing(QObject):
     def stop(self) -> None:
         """Forget what is still being traced: the target is another one now."""
         self._wanted, self._drag_over = None, False
-        self._slot.stop()
+        self._job.stop()
 
     def _start(self, picture: Picture) -> None:
-        callbacks = JobCallbacks(
+        callbacks: JobCallbacks[Traced] = JobCallbacks(
             partial(self._take, picture), partial(self._go_on, picture), on_failed=partial(self._fail, picture)
         )
-        self._slot.start(tr("tracing {name}", name=picture.path.name), partial(steps.tracing, picture), callbacks)
+        self._job.start(tr("tracing {name}", name=picture.path.name), partial(tracing, picture), callbacks)
 
-    def _take(self, picture: Picture, report: object) -> None:
-        # By its shape, not by its type: the reader is imported in the worker, which takes a while.
-        outline = getattr(report, "outline", None)
-        if isinstance(outline, Outline):
-            self.remember(outline, replace(picture, traced=cast("Traced", report)))
-            self.traced.emit(outline)
+    def _take(self, picture: Picture, traced: Traced) -> None:
+        self.remember(traced.outline, replace(picture, traced=traced))
+        self.traced.emit(traced.outline)
 
     def _fail(self, picture: Picture, sentence: str, trace: str) -> None:
         self.refused.emit(sentence)
@@ -94,77 +89,68 @@ class Tracing(QObject):
             self._settle()
 
     def _settle(self) -> None:
-        if self._drag_over and not self._slot.busy:
+        if self._drag_over and not self._job.busy:
             self._drag_over = False
             self.settled.emit()
 
 
-class Reading(QObject):
-    """Reads one target at a time and tells the tracing which picture it came from."""
+class TargetReader(QObject):
+    """Reads one target at a time and tells the tracer which picture it came from."""
 
-    read = Signal(object, bool)  #: Outline; whether it is the first target of the session
+    read = Signal(Outline, bool)  #: whether it is the first target of the session
     failed = Signal(str, str)  #: sentence, trace
 
-    def __init__(self, queue: JobQueue, tracing: Tracing, parent: QObject) -> None:
+    def __init__(self, session: Session, tracer: PictureTracer, parent: QObject) -> None:
         super().__init__(parent)
-        self._tracing = tracing
-        self._slot = LatestJob(queue)
+        self._tracer = tracer
+        self._job = LatestJob[TargetRead](session.queue)
         self.source = ""  #: of the target that was read last
-        self._picture: steps.Picture | None = None
 
     def start(self, source: str, first: bool) -> None:
         """Read a file, or a silhouette of the library by name."""
-        self.stop()
         callbacks = JobCallbacks(partial(self._take, source, first), on_failed=self.failed.emit)
-        self._slot.start(tr("reading {name}", name=Path(source).name), partial(steps.reading_target, source), callbacks)
+        self._job.start(tr("reading {name}", name=Path(source).name), partial(reading_target, source), callbacks)
 
     def stop(self) -> None:
         """Forget what is still being read: something else took its place."""
-        self._picture = None
-        self._slot.stop()
+        self._job.stop()
 
-    def _take(self, source: str, first: bool, report: object) -> None:
-        if isinstance(report, steps.Picture):
-            self._picture = report
-        elif isinstance(report, Outline):
-            if self._picture is not None:
-                self._tracing.remember(report, self._picture)
-            self.source = source
-            self.read.emit(report, first)
+    def _take(self, source: str, first: bool, found: TargetRead) -> None:
+        if found.picture is not None:
+            self._tracer.remember(found.outline, found.picture)
+        self.source = source
+        self.read.emit(found.outline, first)
 
 
 class Targeting(QObject):
     """Reads and traces targets in the worker; every gesture on the target passes here."""
 
-    replaced = Signal(object)  #: Edit that makes all work for the old target pointless
-    adjusted = Signal(object)  #: Edit by a step of a threshold's drag
-    begun = Signal(object)  #: Document that the history is to start from
-    settled = Signal()  #: the drag is over
+    replaced = Signal(Edit)  #: all work for the old target is pointless now
+    adjusted = Signal(Edit)  #: by a step of a threshold's drag
+    begun = Signal(Document)  #: that the history is to start from
     source_read = Signal(str)  #: where a target was read from
-    status = Signal(str)
-    failed = Signal(str, str)  #: sentence, trace
 
-    def __init__(self, queue: JobQueue, document: Callable[[], Document], parent: QObject) -> None:
+    def __init__(self, session: Session, parent: QObject) -> None:
         super().__init__(parent)
-        self._document = document
+        self._session = session
         self._blank = Document()
-        self.tracing = Tracing(queue, self)
-        self.reading = Reading(queue, self.tracing, self)
-        self.reading.read.connect(self._take_read)
-        self.reading.failed.connect(self.failed)
-        self.tracing.traced.connect(self._take_traced)
-        self.tracing.refused.connect(self.status)
-        self.tracing.settled.connect(self.settled)
+        self.tracer = PictureTracer(session, self)
+        self.reader = TargetReader(session, self.tracer, self)
+        self.reader.read.connect(self._take_read)
+        self.reader.failed.connect(session.report_failure)
+        self.tracer.traced.connect(self._take_traced)
+        self.tracer.refused.connect(session.set_status)
+        self.tracer.settled.connect(session.history.end_drag)
 
     def stop(self) -> None:
         """Forget what is still being read or traced."""
-        self.reading.stop()
-        self.tracing.stop()
+        self.reader.stop()
+        self.tracer.stop()
 
     def open(self, source: str, first: bool = False) -> None:
         """Read a file, or a silhouette of the library by name."""
-        self.status.emit(tr("Reading {name} …", name=Path(source).name))
-        self.reading.start(source, first)
+        self._session.set_status(tr("Reading {name} …", name=Path(source).name))
+        self.reader.start(source, first)
 
     def start_with(self, source: str, blank: Document) -> None:
         """Read the first target; into the ``blank`` document it is where the history starts, no change to be undone."""
@@ -173,33 +159,33 @@ class Targeting(QObject):
 
     def change_threshold(self, threshold: float | None) -> None:
         """Trace the target's picture again at another grey level, 0..1; None for the automatic one."""
-        picture = self.tracing.picture_of(self._document().target)
+        picture = self.tracer.picture_of(self._session.document.target)
         if picture is not None:
-            self.tracing.retrace(picture, threshold)
+            self.tracer.retrace(picture, threshold)
 
     def reshape(self, edit: Edit) -> None:
         """Take an edit that the drawing board made of the target."""
         self.replaced.emit(edit)
-        self.status.emit(f"{edit.label}.")
+        self._session.set_status(f"{edit.label}.")
 
     def clear(self) -> None:
         """Start over with an empty target."""
-        document = self._document()
+        document = self._session.document
         if document.target is not None:
             self.replaced.emit(Edit(tr("Clear target"), edits.without_designs(document, None)))
-            self.status.emit(tr("Target cleared. Undo restores it."))
+            self._session.set_status(tr("Target cleared. Undo restores it."))
 
     def _take_traced(self, outline: Outline) -> None:
-        self.adjusted.emit(edits.edit_target(self._document(), outline, tr("Change threshold")))
-        self.status.emit(tr("{count} points at this threshold.", count=len(outline.points)))
+        self.adjusted.emit(edits.edit_target(self._session.document, outline, tr("Change threshold")))
+        self._session.set_status(tr("{count} points at this threshold.", count=len(outline.points)))
 
     def _take_read(self, outline: Outline, first: bool) -> None:
-        document = self._document()
+        document = self._session.document
         if first and document == self._blank:
             self.begun.emit(replace(document, target=outline))
             said = tr("Target: {name}. Press Generate (Ctrl+G), or choose another target.", name=outline.name)
         else:
             self.replaced.emit(edits.set_target(document, outline))
             said = tr("Target: {name}. Press Generate (Ctrl+G) to design a sheet for it.", name=outline.name)
-        self.source_read.emit(self.reading.source)
-        self.status.emit(said)
+        self.source_read.emit(self.reader.source)
+        self._session.set_status(said)

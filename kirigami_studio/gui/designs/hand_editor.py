@@ -1,11 +1,12 @@
-"""Changing the chosen design by hand: what is seen follows the hand at once, the document takes each gesture scored.
+"""Editing the chosen design by hand: the view follows the pointer at once, the document takes each gesture scored.
 
-A gesture makes a draft: another ratio field, decoded exactly and shown in the place of the design.  When the gesture
-ends, the worker scores the draft; with the score comes one named edit.  Gestures that follow meanwhile go on from the
-draft and wait for their turn, so that each becomes a step of its own.  Undo, save and the like wait for the last score.
+A gesture makes a draft: another ratio field, decoded exactly and shown instead of the design.  A dragged void slides
+one of its corners along its slit (:class:`VoidDrag`).  When the gesture ends, the worker scores the draft, and the
+score makes one named edit.  Gestures that follow meanwhile start from the draft and wait for their turn, so that each
+becomes an undo step of its own.  Undo, save and the like wait for the last score.
 
-A vertex of the outline follows the hand in a thread of its own (:mod:`outline_drag`) and may still be on its way when
-the hand has let go: what the hand does next is carried out when it has arrived.
+A vertex of the outline follows the pointer in a thread of its own (:mod:`outline_drag`) and may still be on its way
+after the release: what the user does next is carried out when it has arrived.
 """
 
 from __future__ import annotations
@@ -23,18 +24,17 @@ from PySide6.QtCore import QObject, QTimer, Signal
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.posed_design import PosedDesign
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.words import tr, tr_n
-from kirigami_studio.gui.designs.design_cache import DesignCache
-from kirigami_studio.gui.designs.hand_pull import LARGEST, SMALLEST, Pull
 from kirigami_studio.gui.designs.outline_drag import OutlineDrag
-from kirigami_studio.gui.jobs import hand_steps
-from kirigami_studio.gui.jobs.drag_steps import Followed, Grasp
-from kirigami_studio.gui.jobs.queue import JobCallbacks, JobQueue, LatestJob
-from kirigami_studio.gui.jobs.steps import Decoded
+from kirigami_studio.gui.jobs.design_jobs import Decoded, rescoring
+from kirigami_studio.gui.jobs.queue import JobCallbacks, LatestJob
+from kirigami_studio.gui.jobs.vertex_drag import Followed, Grasp
+from kirigami_studio.gui.session import Session
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.project import edits
-from kirigami_studio.project.document import Document, Void
+from kirigami_studio.project.document import Void
 
 
 def ratio_label(void: Void, count: int) -> str:
@@ -57,14 +57,22 @@ def locked_sentence(count: int) -> str:
 def score_sentence(label: str, before: Candidate, after: Candidate) -> str:
     """What a change has done to the match, and what it has cost."""
     gain = 100.0 * (after.score.siou - before.score.siou)
-    told = tr("{gesture}: sIoU {siou:.1f} % ({gain:+.2f}).", gesture=label, siou=100 * after.score.siou, gain=gain)
+    text = tr("{gesture}: sIoU {siou:.1f} % ({gain:+.2f}).", gesture=label, siou=100 * after.score.siou, gain=gain)
     if not after.score.feasible:
-        told = tr("{told} The design is not feasible.", told=told)
+        text = tr("{told} The design is not feasible.", told=text)
     if before.trim is not None:
-        told = tr("{told} Trim removed; trim again when you are done.", told=told)
-    return told
+        text = tr("{told} Trim removed; trim again when you are done.", told=text)
+    return text
 
 
+#: Ratios that can be given by hand, the same as those of the generator and the fits.
+SMALLEST, LARGEST = 0.1, 10.0
+#: Share of a slit by which the motion of a void's corners is measured.
+PROBE = 0.02
+#: Corners that move less than this share of the one that moves most are not dragged.
+LIVELY = 0.6
+#: Least motion (lengths of the world per whole slit) that is believed, in cells of the sheet.
+LEAST = 0.25
 #: Milliseconds after the last notch of the wheel, or the last press of a key, that end the gesture.
 PAUSE_MS = 250
 #: Seconds after a notch, or a press, within which the next one on the same voids joins its undo step, scored or not.
@@ -72,18 +80,81 @@ JOINS_WITHIN = 1.0
 
 
 P = ParamSpec("P")
-Gesture = Callable[Concatenate["HandEditing", P], None]
+Gesture = Callable[Concatenate["HandEditor", P], None]
 
 
 def _in_turn(gesture: Gesture[P]) -> Gesture[P]:
-    """Carry a gesture out at once, or when the outline has arrived that the hand has let go of before."""
+    """Carry a gesture out at once, or when the outline that was released before has arrived."""
 
     @wraps(gesture)
-    def take(hand: HandEditing, /, *args: P.args, **kwargs: P.kwargs) -> None:
+    def take(hand: HandEditor, /, *args: P.args, **kwargs: P.kwargs) -> None:
         if not hand.defers(partial(take, hand, *args, **kwargs)):
             gesture(hand, *args, **kwargs)
 
     return take
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class VoidDrag:
+    """A void that is being dragged.
+
+    Its corner slides along its slit with the share s = x / (1 + x), so a motion of the mouse along the slit is a
+    change of s.
+
+    Attributes
+    ----------
+    void : Void
+    place : (x, y) float, world
+        Where the drag began.
+    share : float
+        s at that time.
+    motion : (2,) float, world
+        How far the dragged corner moves when s goes from 0 to 1, to first order.
+    corner : int
+        Which corner, 0..3, is dragged.
+    """
+
+    void: Void
+    place: tuple[float, float]
+    share: float
+    motion: FloatArray
+    corner: int
+
+    @classmethod
+    def of(cls, design: PosedDesign, void: Void, place: tuple[float, float], phi: float) -> VoidDrag:
+        """Begin to drag a void by the nearest of the corners that move."""
+        field = design.deployment.field
+        share = share_of(float(field.ratio[void]))
+        low, high = max(share - PROBE, share_of(SMALLEST) / 2), min(share + PROBE, (1 + share_of(LARGEST)) / 2)
+        motion = (_corners(design, void, high, phi) - _corners(design, void, low, phi)) / (high - low)
+        here = _corners(design, void, share, phi)
+        length = np.hypot(*motion.T)
+        distance = np.hypot(*(here - place).T)
+        distance[length < LIVELY * length.max()] = np.inf
+        corner = int(distance.argmin())
+        least = LEAST * design.pose.scale
+        return cls(void, place, share, motion[corner] * max(1.0, least / max(float(length[corner]), 1e-12)), corner)
+
+    def ratio_at(self, place: tuple[float, float]) -> float:
+        """The ratio when the pointer is at a place in the world; within the bounds."""
+        moved = np.subtract(place, self.place)
+        share = self.share + float(moved @ self.motion) / max(float(self.motion @ self.motion), 1e-18)
+        share = min(max(share, share_of(SMALLEST)), share_of(LARGEST))
+        return share / (1.0 - share)
+
+
+def share_of(ratio: float) -> float:
+    """s = x / (1 + x): how far along its slit a void's corner lies."""
+    return ratio / (1.0 + ratio)
+
+
+def _corners(design: PosedDesign, void: Void, share: float, phi: float) -> FloatArray:
+    """Corners (4, 2) of a void in the world, if its ratio were that of ``share``."""
+    table = design.deployment.field.ratio.copy()
+    table[void] = share / (1.0 - share)
+    changed = PosedDesign(deploy(RatioField(table)), design.pose, design.phi_target)
+    corners: FloatArray = changed.nodes(phi)[changed.deployment.topology.void_nodes[void]]
+    return corners
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,35 +166,32 @@ class _Gesture:
     merge_key: str | None
 
 
-class HandEditing(QObject):
-    """Owns the draft of one design, and hands over an edit for each gesture."""
+class HandEditor(QObject):
+    """Owns the draft of one design, and makes one edit of each gesture."""
 
-    drafted = Signal(object)  #: PosedDesign to be shown in the design's place
-    edited = Signal(object)  #: Edit
+    drafted = Signal(PosedDesign)  #: to be shown instead of the design
     settled = Signal()  #: every gesture has become an edit
-    failed = Signal(str, str)  #: sentence, trace
-    status = Signal(str)
 
-    def __init__(self, queue: JobQueue, cache: DesignCache, document: Callable[[], Document], parent: QObject) -> None:
+    def __init__(self, session: Session, parent: QObject) -> None:
         super().__init__(parent)
-        self._cache, self._document = cache, document
-        self._slot = LatestJob(queue)
+        self._session = session
+        self._job = LatestJob[Decoded](session.queue)
         self._base: Candidate | None = None  # as the document holds it
-        self._field: RatioField | None = None  # as it is seen
+        self._field: RatioField | None = None  # as it is shown
         self._last: RatioField | None = None  # as the last complete gesture left it
         self._open: str | None = None  # label of the gesture under way
         self._turned: tuple[tuple[Void, ...], float] = ((), -math.inf)  # what the wheel or a key changed last, and when
         self._turns = 0
         self._key: str | None = None  # merges the gesture under way with the one before it
         self._waiting: deque[_Gesture] = deque()
-        self._wishes: list[Callable[[], object]] = []
-        self._pull: Pull | None = None
+        self._postponed: list[Callable[[], object]] = []
+        self._drag: VoidDrag | None = None
         self._outline = OutlineDrag(self)
         self._outline.followed.connect(self._follow)
         self._outline.ended.connect(self._arrive)
         self._outline.failed.connect(self._fail)
-        self._grasped: Candidate | None = None  # the document's design since a vertex was taken hold of
-        self._seen: PosedDesign | None = None  # the draft, where the outline's thread has decoded it
+        self._grasped: Candidate | None = None  # the document's design since the drag of a vertex began
+        self._decoded: PosedDesign | None = None  # the draft, if the outline's thread has decoded it
         self._later: deque[Callable[[], None]] = deque()
         self._pause = QTimer(self, singleShot=True, interval=PAUSE_MS)
         self._pause.timeout.connect(self.commit)
@@ -137,31 +205,31 @@ class HandEditing(QObject):
 
     @property
     def field(self) -> RatioField | None:
-        """The ratios as they are seen."""
-        candidate = self._document().candidate
+        """The ratios as they are shown."""
+        candidate = self._session.document.candidate
         return self._field if self._field is not None else None if candidate is None else candidate.final_field
 
-    def postpones(self, wish: Callable[[], object]) -> bool:
-        """Whether a wish must wait until all gestures are in the document; it is then carried out by itself."""
+    def postpones(self, act: Callable[[], object]) -> bool:
+        """Whether an act must wait until all gestures are in the document; it is then carried out by itself."""
         self.commit()
         if not self.busy:
             return False
-        self._wishes.append(wish)
+        self._postponed.append(act)
         return True
 
     def defers(self, act: Callable[[], None]) -> bool:
-        """Whether an act of the hand must wait until the outline has arrived; it is then carried out by itself."""
+        """Whether a gesture must wait until the outline has arrived; it is then carried out by itself."""
         if self._outline.arriving:
             self._later.append(act)
         return self._outline.arriving
 
     def stop(self) -> None:
         """Another document comes: forget what belongs to the old one."""
-        self._slot.stop()
+        self._job.stop()
         self._waiting.clear()
-        self._wishes.clear()
+        self._postponed.clear()
         self._later.clear()
-        self._put_down()
+        self._drop()
         self._over()
 
     def close(self) -> None:
@@ -196,26 +264,26 @@ class HandEditing(QObject):
 
     @_in_turn
     def begin_pull(self, void: Void, place: tuple[float, float], phi: float) -> None:
-        """Take hold of a void at a place in the world."""
+        """Begin to drag a void at a place in the world."""
         self._begin_drag()
         design = self._design()
         if self._free(frozenset({void})) and design is not None:
-            self._pull = Pull.of(design, void, place, phi)
+            self._drag = VoidDrag.of(design, void, place, phi)
 
     @_in_turn
     def pull(self, place: tuple[float, float]) -> None:
-        """The hand has moved to a place in the world; the void follows."""
-        if self._pull is not None:
-            self._change({self._pull.void: self._pull.ratio_at(place)})
+        """The pointer has moved to a place in the world; the void follows."""
+        if self._drag is not None:
+            self._change({self._drag.void: self._drag.ratio_at(place)})
 
     def _free(self, voids: frozenset[Void]) -> list[Void]:
         """Those that may be changed; when none may, the status line says why."""
-        document = self._document()
+        document = self._session.document
         if document.candidate is None or not voids:
             return []
         free = sorted(voids - document.locked)
         if not free:
-            self.status.emit(locked_sentence(len(voids)))
+            self._session.set_status(locked_sentence(len(voids)))
         return free
 
     def _change(self, wanted: dict[Void, float], merge_key: str | None = None) -> None:
@@ -229,57 +297,57 @@ class HandEditing(QObject):
         first = min(wanted)
         label = ratio_label(first, len(wanted))
         self._draft(RatioField(table), label, merge_key)
-        self.status.emit(tr("{gesture}: x {ratio:.3f}", gesture=label, ratio=float(table[first])))
+        self._session.set_status(tr("{gesture}: x {ratio:.3f}", gesture=label, ratio=float(table[first])))
 
     def lock(self, voids: frozenset[Void], on: bool) -> None:
         """Lock voids against changes by hand, or unlock them."""
         if voids and not self.postpones(lambda: self.lock(voids, on)):
-            self.edited.emit(edits.lock_voids(self._document(), voids, on))
+            self._session.apply(edits.lock_voids(self._session.document, voids, on))
 
     def lock_all(self, on: bool) -> None:
         """Lock every void, or none."""
         if not self.postpones(lambda: self.lock_all(on)):
-            self.edited.emit(edits.lock_all(self._document(), on))
+            self._session.apply(edits.lock_all(self._session.document, on))
 
     # the outline ---------------------------------------------------------------------------------------------------
 
     @_in_turn
     def begin_vertex(self, vertex: int, phi: float) -> None:
-        """Take hold of a vertex of the outline at the angle that is shown."""
+        """Begin to drag a vertex of the outline at the angle that is shown."""
         self._begin_drag()
-        design, document = self._design(), self._document()
+        design, document = self._design(), self._session.document
         if design is None or phi >= math.pi:
-            self.status.emit(tr("The flat sheet is always a rectangle. Open it to move its outline."))
+            self._session.set_status(tr("The flat sheet is always a rectangle. Open it to move its outline."))
             return
         held = np.zeros(design.deployment.field.ratio.shape, dtype=np.bool_)
         for void in document.locked:
             held[void] = True
         self._grasped = document.candidate
         self._outline.begin(Grasp(design, phi, vertex, held))
-        self.status.emit(tr("Preparing the outline …"))
+        self._session.set_status(tr("Preparing the outline …"))
 
     @_in_turn
     def move_vertex(self, place: tuple[float, float]) -> None:
-        """The hand has moved to a place in the world; the newest place wins."""
+        """The pointer has moved to a place in the world; the newest place wins."""
         self._outline.move(place)
 
     def _follow(self, found: Followed) -> None:
-        """The outline has come a step nearer to the hand."""
-        if self._document().candidate != self._grasped:  # something else has changed the design meanwhile
-            self._put_down()
+        """The outline has come a step nearer to the pointer."""
+        if self._session.document.candidate != self._grasped:  # something else has changed the design meanwhile
+            self._drop()
             self._arrive()
             return
-        self._seen = found.design
+        self._decoded = found.design
         self._draft(found.design.deployment.field, tr("Move outline"))
         if found.arrived:
-            self.status.emit(tr("The outline follows the pointer."))
+            self._session.set_status(tr("The outline follows the pointer."))
         elif found.stuck:
-            self.status.emit(
+            self._session.set_status(
                 tr("The outline can't reach that far: ratio limits, locked voids or panel collisions block it.")
             )
 
     def _arrive(self) -> None:
-        """The outline is where the hand has let go of it; now comes what the hand has done since."""
+        """The released outline has arrived; now comes what the user has done since."""
         later, self._later = self._later, deque()
         self.commit()
         for act in later:
@@ -289,16 +357,16 @@ class HandEditing(QObject):
 
     def _begin_drag(self) -> None:
         self.commit()
-        self._put_down()
+        self._drop()
 
-    def _put_down(self) -> None:
-        """Nothing is in the hand."""
-        self._pull = None
+    def _drop(self) -> None:
+        """Nothing is being dragged."""
+        self._drag = None
         self._outline.stop()
 
     @_in_turn
     def let_go(self) -> None:
-        """The hand has let go: the gesture is complete, for an outline when it has arrived."""
+        """The button was released: the gesture is complete, for an outline when it has arrived."""
         if self._outline.active:
             self._outline.let_go()
         else:
@@ -306,22 +374,22 @@ class HandEditing(QObject):
 
     @_in_turn
     def take_back(self) -> None:
-        """The gesture under way never was."""
+        """Cancel the gesture under way."""
         self._pause.stop()
-        self._put_down()
+        self._drop()
         if self._open is None:
             return
         self._field, self._open = self._last, None
-        if not self._slot.busy:
-            self._restore()
+        if not self._job.busy:
+            self._discard_draft()
         else:
             self._show_draft()
-        self.status.emit(tr("Drag cancelled."))
+        self._session.set_status(tr("Drag cancelled."))
 
     # drafts and edits ----------------------------------------------------------------------------------------------
 
     def _draft(self, field: RatioField, label: str, merge_key: str | None = None) -> None:
-        candidate = self._document().candidate
+        candidate = self._session.document.candidate
         if candidate is None or field == self.field:
             return
         if self._open is not None and self._open != label:
@@ -334,19 +402,19 @@ class HandEditing(QObject):
         self._show_draft()
 
     def _design(self) -> PosedDesign | None:
-        """The design as it is seen: at the pose that it was scored in, until it is scored anew."""
-        candidate = self._base or self._document().candidate
+        """The design as it is shown: at the pose that it was scored in, until it is scored anew."""
+        candidate = self._base or self._session.document.candidate
         if candidate is None or self.field is None:
             return None
         if self._field is None and candidate.trim is None:
-            return self._cache.entry(candidate).design
-        if self._seen is not None and self._seen.deployment.field is self._field:
-            return self._seen
+            return self._session.cache.entry(candidate).design
+        if self._decoded is not None and self._decoded.deployment.field is self._field:
+            return self._decoded
         return PosedDesign(deploy(self.field), candidate.final_pose, candidate.final_phi)
 
     def _show_draft(self) -> None:
         design = self._design()
-        if design is not None and self._document().candidate == self._base:
+        if design is not None and self._session.document.candidate == self._base:
             self.drafted.emit(design)
 
     def commit(self) -> None:
@@ -354,7 +422,7 @@ class HandEditing(QObject):
         if self._outline.arriving:  # it becomes complete by itself
             return
         self._pause.stop()
-        self._put_down()
+        self._drop()
         if self._open is None or self._field is None:
             return
         gesture, self._open = _Gesture(self._field, self._open, self._key), None
@@ -364,31 +432,31 @@ class HandEditing(QObject):
                 self._waiting.pop()  # it would be one step with this one
             self._waiting.append(gesture)
             self._score_next()
-        elif not self._slot.busy:  # back where it began
-            self._restore()
+        elif not self._job.busy:  # back where it began
+            self._discard_draft()
 
     def _score_next(self) -> None:
-        target = self._document().target
-        if self._slot.busy or not self._waiting or self._base is None or target is None:
+        target = self._session.document.target
+        if self._job.busy or not self._waiting or self._base is None or target is None:
             return
         gesture = self._waiting.popleft()
-        work = partial(hand_steps.scoring, self._base, gesture.field, target)
+        work = partial(rescoring, self._base, gesture.field, target)
         callbacks = JobCallbacks(partial(self._take, gesture), on_failed=self._fail)
-        self._slot.start(tr("scoring the change"), work, callbacks)
+        self._job.start(tr("scoring the change"), work, callbacks)
 
-    def _take(self, gesture: _Gesture, report: object) -> None:
-        self._slot.stop()  # the report is the end
+    def _take(self, gesture: _Gesture, report: Decoded) -> None:
+        self._job.stop()  # the report is the end
         before = self._base
-        if not isinstance(report, Decoded) or before is None:
+        if before is None:
             return
-        edit = edits.take_changed(self._document(), before, report.candidate, gesture.label, gesture.merge_key)
+        edit = edits.take_changed(self._session.document, before, report.candidate, gesture.label, gesture.merge_key)
         if edit is None:
-            self._restore()
+            self._discard_draft()
             return
-        self._cache.put(report.candidate, report.deployment)
+        self._session.cache.put(report.candidate, report.deployment)
         self._base = self._grasped = report.candidate
-        self.edited.emit(edit)
-        self.status.emit(score_sentence(gesture.label, before, report.candidate))
+        self._session.apply(edit)
+        self._session.set_status(score_sentence(gesture.label, before, report.candidate))
         if self._waiting or self._open is not None:
             self._show_draft()
             self._score_next()
@@ -396,25 +464,25 @@ class HandEditing(QObject):
             self._over()
 
     def _fail(self, sentence: str, trace: str) -> None:
-        self._restore()
-        self.failed.emit(sentence, trace)
+        self._discard_draft()
+        self._session.report_failure(sentence, trace)
 
-    def _restore(self) -> None:
+    def _discard_draft(self) -> None:
         """Drop the draft and show the design as the document has it."""
-        wishes = self._wishes
-        self._wishes = []
+        postponed = self._postponed
+        self._postponed = []
         self.stop()
-        candidate = self._document().candidate
+        candidate = self._session.document.candidate
         if candidate is not None:
-            self.drafted.emit(self._cache.entry(candidate).design)
-        for wish in wishes:
-            wish()
+            self.drafted.emit(self._session.cache.entry(candidate).design)
+        for act in postponed:
+            act()
 
     def _over(self) -> None:
-        """Nothing is under way any more; wishes that waited for this are carried out."""
+        """Nothing is under way any more; what was postponed is carried out."""
         self._pause.stop()
-        self._base = self._field = self._last = self._open = self._seen = None
-        wishes, self._wishes = self._wishes, []
+        self._base = self._field = self._last = self._open = self._decoded = None
+        postponed, self._postponed = self._postponed, []
         self.settled.emit()
-        for wish in wishes:
-            wish()
+        for act in postponed:
+            act()

@@ -1,8 +1,7 @@
-"""Gestures on the drawing board -> named edits of the target."""
+"""Gestures on the drawing board -> named edits of the target, and the size that the opened sheet has."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 
 from PySide6.QtCore import QObject, Signal
@@ -10,7 +9,7 @@ from PySide6.QtCore import QObject, Signal
 from kirigami_studio.evaluate.opened_size import OpenedSize, opened_size
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui.designs.design_cache import Entry
+from kirigami_studio.gui.session import Entry, Session
 from kirigami_studio.gui.sketching.sketch_context import Change, SketchContext
 from kirigami_studio.outlines.placed import Placed
 from kirigami_studio.project.document import Document
@@ -20,18 +19,18 @@ from kirigami_studio.project.edits import Edit, without_designs
 REFINEMENTS = {"simplify": tr("Simplify target"), "smooth": tr("Smooth target")}
 
 
-class Reshaping(QObject):
-    """Makes each finished gesture one edit, and keeps what the sliders started from."""
+class TargetReshaper(QObject):
+    """Makes each complete gesture one edit, and keeps what the sliders started from."""
 
-    edited = Signal(object)  #: Edit
-    refused = Signal(object)  #: KirigamiError
+    edited = Signal(Edit)
+    refused = Signal(KirigamiError)
     previewed = Signal(object)  #: Placed, or None
     restarted = Signal()  #: the sliders stand for another target now
 
-    def __init__(self, context: SketchContext, document: Callable[[], Document], parent: QObject) -> None:
+    def __init__(self, context: SketchContext, session: Session, parent: QObject) -> None:
         super().__init__(parent)
         self._context = context
-        self._document = document
+        self._session = session
         self._kind = ""
         self._base: Placed | None = None
         self._result: Placed | None = None
@@ -50,7 +49,7 @@ class Reshaping(QObject):
         self.edited.emit(self._edit(made, change))
 
     def _edit(self, made: Placed, change: Change) -> Edit:
-        document = self._document()
+        document = self._session.document
         same = made.outline == document.target  # of another size or elsewhere: its designs are still right
         changed = replace(document, target=made.outline) if same else without_designs(document, made.outline)
         return Edit(change.gesture, changed, change.merge_key)
@@ -98,7 +97,7 @@ class Reshaping(QObject):
         placed = self._context.placed
         if placed is not None:
             known = placed.outline.size if placed.outline.unit == "mm" else None
-            width, height = placed.size if known is None else known  # as it is told, free of rounding
+            width, height = placed.size if known is None else known  # as the outline states it, free of rounding
             ring = placed.ring
             x, y = (0.5 * (ring.min(axis=0) + ring.max(axis=0))).tolist()
             factors = (width_mm / width, height_mm / height)
@@ -122,8 +121,8 @@ class Reshaping(QObject):
 FLIPS = {"across": (-1.0, 1.0), "over": (1.0, -1.0)}
 
 
-class Sizing(QObject):
-    """Follows the design on the stage and the document's sizes."""
+class OpenedSizes(QObject):
+    """The size of the opened sheet on the stage, and the width of the flat sheet that fits the drawn target."""
 
     known = Signal(object)  #: OpenedSize, or None without a design
     width_wanted = Signal(float)  #: mm, of the flat sheet

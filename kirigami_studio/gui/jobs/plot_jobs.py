@@ -1,4 +1,4 @@
-"""What a design is like at every angle, for the plots beside it: a Qt-free generator for the worker."""
+"""The job behind the plots: match, size and gaps of a design at every angle."""
 
 from __future__ import annotations
 

@@ -1,0 +1,246 @@
+"""Cutting: the plan and files of the design on the stage, the numbers it is cut with, the materials of a project."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import asdict
+from functools import partial
+from pathlib import Path
+from typing import Unpack
+
+from PySide6.QtCore import QObject, QTimer, Signal
+
+from kirigami_studio.fabricate.material import Material, library
+from kirigami_studio.fabricate.material_copies import save_copy
+from kirigami_studio.foundation.errors import KirigamiError
+from kirigami_studio.foundation.words import tr
+from kirigami_studio.gui.jobs.cut_jobs import (
+    CutRequest,
+    Exported,
+    Planned,
+    exporting,
+    exporting_all,
+    exporting_coupon,
+    planning,
+)
+from kirigami_studio.gui.jobs.queue import JobCallbacks, LatestJob, Steps
+from kirigami_studio.gui.messages import Message, Tone
+from kirigami_studio.gui.session import Session
+from kirigami_studio.project import edits
+from kirigami_studio.project.cutting import stored_material
+from kirigami_studio.project.design_facts import design_facts
+from kirigami_studio.project.document import Document
+from kirigami_studio.project.edits import Edit, FabricationChange, OptionsChange
+
+#: Changes that follow each other faster than this (ms) lead to one plan.
+PLAN_DELAY_MS = 120
+TRIM_AGAIN = tr(" Or untrim and trim again to make room for these widths.")
+
+
+class CutPlanner(QObject):
+    """Keeps the cut plan of the design on the stage up to date, and writes files."""
+
+    planned = Signal(object)  #: Planned, or None without a design
+    refused = Signal(str)
+    exported = Signal(Exported)
+
+    def __init__(self, session: Session, parent: QObject) -> None:
+        super().__init__(parent)
+        self._session = session
+        self._job = LatestJob[Planned](session.queue)
+        self._wanted: CutRequest | None = None
+        self._timer = QTimer(self)
+        self._timer.setSingleShot(True)
+        self._timer.setInterval(PLAN_DELAY_MS)
+        self._timer.timeout.connect(self._plan)
+        session.display.settled.connect(self.plan_soon)
+        session.fabrication_changed.connect(self.plan_soon)
+
+    @property
+    def request(self) -> CutRequest | None:
+        """The design on the stage and how it is to be cut."""
+        stage, document = self._session.stage, self._session.document
+        if stage is None:
+            return None
+        facts = design_facts(document, stage.candidate)
+        return CutRequest(stage.candidate, stage.design.deployment, document.target, document.fabrication, facts)
+
+    def plan_soon(self) -> None:
+        """Plan the cuts of the design on the stage, unless something changes again before."""
+        self._wanted = self.request
+        self._timer.start()
+
+    def close(self) -> None:
+        """Plan no more."""
+        self._timer.stop()
+
+    def _plan(self) -> None:
+        self._job.stop()
+        if self._wanted is None:
+            self.planned.emit(None)
+            return
+        callbacks = JobCallbacks(self.planned.emit, on_failed=partial(self._refuse, self._wanted))
+        self._job.start(tr("planning the cuts"), partial(planning, self._wanted), callbacks)
+
+    def _refuse(self, request: CutRequest, sentence: str, trace: str) -> None:
+        self.refused.emit(sentence if request.candidate.trim is None else sentence + TRIM_AGAIN)
+
+    def export(self, request: CutRequest, path: Path) -> None:
+        """Write a cut file or a picture, by the extension."""
+        self._session.set_status(tr("Exporting {name} …", name=path.name))
+        self._write(tr("exporting {name}", name=path.name), partial(exporting, request, path))
+
+    def export_all(self, request: CutRequest, folder: Path, name: str) -> None:
+        """Write everything that there is of a design into a folder."""
+        self._session.set_status(tr("Exporting to {name} …", name=folder.name))
+        self._write(tr("exporting to {name}", name=folder.name), partial(exporting_all, request, folder, name))
+
+    def export_coupon(self, material: Material, path: Path) -> None:
+        """Write the calibration coupon of a material."""
+        self._session.set_status(tr("Exporting {name} …", name=path.name))
+        steps = partial(exporting_coupon, material, path, self._session.document.fabrication)
+        self._write(tr("exporting {name}", name=path.name), steps)
+
+    def _write(self, name: str, steps: Steps[Exported]) -> None:
+        self._session.queue.start(name, steps, JobCallbacks(self._report, on_failed=self._report_failure))
+
+    def _report(self, exported: Exported) -> None:
+        path, made = exported.path, exported.planned
+        if made is None:
+            self._session.set_status(tr("Exported {path}.", path=path))
+            message = Message(tr("{name} exported.", name=path.name), Tone.DONE, str(path))
+        else:
+            self._session.set_status(
+                tr(
+                    "Exported {path}: {count} cuts, {cut_length_mm:.0f} mm.",
+                    path=path,
+                    count=len(made.plan.paths),
+                    cut_length_mm=made.plan.cut_length_mm,
+                )
+            )
+            message = message_of(path, made)
+        self._session.post(message)
+        self.exported.emit(exported)
+
+    def _report_failure(self, sentence: str, trace: str) -> None:
+        self._session.set_status(tr("Export failed."))
+        self._session.post(Message(sentence, Tone.ERROR, trace))
+
+
+def message_of(path: Path, made: Planned) -> Message:
+    """Say what a written cut file holds, and whether cutting it would succeed."""
+    plan, check = made.plan, made.report
+    details = "\n".join([str(path), *(problem.text for problem in check.problems), *plan.notes])
+    if check.ok:
+        trimmed = tr(", trimmed outline") if made.removed_share else ""
+        sentence = tr(
+            "{name} exported and checked: {count} cuts{trimmed}, no faults.",
+            name=tr("Folder “{name}”", name=path.name) if path.is_dir() else path.name,
+            count=len(plan.paths),
+            trimmed=trimmed,
+        )
+        return Message(sentence, Tone.DONE, details)
+    sentence = tr("{name} exported, but cutting it would fail: {text}", name=path.name, text=check.problems[0].text)
+    return Message(sentence, Tone.WARNING, details)
+
+
+class FabricationEditor:
+    """Changes the numbers that the design is cut with, or says why it cannot."""
+
+    def __init__(self, session: Session) -> None:
+        self._session = session
+
+    def change(self, **changes: Unpack[FabricationChange]) -> None:
+        """Change sheet, material, widths or what files are written for."""
+        self._apply(lambda document: edits.set_fabrication(document, **changes))
+
+    def cut_at_drawn_size(self, width_mm: float) -> None:
+        """Let the flat sheet be as wide as opens to the size that the target was drawn with."""
+        self._apply(
+            lambda document: Edit(
+                tr("Cut at the drawn size"), edits.set_fabrication(document, width_mm=width_mm).document
+            )
+        )
+
+    def change_options(self, **changes: Unpack[OptionsChange]) -> None:
+        """Change connector style, order or tabs."""
+        self._apply(lambda document: edits.set_cut_options(document, **changes))
+
+    def set_hinge_width(self, hinges: frozenset[int], width_mm: float) -> None:
+        """Give connectors a width of their own."""
+        if hinges:
+            self._apply(lambda document: edits.set_hinge_width(document, hinges, width_mm))
+
+    def remove_hinges(self, hinges: frozenset[int]) -> None:
+        """Leave no connector at these hinges."""
+        if hinges:
+            self._apply(lambda document: edits.remove_hinges(document, hinges))
+
+    def reset_hinges(self, hinges: frozenset[int]) -> None:
+        """Give connectors the usual width again."""
+        if hinges:
+            self._apply(lambda document: edits.reset_hinges(document, hinges))
+
+    def _apply(self, make: Callable[[Document], Edit]) -> None:
+        try:
+            edit = make(self._session.document)
+        except KirigamiError as error:
+            self._session.refuse(error)
+        else:
+            self._session.apply(edit)
+
+
+class MaterialStore(QObject):
+    """Compares the material that a project carries with the user's own."""
+
+    material_added = Signal(str)  #: its key
+
+    def __init__(self, session: Session, parent: QObject) -> None:
+        super().__init__(parent)
+        self._session = session
+
+    def compare(self, document: Document) -> None:
+        """A project was opened: say where its material is unknown or differs."""
+        material = stored_material(document.fabrication)
+        if material is None:
+            return
+        known = library().materials.get(material.key)
+        if known is None:
+            sentence = tr(
+                "You don't have the material {name}; the project's own values are used.",
+                name=material.name,
+            )
+            keep = (tr("Add to my materials"), partial(self.keep, material))
+            self._session.post(Message(sentence, Tone.WARNING, actions=(keep,)))
+        elif known != material:
+            sentence = tr("Your material {name} differs from the project's; yours is used.", name=known.name)
+            self._session.post(Message(sentence, Tone.WARNING, differences(material, known)))
+
+    def keep(self, material: Material) -> None:
+        """Save what a project carries among the own materials."""
+        try:
+            save_copy(material)
+        except KirigamiError as error:
+            self._session.post(Message(str(error), Tone.ERROR))
+            return
+        self._session.set_status(tr("Added {name} to your materials.", name=material.name))
+        self.material_added.emit(material.key)
+
+
+def differences(carried: Material, known: Material) -> str:
+    """One line for every entry in which two materials differ."""
+    theirs, ours = asdict(carried), asdict(known)
+    return "\n".join(
+        tr(
+            "{entry}: {theirs} in the project, {ours} in your materials",
+            entry=name,
+            theirs=_text(value),
+            ours=_text(ours[name]),
+        )
+        for name, value in theirs.items()
+        if value != ours[name]
+    )
+
+
+def _text(value: object) -> str:
+    return f"{value:g}" if isinstance(value, float) else str(value)

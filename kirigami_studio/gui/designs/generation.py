@@ -1,0 +1,470 @@
+"""Generating designs: plan a run for the present document, run it, turn its result into an edit.
+
+:class:`Generation` is what a person asks; :class:`RunPlanner` says what to ask the generator for and what becomes of
+its result; :class:`DesignRun` runs at most one run at a time; :class:`StoppedRun` offers what a stopped run had found.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import partial
+
+from PySide6.QtCore import QElapsedTimer, QObject, Signal
+
+from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.foundation.errors import KirigamiError, UsageError
+from kirigami_studio.foundation.words import tr, tr_n
+from kirigami_studio.gui.designs.hand_editor import HandEditor
+from kirigami_studio.gui.jobs.design_jobs import Decoded, ModelFound, RunReport, adding, generating
+from kirigami_studio.gui.jobs.queue import JobCallbacks, LatestJob
+from kirigami_studio.gui.messages import Message, Tone
+from kirigami_studio.gui.session import Entry, Session
+from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.pipeline.events import CandidateFound, CandidateImproved, Finished, Progress, Result, Started
+from kirigami_studio.pipeline.rank import rank_key, ranked
+from kirigami_studio.pipeline.request import Request, provenance
+from kirigami_studio.pipeline.variety import distinct
+from kirigami_studio.project import candidate_edits
+from kirigami_studio.project.candidate_edits import Brought
+from kirigami_studio.project.document import Document, Mark
+from kirigami_studio.project.edits import Edit
+from kirigami_studio.project.settings import DesignSettings
+
+#: Angles closer than this (radians) are one.
+SAME_ANGLE = 1e-9
+
+
+class Generation(QObject):
+    """Starts and stops runs, and brings what they find into the document."""
+
+    begun = Signal()  #: before the first design; what is being made of the chosen design is no longer wanted
+
+    def __init__(self, session: Session, hand: HandEditor, parent: QObject) -> None:
+        super().__init__(parent)
+        self._session, self._hand = session, hand
+        self.planner = RunPlanner(session)
+        self.run = DesignRun(session, self)
+        self.stopped = StoppedRun(session, self._take_result)
+        self.run.found.connect(session.display.add)
+        self.run.completed.connect(self._take_result)
+        self.run.cancelled.connect(self._offer_found)
+        self.run.failed.connect(self._report_failure)
+        session.document_changed.connect(self.stopped.follow)
+
+    def generate(self) -> None:
+        """Start a run for the present target and settings; pinned designs stay where they fit."""
+        if not self._hand.postpones(self.generate):
+            self._start(self.planner.anew)
+
+    def again(self) -> None:
+        """Draw more designs, from the next seed, beside those there are."""
+        if not self._hand.postpones(self.again):
+            self._start(self.planner.more)
+
+    def more_like(self, nearness: float) -> None:
+        """Draw more designs near the chosen one, beside those there are."""
+        if not self._hand.postpones(lambda: self.more_like(nearness)):
+            self._start(lambda target: self.planner.alike(target, nearness))
+
+    def cancel(self) -> None:
+        """Ask the run to stop; the document stays as it is."""
+        self.run.cancel()
+        self._session.set_status(tr("Stopping …"))
+
+    def _start(self, plan_for: Callable[[Outline], RunPlan]) -> None:
+        session = self._session
+        target = session.document.target
+        if self.run.running:
+            return
+        if target is None:
+            session.post(Message(tr("Choose or draw a target first, then press Generate."), Tone.HINT))
+            return
+        try:
+            plan = plan_for(target)
+        except KirigamiError as error:
+            session.refuse(error)
+            return
+        self.begun.emit()
+        session.display.begin_run(plan.kept, plan.joins)
+        self.run.start(plan.request, plan.kept if plan.joins else None)
+        session.set_status(plan.status)
+
+    def _take_result(self, result: Result, facts: dict[str, str]) -> None:
+        session = self._session
+        before = session.document
+        session.apply(self.planner.edit_for(result, facts, session.display.preview))
+        if session.document is before:  # all of it was there already
+            session.display.show()
+        session.set_status(self.planner.summary(result, before))
+
+    def _offer_found(self) -> None:
+        self._session.display.show()
+        self._session.set_status(tr("Generation stopped; nothing changed."))
+        self.stopped.offer(self.run.so_far())
+
+    def _report_failure(self, sentence: str, trace: str) -> None:
+        self._session.display.show()
+        self._session.report_failure(sentence, trace)
+
+
+@dataclass(frozen=True, slots=True)
+class RunPlan:
+    """A run that is to start.
+
+    Attributes
+    ----------
+    request : Request
+    kept : tuple of Candidate
+        Designs of the document that stay in sight, best first.
+    joins : bool
+        Whether what it brings joins those there are, and the choice stays.
+    seed : int or None
+        Seed that the settings show afterwards.
+    status : str
+        What the status line says at its start.
+    """
+
+    request: Request
+    kept: tuple[Candidate, ...]
+    joins: bool
+    seed: int | None
+    status: str
+
+
+class RunPlanner:
+    """Plans runs for the present document and turns their results into edits.
+
+    Attributes
+    ----------
+    plan : RunPlan or None
+        The run that was planned last.
+    added : frozenset of Candidate
+        What the last run has added to designs that were there.
+    keeps_seed : bool
+        Whether Generate draws from the seed that is shown.
+    """
+
+    def __init__(self, session: Session) -> None:
+        self._session = session
+        self.plan: RunPlan | None = None
+        self.added: frozenset[Candidate] = frozenset()
+        self.keeps_seed = True
+
+    def anew(self, target: Outline) -> RunPlan:
+        """New designs in the place of all but the pinned ones.
+
+        Raises
+        ------
+        KirigamiError
+            The settings do not go together.
+        """
+        document = self._session.document
+        settings = document.settings
+        seed = settings.seed if self.keeps_seed else next_seed(document)
+        request = request_of(target, replace(settings, seed=seed))
+        status = tr("Generating {k} designs for {name} …", k=request.k, name=target.name)
+        self.plan = RunPlan(request, ranked(_staying(document, request)), False, seed, status)
+        return self.plan
+
+    def more(self, target: Outline) -> RunPlan:
+        """More designs for the same grid and angle, from the next seed.
+
+        Raises
+        ------
+        KirigamiError
+            There are no designs to add to.
+        """
+        request = self._joining(target)
+        status = tr("Generating {count} more designs from seed {seed} …", count=request.k, seed=request.seed)
+        return self._joined(request, status)
+
+    def alike(self, target: Outline, nearness: float) -> RunPlan:
+        """More designs, drawn near the chosen one.
+
+        Raises
+        ------
+        KirigamiError
+            No design is chosen, or it cannot be drawn near.
+        """
+        document = self._session.document
+        chosen = document.candidate
+        if chosen is None:
+            raise UsageError("designs.none_chosen")
+        request = replace(self._joining(target), near=chosen.field, nearness=nearness, search=0)
+        number = (document.chosen or 0) + 1
+        status = tr("Generating {count} designs like design {number} …", count=request.k, number=number)
+        return self._joined(request, status)
+
+    def _joining(self, target: Outline) -> Request:
+        document = self._session.document
+        if not document.candidates:
+            raise UsageError("designs.none_to_add_to")
+        first = document.candidates[0]
+        same = replace(document.settings, grid=first.field.ratio.shape, phi=first.score.phi, seed=next_seed(document))
+        return request_of(target, same)
+
+    def _joined(self, request: Request, status: str) -> RunPlan:
+        seed = None if self.keeps_seed else request.seed
+        self.plan = RunPlan(request, ranked(self._session.document.candidates), True, seed, status)
+        return self.plan
+
+    def edit_for(self, result: Result, facts: dict[str, str], preview: Candidate | None) -> Edit:
+        """What a completed run leads to; where it joins, its result holds new designs alone.
+
+        ``facts`` say where the designs come from, ``preview`` is the design that the user looked at meanwhile.
+        """
+        document, plan = self._session.document, self.plan
+        seed = None if plan is None else plan.seed
+        if plan is not None and plan.joins:
+            self.added = frozenset(result.candidates)
+            brought = Brought(result.candidates, facts, seed)
+            edit = candidate_edits.add_candidates(document, brought, rank_key)
+            return _choosing(edit, preview)
+        self.added = frozenset()
+        staying = _staying(document, result.request)
+        if not staying and Mark.PINNED in document.marks:
+            sentence = tr("Pinned designs for another grid or angle were removed. Undo restores them.")
+            self._session.post(Message(sentence, Tone.HINT))
+            document = replace(document, marks=())
+        brought = Brought(result.candidates, facts, seed, result.request.target)
+        chosen = preview if preview is not None and preview in (*staying, *result.candidates) else None
+        return candidate_edits.renew_candidates(document, brought, rank_key, chosen)
+
+    def summary(self, result: Result, before: Document) -> str:
+        """What the status line says of a completed run."""
+        plan, document = self.plan, self._session.document
+        if plan is None or not plan.joins:
+            score = result.best.score
+            return tr(
+                "Generated {count} in {seconds:.1f} s. "
+                "Best: sIoU {siou:.1f} %, {siou_gain:+.1f} over the uniform sheet.",
+                count=len(result.candidates),
+                seconds=result.seconds,
+                siou=100 * score.siou,
+                siou_gain=100 * score.siou_gain,
+            )
+        added = len(set(document.candidates) - set(before.candidates))
+        if not added:
+            return tr("No new designs; {count} already in the gallery.", count=result.repeats)
+        best = tr("best sIoU {siou:.1f} %", siou=100 * result.best.score.siou)
+        parts = [tr_n("{count} design added", "{count} designs added", added)]
+        if result.repeats:
+            parts.append(tr_n("{count} already there", "{count} already there", result.repeats))
+        return ", ".join([*parts, best]) + "."
+
+
+def next_seed(document: Document) -> int:
+    """The first seed from the settings' own on that no design of the document was drawn from."""
+    used = {candidate.seed for candidate in document.candidates}
+    seed = document.settings.seed
+    while seed in used:
+        seed += 1
+    return seed
+
+
+def request_of(target: Outline, settings: DesignSettings) -> Request:
+    """The run that these settings ask for.
+
+    Raises
+    ------
+    KirigamiError
+        The settings do not go together.
+    """
+    return Request(
+        target,
+        settings.grid,
+        settings.phi,
+        settings.k,
+        settings.seed,
+        settings.variant,
+        settings.steps,
+        settings.polish,
+        prefer=settings.prefer,
+        search=settings.search,
+    )
+
+
+def _staying(document: Document, request: Request) -> tuple[Candidate, ...]:
+    """Pinned designs that share target, grid and angle with a run for the present target."""
+    return tuple(
+        one
+        for one, mark in zip(document.candidates, document.marks, strict=True)
+        if mark is Mark.PINNED
+        and one.field.ratio.shape == request.grid
+        and abs(one.score.phi - request.phi) < SAME_ANGLE
+    )
+
+
+def _choosing(edit: Edit, preview: Candidate | None) -> Edit:
+    """The edit with the design that was looked at on the stage."""
+    candidates = edit.document.candidates
+    if preview is None or preview not in candidates:
+        return edit
+    return Edit(edit.label, replace(edit.document, chosen=candidates.index(preview)))
+
+
+class DesignRun(QObject):
+    """One run of the generator: its reports become signals and decoded entries."""
+
+    started = Signal(int)
+    progressed = Signal(int, int, str)
+    found = Signal(Entry)  #: new or improved
+    completed = Signal(Result, dict)  #: with its provenance
+    cancelled = Signal()
+    failed = Signal(str, str)  #: sentence, trace
+    ended = Signal(bool)  #: whether it was completed; comes before the three above
+
+    def __init__(self, session: Session, parent: QObject) -> None:
+        super().__init__(parent)
+        self._session = session
+        self._job = LatestJob[RunReport](session.queue)
+        self._digest = ""
+        self._asked = 0
+        self._request: Request | None = None
+        self._others: tuple[Candidate, ...] = ()
+        self._reports = 0
+        self._clock = QElapsedTimer()
+        self._sampled: dict[int, float] = {}  # sIoU of each candidate when it was found
+        self._latest: dict[int, Candidate] = {}
+
+    @property
+    def running(self) -> bool:
+        """Whether candidates are being generated."""
+        return self._job.busy
+
+    def start(self, request: Request, others: tuple[Candidate, ...] | None = None) -> None:
+        """Begin; the caller has made sure that nothing runs.
+
+        With ``others`` the result holds only designs that are not among them, perhaps none.
+        """
+        self._asked, self._request, self._others, self._reports = request.k, request, others or (), 0
+        self._clock.start()
+        self._sampled.clear()
+        self._latest.clear()
+        callbacks = JobCallbacks(self._take, partial(self.ended.emit, False), self._cancel, self._fail)
+        steps = partial(generating, request) if others is None else partial(adding, request, others)
+        self._job.start(tr("generating designs"), steps, callbacks)
+        self.started.emit(request.k)
+
+    def cancel(self) -> None:
+        """Ask it to stop at its next candidate."""
+        self._job.cancel()
+
+    def abandon(self) -> None:
+        """Stop it and ignore what it would still report."""
+        if self.running:
+            self._job.stop()
+            self.ended.emit(False)
+
+    def so_far(self) -> tuple[Result, dict[str, str]] | None:
+        """What the last run has found until now, as if its time had ended, and its provenance; None for nothing.
+
+        The result counts as decoded only the designs that were reported.
+        """
+        if self._request is None:
+            return None
+        candidates = distinct(ranked(tuple(self._latest.values())), self._others) if self._latest else ()
+        if not candidates:
+            return None
+        result = Result(self._request, candidates, self._reports, 1e-3 * self._clock.elapsed(), budget_ended=True)
+        return result, provenance(self._request, self._digest)
+
+    def _take(self, report: RunReport) -> None:
+        match report:
+            case ModelFound(digest):
+                self._digest = digest
+            case Started():
+                self.progressed.emit(0, report.total, tr("Starting (0 of {total})", total=report.total))
+            case Progress():
+                self.progressed.emit(report.done, report.total, report.message)
+            case CandidateFound() | CandidateImproved():
+                self._note(report.candidate)
+            case Decoded(candidate, deployment):
+                self._session.cache.put(candidate, deployment)
+                entry = self._session.cache.entry(candidate)
+                self.found.emit(replace(entry, rise=candidate.score.siou - self._sampled[candidate.index]))
+            case Finished(result):
+                self._job.stop()  # the result is the end
+                self.ended.emit(True)
+                self.completed.emit(result, provenance(result.request, self._digest))
+
+    def _note(self, candidate: Candidate) -> None:
+        """Count a candidate and say in the status line how far polishing and search have come."""
+        siou = candidate.score.siou
+        improved = candidate.index in self._sampled
+        self._sampled.setdefault(candidate.index, siou)
+        self._latest[candidate.index] = candidate
+        self._reports += 1
+        best = min(self._latest.values(), key=rank_key).score.siou
+        if candidate.index >= self._asked:
+            self._session.set_status(
+                tr(
+                    "Search found a design with sIoU {siou:.1f} % (best {best:.1f} %).",
+                    siou=100 * siou,
+                    best=100 * best,
+                )
+            )
+        elif improved:
+            polished = sum(one.polished for one in self._latest.values())
+            self._session.set_status(
+                tr(
+                    "Polished {polished} of {asked} (best {best:.1f} %)",
+                    polished=polished,
+                    asked=self._asked,
+                    best=100 * best,
+                )
+            )
+
+    def _cancel(self) -> None:
+        self.ended.emit(False)
+        self.cancelled.emit()
+
+    def _fail(self, sentence: str, trace: str) -> None:
+        self.ended.emit(False)
+        self.failed.emit(sentence, trace)
+
+
+class StoppedRun:
+    """Offers what a stopped run had found, for as long as it belongs to the document."""
+
+    def __init__(self, session: Session, keep: Callable[[Result, dict[str, str]], None]) -> None:
+        self._session, self._keep_result = session, keep
+        self._offer: Message | None = None
+        self._found: tuple[Result, dict[str, str]] | None = None
+        self._belongs_to: tuple[Outline | None, tuple[Candidate, ...]] = (None, ())
+
+    def offer(self, found: tuple[Result, dict[str, str]] | None) -> None:
+        """Ask whether the designs shall stay; the document is as it was until then."""
+        self.withdraw()
+        if found is None:
+            return
+        document = self._session.document
+        self._found, self._belongs_to = found, (document.target, document.candidates)
+        count = len(found[0].candidates)
+        sentence = tr_n(
+            "Stopped after {count} design; it may be unfinished.",
+            "Stopped after {count} designs; some may be unfinished.",
+            count,
+        )
+        action = tr_n("Keep it", "Keep these designs", count)
+        self._offer = Message(sentence, Tone.HINT, actions=((action, self._keep),))
+        self._session.post(self._offer)
+
+    def follow(self, document: Document) -> None:
+        """Another document holds now: designs for another target, or beside other designs, are of no use."""
+        target, candidates = self._belongs_to
+        if self._offer is not None and (document.target != target or document.candidates is not candidates):
+            self.withdraw()
+
+    def withdraw(self) -> None:
+        """Forget the designs."""
+        message, self._offer, self._found = self._offer, None, None
+        if message is not None:
+            self._session.withdraw(message)
+
+    def _keep(self) -> None:
+        found = self._found
+        self.withdraw()
+        if found is not None:
+            self._keep_result(*found)

@@ -1,0 +1,147 @@
+"""Jobs on designs: generate, decode, score, fit again, trim."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from functools import partial
+
+from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.foundation.errors import Cancelled
+from kirigami_studio.gui.jobs import importing
+from kirigami_studio.gui.jobs.queue import Cancel
+from kirigami_studio.lattice.deployment import Deployment, deploy
+from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.pipeline.events import CandidateFound, CandidateImproved, Event, Finished
+from kirigami_studio.pipeline.request import Request
+from kirigami_studio.pipeline.variety import distinct
+from kirigami_studio.project.document import Void
+from kirigami_studio.project.settings import FabricationSettings
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Decoded:
+    """A candidate with the exact motion of its final field."""
+
+    candidate: Candidate
+    deployment: Deployment
+
+
+@dataclass(frozen=True, slots=True)
+class ModelFound:
+    """The generator that a run uses: SHA-256 of its weights."""
+
+    digest: str
+
+
+@dataclass(frozen=True, slots=True)
+class Refitted:
+    """What a fit from a design's present field has found.
+
+    Attributes
+    ----------
+    decoded : Decoded
+        The fitted design with its motion, trimmed if the one it began with was.
+    better : bool
+        Whether it ranks before the one it began with, both untrimmed.
+    untrimmed : str
+        Why it could not be trimmed again, "" if that was not to be done or was.
+    """
+
+    decoded: Decoded
+    better: bool
+    untrimmed: str = ""
+
+
+#: What a run of the generator reports.
+RunReport = Event | ModelFound | Decoded
+
+
+def generating(request: Request, cancel: Cancel) -> Iterator[RunReport]:
+    """Run the pipeline; every new or improved candidate is followed by its decoded motion."""
+    importing.import_generator()
+    from kirigami_studio.generator.weights import digest_of
+    from kirigami_studio.pipeline.run import run
+
+    yield ModelFound(digest_of(request.variant))
+    for event in run(request, cancel):
+        yield event
+        if isinstance(event, CandidateFound | CandidateImproved):
+            yield decoded(event.candidate)
+
+
+def adding(request: Request, others: tuple[Candidate, ...], cancel: Cancel) -> Iterator[RunReport]:
+    """Run the pipeline; its result keeps only designs that differ from ``others`` and from each other.
+
+    Comparing a thousand designs with a thousand takes a second, which would freeze the window.
+    """
+    for report in generating(request, cancel):
+        if isinstance(report, Finished):
+            found = report.result.candidates
+            new = distinct(found, others)
+            yield Finished(replace(report.result, candidates=new, repeats=len(found) - len(new)))
+        else:
+            yield report
+
+
+def decoding(candidates: tuple[Candidate, ...], cancel: Cancel) -> Iterator[Decoded]:
+    """Decode the candidates of an opened project."""
+    for candidate in candidates:
+        yield decoded(candidate)
+
+
+def decoded(candidate: Candidate) -> Decoded:
+    """A candidate with the motion of its final field."""
+    return Decoded(candidate, deploy(candidate.final_field))
+
+
+def scoring_sample(candidate: Candidate, target: Outline, cancel: Cancel) -> Iterator[Decoded]:
+    """Score a candidate as the generator sampled it, in the pose that suits it best."""
+    from kirigami_studio.pipeline.redesign import sampled
+
+    before = sampled(candidate, target)
+    if before is not None:
+        yield decoded(before)
+
+
+def rescoring(candidate: Candidate, field: RatioField, target: Outline, cancel: Cancel) -> Iterator[Decoded]:
+    """Score a candidate with another field, changed by hand."""
+    from kirigami_studio.pipeline.redesign import rescored
+
+    yield decoded(rescored(candidate, field, target))
+
+
+def refitting(
+    candidate: Candidate,
+    target: Outline,
+    prefer: str,
+    locked: frozenset[Void],
+    settings: FabricationSettings,
+    cancel: Cancel,
+) -> Iterator[Refitted]:
+    """Fit a candidate on the exact geometry from its present field, and trim it again if it is trimmed."""
+    from kirigami_studio.pipeline.redesign import refitted
+
+    refit = refitted(candidate, target, prefer, locked, partial(keep_for, candidate, settings), cancel)
+    untrimmed = "" if refit.trim_problem is None else str(refit.trim_problem)
+    yield Refitted(decoded(refit.candidate), refit.better, untrimmed)
+
+
+def trimming(candidate: Candidate, target: Outline, settings: FabricationSettings, cancel: Cancel) -> Iterator[Decoded]:
+    """Fit a candidate so that it covers the target, and trim it, with room for the connectors at its hinges."""
+    from kirigami_studio.pipeline.redesign import trimmed
+
+    found = trimmed(candidate, target, keep_for(candidate, settings), cancel)
+    if cancel():
+        raise Cancelled("trim.stopped")
+    yield decoded(found.candidate)
+
+
+def keep_for(candidate: Candidate, settings: FabricationSettings) -> float:
+    """Depth (unit cells) of the material that trimming has to leave at the hinges of a candidate."""
+    from kirigami_studio.pipeline.redesign import keep_for_connectors
+    from kirigami_studio.project.cutting import material_for
+
+    grid, material = (candidate.field.rows, candidate.field.columns), material_for(settings)
+    return keep_for_connectors(grid, material, settings.width_mm, settings.connector_mm, settings.kerf_mm)

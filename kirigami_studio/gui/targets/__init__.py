@@ -1,1 +1,0 @@
-"""The target as the window's middle changes it: read, traced, sized, reshaped."""
