@@ -1,4 +1,4 @@
-"""The rooms import each other in one direction only, and a contract counts only once it was seen to break."""
+"""Packages import each other in one direction only, and a contract counts only once it was seen to break."""
 
 from __future__ import annotations
 
@@ -15,20 +15,23 @@ import pytest
 
 @dataclass(frozen=True)
 class Fault:
-    """A forbidden import, planted in module ``room.planted`` (or at the end of a single-file room)."""
+    """A forbidden import, planted in a new module of a package (or at the end of a single module)."""
 
-    room: str
+    package: str
     statement: str
     contract: str
     reported: str
 
     @property
     def name(self) -> str:
-        return f"{self.room} must not: {self.statement}"
+        return f"{self.package} must not: {self.statement}"
 
 
-ONE_WAY = "Data flows one way; rooms beside each other are strangers"
-FLOORS = "The window's floors: what draws stands on what knows, both on what paints"
+ONE_WAY = "Data flows one way; packages on one line do not import each other"
+TORCH = "Only generator, training, benchmark and lattice.batched import torch"
+BATCHED = "Only packages with torch import lattice.batched"
+EZDXF = "Only export.dxf, export.dxf_reading and outlines.read_dxf import ezdxf"
+WINDOW = "Layers of the window"
 FAULTS = (
     Fault("lattice", "import kirigami_studio.evaluate", ONE_WAY, "kirigami_studio.evaluate"),
     Fault("lattice", "import kirigami_studio.outlines", ONE_WAY, "kirigami_studio.outlines"),
@@ -39,26 +42,36 @@ FAULTS = (
     Fault("project", "import kirigami_studio.pipeline", ONE_WAY, "kirigami_studio.pipeline"),
     Fault("gui", "import kirigami_studio.training", ONE_WAY, "kirigami_studio.training"),
     Fault("foundation", "import kirigami_studio.lattice", ONE_WAY, "kirigami_studio.lattice"),
-    Fault("gui/designs", "import kirigami_studio.gui.views", FLOORS, "kirigami_studio.gui.views"),
-    Fault("gui/scene", "import kirigami_studio.gui.jobs", FLOORS, "kirigami_studio.gui.jobs"),
-    Fault("gui/views", "import kirigami_studio.gui.panels", FLOORS, "kirigami_studio.gui.panels"),
-    Fault("evaluate", "import torch", "The exact core never reaches torch", "torch"),
+    Fault("gui/designs", "import kirigami_studio.gui.views", WINDOW, "kirigami_studio.gui.views"),
+    Fault("gui/scene", "import kirigami_studio.gui.jobs", WINDOW, "kirigami_studio.gui.jobs"),
+    Fault("gui/views", "import kirigami_studio.gui.panels", WINDOW, "kirigami_studio.gui.panels"),
+    *(
+        Fault(package, "import torch", "The exact core never reaches torch", "torch")
+        for package in ("foundation", "outlines", "evaluate", "fabricate", "polish", "export")
+    ),
     Fault("lattice", "from torch import nn", "The exact core never reaches torch", "torch"),
     Fault("project", "def load():\n    import torch", "The exact core never reaches torch", "torch"),
-    Fault("gui", "import torch", "The hosts leave torch to the generator", "torch"),
-    Fault("pipeline", "import torch", "The hosts leave torch to the generator", "torch"),
+    *(
+        Fault(package, f"import {library}", TORCH, library)
+        for package in ("__main__", "cli", "gui", "gui/jobs", "pipeline", "demonstrations", "polish", "lattice")
+        for library in ("torch", "safetensors")
+    ),
+    *(
+        Fault(package, "from kirigami_studio.lattice import batched", BATCHED, "kirigami_studio.lattice.batched")
+        for package in ("evaluate", "polish", "pipeline", "gui", "cli")
+    ),
     Fault(
-        "evaluate",
+        "lattice/deployment",
         "from kirigami_studio.lattice import batched",
-        "Batched decoding is for the rooms that know torch",
+        "Layers of lattice: nothing else there imports batched",
         "kirigami_studio.lattice.batched",
     ),
-    Fault("project", "from PySide6 import QtCore", "Only the window knows Qt", "PySide6"),
-    Fault("export", "import pyqtgraph", "Only the window knows Qt", "pyqtgraph"),
-    Fault("cli", "import PySide6", "Only the window knows Qt", "PySide6"),
-    Fault("fabricate", "import ezdxf", "DXF is spoken in export.dxf and outlines.read_dxf only", "ezdxf"),
-    Fault("outlines", "import ezdxf.math", "DXF is spoken in export.dxf and outlines.read_dxf only", "ezdxf"),
-    Fault("foundation", "import scipy", "The ground floor stands on numpy at most", "scipy"),
+    Fault("project", "from PySide6 import QtCore", "Only the window imports Qt", "PySide6"),
+    Fault("export", "import pyqtgraph", "Only the window imports Qt", "pyqtgraph"),
+    Fault("cli", "import PySide6", "Only the window imports Qt", "PySide6"),
+    Fault("fabricate", "import ezdxf", EZDXF, "ezdxf"),
+    Fault("outlines", "import ezdxf.math", EZDXF, "ezdxf"),
+    Fault("foundation", "import scipy", "The foundation needs NumPy at most", "scipy"),
 )
 
 
@@ -89,14 +102,14 @@ def copy_package(repository: Path, folder: Path) -> Path:
 
 def planted_module(package: Path, fault: Fault) -> str:
     """Write the fault and return the dotted name of the module that holds it."""
-    room = package / fault.room
-    if room.is_dir():
+    place = package / fault.package
+    if place.is_dir():
         name = f"planted_{FAULTS.index(fault)}"
-        (room / f"{name}.py").write_text(fault.statement + "\n")
-        return f"kirigami_studio.{fault.room.replace('/', '.')}.{name}"
-    with room.with_suffix(".py").open("a") as stream:
+        (place / f"{name}.py").write_text(fault.statement + "\n")
+        return f"kirigami_studio.{fault.package.replace('/', '.')}.{name}"
+    with place.with_suffix(".py").open("a") as stream:
         stream.write("\n" + fault.statement + "\n")
-    return f"kirigami_studio.{fault.room}"
+    return f"kirigami_studio.{fault.package.replace('/', '.')}"
 
 
 @pytest.fixture(scope="module")
@@ -124,10 +137,10 @@ def test_that_a_planted_import_breaks_its_contract(fault: Fault, faulty_report: 
     assert re.search(chain, section), f"no line {chain} in:\n{section}"
 
 
-def test_that_a_new_room_needs_a_decision(repository: Path, tmp_path: Path) -> None:
+def test_that_a_new_package_needs_a_decision(repository: Path, tmp_path: Path) -> None:
     package = copy_package(repository, tmp_path)
     (package / "attic").mkdir()
-    (package / "attic" / "__init__.py").write_text('"""A room that no layer names."""\n')
+    (package / "attic" / "__init__.py").write_text('"""A package that no layer names."""\n')
     status, report = lint_imports(tmp_path)
     assert status == 1
     assert "attic" in report

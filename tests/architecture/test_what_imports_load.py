@@ -12,7 +12,7 @@ import pytest
 PACKAGE = Path(__file__).resolve().parents[2] / "kirigami_studio"
 KNOWS_TORCH = {"kirigami_studio.lattice.batched"}
 pytestmark = pytest.mark.slow
-CORE = ("foundation", "lattice", "outlines", "evaluate", "fabricate", "export", "project")
+CORE = ("foundation", "lattice", "outlines", "evaluate", "fabricate", "polish", "export", "project")
 LOADED = """
 import importlib, json, sys
 for name in {names!r}:
@@ -21,9 +21,9 @@ print(json.dumps(sorted(name for name in ("torch", "PySide6", "pyqtgraph") if na
 """
 
 
-def modules_of(room: str) -> list[str]:
-    """Dotted names of every module of a room, those that are meant to load torch left out."""
-    files = sorted((PACKAGE / room).rglob("*.py")) or [(PACKAGE / room).with_suffix(".py")]
+def modules_of(package: str) -> list[str]:
+    """Dotted names of every module of a package, those that are meant to load torch left out."""
+    files = sorted((PACKAGE / package).rglob("*.py")) or [(PACKAGE / package).with_suffix(".py")]
     dotted = [".".join(file.relative_to(PACKAGE.parent).with_suffix("").parts) for file in files]
     return [name for name in (name.removesuffix(".__init__") for name in dotted) if name not in KNOWS_TORCH]
 
@@ -44,7 +44,7 @@ def loaded_by(names: list[str]) -> list[str]:
 
 
 def test_that_the_core_loads_neither_torch_nor_qt() -> None:
-    names = [name for room in CORE for name in modules_of(room)]
+    names = [name for package in CORE for name in modules_of(package)]
     assert len(names) > 20
     assert loaded_by(names) == []
 
