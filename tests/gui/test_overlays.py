@@ -231,7 +231,7 @@ def test_that_labels_and_colour_bars_stay_inside_a_narrow_view(qtbot: QtBot) -> 
     picture = QImage(width, 200, QImage.Format.Format_RGB32)
     picture.fill(0xFFFF00FF)
     painter = QPainter(picture)
-    chips = [Chip(LIGHT.text, "off by 0.18 mm (max 2.06 mm)"), Chip(LIGHT.extra, "extra")]
+    chips = [Chip((LIGHT.text,), "off by 0.18 mm (max 2.06 mm)"), Chip((LIGHT.extra,), "extra")]
     boxes = legend_boxes(chips, QFontMetrics(painter.font()), width, 200.0)
     assert all(box.left() > 0 and box.right() < width for box in boxes)
     paint_legend(painter, chips, boxes, LIGHT)

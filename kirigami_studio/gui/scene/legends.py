@@ -29,14 +29,10 @@ ENDS = 4.0
 
 @dataclass(frozen=True, slots=True)
 class Chip:
-    """What one label says, and the colour, or the row of colours, that it explains."""
+    """The text of one label, and the colours that it explains."""
 
-    colour: str | tuple[str, ...]
+    colours: tuple[str, ...]
     text: str
-
-    @property
-    def colours(self) -> tuple[str, ...]:
-        return (self.colour,) if isinstance(self.colour, str) else self.colour
 
     def width(self, metrics: QFontMetrics) -> float:
         """Pixels from edge to edge."""

@@ -146,7 +146,7 @@ def _chips(
             tr("missing {share:.1f} %, {area}", share=shares[0], area=missing),
             tr("extra {share:.1f} %, {area}", share=shares[1], area=extra),
         )
-    return [Chip(palette.missing, texts[0]), Chip(palette.extra, texts[1]), Chip(palette.text, off)]
+    return [Chip((palette.missing,), texts[0]), Chip((palette.extra,), texts[1]), Chip((palette.text,), off)]
 
 
 def paint_mismatch(painter: QPainter, areas: Mismatch, transform: ViewTransform, palette: Palette) -> None:

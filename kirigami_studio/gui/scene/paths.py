@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import numpy as np
 from PySide6.QtGui import QPainterPath
 
 from kirigami_studio.foundation.arrays import FloatArray
@@ -50,12 +49,11 @@ def quad_paths(quads: FloatArray) -> list[QPainterPath]:
 
 def area_path(area: BaseGeometry, transform: ViewTransform) -> QPainterPath:
     """A polygon or many, with holes, in world units; lines and points that an intersection left over are skipped."""
-    path = QPainterPath()
-    from shapely.geometry import Polygon  # already loaded by whoever made the area
+    import shapely  # already loaded by whoever made the area
 
-    for part in getattr(area, "geoms", (area,)):
-        if not isinstance(part, Polygon) or part.is_empty:
-            continue
-        for ring in (part.exterior, *part.interiors):
-            add_ring(path, transform.to_pixels(np.asarray(ring.coords)[:-1]).tolist())
+    path = QPainterPath()
+    parts = shapely.get_parts(area)
+    polygons = parts[(shapely.get_type_id(parts) == shapely.GeometryType.POLYGON) & ~shapely.is_empty(parts)]
+    for ring in shapely.get_rings(polygons):
+        add_ring(path, transform.to_pixels(shapely.get_coordinates(ring)[:-1]).tolist())
     return path

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from enum import Enum
 
@@ -117,9 +117,9 @@ class PointTool(SketchTool):
 
     # selecting -----------------------------------------------------------------------------------------------------
 
-    def select(self, indices: object, chosen: int | None = None) -> None:
+    def select(self, indices: Iterable[int], chosen: int | None = None) -> None:
         """Select points; ``chosen`` is the one that walks and snaps."""
-        self.selected = frozenset(indices)  # type: ignore[call-overload]
+        self.selected = frozenset(indices)
         self.chosen = chosen if chosen in self.selected else next(iter(sorted(self.selected)), None)
         self._emit_kinds()
 

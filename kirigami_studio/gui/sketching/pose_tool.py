@@ -9,6 +9,7 @@ import shapely
 from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QKeyEvent, QPainter, QPen
 
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import TargetError
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.look.theme import Palette
@@ -128,7 +129,7 @@ class PoseTool(SketchTool):
             factors = np.full(2, float(np.max(factors)) if side_x and side_y else float(wanted[0 if side_x else 1]))
         return stretched(target, (float(factors[0]), float(factors[1])), (float(fixed[0]), float(fixed[1])))
 
-    def _knob(self, target: Placed) -> np.ndarray[tuple[int, ...], np.dtype[np.float64]]:
+    def _knob(self, target: Placed) -> FloatArray:
         low, high = _box(target)
         return np.array([0.5 * (low[0] + high[0]), high[1] + KNOB / self.context.transform.scale])
 
@@ -158,16 +159,16 @@ class PoseTool(SketchTool):
             paint_proposal(painter, transform.to_pixels(self._proposal.ring), palette)
             self._paint_reading(painter, transform, palette)
             return
-        spots = {
+        places = {
             side: QPointF(*transform.to_pixels(np.array(place)).tolist()) for side, place in self.handles().items()
         }
         painter.setBrush(Qt.BrushStyle.NoBrush)
         painter.setPen(QPen(QColor(palette.accent), 1.0, Qt.PenStyle.DashLine))
-        painter.drawRect(QRectF(spots[-1, 1], spots[1, -1]))
-        painter.drawLine(spots[0, 1], spots[TURN])
+        painter.drawRect(QRectF(places[-1, 1], places[1, -1]))
+        painter.drawLine(places[0, 1], places[TURN])
         painter.setPen(QPen(QColor(palette.accent), 1.6))
         painter.setBrush(QColor(palette.canvas))
-        for side, pointer in spots.items():
+        for side, pointer in places.items():
             box = QRectF(pointer.x() - HANDLE, pointer.y() - HANDLE, 2 * HANDLE, 2 * HANDLE)
             if side == TURN:
                 painter.drawEllipse(box.adjusted(-1, -1, 1, 1))
@@ -196,7 +197,7 @@ class PoseTool(SketchTool):
 
 def _box(
     target: Placed,
-) -> tuple[np.ndarray[tuple[int, ...], np.dtype[np.float64]], np.ndarray[tuple[int, ...], np.dtype[np.float64]]]:
+) -> tuple[FloatArray, FloatArray]:
     """Lower left and upper right corner of a target, mm."""
     ring = target.ring
     return ring.min(axis=0), ring.max(axis=0)

@@ -50,32 +50,32 @@ class Freehand(SketchTool):
 
     def __init__(self, context: SketchContext) -> None:
         super().__init__(context)
-        self._spots: list[PointerEvent] = []
+        self._pointers: list[PointerEvent] = []
 
     def press(self, pointer: PointerEvent) -> None:
-        self._spots = [pointer]
+        self._pointers = [pointer]
 
     def move(self, pointer: PointerEvent, held: bool) -> None:
-        if held and self._spots and distance(pointer.pixel, self._spots[-1].pixel) >= SMALLEST_STEP:
-            self._spots.append(pointer)
+        if held and self._pointers and distance(pointer.pixel, self._pointers[-1].pixel) >= SMALLEST_STEP:
+            self._pointers.append(pointer)
 
     def release(self, pointer: PointerEvent) -> None:
-        points, mirror = np.array([pointer.free for pointer in self._spots]), self.context.mirror
+        points, mirror = np.array([pointer.free for pointer in self._pointers]), self.context.mirror
         self.drop()
         if len(points) > 1:
             self.context.draw(lambda: stroke_of(points, mirror), FREEHAND)
 
     def drop(self) -> None:
-        self._spots = []
+        self._pointers = []
 
     def paint(self, painter: QPainter, transform: ViewTransform, palette: Palette) -> None:
-        if self._spots:
-            points = transform.to_pixels(np.array([pointer.free for pointer in self._spots]))
+        if self._pointers:
+            points = transform.to_pixels(np.array([pointer.free for pointer in self._pointers]))
             paint_sketch(painter, points, palette, corners=False)
-            _paint_images(painter, transform, palette, self.context, [pointer.free for pointer in self._spots])
+            _paint_images(painter, transform, palette, self.context, [pointer.free for pointer in self._pointers])
 
 
-def stroke_of(points: np.ndarray[tuple[int, ...], np.dtype[np.float64]], mirror: Mirror = PLAIN) -> Placed:
+def stroke_of(points: FloatArray, mirror: Mirror = PLAIN) -> Placed:
     """Smooth a stroke (P, 2), mm, from axis to axis together with its images.
 
     SciPy is loaded at the first one, not when the window opens.
@@ -96,14 +96,14 @@ class Corners(SketchTool):
 
     def __init__(self, context: SketchContext) -> None:
         super().__init__(context)
-        self._spots: list[PointerEvent] = []
+        self._pointers: list[PointerEvent] = []
         self._pointer: PointerEvent | None = None
 
     def press(self, pointer: PointerEvent) -> None:
-        if len(self._spots) >= 3 and distance(pointer.pixel, self._spots[0].pixel) <= CLOSING_REACH:
+        if len(self._pointers) >= 3 and distance(pointer.pixel, self._pointers[0].pixel) <= CLOSING_REACH:
             self._finish()
-        elif not self._spots or pointer.place != self._spots[-1].place:
-            self._spots.append(pointer)
+        elif not self._pointers or pointer.place != self._pointers[-1].place:
+            self._pointers.append(pointer)
 
     def move(self, pointer: PointerEvent, held: bool) -> None:
         self._pointer = pointer
@@ -114,17 +114,17 @@ class Corners(SketchTool):
     def key(self, event: QKeyEvent) -> bool:
         if event.key() in (Qt.Key.Key_Return, Qt.Key.Key_Enter):
             self._finish()
-        elif event.key() == Qt.Key.Key_Backspace and self._spots:
-            self._spots.pop()
+        elif event.key() == Qt.Key.Key_Backspace and self._pointers:
+            self._pointers.pop()
         else:
             return False
         return True
 
     def drop(self) -> None:
-        self._spots = []
+        self._pointers = []
 
     def _finish(self) -> None:
-        corners = np.array([pointer.place for pointer in self._spots])
+        corners = np.array([pointer.place for pointer in self._pointers])
         whole = self.context.mirror.completed(corners) if len(corners) else None
         ring = corners if whole is None else whole
         self.drop()
@@ -132,9 +132,9 @@ class Corners(SketchTool):
             self.context.draw(lambda: Placed.from_ring(ring, POLYGON), POLYGON)
 
     def paint(self, painter: QPainter, transform: ViewTransform, palette: Palette) -> None:
-        if not self._spots:
+        if not self._pointers:
             return
-        places = [pointer.place for pointer in self._spots]
+        places = [pointer.place for pointer in self._pointers]
         if self._pointer is not None:
             places.append(self._pointer.place)
         paint_sketch(painter, transform.to_pixels(np.array(places)), palette, corners=True)

@@ -213,7 +213,7 @@ class CutView(Canvas):
         layers = tuple(self._drawing.on_layer)
         if self.width() < ROOM_FOR_OUTLINE:  # which everyone knows without a label
             layers = tuple(layer for layer in layers if layer is not Layer.OUTLINE)
-        chips = [Chip(layer_colour(layer, self.palette_), LAYER_NAMES[layer]) for layer in layers]
+        chips = [Chip((layer_colour(layer, self.palette_),), LAYER_NAMES[layer]) for layer in layers]
         if CutOverlay.CONNECTORS in self._overlays and len(self._connectors):
             low, high = self._connectors.span_mm
             if self._connectors.varied:

@@ -291,7 +291,7 @@ class LayoutView(Canvas):
         found = []
         if self._faults:
             count = len(self._faults)
-            found = [Chip(self.palette_.fault, tr_n("{count} fault", "{count} faults", count))]
+            found = [Chip((self.palette_.fault,), tr_n("{count} fault", "{count} faults", count))]
         chips = found
         if self._areas is not None:
             areas, mm = self._areas, self.mm_per_unit
