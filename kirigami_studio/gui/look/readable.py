@@ -23,13 +23,13 @@ def readable_range(low: float, high: float) -> str:
     if readable_time(low) == readable_time(high):
         return readable_time(low)
     if high < 120:
-        return tr("{low:.0f}{unknown}{high:.0f} s", low=low, unknown=UNKNOWN, high=high)
-    return tr("{low:.1f}{unknown}{high:.1f} min", low=low / 60, unknown=UNKNOWN, high=high / 60)
+        return tr("{low:.0f}\N{EN DASH}{high:.0f} s", low=low, high=high)
+    return tr("{low:.1f}\N{EN DASH}{high:.1f} min", low=low / 60, high=high / 60)
 
 
 def readable_size(width_mm: float, height_mm: float) -> str:
     """A sheet's two sides."""
-    return tr("{width_mm:.0f} {times} {height_mm:.0f} mm", width_mm=width_mm, times=TIMES, height_mm=height_mm)
+    return tr("{width_mm:.0f} \N{MULTIPLICATION SIGN} {height_mm:.0f} mm", width_mm=width_mm, height_mm=height_mm)
 
 
 def readable_area(mm2: float) -> str:

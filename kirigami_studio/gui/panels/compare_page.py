@@ -1,4 +1,4 @@
-"""The third page of the stage: two designs side by side, moved together, with what tells them apart."""
+"""The third page of the stage: two designs side by side, moved together, with their differences."""
 
 from __future__ import annotations
 

@@ -48,7 +48,7 @@ OVERLAYS = (
 
 
 class CutsPage(QWidget):
-    """Shows one plan and reports what is wanted of its connectors."""
+    """Shows one plan and reports what to do with its connectors."""
 
     width_wanted = Signal(frozenset, float)  #: numbers of connectors; mm
     remove_wanted = Signal(frozenset)  #: numbers of connectors

@@ -11,6 +11,7 @@ from PySide6.QtWidgets import QHBoxLayout, QMenu, QToolButton, QWidget
 
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.look import icons
+from kirigami_studio.gui.look.readable import TIMES
 from kirigami_studio.gui.look.theme import LIGHT, Palette
 from kirigami_studio.gui.panels.card import TOOL_ICON, tool_button
 from kirigami_studio.gui.panels.number_field import DecimalField, number_field
@@ -25,14 +26,13 @@ AT_LAST = 1e-3
 REST = 0.08
 #: How many times faster than usual the deployment may be played.
 SPEEDS = (0.25, 0.5, 1.0, 2.0, 4.0)
-TIMES = "\N{MULTIPLICATION SIGN}"
 
 
 class PlayMode(Enum):
     """What happens when the sheet has opened."""
 
     SWING = "swing"  #: it closes again
-    LOOP = "loop"  #: it starts anew from the flat sheet
+    LOOP = "loop"  #: it starts again from the flat sheet
     ONCE = "once"  #: it stays
 
 
@@ -50,7 +50,7 @@ def phi_at(phase: float, mode: PlayMode = PlayMode.SWING, last: float = 0.0) -> 
 
 
 def phase_of(phi: float, mode: PlayMode = PlayMode.SWING, last: float = 0.0) -> float:
-    """Phase on the opening way that shows ``phi``; what lies past ``last`` counts as open."""
+    """Phase while opening that shows ``phi``; angles past ``last`` count as open."""
     opened = min((math.pi - phi) / (math.pi - last), 1.0)
     there = REST + (1.0 - 2.0 * REST) * opened
     return 0.5 * there if mode is PlayMode.SWING else there

@@ -97,7 +97,7 @@ NUMBERS = (
 class Extent(Enum):
     """How much the panel shows; each is more than the one before."""
 
-    EXPORT = "export"  #: what the sheet is in the header, what is wrong, and the way to a file
+    EXPORT = "export"  #: the sheet's size in the header, what is wrong, and the export
     CHOICES = "choices"  #: the material, the widths and the opened size too
     ALL = "all"  #: the live numbers and the options too
 
@@ -195,9 +195,9 @@ class FabricationPanel(Card):
 
     def restore(self, settings: QSettings) -> None:
         """Show as much as the user chose the last time."""
-        if (kept := settings.value("fabrication")) in [extent.value for extent in Extent]:
+        if (saved := settings.value("fabrication")) in [extent.value for extent in Extent]:
             self._by_hand = True
-            self._show_extent(Extent(kept))
+            self._show_extent(Extent(saved))
 
     def remember(self, settings: QSettings) -> None:
         """Keep how much the user chose to see for the next time."""
@@ -276,7 +276,7 @@ class FabricationPanel(Card):
         self.edited.emit()
 
     def show_settings(self, settings: FabricationSettings) -> None:
-        """Show the document's numbers, the material's own where it holds none."""
+        """Show the document's numbers, the material's own where it has none."""
         material = self._presets.get(settings.material) or stored_material(settings)
         with QSignalBlocker(self.material):
             if self.material.findData(settings.material) < 0:

@@ -223,7 +223,7 @@ class GalleryBar(QWidget):
             part.setEnabled(ready)
 
     def show_count(self, count: int) -> None:
-        """Tell how many designs would be added."""
+        """Show in the tooltip how many designs would be added."""
         self.again.setToolTip(
             tr_n(
                 "Generate {count} more design from the next seed (Ctrl+R).",

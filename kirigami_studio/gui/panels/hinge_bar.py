@@ -73,7 +73,7 @@ RULES: tuple[tuple[str, str, Rule], ...] = (
 
 
 class HingeBar(QWidget):
-    """Shows how many connectors are selected and reports what is wanted of them."""
+    """Shows how many connectors are selected and reports what to do with them."""
 
     selected = Signal(frozenset)  #: numbers of connectors, by a rule
     width_wanted = Signal(float)  #: mm
@@ -155,7 +155,7 @@ class HingeBar(QWidget):
         self._fit()
 
     def _fit(self) -> None:
-        """Say what is selected in as many words as there is room for."""
+        """Show the longest text on the selection that fits."""
         others = (self.rules, self.width_mm, self.remove, self.reset)
         self.selection_text.fit(self.width() - sum(part.sizeHint().width() + 6 for part in others) - 8)
 

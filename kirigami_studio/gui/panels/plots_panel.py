@@ -133,7 +133,7 @@ class PlotsPanel(QWidget):
         return len(self.charts) == len(self._rows)
 
     def _go_on(self) -> None:
-        """Make one chart, or draw one anew."""
+        """Make one chart, or redraw one."""
         if not self._built:
             self._build()
             self._turn.start()
@@ -157,7 +157,7 @@ class PlotsPanel(QWidget):
         self._share_room()
 
     def set_sheet_width(self, width_mm: float) -> None:
-        """Tell how wide the flat sheet is, mm."""
+        """Set the width of the flat sheet, mm."""
         if width_mm != self._width_mm:
             self._width_mm = width_mm
             self._draw()

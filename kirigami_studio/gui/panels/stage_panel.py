@@ -269,7 +269,7 @@ class StagePanel(Card):
         self.switches_changed.emit()
 
     def _show(self) -> None:
-        """Draw what is wanted of the present design."""
+        """Show the present design, or its sample."""
         entry = self._entry
         self._show_title()
         if entry is None:
@@ -302,26 +302,26 @@ class StagePanel(Card):
 
     def _fit_numbers(self) -> None:
         """Put the longest text that fits into the header; none fits beside many buttons in a narrow stage."""
-        giving_way = [] if self.showing_cuts else [self.toggles[overlay] for overlay, _, _ in reversed(OVERLAYS)]
+        optional = [] if self.showing_cuts else [self.toggles[overlay] for overlay, _, _ in reversed(OVERLAYS)]
         switches = (
             self.cuts.toggles.values()
             if self.showing_cuts
             else (self.before, self.hand, self.overlays_button, self.plots_switch)
         )
-        buttons = [self.cuts_switch, self.trim, *switches, *giving_way, self.whole]
+        buttons = [self.cuts_switch, self.trim, *switches, *optional, self.whole]
         used = sum(button.sizeHint().width() + self.header.spacing() for button in buttons) + 14
         room = self.width() - 2 * INSET - used - self.title.sizeHint().width() - GAP
-        for button in (self.whole, *giving_way):  # keys, menus and the double-click stay
+        for button in (self.whole, *optional):  # keys, menus and the double-click stay
             fits = room + GAP >= 2 * self.header.spacing()
             button.setVisible(fits)
             room += 0 if fits else button.sizeHint().width() + self.header.spacing()
-        told = self.numbers.fit(room)
+        fitted = self.numbers.fit(room)
         texts = self._texts()
         special = self._sample is not None or (self._entry is not None and self._entry.candidate.trim is not None)
-        self.view.set_caption(texts[0] if special and texts and not told else "")
+        self.view.set_caption(texts[0] if special and texts and not fitted else "")
 
     def set_sheet_width(self, width_mm: float) -> None:
-        """Tell how wide the flat sheet is, mm."""
+        """Set the width of the flat sheet, mm."""
         self.view.set_sheet_width(width_mm)
         self.plots.set_sheet_width(width_mm)
 

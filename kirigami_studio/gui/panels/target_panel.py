@@ -363,7 +363,7 @@ class ThresholdBar(QWidget):
         self.automatic.clicked.connect(self.automatic_wanted)
 
     def show_levels(self, threshold: float, automatic: float) -> None:
-        """Show the level that holds, 0..1; a slider under the hand is left where it is."""
+        """Show the level that holds, 0..1; a slider that is being dragged is left where it is."""
         if not self.slider.isSliderDown():
             with QSignalBlocker(self.slider):
                 self.slider.setValue(round(GREY_LEVELS * threshold))

@@ -16,7 +16,7 @@ from kirigami_studio.project.document import Void
 
 
 class VoidBar(QWidget):
-    """Shows the selected voids and reports what is wanted of them."""
+    """Shows the selected voids and reports what to do with them."""
 
     ratio_wanted = Signal(frozenset, float)  #: of Void; ratio
     lock_wanted = Signal(frozenset, bool)  #: of Void; whether they are to be locked

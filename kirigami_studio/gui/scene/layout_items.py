@@ -26,7 +26,7 @@ def paint_panels(
     panels: FloatArray,
     turns_left: BoolArray,
     palette: Palette,
-    kept: Mapping[int, FloatArray] | None = None,
+    trimmed: Mapping[int, FloatArray] | None = None,
 ) -> None:
     """Fill all panels.
 
@@ -35,12 +35,12 @@ def paint_panels(
     panels : (K, 4, 2) float, pixels
     turns_left : (K,) bool
         Panels that turn counter-clockwise while the sheet opens get the lighter blue.
-    kept : mapping of row to (P, 2) float, pixels, optional
-        What is drawn instead of trimmed panels.
+    trimmed : mapping of row to (P, 2) float, pixels, optional
+        What trimming has left of panels, drawn instead of them.
     """
-    kept = kept or {}
+    trimmed = trimmed or {}
     whole = np.ones(len(panels), dtype=np.bool_)
-    whole[list(kept)] = False
+    whole[list(trimmed)] = False
     size = np.median(np.linalg.norm(panels[:, 2] - panels[:, 0], axis=-1)) if len(panels) else 0.0
     line = QPen(Qt.PenStyle.NoPen)
     if size >= SMALLEST_LINED_PANEL:
@@ -52,7 +52,7 @@ def paint_panels(
         painter.setBrush(QColor(colour))
         for path in quad_paths(panels[chosen & whole]):
             painter.drawPath(path)
-        for row, part in kept.items():
+        for row, part in trimmed.items():
             if chosen[row]:
                 painter.drawPath(line_path(part, closed=True))
 
@@ -73,9 +73,9 @@ def paint_candidate(
         bounds = bounds.united(Bounds.of(target.points))
     transform = ViewTransform.fitting(bounds, rect, MARGIN)
     field = design.deployment.field
-    kept = {row: transform.to_pixels(part) for row, part in design.kept(nodes, design.phi_target).items()}
+    trimmed = {row: transform.to_pixels(part) for row, part in design.kept(nodes, design.phi_target).items()}
     panels = transform.to_pixels(design.panels(nodes))
-    paint_panels(painter, panels, turning_left(field.rows, field.columns), palette, kept)
+    paint_panels(painter, panels, turning_left(field.rows, field.columns), palette, trimmed)
     if target is not None:
         paint_target_line(painter, transform.to_pixels(target.points), palette, width=1.4)
 

@@ -182,11 +182,11 @@ def smallest_parts(panels: FloatArray, trimmed: frozenset[int] = frozenset(), co
 
 
 def paint_dimension(
-    painter: QPainter, ends: FloatArray, text: str, palette: Palette, taken: list[QRectF]
+    painter: QPainter, ends: FloatArray, text: str, palette: Palette, occupied: list[QRectF]
 ) -> QRectF | None:
     """Mark a short length by a line between ``ends`` (2, 2), pixels, and write its size beside it.
 
-    The text takes the first free place around the line; None when there is none, then the line stands alone.
+    The text goes to the first free place around the line, which joins ``occupied``; None when there is none.
     """
     (ax, ay), (bx, by) = ends.tolist()
     start, stop = QPointF(ax, ay), QPointF(bx, by)
@@ -199,11 +199,11 @@ def paint_dimension(
     for dx, dy in ((1, -1), (1, 1), (-1, -1), (-1, 1), (1, -3), (-1, 3)):
         left = middle.x() + (8.0 if dx > 0 else -8.0 - width)
         box = QRectF(left, middle.y() + 0.5 * dy * height + (4.0 * dy) - 0.5 * height, width, height)
-        if not any(box.intersects(other) for other in taken) and QRectF(painter.window()).contains(box):
+        if not any(box.intersects(other) for other in occupied) and QRectF(painter.window()).contains(box):
             painter.setPen(QPen(QColor(palette.text), 1.0))
             painter.setBrush(QColor(palette.surface))
             painter.drawRoundedRect(box, 4.0, 4.0)
             painter.drawText(box, int(Qt.AlignmentFlag.AlignCenter), text)
-            taken.append(box)
+            occupied.append(box)
             return box
     return None

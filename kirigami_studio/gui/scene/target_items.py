@@ -66,7 +66,7 @@ def paint_size(painter: QPainter, pointer: QPointF, size: tuple[float, float], p
     paint_label(
         painter,
         pointer,
-        tr("{size:.4g} \N{MULTIPLICATION SIGN} {size_2:.4g} mm", size=size[0], size_2=size[1]),
+        tr("{width:.4g} \N{MULTIPLICATION SIGN} {height:.4g} mm", width=size[0], height=size[1]),
         palette,
     )
 

@@ -78,7 +78,7 @@ class PointTool(SketchTool):
         self.chosen: int | None = None
         self.selected: frozenset[int] = frozenset()
         context.kind_wanted.connect(self.set_kind)
-        context.mirror_changed.connect(self._start_anew)
+        context.mirror_changed.connect(self._reset)
 
     @property
     def anchors(self) -> Anchors | None:
@@ -89,22 +89,22 @@ class PointTool(SketchTool):
         placed = self.context.placed
         self._dragged = None
         if placed is self._shown and self._anchors is not None:
-            self._even()
+            self._add_mirror_images()
             return
         if placed is None or placed is not self._made:
             self._anchors = None if placed is None else Anchors.of(placed)
             self.select(())
         self._shown = placed
-        self._even()
+        self._add_mirror_images()
 
-    def _start_anew(self) -> None:
+    def _reset(self) -> None:
         """Other axes hold: points that were set for the old ones only are gone."""
         if self.context.placed is not None and self.context.placed is self._shown:
             self._anchors = Anchors.of(self.context.placed)
             self.select(())
-            self._even()
+            self._add_mirror_images()
 
-    def _even(self) -> None:
+    def _add_mirror_images(self) -> None:
         """With a mirror every point of the target has its image: set those that are missing on the line."""
         placed, anchors = self.context.placed, self._anchors
         if placed is not None and anchors is not None and placed is self._shown:
@@ -197,7 +197,7 @@ class PointTool(SketchTool):
             self._take_kind(Kind.AUTO if self._anchors.kinds[index] is Kind.CORNER else Kind.CORNER)
             return
         more, index = self._anchors.inserted(pointer.free)
-        if self._far(more.places[index], pointer.pixel) <= REACH:
+        if self._pixels_between(more.places[index], pointer.pixel) <= REACH:
             # Another point on the same line is no change of the target: nothing to undo, ready to be dragged.
             self._anchors = more
             self.select({index}, index)
@@ -263,18 +263,18 @@ class PointTool(SketchTool):
         if not self._commit(fewer, gesture):
             self.select(*before)
 
-    def _shifted(self, anchors: Anchors, way: FloatArray) -> Anchors:
-        """Move the selected points; with a mirror their images go the mirrored way, points on an axis stay on it."""
-        ways: dict[int, FloatArray] = {}
+    def _shifted(self, anchors: Anchors, shift: FloatArray) -> Anchors:
+        """Move the selected points; with a mirror their images move mirrored, points on an axis stay on it."""
+        shifts: dict[int, FloatArray] = {}
         images = self._images(anchors)
         for index in sorted(self.selected, key=lambda index: index != self.chosen):
             own = [factors for factors in self.context.mirror.images if images.get(index) == factors]
-            ways.setdefault(index, way)
+            shifts.setdefault(index, shift)
             for factors in own:
-                ways[index] = 0.5 * (ways[index] + ways[index] * factors)
+                shifts[index] = 0.5 * (shifts[index] + shifts[index] * factors)
         for index, factors in images.items():
-            ways.setdefault(index, way * factors)
-        return anchors.displaced(ways)
+            shifts.setdefault(index, shift * factors)
+        return anchors.displaced(shifts)
 
     def _images(self, anchors: Anchors) -> dict[int, tuple[int, int]]:
         """The mirror images of the selected points, and by which factors they are that."""
@@ -335,7 +335,7 @@ class PointTool(SketchTool):
     def _at(self, pixel: QPointF) -> int | None:
         if self._anchors is None:
             return None
-        far = np.array([self._far(place, pixel) for place in self._anchors.places])
+        far = np.array([self._pixels_between(place, pixel) for place in self._anchors.places])
         nearest = int(np.argmin(far))
         return nearest if far[nearest] <= REACH else None
 
@@ -345,14 +345,16 @@ class PointTool(SketchTool):
             return None
         shown = [Handle(index, side) for index in self.selected for side in (INTO, OUT)]
         far = {
-            handle: self._far(anchors.places[handle.anchor] + anchors.handles[handle.anchor, handle.side], pixel)
+            handle: self._pixels_between(
+                anchors.places[handle.anchor] + anchors.handles[handle.anchor, handle.side], pixel
+            )
             for handle in shown
             if np.any(anchors.handles[handle.anchor, handle.side])
         }
         nearest = min(far, key=lambda handle: far[handle], default=None)
         return nearest if nearest is not None and far[nearest] <= REACH else None
 
-    def _far(self, place: FloatArray, pixel: QPointF) -> float:
+    def _pixels_between(self, place: FloatArray, pixel: QPointF) -> float:
         return float(np.linalg.norm(self.context.transform.to_pixels(place) - (pixel.x(), pixel.y())))
 
     def paint(self, painter: QPainter, transform: ViewTransform, palette: Palette) -> None:
@@ -422,9 +424,7 @@ def paint_marks(painter: QPainter, transform: ViewTransform, palette: Palette, m
     if marks.labelled is not None:
         place = anchors.places[marks.labelled]
         x, y = transform.to_pixels(place).tolist()
-        paint_label(
-            painter, QPointF(x, y), tr("{place:.4g}, {place_2:.4g} mm", place=place[0], place_2=place[1]), palette
-        )
+        paint_label(painter, QPointF(x, y), tr("{x:.4g}, {y:.4g} mm", x=place[0], y=place[1]), palette)
     if marks.field is not None:
         fill = QColor(palette.accent)
         fill.setAlpha(28)
@@ -440,7 +440,7 @@ def _paint_point(painter: QPainter, pointer: QPointF, kind: Kind) -> None:
         painter.drawRect(box)
     elif kind is Kind.AUTO:
         far = 1.3 * MARK
-        painter.drawPolygon([pointer + QPointF(*way) for way in ((0, -far), (far, 0), (0, far), (-far, 0))])
+        painter.drawPolygon([pointer + QPointF(*offset) for offset in ((0, -far), (far, 0), (0, far), (-far, 0))])
     else:
         painter.drawEllipse(box)
 

@@ -186,7 +186,7 @@ class PoseTool(SketchTool):
             paint_label(
                 painter,
                 QPointF(x, y),
-                tr("{middle:.4g}, {middle_2:.4g} mm", middle=middle[0], middle_2=middle[1]),
+                tr("{x:.4g}, {y:.4g} mm", x=middle[0], y=middle[1]),
                 palette,
             )
         elif grip == TURN:

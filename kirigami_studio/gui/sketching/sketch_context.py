@@ -83,7 +83,7 @@ class Change:
     gesture : str
         As it follows the word Undo: "Add star".
     make : callable
-        Returns the target as it shall be; raises a TargetError when that cannot be.
+        Returns the new target; raises a TargetError when there can be none.
     merge_key : str or None
         Changes of one key that follow each other undo together.
     """
@@ -156,20 +156,20 @@ class SketchContext(QObject):
         self.repaint.emit()
 
     def nudge(self, event: QKeyEvent) -> tuple[FloatArray, str] | None:
-        """The way (2,), mm, that an arrow key stands for, and the key of its undo step; None for another key.
+        """The shift (2,), mm, that an arrow key stands for, and the key of its undo step; None for another key.
 
         A key that is held down is one step.
         """
-        way = ARROWS.get(Qt.Key(event.key()))
-        if way is None or event.modifiers() & Qt.KeyboardModifier.ControlModifier:
+        direction = ARROWS.get(Qt.Key(event.key()))
+        if direction is None or event.modifiers() & Qt.KeyboardModifier.ControlModifier:
             return None
         if not event.isAutoRepeat():
             self._nudges += 1
         length = FAR_MM if event.modifiers() & SHIFT else NEAR_MM if event.modifiers() & ALT else NUDGE_MM
-        return np.array(way) * length, f"nudge {self._nudges}"
+        return np.array(direction) * length, f"nudge {self._nudges}"
 
     def draw(self, make: Callable[[], Placed], name: str) -> None:
-        """Let a new shape replace the target, join it or be taken from it; a tool that replaces is left afterwards."""
+        """Let a new shape replace the target, be added to it or subtracted; a replacement ends the tool."""
         how, target, mirror = self.combine, self.placed, self.mirror
         replaces = how is Combine.REPLACE or target is None
         gesture = _change_name(Combine.REPLACE if replaces else how, name)
@@ -213,7 +213,7 @@ class SketchTool:
         return False
 
     def drop(self) -> None:
-        """Forget a gesture that is under way."""
+        """Cancel the gesture under way."""
 
     def sync(self) -> None:
         """The target is another one now."""

@@ -40,7 +40,7 @@ class Ring(QWidget):
 
 
 class Callout(QWidget):
-    """Title, sentences and the ways on: back, next, skip."""
+    """Title, text, and the buttons Back, Next and Skip."""
 
     next_wanted = Signal()
     back_wanted = Signal()
@@ -65,18 +65,18 @@ class Callout(QWidget):
         self.skip.clicked.connect(self.skip_wanted)
         self.back.clicked.connect(self.back_wanted)
         self.next.clicked.connect(self.next_wanted)
-        head, ways = QHBoxLayout(), QHBoxLayout()
+        head, buttons = QHBoxLayout(), QHBoxLayout()
         head.addWidget(self.title, 1)
         head.addWidget(self.count)
-        ways.addWidget(self.skip)
-        ways.addStretch(1)
-        ways.addWidget(self.back)
-        ways.addWidget(self.next)
+        buttons.addWidget(self.skip)
+        buttons.addStretch(1)
+        buttons.addWidget(self.back)
+        buttons.addWidget(self.next)
         self._column = QVBoxLayout(self)
         self._column.setSpacing(7)
         self._column.addLayout(head)
         self._column.addWidget(self.text)
-        self._column.addLayout(ways)
+        self._column.addLayout(buttons)
         self.hide()
 
     def _button(self, text: str, tip: str, name: str = "") -> QPushButton:
@@ -98,7 +98,7 @@ class Callout(QWidget):
         self.setAccessibleDescription(text)
 
     def point_at(self, place: QRect) -> None:
-        """Lie beside a rectangle of the window, on the side with room, with the arrow towards its middle."""
+        """Show the bubble beside a rectangle of the window, where there is room, with the arrow towards its middle."""
         self._column.setContentsMargins(14 + ARROW, 10 + ARROW, 14 + ARROW, 10 + ARROW)
         width = WIDTH + 2 * ARROW
         size = QSize(width, self._column.totalHeightForWidth(width))
@@ -110,18 +110,18 @@ class Callout(QWidget):
         self.update()
 
     def keyPressEvent(self, event: QKeyEvent) -> None:  # noqa: N802 - Qt's name
-        ways = {
+        buttons = {
             Qt.Key.Key_Escape: self.skip,
             Qt.Key.Key_Left: self.back,
             Qt.Key.Key_Right: self.next,
             Qt.Key.Key_Return: self.next,
             Qt.Key.Key_Enter: self.next,
         }
-        way = ways.get(Qt.Key(event.key()))
-        if way is None:
+        button = buttons.get(Qt.Key(event.key()))
+        if button is None:
             super().keyPressEvent(event)
         else:
-            way.click()
+            button.click()
 
     def paintEvent(self, event: QPaintEvent) -> None:  # noqa: N802 - Qt's name
         body = QRectF(self.rect()).adjusted(ARROW, ARROW, -ARROW, -ARROW)

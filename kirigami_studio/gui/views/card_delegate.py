@@ -72,9 +72,9 @@ class CardDelegate(QStyledItemDelegate):
         self._paint_until = math.inf
         self.pending = False
 
-    def forget_pictures(self, kept: Collection[PosedDesign] = ()) -> None:
-        """Drop all thumbnails but those of some designs; they are painted again when needed."""
-        staying = set(kept)
+    def forget_pictures(self, keep: Collection[PosedDesign] = ()) -> None:
+        """Drop all thumbnails but those of the designs in ``keep``; they are painted again when needed."""
+        staying = set(keep)
         self._pictures = {key: picture for key, picture in self._pictures.items() if key[0] in staying}
 
     def helpEvent(  # noqa: N802 - Qt's name

@@ -152,7 +152,7 @@ class Chart(QWidget):
         self.dots.setData([degrees] * len(known), known)
 
     def _readout(self, degrees: float, values: tuple[float, ...]) -> str:
-        """The numbers in the longest way that the chart has room for; the angle stands beside the slider too."""
+        """The values in the longest form that fits; the angle, which the slider shows too, goes first."""
         muted = f'<span style="color:{self._palette.muted}">{degrees:.1f}°</span>'
         text = ""
         for decimals, tail in ((2, [muted]), (2, []), (1, []), (0, [])):

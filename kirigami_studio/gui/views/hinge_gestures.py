@@ -109,22 +109,22 @@ class HingeGestures(QObject):
         self.changed.emit()
         return True
 
-    def _drag(self, held: HingeDrag, place: QPointF, fine: bool) -> None:
-        far = (place - held.start).manhattanLength() >= CLICK
-        if math.isnan(held.width_mm) or not (far or self._width_mm is not None):
+    def _drag(self, drag: HingeDrag, place: QPointF, fine: bool) -> None:
+        far = (place - drag.start).manhattanLength() >= CLICK
+        if math.isnan(drag.width_mm) or not (far or self._width_mm is not None):
             return
-        width = held.width_at(place, fine)
+        width = drag.width_at(place, fine)
         if width != self._width_mm:
             self._width_mm = width
             self._asked_mm.update(dict.fromkeys(self._selected, width))
             self.width_wanted.emit(width)
             self.changed.emit()
 
-    def _end_drag(self, held: HingeDrag) -> None:
+    def _end_drag(self, drag: HingeDrag) -> None:
         """A drag is over; a click on one of many selects that one."""
         self._held = None
         if self._width_mm is None:
-            self.select(frozenset({held.hinge}))
+            self.select(frozenset({drag.hinge}))
         else:
             self._width_mm = None
             self.drag_ended.emit()
@@ -161,10 +161,10 @@ class HingeDrag:
     width_mm: float
 
     def width_at(self, place: QPointF, fine: bool) -> float:
-        """Width in mm that a place of the mouse asks for; ``fine`` for steps and ways of a tenth."""
-        way = (place.x() - self.start.x()) - (place.y() - self.start.y())
+        """Width in mm that a place of the mouse asks for; ``fine`` makes steps and distances a tenth."""
+        moved = (place.x() - self.start.x()) - (place.y() - self.start.y())
         step, doubling = (0.1 * STEP_MM, 10.0 * DOUBLING) if fine else (STEP_MM, DOUBLING)
-        wanted = self.width_mm * math.pow(2.0, min(max(way / doubling, -20.0), 20.0))
+        wanted = self.width_mm * math.pow(2.0, min(max(moved / doubling, -20.0), 20.0))
         low, high = LIMITS_MM
         return min(max(round(wanted / step) * step, low), high)
 

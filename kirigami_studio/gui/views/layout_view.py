@@ -252,7 +252,7 @@ class LayoutView(Canvas):
         return self._caption
 
     def set_caption(self, text: str) -> None:
-        """Say in the upper left corner what the header has no room for."""
+        """Show in the upper left corner what does not fit into the header."""
         self._caption = text
         self.update()
 
@@ -278,13 +278,13 @@ class LayoutView(Canvas):
     def _bars_top(self) -> float:
         return CAPTION_HEIGHT if self._caption else 10.0
 
-    def _fitting(self, ways: list[list[Chip]], metrics: QFontMetrics) -> list[Chip]:
+    def _fitting(self, versions: list[list[Chip]], metrics: QFontMetrics) -> list[Chip]:
         """The first of these legends that fits into one row, else the last."""
-        for chips in ways:
+        for chips in versions:
             rows = {box.top() for box in legend_boxes(chips, metrics, self.width(), self.height())}
             if len(rows) <= 1 and self.width() >= NARROW:
                 return chips
-        return ways[-1]
+        return versions[-1]
 
     def legend(self, metrics: QFontMetrics) -> list[tuple[Chip, QRectF]]:
         """What the labels at the bottom say, and where (pixels)."""
@@ -295,8 +295,8 @@ class LayoutView(Canvas):
         chips = found
         if self._areas is not None:
             areas, mm = self._areas, self.mm_per_unit
-            ways = [difference_chips(areas, mm, self.palette_, short) + found for short in (False, True)]
-            chips = self._fitting(ways, metrics)
+            versions = [difference_chips(areas, mm, self.palette_, short) + found for short in (False, True)]
+            chips = self._fitting(versions, metrics)
         return list(zip(chips, legend_boxes(chips, metrics, self.width(), self.height()), strict=True))
 
     def paint_scene(self, painter: QPainter, transform: ViewTransform) -> None:
@@ -305,11 +305,11 @@ class LayoutView(Canvas):
         nodes = self._design.nodes(self._phi)
         field = self._design.deployment.field
         panels = transform.to_pixels(self._design.panels(nodes))
-        kept = {row: transform.to_pixels(part) for row, part in self._design.kept(nodes, self._phi).items()}
+        trimmed = {row: transform.to_pixels(part) for row, part in self._design.kept(nodes, self._phi).items()}
         palette = self.palette_
         if Overlay.RATIOS in self._overlays:  # blue means a ratio there, not a panel
             palette = replace(palette, panel_even=palette.border, panel_odd=palette.grid, panel_line=palette.muted)
-        paint_panels(painter, panels, turning_left(field.rows, field.columns), palette, kept)
+        paint_panels(painter, panels, turning_left(field.rows, field.columns), palette, trimmed)
         self._paint_voids(painter, transform, nodes)
         if self._target is not None:
             self._paint_comparison(painter, transform, nodes)
@@ -353,10 +353,14 @@ class LayoutView(Canvas):
                 lengths.append((self._areas.gap.greatest, gap))
         if Overlay.SMALL_PARTS in self._overlays:
             lengths += [(part.size, transform.to_pixels(part.ends(panels))) for part in self._small]
-        taken: list[QRectF] = []
+        occupied: list[QRectF] = []
         for length, ends in lengths:
             paint_dimension(
-                painter, ends, tr("{mm_per_unit:.2f} mm", mm_per_unit=length * self.mm_per_unit), self.palette_, taken
+                painter,
+                ends,
+                tr("{length_mm:.2f} mm", length_mm=length * self.mm_per_unit),
+                self.palette_,
+                occupied,
             )
 
     def _paint_comparison(self, painter: QPainter, transform: ViewTransform, nodes: FloatArray) -> None:
@@ -395,7 +399,7 @@ class LayoutView(Canvas):
 
 
 class FaultTour(QObject):
-    """Watches one view; it takes no click away from it that is not on a fault."""
+    """Watches one view for clicks on faults; the view still gets every click."""
 
     phi_wanted = Signal(float)  #: radians, the angle at which the fault can be seen
     status = Signal(str)

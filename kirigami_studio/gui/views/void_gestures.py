@@ -142,7 +142,7 @@ class VoidGestures(QObject):
             self._point(QPointF(*shapes.corners[void].mean(axis=0).tolist()))
 
     def follow(self) -> None:
-        """Another design is shown: forget what it does not have, and look again at what lies under the pointer."""
+        """Another design is shown: forget voids that it does not have, and look again what is under the pointer."""
         shapes = self._shapes()
         rows, columns = (0, 0) if shapes is None else shapes.corners.shape[:2]
         self.select(frozenset(void for void in self._selected if void[0] < rows and void[1] < columns))
@@ -155,10 +155,10 @@ class VoidGestures(QObject):
 
     def drop(self) -> None:
         """End the gesture under way."""
-        held = self.dragging
+        dragging = self.dragging
         self._pressed = self._grasp = self._band = None
         self._dragging = False
-        if held:
+        if dragging:
             self.drag_ended.emit()
 
     # drawing -------------------------------------------------------------------------------------------------------
@@ -332,14 +332,14 @@ class VoidGestures(QObject):
         return self._hovered is not None or self._vertex is not None
 
     def _point(self, place: QPointF) -> None:
-        """Look what lies under the pointer."""
+        """Find what is under the pointer."""
         shapes = self._shapes()
         self._pointer = place
         vertex = shapes.vertex_at(place.x(), place.y()) if shapes is not None and self.active else None
         void = None if shapes is None or vertex is not None else shapes.void_at(place.x(), place.y())
         if self.active and self._grasp is None:
-            hand = void is not None or vertex is not None
-            self._canvas.setCursor(Qt.CursorShape.OpenHandCursor if hand else Qt.CursorShape.ArrowCursor)
+            draggable = void is not None or vertex is not None
+            self._canvas.setCursor(Qt.CursorShape.OpenHandCursor if draggable else Qt.CursorShape.ArrowCursor)
         if vertex != self._vertex or void != self._hovered or void is not None:
             self._vertex, self._hovered = vertex, void
             self.hovered.emit(void)
