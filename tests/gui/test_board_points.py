@@ -270,7 +270,7 @@ def test_that_drawn_shapes_and_strokes_are_mirrored_in_one_step(plate: MainWindo
         plate.target.view.grab()
         send(plate, QEvent.Type.MouseButtonRelease, path[-1], NONE, PLAIN)
     label = undo_label(plate)
-    assert label is not None and label.startswith("Draw ") and label.endswith("with its mirror image")
+    assert label is not None and label.startswith("Draw ") and label.endswith(", mirrored")
     shape = placed(plate)
     assert shape.size[0] == pytest.approx(60, abs=1.5)
     mirrored = Placed.from_ring(shape.ring * (-1, 1), "").polygon

@@ -176,7 +176,7 @@ def test_that_rules_select_what_they_name(cutting: MainWindow) -> None:
         if plan.hinges.through[hinge] == SHEET_EDGE or int(plan.hinges.cut[hinge]) in opening
     }
     lengths = {path.cut: path.length for path in plan.paths}
-    short, long = ([lengths[int(plan.hinges.cut[h])] for h in found[f"At {word} cuts"]] for word in ("short", "long"))
+    short, long = ([lengths[int(plan.hinges.cut[h])] for h in found[f"On {word} cuts"]] for word in ("short", "long"))
     assert max(short) < min(long) and min(len(short), len(long)) >= len(plan.hinges) // 5
 
 

@@ -293,7 +293,7 @@ def test_that_a_double_click_sets_a_point_and_delete_takes_it_away(plate: MainWi
 def test_that_a_double_click_on_a_point_makes_it_smooth_and_a_corner_again(plate: MainWindow) -> None:
     point_tool(plate)
     double_click(plate, (20, 10))
-    assert plate.controller.history.undo_label == "Make point smooth" and len(placed(plate).ring) > 20
+    assert plate.controller.history.undo_label == "Make point automatic" and len(placed(plate).ring) > 20
     double_click(plate, (20, 10))
     assert plate.controller.history.undo_label == "Make point a corner" and len(placed(plate).ring) == 4
 

@@ -29,7 +29,7 @@ def test_that_cards_wait_for_their_pictures_and_get_them(
         owed.append(cards.pending)
         begin()
 
-    monkeypatch.setattr(card_delegate, "DRAWING", 0.0)
+    monkeypatch.setattr(card_delegate, "PAINT_SECONDS", 0.0)
     monkeypatch.setattr(card_delegate, "candidate_pixmap", counted)
     monkeypatch.setattr(cards, "begin", begun)
     window.controller.open_project(project_file)
