@@ -25,10 +25,9 @@ from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.gui.application import create_application, create_window
 from kirigami_studio.gui.look.theme import LIGHT
-from kirigami_studio.gui.main_window import MainWindow
+from kirigami_studio.gui.main_window import FIRST, MainWindow
 from kirigami_studio.gui.messages import Tone
 from kirigami_studio.gui.panels.settings_panel import POLISH
-from kirigami_studio.gui.shell import FIRST
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.outlines import silhouettes
@@ -73,7 +72,7 @@ class WatchedSession:
         self.places = Places(folder)
         self.window: MainWindow = create_window(LIGHT)
         self.window.resize(FIRST)
-        self.window.commands.files = self.places
+        self.window.file_dialogs = self.places
         self.watch = ThreadWatch()
         self.longest: dict[str, tuple[float, float, float]] = {}
 
@@ -158,7 +157,7 @@ class WatchedSession:
         self.until(lambda: time.monotonic() > end)
 
     def press(self, name: str) -> None:
-        self.window.actions_[name].trigger()
+        self.window.commands[name].trigger()
 
     def set_up(self, designs: int, polish: int, search: bool) -> None:
         """Ask for so many designs."""

@@ -108,7 +108,7 @@ class WatchedTools(WatchedSession):
 
     def pictures(self) -> None:
         """Pictures of the view and of the whole window, four times as large, and on the clipboard."""
-        stage, picturing = self.window.stage, self.window.commands.picturing
+        stage, picturing = self.window.stage, self.window.picturing
         picturing.scale = 4
         for name, view in (("the view", stage.view), ("the whole window", self.window)):
             for suffix in (".png", ".svg"):
@@ -121,7 +121,7 @@ class WatchedTools(WatchedSession):
         self.step("export a report", lambda: self.press("export"), self.told)
 
     def write_picture(self, step: str, view: QWidget, path: Path) -> None:
-        picturing = self.window.commands.picturing
+        picturing = self.window.picturing
         written: list[object] = []
         picturing.written.connect(written.append)
         self.step(step, lambda: picturing.write(view, path), lambda: bool(written))
@@ -189,7 +189,7 @@ class WatchedTools(WatchedSession):
         names = ("library", "materials", "guide", "shortcuts", "history", "tour")
         for name in names:
             self.step(f"open: {name}", partial(self.press, name))
-        self.window.commands.close_dialogs()
+        self.window.dialogs.close()
 
     def open(self, step: str, name: str, designs: int) -> None:
         """Open a project."""

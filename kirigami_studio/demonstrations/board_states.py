@@ -60,7 +60,7 @@ class BoardStates(Session):
 
     def editor(self) -> None:
         """A shape with a thin arm on the drawing board, its points, its handles, and a shape about to be taken away."""
-        target, reshaping = self.window.target, self.window.wiring.reshaping
+        target, reshaping = self.window.target, self.window.connections.target.reshaping
         body = figure(Figure.ELLIPSE, Box(-40.0, -25.0, 20.0, 25.0))
         reshaping.take(Change("Draw ellipse", lambda: Placed.from_ring(body, "ladle")))
         arm, now = figure(Figure.RECTANGLE, Box(15.0, -3.0, 60.0, 3.0)), target.view.context.placed
@@ -76,7 +76,7 @@ class BoardStates(Session):
 
     def points_and_mirror(self) -> None:
         """Selected points with their handles, a field that selects, and a shape that is mirrored as it is drawn."""
-        target, reshaping = self.window.target, self.window.wiring.reshaping
+        target, reshaping = self.window.target, self.window.connections.target.reshaping
         disc = placed_figure(Figure.ELLIPSE, Box(-30.0, -25.0, 30.0, 25.0))
         reshaping.take(Change("Draw ellipse", lambda: disc))
         target.set_tool(Tool.POINTS)
@@ -106,7 +106,7 @@ class BoardStates(Session):
         target.set_tool(Tool.POSE)
         target.tools.options.pose.turn.setValue(20.0)
         self.all_sizes("lost-designs")
-        self.window.wiring.discarded.bring_back()
+        self.window.connections.target.discarded.bring_back()
         target.set_editing(False)
         if not controller.document.candidates:
             raise SessionError("The designs did not come back.")

@@ -20,9 +20,8 @@ from PySide6.QtWidgets import QApplication, QWidget
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.gui.application import create_application, create_window
 from kirigami_studio.gui.look.theme import DARK, LIGHT
-from kirigami_studio.gui.main_window import MainWindow
+from kirigami_studio.gui.main_window import FIRST, MainWindow
 from kirigami_studio.gui.messages import Tone
-from kirigami_studio.gui.shell import FIRST
 
 DESIGNS = 8
 #: Seconds until a step that does not happen is given up; the first run loads the generator.
@@ -67,7 +66,7 @@ class Session:
         self.application = create_application(["kirigami-studio"])
         self.window: MainWindow = create_window(LIGHT)
         self.window.resize(FIRST)  # the off-screen platform's own screen is smaller than any real one
-        self.window.commands.files = PresetFiles(out)
+        self.window.file_dialogs = PresetFiles(out)
 
     def play(self) -> list[Path]:
         """Run every step and return the files made.
@@ -91,7 +90,7 @@ class Session:
     def choose_heart(self) -> None:
         """Open the library, search, press Enter."""
         click(self.window.target.buttons["library"])
-        picker = self.window.commands.picker
+        picker = self.window.dialogs.picker
         if picker is None:
             raise SessionError("The library did not open.")
         press(picker.search, "heart")
@@ -147,7 +146,7 @@ class Session:
         """Save the project."""
         path = self.out / "session.kiri"
         path.unlink(missing_ok=True)
-        self.window.actions_["save"].trigger()
+        self.window.commands["save"].trigger()
         self.until(lambda: not self.window.controller.history.unsaved, "the project was not saved")
         self.files.append(path)
 

@@ -128,17 +128,17 @@ class StateSheet(BoardStates):
         window.fabrication.lengths["connector_mm"].setValue(15.0)
         self.until(lambda: not window.fabrication.export.isEnabled(), "the wide connector was not refused")
         self.all_sizes("refused")
-        window.actions_["undo"].trigger()
+        window.commands["undo"].trigger()
         self.until(window.fabrication.export.isEnabled, "undo did not bring the plan back")
         self.project()
         self.messages()
         click(window.target.buttons["library"])
-        if window.commands.picker is not None:
-            self.picture("library", window.commands.picker)
-            window.commands.picker.close()
-        window.commands.show_guide()
-        if window.commands.guide is not None:
-            self.picture("guide", window.commands.guide)
+        if window.dialogs.picker is not None:
+            self.picture("library", window.dialogs.picker)
+            window.dialogs.picker.close()
+        window.dialogs.show_guide()
+        if window.dialogs.guide is not None:
+            self.picture("guide", window.dialogs.guide)
         self.first_steps()
         window.controller.history.mark_saved()
         window.close()
@@ -147,19 +147,19 @@ class StateSheet(BoardStates):
 
     def first_steps(self) -> None:
         """The tour at a control on every side, and the sheet of keys."""
-        commands = self.window.commands
-        commands.tour.start()
-        for step in range(len(commands.tour.steps)):
+        tour, dialogs = self.window.tour, self.window.dialogs
+        tour.start()
+        for step in range(len(tour.steps)):
             if step == 2:
                 self.all_sizes("tour")
             else:
                 self.picture(f"tour-{step + 1}")
-            click(commands.tour.callout.next)
-        commands.show_shortcuts()
-        if commands.shortcuts is not None:
+            click(tour.callout.next)
+        dialogs.show_shortcuts()
+        if dialogs.shortcuts is not None:
             for palette in (DARK, LIGHT):
                 self.window.set_theme(palette)
-                self.picture(f"shortcuts-{palette.name}", commands.shortcuts)
+                self.picture(f"shortcuts-{palette.name}", dialogs.shortcuts)
 
     def polishing(self) -> None:
         """A run whose designs improve, with a search after it."""
@@ -167,7 +167,7 @@ class StateSheet(BoardStates):
         window.settings.search.setChecked(True)
         window.settings.candidates.setValue(DESIGNS)
         click(window.run.generate)
-        self.until(lambda: window.says.text().startswith("Polished"), "no design was polished")
+        self.until(lambda: window.status_text.text().startswith("Polished"), "no design was polished")
         self.all_sizes("polishing")
         self.until(lambda: not window.controller.running, "the run did not end")
         self.until(window.fabrication.export.isEnabled, "no cut plan was made")
@@ -201,7 +201,7 @@ class StateSheet(BoardStates):
         click(bar.alike)
         self.side_by_side()
         while len(controller.document.candidates) > before or set(controller.document.marks) != {Mark.NONE}:
-            window.actions_["undo"].trigger()
+            window.commands["undo"].trigger()
         self.until(lambda: view.model_.rowCount() == before, "undo did not bring the first designs back")
         self.until(window.fabrication.export.isEnabled, "no cut plan was made")
 
@@ -215,8 +215,8 @@ class StateSheet(BoardStates):
         self.all_sizes("compare-half-open")
         window.stage.deployment.set_phi(0.0)
         click(window.stage.compare.leave)
-        window.wiring.gallery.show_menu(window.controller.document.candidates[0], QPoint(100, 100))
-        menu = window.wiring.gallery.menu
+        window.connections.designs.show_menu(window.controller.document.candidates[0], QPoint(100, 100))
+        menu = window.connections.designs.menu
         if menu is not None:
             self.picture("card-menu", menu)
             menu.close()
@@ -300,7 +300,7 @@ class StateSheet(BoardStates):
         self.until(lambda: not controller.hand.busy, "the changed ratio was not scored")
         self.all_sizes("by-hand-changed")
         while window.controller.history.undo_label is not None and "void" in window.controller.history.undo_label:
-            window.actions_["undo"].trigger()
+            window.commands["undo"].trigger()
         click(window.stage.hand)
 
     def cuts(self) -> None:
@@ -322,7 +322,7 @@ class StateSheet(BoardStates):
         self.all_sizes("cuts-problem")
         stage.fit()
         while history.undo_label is not None and "connectors" in history.undo_label:
-            self.window.actions_["undo"].trigger()
+            self.window.commands["undo"].trigger()
         self.until(lambda: not page.problems.isVisible(), "undo did not bring the connectors back")
         page.view.gestures.select(frozenset())
         click(stage.cuts_switch)
@@ -332,18 +332,18 @@ class StateSheet(BoardStates):
 
     def exported(self) -> None:
         """The report of a cut file and the material editor, in both themes."""
-        commands = self.window.commands
+        dialogs = self.window.dialogs
         self.window.controller.export(self.out / "cut.dxf")
-        self.until(lambda: commands.report is not None, "no report was shown")
-        commands.show_materials()
+        self.until(lambda: dialogs.report is not None, "no report was shown")
+        dialogs.show_materials()
         for palette in (DARK, LIGHT):
             self.window.set_theme(palette)
-            if commands.report is not None and commands.materials is not None:
-                self.picture(f"report-{palette.name}", commands.report)
-                self.picture(f"materials-{palette.name}", commands.materials)
-        if commands.materials is not None:
-            commands.materials.close()
-        commands.close_report()
+            if dialogs.report is not None and dialogs.materials is not None:
+                self.picture(f"report-{palette.name}", dialogs.report)
+                self.picture(f"materials-{palette.name}", dialogs.materials)
+        if dialogs.materials is not None:
+            dialogs.materials.close()
+        dialogs.close_report()
         while self.window.messages.messages:
             self.window.messages.close_message()
 
@@ -352,7 +352,7 @@ class StateSheet(BoardStates):
 
     def project(self) -> None:
         """Work of a session that was cut off, the menus about files and pictures, the history with undone steps."""
-        window, commands = self.window, self.window.commands
+        window, dialogs = self.window, self.window.dialogs
         filing, folder = window.controller.filing, self.out / "recovery"
         left = folder / "left.kiri"
         note = Note("teapot.kiri", str(self.out / "teapot.kiri"), "2026-11-21T12:03:00+00:00", 1)
@@ -366,21 +366,21 @@ class StateSheet(BoardStates):
         for name in ("teapot.kiri", "session.kiri"):
             filing.recent.take_project(self.out / name)
         filing.recent.take_target(str(self.out / f"{LONG_NAME}.png"))
-        commands.recent.show_missing(frozenset({str((self.out / "teapot.kiri").absolute())}))
-        window.actions_["history"].trigger()
+        window.recent_menu.show_missing(frozenset({str((self.out / "teapot.kiri").absolute())}))
+        window.commands["history"].trigger()
         window.controller.go_to(max(0, window.controller.history.position - 2))
         for palette in (DARK, LIGHT):
             window.set_theme(palette)
-            for menu, name in ((commands.recent, "recent"), (commands.pictures, "pictures")):
+            for menu, name in ((window.recent_menu, "recent"), (window.picture_menu, "pictures")):
                 menu.popup(window.mapToGlobal(window.rect().topLeft()))
                 self.picture(f"menu-{name}-{palette.name}", menu)
                 menu.close()
-            if commands.history is not None:
-                commands.history.show_history(window.controller.history, palette)
-                self.picture(f"history-{palette.name}", commands.history)
+            if dialogs.history is not None:
+                dialogs.history.show_history(window.controller.history, palette)
+                self.picture(f"history-{palette.name}", dialogs.history)
         window.controller.go_to(len(window.controller.history.steps))
-        if commands.history is not None:
-            commands.history.close()
+        if dialogs.history is not None:
+            dialogs.history.close()
 
     def messages(self) -> None:
         """An error with details, then a question."""
@@ -389,7 +389,7 @@ class StateSheet(BoardStates):
         bar.add(Message(sentence, Tone.ERROR, "first line of the trace\nsecond line of the trace"))
         bar.details.setChecked(True)
         self.all_sizes("error")
-        self.window.actions_["new"].trigger()
+        self.window.commands["new"].trigger()
         self.all_sizes("question")
         while bar.messages:
             bar.close_message()

@@ -134,14 +134,14 @@ def run(argv: list[str]) -> int:
     window.controller.filing.recent.load(config / RECENT)
     window.controller.filing.recovery.use(platformdirs.user_state_path("kirigami-studio", appauthor=False) / RECOVERY)
     application.aboutToQuit.connect(lambda: window.remember(state))
-    window.commands.dressing.refresh()
-    window.commands.dressing.listen()
+    window.appearance.refresh()
+    window.appearance.listen()
     window.show()
     QTimer.singleShot(0, window, lambda: open_first(window, argv[1] if len(argv) > 1 else FIRST_TARGET))
     WarmUp(window.controller.warm_up, lambda: window.controller.queue.busy, window)
     if not window.controller.preferring.present.tour_seen:
         window.controller.preferring.note_tour()
-        QTimer.singleShot(0, window, window.commands.tour.start)
+        QTimer.singleShot(0, window, window.tour.start)
     return application.exec()
 
 

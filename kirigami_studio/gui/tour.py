@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QEvent, QObject, QPoint, QRect, Qt, QTimer, SignalInstance
 from PySide6.QtGui import QShortcut
@@ -11,8 +12,10 @@ from PySide6.QtWidgets import QWidget
 
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.controller import Controller
-from kirigami_studio.gui.shell import Shell
 from kirigami_studio.gui.views.callout import Callout, Ring
+
+if TYPE_CHECKING:
+    from kirigami_studio.gui.main_window import MainWindow
 
 Anchor = Callable[[], QWidget]
 
@@ -36,7 +39,7 @@ class Step:
     done: tuple[SignalInstance, ...]
 
 
-def steps_of(window: Shell, controller: Controller) -> tuple[Step, ...]:
+def steps_of(window: MainWindow, controller: Controller) -> tuple[Step, ...]:
     """The tour of one window, in the order of the work."""
     stage, slider = window.stage, window.stage.deployment.slider
     return (
@@ -86,7 +89,7 @@ def _shown(wanted: QWidget, otherwise: QWidget) -> QWidget:
 class Tour(QObject):
     """Leads through the steps; never in the way of the work."""
 
-    def __init__(self, window: Shell, controller: Controller) -> None:
+    def __init__(self, window: MainWindow, controller: Controller) -> None:
         super().__init__(window)
         self.window = window
         self.steps = steps_of(window, controller)
@@ -101,7 +104,7 @@ class Tour(QObject):
         self._soon.setInterval(0)
         self._soon.timeout.connect(self._place)
         window.target.editing_changed.connect(lambda _: self._soon.start() if self.running else None)
-        self._cancel = window.actions_["cancel"]
+        self._cancel = window.commands["cancel"]
         self._escape = QShortcut(Qt.Key.Key_Escape, window, self.end)
         self._cancel.changed.connect(self._share_escape)
         self._share_escape()

@@ -78,7 +78,7 @@ def files() -> PathAnswers:
 def window(qtbot: QtBot, files: PathAnswers) -> Iterator[MainWindow]:
     """An empty studio; closing it must leave nothing running."""
     made = create_window(LIGHT)
-    made.commands.files = files
+    made.file_dialogs = files
     with qtbot.waitExposed(made):
         made.show()
     threads = made.findChildren(QThread)
@@ -143,7 +143,7 @@ def designed(window: MainWindow, project_file: Path, until: Callable[[Callable[[
 def by_hand(designed: MainWindow) -> MainWindow:
     """The three designs, half open, in the mode."""
     designed.stage.deployment.set_phi(math.radians(100.0))
-    designed.actions_["hand"].trigger()
+    designed.commands["hand"].trigger()
     assert designed.stage.hand.isChecked() and designed.stage.voids.isVisible()
     return designed
 

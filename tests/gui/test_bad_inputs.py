@@ -143,11 +143,11 @@ def test_that_each_bad_file_gets_one_clear_sentence_and_loses_nothing(
         judge(message.sentence.replace(str(path), name))
         assert designed.controller.document is before and designed.controller.stage is stage, name
         assert designed.controller.path == place and not designed.isWindowModified(), name
-        assert "nothing changed" in designed.says.text(), name
+        assert "nothing changed" in designed.status_text.text(), name
         designed.messages.close_message()
     designed.controller.targeting.open("star")
     until(lambda: designed.target.view.outline is not None and designed.target.view.outline.name == "star")
-    designed.actions_["undo"].trigger()
+    designed.commands["undo"].trigger()
     until(lambda: designed.fabrication.export.isEnabled())
 
 

@@ -26,7 +26,7 @@ Until = Callable[[Callable[[], bool]], None]
 def plate(window: MainWindow) -> MainWindow:
     """A rectangle of 40 x 20 mm around the origin, ready to be moved."""
     made = placed_figure(Figure.RECTANGLE, Box(-20, -10, 20, 10))
-    window.wiring.reshaping.take(Change("Draw rectangle", lambda: made))
+    window.connections.target.reshaping.take(Change("Draw rectangle", lambda: made))
     window.target.set_tool(Tool.POSE)
     QApplication.processEvents()
     return window
@@ -45,7 +45,7 @@ def test_that_a_drag_inside_moves_the_target_by_the_grid_and_ctrl_frees_it(plate
     drag(plate, (5, 5), (5 + 2.2 * step, 5 - 0.9 * step))
     assert undo_label(plate) == "Move target"
     assert bounds(plate) == pytest.approx((-20 + 2 * step, -10 - step, 20 + 2 * step, 10 - step))
-    plate.actions_["undo"].trigger()
+    plate.commands["undo"].trigger()
     assert bounds(plate) == pytest.approx((-20, -10, 20, 10))
     drag(plate, (5, 5), (8.3, 6.1), CTRL)
     assert bounds(plate) == pytest.approx((-16.7, -8.9, 23.3, 11.1), abs=1e-6)
@@ -70,7 +70,7 @@ def test_that_arrow_keys_nudge_in_mm(plate: MainWindow, qtbot: QtBot) -> None:
         total += way
         assert bounds(plate)[:2] == pytest.approx((total[0] - 20, total[1] - 10))
     for _ in range(3):
-        plate.actions_["undo"].trigger()
+        plate.commands["undo"].trigger()
     assert bounds(plate) == pytest.approx((-20, -10, 20, 10))
 
 
@@ -133,9 +133,9 @@ def test_that_lost_designs_are_told_and_brought_back_over_several_changes(design
     act()
     assert designed.controller.document is before
     assert not lost(designed)
-    designed.actions_["redo"].trigger()
+    designed.commands["redo"].trigger()
     assert lost(designed)
-    designed.actions_["undo"].trigger()
+    designed.commands["undo"].trigger()
     assert not lost(designed)
 
 
@@ -151,7 +151,7 @@ def test_that_a_press_on_the_groove_only_shows_until_it_is_let_go(designed: Main
     qtbot.mouseMove(slider, there)
     qtbot.mouseRelease(slider, LEFT, pos=there)
     assert undo_label(designed) == "Simplify target" and len(lost(designed)) == 1
-    designed.actions_["undo"].trigger()
+    designed.commands["undo"].trigger()
     assert designed.controller.document is before
 
 
@@ -179,7 +179,7 @@ def test_that_the_sheet_is_cut_at_the_drawn_size_in_one_step(designed: MainWindo
     sheet = design.deployment.nodes(design.phi_target) * (width / np.ptp(design.deployment.compact[:, 0]))
     posed = design.pose.apply(design.deployment.nodes(design.phi_target)) * (140.0 / np.ptp(target.points[:, 0]))
     assert math.dist(sheet[0], sheet[-1]) == pytest.approx(math.dist(posed[0], posed[-1]), rel=1e-9)
-    designed.actions_["undo"].trigger()
+    designed.commands["undo"].trigger()
     assert designed.controller.document.fabrication.width_mm == 100.0 and row.link.isEnabled()
 
 

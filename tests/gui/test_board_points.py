@@ -75,7 +75,7 @@ def undo_label(window: MainWindow) -> str | None:
 def plate(window: MainWindow) -> MainWindow:
     """A rectangle of 40 x 20 mm around the origin, its points ready to be moved."""
     made = placed_figure(Figure.RECTANGLE, Box(-20, -10, 20, 10))
-    window.wiring.reshaping.take(Change("Draw rectangle", lambda: made))
+    window.connections.target.reshaping.take(Change("Draw rectangle", lambda: made))
     window.target.set_tool(Tool.POINTS)
     QApplication.processEvents()
     return window
@@ -101,7 +101,7 @@ def test_that_shift_clicks_select_more_and_a_drag_moves_them_all_in_one_step(pla
     assert len(tool.selected) == 2
     drag(plate, (20, 10), (30, 10))
     assert corners(plate) == {(-20, -10), (30, -10), (30, 10), (-20, 10)} and undo_label(plate) == "Move points"
-    plate.actions_["undo"].trigger()
+    plate.commands["undo"].trigger()
     assert corners(plate) == {(-20, -10), (20, -10), (20, 10), (-20, 10)}
 
 
@@ -134,7 +134,7 @@ def test_that_all_points_are_selected_nudged_and_kept_from_being_deleted(plate: 
         assert placed(plate).polygon.bounds == pytest.approx((total - 20, -10, total + 20, 10), abs=1e-6)
         assert undo_label(plate) == "Move points" and tool.selected == {0, 1, 2, 3}
     for _ in steps:
-        plate.actions_["undo"].trigger()
+        plate.commands["undo"].trigger()
     assert placed(plate).polygon.bounds == pytest.approx((-20, -10, 20, 10))
     qtbot.keyClick(view, Qt.Key.Key_A, CTRL)
     qtbot.keyClick(view, Qt.Key.Key_Delete)
@@ -143,12 +143,12 @@ def test_that_all_points_are_selected_nudged_and_kept_from_being_deleted(plate: 
 
 def test_that_selected_points_are_deleted_in_one_step(plate: MainWindow, qtbot: QtBot) -> None:
     made = placed_figure(Figure.REGULAR, Box(-20, -20, 20, 20), 8)
-    plate.wiring.reshaping.take(Change("Draw octagon", lambda: made))
+    plate.connections.target.reshaping.take(Change("Draw octagon", lambda: made))
     tool = tool_of(plate)
     tool.select({1, 4, 6})
     qtbot.keyClick(plate.target.view, Qt.Key.Key_Delete)
     assert len(placed(plate).ring) == 5 and undo_label(plate) == "Delete points" and not tool.selected
-    plate.actions_["undo"].trigger()
+    plate.commands["undo"].trigger()
     assert len(placed(plate).ring) == 8
 
 
@@ -223,12 +223,12 @@ def test_that_points_are_the_same_after_undo_other_tools_and_the_project_file(
 
 
 def test_that_with_a_mirror_the_image_of_a_point_goes_the_mirrored_way(plate: MainWindow) -> None:
-    plate.actions_["axis"].trigger()
+    plate.commands["axis"].trigger()
     assert plate.target.view.context.mirror.axis is Axis.UPRIGHT and plate.target.tools.axis.isChecked()
     drag(plate, (20, 10), (30, 20))
     assert corners(plate) == {(-20, -10), (20, -10), (30, 20), (-30, 20)}
     for _ in range(3):
-        plate.actions_["axis"].trigger()
+        plate.commands["axis"].trigger()
     assert plate.target.view.context.mirror.axis is Axis.NONE
     drag(plate, (30, 20), (20, 10))
     assert corners(plate) == {(-20, -10), (20, -10), (20, 10), (-30, 20)}
@@ -236,7 +236,7 @@ def test_that_with_a_mirror_the_image_of_a_point_goes_the_mirrored_way(plate: Ma
 
 def test_that_a_point_on_the_axis_stays_on_it_and_handles_are_mirrored(plate: MainWindow, qtbot: QtBot) -> None:
     made = placed_figure(Figure.ELLIPSE, Box(-20, -10, 20, 10))
-    plate.wiring.reshaping.take(Change("Draw ellipse", lambda: made))
+    plate.connections.target.reshaping.take(Change("Draw ellipse", lambda: made))
     plate.target.tools.axis.set_axis(Axis.UPRIGHT)
     tool = tool_of(plate)
     drag(plate, (0, 10), (8, 20))
@@ -275,7 +275,7 @@ def test_that_drawn_shapes_and_strokes_are_mirrored_in_one_step(plate: MainWindo
     assert shape.size[0] == pytest.approx(60, abs=1.5)
     mirrored = Placed.from_ring(shape.ring * (-1, 1), "").polygon
     assert shape.polygon.symmetric_difference(mirrored).area < 1e-5 * shape.polygon.area
-    plate.actions_["undo"].trigger()
+    plate.commands["undo"].trigger()
     assert plate.controller.document.target is None
 
 

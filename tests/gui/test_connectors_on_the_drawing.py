@@ -103,7 +103,7 @@ def test_that_a_typed_width_reaches_the_plan_and_undoes_in_one_step(
     assert page._plan.hinges.finished_mm[[3, 7]] == pytest.approx(0.3, abs=2e-3)
     assert page.view.selected == {3, 7}
     assert cutting.controller.history.undo_label == "Set 2 connectors to 0.3 mm"
-    cutting.actions_["undo"].trigger()
+    cutting.commands["undo"].trigger()
     assert fabrication(cutting).options.hinge_mm == () and cutting.controller.history.undo_label is None
 
 
@@ -113,7 +113,7 @@ def test_that_steps_of_the_number_are_one_undo_step(cutting: MainWindow) -> None
     for _ in range(4):
         page.hinges.width_mm.stepUp()
     assert fabrication(cutting).options.hinge_mm == ((5, 0.4),)
-    cutting.actions_["undo"].trigger()
+    cutting.commands["undo"].trigger()
     assert fabrication(cutting).options.hinge_mm == ()
 
 
@@ -128,7 +128,7 @@ def test_that_delete_cuts_through_and_reset_brings_the_usual_width_back(cutting:
     assert cutting.controller.history.undo_label == "Cut through connector 4"
     cutting.controller.fabrication.reset_hinges(frozenset({4, 9}))
     assert fabrication(cutting).options.removed == () and fabrication(cutting).options.hinge_mm == ()
-    cutting.actions_["undo"].trigger()
+    cutting.commands["undo"].trigger()
     assert fabrication(cutting).options.removed == (4,)
 
 
@@ -218,9 +218,9 @@ def test_that_a_drag_makes_connectors_wider_and_is_one_undo_step(cutting: MainWi
     drag(page, qtbot, place(page, second), QPoint(0, 70))
     qtbot.mouseRelease(page.view, LEFT, pos=place(page, second) + QPoint(0, 70))
     assert dict(fabrication(cutting).options.hinge_mm)[first] == pytest.approx(usual, abs=0.011)
-    cutting.actions_["undo"].trigger()
+    cutting.commands["undo"].trigger()
     assert dict(fabrication(cutting).options.hinge_mm) == widths
-    cutting.actions_["undo"].trigger()
+    cutting.commands["undo"].trigger()
     assert fabrication(cutting).options.hinge_mm == ()
 
 
@@ -270,5 +270,5 @@ def test_that_a_connector_that_is_cut_through_is_called_so(cutting: MainWindow, 
     assert not page.hinges.remove.isEnabled() and page.hinges.reset.isEnabled()
     page.view.gestures.select(frozenset({first, second}))
     assert page.hinges.selection_text.text() == "2 connectors, 1 cut through" and page.hinges.remove.isEnabled()
-    cutting.actions_["undo"].trigger()
+    cutting.commands["undo"].trigger()
     until(lambda: page.hinges.selection_text.text() == "2 connectors")

@@ -60,7 +60,7 @@ def test_that_each_choice_is_one_undo_step(options: MainWindow, name: str, value
     pick(box, value)
     after = options.controller.document.fabrication
     assert value in (after.options.style, after.options.order, after.profile, after.dxf_version)
-    options.actions_["undo"].trigger()
+    options.commands["undo"].trigger()
     assert options.controller.document.fabrication == before and box.currentData() != value
 
 
@@ -70,7 +70,7 @@ def test_that_dragging_the_tabs_is_one_undo_step(options: MainWindow) -> None:
     for count in (1, 2, 4):
         panel.tabs.setValue(count)
     assert options.controller.document.fabrication.options.tabs == 4 and panel.tab_mm.isEnabled()
-    options.actions_["undo"].trigger()
+    options.commands["undo"].trigger()
     assert panel.tabs.value() == 0
 
 

@@ -69,9 +69,9 @@ def test_that_a_key_and_a_button_switch_between_layout_and_cuts(designed: MainWi
     assert stage.view.isVisible() and not stage.cuts.view.isVisible()
     qtbot.keyClick(designed, Qt.Key.Key_C)
     assert stage.showing_cuts and stage.cuts.view.isVisible() and not stage.view.isVisible()
-    assert designed.actions_["cuts"].isChecked() and stage.cuts.toggles[CutOverlay.TRAVEL].isVisible()
+    assert designed.commands["cuts"].isChecked() and stage.cuts.toggles[CutOverlay.TRAVEL].isVisible()
     qtbot.mouseClick(stage.cuts_switch, LEFT)
-    assert not stage.showing_cuts and stage.deployment.isVisible() and not designed.actions_["cuts"].isChecked()
+    assert not stage.showing_cuts and stage.deployment.isVisible() and not designed.commands["cuts"].isChecked()
 
 
 @pytest.mark.parametrize("kerf", [0.5, 2.0])
@@ -170,7 +170,7 @@ def test_that_a_refused_plan_leaves_the_last_picture_and_says_so(cutting: MainWi
     cutting.fabrication.lengths["connector_mm"].setValue(19.0)
     until(lambda: not cutting.fabrication.export.isEnabled())
     assert view.scene_bounds() is not None and view.grab().toImage() != before
-    cutting.actions_["undo"].trigger()
+    cutting.commands["undo"].trigger()
     until(cutting.fabrication.export.isEnabled)
     assert view.grab().toImage() == before
 

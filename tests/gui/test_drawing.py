@@ -11,9 +11,9 @@ from PySide6.QtGui import QColor, QImage
 from PySide6.QtWidgets import QApplication
 
 from kirigami_studio.evaluate.posed_design import PosedDesign
-from kirigami_studio.gui.actions import COMMANDS
 from kirigami_studio.gui.look import icons, theme
 from kirigami_studio.gui.look.theme import DARK, LIGHT, PALETTES, Palette, style_sheet
+from kirigami_studio.gui.main_window import MainWindow
 from kirigami_studio.gui.scene.fault_items import FaultKind, contact_place, faults, inverted_panels
 from kirigami_studio.gui.scene.layout_items import candidate_pixmap
 from kirigami_studio.gui.scene.mismatch_items import mismatch
@@ -119,10 +119,10 @@ def test_that_text_is_readable_on_every_ground(palette: Palette) -> None:
     assert contrast(palette.target, palette.canvas) > 3
 
 
-def test_that_every_command_has_its_icon_and_a_key_of_its_own(qapp: QApplication) -> None:
-    keys = [key for command in COMMANDS for key in command.shortcuts]
+def test_that_every_command_has_its_icon_and_a_key_of_its_own(window: MainWindow) -> None:
+    keys = [key for command in window.commands.records for key in command.shortcuts]
     assert len(keys) == len(set(keys))
-    for command in COMMANDS:
+    for command in window.commands.records:
         assert command.tip
         if command.icon:
             assert not icons.pixmap(command.icon, "#123456", 24).isNull()

@@ -77,7 +77,7 @@ def use(window: MainWindow, tool: Tool, mode: Combine = Combine.REPLACE) -> None
 @pytest.fixture
 def board(window: MainWindow) -> MainWindow:
     """A studio with the editor open on an empty board."""
-    window.actions_["edit_target"].trigger()
+    window.commands["edit_target"].trigger()
     QApplication.processEvents()
     return window
 
@@ -95,11 +95,11 @@ def plate(board: MainWindow) -> MainWindow:
 
 def test_that_the_editor_takes_the_place_of_the_stage_and_gives_it_back(heart: MainWindow) -> None:
     before = heart.target.view.width()
-    heart.actions_["edit_target"].trigger()
+    heart.commands["edit_target"].trigger()
     QApplication.processEvents()
     assert heart.target.view.width() > 2 * before and heart.target.tools.isVisible()
     assert not heart.stage.isVisible() and not heart.settings.isVisible()
-    heart.actions_["edit_target"].trigger()
+    heart.commands["edit_target"].trigger()
     QApplication.processEvents()
     assert heart.stage.isVisible() and heart.settings.isVisible() and not heart.target.tools.isVisible()
     assert abs(heart.target.view.width() - before) <= 2
@@ -115,7 +115,7 @@ def test_that_escape_puts_the_tool_away_and_then_leaves_the_editor(board: MainWi
 
 def test_that_the_board_has_the_keys_as_soon_as_it_opens(heart: MainWindow, qtbot: QtBot) -> None:
     heart.stage.view.setFocus()
-    heart.actions_["edit_target"].trigger()
+    heart.commands["edit_target"].trigger()
     assert heart.focusWidget() is heart.target.view
     qtbot.keyClick(heart.focusWidget(), Qt.Key.Key_Escape)
     assert not heart.target.editing and heart.focusWidget() is heart.stage.view
@@ -125,16 +125,16 @@ def test_that_plus_and_minus_belong_to_the_board_only_while_it_is_open(heart: Ma
     for key in (Qt.Key.Key_Plus, Qt.Key.Key_Minus, Qt.Key.Key_Equal):
         qtbot.keyClick(heart.stage.view, key)
         assert not heart.target.editing
-    heart.actions_["edit_target"].trigger()
-    heart.actions_["mode_add"].trigger()
+    heart.commands["edit_target"].trigger()
+    heart.commands["mode_add"].trigger()
     assert heart.target.tools.modes[Combine.ADD].isChecked()
 
 
 def test_that_leaving_the_editor_says_what_comes_next(plate: MainWindow, qtbot: QtBot) -> None:
     use(plate, Tool.POSE)
-    assert plate.says.text().startswith("Drag a square")
+    assert plate.status_text.text().startswith("Drag a square")
     qtbot.mouseClick(plate.target.tools.done_button, LEFT)
-    assert not plate.target.editing and plate.says.text().startswith("Press Generate")
+    assert not plate.target.editing and plate.status_text.text().startswith("Press Generate")
 
 
 def test_that_the_text_tool_lets_type_at_once(board: MainWindow, qtbot: QtBot) -> None:
@@ -150,15 +150,15 @@ def test_that_the_text_tool_lets_type_at_once(board: MainWindow, qtbot: QtBot) -
 def test_that_every_tool_has_a_key_a_tooltip_and_a_name(board: MainWindow) -> None:
     assert set(board.target.tools.buttons) == set(Tool) - {Tool.LOOK}
     for tool, button in board.target.tools.buttons.items():
-        keys = board.actions_[tool.value].shortcut().toString()
+        keys = board.commands[tool.value].shortcut().toString()
         assert keys and f"({keys})" in button.toolTip()
         assert button.accessibleName() and not button.icon().isNull()
     for mode, name in ((Combine.ADD, "mode_add"), (Combine.SUBTRACT, "mode_subtract"), (Combine.REPLACE, "mode_new")):
-        assert f"({board.actions_[name].shortcut().toString()})" in board.target.tools.modes[mode].toolTip()
+        assert f"({board.commands[name].shortcut().toString()})" in board.target.tools.modes[mode].toolTip()
 
 
 def test_that_no_two_commands_share_a_key(window: MainWindow) -> None:
-    keys = [key.toString() for action in window.actions_.values() for key in action.shortcuts()]
+    keys = [key.toString() for action in window.commands.actions.values() for key in action.shortcuts()]
     assert len(keys) == len(set(keys))
 
 
@@ -166,15 +166,15 @@ def test_that_without_a_target_there_is_nothing_to_move_or_take_from(board: Main
     strip = board.target.tools
     for button in (strip.buttons[Tool.POINTS], strip.modes[Combine.SUBTRACT], strip.mirror, board.target.refine):
         assert not button.isEnabled()
-    board.actions_["points"].trigger()
+    board.commands["points"].trigger()
     assert board.messages.messages[-1].tone is Tone.HINT and board.target.view.tool is Tool.LOOK
 
 
 def test_that_generating_leaves_the_editor(plate: MainWindow, until: Until) -> None:
     plate.settings.candidates.setValue(1)
-    plate.actions_["generate"].trigger()
+    plate.commands["generate"].trigger()
     assert not plate.target.editing and plate.stage.isVisible()
-    plate.actions_["cancel"].trigger()
+    plate.commands["cancel"].trigger()
     until(lambda: not plate.controller.running)
 
 
@@ -192,7 +192,7 @@ def test_that_a_dragged_box_becomes_a_shape_of_that_size_in_mm(board: MainWindow
     assert 20 < width <= 60.001 and 30 < height <= 40.001
     assert board.controller.history.undo_label is not None and board.controller.history.undo_label.startswith("Draw ")
     assert board.target.view.tool is Tool.LOOK
-    board.actions_["undo"].trigger()
+    board.commands["undo"].trigger()
     assert board.controller.document.target is None
 
 
@@ -210,7 +210,7 @@ def test_that_the_grid_catches_corners_and_ctrl_suspends_it(board: MainWindow) -
     use(board, Tool.RECTANGLE)
     drag(board, (0.2 * step, 0.2 * step), (4.3 * step, 3.2 * step), CTRL)
     assert placed(board).size == pytest.approx((4.1 * step, 3 * step))
-    board.actions_["grid"].trigger()
+    board.commands["grid"].trigger()
     assert not board.target.tools.grid.isChecked()
     use(board, Tool.RECTANGLE)
     drag(board, (0.2 * step, 0.2 * step), (4.3 * step, 3.2 * step))
@@ -240,7 +240,7 @@ def test_that_shapes_are_added_and_taken_away_where_they_are_drawn(plate: MainWi
     assert plate.controller.history.undo_label == "Subtract rectangle"
     assert placed(plate).polygon.bounds == pytest.approx((0, -10, 40, 30), abs=1e-4)
     for bounds in ((-20, -10, 40, 30), (-20, -10, 20, 10)):
-        plate.actions_["undo"].trigger()
+        plate.commands["undo"].trigger()
         assert placed(plate).polygon.bounds == pytest.approx(bounds, abs=1e-4)
 
 
@@ -276,7 +276,7 @@ def test_that_a_dragged_point_is_one_step_and_the_others_stay(plate: MainWindow)
     corners = {(round(x, 6), round(y, 6)) for x, y in placed(plate).ring.tolist()}
     assert corners == {(-20, -10), (20, -10), (40, 30), (-20, 10)}
     assert tool.chosen is not None and plate.target.view.tool is Tool.POINTS
-    plate.actions_["undo"].trigger()
+    plate.commands["undo"].trigger()
     assert placed(plate).size == pytest.approx((40, 20))
 
 
@@ -333,7 +333,7 @@ def test_that_a_corner_handle_stretches_and_shift_keeps_proportions(plate: MainW
     drag(plate, tool.handles()[1, 1], (30, 30))
     assert placed(plate).polygon.bounds == pytest.approx((-20, -10, 30, 30))
     assert plate.controller.history.undo_label == "Resize target"
-    plate.actions_["undo"].trigger()
+    plate.commands["undo"].trigger()
     drag(plate, tool.handles()[1, 1], (60, 10), SHIFT)
     assert placed(plate).polygon.bounds == pytest.approx((-20, -10, 60, 30))
 
@@ -342,7 +342,7 @@ def test_that_a_uniform_enlargement_is_a_step_although_the_shape_is_the_same(pla
     plate.target.refine.width_.setValue(80.0)
     assert placed(plate).size == pytest.approx((80, 40)) and plate.target.refine.height_.value() == 40
     assert plate.controller.document.target is not None and plate.controller.document.target.size == (80, 40)
-    plate.actions_["undo"].trigger()
+    plate.commands["undo"].trigger()
     assert placed(plate).size == pytest.approx((40, 20)) and plate.target.refine.width_.value() == 40
 
 
@@ -372,7 +372,7 @@ def test_that_a_slider_shows_what_comes_and_one_drag_is_one_step(heart: MainWind
     slider.setSliderDown(False)
     assert heart.controller.history.undo_label == label and heart.controller.document.target != before.target
     assert slider.value() == 60
-    heart.actions_["undo"].trigger()
+    heart.commands["undo"].trigger()
     assert heart.controller.document.target == silhouettes.load("heart") and slider.value() == 0
     assert heart.controller.history.undo_label != label
 
@@ -384,7 +384,7 @@ def test_that_a_slider_goes_back_to_what_it_started_from(heart: MainWindow) -> N
         slider.setValue(value)
     coarse_then_fine = len(placed(heart).ring)
     for _ in range(2):
-        heart.actions_["undo"].trigger()
+        heart.commands["undo"].trigger()
     slider.setValue(10)
     assert len(placed(heart).ring) == coarse_then_fine
 
@@ -403,7 +403,7 @@ def test_that_a_half_is_mirrored_and_the_whole_is_flipped(heart: MainWindow, unt
         reflected = Placed.from_ring((after.ring - middle) * axis + middle, "").polygon
         halves[entry.text()] = (label, reflected.symmetric_difference(after.polygon).area / after.polygon.area)
         assert after.outline != before.outline
-        heart.actions_["undo"].trigger()
+        heart.commands["undo"].trigger()
     assert [label for label, _ in halves.values()][:4] == [f"Mirror {side} half" for side in SIDES]
     assert [label for label, _ in halves.values()][4:] == ["Flip target", "Flip target"]
     assert all(unlike < 1e-5 for label, unlike in halves.values() if label != "Flip target")
@@ -411,7 +411,7 @@ def test_that_a_half_is_mirrored_and_the_whole_is_flipped(heart: MainWindow, unt
 
 def test_that_the_editor_paints_in_both_themes_and_every_tool(plate: MainWindow) -> None:
     for _ in range(2):
-        plate.actions_["theme"].trigger()
+        plate.commands["theme"].trigger()
         for tool in Tool:
             use(plate, tool)
             assert not plate.target.view.grab(plate.target.view.rect()).isNull()
@@ -440,9 +440,9 @@ def test_that_a_thin_arm_is_marked_and_said_until_the_grid_shows_it(plate: MainW
 def test_that_the_hint_goes_with_the_target(plate: MainWindow) -> None:
     use(plate, Tool.RECTANGLE, Combine.ADD)
     drag(plate, (10, -2), (45, 2), CTRL)
-    plate.actions_["clear"].trigger()
+    plate.commands["clear"].trigger()
     assert plate.target.view.reach is None and not plate.target.reach.isVisible()
-    plate.actions_["undo"].trigger()
+    plate.commands["undo"].trigger()
     assert plate.target.reach.isVisible()
 
 

@@ -55,7 +55,7 @@ def test_that_an_unknown_extension_is_refused_with_the_known_ones(
     designed: MainWindow, files: object, until: Until, tmp_path: Path
 ) -> None:
     files.answer = tmp_path / "sheet.stl"  # type: ignore[attr-defined]
-    designed.actions_["export"].trigger()
+    designed.commands["export"].trigger()
     until(lambda: bool(designed.messages.messages))
     message = designed.messages.messages[-1]
     assert message.tone is Tone.ERROR and ".stl" in message.sentence and ".svg" in message.sentence

@@ -41,9 +41,9 @@ BAD = replace(GOOD, ok=False, findings=(*GOOD.findings, Finding("Two lines are m
 
 def export(window: MainWindow, path: Path, until: Until) -> ExportReport:
     window.controller.export(path)
-    until(lambda: window.commands.report is not None)
-    assert window.commands.report is not None
-    return window.commands.report
+    until(lambda: window.dialogs.report is not None)
+    assert window.dialogs.report is not None
+    return window.dialogs.report
 
 
 def test_that_an_export_opens_a_report_that_blocks_nothing(
@@ -51,8 +51,8 @@ def test_that_an_export_opens_a_report_that_blocks_nothing(
 ) -> None:
     files.answer = tmp_path / "cut.dxf"  # type: ignore[attr-defined]
     qtbot.mouseClick(designed.fabrication.export, LEFT)
-    until(lambda: designed.commands.report is not None)
-    report = designed.commands.report
+    until(lambda: designed.dialogs.report is not None)
+    report = designed.dialogs.report
     assert report is not None and report.isVisible() and not report.isModal()
     assert report.shown.ok and report.verdict.text().startswith("Verified.")
     assert report.facts["Pieces"].text() == "1" and report.facts["Size with overcuts"].text().startswith("100.")
@@ -65,15 +65,15 @@ def test_that_an_export_opens_a_report_that_blocks_nothing(
 def test_that_a_second_export_replaces_the_report(designed: MainWindow, until: Until, tmp_path: Path) -> None:
     first = export(designed, tmp_path / "a.dxf", until)
     designed.controller.export(tmp_path / "b.svg")
-    until(lambda: designed.commands.report is not first)
-    report = designed.commands.report
+    until(lambda: designed.dialogs.report is not first)
+    report = designed.dialogs.report
     assert report is not None and report.shown.path.name == "b.svg"
 
 
 def test_that_a_picture_has_no_report(designed: MainWindow, until: Until, tmp_path: Path) -> None:
     designed.controller.export(tmp_path / "a.png")
     until(lambda: bool(designed.messages.messages))
-    assert designed.messages.messages[-1].tone is Tone.DONE and designed.commands.report is None
+    assert designed.messages.messages[-1].tone is Tone.DONE and designed.dialogs.report is None
 
 
 @pytest.mark.parametrize(("report", "said"), [(GOOD, "Verified. 1 thing"), (BAD, "Do not cut this file: 1 finding is")])
@@ -178,8 +178,8 @@ def test_that_everything_goes_into_one_folder_with_a_report_for_each_cut_file(
 ) -> None:
     files.answer = tmp_path / "all"  # type: ignore[attr-defined]
     designed.fabrication.exports.everything.trigger()
-    until(lambda: designed.commands.report is not None)
-    report = designed.commands.report
+    until(lambda: designed.dialogs.report is not None)
+    report = designed.dialogs.report
     assert report is not None and report.file.isVisible() and report.file.count() == 3
     assert all(one.ok for one in report.verifications)
     assert report.file.itemText(1) == "Verified  \N{MIDDLE DOT}  heart_r12.dxf"

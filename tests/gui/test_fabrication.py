@@ -46,7 +46,7 @@ def test_that_numbers_follow_the_settings_and_one_field_is_one_undo_step(designe
         box.setValue(width)
     until(lambda: designed.fabrication.numbers["length"].text() != length)
     assert designed.controller.document.fabrication.width_mm == 200.0
-    designed.actions_["undo"].trigger()
+    designed.commands["undo"].trigger()
     assert box.value() == 100.0
     until(lambda: designed.fabrication.numbers["length"].text() == length)
 
@@ -67,7 +67,7 @@ def test_that_impossible_connectors_are_explained_in_the_panel(designed: MainWin
     designed.fabrication.lengths["connector_mm"].setValue(19.0)
     until(lambda: not designed.fabrication.export.isEnabled())
     assert "mm" in designed.fabrication.warnings.text()
-    designed.actions_["undo"].trigger()
+    designed.commands["undo"].trigger()
     until(lambda: designed.fabrication.export.isEnabled())
 
 
@@ -76,15 +76,15 @@ def test_that_an_unwritable_place_leads_to_a_message(
 ) -> None:
     (tmp_path / "wall").write_text("a file, not a folder", encoding="utf-8")
     files.answer = tmp_path / "wall" / "cut.dxf"  # type: ignore[attr-defined]
-    designed.actions_["export"].trigger()
+    designed.commands["export"].trigger()
     until(lambda: bool(designed.messages.messages))
     assert designed.messages.messages[-1].tone is Tone.ERROR
     assert "wall" in designed.messages.messages[-1].sentence
 
 
 def test_that_export_without_a_design_says_what_to_do_first(heart: MainWindow) -> None:
-    assert not heart.fabrication.export.isEnabled() and not heart.actions_["export"].isEnabled()
-    heart.commands.export()
+    assert not heart.fabrication.export.isEnabled() and not heart.commands["export"].isEnabled()
+    heart.files.export()
     assert "Generate one first" in heart.messages.messages[-1].sentence
 
 
@@ -96,7 +96,7 @@ def test_that_slots_are_summed_up_with_the_length_that_their_file_has(
     designed.controller.fabrication.change(profile="slots")
     until(lambda: said.text() != open_cuts)
     designed.controller.export(tmp_path / "slots.dxf")
-    until(lambda: designed.commands.report is not None)
+    until(lambda: designed.dialogs.report is not None)
     entities = ezdxf.readfile(tmp_path / "slots.dxf").modelspace()
     drawn = sum(length(entity.flattening(0.001)) for entity in map(make_path, entities))
     assert said.text() == readable_length(drawn)

@@ -75,7 +75,7 @@ def test_that_before_shows_the_design_as_it_was_drawn_and_after_brings_it_back(
     areas = studio.stage.view.areas
     assert areas is not None
     assert (1 - areas.missing_share) / (1 + areas.extra_share) == pytest.approx(drawn.iou_exact, abs=1e-3)
-    assert studio.actions_["before"].isChecked()
+    assert studio.commands["before"].isChecked()
     qtbot.mouseClick(studio.stage.before, LEFT)
     assert not studio.stage.showing_before and studio.stage.view.grab().toImage() == after
     assert "before" not in studio.stage.numbers.text()
@@ -84,11 +84,11 @@ def test_that_before_shows_the_design_as_it_was_drawn_and_after_brings_it_back(
 
 def test_that_a_design_that_was_not_polished_has_nothing_to_compare(studio: MainWindow, qtbot: QtBot) -> None:
     qtbot.mouseClick(studio.stage.before, LEFT)
-    studio.actions_["next"].trigger()
+    studio.commands["next"].trigger()
     assert not studio.stage.before.isEnabled() and not studio.stage.before.isChecked()
     assert "Nothing to compare" in studio.stage.before.toolTip()
-    assert not studio.actions_["before"].isEnabled()
-    studio.actions_["previous"].trigger()
+    assert not studio.commands["before"].isEnabled()
+    studio.commands["previous"].trigger()
     assert studio.stage.before.isEnabled()
 
 
@@ -98,11 +98,11 @@ def test_that_trimming_is_one_named_edit_that_can_be_undone_redone_and_taken_off
     controller, stage = trimmed.controller, trimmed.stage
     assert controller.history.undo_label == "Trim design 1"
     candidate = controller.document.candidates[0]
-    assert candidate.trim is not None and stage.trim.isChecked() and trimmed.actions_["trim"].isChecked()
-    trimmed.actions_["undo"].trigger()
+    assert candidate.trim is not None and stage.trim.isChecked() and trimmed.commands["trim"].isChecked()
+    trimmed.commands["undo"].trigger()
     assert controller.document.candidates[0].trim is None and not stage.trim.isChecked()
     until(lambda: trimmed.fabrication.export.isEnabled() and "trimmed" not in trimmed.fabrication.summary.text())
-    trimmed.actions_["redo"].trigger()
+    trimmed.commands["redo"].trigger()
     assert controller.document.candidates[0] == candidate and stage.trim.isChecked()
     qtbot.keyClick(trimmed, Qt.Key.Key_T, CONTROL)
     assert controller.history.undo_label == "Untrim design 1"
@@ -187,7 +187,7 @@ def test_that_another_choice_forgets_the_trim_that_was_on_its_way(
     studio: MainWindow, qtbot: QtBot, until: Until
 ) -> None:
     qtbot.mouseClick(studio.stage.trim, LEFT)
-    studio.actions_["next"].trigger()
+    studio.commands["next"].trigger()
     assert not studio.controller.trimming.busy and not studio.stage.trim.isChecked()
     until(lambda: not studio.controller.queue.busy)
     assert all(candidate.trim is None for candidate in studio.controller.document.candidates)
@@ -204,4 +204,4 @@ def test_that_trimming_can_be_stopped(studio: MainWindow, qtbot: QtBot, until: U
         qtbot.keyClick(studio, Qt.Key.Key_Escape)
     assert not studio.controller.trimming.busy and not studio.stage.trim.isChecked()
     until(lambda: not studio.controller.queue.busy)
-    assert studio.controller.document is before and "stopped" in studio.says.text()
+    assert studio.controller.document is before and "stopped" in studio.status_text.text()

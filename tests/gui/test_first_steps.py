@@ -14,7 +14,6 @@ from pytestqt.qtbot import QtBot
 
 from kirigami_studio.foundation.errors import ProjectError
 from kirigami_studio.foundation.resources import resource
-from kirigami_studio.gui.actions import COMMANDS
 from kirigami_studio.gui.dialogs.help import ShortcutSheet
 from kirigami_studio.gui.look.theme import DARK, LIGHT
 from kirigami_studio.gui.main_window import MainWindow
@@ -28,8 +27,8 @@ LEFT = Qt.MouseButton.LeftButton
 
 
 def test_that_the_tour_points_at_every_control_and_ends_after_the_last(designed: MainWindow, qtbot: QtBot) -> None:
-    designed.actions_["tour"].trigger()
-    tour = designed.commands.tour
+    designed.commands["tour"].trigger()
+    tour = designed.tour
     titles = []
     while tour.running:
         bubble, ring, anchor = tour.callout, tour.ring, tour.steps[tour.at].anchor()
@@ -45,24 +44,24 @@ def test_that_the_tour_points_at_every_control_and_ends_after_the_last(designed:
 
 
 def test_that_the_tour_is_walked_and_left_by_keys(designed: MainWindow, qtbot: QtBot) -> None:
-    designed.actions_["tour"].trigger()
-    tour = designed.commands.tour
+    designed.commands["tour"].trigger()
+    tour = designed.tour
     assert QApplication.focusWidget() is tour.callout
     for key, at in ((Qt.Key.Key_Right, 1), (Qt.Key.Key_Return, 2), (Qt.Key.Key_Left, 1), (Qt.Key.Key_Escape, -1)):
         qtbot.keyClick(tour.callout, key)
         assert tour.at == at
-    designed.actions_["tour"].trigger()
+    designed.commands["tour"].trigger()
     designed.gallery.view.setFocus()
     qtbot.keyClick(designed.gallery.view, Qt.Key.Key_Escape)
     assert not tour.running
 
 
 def test_that_the_tour_goes_on_when_the_user_does_the_thing(designed: MainWindow, qtbot: QtBot, until: Until) -> None:
-    tour = designed.commands.tour
+    tour = designed.tour
     tour.start()
     designed.controller.targeting.open("star")
     until(lambda: tour.at == 1)
-    designed.actions_["undo"].trigger()
+    designed.commands["undo"].trigger()
     until(lambda: designed.gallery.view.model_.rowCount() == 3)
     qtbot.mouseClick(tour.callout.next, LEFT)
     assert tour.at == 2
@@ -77,9 +76,9 @@ def test_that_the_tour_goes_on_when_the_user_does_the_thing(designed: MainWindow
 
 
 def test_that_esc_stops_a_run_before_it_ends_the_tour(heart: MainWindow, until: Until) -> None:
-    tour = heart.commands.tour
+    tour = heart.tour
     tour.start()
-    escape, cancel = tour._escape, heart.actions_["cancel"]
+    escape, cancel = tour._escape, heart.commands["cancel"]
     assert escape.isEnabled() and not cancel.isEnabled()
     heart.controller.generation.generate()
     assert tour.at == 1 or tour.running
@@ -91,7 +90,7 @@ def test_that_esc_stops_a_run_before_it_ends_the_tour(heart: MainWindow, until: 
 
 
 def test_that_the_bubble_waits_while_the_drawing_board_needs_the_room(designed: MainWindow) -> None:
-    tour = designed.commands.tour
+    tour = designed.tour
     tour.start()
     designed.target.set_editing(True)
     QApplication.processEvents()
@@ -109,23 +108,23 @@ def test_that_a_bubble_lies_inside_and_beside_its_control(place: QRect) -> None:
 
 
 def test_that_the_sample_opens_and_is_saved_elsewhere(window: MainWindow, until: Until, files: object) -> None:
-    window.actions_["sample"].trigger()
+    window.commands["sample"].trigger()
     until(lambda: window.controller.stage is not None and window.fabrication.export.isEnabled())
     document = window.controller.document
     assert document.target is not None and len(document.candidates) >= 6 and document.provenance["model_sha256"]
     assert window.controller.path is None
     bundled = resource("examples", "heart.kiri").read_bytes()
-    window.actions_["save"].trigger()
+    window.commands["save"].trigger()
     assert files.proposals == ["heart.kiri"]  # type: ignore[attr-defined]
     assert resource("examples", "heart.kiri").read_bytes() == bundled
 
 
 def test_that_the_sheet_lists_every_key_and_finds_by_word_and_key(window: MainWindow, qtbot: QtBot) -> None:
     qtbot.keyClick(window, Qt.Key.Key_Slash, Qt.KeyboardModifier.ControlModifier)
-    sheet = window.commands.shortcuts
+    sheet = window.dialogs.shortcuts
     assert sheet is not None and sheet.isVisible() and not sheet.isModal()
     text = "\n".join(keys for _, keys in sheet.showing())
-    for command in COMMANDS:
+    for command in window.commands.records:
         for keys in command.shortcuts:
             assert QKeySequence(keys).toString(QKeySequence.SequenceFormat.NativeText) in text
     whole = len(sheet.showing())
@@ -139,13 +138,13 @@ def test_that_the_sheet_lists_every_key_and_finds_by_word_and_key(window: MainWi
     assert sheet.showing() == [] and sheet.found.text() == "0 lines"
 
 
-def test_that_no_two_commands_share_a_key() -> None:
-    keys = [QKeySequence(one).toString() for command in COMMANDS for one in command.shortcuts]
+def test_that_no_two_commands_share_a_key(window: MainWindow) -> None:
+    keys = [QKeySequence(one).toString() for command in window.commands.records for one in command.shortcuts]
     assert len(keys) == len(set(keys)) and "" not in keys
 
 
 def test_that_a_sheet_of_other_commands_shows_those(qtbot: QtBot, window: MainWindow) -> None:
-    only = tuple(command for command in COMMANDS if command.name == "quit")
+    only = tuple(command for command in window.commands.records if command.id == "quit")
     sheet = ShortcutSheet(window, only)
     qtbot.addWidget(sheet)
     assert sheet.showing()[0] == ("Close Kirigami Studio", "Ctrl+Q")
@@ -155,16 +154,16 @@ def test_that_a_sheet_of_other_commands_shows_those(qtbot: QtBot, window: MainWi
 def test_that_a_chosen_look_stays_until_the_desktop_is_followed_again(window: MainWindow, tmp_path: Path) -> None:
     kept = tmp_path / "preferences.toml"
     window.controller.use_preferences(kept)
-    window.actions_["theme"].trigger()
+    window.commands["theme"].trigger()
     assert window.palette_ is DARK and preferences.load(kept).theme == "dark"
-    assert not window.actions_["theme_system"].isChecked()
-    window.actions_["theme_system"].trigger()
+    assert not window.commands["theme_system"].isChecked()
+    window.commands["theme_system"].trigger()
     assert window.palette_ is LIGHT and preferences.load(kept).theme == "system"
-    window.actions_["theme_system"].trigger()
-    assert preferences.load(kept).theme == "light" and not window.actions_["theme_system"].isChecked()
+    window.commands["theme_system"].trigger()
+    assert preferences.load(kept).theme == "light" and not window.commands["theme_system"].isChecked()
     preferences.save(replace(preferences.load(kept), theme="dark"), kept)
     window.controller.use_preferences(kept)
-    window.commands.dressing.refresh()
+    window.appearance.refresh()
     assert window.palette_ is DARK
     assert window.controller.document == Document()
 
@@ -179,7 +178,7 @@ def test_that_a_wrong_preference_is_named_and_the_file_left_alone(
         preferences.load(kept)
     window.controller.use_preferences(kept)
     assert entry.split()[0] in window.messages.messages[-1].sentence
-    window.actions_["theme"].trigger()
+    window.commands["theme"].trigger()
     assert kept.read_text(encoding="utf-8") == f"{entry}\n"
 
 

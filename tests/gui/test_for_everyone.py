@@ -45,32 +45,32 @@ Until = Callable[[Callable[[], bool]], None]
 
 
 def library(window: MainWindow) -> QWidget:
-    window.actions_["library"].trigger()
-    assert window.commands.picker is not None
-    return window.commands.picker
+    window.commands["library"].trigger()
+    assert window.dialogs.picker is not None
+    return window.dialogs.picker
 
 
 def materials(window: MainWindow) -> QWidget:
-    window.actions_["materials"].trigger()
-    assert window.commands.materials is not None
-    return window.commands.materials
+    window.commands["materials"].trigger()
+    assert window.dialogs.materials is not None
+    return window.dialogs.materials
 
 
 def guide(window: MainWindow) -> QWidget:
-    window.actions_["guide"].trigger()
-    assert window.commands.guide is not None
-    return window.commands.guide
+    window.commands["guide"].trigger()
+    assert window.dialogs.guide is not None
+    return window.dialogs.guide
 
 
 def shortcuts(window: MainWindow) -> QWidget:
-    window.actions_["shortcuts"].trigger()
-    assert window.commands.shortcuts is not None
-    return window.commands.shortcuts
+    window.commands["shortcuts"].trigger()
+    assert window.dialogs.shortcuts is not None
+    return window.dialogs.shortcuts
 
 
 def tour(window: MainWindow) -> QWidget:
-    window.actions_["tour"].trigger()
-    return window.commands.tour.callout
+    window.commands["tour"].trigger()
+    return window.tour.callout
 
 
 def board(window: MainWindow) -> QWidget:
@@ -113,18 +113,18 @@ def test_that_a_screen_reader_has_a_name_for_every_control(designed: MainWindow)
             if one.isVisible() and not told(one).strip("&… ")
         ]
         assert nameless == [], opened.__name__
-    assert designed.commands.picker is not None
-    designed.commands.picker.close()
+    assert designed.dialogs.picker is not None
+    designed.dialogs.picker.close()
 
 
 def test_that_the_report_of_an_export_is_named_too(designed: MainWindow, files: object, until: Until, tmp_path) -> None:  # type: ignore[no-untyped-def]
     files.answer = tmp_path / "cut.dxf"  # type: ignore[attr-defined]
     told_: list[Exported] = []
     designed.controller.cutting.exported.connect(told_.append)
-    designed.actions_["export"].trigger()
-    until(lambda: bool(told_) and designed.commands.report is not None)
-    assert designed.commands.report is not None
-    for one in designed.commands.report.findChildren(QWidget):
+    designed.commands["export"].trigger()
+    until(lambda: bool(told_) and designed.dialogs.report is not None)
+    assert designed.dialogs.report is not None
+    for one in designed.dialogs.report.findChildren(QWidget):
         if isinstance(one, CONTROLS) and one.isVisible() and not inner(one):
             assert told(one).strip(), one.metaObject().className()
 

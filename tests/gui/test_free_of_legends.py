@@ -94,7 +94,7 @@ def test_that_a_plain_picture_shows_what_the_screen_shows(designed: MainWindow) 
 
 def test_that_both_sides_of_a_comparison_are_fitted_alike(designed: MainWindow) -> None:
     designed.resize(1440, 900)
-    designed.actions_["compare"].trigger()
+    designed.commands["compare"].trigger()
     QApplication.processEvents()
     for overlays in (USUAL, USUAL | {Overlay.RATIOS}):
         designed.stage.compare.set_overlays(overlays)

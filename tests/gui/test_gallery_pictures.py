@@ -50,9 +50,9 @@ def test_that_pictures_outlive_a_change_and_go_with_their_designs(designed: Main
     cards = designed.gallery.view.cards
     until(lambda: not cards.pending and len(cards._pictures) == 3)
     before = dict(cards._pictures)
-    designed.actions_["pin"].trigger()
-    designed.actions_["next"].trigger()
-    designed.actions_["undo"].trigger()
+    designed.commands["pin"].trigger()
+    designed.commands["next"].trigger()
+    designed.commands["undo"].trigger()
     assert cards._pictures == before
     designed.controller.targeting.open("star")
     until(

@@ -39,9 +39,9 @@ def test_that_generating_fills_the_gallery_best_first_and_is_one_undo_step(
     assert provenance["model"] == "balanced" and len(provenance["model_sha256"]) == 64
     assert any(candidate.polished for candidate in found)
     assert not heart.run.stop.isVisible()
-    heart.actions_["undo"].trigger()
+    heart.commands["undo"].trigger()
     assert heart.controller.document == before and heart.gallery.view.model_.rowCount() == 0
-    heart.actions_["redo"].trigger()
+    heart.commands["redo"].trigger()
     assert heart.controller.document.candidates == found
 
 
@@ -49,7 +49,7 @@ def test_that_generating_fills_the_gallery_best_first_and_is_one_undo_step(
 def test_that_a_run_given_up_for_the_same_target_leaves_nothing_in_sight(heart: MainWindow, until: Until) -> None:
     heart.settings.candidates.setValue(400)
     before = heart.controller.document
-    heart.actions_["generate"].trigger()
+    heart.commands["generate"].trigger()
     until(lambda: heart.gallery.view.model_.rowCount() > 2)
     heart.controller.targeting.open("heart")
     until(lambda: not heart.controller.running)
@@ -89,15 +89,15 @@ def test_that_a_cancelled_run_leaves_the_document_unchanged(heart: MainWindow, q
     assert heart.controller.document is before
     assert heart.gallery.view.model_.rowCount() == 0
     assert heart.controller.stage is None
-    assert "nothing changed" in heart.says.text()
+    assert "nothing changed" in heart.status_text.text()
 
 
 def stop_early(heart: MainWindow, until: Until, count: int = 400) -> None:
     """Begin a run of many designs and stop it by Esc after the first few."""
     heart.settings.candidates.setValue(count)
-    heart.actions_["generate"].trigger()
+    heart.commands["generate"].trigger()
     until(lambda: heart.gallery.view.model_.rowCount() > 2)
-    heart.actions_["cancel"].trigger()
+    heart.commands["cancel"].trigger()
     until(lambda: not heart.controller.running)
 
 
@@ -117,7 +117,7 @@ def test_that_designs_of_a_stopped_run_can_be_kept_as_one_undo_step(heart: MainW
     assert heart.gallery.view.model_.rowCount() == len(kept.candidates)
     keep()  # a click that came too late
     assert heart.controller.document is kept
-    heart.actions_["undo"].trigger()
+    heart.commands["undo"].trigger()
     assert heart.controller.document.candidates == before.candidates == ()
 
 
@@ -135,13 +135,13 @@ def test_that_designs_of_a_stopped_run_are_offered_for_their_own_target_only(hea
 @pytest.mark.torch
 def test_that_designs_of_a_stopped_further_run_join_those_that_are_there(heart: MainWindow, until: Until) -> None:
     heart.settings.candidates.setValue(2)
-    heart.actions_["generate"].trigger()
+    heart.commands["generate"].trigger()
     until(lambda: not heart.controller.running)
     first = heart.controller.document
     heart.settings.candidates.setValue(400)
-    heart.actions_["again"].trigger()
+    heart.commands["again"].trigger()
     until(lambda: heart.gallery.view.model_.rowCount() > len(first.candidates) + 2)
-    heart.actions_["cancel"].trigger()
+    heart.commands["cancel"].trigger()
     until(lambda: not heart.controller.running)
     assert heart.controller.document.candidates is first.candidates
     ((_, keep),) = heart.messages.messages[-1].actions
@@ -154,21 +154,21 @@ def test_that_designs_of_a_stopped_further_run_join_those_that_are_there(heart: 
 def test_that_the_same_designs_again_are_no_undo_step_and_can_still_be_cut(heart: MainWindow, until: Until) -> None:
     heart.settings.candidates.setValue(1)
     heart.controller.change_settings(polish=0)
-    heart.actions_["generate"].trigger()
+    heart.commands["generate"].trigger()
     until(lambda: heart.fabrication.export.isEnabled() and not heart.controller.running)
     found = heart.controller.document
-    heart.actions_["generate"].trigger()
+    heart.commands["generate"].trigger()
     assert heart.controller.running and not heart.fabrication.export.isEnabled()
     until(lambda: heart.fabrication.export.isEnabled() and not heart.controller.running)
     assert heart.controller.document is found
-    heart.actions_["undo"].trigger()
+    heart.commands["undo"].trigger()
     assert heart.controller.document.candidates == ()
 
 
 @pytest.mark.torch
 def test_that_another_target_ends_the_run_for_the_old_one(heart: MainWindow, until: Until) -> None:
     heart.settings.candidates.setValue(400)
-    heart.actions_["generate"].trigger()
+    heart.commands["generate"].trigger()
     until(lambda: heart.gallery.view.model_.rowCount() > 0)
     heart.controller.targeting.open("star")
     until(lambda: heart.controller.document.target is not None and heart.controller.document.target.name == "star")
@@ -180,7 +180,7 @@ def test_that_another_target_ends_the_run_for_the_old_one(heart: MainWindow, unt
 def test_that_an_unknown_model_is_refused_with_a_sentence(heart: MainWindow, until: Until) -> None:
     heart.controller.change_settings(variant="of-tomorrow")
     before = heart.controller.document
-    heart.actions_["generate"].trigger()
+    heart.commands["generate"].trigger()
     until(lambda: not heart.controller.running)
     message = heart.messages.messages[-1]
     assert message.tone is Tone.ERROR and "of-tomorrow" in message.sentence
@@ -188,7 +188,7 @@ def test_that_an_unknown_model_is_refused_with_a_sentence(heart: MainWindow, unt
 
 
 def test_that_generate_without_a_target_says_what_to_do_first(window: MainWindow) -> None:
-    assert not window.run.generate.isEnabled() and not window.actions_["generate"].isEnabled()
+    assert not window.run.generate.isEnabled() and not window.commands["generate"].isEnabled()
     window.controller.generation.generate()
     assert "target first" in window.messages.messages[-1].sentence
     assert not window.controller.running
@@ -211,7 +211,7 @@ def test_that_arrow_keys_walk_through_the_gallery(designed: MainWindow, qtbot: Q
     assert designed.controller.document.chosen == 0
     qtbot.keyClick(designed, Qt.Key.Key_PageDown)
     assert designed.controller.document.chosen == 1
-    designed.actions_["undo"].trigger()
+    designed.commands["undo"].trigger()
     assert designed.controller.document.chosen == 0 and view.currentIndex().row() == 0
 
 
@@ -227,8 +227,8 @@ def test_that_a_changed_setting_shows_in_the_document_and_back(heart: MainWindow
     heart.settings.columns.setValue(12)
     assert heart.controller.document.settings.grid == (10, 12)
     assert heart.controller.document.settings.phi == pytest.approx(0.5235987)
-    heart.actions_["undo"].trigger()
-    heart.actions_["undo"].trigger()
+    heart.commands["undo"].trigger()
+    heart.commands["undo"].trigger()
     assert (heart.settings.angle.value(), heart.settings.columns.value()) == (0.0, 10)
     seed = heart.settings.seed.value()
     qtbot.mouseClick(heart.settings.dice, LEFT)

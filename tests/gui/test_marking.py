@@ -34,8 +34,8 @@ def test_that_a_card_is_pinned_without_being_chosen(designed: MainWindow, qtbot:
     assert "Pinned" in str(designed.gallery.view.model_.index(1, 0).data(Qt.ItemDataRole.AccessibleTextRole))
     press_button(designed, qtbot, 1, CardButton.PIN)
     assert designed.controller.history.undo_label == "Unpin design 2"
-    designed.actions_["undo"].trigger()
-    designed.actions_["undo"].trigger()
+    designed.commands["undo"].trigger()
+    designed.commands["undo"].trigger()
     assert set(designed.controller.document.marks) == {Mark.NONE}
 
 
@@ -45,7 +45,7 @@ def test_that_a_rejected_card_goes_and_comes_back_with_undo(designed: MainWindow
     assert designed.controller.document.marks[1] is Mark.REJECTED and model.rowCount() == 2
     assert designed.controller.document.chosen == 0
     assert designed.gallery.count.text().startswith("2 of 3 shown")
-    designed.actions_["undo"].trigger()
+    designed.commands["undo"].trigger()
     assert model.rowCount() == 3
 
 
@@ -65,7 +65,7 @@ def test_that_delete_rejects_the_chosen_design_and_goes_on_to_the_next(
     assert set(designed.controller.document.marks) == {Mark.REJECTED}
     assert view.hint[0] == "All designs are rejected" and designed.controller.document.chosen == 2
     for _ in range(3):
-        designed.actions_["undo"].trigger()
+        designed.commands["undo"].trigger()
     assert designed.controller.document.chosen == 0
     assert set(designed.controller.document.marks) == {Mark.NONE}
 
@@ -81,7 +81,7 @@ def test_that_shown_rejected_designs_are_taken_back_by_the_same_button(designed:
     designed.gallery.view.setFocus()
     qtbot.keyClick(designed.gallery.view, Qt.Key.Key_Delete)
     assert designed.controller.document.chosen == 0 and designed.gallery.view.model_.rowCount() == 3
-    assert designed.actions_["reject"].text().replace("&", "") == "Restore design"
+    assert designed.commands["reject"].text().replace("&", "") == "Restore design"
     press_button(designed, qtbot, 0, CardButton.REJECT)
     assert designed.controller.document.marks[0] is Mark.NONE
     assert designed.controller.history.undo_label == "Restore design 1"
@@ -90,8 +90,8 @@ def test_that_shown_rejected_designs_are_taken_back_by_the_same_button(designed:
 def test_that_the_key_pins_the_chosen_design(designed: MainWindow, qtbot: QtBot) -> None:
     qtbot.keyClick(designed, Qt.Key.Key_I)
     assert designed.controller.document.marks[0] is Mark.PINNED
-    assert designed.actions_["pin"].text().replace("&", "") == "Unpin design"
-    designed.actions_["reject"].trigger()
+    assert designed.commands["pin"].text().replace("&", "") == "Unpin design"
+    designed.commands["reject"].trigger()
     assert designed.controller.document.marks[0] is Mark.REJECTED
 
 
@@ -101,7 +101,7 @@ def test_that_the_menu_of_a_card_leaves_the_choice_alone(designed: MainWindow, q
     qtbot.mousePress(view.viewport(), Qt.MouseButton.RightButton, pos=place)
     event = QContextMenuEvent(QContextMenuEvent.Reason.Mouse, place, view.viewport().mapToGlobal(place))
     QApplication.sendEvent(view.viewport(), event)
-    menu = designed.wiring.gallery.menu
+    menu = designed.connections.designs.menu
     assert menu is not None and menu.isVisible() and designed.controller.document.chosen == 0
     actions = {action.objectName(): action for action in menu.actions()}
     actions["pin"].trigger()
@@ -109,7 +109,7 @@ def test_that_the_menu_of_a_card_leaves_the_choice_alone(designed: MainWindow, q
     actions["dice"].trigger()
     assert designed.controller.document.settings.seed == 7 == designed.settings.seed.value()
     menu.close()
-    qtbot.waitUntil(lambda: designed.wiring.gallery.menu is None)
+    qtbot.waitUntil(lambda: designed.connections.designs.menu is None)
 
 
 def test_that_marks_are_saved_and_opened(designed: MainWindow, tmp_path: Path, until: Until) -> None:

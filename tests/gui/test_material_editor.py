@@ -25,7 +25,7 @@ LEFT = Qt.MouseButton.LeftButton
 @pytest.fixture
 def editor(designed: MainWindow, qtbot: QtBot) -> MaterialEditor:
     qtbot.mouseClick(designed.fabrication.edit_materials, LEFT)
-    made = designed.commands.materials
+    made = designed.dialogs.materials
     assert made is not None and made.isVisible() and not made.isModal()
     return made
 
@@ -102,9 +102,9 @@ def test_that_the_coupon_is_written_and_reported(
 ) -> None:
     files.answer = tmp_path / "coupon.dxf"  # type: ignore[attr-defined]
     press(editor, qtbot, "coupon")
-    until(lambda: designed.commands.report is not None)
+    until(lambda: designed.dialogs.report is not None)
     assert files.proposals == ["coupon-film-uv.dxf"]  # type: ignore[attr-defined]
-    assert designed.commands.report is not None and designed.commands.report.shown.ok
+    assert designed.dialogs.report is not None and designed.dialogs.report.shown.ok
     assert len(ezdxf.readfile(tmp_path / "coupon.dxf").modelspace()) > 20
 
 

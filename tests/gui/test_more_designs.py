@@ -42,7 +42,7 @@ def small(window: MainWindow) -> MainWindow:
 @pytest.fixture
 def drawn(heart: MainWindow, until: Until) -> MainWindow:
     """A studio with three designs drawn from seed 0."""
-    small(heart).actions_["generate"].trigger()
+    small(heart).commands["generate"].trigger()
     until(lambda: not heart.controller.running and len(heart.controller.document.candidates) == 3)
     return heart
 
@@ -69,7 +69,7 @@ def test_that_again_adds_designs_of_the_next_seed_and_keeps_choice_and_marks(
     assert after.candidate == before.candidate and controller.stage.candidate == before.candidate
     assert dict(zip(after.candidates, after.marks, strict=True))[before.candidates[1]] is Mark.PINNED
     assert after.marks.count(Mark.PINNED) == 1 and after.settings.seed == 0
-    assert controller.history.undo_label == "Add 3 designs" and "3 designs added" in drawn.says.text()
+    assert controller.history.undo_label == "Add 3 designs" and "3 designs added" in drawn.status_text.text()
     assert drawn.stage.title.text() == f"Design {after.candidates.index(before.candidate) + 1}"
     model = drawn.gallery.view.model_
     assert [model.index(row, 0).data(FRESH_ROLE) for row in range(6)] == [one.seed == 1 for one in after.candidates]
@@ -80,7 +80,7 @@ def test_that_again_adds_designs_of_the_next_seed_and_keeps_choice_and_marks(
     assert shown(drawn)[:3] == [one for one in after.candidates if one.seed == 1]
     box.setCurrentIndex(0)
     box.activated.emit(0)
-    drawn.actions_["undo"].trigger()
+    drawn.commands["undo"].trigger()
     assert controller.document == before
     until(lambda: tuple(shown(drawn)) == before.candidates)
 
@@ -98,7 +98,7 @@ def test_that_designs_that_are_there_already_are_not_added_again(drawn: MainWind
     controller.run.start(request, before.candidates)
     until(lambda: not controller.running)
     assert controller.document is before and tuple(shown(drawn)) == before.candidates
-    assert drawn.says.text() == "No new designs; 3 already in the gallery."
+    assert drawn.status_text.text() == "No new designs; 3 already in the gallery."
 
 
 @pytest.mark.torch
@@ -116,14 +116,14 @@ def test_that_designs_that_were_there_already_are_counted(
     controller.run.start(request, fewer.candidates)
     until(lambda: not controller.running)
     assert controller.document.candidates == whole.candidates
-    assert drawn.says.text().startswith(told + "best sIoU ")
+    assert drawn.status_text.text().startswith(told + "best sIoU ")
 
 
 @pytest.mark.torch
 def test_that_again_draws_on_the_designs_own_grid_with_the_chosen_model(drawn: MainWindow, until: Until) -> None:
     drawn.controller.change_settings(grid=(8, 8))
     drawn.controller.change_settings(variant="prior")
-    drawn.actions_["again"].trigger()
+    drawn.commands["again"].trigger()
     until(lambda: not drawn.controller.running)
     after = drawn.controller.document
     assert len(after.candidates) == 6 and {one.variant for one in after.candidates} == {"balanced", "prior"}
@@ -138,7 +138,7 @@ def test_that_exports_tell_the_settings_of_the_designs_own_run(drawn: MainWindow
     controller = drawn.controller
     for changes in ({"polish": 1}, {"k": 2}, {"prefer": "calm"}, {"variant": "prior"}):
         controller.change_settings(**changes)
-    drawn.actions_["again"].trigger()
+    drawn.commands["again"].trigger()
     until(lambda: not controller.running)
     assert controller.document.provenance["k"] == "3; 2"
     told = {0: {"POLISH": "0", "K": "3", "MODEL": "balanced"}, 1: {"POLISH": "1", "K": "2", "MODEL": "prior"}}
@@ -160,7 +160,7 @@ def test_that_exports_tell_the_settings_of_the_designs_own_run(drawn: MainWindow
     check("drawn")
     controller.save(tmp_path / "two-runs.kiri")
     until(lambda: not controller.history.unsaved)
-    drawn.actions_["new"].trigger()
+    drawn.commands["new"].trigger()
     controller.open_project(tmp_path / "two-runs.kiri")
     until(lambda: len(controller.document.candidates) == 5 and controller.stage is not None)
     check("opened")
@@ -206,14 +206,14 @@ def test_that_generate_keeps_pinned_designs_of_the_same_grid_only(drawn: MainWin
     controller.marks.pin(pinned)
     controller.marks.reject(controller.document.candidates[1], None)
     controller.change_settings(seed=5)
-    drawn.actions_["generate"].trigger()
+    drawn.commands["generate"].trigger()
     assert shown(drawn) == [pinned]
     until(lambda: not controller.running)
     after = controller.document
     assert len(after.candidates) == 4 and after.chosen == 0
     assert [one for one, mark in zip(after.candidates, after.marks, strict=True) if mark is not Mark.NONE] == [pinned]
     controller.change_settings(grid=(7, 7))
-    drawn.actions_["generate"].trigger()
+    drawn.commands["generate"].trigger()
     assert shown(drawn) == []
     until(lambda: not controller.running)
     assert len(controller.document.candidates) == 3 and set(controller.document.marks) == {Mark.NONE}
@@ -224,17 +224,17 @@ def test_that_generate_keeps_pinned_designs_of_the_same_grid_only(drawn: MainWin
 def test_that_a_seed_that_is_not_kept_moves_on_with_every_run(drawn: MainWindow, qtbot: QtBot, until: Until) -> None:
     qtbot.mouseClick(drawn.settings.keep, LEFT)
     for action, seed, count in (("generate", 1, 3), ("again", 2, 6)):
-        drawn.actions_[action].trigger()
+        drawn.commands[action].trigger()
         until(lambda: not drawn.controller.running)
         document = drawn.controller.document
         assert document.settings.seed == seed == drawn.settings.seed.value() and len(document.candidates) == count
         assert seed in {one.seed for one in document.candidates} and 0 not in {one.seed for one in document.candidates}
-    drawn.actions_["undo"].trigger()
+    drawn.commands["undo"].trigger()
     assert drawn.settings.seed.value() == 1
 
 
 def test_that_there_must_be_designs_to_add_to(heart: MainWindow) -> None:
-    assert not heart.gallery.bar.again.isEnabled() and not heart.actions_["more_like"].isEnabled()
+    assert not heart.gallery.bar.again.isEnabled() and not heart.commands["more_like"].isEnabled()
     for wish in (heart.controller.generation.again, lambda: heart.controller.generation.more_like(0.5)):
         wish()
         message = heart.messages.messages[-1]
@@ -258,11 +258,11 @@ def test_that_a_run_begun_at_once_after_another_is_not_ended_by_it(drawn: MainWi
         ends.append(completed)
         if len(ends) == 1:
             controller.change_settings(seed=6)
-            drawn.actions_["generate"].trigger()
+            drawn.commands["generate"].trigger()
 
     controller.run.completed.connect(lambda *_: again(True))
     controller.run.ended.connect(lambda completed: None if completed else again(False))
     controller.change_settings(seed=5)
-    drawn.actions_["generate"].trigger()
+    drawn.commands["generate"].trigger()
     until(lambda: len(ends) == 2 and not controller.running)
     assert ends == [True, True] and {one.seed for one in controller.document.candidates} == {6}

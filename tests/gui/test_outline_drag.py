@@ -48,7 +48,7 @@ def large(window: MainWindow, large_document: Document, until: Until, tmp_path: 
     window.controller.open_project(tmp_path / "large.kiri")
     until(lambda: window.controller.stage is not None and window.fabrication.export.isEnabled())
     window.stage.deployment.set_phi(OPEN)
-    window.actions_["hand"].trigger()
+    window.commands["hand"].trigger()
     return window
 
 
@@ -100,7 +100,7 @@ def test_that_the_last_place_is_reached_after_letting_go_and_all_of_it_is_one_st
     assert transform is not None
     assert np.hypot(*(transform.to_pixels(np.array(vertices[-1])) - (place.x(), place.y()))) <= 2.0
     assert large.controller.history.undo_label == LABEL and chosen(large).field == drafts[-1].deployment.field
-    large.actions_["undo"].trigger()
+    large.commands["undo"].trigger()
     assert chosen(large) == before and large.controller.history.undo_label is None
 
 
@@ -238,7 +238,7 @@ def test_that_a_vertex_that_cannot_move_says_so_and_holds_nothing_back(by_hand: 
     hand, before = by_hand.controller.hand, chosen(by_hand)
     hand.lock_all(True)
     place = take(by_hand, top_of(by_hand), *UP)
-    until(lambda: "can't reach that far" in by_hand.says.text())
+    until(lambda: "can't reach that far" in by_hand.status_text.text())
     QTest.mouseMove(by_hand.stage.view, place + QPoint(0, -3))
     let_go(by_hand, place)
     done: list[bool] = []

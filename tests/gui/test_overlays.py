@@ -17,7 +17,7 @@ from pytestqt.qtbot import QtBot
 from kirigami_studio.evaluate.feasibility import Contact
 from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.fabricate.panel_sizes import edges_of, necks_of, panels_in_mm, smallest_edge, smallest_neck
-from kirigami_studio.gui.commands import OVERLAY_ACTIONS
+from kirigami_studio.gui.commands.view import OVERLAY_COMMANDS
 from kirigami_studio.gui.look.theme import DARK, LIGHT, Palette
 from kirigami_studio.gui.main_window import MainWindow
 from kirigami_studio.gui.scene.colour_scale import opening_scale, paint_colour_bars, ratio_scale
@@ -40,10 +40,10 @@ def posed(designs: Document) -> PosedDesign:
 
 def test_that_each_overlay_has_a_key_and_changes_the_picture(designed: MainWindow, qtbot: QtBot) -> None:
     designed.resize(1440, 900)
-    stage, actions = designed.stage, designed.actions_
+    stage, actions = designed.stage, designed.commands.actions
     stage.deployment.set_phi(0.05)  # near the target, and voids are open
     assert stage.view.overlays == USUAL
-    for name, overlay in OVERLAY_ACTIONS.items():
+    for name, overlay in OVERLAY_COMMANDS.items():
         before = stage.view.grab().toImage()
         keys = actions[name].shortcut()[0]
         qtbot.keyClick(designed, keys.key(), keys.keyboardModifiers())
@@ -177,7 +177,7 @@ def test_that_a_fault_is_brought_to_the_middle_by_key_and_by_click(designed: Mai
     assert transform is not None
     there = transform.to_pixels(np.array(stage.view.find_faults()[0].where))
     assert there == pytest.approx([stage.view.width() / 2, stage.view.height() / 2], abs=1.0)
-    assert "1 of 1" in designed.says.text() and "contact" in designed.says.text()
+    assert "1 of 1" in designed.status_text.text() and "contact" in designed.status_text.text()
     stage.fit()
     stage.view.grab()
     transform = stage.view.transform()
@@ -189,8 +189,8 @@ def test_that_a_fault_is_brought_to_the_middle_by_key_and_by_click(designed: Mai
 
 
 def test_that_a_design_without_faults_says_so(designed: MainWindow, qtbot: QtBot) -> None:
-    designed.actions_["next_fault"].trigger()
-    assert designed.says.text().startswith("No faults")
+    designed.commands["next_fault"].trigger()
+    assert designed.status_text.text().startswith("No faults")
 
 
 def test_that_an_overlap_is_marked_where_it_is_at_the_angle_that_is_shown(posed: PosedDesign) -> None:

@@ -29,7 +29,7 @@ def clipboard() -> Iterator[None]:
 def pasted(window: MainWindow, content: QMimeData, until: Until) -> tuple[float, float]:
     """Width and height of the target that pasting leads to."""
     QGuiApplication.clipboard().setMimeData(content)
-    window.actions_["paste"].trigger()
+    window.commands["paste"].trigger()
     until(lambda: window.controller.document.target is not None)
     width, height = np.ptp(window.controller.document.target.points, axis=0)  # type: ignore[union-attr]
     return float(width), float(height)
@@ -85,14 +85,14 @@ def test_that_a_copied_file_is_opened(window: MainWindow, until: Until, tmp_path
 @pytest.mark.parametrize("content", ["", "My holidays in 2021", "12.5", '"text"'])
 def test_that_what_is_no_target_leads_to_a_hint(window: MainWindow, content: str) -> None:
     QGuiApplication.clipboard().setMimeData(text(content))
-    window.actions_["paste"].trigger()
+    window.commands["paste"].trigger()
     message = window.messages.messages[-1]
     assert message.tone is Tone.HINT and "Copy a picture, file, SVG or path" in message.sentence
 
 
 def test_that_a_path_that_is_broken_leads_to_a_sentence(window: MainWindow, until: Until) -> None:
     QGuiApplication.clipboard().setMimeData(text("M 0 0 L 10 0"))
-    window.actions_["paste"].trigger()
+    window.commands["paste"].trigger()
     until(lambda: bool(window.messages.messages))
     assert window.messages.messages[-1].tone is Tone.ERROR and window.controller.document.target is None
 

@@ -28,13 +28,13 @@ SVG = "{http://www.w3.org/2000/svg}"
 
 @pytest.fixture
 def picturing(designed: MainWindow) -> Iterator[PictureMaker]:
-    yield designed.commands.picturing
+    yield designed.picturing
     QGuiApplication.clipboard().clear()  # Qt's off-screen clipboard outlives the application otherwise, and falls
 
 
 def written(designed: MainWindow, view: QWidget, path: Path, qtbot: QtBot) -> Path:
-    with qtbot.waitSignal(designed.commands.picturing.written, timeout=30_000):
-        designed.commands.picturing.write(view, path)
+    with qtbot.waitSignal(designed.picturing.written, timeout=30_000):
+        designed.picturing.write(view, path)
     return path
 
 
@@ -87,9 +87,9 @@ def test_that_an_svg_draws_in_lines_and_agrees_with_the_screen(
 def test_that_every_view_in_sight_can_be_written(
     designed: MainWindow, picturing: PictureMaker, tmp_path: Path, qtbot: QtBot, files: object
 ) -> None:
-    designed.actions_["cuts"].trigger()
+    designed.commands["cuts"].trigger()
     assert sorted(picturing.views(), key=NAMES.index) == NAMES
-    menu = designed.commands.pictures
+    menu = designed.picture_menu
     menu.refresh()
     for number, (name, view) in enumerate(picturing.views().items()):
         for end in (".png", ".svg"):
@@ -113,7 +113,7 @@ def test_that_overlays_can_be_left_out_and_stay_on_the_screen(designed: MainWind
     bare = pixels(picturing.record(view).image(1))
     assert (np.abs(seen - bare).max(axis=2) > 30).sum() > 500, "the target's outline and the mismatch are gone"
     assert view.overlays == overlays and not view.rendering
-    designed.actions_["cuts"].trigger()
+    designed.commands["cuts"].trigger()
     cuts = designed.stage.cuts.view
     cuts.gestures.select(frozenset({1, 2}))
     picturing.record(cuts)
@@ -152,7 +152,7 @@ def test_that_copying_takes_the_view_in_use(designed: MainWindow, picturing: Pic
         with qtbot.waitSignal(picturing.copied, timeout=30_000):
             qtbot.keyClick(designed, Qt.Key.Key_C, both)
         assert QGuiApplication.clipboard().image().size() == view.size() * 2
-        assert "Copied a picture" in designed.says.text()
+        assert "Copied a picture" in designed.status_text.text()
     designed.settings.candidates.setFocus()
     largest = picturing.view_at_work()
     assert isinstance(largest, Canvas) and largest is designed.stage.view
@@ -176,12 +176,12 @@ def test_that_copied_cuts_are_the_exported_file(
 
 
 def test_that_the_animation_is_offered_in_the_menu(designed: MainWindow, files: object, tmp_path: Path) -> None:
-    designed.actions_["animation"].trigger()
+    designed.commands["animation"].trigger()
     assert files.proposals == ["heart.gif"]  # type: ignore[attr-defined]
 
 
 def test_that_without_a_design_nothing_is_copied_and_that_is_said(window: MainWindow) -> None:
     QGuiApplication.clipboard().setText("before")
-    window.actions_["copy_cuts"].trigger()
+    window.commands["copy_cuts"].trigger()
     assert QGuiApplication.clipboard().text() == "before"
     assert "No design to copy" in window.messages.messages[-1].sentence

@@ -34,7 +34,7 @@ PATIENCE_S = 4.0
 def plotted(designed: MainWindow, until: Until) -> MainWindow:
     """A studio with the plots open and read to the end."""
     designed.resize(1440, 900)
-    designed.actions_["plots"].trigger()
+    designed.commands["plots"].trigger()
     until(lambda: designed.stage.plots.complete)
     return designed
 
@@ -87,9 +87,9 @@ def test_that_the_curves_of_100_voids_are_read_while_one_looks(capsys: pytest.Ca
 def test_that_nothing_is_read_while_the_plots_are_closed(designed: MainWindow, until: Until) -> None:
     plotting_, stage = designed.controller.curves, designed.stage
     assert not plotting_.busy and not stage.plots.isVisible() and not stage.plots.charts
-    designed.actions_["plots"].trigger()
+    designed.commands["plots"].trigger()
     assert plotting_.busy and stage.plots.isVisible()
-    designed.actions_["plots"].trigger()
+    designed.commands["plots"].trigger()
     assert not plotting_.busy and not stage.plots.isVisible()
     until(lambda: not designed.controller.queue.busy)
     assert not stage.plots.complete
@@ -99,7 +99,7 @@ def test_that_charts_are_made_one_in_each_turn_and_then_drawn(designed: MainWind
     plots, made = designed.stage.plots, []
     plots._turn.timeout.connect(lambda: made.append(len(plots.charts)))
     designed.resize(1440, 1000)
-    designed.actions_["plots"].trigger()
+    designed.commands["plots"].trigger()
     until(lambda: plots.complete)
     assert made[:4] == [1, 2, 3, 4] and set(made[4:]) == {4}
     for chart in plots.charts:
@@ -108,11 +108,11 @@ def test_that_charts_are_made_one_in_each_turn_and_then_drawn(designed: MainWind
 
 def test_that_another_design_gets_curves_of_its_own_and_old_ones_are_kept(plotted: MainWindow, until: Until) -> None:
     stage, first = plotted.stage, plotted.stage.plots.charts[0].curves[0].getData()[1].copy()
-    plotted.actions_["next"].trigger()
+    plotted.commands["next"].trigger()
     assert not stage.plots.complete and plotted.controller.curves.busy
     until(lambda: stage.plots.complete)
     assert not np.allclose(stage.plots.charts[0].curves[0].getData()[1], first)
-    plotted.actions_["previous"].trigger()
+    plotted.commands["previous"].trigger()
     assert stage.plots.complete and not plotted.controller.curves.busy
     assert stage.plots.charts[0].curves[0].getData()[1] == pytest.approx(first)
 
@@ -198,10 +198,10 @@ def test_that_the_charts_follow_the_theme_and_open_plots_are_remembered(plotted:
         assert chart.grab().toImage().pixelColor(corner).name() == palette.surface
     state = QSettings(str(tmp_path / "state.ini"), QSettings.Format.IniFormat)
     plotted.remember(state)
-    plotted.actions_["plots"].trigger()
+    plotted.commands["plots"].trigger()
     assert not plotted.stage.plots.isVisible()
     plotted.stage.restore(state)
-    assert plotted.stage.plots.isVisible() and plotted.actions_["plots"].isChecked()
+    assert plotted.stage.plots.isVisible() and plotted.commands["plots"].isChecked()
 
 
 @pytest.mark.parametrize("width", [250, 400])

@@ -34,9 +34,9 @@ def test_that_preference_and_search_are_settings_that_can_be_undone(window: Main
     picked(window, "calm")
     window.settings.search.click()
     assert (window.controller.document.settings.prefer, window.controller.document.settings.search) == ("calm", 1)
-    window.actions_["undo"].trigger()
+    window.commands["undo"].trigger()
     assert not window.settings.search.isChecked()
-    window.actions_["undo"].trigger()
+    window.commands["undo"].trigger()
     assert window.settings.prefer.currentData() == "balanced"
 
 

@@ -22,15 +22,15 @@ def test_that_a_saved_project_opens_as_it_was(
     designed: MainWindow, designs: Document, files: object, qtbot: QtBot, until: Until, tmp_path: Path
 ) -> None:
     files.answer = tmp_path / "mine.kiri"  # type: ignore[attr-defined]
-    designed.actions_["next"].trigger()
+    designed.commands["next"].trigger()
     assert designed.isWindowModified()
-    designed.actions_["save_as"].trigger()
+    designed.commands["save_as"].trigger()
     until(lambda: not designed.controller.history.unsaved)
     assert store.load(tmp_path / "mine.kiri") == designed.controller.document
     assert "mine.kiri" in designed.windowTitle() and not designed.isWindowModified()
-    designed.actions_["new"].trigger()
+    designed.commands["new"].trigger()
     assert designed.controller.document == Document() and designed.gallery.view.model_.rowCount() == 0
-    designed.actions_["open_project"].trigger()
+    designed.commands["open_project"].trigger()
     until(lambda: designed.controller.stage is not None)
     assert designed.controller.document.chosen == 1
     assert designed.controller.document.candidates == designs.candidates
@@ -40,7 +40,7 @@ def test_that_a_saved_project_opens_as_it_was(
 def test_that_save_writes_to_the_known_place_without_asking(
     designed: MainWindow, project_file: Path, files: object, qtbot: QtBot, until: Until
 ) -> None:
-    designed.actions_["next"].trigger()
+    designed.commands["next"].trigger()
     qtbot.keyClick(designed, Qt.Key.Key_S, CONTROL)
     until(lambda: not designed.controller.history.unsaved)
     assert store.load(project_file).chosen == 1
@@ -58,7 +58,7 @@ def test_that_a_damaged_project_leaves_the_open_one_alone(designed: MainWindow, 
 
 
 def test_that_closing_with_unsaved_work_asks_without_blocking(designed: MainWindow, qtbot: QtBot, until: Until) -> None:
-    designed.actions_["next"].trigger()
+    designed.commands["next"].trigger()
     assert not designed.close() and designed.isVisible()
     message = designed.messages.messages[-1]
     assert "unsaved" in message.sentence and [label for label, _ in message.actions] == [
@@ -79,7 +79,7 @@ def test_that_a_save_and_quit_that_was_called_off_does_not_quit_later(
     assert not heart.close()
     dict(heart.messages.messages[-1].actions)["Save and quit"]()  # no file is chosen
     files.answer = tmp_path / "later.kiri"  # type: ignore[attr-defined]
-    heart.actions_["save"].trigger()
+    heart.commands["save"].trigger()
     until(lambda: not heart.controller.history.unsaved)
     assert heart.isVisible()
     heart.controller.fabrication.change(width_mm=77.0)
@@ -90,9 +90,9 @@ def test_that_a_save_and_quit_that_was_called_off_does_not_quit_later(
 
 
 def test_that_a_new_project_asks_before_it_forgets(designed: MainWindow) -> None:
-    designed.actions_["next"].trigger()
+    designed.commands["next"].trigger()
     before = designed.controller.document
-    designed.actions_["new"].trigger()
+    designed.commands["new"].trigger()
     assert designed.controller.document is before
     dict(designed.messages.messages[-1].actions)["Start a new project without saving"]()
     assert designed.controller.document == Document()
@@ -101,7 +101,7 @@ def test_that_a_new_project_asks_before_it_forgets(designed: MainWindow) -> None
 def test_that_work_that_went_on_while_the_file_was_written_is_asked_about_before_quitting(
     designed: MainWindow, until: Until
 ) -> None:
-    designed.actions_["next"].trigger()
+    designed.commands["next"].trigger()
     assert not designed.close()
     dict(designed.messages.messages[-1].actions)["Save and quit"]()
     designed.controller.fabrication.change(width_mm=77.0)  # before the worker has written
@@ -126,16 +126,16 @@ def test_that_a_file_still_being_written_is_not_taken_for_the_place_of_the_next_
 def test_that_a_gesture_which_waits_for_its_score_is_unsaved_work(designed: MainWindow, until: Until) -> None:
     controller = designed.controller
     controller.hand.nudge(frozenset({(1, 1)}), 0.02)
-    designed.actions_["new"].trigger()
+    designed.commands["new"].trigger()
     until(lambda: not controller.hand.busy)
     assert controller.document.candidates and controller.history.unsaved
     assert "unsaved changes" in designed.messages.messages[-1].sentence
 
 
 def test_that_undo_names_its_step_and_every_shortcut_reaches_it(heart: MainWindow, qtbot: QtBot) -> None:
-    assert heart.actions_["undo"].text().replace("&", "") == "Undo set target heart"
+    assert heart.commands["undo"].text().replace("&", "") == "Undo set target heart"
     qtbot.keyClick(heart, Qt.Key.Key_Z, CONTROL)
-    assert heart.controller.document.target is None and not heart.actions_["undo"].isEnabled()
+    assert heart.controller.document.target is None and not heart.commands["undo"].isEnabled()
     qtbot.keyClick(heart, Qt.Key.Key_Y, CONTROL)
     assert heart.controller.document.target is not None
     qtbot.keyClick(heart, Qt.Key.Key_Z, CONTROL)
@@ -145,10 +145,10 @@ def test_that_undo_names_its_step_and_every_shortcut_reaches_it(heart: MainWindo
 
 def test_that_the_guide_opens_beside_the_work(window: MainWindow, qtbot: QtBot) -> None:
     qtbot.keyClick(window, Qt.Key.Key_F1)
-    guide = window.commands.guide
+    guide = window.dialogs.guide
     assert guide is not None and guide.isVisible() and not guide.isModal()
     assert "Choose a target" in guide.text.toPlainText()
-    for action in window.actions_.values():
+    for action in window.commands.actions.values():
         shown = action.shortcut().toString().replace("Left", "←").replace("Right", "→").replace("PgDown", "PgDn")
         if action.objectName() in ("generate", "export", "save", "undo", "play", "fit", "theme", "to_flat"):
             assert shown in guide.text.toPlainText()
@@ -162,7 +162,7 @@ def test_that_saving_onto_a_link_writes_the_project_behind_it(
     kept.write_bytes(b"older")
     link.symlink_to(kept)
     files.answer = link  # type: ignore[attr-defined]
-    designed.actions_["next"].trigger()
-    designed.actions_["save_as"].trigger()
+    designed.commands["next"].trigger()
+    designed.commands["save_as"].trigger()
     until(lambda: not designed.controller.history.unsaved)
     assert link.is_symlink() and store.load(kept) == designed.controller.document == store.load(link)

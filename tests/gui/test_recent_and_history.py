@@ -36,7 +36,7 @@ def test_that_what_was_opened_stands_first_and_survives_the_session(
 ) -> None:
     kept, controller = tmp_path / "recent.toml", window.controller
     controller.filing.recent.load(kept)
-    assert not window.commands.recent.menuAction().isEnabled()
+    assert not window.recent_menu.menuAction().isEnabled()
     target = tmp_path / "triangle.json"
     target.write_text("[[0, 0], [50, 0], [25, 40]]")
     controller.targeting.open("heart")  # of the library: no file of the user's
@@ -48,7 +48,7 @@ def test_that_what_was_opened_stands_first_and_survives_the_session(
     controller.save(tmp_path / "second.kiri")
     until(lambda: len(recent.load(kept).projects) == 2)
     assert recent.load(kept) == Recent((str(tmp_path / "second.kiri"), str(project_file)), (str(target),))
-    menu = window.commands.recent
+    menu = window.recent_menu
     assert menu.menuAction() in file_menu(window).actions()
     assert [action.text() for action in menu.entries.values()] == [
         "&1  second.kiri",
@@ -60,7 +60,7 @@ def test_that_what_was_opened_stands_first_and_survives_the_session(
 def test_that_the_menu_says_which_are_projects_and_which_targets(window: MainWindow, tmp_path: Path) -> None:
     window.controller.filing.recent.take_project(tmp_path / "one.kiri")
     window.controller.filing.recent.take_target(str(tmp_path / "two.svg"))
-    captions = [action for action in window.commands.recent.actions() if isinstance(action, QWidgetAction)]
+    captions = [action for action in window.recent_menu.actions() if isinstance(action, QWidgetAction)]
     labels = [caption.defaultWidget() for caption in captions]
     assert [label.text() for label in labels if isinstance(label, QLabel)] == ["Projects", "Targets"]
     assert not any(caption.isEnabled() for caption in captions)
@@ -72,7 +72,7 @@ def test_that_a_missing_file_is_grey_and_a_present_one_opens(
     gone, kept = tmp_path / "gone.kiri", tmp_path / "recent.toml"
     recent.save(Recent((str(gone), str(project_file))), kept)
     window.controller.filing.recent.load(kept)
-    menu = window.commands.recent
+    menu = window.recent_menu
     menu.aboutToShow.emit()
     until(lambda: not menu.entries[str(gone)].isEnabled())
     assert menu.entries[str(project_file)].isEnabled() and "no longer exists" in menu.entries[str(gone)].toolTip()
@@ -89,7 +89,7 @@ def test_that_pasted_pictures_are_not_remembered_as_files(window: MainWindow, un
         for y in range(30, 90):
             image.setPixelColor(x, y, Qt.GlobalColor.black)
     QGuiApplication.clipboard().setImage(image)
-    window.actions_["paste"].trigger()
+    window.commands["paste"].trigger()
     until(lambda: window.controller.document.target is not None)
     assert window.controller.filing.recent.present == Recent()
 
@@ -131,7 +131,7 @@ def test_that_two_sessions_keep_each_others_recent_files(window: MainWindow, tmp
     projects = (str(tmp_path / "other.kiri"), str(tmp_path / "mine.kiri"))
     targets = (str(tmp_path / "mine.svg"), str(tmp_path / "other.svg"))
     assert recent.load(kept) == mine.present == Recent(projects, targets)
-    assert set(window.commands.recent.entries) == {*projects, *targets}
+    assert set(window.recent_menu.entries) == {*projects, *targets}
     mine.take_project(tmp_path / "mine.kiri")
     assert recent.load(kept).projects == projects[::-1]
     assert [entry.name for entry in tmp_path.iterdir()] == ["recent.toml"]
@@ -142,7 +142,7 @@ def test_that_the_menu_shows_what_another_session_has_added(window: MainWindow, 
     window.controller.filing.recent.load(kept)
     window.controller.filing.recent.take_project(tmp_path / "mine.kiri")
     second_session(window, kept).take_project(tmp_path / "other.kiri")
-    menu = window.commands.recent
+    menu = window.recent_menu
     menu.aboutToShow.emit()
     assert [action.text() for action in menu.entries.values()] == ["&1  other.kiri", "&2  mine.kiri"]
     until(lambda: not any(action.isEnabled() for action in menu.entries.values()))
@@ -187,12 +187,12 @@ def test_that_a_list_that_another_program_spoilt_is_told_once_and_left(window: M
 @pytest.fixture
 def steps(designed: MainWindow, qtbot: QtBot) -> HistoryList:
     """The list of the history, over a project with three steps."""
-    designed.actions_["next"].trigger()
+    designed.commands["next"].trigger()
     for width in (88.0, 99.0):
         designed.controller.fabrication.change(width_mm=width)
         designed.controller.end_drag()
     qtbot.keyClick(designed, Qt.Key.Key_H, Qt.KeyboardModifier.ControlModifier | Qt.KeyboardModifier.ShiftModifier)
-    shown = designed.commands.history
+    shown = designed.dialogs.history
     assert shown is not None and shown.isVisible() and not shown.isModal()
     return shown
 
@@ -218,9 +218,9 @@ def test_that_the_history_names_every_step_and_a_click_goes_there(
 
 
 def test_that_the_history_follows_the_work(steps: HistoryList, designed: MainWindow) -> None:
-    designed.actions_["undo"].trigger()
+    designed.commands["undo"].trigger()
     assert steps.steps.currentRow() == 2
-    designed.actions_["next"].trigger()
+    designed.commands["next"].trigger()
     assert [steps.steps.item(row).text() for row in range(steps.steps.count())][3:] == ["Choose design 3"]
 
 

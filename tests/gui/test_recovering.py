@@ -96,7 +96,7 @@ def test_that_a_killed_studio_loses_nothing(
     until(lambda: not left.exists())
     own = controller.filing.recovery.file
     assert own is not None and kept_files(folder) == [own] and store.load(own) == controller.document
-    window.actions_["save"].trigger()
+    window.commands["save"].trigger()
     until(lambda: not controller.history.unsaved)
     assert kept_files(folder) == [] and store.load(project_file).fabrication.width_mm == 123.0
 

@@ -10,10 +10,10 @@ from PySide6.QtCore import QSettings, Qt
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
+from kirigami_studio.gui.application import create_window
 from kirigami_studio.gui.look.theme import LIGHT
 from kirigami_studio.gui.main_window import MainWindow
 from kirigami_studio.gui.panels.fabrication_panel import Extent
-from kirigami_studio.gui.shell import Shell
 
 Until = Callable[[Callable[[], bool]], None]
 
@@ -75,10 +75,11 @@ def test_that_the_choice_of_how_much_is_shown_lasts(designed: MainWindow, qtbot:
     assert state.value("fabrication") is None
     qtbot.mouseClick(designed.fabrication.fold, Qt.MouseButton.LeftButton)
     designed.remember(state)
-    again = Shell(LIGHT)
+    again = create_window(LIGHT)
     again.restore(state)
     again.resize(1280, 720)
     assert again.fabrication.extent is Extent.ALL
+    assert again.close()
     again.deleteLater()
 
 

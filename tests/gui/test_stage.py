@@ -32,9 +32,9 @@ def test_that_the_slider_the_number_and_the_view_show_one_angle(designed: MainWi
     assert math.degrees(view.phi) == pytest.approx(bar.number.value(), abs=0.051)
     bar.number.setValue(45.0)
     assert math.degrees(view.phi) == pytest.approx(45.0, abs=0.051)
-    designed.actions_["to_flat"].trigger()
+    designed.commands["to_flat"].trigger()
     assert view.phi == math.pi
-    designed.actions_["to_target"].trigger()
+    designed.commands["to_target"].trigger()
     assert view.phi == 0.0
 
 
@@ -93,7 +93,7 @@ def test_that_overlays_follow_buttons_menu_and_keys(designed: MainWindow, qtbot:
     without = view.grab().toImage()
     assert without != whole and view.areas is None
     qtbot.mouseClick(toggles[Overlay.TARGET], LEFT)
-    assert not designed.actions_["show_target"].isChecked()
+    assert not designed.commands["show_target"].isChecked()
     assert view.grab().toImage() != without
     qtbot.keyClick(designed, Qt.Key.Key_M)
     qtbot.keyClick(designed, Qt.Key.Key_T)
@@ -135,12 +135,12 @@ def test_that_the_wheel_zooms_about_the_pointer_and_zero_fits(designed: MainWind
 
 def test_that_the_theme_changes_every_drawing(designed: MainWindow) -> None:
     light = designed.grab().toImage()
-    designed.actions_["theme"].trigger()
+    designed.commands["theme"].trigger()
     assert designed.palette_ is DARK
     dark = designed.grab().toImage()
     for area in (designed.stage.view, designed.target.view, designed.gallery.view):
         place = area.mapTo(designed, area.rect().center())
         spot = place if area is not designed.stage.view else area.mapTo(designed, QPoint(12, 12))
         assert light.pixelColor(spot) != dark.pixelColor(spot)
-    designed.actions_["theme"].trigger()
+    designed.commands["theme"].trigger()
     assert designed.palette_ is LIGHT

@@ -158,7 +158,7 @@ class Sitting:
         """Ctrl+E; another program's reader finds the sheet in mm, as wide as it was asked for."""
         self.key(Qt.Key.Key_E, CONTROL)
         self.until(lambda: any(one.tone in (Tone.DONE, Tone.WARNING) for one in self.window.messages.messages))
-        report = self.window.commands.report
+        report = self.window.dialogs.report
         assert report is not None and report.isVisible()
         self.bot.keyClick(report, Qt.Key.Key_Escape)
         assert not report.isVisible()
@@ -222,7 +222,7 @@ def reopened(path: Path, until: Until) -> Document:
     """What another window finds in the file."""
     other = create_window(LIGHT)
     other.show()
-    other.commands.take_file(str(path))
+    other.files.open(str(path))
     until(lambda: other.controller.stage is not None and other.fabrication.export.isEnabled())
     document = other.controller.document
     assert other.gallery.view.model_.rowCount() == len(document.candidates)

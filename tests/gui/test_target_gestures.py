@@ -32,7 +32,7 @@ def test_that_a_silhouette_is_found_by_typing_its_name_in_the_library(
     window: MainWindow, qtbot: QtBot, until: Until
 ) -> None:
     qtbot.mouseClick(window.target.buttons["library"], LEFT)
-    picker = window.commands.picker
+    picker = window.dialogs.picker
     assert picker is not None and picker.list.count() == len(silhouettes.names()) >= 24
     qtbot.keyClicks(picker.search, "hexag")
     qtbot.keyClick(picker.search, Qt.Key.Key_Return)
@@ -42,8 +42,8 @@ def test_that_a_silhouette_is_found_by_typing_its_name_in_the_library(
 
 
 def test_that_the_library_prefers_the_title_that_fits_best(window: MainWindow, qtbot: QtBot, until: Until) -> None:
-    window.actions_["library"].trigger()
-    picker = window.commands.picker
+    window.commands["library"].trigger()
+    picker = window.dialogs.picker
     assert picker is not None
     qtbot.keyClicks(picker.search, "star")
     assert sum(not picker.list.item(row).isHidden() for row in range(picker.list.count())) > 1
@@ -55,15 +55,15 @@ def test_that_the_library_prefers_the_title_that_fits_best(window: MainWindow, q
 def test_that_the_first_target_is_no_unsaved_change(window: MainWindow, until: Until) -> None:
     open_first(window, "heart")
     until(lambda: window.target.view.outline is not None)
-    assert not window.controller.history.unsaved and not window.actions_["undo"].isEnabled()
+    assert not window.controller.history.unsaved and not window.commands["undo"].isEnabled()
     open_first(window, "star")
     until(lambda: window.controller.document.target == silhouettes.load("star"))
     assert window.controller.history.unsaved
 
 
 def test_that_a_library_picture_is_chosen_by_click(window: MainWindow, qtbot: QtBot, until: Until) -> None:
-    window.actions_["library"].trigger()
-    picker = window.commands.picker
+    window.commands["library"].trigger()
+    picker = window.dialogs.picker
     assert picker is not None
     item = picker.list.item(2)
     qtbot.mouseClick(picker.list.viewport(), LEFT, pos=picker.list.visualItemRect(item).center())
@@ -76,7 +76,7 @@ def test_that_an_image_file_becomes_the_target(window: MainWindow, files: object
     y, x = np.mgrid[-1:1:96j, -1:1:96j]
     Image.fromarray(np.where(x**2 + (y / 0.6) ** 2 < 0.6, 0, 255).astype(np.uint8)).save(path)
     files.answer = path  # type: ignore[attr-defined]
-    window.actions_["open_target"].trigger()
+    window.commands["open_target"].trigger()
     until(lambda: window.controller.document.target is not None)
     width, height = np.ptp(window.controller.document.target.points, axis=0)  # type: ignore[union-attr]
     assert width / height == pytest.approx(1 / 0.6, rel=0.05)
@@ -225,5 +225,5 @@ def test_that_escape_leaves_a_sketch_without_a_trace(heart: MainWindow, qtbot: Q
 def test_that_clearing_a_target_can_be_undone(heart: MainWindow, qtbot: QtBot) -> None:
     qtbot.mouseClick(heart.target.buttons["clearTarget"], LEFT)
     assert heart.controller.document.target is None and not heart.run.generate.isEnabled()
-    heart.actions_["undo"].trigger()
+    heart.commands["undo"].trigger()
     assert heart.target.view.outline == silhouettes.load("heart")

@@ -81,7 +81,7 @@ def test_that_auto_brings_the_found_threshold_back(traced: MainWindow, photo: Pa
 def test_that_a_threshold_without_shape_keeps_the_target_and_says_so(traced: MainWindow, until: Until) -> None:
     before = traced.controller.document.target
     traced.target.threshold.slider.setValue(1)
-    until(lambda: "one colour" in traced.says.text())
+    until(lambda: "one colour" in traced.status_text.text())
     assert traced.controller.document.target is before
     assert not traced.messages.messages
 
@@ -101,7 +101,7 @@ def test_that_a_drawing_wins_over_a_file_that_is_still_being_read(
 ) -> None:
     window.controller.targeting.open(str(photo))
     corners = np.array([[0.0, 0.0], [3.0, 0.0], [1.0, 2.0]])
-    window.wiring.reshaping.take(Change("Draw polygon", lambda: Placed.from_ring(corners, "polygon")))
+    window.connections.target.reshaping.take(Change("Draw polygon", lambda: Placed.from_ring(corners, "polygon")))
     until(lambda: not window.controller.queue.busy)
     assert window.controller.document.target is not None and window.controller.document.target.name == "polygon"
 
@@ -164,7 +164,7 @@ def test_that_a_picture_goes_along_when_its_contour_is_moved_and_enlarged(
         view.underlay.pixel * traced.controller.targeting.tracer.picture_of(view.outline).traced.scale  # type: ignore
     )
     for _ in range(3):
-        traced.actions_["undo"].trigger()
+        traced.commands["undo"].trigger()
     assert view.underlay.corner == pytest.approx(corner) and view.context.placed.size == pytest.approx((width, height))
 
 

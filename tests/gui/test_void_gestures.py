@@ -37,17 +37,17 @@ from kirigami_studio.project.edits import Edit
 def test_that_pointing_at_a_void_tells_its_facts_even_outside_the_mode(designed: MainWindow) -> None:
     view = designed.stage.view
     designed.stage.deployment.set_phi(OPEN)
-    before = designed.says.text()
+    before = designed.status_text.text()
     QTest.mouseMove(view, middle_of(view, (1, 2)))
     x = ratio(designed, (1, 2))
     width = designed.controller.document.fabrication.width_mm
     corners = deploy(chosen(designed).field).voids(OPEN)[1, 2] * width / 6
     edge = np.hypot(*(corners[1] - corners[0]))
-    assert designed.says.text().startswith(f"Void (1, 2): ratio x {x:.3f}, angle 80.0° at its left corner")
-    assert f"{edge:.2f}" in designed.says.text() and "locked" not in designed.says.text()
+    assert designed.status_text.text().startswith(f"Void (1, 2): ratio x {x:.3f}, angle 80.0° at its left corner")
+    assert f"{edge:.2f}" in designed.status_text.text() and "locked" not in designed.status_text.text()
     assert view.voids.lines[0] == f"Void (1, 2)   x {x:.3f}"
     QTest.mouseMove(view, QPoint(3, 3))
-    assert view.voids.void is None and designed.says.text() == before
+    assert view.voids.void is None and designed.status_text.text() == before
 
 
 def test_that_the_nearest_slit_is_meant_on_the_flat_sheet(designed: MainWindow) -> None:
@@ -79,9 +79,9 @@ def test_that_the_wheel_over_a_void_changes_its_ratio_in_one_undo_step(by_hand: 
     assert np.array_equal(after.field.ratio[others], before.field.ratio[others])
     target = by_hand.controller.document.target
     assert target is not None and after.score == evaluate(deploy(after.field), target, 0.0)
-    by_hand.actions_["undo"].trigger()
+    by_hand.commands["undo"].trigger()
     assert chosen(by_hand) == before
-    by_hand.actions_["redo"].trigger()
+    by_hand.commands["redo"].trigger()
     assert chosen(by_hand) == after
 
 
@@ -116,7 +116,7 @@ def test_that_a_notch_after_a_pause_or_after_undo_is_a_step_of_its_own(
         settle(by_hand, until)
     assert len(history.steps) == 2
     monkeypatch.setattr(hand_editor, "JOINS_WITHIN", 60.0)
-    by_hand.actions_["undo"].trigger()
+    by_hand.commands["undo"].trigger()
     turn(view, middle_of(view, (1, 2)), -1)
     settle(by_hand, until)
     assert len(history.steps) == 2 and history.position == 2
@@ -153,7 +153,7 @@ def test_that_the_wheel_still_zooms_beside_the_voids_and_outside_the_mode(by_han
     with qtbot.waitSignal(view.zoom_changed):
         turn(view, QPoint(4, 4), 1)
     view.fit()
-    by_hand.actions_["hand"].trigger()
+    by_hand.commands["hand"].trigger()
     with qtbot.waitSignal(view.zoom_changed):
         turn(view, middle_of(view, (1, 2)), 1)
     assert not by_hand.controller.hand.busy
@@ -190,7 +190,7 @@ def test_that_one_drag_is_one_undo_step_and_the_picture_keeps_its_place(by_hand:
     QTest.mouseRelease(view, LEFT, NONE, start + QPoint(6, 6))
     settle(by_hand, until)
     assert view.transform() == transform
-    by_hand.actions_["undo"].trigger()
+    by_hand.commands["undo"].trigger()
     assert chosen(by_hand) == before and by_hand.controller.history.undo_label is None
 
 
@@ -204,7 +204,7 @@ def test_that_a_pulled_vertex_of_the_outline_arrives_at_the_mouse(by_hand: MainW
     settle(by_hand, until)
     assert by_hand.controller.history.undo_label == "Move outline"
     assert chosen(by_hand).field != before.field
-    by_hand.actions_["undo"].trigger()
+    by_hand.commands["undo"].trigger()
     assert chosen(by_hand) == before
 
 
@@ -219,7 +219,7 @@ def test_that_gestures_in_quick_succession_all_arrive_in_order(by_hand: MainWind
         assert ratio(by_hand, void) > first.field.ratio[void]
     for label in reversed(labels):
         assert history.undo_label == label
-        by_hand.actions_["undo"].trigger()
+        by_hand.commands["undo"].trigger()
     assert chosen(by_hand) == first
 
 
@@ -293,10 +293,10 @@ def test_that_a_trim_goes_with_the_first_change_and_comes_back_with_undo(by_hand
     assert trimmed.trim is not None and by_hand.stage.view.design.deployment.field == trimmed.trim.field
     turn(by_hand.stage.view, middle_of(by_hand.stage.view, (1, 2)), 1)
     settle(by_hand, until)
-    assert chosen(by_hand).trim is None and "Trim removed" in by_hand.says.text()
+    assert chosen(by_hand).trim is None and "Trim removed" in by_hand.status_text.text()
     seen, now = trimmed.trim.field.ratio, chosen(by_hand).field.ratio  # what was seen is what was changed
     assert np.argwhere(now != seen).tolist() == [[1, 2]] and now[1, 2] > seen[1, 2]
-    by_hand.actions_["undo"].trigger()
+    by_hand.commands["undo"].trigger()
     assert chosen(by_hand) == trimmed
 
 

@@ -18,7 +18,7 @@ from kirigami_studio.gui.main_window import MainWindow
 
 def lock(window: MainWindow, *voids: tuple[int, int]) -> None:
     window.stage.view.voids.select(frozenset(voids))
-    window.actions_["lock"].trigger()
+    window.commands["lock"].trigger()
 
 
 def test_that_alt_click_locks_and_unlocks_a_void_undoably(by_hand: MainWindow) -> None:
@@ -27,13 +27,13 @@ def test_that_alt_click_locks_and_unlocks_a_void_undoably(by_hand: MainWindow) -
     QTest.mouseMove(view, place)
     QTest.mouseClick(view, LEFT, ALT, place)
     assert controller.document.locked == {(2, 1)} and controller.history.undo_label == "Lock void (2, 1)"
-    assert by_hand.says.text().endswith("locked.") and view.voids.lines[0].endswith("locked")
+    assert by_hand.status_text.text().endswith("locked.") and view.voids.lines[0].endswith("locked")
     QTest.mouseClick(view, LEFT, ALT, place)
     assert controller.document.locked == frozenset() and controller.history.undo_label == "Unlock void (2, 1)"
-    by_hand.actions_["undo"].trigger()
-    by_hand.actions_["undo"].trigger()
+    by_hand.commands["undo"].trigger()
+    by_hand.commands["undo"].trigger()
     assert controller.history.undo_label is None
-    by_hand.actions_["redo"].trigger()
+    by_hand.commands["redo"].trigger()
     assert controller.document.locked == {(2, 1)}
 
 
@@ -45,7 +45,7 @@ def test_that_a_band_selects_voids_that_one_key_locks(by_hand: MainWindow) -> No
     assert {(1, 1), (1, 2), (2, 1), (2, 2)} <= expected
     drag(view, QPoint(round(left), round(top)), QPoint(round(right), round(bottom)), SHIFT)
     assert view.voids.selected == expected
-    by_hand.actions_["lock"].trigger()
+    by_hand.commands["lock"].trigger()
     assert controller.document.locked == expected
     assert controller.history.undo_label == f"Lock {len(expected)} voids"
     assert by_hand.stage.voids.lock.isChecked() and not by_hand.stage.voids.ratio.isEnabled()
@@ -55,7 +55,7 @@ def test_that_all_voids_are_locked_and_unlocked_at_once(by_hand: MainWindow) -> 
     controller = by_hand.controller
     by_hand.stage.voids.lock_all.trigger()
     assert len(controller.document.locked) == 20 and controller.history.undo_label == "Lock all voids"
-    by_hand.actions_["unlock_all"].trigger()
+    by_hand.commands["unlock_all"].trigger()
     assert not controller.document.locked and controller.history.undo_label == "Unlock all voids"
 
 
@@ -123,7 +123,7 @@ def test_that_the_menu_of_a_void_locks_it_and_evens_its_ratio(by_hand: MainWindo
     view = by_hand.stage.view
     place = middle_of(view, (2, 1))
     QApplication.sendEvent(view, QContextMenuEvent(QContextMenuEvent.Reason.Mouse, place, view.mapToGlobal(place)))
-    menu = by_hand.wiring.by_hand.menu
+    menu = by_hand.connections.voids.menu
     assert menu is not None and menu.isVisible()
     choices = {action.text(): action for action in menu.actions()}
     choices["Make the ratio 1"].trigger()
@@ -140,15 +140,15 @@ def test_that_fit_again_improves_the_design_and_holds_what_is_locked(
 ) -> None:
     controller, before = by_hand.controller, chosen(by_hand)
     lock(by_hand, (0, 0), (2, 2))
-    by_hand.actions_["refit"].trigger()
-    assert by_hand.stage.voids.refit.isChecked() and by_hand.actions_["cancel"].isEnabled()
+    by_hand.commands["refit"].trigger()
+    assert by_hand.stage.voids.refit.isChecked() and by_hand.commands["cancel"].isEnabled()
     until(lambda: not controller.refitting.busy)
     after = chosen(by_hand)
     assert after.score.siou > before.score.siou and after.polished and after.sampled_field == before.field
     for void in ((0, 0), (2, 2)):
         assert after.field.ratio[void] == before.field.ratio[void]
     assert controller.history.undo_label == "Fit design 1" and not by_hand.stage.voids.refit.isChecked()
-    by_hand.actions_["undo"].trigger()
+    by_hand.commands["undo"].trigger()
     assert chosen(by_hand) == before
 
 
@@ -180,10 +180,10 @@ def test_that_a_fit_that_finds_nothing_better_is_taken_only_when_asked(
 
 def test_that_a_stopped_fit_changes_nothing(by_hand: MainWindow) -> None:
     before = by_hand.controller.document
-    by_hand.actions_["refit"].trigger()
-    by_hand.actions_["cancel"].trigger()
+    by_hand.commands["refit"].trigger()
+    by_hand.commands["cancel"].trigger()
     assert not by_hand.controller.refitting.busy and by_hand.controller.document == before
-    assert by_hand.says.text() == "Fitting stopped; nothing changed."
+    assert by_hand.status_text.text() == "Fitting stopped; nothing changed."
 
 
 def test_that_locks_and_changed_designs_are_saved_and_reopened(
@@ -207,8 +207,8 @@ def test_that_locks_and_changed_designs_are_saved_and_reopened(
 
 
 def test_that_there_is_nothing_to_edit_without_a_design_or_before_its_polish(heart: MainWindow) -> None:
-    assert not heart.stage.hand.isEnabled() and not heart.actions_["hand"].isEnabled()
-    heart.actions_["refit"].trigger()
+    assert not heart.stage.hand.isEnabled() and not heart.commands["hand"].isEnabled()
+    heart.commands["refit"].trigger()
     heart.controller.refitting.start()
     assert "Choose a finished design first" in heart.messages.messages[-1].sentence
 
@@ -216,7 +216,7 @@ def test_that_there_is_nothing_to_edit_without_a_design_or_before_its_polish(hea
 def test_that_a_fit_that_is_out_of_date_says_so_instead_of_doing_nothing(by_hand: MainWindow, until: Until) -> None:
     controller, messages = by_hand.controller, by_hand.messages
     fit_in_vain(by_hand, until)
-    assert "is unchanged" in by_hand.says.text()
+    assert "is unchanged" in by_hand.status_text.text()
     ((label, act),) = messages.messages[-1].actions
     assert label == "Apply anyway"
     controller.hand.set_ratio(frozenset({(1, 1)}), 2.0)
@@ -224,7 +224,7 @@ def test_that_a_fit_that_is_out_of_date_says_so_instead_of_doing_nothing(by_hand
     until(lambda: not controller.hand.busy)
     before = controller.document
     act()
-    assert controller.document == before and "has changed since" in by_hand.says.text()
+    assert controller.document == before and "has changed since" in by_hand.status_text.text()
 
 
 def test_that_a_fit_is_not_taken_when_voids_were_locked_since(by_hand: MainWindow, until: Until) -> None:
@@ -234,51 +234,51 @@ def test_that_a_fit_is_not_taken_when_voids_were_locked_since(by_hand: MainWindo
     controller.hand.lock(frozenset({(1, 1)}), True)  # the one that the fit has moved
     before = controller.document
     act()
-    assert controller.document is before and "Voids were locked since the fit" in by_hand.says.text()
+    assert controller.document is before and "Voids were locked since the fit" in by_hand.status_text.text()
     controller.hand.lock(frozenset({(1, 1), (2, 2)}), False)  # fewer locks than the fit has held
     act()
     assert chosen(by_hand).polished and controller.history.undo_label == "Fit design 1"
-    assert by_hand.says.text().startswith("Fit applied: sIoU ")
+    assert by_hand.status_text.text().startswith("Fit applied: sIoU ")
 
 
 def test_that_a_void_that_is_locked_during_a_fit_keeps_its_ratio(by_hand: MainWindow, until: Until) -> None:
     controller, before = by_hand.controller, chosen(by_hand)
-    by_hand.actions_["refit"].trigger()
+    by_hand.commands["refit"].trigger()
     controller.hand.lock(frozenset({(1, 1)}), True)
     until(lambda: not controller.refitting.busy)
-    assert chosen(by_hand) == before and "Voids were locked since the fit" in by_hand.says.text()
+    assert chosen(by_hand) == before and "Voids were locked since the fit" in by_hand.status_text.text()
 
 
 def test_that_fit_again_trims_a_trimmed_design_again_with_what_is_locked_as_it_is_seen(
     by_hand: MainWindow, until: Until
 ) -> None:
     controller = by_hand.controller
-    by_hand.actions_["trim"].trigger()
+    by_hand.commands["trim"].trigger()
     until(lambda: chosen(by_hand).trim is not None)
     before = chosen(by_hand)
     lock(by_hand, (0, 0), (2, 2))
-    by_hand.actions_["refit"].trigger()
+    by_hand.commands["refit"].trigger()
     until(lambda: not controller.refitting.busy)
     after = chosen(by_hand)
     assert before.trim is not None and after.trim is not None and after.field != before.field
     assert after.score.siou > before.score.siou
     for void in ((0, 0), (2, 2)):
         assert after.trim.field.ratio[void] == before.trim.field.ratio[void] == after.field.ratio[void]
-    assert f"Trimmed again: IoU {100 * after.trim.iou:.1f} %" in by_hand.says.text()
+    assert f"Trimmed again: IoU {100 * after.trim.iou:.1f} %" in by_hand.status_text.text()
     assert by_hand.stage.view.design is not None and by_hand.stage.view.design.trim == after.trim
-    by_hand.actions_["undo"].trigger()
+    by_hand.commands["undo"].trigger()
     assert chosen(by_hand) == before
 
 
 def test_that_a_trim_that_cannot_be_made_again_is_said_to_be_off(by_hand: MainWindow, until: Until) -> None:
     controller = by_hand.controller
-    by_hand.actions_["trim"].trigger()
+    by_hand.commands["trim"].trigger()
     until(lambda: chosen(by_hand).trim is not None)
     controller.fabrication.change(width_mm=12.0, connector_mm=1.2)
-    by_hand.actions_["refit"].trigger()
+    by_hand.commands["refit"].trigger()
     until(lambda: not controller.refitting.busy)
     assert chosen(by_hand).trim is None and chosen(by_hand).polished
-    assert "Trim removed: Connectors of 1.2 mm leave nothing to trim" in by_hand.says.text()
+    assert "Trim removed: Connectors of 1.2 mm leave nothing to trim" in by_hand.status_text.text()
 
 
 def test_that_no_ratio_is_shown_while_no_void_is_selected(by_hand: MainWindow) -> None:

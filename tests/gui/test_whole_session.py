@@ -11,7 +11,6 @@ import pytest
 from PySide6.QtGui import QImage, QPainter
 from PySide6.QtWidgets import QApplication, QWidget
 
-from kirigami_studio.gui.actions import COMMANDS
 from kirigami_studio.gui.main_window import MainWindow
 from kirigami_studio.project import store
 
@@ -56,7 +55,7 @@ def test_that_every_control_has_a_name_and_a_tooltip(designed: MainWindow) -> No
         and not (widget.toolTip() and (widget.accessibleName() or widget.property("text")))
     ]
     assert nameless == []
-    assert {command.name for command in COMMANDS} == set(designed.actions_)
+    assert {command.id for command in designed.commands.records} == set(designed.commands.actions)
 
 
 def test_that_nothing_is_clipped_at_the_smallest_size(designed: MainWindow) -> None:

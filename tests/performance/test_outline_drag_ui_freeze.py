@@ -43,7 +43,7 @@ def test_that_the_window_goes_on_while_a_vertex_of_a_large_sheet_is_dragged(qtbo
     window.controller.open_project(tmp_path / "large.kiri")
     qtbot.waitUntil(lambda: window.fabrication.export.isEnabled() and not window.controller.queue.busy, timeout=60_000)
     window.stage.deployment.set_phi(OPEN)
-    window.actions_["hand"].trigger()
+    window.commands["hand"].trigger()
     watch, longest = ThreadWatch(), []
     for _ in range(DRAGS):
         watch.begin()

@@ -1,4 +1,4 @@
-"""Which file? The system's own choosers, with the right filters, where the user was last."""
+"""File dialogs: the system's own, with the right filters, in the folder that was used last."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ TARGET_FILTER = tr("Targets (*.png *.jpg *.jpeg *.bmp *.svg *.dxf *.json);;All f
 PROJECT_FILTER = tr("Kirigami Studio projects (*.kiri)")
 
 
-class FileQuestions(Protocol):
-    """Who answers when a file is needed; None means that the user thought better of it."""
+class FileDialogs(Protocol):
+    """Asks the user for files; None means that the user has cancelled."""
 
     def target(self) -> Path | None:
         """A target to open."""
@@ -36,8 +36,8 @@ class FileQuestions(Protocol):
         """A folder for many files."""
 
 
-class FileChoosers:
-    """Asks the user with the system's choosers."""
+class SystemFileDialogs:
+    """The dialogs of the desktop."""
 
     def __init__(self, window: QWidget) -> None:
         self._window = window
@@ -75,7 +75,7 @@ class FileChoosers:
         return self._remembered(name)
 
     def _saver(self, title: str, proposal: str, filters: list[str]) -> QFileDialog:
-        """A chooser that appends the extension itself, so that it asks before it overwrites the right file."""
+        """A dialog that appends the extension itself, so that it asks before it overwrites the right file."""
         dialog = QFileDialog(self._window, title, self._folder)
         dialog.setAcceptMode(QFileDialog.AcceptMode.AcceptSave)
         dialog.setFileMode(QFileDialog.FileMode.AnyFile)

@@ -1,4 +1,4 @@
-"""Every key and every gesture of the mouse on one sheet, with a search, beside the work."""
+"""Help beside the work: the user guide, and the sheet of all keys and mouse gestures with a search."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from PySide6.QtWidgets import (
 
 from kirigami_studio.foundation.resources import resource
 from kirigami_studio.foundation.words import tr, tr_n
-from kirigami_studio.gui.actions import COMMANDS, Command
+from kirigami_studio.gui.commands.command import Command
 
 
 class GuideWindow(QWidget):
@@ -86,9 +86,9 @@ def gestures() -> tuple[Gesture, ...]:
 
 
 class ShortcutSheet(QWidget):
-    """Lists the command table and the gestures; typing filters both."""
+    """Lists the commands that have keys, and the gestures; typing filters both."""
 
-    def __init__(self, parent: QWidget, commands: Iterable[Command] = COMMANDS) -> None:
+    def __init__(self, parent: QWidget, commands: Iterable[Command]) -> None:
         super().__init__(parent, Qt.WindowType.Window)
         self.setWindowTitle(tr("Keyboard shortcuts"))
         self.search = QLineEdit()

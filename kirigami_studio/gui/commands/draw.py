@@ -1,0 +1,120 @@
+"""The Draw menu: the tools of the drawing board and how the next shape joins the target."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import TYPE_CHECKING
+
+from kirigami_studio.foundation.words import tr
+from kirigami_studio.gui.commands.command import Command
+from kirigami_studio.gui.messages import Message, Tone
+from kirigami_studio.gui.views.target_view import Tool
+from kirigami_studio.outlines.combining import Combine
+
+if TYPE_CHECKING:
+    from kirigami_studio.gui.main_window import MainWindow
+
+
+def commands(window: MainWindow) -> tuple[Command, ...]:
+    """Return the commands of the Draw menu."""
+    return (_board(window), *_tools(window), *_modes(window), *_aids(window))
+
+
+def _board(window: MainWindow) -> Command:
+    return Command(
+        "edit_target",
+        tr("D&raw"),
+        tr("&Edit target"),
+        tr("Open or leave the drawing board"),
+        window.target.buttons["edit"].click,
+        shortcuts=("E",),
+        icon="edit",
+    )
+
+
+def _tools(window: MainWindow) -> tuple[Command, ...]:
+    """A command for each tool, which opens the board."""
+
+    def tool(which: Tool, text: str, key: str, tip: str, icon: str = "", gap: bool = False) -> Command:
+        take = partial(_take_tool, window, which)
+        return Command(which.value, tr("D&raw"), text, tip, take, (key,), icon or which.value, gap)
+
+    return (
+        tool(Tool.POINTS, tr("Move &points"), "N", tr("Drag the target's points"), gap=True),
+        tool(Tool.POSE, tr("&Move, resize and rotate"), "V", tr("Move, resize and rotate the target")),
+        tool(Tool.FREEHAND, tr("&Freehand"), "D", tr("Draw the target in one stroke"), "draw", gap=True),
+        tool(Tool.POLYGON, tr("P&olygon"), "P", tr("Draw the target corner by corner")),
+        tool(Tool.RECTANGLE, tr("Rec&tangle"), "R", tr("Draw a rectangle")),
+        tool(Tool.ELLIPSE, tr("E&llipse"), "O", tr("Draw an ellipse or a circle")),
+        tool(Tool.REGULAR, tr("Re&gular polygon"), "G", tr("Draw a regular polygon")),
+        tool(Tool.STAR, tr("&Star"), "S", tr("Draw a star")),
+        tool(Tool.TEXT, tr("Te&xt"), "X", tr("Draw letters joined into one piece")),
+    )
+
+
+def _modes(window: MainWindow) -> tuple[Command, ...]:
+    """How the next shape joins the target; only on the board, because + and - change a ratio elsewhere."""
+
+    def mode(name: str, how: Combine, text: str, key: str, tip: str, icon: str) -> Command:
+        return Command(
+            name,
+            tr("D&raw"),
+            text,
+            tip,
+            partial(_set_mode, window, how),
+            (key,),
+            icon,
+            gap=how is Combine.REPLACE,
+            enabled_when=lambda now: now.editing_target,
+        )
+
+    new, join = tr("Replace the target with the next shape"), tr("Add the next shape to the target")
+    cut = tr("Cut the next shape out of the target")
+    return (
+        mode("mode_new", Combine.REPLACE, tr("&New shape"), "=", new, "replace"),
+        mode("mode_add", Combine.ADD, tr("&Add shape"), "+", join, "add"),
+        mode("mode_subtract", Combine.SUBTRACT, tr("Su&btract shape"), "-", cut, "subtract"),
+    )
+
+
+def _aids(window: MainWindow) -> tuple[Command, ...]:
+    strip = window.target.tools
+    return (
+        Command(
+            "axis",
+            tr("D&raw"),
+            tr("M&irror while drawing"),
+            tr("Switch to the next mirror axis"),
+            partial(_cycle_axis, window),
+            shortcuts=("Shift+M",),
+            icon="axis-upright",
+            gap=True,
+        ),
+        Command(
+            "grid",
+            tr("D&raw"),
+            tr("Snap to g&rid"),
+            tr("Show the grid and snap to it"),
+            strip.grid.click,
+            shortcuts=("Ctrl+Shift+G",),
+            icon="grid",
+        ),
+    )
+
+
+def _take_tool(window: MainWindow, tool: Tool) -> None:
+    if window.target.tools.buttons[tool].isEnabled():
+        window.target.set_tool(tool)
+    else:
+        sentence = tr("No target to edit yet. Draw or open one first.")
+        window.messages.add(Message(sentence, Tone.HINT))
+
+
+def _set_mode(window: MainWindow, mode: Combine) -> None:
+    if window.target.tools.modes[mode].isEnabled():
+        window.target.tools.set_mode(mode)
+
+
+def _cycle_axis(window: MainWindow) -> None:
+    window.target.set_editing(True)
+    window.target.tools.axis.cycle()

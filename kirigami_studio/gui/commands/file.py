@@ -1,0 +1,178 @@
+"""The File menu: opening projects and targets, saving, exporting."""
+
+from __future__ import annotations
+
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QObject
+
+from kirigami_studio.fabricate.material import Material
+from kirigami_studio.foundation.resources import resource
+from kirigami_studio.foundation.words import tr
+from kirigami_studio.gui.commands.command import Command
+from kirigami_studio.gui.controller import Controller
+from kirigami_studio.gui.jobs.project_jobs import Leftover
+from kirigami_studio.gui.messages import Message, Tone
+from kirigami_studio.gui.unsaved_work import NEW_PROJECT, OTHER_PROJECT, RECOVERED, SAMPLE
+
+if TYPE_CHECKING:
+    from kirigami_studio.gui.main_window import MainWindow
+
+
+class FileCommands(QObject):
+    """Asks for files, and hands them to the controller."""
+
+    def __init__(self, window: MainWindow, controller: Controller) -> None:
+        super().__init__(window)
+        self._window = window
+        self._controller = controller
+
+    def new_project(self) -> None:
+        """Start an empty project."""
+        self._window.unsaved.guard(NEW_PROJECT, self._controller.new_project)
+
+    def ask_project(self) -> None:
+        """Open a project of the user's choice."""
+        self._window.unsaved.guard(OTHER_PROJECT, self._choose_project)
+
+    def _choose_project(self) -> None:
+        path = self._window.file_dialogs.project()
+        if path is not None:
+            self._controller.open_project(path)
+
+    def ask_target(self) -> None:
+        """Open a target file of the user's choice."""
+        path = self._window.file_dialogs.target()
+        if path is not None:
+            self._controller.targeting.open(str(path))
+
+    def open(self, name: str) -> None:
+        """Open a dropped, pasted or recent file: a project or a target."""
+        if Path(name).suffix.lower() == ".kiri":
+            self._window.unsaved.guard(OTHER_PROJECT, lambda: self._controller.open_project(Path(name)))
+        else:
+            self._controller.targeting.open(name)
+
+    def open_sample(self) -> None:
+        """Open the bundled project; it is saved elsewhere."""
+        sample = resource("examples", "heart.kiri")
+        self._window.unsaved.guard(SAMPLE, partial(self._controller.open_project, sample))
+
+    def recover(self, leftover: Leftover) -> None:
+        """Open what a session that ended unexpectedly has left."""
+        self._window.unsaved.guard(RECOVERED, partial(self._controller.filing.recovery.recover, leftover))
+
+    def export(self, extension: str = ".dxf") -> None:
+        """Write the cut file, or another kind of file, in a place of the user's choice."""
+        if self._controller.stage is None:
+            sentence = tr("No design to export yet. Generate one first.")
+            self._window.messages.add(Message(sentence, Tone.HINT))
+            return
+        path = self._window.file_dialogs.export(f"{self._window.unsaved.name}{extension}")
+        if path is not None:
+            self._controller.export(path)
+
+    def export_all(self) -> None:
+        """Write everything that there is of the design into a folder of the user's choice."""
+        folder = self._window.file_dialogs.folder()
+        if folder is not None:
+            self._controller.export_all(folder, self._window.unsaved.name)
+
+    def export_coupon(self, material: Material) -> None:
+        """Write the calibration coupon of a material in a place of the user's choice."""
+        path = self._window.file_dialogs.export(f"coupon-{material.key}.dxf")
+        if path is not None:
+            self._controller.cutting.export_coupon(material, path)
+
+
+def commands(window: MainWindow) -> tuple[Command, ...]:
+    """Return the commands of the File menu."""
+    files, menu = window.files, tr("&File")
+    return (
+        Command(
+            "new", menu, tr("&New project"), tr("Start an empty project"), files.new_project, shortcuts=("Ctrl+N",)
+        ),
+        Command(
+            "open_project",
+            menu,
+            tr("Open &project …"),
+            tr("Open a .kiri project"),
+            files.ask_project,
+            shortcuts=("Ctrl+Shift+O",),
+            icon="project",
+        ),
+        Command(
+            "save",
+            menu,
+            tr("&Save project"),
+            tr("Save the project"),
+            window.unsaved.save,
+            shortcuts=("Ctrl+S",),
+            icon="save",
+        ),
+        Command(
+            "save_as",
+            menu,
+            tr("Save project &as …"),
+            tr("Save the project under another name"),
+            window.unsaved.save_as,
+            shortcuts=("Ctrl+Shift+S",),
+        ),
+        Command(
+            "open_target",
+            menu,
+            tr("&Open target …"),
+            tr("Open a target silhouette"),
+            files.ask_target,
+            shortcuts=("Ctrl+O",),
+            icon="open",
+            gap=True,
+        ),
+        Command(
+            "library",
+            menu,
+            tr("Target &library …"),
+            tr("Choose a silhouette from the library"),
+            window.dialogs.show_library,
+            shortcuts=("Ctrl+L",),
+            icon="library",
+        ),
+        Command(
+            "export",
+            menu,
+            tr("Export &DXF …"),
+            tr("Export a cut file in mm, or a picture"),
+            files.export,
+            shortcuts=("Ctrl+E",),
+            icon="export",
+            gap=True,
+            enabled_when=lambda now: now.shows_design,
+        ),
+        Command(
+            "export_all",
+            menu,
+            tr("Export &everything …"),
+            tr("Export every file type to one folder"),
+            files.export_all,
+            shortcuts=("Ctrl+Shift+E",),
+            enabled_when=lambda now: now.shows_design,
+        ),
+        Command(
+            "animation",
+            menu,
+            tr("Export an&imation …"),
+            tr("Export the deployment as a looping GIF"),
+            partial(files.export, ".gif"),
+        ),
+        Command(
+            "quit",
+            menu,
+            tr("&Quit"),
+            tr("Close Kirigami Studio"),
+            window.close,
+            shortcuts=("Ctrl+Q",),
+            gap=True,
+        ),
+    )

@@ -1,0 +1,261 @@
+"""The View menu: the deployment, what is drawn over the layout, the pages of the stage, the theme."""
+
+from __future__ import annotations
+
+import math
+from functools import partial
+from typing import TYPE_CHECKING
+
+from PySide6.QtWidgets import QAbstractButton, QComboBox
+
+from kirigami_studio.foundation.words import tr
+from kirigami_studio.gui.commands.command import Command, WindowState, Wording
+from kirigami_studio.gui.views.layout_view import Overlay
+
+if TYPE_CHECKING:
+    from kirigami_studio.gui.main_window import MainWindow
+
+#: Commands that switch what is drawn over the layout.
+OVERLAY_COMMANDS = {
+    "show_target": Overlay.TARGET,
+    "show_mismatch": Overlay.MISMATCH,
+    "show_faults": Overlay.FAULTS,
+    "show_ratios": Overlay.RATIOS,
+    "show_openings": Overlay.OPENINGS,
+    "show_small_parts": Overlay.SMALL_PARTS,
+    "show_panel_numbers": Overlay.PANEL_NUMBERS,
+    "show_void_numbers": Overlay.VOID_NUMBERS,
+}
+
+
+def commands(window: MainWindow) -> tuple[Command, ...]:
+    """Return the commands of the View menu."""
+    return (*_deployment(window), *_overlays(window), *_faults(window), *_pages(window), *_themes(window))
+
+
+def _deployment(window: MainWindow) -> tuple[Command, ...]:
+    bar, menu = window.stage.deployment, tr("&View")
+    return (
+        Command(
+            "play",
+            menu,
+            tr("&Play / pause"),
+            tr("Play the deployment"),
+            partial(_play, window),
+            shortcuts=("Space",),
+            icon="play",
+        ),
+        Command(
+            "slower",
+            menu,
+            tr("S&lower"),
+            tr("Play the deployment slower, down to a quarter of normal speed"),
+            partial(bar.options.change_speed, -1),
+            shortcuts=("<",),
+        ),
+        Command(
+            "faster",
+            menu,
+            tr("Fa&ster"),
+            tr("Play the deployment faster, up to four times normal speed"),
+            partial(bar.options.change_speed, 1),
+            shortcuts=(">",),
+        ),
+        Command(
+            "play_mode",
+            menu,
+            tr("Next play m&ode"),
+            tr("Switch between back and forth, loop and once"),
+            bar.options.next_mode,
+            shortcuts=("Shift+P",),
+        ),
+        Command(
+            "to_flat",
+            menu,
+            tr("&Flat sheet (180°)"),
+            tr("Show the sheet flat"),
+            partial(bar.set_phi, math.pi),
+            shortcuts=("Ctrl+Left",),
+        ),
+        Command(
+            "to_target",
+            menu,
+            tr("&Target angle"),
+            tr("Show the target angle"),
+            partial(_go_to_target, window),
+            shortcuts=("Ctrl+Right",),
+        ),
+    )
+
+
+def _overlays(window: MainWindow) -> tuple[Command, ...]:
+    stage = window.stage
+
+    def overlay(name: str, text: str, key: str, icon: str, tip: str, gap: bool = False) -> Command:
+        which = OVERLAY_COMMANDS[name]
+        return Command(
+            name,
+            tr("&View"),
+            text,
+            tip,
+            lambda: stage.set_overlay(which, which not in stage.view.overlays),
+            (key,),
+            icon,
+            gap,
+            checked_when=lambda now: which in now.overlays,
+        )
+
+    small = tr("Mark the shortest edges and narrowest necks, in mm between cut centre lines")
+    opening = tr("Colour voids by their area at this angle, mm²")
+    return (
+        overlay("show_target", tr("Target &outline"), "T", "target", tr("Show the target's outline"), gap=True),
+        overlay("show_mismatch", tr("&Mismatch"), "M", "mismatch", tr("Show missing and extra area")),
+        overlay("show_faults", tr("F&aults"), "F", "fault", tr("Mark inverted panels and contacts")),
+        overlay("show_ratios", tr("&Ratio heat map"), "Shift+H", "heat", tr("Colour voids by their ratio")),
+        overlay("show_openings", tr("&Void opening"), "Shift+O", "opening", opening),
+        overlay("show_small_parts", tr("&Smallest features"), "Shift+T", "small", small),
+        overlay(
+            "show_panel_numbers", tr("Panel &numbers"), "Shift+I", "numbers", tr("Number panels by row and column")
+        ),
+        overlay("show_void_numbers", tr("Vo&id numbers"), "Shift+N", "numbers", tr("Number voids by row and column")),
+    )
+
+
+def _faults(window: MainWindow) -> tuple[Command, ...]:
+    return (
+        Command(
+            "next_fault",
+            tr("&View"),
+            tr("Ne&xt fault"),
+            tr("Zoom to the next fault"),
+            partial(window.stage.tour.step, 1),
+            shortcuts=("F3",),
+        ),
+        Command(
+            "previous_fault",
+            tr("&View"),
+            tr("Previo&us fault"),
+            tr("Zoom to the previous fault"),
+            partial(window.stage.tour.step, -1),
+            shortcuts=("Shift+F3",),
+        ),
+    )
+
+
+def _pages(window: MainWindow) -> tuple[Command, ...]:
+    stage, comparison, menu = window.stage, window.connections.side_by_side, tr("&View")
+    return (
+        Command(
+            "before",
+            menu,
+            tr("&Before polish"),
+            tr("Show the design before polishing"),
+            stage.before.click,
+            shortcuts=("B",),
+            icon="before",
+            gap=True,
+            enabled_when=lambda now: now.before.enabled,
+            checked_when=lambda now: now.before.checked,
+        ),
+        Command(
+            "cuts",
+            menu,
+            tr("&Cuts"),
+            tr("Show the cut plan at kerf width"),
+            stage.cuts_switch.click,
+            shortcuts=("C",),
+            icon="cuts",
+            enabled_when=lambda now: now.cuts.enabled,
+            checked_when=lambda now: now.cuts.checked,
+        ),
+        Command(
+            "plots",
+            menu,
+            tr("P&lots"),
+            tr("Show match, size and gaps at every angle"),
+            stage.plots_switch.click,
+            shortcuts=("J",),
+            icon="plots",
+            enabled_when=lambda now: now.plots.enabled,
+            checked_when=lambda now: now.plots.checked,
+        ),
+        Command(
+            "compare",
+            menu,
+            tr("Side by &side"),
+            tr("Compare two designs side by side"),
+            lambda: comparison.show(not stage.comparing),
+            shortcuts=("K",),
+            icon="compare",
+            checked_when=lambda now: now.comparing,
+        ),
+        Command(
+            "swap",
+            menu,
+            tr("S&wap compared designs"),
+            tr("Make the compared design the chosen one"),
+            comparison.swap,
+            shortcuts=("Shift+K",),
+            icon="swap",
+            enabled_when=lambda now: now.comparing,
+        ),
+        Command(
+            "fit",
+            menu,
+            tr("Fit vi&ew"),
+            tr("Zoom to show everything"),
+            stage.fit,
+            shortcuts=("0",),
+            icon="fit",
+            gap=True,
+        ),
+    )
+
+
+def _themes(window: MainWindow) -> tuple[Command, ...]:
+    return (
+        Command(
+            "theme",
+            tr("&View"),
+            tr("&Dark theme"),
+            tr("Switch between light and dark"),
+            window.appearance.switch,
+            shortcuts=("Ctrl+D",),
+            icon="moon",
+            gap=True,
+            worded=_theme_wording,
+        ),
+        Command(
+            "theme_system",
+            tr("&View"),
+            tr("Follow the s&ystem"),
+            tr("Match the system theme"),
+            window.appearance.follow_system,
+            checked_when=lambda now: now.follows_system,
+        ),
+    )
+
+
+def _theme_wording(now: WindowState) -> Wording:
+    tip = tr("Switch between light and dark")
+    return Wording(tr("&Light theme"), tip, "sun") if now.dark else Wording(tr("&Dark theme"), tip, "moon")
+
+
+def _play(window: MainWindow) -> None:
+    """Space plays, unless the keyboard's focus is on a button or a list of choices, which use the key themselves.
+
+    The mouse gives none of them the focus, so after a click Space plays.
+    """
+    focused = window.focusWidget()
+    if isinstance(focused, QAbstractButton):
+        focused.click()
+    elif isinstance(focused, QComboBox):
+        focused.showPopup()
+    elif window.stage.player.play.isEnabled():
+        window.stage.player.play.toggle()
+
+
+def _go_to_target(window: MainWindow) -> None:
+    entry = window.controller.stage
+    if entry is not None:
+        window.stage.deployment.set_phi(entry.design.phi_target)

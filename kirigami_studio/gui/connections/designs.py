@@ -1,0 +1,172 @@
+"""Designs: the run that generates them, their gallery, and the menu of a card."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QObject, QPoint, Qt
+from PySide6.QtGui import QAction
+from PySide6.QtWidgets import QMenu
+
+from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.foundation.words import tr
+from kirigami_studio.gui.connections.side_by_side import SideBySide
+from kirigami_studio.gui.controller import Controller
+from kirigami_studio.gui.look import icons
+from kirigami_studio.gui.messages import Tone
+from kirigami_studio.gui.session import Entry
+from kirigami_studio.project.document import Document, Mark
+
+if TYPE_CHECKING:
+    from kirigami_studio.gui.main_window import MainWindow
+
+
+class DesignConnections(QObject):
+    """Connects the Generate button and the gallery with the controller."""
+
+    def __init__(self, window: MainWindow, controller: Controller, side_by_side: SideBySide) -> None:
+        super().__init__(window)
+        self._window = window
+        self._controller = controller
+        self._side_by_side = side_by_side
+        self.menu: QMenu | None = None
+        self._connect_run()
+        self._connect_gallery()
+        controller.session.document_changed.connect(self._show_document)
+        controller.session.display.stage_changed.connect(self._show_chosen)
+        self._show_document(controller.document)
+        self._show_idle()
+
+    def _connect_run(self) -> None:
+        window, run = self._window, self._controller.run
+        window.run.generate_wanted.connect(self._controller.generation.generate)
+        window.run.cancel_wanted.connect(self._controller.cancel)
+        run.started.connect(self._show_run)
+        run.progressed.connect(window.run.show_progress)
+        run.ended.connect(self._show_idle)
+
+    def _connect_gallery(self) -> None:
+        controller, view, bar = self._controller, self._window.gallery.view, self._window.gallery.bar
+        view.chosen.connect(controller.choose)
+        view.pin_wanted.connect(controller.marks.pin)
+        view.reject_wanted.connect(self.reject)
+        view.menu_wanted.connect(self.show_menu)
+        bar.again_wanted.connect(controller.generation.again)
+        bar.alike_wanted.connect(controller.generation.more_like)
+        controller.session.display.gallery_reset.connect(self._show_gallery)
+        controller.session.display.candidate_found.connect(self._add_card)
+
+    # the run -------------------------------------------------------------------------------------------------------
+
+    def _show_run(self, total: int) -> None:
+        window = self._window
+        window.run.show_running(total)
+        window.gallery.bar.set_ready(False)
+        window.stage.set_trimmable(False)
+        window.gallery.view.set_hint(tr("Generating …"), tr("The first designs appear shortly."))
+        window.stage.view.set_hint("generate", tr("Generating …"), tr("The best design so far appears here."))
+        window.fabrication.show_waiting()
+        window.stage.cuts.show_plan(None)
+        window.messages.dismiss(Tone.HINT, Tone.DONE)
+
+    def _show_idle(self) -> None:
+        """No run goes on, or no longer."""
+        window = self._window
+        window.run.show_idle()
+        window.stage.set_trimmable(True)
+        hint = tr("Designs appear here, best first, as they are generated.")
+        window.gallery.view.set_hint(tr("No designs yet"), hint)
+        self._show_ready(self._controller.document)
+
+    def _show_ready(self, document: Document) -> None:
+        """Whether designs can be generated, and added to those there are."""
+        window, running = self._window, self._controller.running
+        window.gallery.bar.set_ready(bool(document.candidates) and not running)
+        window.run.show_ready(document.target is not None)
+        if running:
+            return
+        if document.target is not None:
+            window.stage.view.set_hint("generate", tr("Ready to design"), tr("Press Generate (Ctrl+G)."))
+        else:
+            hint = tr("Open a file (Ctrl+O), choose from the library (Ctrl+L), or draw a silhouette on the left.")
+            window.stage.view.set_hint("target", tr("Start with a target"), hint)
+
+    # the gallery ---------------------------------------------------------------------------------------------------
+
+    def _show_document(self, document: Document) -> None:
+        gallery = self._window.gallery
+        gallery.view.model_.set_width_mm(document.fabrication.width_mm)
+        marks = dict(zip(document.candidates, document.marks, strict=True))
+        gallery.view.show_marks(marks, self._controller.generation.planner.added)
+        gallery.bar.show_count(document.settings.k)
+        if not self._controller.running:
+            gallery.view.mark(document.candidate)
+        self._show_ready(document)
+        self._show_chosen()
+
+    def _show_gallery(self, entries: tuple[Entry, ...]) -> None:
+        view, document = self._window.gallery.view, self._controller.document
+        view.show_entries(list(entries), document.target)
+        view.mark(document.candidate)
+        self._show_chosen()
+
+    def _add_card(self, entry: Entry) -> None:
+        view, stage = self._window.gallery.view, self._controller.stage
+        view.add(entry)
+        if stage is not None:
+            self._window.stage.set_rank(view.model_.number_of(stage.candidate))
+
+    def _show_chosen(self) -> None:
+        """The bar knows the chosen design by its number."""
+        model, candidate = self._window.gallery.view.model_, self.chosen
+        number = model.number_of(candidate)
+        self._window.gallery.bar.set_chosen(None if candidate is None or not number else (candidate.field, number))
+
+    @property
+    def chosen(self) -> Candidate | None:
+        """The design on the stage."""
+        stage = self._controller.stage
+        return None if stage is None else stage.candidate
+
+    def reject(self, candidate: Candidate | None) -> None:
+        """Reject a design; where that hides the chosen one, the next card is chosen instead."""
+        view = self._window.gallery.view
+        hides = not view.model_.selection.show_rejected
+        self._controller.marks.reject(candidate, view.beside(candidate) if hides else None)
+
+    # the menu of a card --------------------------------------------------------------------------------------------
+
+    def show_menu(self, candidate: Candidate, place: QPoint) -> None:
+        """Offer what can be done to one design, beside its card."""
+        menu = QMenu(self._window)
+        menu.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+        menu.setToolTipsVisible(True)
+        controller = self._controller
+        mark = self._window.gallery.view.model_.mark_of(candidate)
+        ready = not controller.running and candidate in controller.document.candidates
+        for name, text, run in (
+            ("pin", tr("Unpin") if mark is Mark.PINNED else tr("Pin"), lambda: controller.marks.pin(candidate)),
+            ("reject", tr("Restore") if mark is Mark.REJECTED else tr("Reject"), lambda: self.reject(candidate)),
+            ("alike", tr("More like this"), lambda: self._more_like(candidate)),
+            ("compare", tr("Compare with chosen"), lambda: self._side_by_side.compare_with(candidate)),
+            ("dice", tr("Use seed {seed}", seed=candidate.seed), lambda: self._use_seed(candidate)),
+        ):
+            action = QAction(icons.icon(name, self._window.palette_), text, menu)
+            action.setObjectName(name)
+            action.setEnabled(ready)
+            action.triggered.connect(lambda _=False, run=run: run())
+            menu.addAction(action)
+        self.menu = menu
+        menu.destroyed.connect(self._forget_menu)
+        menu.popup(place)
+
+    def _forget_menu(self) -> None:
+        self.menu = None
+
+    def _more_like(self, candidate: Candidate) -> None:
+        self._controller.choose(candidate)
+        self._controller.generation.more_like(self._window.gallery.bar.nearness_value)
+
+    def _use_seed(self, candidate: Candidate) -> None:
+        self._controller.change_settings(seed=candidate.seed)
+        self._controller.end_drag()

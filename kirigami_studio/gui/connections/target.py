@@ -1,0 +1,94 @@
+"""The target: where it comes from, its drawing board, and what a change of it means for the designs."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QObject
+
+from kirigami_studio.foundation.errors import KirigamiError
+from kirigami_studio.gui.controller import Controller
+from kirigami_studio.gui.designs.collection import DiscardedDesigns
+from kirigami_studio.gui.messages import Message, Tone
+from kirigami_studio.gui.reshaping import TargetReshaper
+from kirigami_studio.project.document import Document
+
+if TYPE_CHECKING:
+    from kirigami_studio.gui.main_window import MainWindow
+
+
+class TargetConnections(QObject):
+    """Connects the target panel with the controller, and takes back error messages that no longer hold."""
+
+    def __init__(self, window: MainWindow, controller: Controller) -> None:
+        super().__init__(window)
+        self._window = window
+        self._controller = controller
+        self._errors: list[Message] = []
+        self._shown = Document()
+        self.reshaping = TargetReshaper(window.target.view.context, controller.session, self)
+        self.discarded = DiscardedDesigns(controller.session, self)
+        self._connect_sources()
+        self._connect_board()
+        self.discarded.undo_wanted.connect(controller.undo)
+        controller.session.document_changed.connect(self._show_document)
+        self._show_target(controller.document)
+
+    def _connect_sources(self) -> None:
+        window, targeting = self._window, self._controller.targeting
+        window.target.open_wanted.connect(window.files.ask_target)
+        window.target.wants_silhouette.connect(window.dialogs.show_library)
+        window.target.clear_wanted.connect(targeting.clear)
+        window.target.view.file_dropped.connect(window.files.open)
+        window.target.view.content_dropped.connect(window.pasting.take)
+        window.target.threshold.changed.connect(targeting.change_threshold)
+        window.target.threshold.automatic_wanted.connect(lambda: targeting.change_threshold(None))
+        window.target.threshold.edited.connect(targeting.tracer.end_drag)
+        targeting.reader.failed.connect(self._note_unread)
+        targeting.source_read.connect(self._drop_errors)
+
+    def _connect_board(self) -> None:
+        window, controller, reshaping = self._window, self._controller, self.reshaping
+        window.target.view.context.changed.connect(reshaping.take)
+        window.target.view.hint.connect(self._show_hint)
+        window.target.tools.mirror_wanted.connect(reshaping.mirror)
+        window.target.refine.previewed.connect(reshaping.preview)
+        window.target.refine.refined.connect(reshaping.refine)
+        window.target.refine.size_wanted.connect(reshaping.resize)
+        reshaping.edited.connect(controller.targeting.reshape)
+        reshaping.edited.connect(self._drop_errors)
+        reshaping.refused.connect(self._refuse)
+        reshaping.previewed.connect(window.target.view.show_preview)
+        reshaping.restarted.connect(window.target.refine.restart)
+        controller.run.started.connect(lambda _: window.target.set_editing(False))
+
+    def _refuse(self, error: KirigamiError) -> None:
+        """A shape could not be made; the message holds until one can."""
+        self._errors.append(Message(str(error), Tone.ERROR))
+        self._controller.session.refuse(error)
+
+    def _note_unread(self, sentence: str, trace: str) -> None:
+        """A file could not be read as a target; the message holds until there is another one."""
+        self._errors.append(Message(sentence, Tone.ERROR, trace))
+
+    def _drop_errors(self) -> None:
+        for error in self._errors:
+            self._window.messages.drop(error)
+        self._errors.clear()
+
+    def _show_hint(self, text: str) -> None:
+        if text:
+            self._window.status_text.setText(text)
+
+    def _show_document(self, document: Document) -> None:
+        before, self._shown = self._shown, document
+        if document.target is not before.target:
+            self._show_target(document)
+        elif document.settings.grid != before.settings.grid:
+            self._window.target.show_reach(document.settings.grid)
+
+    def _show_target(self, document: Document) -> None:
+        panel = self._window.target
+        panel.show_target(document.target, self._controller.targeting.tracer.picture_of(document.target))
+        self.reshaping.follow()
+        panel.show_reach(document.settings.grid)

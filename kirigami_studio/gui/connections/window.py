@@ -1,0 +1,66 @@
+"""The window as a whole: its title, messages and status line, and the connections of its parts."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QObject
+
+from kirigami_studio.foundation.words import tr
+from kirigami_studio.gui.connections.designs import DesignConnections
+from kirigami_studio.gui.connections.side_by_side import SideBySide
+from kirigami_studio.gui.connections.stage import StageConnections
+from kirigami_studio.gui.connections.target import TargetConnections
+from kirigami_studio.gui.connections.voids import VoidConnections
+from kirigami_studio.gui.controller import Controller
+
+if TYPE_CHECKING:
+    from kirigami_studio.gui.main_window import MainWindow
+
+
+class Connections(QObject):
+    """Connects one window with its controller."""
+
+    def __init__(self, window: MainWindow, controller: Controller) -> None:
+        super().__init__(window)
+        self._window = window
+        self._controller = controller
+        self.side_by_side = SideBySide(window, controller)
+        self.designs = DesignConnections(window, controller, self.side_by_side)
+        self.target = TargetConnections(window, controller)
+        self.stage = StageConnections(window, controller)
+        self._connect_settings()
+        self._connect_messages()
+        self.voids = VoidConnections(window, controller)
+        self._show_title()
+        window.status_text.setText(tr("Choose or draw a target to begin."))
+
+    def _connect_settings(self) -> None:
+        window, controller = self._window, self._controller
+        window.settings.changed.connect(lambda changes: controller.change_settings(**changes))
+        window.settings.edited.connect(controller.end_drag)
+        window.settings.keep_changed.connect(self._keep_seed)
+        controller.variants_known.connect(window.settings.set_variants)
+        controller.session.document_changed.connect(lambda document: window.settings.show_settings(document.settings))
+        window.settings.show_settings(controller.document.settings)
+
+    def _connect_messages(self) -> None:
+        window, controller = self._window, self._controller
+        controller.session.document_changed.connect(self._show_title)
+        controller.session.message_posted.connect(window.messages.add)
+        controller.session.status_changed.connect(window.status_text.setText)
+        controller.session.message_withdrawn.connect(window.messages.drop)
+        controller.filing.recovery.recover_wanted.connect(window.files.recover)
+        controller.filing.materials.material_added.connect(window.dialogs.reload_materials)
+        window.pasting.file_wanted.connect(window.files.open)
+
+    def _keep_seed(self, keeps: bool) -> None:
+        self._controller.generation.planner.keeps_seed = keeps
+
+    def _show_title(self) -> None:
+        window, controller = self._window, self._controller
+        unsaved = controller.history.unsaved
+        name = controller.path.name if controller.path is not None else tr("Untitled")
+        window.setWindowTitle(tr("{name}[*] \N{EN DASH} Kirigami Studio", name=name))
+        window.setWindowModified(unsaved)
+        window.heading.setText(tr("{name}  ·  unsaved changes", name=name) if unsaved else name)

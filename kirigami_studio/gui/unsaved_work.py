@@ -1,0 +1,127 @@
+"""Saving the project, and asking before unsaved changes would be lost."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QObject
+
+from kirigami_studio.foundation.words import tr
+from kirigami_studio.gui.controller import Controller
+from kirigami_studio.gui.messages import Message, Tone
+
+if TYPE_CHECKING:
+    from kirigami_studio.gui.main_window import MainWindow
+
+
+@dataclass(frozen=True, slots=True)
+class Replacement:
+    """Something that puts another project in the place of this one, in words.
+
+    Attributes
+    ----------
+    question : str
+        Asked while there are unsaved changes.
+    proceed : str
+        The button that goes on without saving.
+    """
+
+    question: str
+    proceed: str
+
+
+NEW_PROJECT = Replacement(
+    tr("This project has unsaved changes. Save before you start a new project?"),
+    tr("Start a new project without saving"),
+)
+OTHER_PROJECT = Replacement(
+    tr("This project has unsaved changes. Save before you open another project?"),
+    tr("Open another project without saving"),
+)
+SAMPLE = Replacement(
+    tr("This project has unsaved changes. Save before you open the sample project?"),
+    tr("Open the sample project without saving"),
+)
+RECOVERED = Replacement(
+    tr("This project has unsaved changes. Save before you recover another project?"),
+    tr("Recover another project without saving"),
+)
+
+
+class UnsavedWork(QObject):
+    """Saves the project of one window, and asks in its message bar before it is replaced or the window closes."""
+
+    def __init__(self, window: MainWindow, controller: Controller) -> None:
+        super().__init__(window)
+        self._window = window
+        self._controller = controller
+        self._discarded = False  # the user closes without saving
+        self._quit_when_saved = False
+        controller.saved.connect(lambda _: self._close_when_saved())
+        controller.filing.projects.save_failed.connect(self._stay)
+
+    def save(self) -> bool:
+        """Save where the project is; ask when it has no place yet.  False if the user cancelled."""
+        if self._controller.path is None:
+            return self.save_as()
+        self._controller.save(self._controller.path)
+        return True
+
+    def save_as(self) -> bool:
+        """Save in a place of the user's choice; False if the user cancelled."""
+        path = self._window.file_dialogs.save(f"{self.name}.kiri")
+        if path is not None:
+            self._controller.save(path)
+        return path is not None
+
+    @property
+    def name(self) -> str:
+        """What files of the project are called."""
+        if self._controller.path is not None:
+            return self._controller.path.stem
+        target = self._controller.document.target
+        return target.name if target is not None else "untitled"
+
+    def guard(self, replacement: Replacement, then: Callable[[], None]) -> None:
+        """Do something that replaces the project; with unsaved changes ask first."""
+        if self._controller.hand.postpones(lambda: self.guard(replacement, then)):
+            return
+        if not self._controller.history.unsaved:
+            then()
+            return
+        actions = ((tr("Save first"), self._save_first), (replacement.proceed, then))
+        self._window.messages.add(Message(replacement.question, Tone.WARNING, actions=actions))
+
+    def may_close(self) -> bool:
+        """Whether the window may close now; asks when work would be lost."""
+        if self._controller.hand.postpones(self._window.close):
+            return False
+        if self._discarded or not self._controller.history.unsaved:
+            return True
+        sentence = tr("This project has unsaved changes. Save before you quit?")
+        actions = ((tr("Save and quit"), self._save_and_quit), (tr("Quit without saving"), self._quit))
+        self._window.messages.add(Message(sentence, Tone.WARNING, actions=actions))
+        return False
+
+    def _save_first(self) -> None:
+        self.save()
+
+    def _save_and_quit(self) -> None:
+        self._quit_when_saved = True
+        if not self.save():
+            self._quit_when_saved = False
+
+    def _close_when_saved(self) -> None:
+        if self._quit_when_saved:
+            self._quit_when_saved = False
+            self._window.close()  # which asks again if the work went on while the file was written
+
+    def _stay(self) -> None:
+        """The project could not be saved, so do not quit after a later save either."""
+        self._quit_when_saved = False
+
+    def _quit(self) -> None:
+        self._discarded = True
+        self._window.close()
