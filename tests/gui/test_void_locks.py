@@ -126,7 +126,7 @@ def test_that_the_menu_of_a_void_locks_it_and_evens_its_ratio(by_hand: MainWindo
     menu = by_hand.connections.voids.menu
     assert menu is not None and menu.isVisible()
     choices = {action.text(): action for action in menu.actions()}
-    choices["Make the ratio 1"].trigger()
+    choices["Set ratio to 1"].trigger()
     settle(by_hand, until)
     assert ratio(by_hand, (2, 1)) == 1.0
     choices["Lock"].trigger()
