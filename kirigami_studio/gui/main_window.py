@@ -27,11 +27,11 @@ from kirigami_studio.gui.commands.view import OVERLAY_COMMANDS
 from kirigami_studio.gui.connections.window import Connections
 from kirigami_studio.gui.controller import Controller
 from kirigami_studio.gui.dialogs.files import FileDialogs, SystemFileDialogs
-from kirigami_studio.gui.dialogs.opening import Dialogs
 from kirigami_studio.gui.files.pasting import PasteReader
 from kirigami_studio.gui.files.picturing import PictureMaker
 from kirigami_studio.gui.look import theme
 from kirigami_studio.gui.look.theme import Palette
+from kirigami_studio.gui.open_dialogs import Dialogs
 from kirigami_studio.gui.panels.fabrication_panel import Extent, FabricationPanel
 from kirigami_studio.gui.panels.gallery_panel import GalleryPanel
 from kirigami_studio.gui.panels.generate_bar import GenerateBar
