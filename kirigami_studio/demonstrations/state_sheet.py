@@ -19,7 +19,7 @@ from PySide6.QtWidgets import QApplication
 
 from kirigami_studio.demonstrations.board_states import LONG_NAME, SIZES, BoardStates
 from kirigami_studio.demonstrations.offscreen_session import DESIGNS, SessionError, click, hover, main
-from kirigami_studio.gui.designs.selecting import SortOrder
+from kirigami_studio.gui.designs.gallery_selection import SortOrder
 from kirigami_studio.gui.look.theme import DARK, LIGHT
 from kirigami_studio.gui.messages import Message, Tone
 from kirigami_studio.gui.views.card_delegate import CardButton, button_boxes

@@ -34,7 +34,7 @@ from kirigami_studio.project.edits import Edit, FabricationChange, OptionsChange
 
 #: Changes that follow each other faster than this (ms) lead to one plan.
 PLAN_DELAY_MS = 120
-TRIM_AGAIN = tr(" Or untrim and trim again to make room for these widths.")
+TRIM_AGAIN = tr("Or untrim and trim again to make room for these widths.")
 
 
 class CutPlanner(QObject):
@@ -83,7 +83,7 @@ class CutPlanner(QObject):
         self._job.start(tr("planning the cuts"), partial(planning, self._wanted), callbacks)
 
     def _refuse(self, request: CutRequest, sentence: str, trace: str) -> None:
-        self.refused.emit(sentence if request.candidate.trim is None else sentence + TRIM_AGAIN)
+        self.refused.emit(sentence if request.candidate.trim is None else f"{sentence} {TRIM_AGAIN}")
 
     def export(self, request: CutRequest, path: Path) -> None:
         """Write a cut file or a picture, by the extension."""
@@ -132,13 +132,12 @@ def message_of(path: Path, made: Planned) -> Message:
     plan, check = made.plan, made.report
     details = "\n".join([str(path), *(problem.text for problem in check.problems), *plan.notes])
     if check.ok:
-        trimmed = tr(", trimmed outline") if made.removed_share else ""
-        sentence = tr(
-            "{name} exported and checked: {count} cuts{trimmed}, no faults.",
-            name=tr("Folder “{name}”", name=path.name) if path.is_dir() else path.name,
-            count=len(plan.paths),
-            trimmed=trimmed,
-        )
+        name = tr("Folder “{name}”", name=path.name) if path.is_dir() else path.name
+        values = {"name": name, "count": len(plan.paths)}
+        if made.removed_share:
+            sentence = tr("{name} exported and checked: {count} cuts, trimmed outline, no faults.", **values)
+        else:
+            sentence = tr("{name} exported and checked: {count} cuts, no faults.", **values)
         return Message(sentence, Tone.DONE, details)
     sentence = tr("{name} exported, but cutting it would fail: {text}", name=path.name, text=check.problems[0].text)
     return Message(sentence, Tone.WARNING, details)

@@ -13,9 +13,9 @@ from pytestqt.qtbot import QtBot
 
 from kirigami_studio.evaluate.candidate import Candidate, Origin
 from kirigami_studio.generator.weights import digest_of
+from kirigami_studio.gui.designs.gallery_selection import SortOrder
 from kirigami_studio.gui.designs.generation import next_seed
-from kirigami_studio.gui.designs.selecting import SortOrder
-from kirigami_studio.gui.jobs.design_jobs import adding
+from kirigami_studio.gui.jobs.design_jobs import generating
 from kirigami_studio.gui.main_window import MainWindow
 from kirigami_studio.gui.messages import Tone
 from kirigami_studio.gui.views.gallery_model import FRESH_ROLE
@@ -89,10 +89,10 @@ def test_that_again_adds_designs_of_the_next_seed_and_keeps_choice_and_marks(
 def test_that_designs_that_are_there_already_are_not_added_again(drawn: MainWindow, until: Until) -> None:
     controller = drawn.controller
     request = replace(controller.generation.planner.more(silhouettes.load("heart")).request, seed=0)
-    found = [event.result for event in adding(request, (), lambda: False) if isinstance(event, Finished)]
+    found = [event.result for event in generating(request, (), lambda: False) if isinstance(event, Finished)]
     assert found[0].candidates == controller.document.candidates
     others = controller.document.candidates[1:]
-    left = [event.result for event in adding(request, others, lambda: False) if isinstance(event, Finished)]
+    left = [event.result for event in generating(request, others, lambda: False) if isinstance(event, Finished)]
     assert left[0].candidates == controller.document.candidates[:1]
     before = controller.document
     controller.run.start(request, before.candidates)
@@ -103,7 +103,8 @@ def test_that_designs_that_are_there_already_are_not_added_again(drawn: MainWind
 
 @pytest.mark.torch
 @pytest.mark.parametrize(
-    ("staying", "told"), [(1, "2 designs added, 1 already there, "), (2, "1 design added, 2 already there, ")]
+    ("staying", "told"),
+    [(1, "2 designs added, 1 already in the gallery. "), (2, "1 design added, 2 already in the gallery. ")],
 )
 def test_that_designs_that_were_there_already_are_counted(
     drawn: MainWindow, until: Until, staying: int, told: str
@@ -116,7 +117,7 @@ def test_that_designs_that_were_there_already_are_counted(
     controller.run.start(request, fewer.candidates)
     until(lambda: not controller.running)
     assert controller.document.candidates == whole.candidates
-    assert drawn.status_text.text().startswith(told + "best sIoU ")
+    assert drawn.status_text.text().startswith(told + "Best new sIoU ")
 
 
 @pytest.mark.torch

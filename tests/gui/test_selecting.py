@@ -13,7 +13,7 @@ from pytestqt.qtbot import QtBot
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.fabricate.panel_sizes import least_panel_share
-from kirigami_studio.gui.designs.selecting import Selection, SortOrder
+from kirigami_studio.gui.designs.gallery_selection import Selection, SortOrder
 from kirigami_studio.gui.main_window import MainWindow
 from kirigami_studio.gui.session import Entry
 from kirigami_studio.gui.views.gallery_model import NUMBER_ROLE, VALUE_ROLE, GalleryModel

@@ -79,7 +79,7 @@ request = Request(silhouettes.load("heart"), (4, 4), k=2, polish=1, trim=True)
 importing.import_generator()
 before = set(sys.modules)
 assert "torch" in before
-for event in design_jobs.generating(request, lambda: False):
+for event in design_jobs.generating(request, None, lambda: False):
     pass
 print(sorted(set(sys.modules) - before))
 """

@@ -214,11 +214,12 @@ class Refitter(QObject):
             return
         session.cache.put(after, report.decoded.deployment)
         session.apply(edit)
+        sentences = [sentence]
         if after.trim is not None:
-            sentence = tr("{told} Trimmed again: IoU {iou:.1f} %.", told=sentence, iou=100 * after.trim.iou)
+            sentences.append(tr("Trimmed again: IoU {iou:.1f} %.", iou=100 * after.trim.iou))
         elif report.untrimmed:
-            sentence = tr("{told} Trim removed: {reason}", told=sentence, reason=report.untrimmed)
-        session.set_status(sentence)
+            sentences.append(tr("Trim removed: {reason}", reason=report.untrimmed))
+        session.set_status(" ".join(sentences))
 
 
 class SampledScores(QObject):

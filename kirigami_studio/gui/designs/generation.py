@@ -16,7 +16,7 @@ from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.errors import KirigamiError, UsageError
 from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.gui.designs.hand_editor import HandEditor
-from kirigami_studio.gui.jobs.design_jobs import Decoded, ModelFound, RunReport, adding, generating
+from kirigami_studio.gui.jobs.design_jobs import Decoded, ModelFound, RunReport, generating
 from kirigami_studio.gui.jobs.queue import JobCallbacks, LatestJob
 from kirigami_studio.gui.messages import Message, Tone
 from kirigami_studio.gui.session import Entry, Session
@@ -247,11 +247,20 @@ class RunPlanner:
         added = len(set(document.candidates) - set(before.candidates))
         if not added:
             return tr("No new designs; {count} already in the gallery.", count=result.repeats)
-        best = tr("best sIoU {siou:.1f} %", siou=100 * result.best.score.siou)
-        parts = [tr_n("{count} design added", "{count} designs added", added)]
         if result.repeats:
-            parts.append(tr_n("{count} already there", "{count} already there", result.repeats))
-        return ", ".join([*parts, best]) + "."
+            return tr_n(
+                "{count} design added, {repeats} already in the gallery. Best new sIoU {siou:.1f} %.",
+                "{count} designs added, {repeats} already in the gallery. Best new sIoU {siou:.1f} %.",
+                added,
+                repeats=result.repeats,
+                siou=100 * result.best.score.siou,
+            )
+        return tr_n(
+            "{count} design added. Best new sIoU {siou:.1f} %.",
+            "{count} designs added. Best new sIoU {siou:.1f} %.",
+            added,
+            siou=100 * result.best.score.siou,
+        )
 
 
 def next_seed(document: Document) -> int:
@@ -343,8 +352,7 @@ class DesignRun(QObject):
         self._sampled.clear()
         self._latest.clear()
         callbacks = JobCallbacks(self._take, partial(self.ended.emit, False), self._cancel, self._fail)
-        steps = partial(generating, request) if others is None else partial(adding, request, others)
-        self._job.start(tr("generating designs"), steps, callbacks)
+        self._job.start(tr("generating designs"), partial(generating, request, others), callbacks)
         self.started.emit(request.k)
 
     def cancel(self) -> None:

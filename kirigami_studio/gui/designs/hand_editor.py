@@ -27,12 +27,13 @@ from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.gui.designs.outline_drag import OutlineDrag
-from kirigami_studio.gui.jobs.design_jobs import Decoded, rescoring
-from kirigami_studio.gui.jobs.queue import JobCallbacks, LatestJob
+from kirigami_studio.gui.jobs.design_jobs import Decoded
+from kirigami_studio.gui.jobs.queue import Cancel, JobCallbacks, LatestJob, single
 from kirigami_studio.gui.jobs.vertex_drag import Followed, Grasp
 from kirigami_studio.gui.session import Session
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project import edits
 from kirigami_studio.project.document import Void
 
@@ -57,12 +58,14 @@ def locked_sentence(count: int) -> str:
 def score_sentence(label: str, before: Candidate, after: Candidate) -> str:
     """What a change has done to the match, and what it has cost."""
     gain = 100.0 * (after.score.siou - before.score.siou)
-    text = tr("{gesture}: sIoU {siou:.1f} % ({gain:+.2f}).", gesture=label, siou=100 * after.score.siou, gain=gain)
+    sentences = [
+        tr("{gesture}: sIoU {siou:.1f} % ({gain:+.2f}).", gesture=label, siou=100 * after.score.siou, gain=gain)
+    ]
     if not after.score.feasible:
-        text = tr("{told} The design is not feasible.", told=text)
+        sentences.append(tr("The design is not feasible."))
     if before.trim is not None:
-        text = tr("{told} Trim removed; trim again when you are done.", told=text)
-    return text
+        sentences.append(tr("Trim removed; trim again when you are done."))
+    return " ".join(sentences)
 
 
 #: Ratios that can be given by hand, the same as those of the generator and the fits.
@@ -164,6 +167,14 @@ class _Gesture:
     field: RatioField
     label: str
     merge_key: str | None
+
+
+def _rescored(candidate: Candidate, field: RatioField, target: Outline, cancel: Cancel) -> Decoded:
+    """Score a candidate with another field; runs in the worker, which may take its time to import."""
+    from kirigami_studio.pipeline.redesign import rescored
+
+    after = rescored(candidate, field, target)
+    return Decoded(after, deploy(after.final_field))
 
 
 class HandEditor(QObject):
@@ -440,9 +451,9 @@ class HandEditor(QObject):
         if self._job.busy or not self._waiting or self._base is None or target is None:
             return
         gesture = self._waiting.popleft()
-        work = partial(rescoring, self._base, gesture.field, target)
+        steps = single(partial(_rescored, self._base, gesture.field, target))
         callbacks = JobCallbacks(partial(self._take, gesture), on_failed=self._fail)
-        self._job.start(tr("scoring the change"), work, callbacks)
+        self._job.start(tr("scoring the change"), steps, callbacks)
 
     def _take(self, gesture: _Gesture, report: Decoded) -> None:
         self._job.stop()  # the report is the end

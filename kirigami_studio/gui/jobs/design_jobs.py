@@ -1,4 +1,4 @@
-"""Jobs on designs: generate, decode, score, fit again, trim."""
+"""Jobs on designs: generate, decode, score as sampled, fit again, trim.  What they compute is composed in pipeline."""
 
 from __future__ import annotations
 
@@ -11,7 +11,6 @@ from kirigami_studio.foundation.errors import Cancelled
 from kirigami_studio.gui.jobs import importing
 from kirigami_studio.gui.jobs.queue import Cancel
 from kirigami_studio.lattice.deployment import Deployment, deploy
-from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.pipeline.events import CandidateFound, CandidateImproved, Event, Finished
 from kirigami_studio.pipeline.request import Request
@@ -58,31 +57,27 @@ class Refitted:
 RunReport = Event | ModelFound | Decoded
 
 
-def generating(request: Request, cancel: Cancel) -> Iterator[RunReport]:
-    """Run the pipeline; every new or improved candidate is followed by its decoded motion."""
+def generating(request: Request, others: tuple[Candidate, ...] | None, cancel: Cancel) -> Iterator[RunReport]:
+    """Run the pipeline; every new or improved candidate is followed by its decoded motion.
+
+    With ``others`` the result keeps only designs that differ from them and from each other.  Comparing a thousand
+    designs with a thousand takes a second, which would freeze the window: hence it is done here.
+    """
     importing.import_generator()
     from kirigami_studio.generator.weights import digest_of
     from kirigami_studio.pipeline.run import run
 
     yield ModelFound(digest_of(request.variant))
     for event in run(request, cancel):
-        yield event
-        if isinstance(event, CandidateFound | CandidateImproved):
-            yield decoded(event.candidate)
-
-
-def adding(request: Request, others: tuple[Candidate, ...], cancel: Cancel) -> Iterator[RunReport]:
-    """Run the pipeline; its result keeps only designs that differ from ``others`` and from each other.
-
-    Comparing a thousand designs with a thousand takes a second, which would freeze the window.
-    """
-    for report in generating(request, cancel):
-        if isinstance(report, Finished):
-            found = report.result.candidates
-            new = distinct(found, others)
-            yield Finished(replace(report.result, candidates=new, repeats=len(found) - len(new)))
-        else:
-            yield report
+        match event:
+            case CandidateFound() | CandidateImproved():
+                yield event
+                yield decoded(event.candidate)
+            case Finished(result) if others is not None:
+                new = distinct(result.candidates, others)
+                yield Finished(replace(result, candidates=new, repeats=len(result.candidates) - len(new)))
+            case _:
+                yield event
 
 
 def decoding(candidates: tuple[Candidate, ...], cancel: Cancel) -> Iterator[Decoded]:
@@ -103,13 +98,6 @@ def scoring_sample(candidate: Candidate, target: Outline, cancel: Cancel) -> Ite
     before = sampled(candidate, target)
     if before is not None:
         yield decoded(before)
-
-
-def rescoring(candidate: Candidate, field: RatioField, target: Outline, cancel: Cancel) -> Iterator[Decoded]:
-    """Score a candidate with another field, changed by hand."""
-    from kirigami_studio.pipeline.redesign import rescored
-
-    yield decoded(rescored(candidate, field, target))
 
 
 def refitting(

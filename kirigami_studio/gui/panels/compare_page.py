@@ -10,7 +10,7 @@ from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QLabel, QToolButton, QVB
 
 from kirigami_studio.fabricate.panel_sizes import least_panel_share
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui.designs.selecting import differences
+from kirigami_studio.gui.designs.gallery_selection import differences
 from kirigami_studio.gui.look import icons
 from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.panels.card import FittingLabel, tool_button

@@ -20,7 +20,7 @@ from PySide6.QtWidgets import (
 )
 
 from kirigami_studio.foundation.words import tr, tr_n
-from kirigami_studio.gui.designs.selecting import Selection, SortOrder, counted
+from kirigami_studio.gui.designs.gallery_selection import Selection, SortOrder, count_texts
 from kirigami_studio.gui.look import icons
 from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.panels.card import INSET, Card, FittingLabel, tool_button
@@ -56,7 +56,7 @@ class GalleryPanel(Card):
 
     def _count(self) -> None:
         model = self.view.model_
-        self.count.set_texts(*counted([entry.candidate for entry in model.entries], len(model.all_entries)))
+        self.count.set_texts(*count_texts([entry.candidate for entry in model.entries], len(model.all_entries)))
         self._fit_count()
         self.view.viewport().update()
 

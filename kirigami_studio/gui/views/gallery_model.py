@@ -11,7 +11,7 @@ from PySide6.QtCore import QAbstractListModel, QModelIndex, QObject, QPersistent
 from kirigami_studio.evaluate.candidate import Candidate, Origin
 from kirigami_studio.fabricate.panel_sizes import least_panel_share
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui.designs.selecting import Selection, Shown, arranged, format_value
+from kirigami_studio.gui.designs.gallery_selection import GalleryItem, Selection, format_value, places_in_order
 from kirigami_studio.gui.session import Entry, same_sample
 from kirigami_studio.pipeline.rank import rank_key
 from kirigami_studio.project.document import Mark
@@ -30,8 +30,8 @@ Index = QModelIndex | QPersistentModelIndex
 class GalleryModel(QAbstractListModel):
     """The designs in the order of the document, or of the ranking while a run goes on; rows are those that are shown.
 
-    Which ones are shown, and in which order, is a :class:`~kirigami_studio.gui.designs.selecting.Selection`; the number
-    of a design is its place among all of them, whatever is shown.
+    Which ones are shown, and in which order, is a :class:`~kirigami_studio.gui.designs.gallery_selection.Selection`;
+    the number of a design is its place among all of them, whatever is shown.
     """
 
     arranged = Signal()  #: what is shown, or its order, has changed
@@ -73,7 +73,7 @@ class GalleryModel(QAbstractListModel):
         if role == Qt.ItemDataRole.AccessibleDescriptionRole:
             return self._size(entry)
         if role == VALUE_ROLE:
-            return format_value(self._as_shown(entry, 0), self._selection, self._width_mm)
+            return format_value(self._as_item(entry, 0), self._selection, self._width_mm)
         simple = {CANDIDATE_ROLE: entry.candidate, DESIGN_ROLE: entry.design, RISE_ROLE: entry.rise}
         if role == NUMBER_ROLE:
             return self.number_of(entry.candidate)
@@ -182,12 +182,12 @@ class GalleryModel(QAbstractListModel):
         return _place_of(self._shown, candidate)
 
     def _arranged(self) -> list[Entry]:
-        designs = [self._as_shown(entry, place) for place, entry in enumerate(self._all)]
-        return [self._all[place] for place in arranged(designs, self._selection)]
+        designs = [self._as_item(entry, place) for place, entry in enumerate(self._all)]
+        return [self._all[place] for place in places_in_order(designs, self._selection)]
 
-    def _as_shown(self, entry: Entry, place: int) -> Shown:
+    def _as_item(self, entry: Entry, place: int) -> GalleryItem:
         mark, fresh = self.mark_of(entry.candidate), bool(self._fresh) and entry.candidate in self._fresh
-        return Shown(place, entry.candidate, mark, entry.design.deployment, fresh)
+        return GalleryItem(place, entry.candidate, mark, entry.design.deployment, fresh)
 
     def _rearrange(self) -> None:
         after = self._arranged()

@@ -10,7 +10,7 @@ from PySide6.QtWidgets import QAbstractItemView, QListView, QWidget
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui.designs.selecting import Selection
+from kirigami_studio.gui.designs.gallery_selection import Selection
 from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.session import Entry
 from kirigami_studio.gui.views.card_delegate import GAP, SMALLEST_CARD, TEXT_HEIGHT, CardButton, CardDelegate, button_at

@@ -1,4 +1,4 @@
-"""Which designs of the gallery are shown, and in which order: a choice of the eye, not of the document."""
+"""Which designs of the gallery are shown, and in which order: a choice of the view, not of the document."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from kirigami_studio.project.document import Mark
 
 
 class SortOrder(Enum):
-    """What the gallery is sorted by; always from the best, the largest or the calmest on."""
+    """What the gallery is sorted by; always from the best, the largest or the most regular on."""
 
     RANK = "rank"
     SIOU = "siou"
@@ -72,8 +72,8 @@ class Selection:
 
 
 @dataclass(frozen=True, slots=True)
-class Shown:
-    """One design as the selection sees it: its place in the document counts from 0; fresh are the last run's."""
+class GalleryItem:
+    """One design of the gallery: its place in the document counts from 0; fresh are the last run's."""
 
     place: int
     candidate: Candidate
@@ -82,7 +82,7 @@ class Shown:
     fresh: bool = False
 
 
-def arranged(designs: Sequence[Shown], selection: Selection) -> list[int]:
+def places_in_order(designs: Sequence[GalleryItem], selection: Selection) -> list[int]:
     """Places of the designs that are shown, in the order in which they are shown."""
     taken = [one for one in designs if selection.takes(one.candidate, one.mark)]
     values = sorting_values(taken, selection)
@@ -93,7 +93,7 @@ def arranged(designs: Sequence[Shown], selection: Selection) -> list[int]:
     return sorted(keys, key=lambda place: keys[place])
 
 
-def sorting_values(designs: Sequence[Shown], selection: Selection) -> list[float]:
+def sorting_values(designs: Sequence[GalleryItem], selection: Selection) -> list[float]:
     """By what each design is sorted; smaller comes first."""
     order = selection.order
     if order is SortOrder.SIOU:
@@ -122,16 +122,16 @@ def differences(candidates: Sequence[Candidate], origin: RatioField | None) -> l
     return found
 
 
-def format_value(shown: Shown, selection: Selection, width_mm: float) -> str:
+def format_value(item: GalleryItem, selection: Selection, width_mm: float) -> str:
     """What a card says of the number that it is sorted by."""
     if selection.order is SortOrder.PANEL:
-        return tr("panel {size:.1f} mm", size=width_mm * least_panel_share(shown.deployment))
+        return tr("panel {size:.1f} mm", size=width_mm * least_panel_share(item.deployment))
     if selection.order is SortOrder.UNLIKE and selection.unlike is not None:
-        return tr("differs {value:.2f}", value=differences([shown.candidate], selection.unlike)[0])
-    return tr("TV {value:.2f}", value=shown.candidate.score.tv)
+        return tr("differs {value:.2f}", value=differences([item.candidate], selection.unlike)[0])
+    return tr("TV {value:.2f}", value=item.candidate.score.tv)
 
 
-def counted(shown: Sequence[Candidate], total: int) -> tuple[str, ...]:
+def count_texts(shown: Sequence[Candidate], total: int) -> tuple[str, ...]:
     """What the gallery's head says of its number of cards, longest first."""
     if total == 0:
         return ()
