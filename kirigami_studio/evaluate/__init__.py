@@ -19,5 +19,5 @@ trim
     Cutting the edge panels along the target in the deployed state; what stays around hinges is *keep* cells deep.  The
     trimmed IoU is another number than the untrimmed one and never shown as such.
 
-May import ``lattice``, ``outlines`` and ``foundation``; ``generator`` and ``fabricate`` are strangers.
+May import ``lattice``, ``outlines`` and ``foundation``; neither ``generator`` nor ``fabricate``.
 """

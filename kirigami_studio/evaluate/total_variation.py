@@ -1,4 +1,4 @@
-"""How evenly the ratios vary over the sheet: two numbers, lower is smoother."""
+"""Total variation (the paper's TV) of the ratios over the sheet: lower is smoother."""
 
 from __future__ import annotations
 

@@ -8,7 +8,6 @@ never touched.  A trimmed score is another number than an untrimmed one; both ar
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 from dataclasses import field as attribute
 
@@ -29,7 +28,7 @@ from kirigami_studio.evaluate.kept_panels import (
 )
 from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.foundation.arrays import BoolArray, ComplexArray, FloatArray
-from kirigami_studio.foundation.errors import Cancelled, KirigamiError, UsageError
+from kirigami_studio.foundation.errors import KirigamiError, UsageError
 from kirigami_studio.lattice.deployment import Deployment, check_phi
 from kirigami_studio.lattice.ratio_field import RatioField, frozen
 from kirigami_studio.outlines.outline import Outline
@@ -94,7 +93,6 @@ def trim(
     phi: float,
     pose: Similarity,
     keep: float = KEEP,
-    cancel: Callable[[], bool] = lambda: False,
 ) -> Trim:
     """Trim a design to a target.
 
@@ -107,8 +105,6 @@ def trim(
         Layout frame at ``phi`` to target frame.
     keep : float, unit cells, 0.02 to 0.4
         Depth of the material that stays at every hinge, square to the cut that the hinge rests on.
-    cancel : callable
-        Asked on the way.
 
     Raises
     ------
@@ -116,8 +112,6 @@ def trim(
         An angle or a depth that makes no sense.
     KirigamiError
         The outline crosses itself at ``phi``: what is outside cannot be told.
-    Cancelled
-        ``cancel`` said so.
     """
     phi, keep = check_phi(phi), check_keep(keep)
     sheet = Polygon(deployment.outline(phi))
@@ -127,9 +121,7 @@ def trim(
     panels = edge_panels(deployment.field.rows, deployment.field.columns)
     corners = deployment.compact[panels.corners]
     targets = polygons(as_points(_brought_back(deployment, panels, phi, shapely.get_coordinates(place)[:-1])))
-    _stop_if(cancel)
     kept = kept_panels(corners, panels.hinged, targets, keep)
-    _stop_if(cancel)
     kept = with_pockets(kept, corners, targets, _inside(deployment, panels))
     shared = sheet.intersection(place).area
     parts: list[FloatArray | None] = [None] * deployment.topology.panel_nodes[..., 0].size
@@ -197,8 +189,3 @@ def _inside(deployment: Deployment, panels: EdgePanels) -> BaseGeometry:
 def _ring(shape: Polygon) -> FloatArray:
     """Vertices (P, 2), counter-clockwise, first not repeated."""
     return shapely.get_coordinates(shapely.orient_polygons(shape).exterior)[:-1]
-
-
-def _stop_if(cancel: Callable[[], bool]) -> None:
-    if cancel():
-        raise Cancelled("trim.stopped")

@@ -1,4 +1,4 @@
-"""Many designs at once in torch, with gradients: the barycentric solve as a block-tridiagonal sweep.
+"""Many designs at once in torch: the barycentric solve as a block-tridiagonal sweep, and its exact derivative.
 
 Eliminating the v family of nodes leaves one block row per row of h nodes,
 
@@ -6,6 +6,9 @@ Eliminating the v family of nodes leaves one block row per row of h nodes,
 
 an M-matrix: the block Thomas algorithm needs no pivoting between blocks and costs O(m n^3) with tiny constants.  Blocks
 of at most 65 x 65 stay clear of the batched dense solve that stalls in torch 2.13 for n > 150 with two MKL threads.
+
+:class:`BatchedLattice` decodes and lets gradients through; :class:`BatchedSlopes` gives the whole derivative of the
+outline by an adjoint sweep, as ``polish.sensitivity`` does for one design.
 """
 
 from __future__ import annotations
@@ -21,6 +24,8 @@ from kirigami_studio.foundation.errors import RatioError
 from kirigami_studio.lattice.compact import barycentric_stencil
 from kirigami_studio.lattice.deployment import even_part_of_outline
 from kirigami_studio.lattice.topology import topology
+
+LN10 = math.log(10.0)
 
 
 class BatchedLattice:
@@ -160,42 +165,6 @@ class BatchedLattice:
         return torch.tensor(values, dtype=self.dtype, device=self.device)
 
 
-def block_sweep(lower: Tensor, upper: Tensor, right: Tensor) -> Tensor:
-    """Solve h_i = lower_i h_{i-1} + upper_i h_{i+1} + right_i by the block Thomas algorithm.
-
-    Parameters
-    ----------
-    lower, upper : (B, m, w, w) tensors
-    right : (B, m, w, R) tensor
-
-    Returns
-    -------
-    h : (B, m, w, R) tensor
-    """
-    width = lower.shape[-1]
-    identity = torch.eye(width, device=lower.device, dtype=lower.dtype)
-    transfer, offset = [upper[:, 0]], [right[:, 0]]
-    for i in range(1, lower.shape[1]):
-        factors, pivots, _ = torch.linalg.lu_factor_ex(identity - lower[:, i] @ transfer[-1])
-        transfer.append(torch.linalg.lu_solve(factors, pivots, upper[:, i]))
-        offset.append(torch.linalg.lu_solve(factors, pivots, torch.baddbmm(right[:, i], lower[:, i], offset[-1])))
-    h = [offset[-1]]
-    for i in range(lower.shape[1] - 2, -1, -1):
-        h.append(torch.baddbmm(offset[i], transfer[i], h[-1]))
-    return torch.stack(h[::-1], dim=1)
-
-
-def deployed(even: Tensor, odd: Tensor, phi: float | Tensor) -> Tensor:
-    """Combine the parts U, V (B, L, 2) at ``phi`` (a number or (B,) tensor, radians) into positions (B, L, 2)."""
-    half = 0.5 * (math.pi - torch.as_tensor(phi, dtype=even.dtype, device=even.device)).reshape(-1, 1)
-    c, s = torch.cos(half), torch.sin(half)
-    total, spread = even + odd, even - odd
-    return torch.stack([c * total[..., 0] + s * spread[..., 1], c * total[..., 1] - s * spread[..., 0]], dim=-1)
-
-
-LN10 = math.log(10.0)
-
-
 class BatchedSlopes:
     """Outline and derivative of batches of fields on one grid.
 
@@ -300,3 +269,36 @@ class BatchedSlopes:
     def _table(self, entries: list[tuple[int, int]]) -> tuple[Tensor, Tensor]:
         pairs = np.array(entries).reshape(-1, 2)
         return self.lattice._index(pairs[:, 0]), self.lattice._index(pairs[:, 1])
+
+
+def block_sweep(lower: Tensor, upper: Tensor, right: Tensor) -> Tensor:
+    """Solve h_i = lower_i h_{i-1} + upper_i h_{i+1} + right_i by the block Thomas algorithm.
+
+    Parameters
+    ----------
+    lower, upper : (B, m, w, w) tensors
+    right : (B, m, w, R) tensor
+
+    Returns
+    -------
+    h : (B, m, w, R) tensor
+    """
+    width = lower.shape[-1]
+    identity = torch.eye(width, device=lower.device, dtype=lower.dtype)
+    transfer, offset = [upper[:, 0]], [right[:, 0]]
+    for i in range(1, lower.shape[1]):
+        factors, pivots, _ = torch.linalg.lu_factor_ex(identity - lower[:, i] @ transfer[-1])
+        transfer.append(torch.linalg.lu_solve(factors, pivots, upper[:, i]))
+        offset.append(torch.linalg.lu_solve(factors, pivots, torch.baddbmm(right[:, i], lower[:, i], offset[-1])))
+    h = [offset[-1]]
+    for i in range(lower.shape[1] - 2, -1, -1):
+        h.append(torch.baddbmm(offset[i], transfer[i], h[-1]))
+    return torch.stack(h[::-1], dim=1)
+
+
+def deployed(even: Tensor, odd: Tensor, phi: float | Tensor) -> Tensor:
+    """Combine the parts U, V (B, L, 2) at ``phi`` (a number or (B,) tensor, radians) into positions (B, L, 2)."""
+    half = 0.5 * (math.pi - torch.as_tensor(phi, dtype=even.dtype, device=even.device)).reshape(-1, 1)
+    c, s = torch.cos(half), torch.sin(half)
+    total, spread = even + odd, even - odd
+    return torch.stack([c * total[..., 0] + s * spread[..., 1], c * total[..., 1] - s * spread[..., 0]], dim=-1)

@@ -6,8 +6,9 @@ therefore a convex combination of the two ends of the slit it lies on,
     even void:  p0 = (x p3 + p1) / (1 + x)     p2 = (p3 + x p1) / (1 + x)
     odd void:   p3 = (x p0 + p2) / (1 + x)     p1 = (p0 + x p2) / (1 + x)
 
-and the nodes on the sheet's edge are given: an M-matrix with two entries a row, non-singular for every x > 0.  It
-replaces the paper's marching (Eq. 2), which it satisfies at every void; see ``marching`` for that reference.
+which is the paper's local rule (Eq. 2) with the angles of the parity rule (Eq. 1) at phi = pi.  The nodes on the
+sheet's edge are given: an M-matrix with two entries a row, non-singular for every x > 0.  It replaces the paper's
+marching, see ``marching`` for that reference.
 """
 
 from __future__ import annotations

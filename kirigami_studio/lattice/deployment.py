@@ -1,4 +1,4 @@
-"""The exact motion: panels with I + J even turn by -a, the others by +a, 2a = pi - phi.
+"""The exact motion: by the parity rule (Eq. 1), panels with I + J even turn by -a, the others by +a, 2a = pi - phi.
 
 Voids are parallelograms, so opposite panels stay parallel and every node moves on an ellipse
 

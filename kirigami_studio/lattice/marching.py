@@ -1,4 +1,6 @@
-"""The paper's marching decoder (Eqs. 1-2), void by void: the readable reference that the fast path is tested against.
+"""The paper's marching decoder, void by void: the readable reference that the fast path is tested against.
+
+Eq. 1 is the parity rule (:func:`void_angle`), Eq. 2 the local rule of every void (:func:`march`).
 
 Marching multiplies ratios along rows and columns, so errors grow exponentially with the grid; it is exact in exact
 arithmetic and good to 1e-6 at 10 x 10.  It needs the seed nodes on the top and left that the paper calls anchors; they
@@ -17,7 +19,7 @@ from kirigami_studio.lattice.ratio_field import RatioField
 
 
 def void_angle(row: int, column: int, phi: float) -> float:
-    """Interior angle at p0 of a void (Eq. 1): phi when even, pi - phi when odd, radians."""
+    """Interior angle at p0 of a void by the parity rule (Eq. 1): phi where i + j is even, else pi - phi; radians."""
     return phi if (row + column) % 2 == 0 else math.pi - phi
 
 

@@ -44,7 +44,7 @@ class Topology:
     fixed : (N,) bool
         Nodes that lie on the sheet's edge in the compact state (the boundary anchors B).
     even_void : (m, n) bool
-        True where i + j is even: the slit is vertical in the compact sheet.
+        True where i + j is even (parity rule, Eq. 1 of the paper): the slit is vertical in the compact sheet.
     """
 
     rows: int

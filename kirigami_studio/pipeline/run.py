@@ -26,132 +26,8 @@ from kirigami_studio.pipeline.events import (
 from kirigami_studio.pipeline.pool import Pool, shared_pool
 from kirigami_studio.pipeline.rank import ranked
 from kirigami_studio.pipeline.request import Request
-from kirigami_studio.pipeline.tasks import Answer, PolishTask, SearchTask, Task, TrimTask, carry_out, scored
+from kirigami_studio.pipeline.tasks import Answer, PolishTask, SearchTask, Task, TrimTask, scored
 from kirigami_studio.pipeline.variety import worth_a_fit
-
-
-@dataclass(frozen=True, slots=True)
-class Watch:
-    """The cancel flag and the clock of one run.
-
-    Attributes
-    ----------
-    cancel : callable
-        True once the user asked to stop.
-    began : float, seconds
-        On ``time.perf_counter``.
-    budget : float or None, seconds
-        Wall time that the run may take.
-    """
-
-    cancel: Callable[[], bool]
-    began: float
-    budget: float | None = None
-
-    @property
-    def seconds(self) -> float:
-        """Wall time since the run began."""
-        return time.perf_counter() - self.began
-
-    def expired(self) -> bool:
-        """Whether the budget is used up."""
-        return self.budget is not None and self.seconds >= self.budget
-
-    def stopped(self) -> bool:
-        """Whether work should end with the best so far, for either reason."""
-        return self.expired() or self.cancel()
-
-    def check(self, code: str, done: int, total: int) -> None:
-        """End the run if the user asked for it.
-
-        Raises
-        ------
-        Cancelled
-            With ``code``, and how far the run came.
-        """
-        if self.cancel():
-            raise Cancelled(code, done=done, total=total)
-
-
-@dataclass(frozen=True, slots=True)
-class Stage:
-    """A part of a run that works on several designs: what it says on the way, and the code for its cancellation."""
-
-    words: str
-    stopped: str
-
-    def progress(self, done: int, total: int) -> Progress:
-        """How far it is."""
-        return Progress(done, total, tr(self.words, done=done, total=total))
-
-
-POLISHING = Stage(mark("Polishing: {done} of {total} done"), "run.stopped_polishing")
-SEARCHING = Stage(mark("Searching: {done} of {total} done"), "run.stopped_searching")
-TRIMMING = Stage(mark("Trimming: {done} of {total} done"), "run.stopped_trimming")
-
-#: Seconds of one step of a fit at 10 x 10, which grow with the number of voids to this power.
-STEP_SECONDS, STEP_GROWTH = 3e-3, 1.5
-
-#: Steps that a search takes for one unit of effort.
-SEARCH_STEPS = 600
-
-#: Seconds of work that starting worker processes must save at least half of.
-WORTH_STARTING = 0.8
-
-#: Seconds between two looks at the cancel flag and the clock.
-LOOK = 0.02
-
-#: Seconds after the end of the budget that workers get to hand in their best so far.
-GRACE = 1.0
-
-
-def work_seconds(request: Request) -> float:
-    """Roughly how long polishing and search take in one process."""
-    rows, columns = request.grid
-    steps = request.k * request.polish + request.search * SEARCH_STEPS
-    growth = float((rows * columns / 100.0) ** STEP_GROWTH)
-    return steps * STEP_SECONDS * growth
-
-
-def gains(pool: Pool, request: Request) -> bool:
-    """Whether ``pool`` would do the request's fits sooner, or without blocking this process."""
-    busy = request.polish > 0 or request.search > 0
-    return busy and pool.usable and (pool.ready or work_seconds(request) > WORTH_STARTING)
-
-
-def answers(
-    pool: Pool | None, request: Request, tasks: Sequence[Task], watch: Watch
-) -> Generator[tuple[int, Answer] | None]:
-    """Do tasks in order; yield (place in ``tasks``, answer) in the order in which they end, and None in between.
-
-    Ends early when the watch's budget is used up: tasks under way then answer with the best so far, others not at all.
-    The caller looks at the cancel flag at every yield; closing this iterator stops the work within one step.
-    """
-    waiting = dict(enumerate(tasks))
-    if pool is not None and not watch.stopped():
-        for report in _by_workers(pool, request, waiting, watch):
-            if report is not None:
-                del waiting[report[0]]
-            yield report
-    for number, task in list(waiting.items()):
-        if watch.stopped():
-            return
-        yield number, carry_out(request, task, watch.stopped)
-
-
-def _by_workers(
-    pool: Pool, request: Request, waiting: dict[int, Task], watch: Watch
-) -> Generator[tuple[int, Answer] | None]:
-    stopped_at: float | None = None
-    with closing(pool.answers(request, list(waiting.items()), LOOK)) as reports:
-        for report in reports:
-            yield report
-            if stopped_at is None and watch.expired():
-                stopped_at = time.perf_counter()
-                pool.wind_down()
-            if stopped_at is not None and time.perf_counter() > stopped_at + GRACE:
-                return
-
 
 #: Candidates scored in one batch.
 SCORED_TOGETHER = 32
@@ -168,6 +44,21 @@ TRIMMED = 3
 
 #: Seconds between two signs of life while fits are under way.
 HEARTBEAT = 0.25
+
+#: Seconds of one step of a fit at 10 x 10, which grow with the number of voids to this power.
+STEP_SECONDS, STEP_GROWTH = 3e-3, 1.5
+
+#: Steps that a search takes for one unit of effort.
+SEARCH_STEPS = 600
+
+#: Seconds of work that starting worker processes must save at least half of.
+WORTH_STARTING = 0.8
+
+#: Seconds between two looks at the cancel flag and the clock.
+LOOK = 0.02
+
+#: Seconds after the end of the budget that workers get to hand in their best so far.
+GRACE = 1.0
 
 
 def never() -> bool:
@@ -220,6 +111,14 @@ def run(request: Request, cancel: Callable[[], bool] = never, pool: Pool | None 
     yield Finished(Result(request, candidates, work.evaluations, watch.seconds, work.cut_short))
 
 
+def best_of(request: Request, cancel: Callable[[], bool] = never, pool: Pool | None = None) -> Result:
+    """Run to the end and return the result alone."""
+    for event in run(request, cancel, pool):
+        if isinstance(event, Finished):
+            return event.result
+    raise Cancelled("run.no_result")
+
+
 def sample(request: Request) -> tuple[RatioField, ...]:
     """Sample the request's fields; torch is imported here, on the first run, and not when the program starts."""
     from kirigami_studio.generator.sampler import Near, draw_fields
@@ -243,6 +142,23 @@ def decodings(request: Request) -> int:
     from kirigami_studio.generator.weights import load_model
 
     return load_model(request.variant).decodings(request.steps)
+
+
+@dataclass(frozen=True, slots=True)
+class Stage:
+    """A part of a run that works on several designs: what it says on the way, and the code for its cancellation."""
+
+    words: str
+    stopped: str
+
+    def progress(self, done: int, total: int) -> Progress:
+        """How far it is."""
+        return Progress(done, total, tr(self.words, done=done, total=total))
+
+
+POLISHING = Stage(mark("Polishing: {done} of {total} done"), "run.stopped_polishing")
+SEARCHING = Stage(mark("Searching: {done} of {total} done"), "run.stopped_searching")
+TRIMMING = Stage(mark("Trimming: {done} of {total} done"), "run.stopped_trimming")
 
 
 class _Work:
@@ -338,17 +254,100 @@ class _Work:
         self.cut_short = self.cut_short or self.watch.expired()
 
 
+@dataclass(frozen=True, slots=True)
+class Watch:
+    """The cancel flag and the clock of one run.
+
+    Attributes
+    ----------
+    cancel : callable
+        True once the user asked to stop.
+    began : float, seconds
+        On ``time.perf_counter``.
+    budget : float or None, seconds
+        Wall time that the run may take.
+    """
+
+    cancel: Callable[[], bool]
+    began: float
+    budget: float | None = None
+
+    @property
+    def seconds(self) -> float:
+        """Wall time since the run began."""
+        return time.perf_counter() - self.began
+
+    def expired(self) -> bool:
+        """Whether the budget is used up."""
+        return self.budget is not None and self.seconds >= self.budget
+
+    def stopped(self) -> bool:
+        """Whether work should end with the best so far, for either reason."""
+        return self.expired() or self.cancel()
+
+    def check(self, code: str, done: int, total: int) -> None:
+        """End the run if the user asked for it.
+
+        Raises
+        ------
+        Cancelled
+            With ``code``, and how far the run came.
+        """
+        if self.cancel():
+            raise Cancelled(code, done=done, total=total)
+
+
+def answers(
+    pool: Pool | None, request: Request, tasks: Sequence[Task], watch: Watch
+) -> Generator[tuple[int, Answer] | None]:
+    """Do tasks in order; yield (place in ``tasks``, answer) in the order in which they end, and None in between.
+
+    Ends early when the watch's budget is used up: tasks under way then answer with the best so far, others not at all.
+    The caller looks at the cancel flag at every yield; closing this iterator stops the work within one step.
+    """
+    waiting = dict(enumerate(tasks))
+    if pool is not None and not watch.stopped():
+        for report in _by_workers(pool, request, waiting, watch):
+            if report is not None:
+                del waiting[report[0]]
+            yield report
+    for number, task in list(waiting.items()):
+        if watch.stopped():
+            return
+        yield number, task.carry_out(request, watch.stopped)
+
+
+def _by_workers(
+    pool: Pool, request: Request, waiting: dict[int, Task], watch: Watch
+) -> Generator[tuple[int, Answer] | None]:
+    stopped_at: float | None = None
+    with closing(pool.answers(request, list(waiting.items()), LOOK)) as reports:
+        for report in reports:
+            yield report
+            if stopped_at is None and watch.expired():
+                stopped_at = time.perf_counter()
+                pool.wind_down()
+            if stopped_at is not None and time.perf_counter() > stopped_at + GRACE:
+                return
+
+
+def work_seconds(request: Request) -> float:
+    """Roughly how long polishing and search take in one process."""
+    rows, columns = request.grid
+    steps = request.k * request.polish + request.search * SEARCH_STEPS
+    growth = float((rows * columns / 100.0) ** STEP_GROWTH)
+    return steps * STEP_SECONDS * growth
+
+
+def gains(pool: Pool, request: Request) -> bool:
+    """Whether ``pool`` would do the request's fits sooner, or without blocking this process."""
+    busy = request.polish > 0 or request.search > 0
+    return busy and pool.usable and (pool.ready or work_seconds(request) > WORTH_STARTING)
+
+
 def _gaining(pool: Pool, request: Request) -> Pool | None:
     """The pool, starting up while the generator is loaded, if the request gains from it."""
     if not gains(pool, request):
         return None
     pool.start()
     return pool
-
-
-def best_of(request: Request, cancel: Callable[[], bool] = never, pool: Pool | None = None) -> Result:
-    """Run to the end and return the result alone."""
-    for event in run(request, cancel, pool):
-        if isinstance(event, Finished):
-            return event.result
-    raise Cancelled("run.no_result")

@@ -1,9 +1,10 @@
-"""One piece of work on one design, the same whether a worker process or the run itself does it."""
+"""Work on one design, the same whether a worker process or the run itself does it."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from typing import Protocol
 
 from kirigami_studio.evaluate.candidate import Candidate, Origin
 from kirigami_studio.evaluate.score import evaluate_many
@@ -20,11 +21,58 @@ from kirigami_studio.polish.preferences import PREFERENCES
 
 
 @dataclass(frozen=True, slots=True)
+class Answer:
+    """What came of a task.
+
+    Attributes
+    ----------
+    candidate : Candidate or None
+        The new state of the design; None where the task brought nothing.
+    evaluations : int
+        Layouts decoded on the way.
+    """
+
+    candidate: Candidate | None
+    evaluations: int
+
+
+class Task(Protocol):
+    """Work on one design."""
+
+    def carry_out(self, request: Request, stopped: Callable[[], bool]) -> Answer:
+        """Do the work; once ``stopped`` is true the best so far is the answer, within one step of the fit."""
+        ...
+
+
+@dataclass(frozen=True, slots=True)
 class PolishTask:
     """Fit a candidate on the exact geometry, from where it is, by at most ``steps`` steps."""
 
     candidate: Candidate
     steps: int
+
+    def carry_out(self, request: Request, stopped: Callable[[], bool]) -> Answer:
+        """Fit as preferred, and more mildly where that gives away too much match."""
+        candidate, evaluations = self.candidate, 0
+        prefer: str | None = request.prefer
+        while prefer is not None:
+            with one_blas_thread():
+                fit = polish(
+                    candidate.field,
+                    request.target,
+                    request.phi,
+                    self.steps,
+                    PREFERENCES[prefer],
+                    candidate.score.transform,
+                    stopped,
+                    least_panel=request.least_panel,
+                )
+            (better,) = scored(request, [fit.field], candidate.index, candidate.origin, fitted=True)
+            evaluations += fit.evaluations + 1
+            if improves(better, candidate, request.prefer):
+                return Answer(replace(better, sampled_field=candidate.sampled_field or candidate.field), evaluations)
+            prefer = MILDER.get(prefer)
+        return Answer(None, evaluations)
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,6 +82,22 @@ class SearchTask:
     index: int
     starts: tuple[RatioField, ...]
 
+    def carry_out(self, request: Request, stopped: Callable[[], bool]) -> Answer:
+        """Search from scratch and from the starts."""
+        with one_blas_thread():
+            fits = fit_shape(
+                request.target,
+                request.grid,
+                request.phi,
+                self.starts,
+                request.search,
+                stopped,
+                PREFERENCES[request.prefer],
+                request.least_panel,
+            )
+        (found,) = scored(request, [fits[0].field], self.index, Origin.SEARCHED, fitted=True)
+        return Answer(found, fits[0].evaluations + 1)
+
 
 @dataclass(frozen=True, slots=True)
 class TrimTask:
@@ -41,80 +105,13 @@ class TrimTask:
 
     candidate: Candidate
 
-
-Task = PolishTask | SearchTask | TrimTask
-
-
-@dataclass(frozen=True, slots=True)
-class Answer:
-    """What came of a task.
-
-    Attributes
-    ----------
-    candidate : Candidate or None
-        The new state of the design; None where polishing brought nothing.
-    evaluations : int
-        Layouts decoded on the way.
-    """
-
-    candidate: Candidate | None
-    evaluations: int
-
-
-def carry_out(request: Request, task: Task, stopped: Callable[[], bool]) -> Answer:
-    """Do one task; once ``stopped`` is true the best so far is the answer, within one step of the fit."""
-    if isinstance(task, PolishTask):
-        return _polished(request, task, stopped)
-    if isinstance(task, TrimTask):
-        return _trimmed(request, task, stopped)
-    return _searched(request, task, stopped)
-
-
-def _polished(request: Request, task: PolishTask, stopped: Callable[[], bool]) -> Answer:
-    candidate, evaluations = task.candidate, 0
-    prefer: str | None = request.prefer
-    while prefer is not None:
-        with one_blas_thread():
-            fit = polish(
-                candidate.field,
-                request.target,
-                request.phi,
-                task.steps,
-                PREFERENCES[prefer],
-                candidate.score.transform,
-                stopped,
-                least_panel=request.least_panel,
-            )
-        (better,) = scored(request, [fit.field], candidate.index, candidate.origin, fitted=True)
-        evaluations += fit.evaluations + 1
-        if improves(better, candidate, request.prefer):
-            return Answer(replace(better, sampled_field=candidate.sampled_field or candidate.field), evaluations)
-        prefer = MILDER.get(prefer)
-    return Answer(None, evaluations)
-
-
-def _searched(request: Request, task: SearchTask, stopped: Callable[[], bool]) -> Answer:
-    with one_blas_thread():
-        fits = fit_shape(
-            request.target,
-            request.grid,
-            request.phi,
-            task.starts,
-            request.search,
-            stopped,
-            PREFERENCES[request.prefer],
-            request.least_panel,
-        )
-    (found,) = scored(request, [fits[0].field], task.index, Origin.SEARCHED, fitted=True)
-    return Answer(found, fits[0].evaluations + 1)
-
-
-def _trimmed(request: Request, task: TrimTask, stopped: Callable[[], bool]) -> Answer:
-    try:
-        made = trimmed(task.candidate, request.target, request.keep, stopped)
-    except KirigamiError:  # it crosses itself
-        return Answer(None, 1)
-    return Answer(made.candidate, made.evaluations)
+    def carry_out(self, request: Request, stopped: Callable[[], bool]) -> Answer:
+        """Trim, unless the design crosses itself."""
+        try:
+            made = trimmed(self.candidate, request.target, request.keep, stopped)
+        except KirigamiError:
+            return Answer(None, 1)
+        return Answer(made.candidate, made.evaluations)
 
 
 def scored(

@@ -18,7 +18,7 @@ from queue import SimpleQueue
 from typing import BinaryIO
 
 from kirigami_studio.pipeline.request import Request
-from kirigami_studio.pipeline.tasks import Answer, Task, carry_out
+from kirigami_studio.pipeline.tasks import Answer, Task
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,7 +104,7 @@ class _Inbox:
 
 def _carried_out(assignment: Assignment, inbox: _Inbox) -> Report:
     try:
-        answer = carry_out(assignment.request, assignment.task, lambda: inbox.stopped_batch >= assignment.batch)
+        answer = assignment.task.carry_out(assignment.request, lambda: inbox.stopped_batch >= assignment.batch)
     except Exception as error:
         return Failed(assignment.batch, assignment.number, error)
     return Done(assignment.batch, assignment.number, answer)

@@ -31,65 +31,36 @@ from kirigami_studio.polish.panel_size import check_least
 from kirigami_studio.polish.preferences import Preference
 from kirigami_studio.polish.symmetry import Symmetry, shared_symmetries
 
-#: Vertices of a thickened shape may move by this (unit-area lengths): round corners need no more.
-ACCURACY = 0.002
-
-
-@dataclass(frozen=True, slots=True)
-class EasyShape:
-    """One shape on the way.
-
-    Attributes
-    ----------
-    outline : Outline
-    frame : Similarity
-        Carries ``outline``'s own unit-area frame to the target's frame.
-    """
-
-    outline: Outline
-    frame: Similarity
-
-
-def thickened(target: Outline, margins: Sequence[float]) -> list[EasyShape]:
-    """``target`` with its boundary moved outwards by each margin (unit-area lengths, > 0), holes filled."""
-    return [_shape(target.polygon.buffer(margin)) for margin in margins]
-
-
-def _shape(thick: shapely.geometry.base.BaseGeometry) -> EasyShape:
-    solid = shapely.Polygon(shapely.get_exterior_ring(thick)).simplify(ACCURACY)
-    frame = Similarity(math.sqrt(solid.area), 0.0, (solid.centroid.x, solid.centroid.y))
-    return EasyShape(Outline.from_points(shapely.get_coordinates(solid)[:-1]), frame)
-
-
 #: Largest grid that is searched directly; finer ones start from a search on about this many voids each way.
 COARSE = 10
+
 #: Margins (unit-area lengths) by which the target is thickened on the two ways to it: at once, and in steps.
 ROUTES: tuple[tuple[float, ...], ...] = ((), (0.2, 0.14, 0.09, 0.05, 0.02))
+
 #: The same after a coarse fit was lifted: a slightly thickened target gives arms the room that the finer grid allows.
 LIFTED_ROUTES: tuple[tuple[float, ...], ...] = ((), (0.09, 0.05, 0.02))
+
 #: Steps on each easier shape, of a first look at the target, and of the last fit.
 EASY_STEPS, LOOK_STEPS, LAST_STEPS = 4, 8, 20
+
 #: Steps of the fit without a search that every search is compared with.
 PLAIN_STEPS = 40
+
 #: Trusted distances (unit-area lengths): far parts must pull in the search, area counts in the end.
 FAR, NEAR, FINE = 0.03, 0.01, 0.005
+
 #: Rotations tried per effort when quarter turns, half turns, or no turns carry reachable shapes to reachable shapes.
 QUARTER, HALF, WHOLE = 4, 6, 8
+
 #: Fits that are carried to the end, per effort.
 KEPT = 3
 LARGEST_EFFORT = 8
+
 #: A symmetric fit is preferred to another that matches no more than this much better.
 FAIR_LOSS = 0.002
 
-
-@dataclass(frozen=True, slots=True)
-class _Found:
-    """A fit, its exact IoU in its own pose, whether the sheet gets there untouched, and what symmetry it has."""
-
-    fit: Fit
-    iou: float
-    clear: bool
-    symmetry: Symmetry | None = None
+#: Vertices of a thickened shape may move by this (unit-area lengths): round corners need no more.
+ACCURACY = 0.002
 
 
 def fit_shape(
@@ -150,6 +121,16 @@ def lifted(field: RatioField, grid: tuple[int, int]) -> RatioField:
     """The field carried to another grid, within the bounds of a fit."""
     z = resize_fields(field.log10[np.newaxis], *grid)[0]
     return RatioField.from_log10(np.clip(z, -1.0, 1.0))
+
+
+@dataclass(frozen=True, slots=True)
+class _Found:
+    """A fit, its exact IoU in its own pose, whether the sheet gets there untouched, and what symmetry it has."""
+
+    fit: Fit
+    iou: float
+    clear: bool
+    symmetry: Symmetry | None = None
 
 
 class _Search:
@@ -294,3 +275,29 @@ def _centred(field: RatioField, phi: float, angle: float) -> Similarity:
     turned = Similarity(1.0 / math.sqrt(sheet.area), angle)
     x, y = turned.apply(np.array([sheet.centroid.x, sheet.centroid.y]))
     return Similarity(turned.scale, angle, (-x, -y))
+
+
+@dataclass(frozen=True, slots=True)
+class EasyShape:
+    """One shape on the way.
+
+    Attributes
+    ----------
+    outline : Outline
+    frame : Similarity
+        Carries ``outline``'s own unit-area frame to the target's frame.
+    """
+
+    outline: Outline
+    frame: Similarity
+
+
+def thickened(target: Outline, margins: Sequence[float]) -> list[EasyShape]:
+    """``target`` with its boundary moved outwards by each margin (unit-area lengths, > 0), holes filled."""
+    return [_shape(target.polygon.buffer(margin)) for margin in margins]
+
+
+def _shape(thick: shapely.geometry.base.BaseGeometry) -> EasyShape:
+    solid = shapely.Polygon(shapely.get_exterior_ring(thick)).simplify(ACCURACY)
+    frame = Similarity(math.sqrt(solid.area), 0.0, (solid.centroid.x, solid.centroid.y))
+    return EasyShape(Outline.from_points(shapely.get_coordinates(solid)[:-1]), frame)

@@ -49,7 +49,9 @@ class PanelSizes:
     def below(self, least: float) -> PanelSizes:
         """Those sizes that are smaller than ``least``."""
         small = self.size < least
-        return PanelSizes(*(getattr(self, name)[small] for name in self.__slots__))
+        return PanelSizes(
+            self.corner[small], self.start[small], self.end[small], self.share[small], self.gap[small], self.size[small]
+        )
 
     def reach(self, node_count: int) -> tuple[FloatArray, FloatArray]:
         """Matrices (F, N) that read changes of the sizes off motions of the nodes in x and in y."""

@@ -28,5 +28,4 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "trim.keep_out_of_range": mark(
         "The material kept at hinges must be {least:g} to {most:g} cells deep, got {keep!r:.80}."
     ),
-    "trim.stopped": mark("Trimming stopped; nothing changed."),
 }

@@ -40,4 +40,5 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "Connectors of {connector_mm:g} mm leave nothing to trim on a sheet {width_mm:g} mm wide. Make the "
         "sheet at least {least_mm} mm wide or the connectors narrower."
     ),
+    "trim.stopped": mark("Trimming stopped; nothing changed."),
 }

@@ -11,7 +11,7 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 
-from kirigami_studio.cli import entry
+from kirigami_studio import cli
 from kirigami_studio.foundation.errors import Cancelled
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.outlines.silhouettes import load
@@ -190,7 +190,7 @@ def test_that_closing_the_pool_leaves_no_process(request_for_heart: Request, tas
 
 
 def test_that_a_frozen_program_is_a_worker_by_its_flag() -> None:
-    assert entry.WORKER_FLAG == worker.WORKER_FLAG
+    assert cli.WORKER_FLAG == worker.WORKER_FLAG
     command = [sys.executable, "-m", "kirigami_studio", worker.WORKER_FLAG]
     served = subprocess.run(command, input=b"", capture_output=True, timeout=60, check=False)
     assert (served.returncode, served.stderr) == (0, b"")

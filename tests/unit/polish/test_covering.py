@@ -15,7 +15,8 @@ from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.polish.boundary_target import BoundaryTarget
 from kirigami_studio.polish.covering import fit_cover
 from kirigami_studio.polish.levenberg import Fit, polish
-from kirigami_studio.polish.objective import Objective, outer_hinges
+from kirigami_studio.polish.matching import outer_hinges
+from kirigami_studio.polish.objective import Objective
 from kirigami_studio.polish.preferences import Preference, PreferenceTerms
 from kirigami_studio.polish.sensitivity import OutlineModel
 
