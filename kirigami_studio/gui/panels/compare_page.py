@@ -189,7 +189,7 @@ class ComparePage(QWidget):
         side.name(*((tr("Design {number}, chosen", number=number), alone) if chosen else (alone,)))
         candidate = entry.candidate
         # Contacts are known of the field that was scored; the one fitted for trimming is free of them.
-        scored = candidate.trim is None or candidate.trim.field == candidate.field
+        scored = candidate.final_field == candidate.field
         side.view.show_design(entry.design, candidate.score if scored else None, target)
 
     def set_phi(self, phi: float) -> None:

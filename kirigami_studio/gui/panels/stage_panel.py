@@ -276,9 +276,8 @@ class StagePanel(Card):
             self.view.show_design(None, None, None)
             return
         shown = self._sample or entry
-        trim = shown.candidate.trim
         # Contacts are known of the field that was scored; the one fitted for trimming is free of them.
-        score = shown.candidate.score if trim is None or trim.field == shown.candidate.field else None
+        score = shown.candidate.score if shown.candidate.final_field == shown.candidate.field else None
         contact = None if score is None else score.contact
         self.view.show_design(shown.design, score, self._target)
         self.deployment.set_marks(shown.design.phi_target, None if contact is None else contact.phi)
