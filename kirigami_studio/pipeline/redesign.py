@@ -6,17 +6,18 @@ Every function takes a candidate and returns a new one; window, command line and
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from kirigami_studio.evaluate.candidate import Candidate, Origin
 from kirigami_studio.evaluate.score import evaluate, evaluate_near
+from kirigami_studio.evaluate.siou import ShapeMatch, siou_of_many
 from kirigami_studio.evaluate.trimming import KEEP, LARGEST_KEEP
 from kirigami_studio.fabricate.material import Material
 from kirigami_studio.fabricate.trimmed_sheet import needed_keep
-from kirigami_studio.foundation.arrays import BoolArray
+from kirigami_studio.foundation.arrays import BoolArray, FloatArray
 from kirigami_studio.foundation.errors import Cancelled, FabricationError, KirigamiError
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
@@ -26,6 +27,7 @@ from kirigami_studio.pipeline.threads import one_blas_thread
 from kirigami_studio.polish.covering import fit_cover
 from kirigami_studio.polish.levenberg import polish
 from kirigami_studio.polish.preferences import PREFERENCES
+from kirigami_studio.polish.vertex_drag import VertexDrag
 
 #: Steps of the fit before trimming.
 COVER_STEPS = 12
@@ -202,6 +204,18 @@ def refitted(
         return Refit(fitted, better, problem)
     _stop_if(cancel)
     return Refit(again.candidate, better)
+
+
+def drag_step(drag: VertexDrag, place: FloatArray) -> None:
+    """Bring a vertex of the outline one step nearer to ``place`` (2,), unit cells."""
+    with one_blas_thread():
+        drag.move(place, steps=1)
+
+
+def matched(outlines: Sequence[FloatArray], target: Outline) -> list[ShapeMatch]:
+    """How well a design matches the target at several angles, given its outlines (L, 2); each in its best pose."""
+    with one_blas_thread():
+        return siou_of_many(outlines, target)
 
 
 def _stop_if(cancel: Callable[[], bool]) -> None:

@@ -73,13 +73,11 @@ def batches(phi_target: float) -> list[list[float]]:
 def readings(design: PosedDesign, target: Outline | None, angles: list[float]) -> tuple[Reading, ...]:
     """Read a design at some angles whose outlines have equally many vertices."""
     from kirigami_studio.evaluate.outline_gap import outline_gap
-    from kirigami_studio.evaluate.siou import siou_of_many
-    from kirigami_studio.pipeline.threads import one_blas_thread
+    from kirigami_studio.pipeline.redesign import matched
 
     sheet, found = design.deployment, []
     outlines = [sheet.outline(phi) for phi in angles]
-    with one_blas_thread():
-        matches = [None] * len(angles) if target is None else siou_of_many(outlines, target)
+    matches = [None] * len(angles) if target is None else matched(outlines, target)
     for phi, outline, match in zip(angles, outlines, matches, strict=True):
         gap = outline_gap(sheet, phi)
         width, height = np.ptp(rotate(outline, design.pose.angle), axis=0).tolist()

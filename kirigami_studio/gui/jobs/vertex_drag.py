@@ -118,19 +118,17 @@ class Follower:
 
     def _step(self, place: tuple[float, float]) -> tuple[Followed, float]:
         """One step towards a place in the world, and how much nearer (unit cells) it has brought the vertex."""
-        from kirigami_studio.pipeline.threads import one_blas_thread
+        from kirigami_studio.pipeline.redesign import drag_step
         from kirigami_studio.polish.vertex_drag import ARRIVED, VertexDrag
 
         grasp = self._grasp
         before = grasp.design if self.newest is None else self.newest.design
-        with one_blas_thread():
-            if self._drag is None:
-                field = grasp.design.deployment.field
-                self._drag = VertexDrag(field, grasp.phi, grasp.vertex, grasp.held)
-            drag = self._drag
-            wanted = before.to_layout(place, grasp.phi)
-            gap = drag.gap(wanted)
-            drag.move(wanted, steps=1)
-            design = PosedDesign(drag.deployment, grasp.design.pose, grasp.design.phi_target)
-            left = drag.gap(design.to_layout(place, grasp.phi))  # the design keeps its middle, so that places shift
+        if self._drag is None:
+            self._drag = VertexDrag(grasp.design.deployment.field, grasp.phi, grasp.vertex, grasp.held)
+        drag = self._drag
+        wanted = before.to_layout(place, grasp.phi)
+        gap = drag.gap(wanted)
+        drag_step(drag, wanted)
+        design = PosedDesign(drag.deployment, grasp.design.pose, grasp.design.phi_target)
+        left = drag.gap(design.to_layout(place, grasp.phi))  # the design keeps its middle, so that places shift
         return Followed(design, left <= ARRIVED, stuck=False), gap - left
