@@ -158,7 +158,7 @@ def test_that_a_budget_brings_the_best_so_far_of_fits_under_way(pool: Pool, requ
 
 def test_that_an_error_in_a_worker_reaches_the_run(pool: Pool, request_for_heart: Request) -> None:
     pool.start()
-    with pytest.raises(AttributeError, match="starts"):
+    with pytest.raises(AttributeError, match="carry_out"):
         list(answers(pool, request_for_heart, ["not a task"], watch()))  # type: ignore[list-item]
     assert pool.usable
 
