@@ -1,38 +1,30 @@
-"""Start the studio: Qt, theme, window, first target."""
+"""Start the studio: Qt, window, preferences, first target; then, in the first pause, import the generator."""
 
 from __future__ import annotations
 
-import logging
 import os
 import sys
-import traceback
 from collections.abc import Callable
 from pathlib import Path
-from types import TracebackType
 
 import platformdirs
 from PySide6.QtCore import (
     QCoreApplication,
     QEvent,
-    QMessageLogContext,
     QObject,
     QSettings,
     Qt,
     QTimer,
-    QtMsgType,
-    qInstallMessageHandler,
 )
 from PySide6.QtGui import QFont, QFontDatabase, QGuiApplication
 from PySide6.QtWidgets import QApplication
 
-from kirigami_studio.foundation.errors import KirigamiError
-from kirigami_studio.foundation.log import topic
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.controller import Controller
 from kirigami_studio.gui.jobs import importing
 from kirigami_studio.gui.look import theme
 from kirigami_studio.gui.main_window import MainWindow
-from kirigami_studio.gui.messages import Message, Tone
+from kirigami_studio.gui.uncaught_errors import log_qt_messages, show_uncaught
 
 FIRST_TARGET = "heart"
 PREFERENCES = "preferences.toml"
@@ -50,6 +42,57 @@ NO_DISPLAY = tr(
 SWITCH_INTERVAL = 0.0005
 #: Where distributions keep fonts; the off-screen platform does not ask fontconfig.
 FONT_FOLDERS = ("/usr/share/fonts/truetype/dejavu", "/usr/share/fonts/TTF", "/usr/share/fonts/dejavu")
+#: Rest (ms) after which an import disturbs nobody: longer than the pause between two gestures.
+REST_MS = 2500
+TOUCHES = frozenset(
+    {
+        QEvent.Type.MouseMove,
+        QEvent.Type.MouseButtonPress,
+        QEvent.Type.MouseButtonRelease,
+        QEvent.Type.KeyPress,
+        QEvent.Type.Wheel,
+        QEvent.Type.DragMove,
+        QEvent.Type.Resize,
+    }
+)
+
+
+class WarmUp(QObject):
+    """Calls ``act`` once, after the application has had no input for a while and ``busy`` says no."""
+
+    def __init__(
+        self, act: Callable[[], None], busy: Callable[[], bool], parent: QObject, rest_ms: int = REST_MS
+    ) -> None:
+        super().__init__(parent)
+        self._act = act
+        self._busy = busy
+        self.timer = QTimer(self)
+        self.timer.setInterval(rest_ms)
+        self.timer.setSingleShot(True)
+        self.timer.timeout.connect(self._rested)
+        application = QCoreApplication.instance()
+        if application is not None:
+            application.installEventFilter(self)
+        self.timer.start()
+
+    @property
+    def waiting(self) -> bool:
+        """Whether it has not happened yet."""
+        return self.timer.isActive()
+
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802 - Qt's name
+        if event.type() in TOUCHES:
+            self.timer.start()
+        return False
+
+    def _rested(self) -> None:
+        if self._busy():
+            self.timer.start()
+            return
+        application = QCoreApplication.instance()
+        if application is not None:
+            application.removeEventFilter(self)
+        self._act()
 
 
 def create_application(argv: list[str]) -> QApplication:
@@ -147,103 +190,3 @@ def run(argv: list[str]) -> int:
 
 if __name__ == "__main__":
     sys.exit(run(sys.argv))
-
-
-log = topic("gui")
-qt_log = topic("gui.qt")
-
-LEVELS = {
-    QtMsgType.QtDebugMsg: logging.DEBUG,
-    QtMsgType.QtInfoMsg: logging.INFO,
-    QtMsgType.QtWarningMsg: logging.WARNING,
-    QtMsgType.QtCriticalMsg: logging.ERROR,
-    QtMsgType.QtFatalMsg: logging.CRITICAL,
-}
-
-
-def log_qt_message(kind: QtMsgType, context: QMessageLogContext, text: str) -> None:
-    """Write one message of Qt to the log."""
-    qt_log.log(LEVELS.get(kind, logging.WARNING), "%s", text)
-
-
-def log_qt_messages() -> None:
-    """From now on Qt's messages go to the log."""
-    qInstallMessageHandler(log_qt_message)
-
-
-def show_uncaught(tell: Callable[[Message], None]) -> None:
-    """From now on an uncaught error becomes a message in the window."""
-
-    def hook(kind: type[BaseException], error: BaseException, trace: TracebackType | None) -> None:
-        if issubclass(kind, KeyboardInterrupt):
-            sys.__excepthook__(kind, error, trace)
-            return
-        log.error("uncaught error", exc_info=(kind, error, trace))
-        tell(message_for(error))
-
-    sys.excepthook = hook
-
-
-def message_for(error: BaseException) -> Message:
-    """The sentence for an error that nobody expected, or the error's own when it has one for the user."""
-    details = "".join(traceback.format_exception(error))
-    if isinstance(error, KirigamiError):
-        return Message(str(error), Tone.ERROR, details)
-    sentence = tr(
-        "Unexpected error: {value}. Your work is intact; save it to be safe.",
-        value=error or type(error).__name__,
-    )
-    return Message(sentence, Tone.ERROR, details)
-
-
-#: Rest (ms) after which an import disturbs nobody: longer than the pause between two gestures.
-REST_MS = 2500
-TOUCHES = frozenset(
-    {
-        QEvent.Type.MouseMove,
-        QEvent.Type.MouseButtonPress,
-        QEvent.Type.MouseButtonRelease,
-        QEvent.Type.KeyPress,
-        QEvent.Type.Wheel,
-        QEvent.Type.DragMove,
-        QEvent.Type.Resize,
-    }
-)
-
-
-class WarmUp(QObject):
-    """Calls ``act`` once, after the application has had no input for a while and ``busy`` says no."""
-
-    def __init__(
-        self, act: Callable[[], None], busy: Callable[[], bool], parent: QObject, rest_ms: int = REST_MS
-    ) -> None:
-        super().__init__(parent)
-        self._act = act
-        self._busy = busy
-        self.timer = QTimer(self)
-        self.timer.setInterval(rest_ms)
-        self.timer.setSingleShot(True)
-        self.timer.timeout.connect(self._rested)
-        application = QCoreApplication.instance()
-        if application is not None:
-            application.installEventFilter(self)
-        self.timer.start()
-
-    @property
-    def waiting(self) -> bool:
-        """Whether it has not happened yet."""
-        return self.timer.isActive()
-
-    def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802 - Qt's name
-        if event.type() in TOUCHES:
-            self.timer.start()
-        return False
-
-    def _rested(self) -> None:
-        if self._busy():
-            self.timer.start()
-            return
-        application = QCoreApplication.instance()
-        if application is not None:
-            application.removeEventFilter(self)
-        self._act()

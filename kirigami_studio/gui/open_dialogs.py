@@ -1,4 +1,4 @@
-"""The dialogs of a window: opened on demand beside it, kept, and closed with it.  None of them blocks the window."""
+"""The dialogs of a window: opened on demand, kept, and closed with it.  None of them blocks the window."""
 
 from __future__ import annotations
 

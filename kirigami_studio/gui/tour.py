@@ -1,4 +1,4 @@
-"""A guided tour: six bubbles at the real controls, each of which goes on by itself when the user does what it says."""
+"""A guided tour: six bubbles at the real controls, each of which moves on once the user has done its step."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class Step:
         The control it points at, as it is now.
     title, text : str
     done : tuple of signals
-        Any of them says that the user has done it.
+        Any of them means that the user has done it.
     """
 
     anchor: Anchor
@@ -87,7 +87,7 @@ def _shown(wanted: QWidget, otherwise: QWidget) -> QWidget:
 
 
 class Tour(QObject):
-    """Leads through the steps; never in the way of the work."""
+    """Leads through the steps; the window can be used as always meanwhile."""
 
     def __init__(self, window: MainWindow, controller: Controller) -> None:
         super().__init__(window)
@@ -155,7 +155,7 @@ class Tour(QObject):
         self._soon.start()
 
     def _place(self) -> None:
-        """Lie beside the control; the drawing board needs the whole window, so wait out of sight meanwhile."""
+        """Stand next to the control; hide while the drawing board takes the whole window."""
         if not self.running:
             return
         anchor = self.steps[self.at].anchor()
@@ -169,5 +169,5 @@ class Tour(QObject):
         self.callout.point_at(place)
 
     def _share_escape(self) -> None:
-        """Esc stops a run first, and ends the tour when there is nothing to stop."""
+        """Esc cancels what is being computed first, and ends the tour when there is nothing to cancel."""
         self._escape.setEnabled(self.running and not self._cancel.isEnabled())

@@ -54,7 +54,7 @@ def test_that_an_export_opens_a_report_that_blocks_nothing(
     until(lambda: designed.dialogs.report is not None)
     report = designed.dialogs.report
     assert report is not None and report.isVisible() and not report.isModal()
-    assert report.shown.ok and report.verdict.text().startswith("Verified.")
+    assert report.shown.ok and report.verdict.text().startswith("Verified")
     assert report.facts["Pieces"].text() == "1" and report.facts["Size with overcuts"].text().startswith("100.")
     qtbot.mouseClick(designed.stage.cuts_switch, LEFT)
     assert designed.stage.showing_cuts
@@ -76,7 +76,9 @@ def test_that_a_picture_has_no_report(designed: MainWindow, until: Until, tmp_pa
     assert designed.messages.messages[-1].tone is Tone.DONE and designed.dialogs.report is None
 
 
-@pytest.mark.parametrize(("report", "said"), [(GOOD, "Verified. 1 thing"), (BAD, "Do not cut this file: 1 finding is")])
+@pytest.mark.parametrize(
+    ("report", "said"), [(GOOD, "Verified, with 1 note"), (BAD, "Do not cut this file: 1 check failed.")]
+)
 def test_that_the_verdict_is_said_in_words(report: Verification, said: str) -> None:
     assert verdict(report).startswith(said)
 
@@ -184,7 +186,7 @@ def test_that_everything_goes_into_one_folder_with_a_report_for_each_cut_file(
     assert all(one.ok for one in report.verifications)
     assert report.file.itemText(1) == "Verified  \N{MIDDLE DOT}  heart_r12.dxf"
     report.file.setCurrentIndex(1)
-    assert report.path.text().endswith("heart_r12.dxf") and report.verdict.text().startswith("Verified.")
+    assert report.path.text().endswith("heart_r12.dxf") and report.verdict.text().startswith("Verified")
     assert {path.suffix for path in (tmp_path / "all").iterdir()} >= {".dxf", ".svg", ".pdf", ".png", ".lbrn2"}
 
 

@@ -94,7 +94,7 @@ def test_that_what_the_library_refuses_is_said_in_the_editor(editor: MaterialEdi
     editor.form.texts["name"].setText("x")
     editor.author.setText("   ")
     editor._try(editor.calibrate)
-    assert "author" in editor.says.text()
+    assert "author" in editor.status.text()
 
 
 def test_that_the_coupon_is_written_and_reported(
@@ -133,7 +133,7 @@ def test_that_a_measured_coupon_sets_the_kerf(editor: MaterialEditor, qtbot: QtB
     qtbot.keyClicks(editor.gaps.gaps, "0.29 0,31")
     qtbot.mouseClick(editor.gaps.button, LEFT)
     expected = kerf_from_gaps([0.29, 0.31])
-    assert f"{expected.kerf_mm:.3f}" in editor.says.text() and f"{expected.doubt_mm:.3f}" in editor.says.text()
+    assert f"{expected.kerf_mm:.3f}" in editor.status.text() and f"{expected.doubt_mm:.3f}" in editor.status.text()
     press(editor, qtbot, "save")
     assert library().materials[editor.chosen.key].kerf_mm == pytest.approx(expected.kerf_mm, abs=5e-4)
 
@@ -144,4 +144,4 @@ def test_that_a_gap_that_cannot_be_is_a_sentence(editor: MaterialEditor, qtbot: 
     before = editor.form.numbers["kerf_mm"].value()
     qtbot.keyClicks(editor.gaps.gaps, typed)
     qtbot.keyClick(editor.gaps.gaps, Qt.Key.Key_Return)
-    assert said in editor.says.text() and editor.form.numbers["kerf_mm"].value() == before
+    assert said in editor.status.text() and editor.form.numbers["kerf_mm"].value() == before

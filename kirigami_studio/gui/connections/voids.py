@@ -1,4 +1,4 @@
-"""Voids changed by hand: gestures on the layout, the controls below it, and what is told of the void pointed at."""
+"""Voids changed by hand: gestures on the layout, the controls below it, and facts about the void under the pointer."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class VoidConnections(QObject):
         self._window, self._controller = window, controller
         self._view, self._gestures = window.stage.view, window.stage.view.voids
         self._bar, self._hand = window.stage.voids, controller.hand
-        self._said, self._before = "", ""
+        self._facts, self._status_before = "", ""
         self.menu: QMenu | None = None
         self._connect()
         self._refresh()
@@ -86,9 +86,9 @@ class VoidConnections(QObject):
         design = self._view.design
         if void is None or design is None:
             self._gestures.lines = ()
-            if self._window.status_text.text() == self._said and self._said:
-                self._window.status_text.setText(self._before)
-            self._said = ""
+            if self._window.status_text.text() == self._facts and self._facts:
+                self._window.status_text.setText(self._status_before)
+            self._facts = ""
             return
         document = self._controller.document
         width, locked = document.fabrication.width_mm, void in document.locked
@@ -96,10 +96,10 @@ class VoidConnections(QObject):
         self._gestures.lines = facts.lines()
         if self._controller.running:  # the line tells how far the run is
             return
-        if self._window.status_text.text() != self._said or not self._said:
-            self._before = self._window.status_text.text()
-        self._said = facts.sentence()
-        self._window.status_text.setText(self._said)
+        if self._window.status_text.text() != self._facts or not self._facts:
+            self._status_before = self._window.status_text.text()
+        self._facts = facts.sentence()
+        self._window.status_text.setText(self._facts)
 
     # locks and fit -------------------------------------------------------------------------------------------------
 

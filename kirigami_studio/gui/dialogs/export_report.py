@@ -1,4 +1,4 @@
-"""What two readers found in a cut file that was just written, beside the window and never in its way."""
+"""The report on an exported cut file: what two independent readers found in it."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ ICON_EDGE = 30
 
 
 class ExportReport(QDialog):
-    """Says good or bad by symbol, word and colour, then every finding."""
+    """Shows the verdict by symbol, word and colour, then every finding."""
 
     folder_wanted = Signal(object)  #: Path of what was written
 
@@ -87,7 +87,7 @@ class ExportReport(QDialog):
             item = QListWidgetItem(f"{word}: {text}")
             item.setData(Qt.ItemDataRole.UserRole, icon)
             self.findings.addItem(item)
-        self._dress()
+        self._draw_icons()
 
     def _lay_out(self) -> None:
         head = QHBoxLayout()
@@ -132,9 +132,9 @@ class ExportReport(QDialog):
         """Draw in other colours."""
         if palette is not self._palette:
             self._palette = palette
-            self._dress()
+            self._draw_icons()
 
-    def _dress(self) -> None:
+    def _draw_icons(self) -> None:
         palette, good = self._palette, self.shown.ok
         colour = palette.good if good else palette.bad
         self.symbol.setPixmap(icons.pixmap("check" if good else "fault", colour, ICON_EDGE, self.devicePixelRatioF()))
@@ -148,7 +148,9 @@ class ExportReport(QDialog):
 
 def label(verification: Verification) -> str:
     """One file in the list of files: its verdict comes first, in a word."""
-    return f"{'Verified' if verification.ok else 'Do not cut'}  ·  {verification.path.name}"
+    if verification.ok:
+        return tr("Verified  ·  {name}", name=verification.path.name)
+    return tr("Do not cut  ·  {name}", name=verification.path.name)
 
 
 def verdict(verification: Verification) -> str:
@@ -171,21 +173,21 @@ def format_facts(verification: Verification) -> dict[str, str]:
     width, height = verification.size_mm
     pieces = UNKNOWN if verification.pieces is None else str(verification.pieces)
     return {
-        "Size with overcuts": tr("{width:.2f} \N{MULTIPLICATION SIGN} {height:.2f} mm", width=width, height=height),
-        "Pieces": pieces,
-        "Cut length": readable_length(verification.cut_length_mm),
-        "Time": readable_range(verification.seconds_low, verification.seconds_high),
+        tr("Size with overcuts"): tr("{width:.2f} \N{MULTIPLICATION SIGN} {height:.2f} mm", width=width, height=height),
+        tr("Pieces"): pieces,
+        tr("Cut length"): readable_length(verification.cut_length_mm),
+        tr("Time"): readable_range(verification.seconds_low, verification.seconds_high),
     }
 
 
 def format_findings(verification: Verification) -> list[tuple[str, str, str]]:
     """Word, icon and sentence of each line, the bad ones first."""
-    lines = [_told(finding) for finding in verification.findings]
+    lines = [_finding_line(finding) for finding in verification.findings]
     lines += [(tr("Note"), "warning", text) for text in verification.warnings]
-    return sorted(lines, key=lambda line: ("Bad", "Note", "Good").index(line[0]))
+    return sorted(lines, key=lambda line: ("fault", "warning", "check").index(line[1]))
 
 
-def _told(finding: Finding) -> tuple[str, str, str]:
+def _finding_line(finding: Finding) -> tuple[str, str, str]:
     if not finding.ok:
         return tr("Bad"), "fault", finding.text
     return (tr("Note"), "warning", finding.text) if finding.warning else (tr("Good"), "check", finding.text)

@@ -1,4 +1,4 @@
-"""Help beside the work: the user guide, and the sheet of all keys and mouse gestures with a search."""
+"""Help: the user guide, and the sheet of all keys and mouse gestures with a search."""
 
 from __future__ import annotations
 

@@ -32,7 +32,7 @@ NEW = tr("Presets are read-only. Copy one to change it.")
 
 
 class MaterialEditor(QDialog):
-    """A list of all materials beside the form of the chosen one; blocks nothing."""
+    """A list of all materials beside the form of the chosen one."""
 
     stock_changed = Signal(str)  #: key of the material that was saved, or "" after one was deleted
     coupon_wanted = Signal(object)  #: Material
@@ -51,10 +51,10 @@ class MaterialEditor(QDialog):
         self.list.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
         self.list.setTextElideMode(Qt.TextElideMode.ElideRight)
         self.form = MaterialForm()
-        self.state, self.says = QLabel(), QLabel(NEW)
-        for label in (self.state, self.says):
+        self.state, self.status = QLabel(), QLabel(NEW)
+        for label in (self.state, self.status):
             label.setWordWrap(True)
-        self.says.setObjectName("muted")
+        self.status.setObjectName("muted")
         self.gaps = GapRow()
         self.author = QLineEdit()
         self.author.setAccessibleName(tr("Measured by"))
@@ -93,7 +93,7 @@ class MaterialEditor(QDialog):
         left.addWidget(self.gaps)
         right.addWidget(self.state)
         right.addWidget(scrolled, 1)
-        right.addWidget(self.says)
+        right.addWidget(self.status)
         saving.addWidget(self.buttons["save"])
         saving.addStretch(1)
         saving.addWidget(self.author, 2)
@@ -110,7 +110,7 @@ class MaterialEditor(QDialog):
         self.form.changed.connect(self._show_buttons)
         self.author.textChanged.connect(self._show_buttons)
         self.gaps.measured.connect(self._take_kerf)
-        self.gaps.refused.connect(self.says.setText)
+        self.gaps.refused.connect(self.status.setText)
         for name, act in (
             ("copy", self.copy),
             ("delete", self.delete),
@@ -157,16 +157,16 @@ class MaterialEditor(QDialog):
         key, name = self.chosen.key, self.chosen.name
         material_copies.delete_copy(key)
         self._list(key)
-        self.says.setText(tr("Deleted {name!r}.", name=name))
+        self.status.setText(tr("Deleted {name!r}.", name=name))
         self.stock_changed.emit("")
 
     def _take_kerf(self, kerf_mm: float, sentence: str) -> None:
         """A coupon was measured; the form holds its kerf until it is saved."""
         self.form.numbers["kerf_mm"].setValue(kerf_mm)
-        self.says.setText(sentence)
+        self.status.setText(sentence)
 
     def _edited(self) -> Material:
-        """The chosen material with what the form says."""
+        """The chosen material with the values of the form."""
         material, changes = self.chosen, self.form.changes()
         words = {field for field, *_ in TEXTS}
         if changes.keys() <= words:
@@ -180,7 +180,7 @@ class MaterialEditor(QDialog):
 
     def _saved(self, key: str, sentence: str) -> None:
         self._list(key)
-        self.says.setText(sentence)
+        self.status.setText(sentence)
         self.stock_changed.emit(key)
 
     def _list(self, key: str) -> None:
@@ -195,7 +195,7 @@ class MaterialEditor(QDialog):
             item.setToolTip(f"{material.name} ({one})\n{material.machine}\n{_state(material)}")
             self.list.addItem(item)
         self.choose(key)
-        self.says.setText("\n".join(self._library.faults) or NEW)
+        self.status.setText("\n".join(self._library.faults) or NEW)
 
     def _show(self) -> None:
         if self.list.currentItem() is None:
@@ -218,7 +218,7 @@ class MaterialEditor(QDialog):
         try:
             act()
         except KirigamiError as error:
-            self.says.setText(str(error))
+            self.status.setText(str(error))
 
 
 def _state(material: Material) -> str:
@@ -226,7 +226,11 @@ def _state(material: Material) -> str:
     if not material.calibrated:
         return tr("Not calibrated: starting values only. Cut a coupon and measure it.")
     by, on = material.measured_by, material.measured_on
-    return tr("Calibrated") + (tr(" on {on}", on=on) if on else "") + (tr(" by {by}", by=by) if by else "") + "."
+    if on and by:
+        return tr("Calibrated on {on} by {by}.", on=on, by=by)
+    if on:
+        return tr("Calibrated on {on}.", on=on)
+    return tr("Calibrated by {by}.", by=by) if by else tr("Calibrated.")
 
 
 def _button(name: str, text: str, tip: str) -> QPushButton:

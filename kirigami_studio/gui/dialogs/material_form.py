@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 
 from PySide6.QtCore import QSignalBlocker, Signal
 from PySide6.QtWidgets import QFormLayout, QHBoxLayout, QLabel, QLineEdit, QPushButton, QSpinBox, QWidget
@@ -130,15 +130,16 @@ class MaterialForm(QWidget):
     def show_material(self, material: Material, editable: bool) -> None:
         """Show another material."""
         self._shown = material
+        values = asdict(material)
         for field, line in self.texts.items():
-            line.setText(getattr(material, field))
+            line.setText(values[field])
             line.setCursorPosition(0)
             line.setEnabled(editable)
             line.setToolTip(line.text())
         for number in NUMBERS:
             box = self.numbers[number.field]
             with QSignalBlocker(box):
-                box.setValue(number.scale * getattr(material, number.field))
+                box.setValue(number.scale * values[number.field])
             box.setEnabled(editable)
         with QSignalBlocker(self.passes):
             self.passes.setValue(material.passes)
@@ -148,10 +149,11 @@ class MaterialForm(QWidget):
         """What differs from the material that is shown, by field."""
         if self._shown is None:
             return {}
+        values = asdict(self._shown)
         entries: dict[str, object] = {field: line.text().strip() for field, line in self.texts.items()}
-        found = {field: entry for field, entry in entries.items() if entry != getattr(self._shown, field)}
+        found = {field: entry for field, entry in entries.items() if entry != values[field]}
         for number in NUMBERS:
-            kept, shown = number.scale * getattr(self._shown, number.field), self.numbers[number.field].value()
+            kept, shown = number.scale * values[number.field], self.numbers[number.field].value()
             if abs(shown - kept) > 0.6 * 10.0**-number.decimals:
                 found[number.field] = round(shown / number.scale, 9)
         if self.passes.value() != self._shown.passes:
@@ -240,7 +242,10 @@ class GapRow(QWidget):
         except FabricationError as error:
             self.refused.emit(str(error))
         else:
-            doubt = tr(" ± {doubt:.3f}", doubt=found.doubt_mm) if found.doubt_mm else ""
-            self.measured.emit(
-                found.kerf_mm, tr("Kerf {kerf:.3f}{doubt} mm. Save to keep it.", kerf=found.kerf_mm, doubt=doubt)
-            )
+            if found.doubt_mm:
+                sentence = tr(
+                    "Kerf {kerf:.3f} ± {doubt:.3f} mm. Save to keep it.", kerf=found.kerf_mm, doubt=found.doubt_mm
+                )
+            else:
+                sentence = tr("Kerf {kerf:.3f} mm. Save to keep it.", kerf=found.kerf_mm)
+            self.measured.emit(found.kerf_mm, sentence)

@@ -1,0 +1,68 @@
+"""Commands are records: what they say about themselves holds for the actions in the menus."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from kirigami_studio.gui.commands.actions import CommandActions
+from kirigami_studio.gui.commands.command import Command, WindowState, Wording
+from kirigami_studio.gui.look.theme import LIGHT
+from kirigami_studio.gui.main_window import TOOLBAR, MainWindow
+from kirigami_studio.project.document import Mark
+
+
+def test_that_ids_are_unique_and_the_toolbar_names_some(window: MainWindow) -> None:
+    ids = [command.id for command in window.commands.records]
+    assert len(ids) == len(set(ids))
+    assert {name for names in TOOLBAR for name in names if name} <= set(ids)
+
+
+def test_that_every_action_is_as_its_record_says(designed: MainWindow) -> None:
+    state = designed.state()
+    for command in designed.commands.records:
+        action, wording = designed.commands[command.id], command.wording(state)
+        assert action.isEnabled() == command.enabled_when(state), command.id
+        assert action.isCheckable() == (command.checked_when is not None), command.id
+        assert action.text() == wording.text and action.statusTip() == wording.tip
+        assert action.icon().isNull() == (not wording.icon), command.id
+
+
+def test_that_commands_follow_the_state_of_the_window(window: MainWindow) -> None:
+    empty = window.state()
+    records = {command.id: command for command in window.commands.records}
+    assert not records["generate"].enabled_when(empty) and not records["pin"].enabled_when(empty)
+    ready = replace(empty, has_target=True, has_designs=True, shows_design=True, chosen=Mark.PINNED)
+    assert all(records[name].enabled_when(ready) for name in ("generate", "again", "pin", "lock", "export"))
+    assert records["pin"].wording(ready).text != records["pin"].wording(empty).text
+    running = replace(ready, running=True)
+    assert not any(records[name].enabled_when(running) for name in ("generate", "again", "pin", "lock"))
+    assert records["cancel"].enabled_when(running) and not records["cancel"].enabled_when(ready)
+    assert records["cancel"].enabled_when(replace(ready, busy=True))
+
+
+def test_that_a_switch_that_does_nothing_stays_as_it_was(window: MainWindow) -> None:
+    window.commands["compare"].trigger()  # there is nothing to compare
+    assert not window.stage.comparing and not window.commands["compare"].isChecked()
+
+
+def test_that_a_changed_state_changes_enabling_checking_and_words_at_once(window: MainWindow) -> None:
+    def worded(now: WindowState) -> Wording:
+        return Wording("Running" if now.running else "Idle", "What goes on")
+
+    command = Command(
+        "probe",
+        "Probes",
+        "Idle",
+        "What goes on",
+        lambda: None,
+        enabled_when=lambda now: not now.running,
+        checked_when=lambda now: now.running,
+        worded=worded,
+    )
+    state = [window.state()]
+    made = CommandActions(window, (command,), lambda: state[0], LIGHT)
+    action = made["probe"]
+    assert action.isEnabled() and not action.isChecked() and action.text() == "Idle"
+    state[0] = replace(state[0], running=True)
+    made.refresh()
+    assert not action.isEnabled() and action.isChecked() and action.text() == "Running"
