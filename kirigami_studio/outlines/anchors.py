@@ -1,4 +1,4 @@
-"""Points of an outline that can be dragged, and the lines between them that follow.
+"""Anchors: points of an outline that can be dragged, and the lines between them that follow.
 
 A line between two anchors is straight, a cubic by the handles of its ends, or keeps the vertices that were traced or
 read.  Such a kept line bends when one of its ends moves, so that the shape keeps its detail; a dragged handle, another
@@ -20,40 +20,6 @@ from kirigami_studio.foundation.errors import TargetError
 from kirigami_studio.outlines import bezier
 from kirigami_studio.outlines.nodes import FEWEST_NODES, Kind, Nodes
 from kirigami_studio.outlines.placed import Placed
-
-
-def turns(ring: FloatArray) -> FloatArray:
-    """(L,) float, radians: by how much a closed line turns at each vertex, whichever way."""
-    before, after = ring - np.roll(ring, 1, axis=0), np.roll(ring, -1, axis=0) - ring
-    cross = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
-    angles: FloatArray = np.abs(np.arctan2(cross, np.sum(before * after, axis=1)))
-    return angles
-
-
-def weights(line: FloatArray, smooth: bool) -> FloatArray:
-    """(P,) float, 0..1: how far the inner vertices of a line follow its last one, by their way from its first."""
-    along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(line, axis=0), axis=1))])
-    share = along[1:-1] / max(float(along[-1]), 1e-300)
-    return share * share * (3.0 - 2.0 * share) if smooth else share
-
-
-def nearest(line: FloatArray, place: tuple[float, float]) -> tuple[int, FloatArray]:
-    """Segment and spot of a polyline nearest to a place; ends of the line are kept out of reach."""
-    start, along = line[:-1], np.diff(line, axis=0)
-    squared = np.maximum(np.sum(along**2, axis=1), 1e-300)
-    share = np.clip(np.sum((np.array(place) - start) * along, axis=1) / squared, 0.0, 1.0)
-    share[0], share[-1] = max(share[0], 0.05), min(share[-1], 0.95)
-    spots = start + share[:, None] * along
-    distance = np.linalg.norm(spots - place, axis=1)
-    best = int(np.argmin(distance))
-    return best, spots[best]
-
-
-def apart(part: FloatArray, spot: FloatArray) -> FloatArray:
-    """A part of a line without the vertices that coincide with the new anchor."""
-    kept: FloatArray = part[np.linalg.norm(part - spot, axis=1) > 0]
-    return kept
-
 
 #: Anchors of a target are the corners of its simplification by this share of the root of its area.
 ANCHOR_ERROR = 0.03
@@ -107,7 +73,7 @@ class Anchors:
             chosen = _corners(ring, error * target.scale)
         spans = _spans(ring, chosen)
         curved = np.array([len(span) > 0 for span in spans])
-        soft = (turns(ring)[chosen] < SMOOTH_TURN) & (curved | np.roll(curved, 1))
+        soft = (_turns(ring)[chosen] < SMOOTH_TURN) & (curved | np.roll(curved, 1))
         kinds = tuple(Kind.SMOOTH if smooth else Kind.CORNER for smooth in soft.tolist())
         bare = cls(ring[chosen], kinds, np.zeros((len(chosen), 2, 2)), spans, curved)
         return bare._with_found_handles(range(len(chosen)))
@@ -172,8 +138,8 @@ class Anchors:
             kept[index] &= not _torn(self.line(index), one - other)
             if len(span) and (np.any(one) or np.any(other)):
                 line, soft = self.line(index), self.smooth
-                towards = weights(line[::-1], bool(soft[index]))[::-1, None]
-                away = weights(line, bool(soft[(index + 1) % count]))[:, None]
+                towards = _weights(line[::-1], bool(soft[index]))[::-1, None]
+                away = _weights(line, bool(soft[(index + 1) % count]))[:, None]
                 moved = span + one if np.array_equal(one, other) else span + towards * one + away * other
                 spans.append(moved)
             else:
@@ -243,10 +209,10 @@ class Anchors:
         """Set another anchor on the line, as near to a place as possible, and return its index."""
         best = self._nearest_span(place)
         line = self.line(best)
-        piece, spot = nearest(line, place)
+        piece, spot = _nearest(line, place)
         bent, after = len(self.spans[best]) > 0, (best + 1) % len(self.places)
         handles = np.insert(self.handles, best + 1, 0.0, axis=0)
-        spans = [apart(line[1 : piece + 1], spot), apart(line[piece + 1 : -1], spot)]
+        spans = [_apart(line[1 : piece + 1], spot), _apart(line[piece + 1 : -1], spot)]
         if bent and not self.kept[best]:
             ends = self.places[best], self.handles[best, OUT], self.handles[after, INTO], self.places[after]
             share = float(np.linalg.norm(spot - line[piece]) / np.linalg.norm(line[piece + 1] - line[piece]))
@@ -270,7 +236,7 @@ class Anchors:
     def _nearest_span(self, place: tuple[float, float]) -> int:
         """The span of the whole line's nearest piece."""
         ring = self.ring
-        piece, _ = nearest(np.concatenate([ring, ring[:1]]), place)
+        piece, _ = _nearest(np.concatenate([ring, ring[:1]]), place)
         starts = np.cumsum([0, *(len(span) + 1 for span in self.spans)])
         return int(np.searchsorted(starts, piece, side="right")) - 1
 
@@ -296,7 +262,7 @@ class Anchors:
             Fewer than three anchors would be left, the fewest that enclose an area.
         """
         if len(self.places) - len(set(chosen)) < FEWEST_NODES:
-            raise TargetError(f"A target needs at least {FEWEST_NODES} points; move them instead of deleting one.")
+            raise TargetError("nodes.too_few_left", fewest=FEWEST_NODES)
         fewer = self
         for index in sorted(set(chosen), reverse=True):
             fewer = fewer._without_one(index)
@@ -410,3 +376,36 @@ def _corners(ring: FloatArray, tolerance: float) -> list[int]:
 def _torn(line: FloatArray, by: FloatArray) -> bool:
     """Whether a line is pulled so far at one end that following would leave nothing of how it ran."""
     return float(np.linalg.norm(by)) > LARGEST_PULL * float(np.linalg.norm(line[-1] - line[0]))
+
+
+def _turns(ring: FloatArray) -> FloatArray:
+    """(L,) float, radians: by how much a closed line turns at each vertex, whichever way."""
+    before, after = ring - np.roll(ring, 1, axis=0), np.roll(ring, -1, axis=0) - ring
+    cross = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
+    angles: FloatArray = np.abs(np.arctan2(cross, np.sum(before * after, axis=1)))
+    return angles
+
+
+def _weights(line: FloatArray, smooth: bool) -> FloatArray:
+    """(P,) float, 0..1: how far the inner vertices of a line follow its last one, by their way from its first."""
+    along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(line, axis=0), axis=1))])
+    share = along[1:-1] / max(float(along[-1]), 1e-300)
+    return share * share * (3.0 - 2.0 * share) if smooth else share
+
+
+def _nearest(line: FloatArray, place: tuple[float, float]) -> tuple[int, FloatArray]:
+    """Segment and spot of a polyline nearest to a place; ends of the line are kept out of reach."""
+    start, along = line[:-1], np.diff(line, axis=0)
+    squared = np.maximum(np.sum(along**2, axis=1), 1e-300)
+    share = np.clip(np.sum((np.array(place) - start) * along, axis=1) / squared, 0.0, 1.0)
+    share[0], share[-1] = max(share[0], 0.05), min(share[-1], 0.95)
+    spots = start + share[:, None] * along
+    distance = np.linalg.norm(spots - place, axis=1)
+    best = int(np.argmin(distance))
+    return best, spots[best]
+
+
+def _apart(part: FloatArray, spot: FloatArray) -> FloatArray:
+    """A part of a line without the vertices that coincide with the new anchor."""
+    kept: FloatArray = part[np.linalg.norm(part - spot, axis=1) > 0]
+    return kept

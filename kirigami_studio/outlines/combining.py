@@ -50,7 +50,7 @@ def combined(target: Placed | None, ring: npt.ArrayLike, how: Combine, name: str
     ring : (L, 2) float, mm
     how : Combine
     name : str
-        Of the new target where the ring replaces the old one; follows "The" in sentences.
+        Of the new target where the ring replaces the old one.
     notes : iterable of str
         What was changed when the ring was made.
 
@@ -64,23 +64,22 @@ def combined(target: Placed | None, ring: npt.ArrayLike, how: Combine, name: str
         return drawn
     old, new = target.polygon, drawn.polygon
     if old.intersection(new).area <= WORTH_SAYING * min(old.area, new.area):
-        verb = "added to" if how is Combine.ADD else "taken from"
-        raise TargetError(f"The {name} lies beside the target and cannot be {verb} it; draw it so that both overlap.")
+        raise TargetError("combine.beside_adding" if how is Combine.ADD else "combine.beside_subtracting")
     join = shapely.union if how is Combine.ADD else shapely.difference
     region = join(old, new, grid_size=SNAP * target.scale)
     if how is Combine.SUBTRACT:
-        _refuse_holes(old, new, name)
+        _refuse_holes(old, new)
         if region.area < LEAST_LEFT * old.area:
-            raise TargetError(f"The {name} would take away the whole target; draw it smaller, or clear the target.")
+            raise TargetError("combine.nothing_left")
     kept, left_out = largest_piece(region)
     if Polygon(kept).symmetric_difference(old).area <= WORTH_SAYING * old.area:
-        raise TargetError(f"The {name} changes nothing: it lies inside the target; draw it across the edge.")
+        raise TargetError("combine.no_change")
     return target.reshaped(tidy(as_contour(kept)), (*notes, *left_out))
 
 
-def _refuse_holes(old: Polygon, new: Polygon, name: str) -> None:
+def _refuse_holes(old: Polygon, new: Polygon) -> None:
     if old.contains_properly(new):
-        raise TargetError(f"The {name} would cut a hole, which a sheet cannot show; draw it across the target's edge.")
+        raise TargetError("combine.hole")
 
 
 def symmetric(target: Placed, half: Half) -> Placed:
@@ -94,7 +93,7 @@ def symmetric(target: Placed, half: Half) -> Placed:
     kept = _side_of(target, half)
     pieces = enclosed(kept)
     if not pieces:
-        raise TargetError(f"The {half.value} half of the target is empty; choose the other one.")
+        raise TargetError("combine.half_empty")
     turned = shapely.transform(kept, lambda points: _reflected(points, target, half))
     ring, notes = largest_piece(shapely.union_all([kept, turned], grid_size=SNAP * target.scale))
     return target.reshaped(_without_middle(tidy(as_contour(ring))), notes)

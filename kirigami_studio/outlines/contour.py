@@ -1,4 +1,4 @@
-"""Raw vertex lists: are they numbers at all, and the plain formulas on them."""
+"""Raw lists of vertices: validated, tidied, and the plain formulas on them."""
 
 from __future__ import annotations
 
@@ -34,26 +34,20 @@ def as_contour(points: npt.ArrayLike) -> FloatArray:
     try:
         contour = np.array(points, dtype=np.float64)
     except (TypeError, ValueError, OverflowError):
-        raise TargetError("A contour must be a list of [x, y] pairs of numbers.") from None
+        raise TargetError("contour.not_pairs") from None
     if contour.size == 0:
-        raise TargetError("A contour needs at least 3 vertices, got 0.")
+        raise TargetError("contour.too_few_vertices", vertices=0)
     if contour.ndim != 2 or contour.shape[1] != 2:
-        raise TargetError(
-            f"A contour must be a list of [x, y] pairs of numbers, got an array of shape {contour.shape}."
-        )
+        raise TargetError("contour.wrong_shape", shape=contour.shape)
     if len(contour) < 3:
-        raise TargetError(f"A contour needs at least 3 vertices, got {len(contour)}.")
+        raise TargetError("contour.too_few_vertices", vertices=len(contour))
     if len(contour) > MOST_VERTICES:
-        raise TargetError(
-            f"The contour has {len(contour)} vertices, more than {MOST_VERTICES}; simplify it and try again."
-        )
+        raise TargetError("contour.too_many_vertices", vertices=len(contour), limit=MOST_VERTICES)
     finite = np.isfinite(contour).all(axis=1)
     if not finite.all():
         where = int(np.argmin(finite))
-        x, y = contour[where]
-        raise TargetError(
-            f"Vertex {where + 1} of the contour is ({x:g}, {y:g}); every coordinate must be a finite number."
-        )
+        x, y = contour[where].tolist()
+        raise TargetError("contour.not_finite", number=where + 1, x=x, y=y)
     return contour
 
 
@@ -69,16 +63,13 @@ def tidy(contour: FloatArray) -> FloatArray:
         span = float(np.max(np.ptp(contour, axis=0)))
     largest = float(np.max(np.abs(contour)))
     if largest > 1e100 or (0.0 < span < 1e-100):
-        raise TargetError(
-            f"The contour's coordinates reach {largest:.3g} over a width of {span:.3g}; "
-            "scale the drawing to an ordinary size."
-        )
+        raise TargetError("contour.extreme_size", largest=largest, span=span)
     if span <= largest * 1e-12:
-        raise TargetError("All vertices of the contour lie on one point; draw a closed shape with an area.")
+        raise TargetError("contour.one_point")
     step = np.max(np.abs(contour - np.roll(contour, 1, axis=0)), axis=1)
     kept: FloatArray = contour[step > SAME_VERTEX * span]
     if len(kept) < 3:
-        raise TargetError(f"The contour has only {len(kept)} different vertices; a closed shape needs at least 3.")
+        raise TargetError("contour.too_few_different", vertices=len(kept))
     return kept
 
 

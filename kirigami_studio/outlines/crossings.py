@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from typing import TypedDict
+
 import numpy as np
 import shapely
 from shapely.geometry import LinearRing, LineString, Polygon
 
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import TargetError
+from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.outlines.contour import SMALLEST_AREA, tidy
 
 #: The largest piece of a self-crossing contour must hold this share of the area to be what was meant.
@@ -41,50 +44,69 @@ def untangled(ring: FloatArray, origin: FloatArray, span: float) -> tuple[FloatA
     if not polygon.is_valid:
         places = crossings(ring) * span + origin
         if len(places) > MOST_CROSSINGS:
-            raise TargetError(
-                f"The contour crosses itself at more than {MOST_CROSSINGS} places; draw one line around the shape."
-            )
+            raise TargetError("contour.too_many_crossings", limit=MOST_CROSSINGS)
         polygon, notes = _main_face(ring, places)
     if polygon.area < SMALLEST_AREA:
-        raise TargetError(
-            f"The contour encloses no area to speak of ({polygon.area * span**2:.3g} at a length of {span:.3g}); "
-            "draw a closed shape, not a line."
-        )
+        raise TargetError("contour.no_area", area=polygon.area * span**2, length=span)
     return np.asarray(polygon.exterior.coords[:-1], dtype=np.float64), notes
 
 
 def _main_face(ring: FloatArray, places: FloatArray) -> tuple[Polygon, tuple[str, ...]]:
-    """The piece of a self-crossing ring that is meant, with a sentence."""
+    """The piece of a self-crossing ring that is meant, and notes on the repair."""
     linework = shapely.unary_union(LinearRing(ring))
     merged = shapely.unary_union(shapely.get_parts(shapely.polygonize([linework])))
     pieces = [Polygon(part.exterior) for part in shapely.get_parts(merged) if isinstance(part, Polygon)]
     pieces.sort(key=lambda piece: piece.area, reverse=True)
     total = sum(piece.area for piece in pieces)
     if not pieces or total < SMALLEST_AREA:
-        raise TargetError("The contour runs back over itself and encloses no area; draw a closed shape, not a line.")
+        raise TargetError("contour.runs_back")
     share = pieces[0].area / total
     if share <= CLEARLY_MEANT:
-        raise TargetError(
-            f"The contour crosses itself{_at(places)} and splits into {len(pieces)} pieces, the largest with only "
-            f"{100 * share:.0f} % of the area; move the vertices so that the line no longer crosses, or keep one piece."
-        )
+        split = {"pieces": len(pieces), "percent": 100 * share}
+        if len(places) == 0:
+            raise TargetError("contour.splits", **split)
+        raise TargetError("contour.splits_at", **split, **_described(places))
     # Noding leaves slivers of rounding size; a vertex less changes nothing that can be seen.
     cleaned = Polygon(tidy(np.asarray(pieces[0].exterior.coords[:-1], dtype=np.float64)))
     if not cleaned.is_valid:
         cleaned = shapely.set_precision(cleaned, 1e-9)
         if not isinstance(cleaned, Polygon):
-            raise TargetError(f"The contour touches itself{_at(places)}; move the lines apart there.")
-    dropped = f"; {100 * (1 - share):.2g} % of the area was left out" if len(pieces) > 1 else ""
-    return Polygon(cleaned.exterior), (f"The contour crossed or touched itself{_at(places)}: repaired{dropped}.",)
+            if len(places) == 0:
+                raise TargetError("contour.touches")
+            raise TargetError("contour.touches_at", **_described(places))
+    return Polygon(cleaned.exterior), _repaired(places, 1 - share if len(pieces) > 1 else 0.0)
 
 
-def _at(places: FloatArray) -> str:
+def _repaired(places: FloatArray, dropped: float) -> tuple[str, ...]:
+    """What was done about a contour that crossed itself; ``dropped`` is the share of the area that was left out."""
     if len(places) == 0:
-        return ""
-    x, y = places[0]
-    places = np.unique(np.round(places, 9), axis=0)
-    more = "" if len(places) == 1 else f" and {len(places) - 1} more places" if len(places) > 2 else " and 1 more place"
-    return f" near ({x:.4g}, {y:.4g}){more}"
+        note = tr("The contour touched itself and was repaired.")
+    else:
+        where = _described(places)
+        note = tr_n(
+            "The contour crossed or touched itself near ({x:.4g}, {y:.4g}) and was repaired.",
+            "The contour crossed or touched itself at {count} places, the first near ({x:.4g}, {y:.4g}), and was "
+            "repaired.",
+            where["count"],
+            x=where["x"],
+            y=where["y"],
+        )
+    if dropped == 0.0:
+        return (note,)
+    return note, tr("The repair left out {percent:.2g} % of the area.", percent=100 * dropped)
+
+
+class _Places(TypedDict):
+    """Where a contour crosses itself: how many places, and the first of them in source units."""
+
+    count: int
+    x: float
+    y: float
+
+
+def _described(places: FloatArray) -> _Places:
+    x, y = places[0].tolist()
+    return {"count": len(np.unique(np.round(places, 9), axis=0)), "x": x, "y": y}
 
 
 def crossings(ring: FloatArray) -> FloatArray:

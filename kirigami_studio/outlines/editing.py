@@ -1,4 +1,4 @@
-"""A freehand stroke becomes a ring, and any ring becomes points at equal arc length."""
+"""Freehand strokes are smoothed and closed to rings; any ring is resampled at equal arc length."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from scipy.ndimage import gaussian_filter1d
 
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import TargetError
+from kirigami_studio.foundation.words import tr
 from kirigami_studio.outlines.contour import as_contour, tidy
 from kirigami_studio.outlines.outline import Outline
 
@@ -54,9 +55,9 @@ def resampled(shape: Outline | npt.ArrayLike, count: int, start: float = 0.0) ->
         ``count`` below 3, ``start`` not finite, or not a contour.
     """
     if isinstance(count, bool) or not isinstance(count, int | np.integer) or count < 3:
-        raise TargetError(f"A contour is resampled to 3 points or more, got {count!r}.")
+        raise TargetError("resampling.too_few_points", value=count)
     if not math.isfinite(start):
-        raise TargetError(f"The start of resampling must be a finite number, got {start}.")
+        raise TargetError("resampling.start_not_finite", value=start)
     contour = shape.points if isinstance(shape, Outline) else tidy(as_contour(shape))
     closed = np.concatenate([contour, contour[:1]])
     length = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(closed, axis=0), axis=1))])
@@ -106,8 +107,11 @@ def _without_overshoot(stroke: FloatArray) -> tuple[FloatArray, tuple[str, ...]]
     if end < 3:
         return stroke, ()
     gap = distance[end] / float(np.max(np.ptp(stroke, axis=0)))
-    notes = (f"The stroke was closed by a straight line over {100 * gap:.0f} % of its size.",) if gap > 0.1 else ()
-    return stroke[: end + 1], notes
+    if gap <= 0.1:
+        return stroke[: end + 1], ()
+    return stroke[: end + 1], (
+        tr("The stroke was closed by a straight line over {percent:.0f} % of its size.", percent=100 * gap),
+    )
 
 
 def _corners(samples: FloatArray) -> npt.NDArray[np.int64]:

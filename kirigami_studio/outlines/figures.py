@@ -20,6 +20,8 @@ FEWEST_CORNERS, MOST_CORNERS = 3, 64
 NARROWEST_WAIST, WIDEST_WAIST = 0.05, 0.95
 #: That of the pentagram, whose edges line up.
 USUAL_WAIST = 0.382
+#: Handles of a quarter circle by a cubic, as a share of the radius.
+QUARTER = 4.0 / 3.0 * math.tan(math.pi / 8.0)
 
 
 class Figure(Enum):
@@ -85,32 +87,19 @@ def figure(kind: Figure, box: Box, corners: int = 5, waist: float = USUAL_WAIST)
     """
     width, height = box.size
     if not (math.isfinite(width) and math.isfinite(height) and width > 0 and height > 0):
-        raise TargetError(f"A {kind.value} needs a width and a height above 0, got {width:.4g} x {height:.4g} mm.")
+        raise TargetError("figure.flat", width=width, height=height)
     if kind is Figure.RECTANGLE:
         sides = ((box.left, box.bottom), (box.right, box.bottom), (box.right, box.top), (box.left, box.top))
         return np.array(sides, dtype=np.float64)
     if kind is Figure.ELLIPSE:
         return _around(box, np.ones(ELLIPSE_VERTICES))
     if isinstance(corners, bool) or not isinstance(corners, int) or not FEWEST_CORNERS <= corners <= MOST_CORNERS:
-        raise TargetError(f"A {kind.value} has {FEWEST_CORNERS} to {MOST_CORNERS} corners, got {corners!r}.")
+        raise TargetError("figure.corners", fewest=FEWEST_CORNERS, most=MOST_CORNERS, value=corners)
     if kind is Figure.REGULAR:
         return _around(box, np.ones(corners))
     if not NARROWEST_WAIST <= waist <= WIDEST_WAIST:
-        raise TargetError(
-            f"The waist of a star lies between {NARROWEST_WAIST:g} and {WIDEST_WAIST:g} of its size, got {waist!r}."
-        )
+        raise TargetError("figure.waist", narrowest=NARROWEST_WAIST, widest=WIDEST_WAIST, value=waist)
     return _around(box, np.tile([1.0, waist], corners))
-
-
-def _around(box: Box, radii: FloatArray) -> FloatArray:
-    """Vertices at equal angles from the top on, each at its share of the way to the box's ellipse."""
-    angle = 0.5 * math.pi + 2.0 * math.pi * np.arange(len(radii)) / len(radii)
-    reach = 0.5 * np.array(box.size)
-    return np.column_stack([np.cos(angle), np.sin(angle)]) * radii[:, None] * reach + box.middle
-
-
-#: Handles of a quarter circle by a cubic, as a share of the radius.
-QUARTER = 4.0 / 3.0 * math.tan(math.pi / 8.0)
 
 
 def placed_figure(kind: Figure, box: Box, corners: int = 5, waist: float = USUAL_WAIST) -> Placed:
@@ -131,3 +120,10 @@ def placed_figure(kind: Figure, box: Box, corners: int = 5, waist: float = USUAL
     along = 0.5 * QUARTER * (np.roll(points, -1, axis=0) - np.roll(points, 1, axis=0))
     handles = np.stack([-along, along], axis=1)
     return made.with_nodes(Nodes(at, (Kind.SYMMETRIC,) * 4, handles, np.ones(4, dtype=np.bool_)))
+
+
+def _around(box: Box, radii: FloatArray) -> FloatArray:
+    """Vertices at equal angles from the top on, each at its share of the way to the box's ellipse."""
+    angle = 0.5 * math.pi + 2.0 * math.pi * np.arange(len(radii)) / len(radii)
+    reach = 0.5 * np.array(box.size)
+    return np.column_stack([np.cos(angle), np.sin(angle)]) * radii[:, None] * reach + box.middle

@@ -1,4 +1,4 @@
-"""Loose lines -> closed regions: ends that meet are joined, small gaps bridged, open contours named."""
+"""Loose lines -> closed regions: ends that meet are joined, small gaps bridged, open contours refused."""
 
 from __future__ import annotations
 
@@ -15,6 +15,7 @@ from shapely.geometry.base import BaseGeometry
 
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import TargetError
+from kirigami_studio.foundation.words import tr_n
 
 #: Ends nearer than this share of the drawing's size are one point: the rounding of coordinates in a file.
 SAME_END = 1e-6
@@ -38,7 +39,7 @@ def join(chains: Sequence[FloatArray], widest_gap: float, unit: str = "") -> tup
     widest_gap : float
         Gaps between loose ends up to this share of the drawing's size are bridged by a straight line.
     unit : str
-        Of the coordinates, for the sentences.
+        Of the coordinates, for messages.
 
     Returns
     -------
@@ -50,12 +51,12 @@ def join(chains: Sequence[FloatArray], widest_gap: float, unit: str = "") -> tup
     Raises
     ------
     TargetError
-        The lines enclose nothing, or an open contour surrounds what they enclose; the sentence gives
-        the widest gap that keeps it open.
+        The lines enclose nothing, or an open contour surrounds what they enclose; the
+        problem names the widest gap that keeps it open.
     """
     chains = [chain for chain in chains if len(chain) >= 2 and np.ptp(chain, axis=0).any()]
     if not chains:
-        raise TargetError("The drawing holds no lines; draw one closed contour.")
+        raise TargetError("lines.none")
     corners = np.concatenate(chains)
     size = float(np.max(np.ptp(corners, axis=0)))
     chains, loose = _meeting(chains, SAME_END * size)
@@ -68,18 +69,36 @@ def join(chains: Sequence[FloatArray], widest_gap: float, unit: str = "") -> tup
     open_lines = [line for line in shapely.get_parts(left_over) if line.length > SAME_END * size]
     wide = [_described(gap) for gap in gaps if gap.length > widest_gap * size]
     if region.is_empty or _surrounds(open_lines, region):
-        raise TargetError(_open_contour(wide, widest_gap * size, unit))
+        raise _open_contour(wide, widest_gap * size, unit)
     notes = []
     if bridged:
         widest = _described(max(bridged, key=lambda gap: gap.length))
-        count = "A gap was" if len(bridged) == 1 else f"{len(bridged)} gaps were"
         notes.append(
-            f"{count} closed, the widest {widest.width:.3g}{_spaced(unit)} near ({widest.x:.4g}, {widest.y:.4g})."
+            tr_n(
+                "A gap was closed: {width} near ({x:.4g}, {y:.4g}).",
+                "{count} gaps were closed, the widest {width} near ({x:.4g}, {y:.4g}).",
+                len(bridged),
+                width=_length(widest.width, unit),
+                x=widest.x,
+                y=widest.y,
+            )
         )
     if inner := sum(len(face.interiors) for face in shapely.get_parts(faces)):
-        notes.append(f"Contours inside the outer one were left out ({inner}).")
+        notes.append(
+            tr_n(
+                "{count} contour inside the outer one was left out.",
+                "{count} contours inside the outer one were left out.",
+                inner,
+            )
+        )
     if open_lines:
-        notes.append(f"Open lines that enclose nothing were left out ({len(open_lines)}).")
+        notes.append(
+            tr_n(
+                "{count} open line that encloses nothing was left out.",
+                "{count} open lines that enclose nothing were left out.",
+                len(open_lines),
+            )
+        )
     return region, tuple(notes)
 
 
@@ -123,15 +142,13 @@ def _surrounds(open_lines: Sequence[BaseGeometry], region: BaseGeometry) -> bool
     return any(shapely.box(*line.bounds).contains_properly(closed) for line in open_lines)
 
 
-def _open_contour(gaps: Sequence[Gap], bridged: float, unit: str) -> str:
+def _open_contour(gaps: Sequence[Gap], bridged: float, unit: str) -> TargetError:
     if not gaps:
-        return "The lines do not form a closed contour; draw one closed line around the shape."
+        return TargetError("lines.not_closed")
     gap = max(gaps)
-    return (
-        f"The contour is open: a gap of {gap.width:.4g}{_spaced(unit)} near ({gap.x:.4g}, {gap.y:.4g}), wider than the "
-        f"{bridged:.3g}{_spaced(unit)} that are closed automatically; join the ends there."
-    )
+    return TargetError("lines.open_at", width=_length(gap.width, unit), x=gap.x, y=gap.y, closed=_length(bridged, unit))
 
 
-def _spaced(unit: str) -> str:
-    return f" {unit}" if unit else ""
+def _length(length: float, unit: str) -> str:
+    """A length with its unit, as far as that is known."""
+    return f"{length:.4g} {unit}" if unit else f"{length:.4g}"

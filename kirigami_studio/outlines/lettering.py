@@ -46,9 +46,9 @@ def joined_letters(letters: Sequence[Sequence[FloatArray]]) -> tuple[FloatArray,
     """
     shapes = [_bridged(shape) for shape in (_painted(rings) for rings in letters) if shape.area > 0]
     if not shapes:
-        raise TargetError("The text has no letter that could be a target; type at least one letter or digit.")
+        raise TargetError("text.no_letters")
     if len(shapes) > MOST_LETTERS:
-        raise TargetError(f"A target can show {MOST_LETTERS} letters at most, got {len(shapes)}.")
+        raise TargetError("text.too_many_letters", limit=MOST_LETTERS, letters=len(shapes))
     height = max(shape.bounds[3] - shape.bounds[1] for shape in shapes)
     word = shapes[0]
     for shape in shapes[1:]:
@@ -98,7 +98,7 @@ def lettered(letters: Sequence[Sequence[FloatArray]], box: Box) -> tuple[FloatAr
     """
     ring, notes = joined_letters(letters)
     if min(box.size) <= 0:
-        raise TargetError("Drag a box for the text; its width and height must be above 0.")
+        raise TargetError("text.flat_box")
     low, high = ring.min(axis=0), ring.max(axis=0)
     scale = float(np.min(np.array(box.size) / (high - low)))
     return (ring - 0.5 * (low + high)) * scale + box.middle, notes

@@ -14,7 +14,6 @@ from shapely.geometry.base import BaseGeometry
 
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import TargetError
-from kirigami_studio.foundation.words import tr
 from kirigami_studio.outlines.combining import SNAP, Combine, combined
 from kirigami_studio.outlines.pieces import largest_piece
 from kirigami_studio.outlines.placed import LARGEST_MM, Placed
@@ -119,7 +118,7 @@ class Mirror:
         side = drawn.polygon.intersection(box(right, top, x + far, y + far))
         rings = [part.exterior.coords[:-1] for part in shapely.get_parts(side) if isinstance(part, Polygon)]
         if not rings:
-            raise TargetError(tr("Nothing of the drawing lies on the side of the axis that is mirrored."))
+            raise TargetError("mirror.nothing_on_side")
         ring, notes = largest_piece(shapely.union_all(self.united(rings)))
         return drawn.reshaped(ring, (*drawn.outline.notes, *notes))
 
@@ -138,9 +137,7 @@ def mirrored(target: Placed | None, drawn: Placed, how: Combine, name: str, mirr
     pieces = mirror.united([drawn.ring])
     if how is Combine.REPLACE or target is None:
         if len(pieces) > 1:
-            raise TargetError(
-                tr("The {name} and its mirror image do not touch; draw it across the dashed axis.", name=name)
-            )
+            raise TargetError("mirror.images_apart")
         ring, more = largest_piece(pieces[0])
         return Placed.from_ring(ring, drawn.outline.name, (*notes, *more))
     for piece in pieces:

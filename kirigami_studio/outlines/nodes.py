@@ -57,12 +57,12 @@ class Nodes:
         count = len(self.at)
         shapes = (self.at.shape, len(self.kinds), self.handles.shape, self.kept.shape)
         if count < FEWEST_NODES or shapes != ((count,), count, (count, 2, 2), (count,)):
-            raise TargetError(f"Nodes of an outline must be {FEWEST_NODES} or more in tables of one length.")
+            raise TargetError("nodes.wrong_tables", fewest=FEWEST_NODES)
         falls = int(np.sum(np.diff(self.at, append=self.at[:1]) <= 0))
         if falls != 1 or self.at.min() < 0:
-            raise TargetError("Nodes of an outline must follow each other in its order.")
+            raise TargetError("nodes.not_in_order")
         if not np.isfinite(self.handles).all():
-            raise TargetError("Handles of an outline must be finite numbers.")
+            raise TargetError("nodes.handles_not_finite")
         for table in (self.at, self.handles, self.kept):
             table.setflags(write=False)
 

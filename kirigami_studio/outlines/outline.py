@@ -1,9 +1,9 @@
-"""The one value of this room: a closed, simple, oriented, centred silhouette of unit area."""
+"""The one value that all sources become: a closed, simple, oriented, centred silhouette of unit area."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -63,14 +63,11 @@ class Outline:
         points = as_contour(self.points) + 0.0
         area, centroid = area_and_centroid(points)
         if abs(area - 1.0) > NORMALISATION_TOLERANCE or np.max(np.abs(centroid)) > NORMALISATION_TOLERANCE:
-            raise TargetError(
-                f"An outline must be counter-clockwise with area 1 around the origin, got signed area {area:.6g} "
-                f"around ({centroid[0]:.6g}, {centroid[1]:.6g}); build it with Outline.from_points."
-            )
+            raise TargetError("outline.not_normalised", area=area, x=float(centroid[0]), y=float(centroid[1]))
         if not Polygon(points).is_valid:
-            raise TargetError("An outline must not touch or cross itself; build it with Outline.from_points.")
+            raise TargetError("outline.crosses_itself")
         if self.nodes is not None and int(self.nodes.at.max()) >= len(points):
-            raise TargetError(f"An outline of {len(points)} vertices has no vertex {int(self.nodes.at.max())}.")
+            raise TargetError("outline.no_such_vertex", vertices=len(points), index=int(self.nodes.at.max()))
         points.setflags(write=False)
         object.__setattr__(self, "points", points)
         object.__setattr__(self, "notes", tuple(self.notes))
@@ -104,10 +101,6 @@ class Outline:
     def polygon(self) -> Polygon:
         """The same shape as a shapely polygon."""
         return Polygon(self.points)
-
-    def renamed(self, name: str) -> Outline:
-        """Return the same shape under another name."""
-        return replace(self, name=name)
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Outline) and np.array_equal(self.points, other.points)

@@ -9,9 +9,10 @@ from shapely.geometry.base import BaseGeometry
 
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import TargetError
+from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.outlines.crossings import CLEARLY_MEANT
 
-#: Shares of the area below this are rounding or noding slivers and not worth a sentence.
+#: Shares of the area below this are slivers of rounding or noding and not worth a note.
 WORTH_SAYING = 1e-6
 
 
@@ -39,24 +40,26 @@ def largest_piece(region: BaseGeometry) -> tuple[FloatArray, tuple[str, ...]]:
     Raises
     ------
     TargetError
-        The region has no area, or hangs together in single points so that no piece is clearly meant.
+        The region has no area, or its parts touch in single points so that no piece is clearly meant.
     """
     pieces = enclosed(region)
     if not pieces:
-        raise TargetError("The drawing encloses no area; draw one closed shape.")
+        raise TargetError("drawing.no_area")
     piece, total = pieces[0], sum(part.area for part in pieces)
     touching = [part for part in pieces[1:] if part.distance(piece) == 0.0]
     if touching and piece.area <= CLEARLY_MEANT * (piece.area + sum(part.area for part in touching)):
         place = piece.intersection(touching[0]).representative_point()
-        raise TargetError(
-            f"The contour crosses or touches itself near ({place.x:.4g}, {place.y:.4g}), where two large pieces hang "
-            "together in one point; move the lines apart there or draw them wider."
-        )
+        raise TargetError("drawing.joined_in_a_point", x=place.x, y=place.y)
     notes = []
     if (share := 1 - piece.area / total) > WORTH_SAYING:
-        others = len(pieces) - 1
-        noun = "1 smaller piece was" if others == 1 else f"{others} smaller pieces were"
-        notes.append(f"Only the largest piece is kept: {noun} left out ({100 * share:.2g} % of the area).")
+        notes.append(
+            tr_n(
+                "Only the largest piece is used: {count} smaller piece was left out ({percent:.2g} % of the area).",
+                "Only the largest piece is used: {count} smaller pieces were left out ({percent:.2g} % of the area).",
+                len(pieces) - 1,
+                percent=100 * share,
+            )
+        )
     if (share := 1 - region.intersection(piece).area / piece.area) > WORTH_SAYING:
-        notes.append(f"Holes were filled ({100 * share:.2g} % of the area).")
+        notes.append(tr("Holes were filled ({percent:.2g} % of the area).", percent=100 * share))
     return np.asarray(piece.exterior.coords[:-1], dtype=np.float64), tuple(notes)

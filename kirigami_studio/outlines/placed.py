@@ -47,7 +47,7 @@ class Placed:
     def __post_init__(self) -> None:
         numbers = (self.scale, *self.centre)
         if not all(math.isfinite(number) for number in numbers) or self.scale <= 0:
-            raise TargetError(f"A target needs a size above 0 mm and a place, got {self.scale:g} mm at {self.centre}.")
+            raise TargetError("placed.no_size", scale=self.scale, centre=self.centre)
 
     @classmethod
     def on_board(cls, outline: Outline) -> Placed:
@@ -81,7 +81,7 @@ class Placed:
         clean = clean * span + origin
         length = float(np.max(np.ptp(clean, axis=0)))
         if length > LARGEST_MM:
-            raise TargetError(f"A target may be {LARGEST_MM:g} mm long at most, got {length:.5g} mm; draw it smaller.")
+            raise TargetError("placed.too_large", limit=LARGEST_MM, length=length)
         area, centroid = area_and_centroid(clean)
         place = (float(centroid[0]), float(centroid[1]))
         outline = replace(Outline.from_points(clean, name, (*notes, *repairs), "mm"), place=place)

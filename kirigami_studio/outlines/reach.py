@@ -7,7 +7,6 @@ A sheet of m x n voids shows a target of area 1 with (m + 1)(n + 1) panels, so a
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,6 +16,7 @@ from shapely.geometry.base import BaseGeometry
 
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import TargetError
+from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.outlines.outline import Outline
 
 #: Narrower than this many panels is marked.  Found with fits of 20 drawn shapes (8 x 8 and 12 x 12 voids, 6 samples
@@ -75,7 +75,7 @@ def reach_of(outline: Outline, grid: tuple[int, int]) -> Reach:
     """
     rows, columns = grid
     if rows < 1 or columns < 1:
-        raise TargetError(f"A grid has at least one void each way, got {rows} x {columns}.")
+        raise TargetError("reach.no_voids", rows=rows, columns=columns)
     panel = 1.0 / math.sqrt((rows + 1) * (columns + 1))
     shape = outline.polygon.simplify(COARSENESS * panel)
     radius = 0.5 * NEEDED_PANELS * panel
@@ -99,8 +99,8 @@ def _parts(region: BaseGeometry, panel: float) -> tuple[FloatArray, ...]:
     return tuple(np.asarray(part.exterior.coords[:-1], dtype=np.float64) for part in worth)
 
 
-def told(reach: Reach, outline: Outline, scale_mm: float | None = None) -> tuple[str, str]:
-    """A sentence for the user and a shorter one, both "" when nothing is marked; in mm where the size is known.
+def reach_texts(reach: Reach, outline: Outline, scale_mm: float | None = None) -> tuple[str, str]:
+    """A text for the user and a shorter one, both "" when nothing is marked; in mm where the size is known.
 
     Parameters
     ----------
@@ -112,20 +112,47 @@ def told(reach: Reach, outline: Outline, scale_mm: float | None = None) -> tuple
     """
     if reach.clear:
         return "", ""
-    found = [(rings, noun) for rings, noun in ((reach.arms, "thin arm"), (reach.notches, "narrow notch")) if rings]
-    parts = " and ".join(_counted(rings, noun) for rings, noun in found)
-    brief = ", ".join(_counted(rings, noun.split()[1]) for rings, noun in found)
-    width = "" if scale_mm is None else f" (under {scale_mm * reach.narrowest:.2g} mm)"
-    rows, columns = reach.grid
     finer = _finer_grid(outline, reach.grid)
-    advice = "make them wider" if finer is None else f"try {finer[0]} \N{MULTIPLICATION SIGN} {finer[1]}"
-    whole = f"{rows} \N{MULTIPLICATION SIGN} {columns} voids may lose {parts}{width}; {advice}."
-    return whole, f"May lose {brief}; {advice}."
+    advice = (
+        tr("Make them wider.")
+        if finer is None
+        else tr("Try {rows} \N{MULTIPLICATION SIGN} {columns}.", rows=finer[0], columns=finer[1])
+    )
+    lost, brief = _lost(reach)
+    if scale_mm is not None:
+        width = scale_mm * reach.narrowest
+        return " ".join((lost, tr("It shows nothing under {width:.2g} mm.", width=width), advice)), f"{brief} {advice}"
+    return f"{lost} {advice}", f"{brief} {advice}"
 
 
-def _counted(rings: Sequence[FloatArray], noun: str) -> str:
-    plural = f"{noun}es" if noun.endswith("ch") else f"{noun}s"
-    return f"{len(rings)} {noun if len(rings) == 1 else plural}"
+def _lost(reach: Reach) -> tuple[str, str]:
+    """What a sheet of the grid may lose, and the same in short."""
+    arms, notches = len(reach.arms), len(reach.notches)
+    rows, columns = reach.grid
+    if arms and notches:
+        return tr(
+            "A sheet of {rows} \N{MULTIPLICATION SIGN} {columns} voids may lose thin arms ({arms}) and narrow notches "
+            "({notches}).",
+            rows=rows,
+            columns=columns,
+            arms=arms,
+            notches=notches,
+        ), tr("May lose thin arms and narrow notches.")
+    if arms:
+        return tr_n(
+            "A sheet of {rows} \N{MULTIPLICATION SIGN} {columns} voids may lose {count} thin arm.",
+            "A sheet of {rows} \N{MULTIPLICATION SIGN} {columns} voids may lose {count} thin arms.",
+            arms,
+            rows=rows,
+            columns=columns,
+        ), tr_n("May lose {count} arm.", "May lose {count} arms.", arms)
+    return tr_n(
+        "A sheet of {rows} \N{MULTIPLICATION SIGN} {columns} voids may lose {count} narrow notch.",
+        "A sheet of {rows} \N{MULTIPLICATION SIGN} {columns} voids may lose {count} narrow notches.",
+        notches,
+        rows=rows,
+        columns=columns,
+    ), tr_n("May lose {count} notch.", "May lose {count} notches.", notches)
 
 
 def _finer_grid(outline: Outline, grid: tuple[int, int]) -> tuple[int, int] | None:

@@ -1,4 +1,4 @@
-"""One door for every source: a file by its extension, or a library name."""
+"""Read a target from any source: a file by its extension, or the name of a library silhouette."""
 
 from __future__ import annotations
 
@@ -18,6 +18,59 @@ VERTEX_KEYS = ("outline", "points")
 UNITS = ("mm", "px")
 
 
+def read_target(source: str | Path) -> Outline:
+    """Return the outline of a file or of a library silhouette.
+
+    Parameters
+    ----------
+    source : str or Path
+        A file with one of the extensions in ``READERS`` (any case), or a name from the library.
+
+    Raises
+    ------
+    TargetError
+        Neither, a folder, or the file does not hold one closed simple shape.
+    """
+    if not isinstance(source, str | Path) or not str(source).strip():
+        raise TargetError("target.not_a_source", value=source)
+    if isinstance(source, str) and source in silhouettes.names():
+        return silhouettes.load(source)
+    path = Path(source).expanduser()
+    kinds = ", ".join(READERS)
+    try:
+        if path.is_dir():
+            raise TargetError("target.folder", path=path, kinds=kinds)
+        exists = path.exists()
+    except (OSError, ValueError) as error:
+        raise TargetError("target.not_a_file_name", name=str(source)) from error
+    reader = READERS.get(path.suffix.lower())
+    if reader is not None:
+        return reader(path)
+    if exists:
+        raise TargetError("target.unknown_kind", name=path.name, kinds=kinds)
+    return silhouettes.load(str(source))
+
+
+def target_files(folder: Path) -> list[Path]:
+    """Return the files of a folder that may hold a target, sorted by name.
+
+    Raises
+    ------
+    TargetError
+        The folder cannot be read or holds none.
+    """
+    try:
+        files = sorted(
+            (entry for entry in folder.iterdir() if entry.suffix.lower() in READERS and entry.is_file()),
+            key=lambda entry: (entry.name.lower(), entry.name),
+        )
+    except (OSError, ValueError) as error:
+        raise TargetError("target.folder_not_readable", folder=folder) from error
+    if not files:
+        raise TargetError("target.none_in_folder", folder=folder, kinds=", ".join(READERS))
+    return files
+
+
 def read_json(path: str | Path) -> Outline:
     """Read ``[[x, y], ...]``, ``{"outline": [[x, y], ...]}`` or ``{"points": [[x, y], ...]}``, y up.
 
@@ -30,7 +83,7 @@ def read_json(path: str | Path) -> Outline:
     """
     path = Path(path)
     content = read_bytes(path)
-    with decoding(path, "a JSON outline"):
+    with decoding(path, "json_outline.damaged"):
         stored = json.loads(content.decode("utf-8-sig"), parse_constant=_refuse_constant)
         name, unit = path.stem, ""
         while isinstance(stored, dict):
@@ -38,34 +91,27 @@ def read_json(path: str | Path) -> Outline:
             unit = stored["unit"] if stored.get("unit") in UNITS else unit
             key = next((key for key in VERTEX_KEYS if key in stored), None)
             if key is None:
-                raise TargetError('The file has no "outline": [[x, y], ...] and no "points": [[x, y], ...].')
+                raise TargetError("json_outline.no_vertices")
             stored = stored[key]
         return Outline.from_points(_vertices(stored), name=name, unit=unit)
 
 
 def _refuse_constant(constant: str) -> NoReturn:
-    raise TargetError(f"The file contains {constant}; every coordinate must be a finite number.")
+    raise TargetError("json_outline.not_finite", constant=constant)
 
 
 def _vertices(stored: Any) -> list[tuple[float, float]]:
     """Check every vertex by hand: numpy would read the text "1" and the truth value true as numbers."""
     if not isinstance(stored, list):
-        raise TargetError(f"The outline must be a list of [x, y] pairs, got {_shown(stored)}.")
+        raise TargetError("json_outline.not_a_list", value=stored)
     for index, vertex in enumerate(stored, start=1):
         if not (isinstance(vertex, list) and len(vertex) == 2 and all(_is_number(value) for value in vertex)):
-            raise TargetError(
-                f"Vertex {index} of the outline is {_shown(vertex)}; it must be a pair [x, y] of numbers."
-            )
+            raise TargetError("json_outline.not_a_pair", number=index, value=vertex)
     return [(float(x), float(y)) for x, y in stored]
 
 
 def _is_number(value: object) -> bool:
     return isinstance(value, int | float) and not isinstance(value, bool)
-
-
-def _shown(value: object) -> str:
-    text = json.dumps(value)
-    return text if len(text) <= 40 else text[:37] + "..."
 
 
 def _image(path: Path) -> Outline:
@@ -86,12 +132,6 @@ def _dxf(path: Path) -> Outline:
     return read_dxf(path)
 
 
-def _json(path: Path) -> Outline:
-    from kirigami_studio.outlines.read import read_json
-
-    return read_json(path)
-
-
 #: Reader by lower-case extension.  Readers are imported when first needed: ezdxf and scikit-image take a while.
 READERS: Mapping[str, Callable[[Path], Outline]] = MappingProxyType(
     {
@@ -101,76 +141,6 @@ READERS: Mapping[str, Callable[[Path], Outline]] = MappingProxyType(
         ".bmp": _image,
         ".svg": _svg,
         ".dxf": _dxf,
-        ".json": _json,
+        ".json": read_json,
     }
 )
-
-
-def read_target(source: str | Path) -> Outline:
-    """Return the outline of a file or of a library silhouette.
-
-    Parameters
-    ----------
-    source : str or Path
-        A file with one of the extensions in ``READERS`` (any case), or a name from the library.
-
-    Raises
-    ------
-    TargetError
-        Neither, a folder, or the file does not hold one closed simple shape.
-    """
-    if not isinstance(source, str | Path) or not str(source).strip():
-        raise TargetError(f"A target is a file or the name of a library silhouette, got {source!r}.")
-    if isinstance(source, str) and source in silhouettes.names():
-        return silhouettes.load(source)
-    path = Path(source).expanduser()
-    kinds = ", ".join(READERS)
-    try:
-        if path.is_dir():
-            raise TargetError(f"{path} is a folder; choose one file in it ({kinds}).")
-        exists = path.exists()
-    except (OSError, ValueError) as error:
-        raise TargetError(f"{str(source)[:80]!r} cannot be the name of a file; choose another one.") from error
-    reader = READERS.get(path.suffix.lower())
-    if reader is not None:
-        return reader(path)
-    if exists:
-        raise TargetError(f"{path.name} is of an unknown kind; choose a target of one of these: {kinds}.")
-    return silhouettes.load(str(source))
-
-
-def read_many(source: str | Path) -> list[Outline]:
-    """Return the outlines of all readable files of a folder, sorted by name; of one file or name, a list of one.
-
-    Raises
-    ------
-    TargetError
-        The folder holds no target, or one of the files cannot be read (the sentence names it).
-    """
-    path = Path(source) if isinstance(source, str | Path) else None
-    try:
-        if path is None or (isinstance(source, str) and source in silhouettes.names()) or not path.is_dir():
-            return [read_target(source)]
-    except (OSError, ValueError) as error:
-        raise TargetError(f"The folder {str(source)[:80]} cannot be read; check its name and your rights.") from error
-    return [read_target(entry) for entry in target_files(path)]
-
-
-def target_files(folder: Path) -> list[Path]:
-    """Return the files of a folder that may hold a target, sorted by name.
-
-    Raises
-    ------
-    TargetError
-        The folder cannot be read or holds none.
-    """
-    try:
-        files = sorted(
-            (entry for entry in folder.iterdir() if entry.suffix.lower() in READERS and entry.is_file()),
-            key=lambda entry: (entry.name.lower(), entry.name),
-        )
-    except (OSError, ValueError) as error:
-        raise TargetError(f"The folder {str(folder)[:80]} cannot be read; check its name and your rights.") from error
-    if not files:
-        raise TargetError(f"The folder {folder} holds no target file ({', '.join(READERS)}).")
-    return files

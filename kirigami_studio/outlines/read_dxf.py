@@ -19,6 +19,7 @@ from ezdxf.path import make_path
 
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import TargetError
+from kirigami_studio.foundation.words import tr
 from kirigami_studio.outlines.contour import thinned
 from kirigami_studio.outlines.joining import join
 from kirigami_studio.outlines.outline import Outline
@@ -59,12 +60,11 @@ def read_dxf(path: str | Path) -> Outline:
     """
     path = Path(path)
     content = read_bytes(path, most_megabytes=50)
-    with decoding(path, "a DXF drawing"):
+    with decoding(path, "dxf.damaged"):
         drawing, notes = _opened(path, content)
         curves, texts = _visible(drawing)
         if not curves:
-            advice = "convert the text to lines" if texts else "draw the contour with lines, arcs, polylines or splines"
-            raise TargetError(f"The drawing has no lines in model space; {advice}.")
+            raise TargetError("dxf.no_lines_but_text" if texts else "dxf.no_lines")
         # A file that does not state its unit is given metres by ezdxf; here it stays without unit.
         has_unit = b"$INSUNITS" in content and drawing.units != InsertUnits.Unitless
         to_mm = units.conversion_factor(InsertUnits(drawing.units), InsertUnits.Millimeters) if has_unit else 1.0
@@ -80,7 +80,7 @@ def _opened(path: Path, content: bytes) -> tuple[Drawing, tuple[str, ...]]:
         return readfile(path), ()
     except (DXFError, OSError, ValueError, LookupError, TypeError, AttributeError):
         drawing, _ = recover.read(io.BytesIO(content))
-        return drawing, ("The file was damaged and was repaired while reading; check the shape.",)
+        return drawing, (tr("The file was damaged and was repaired while reading. Check the shape."),)
 
 
 def _visible(drawing: Drawing) -> tuple[list[DXFGraphic], int]:
@@ -90,7 +90,7 @@ def _visible(drawing: Drawing) -> tuple[list[DXFGraphic], int]:
     texts = 0
     for count, entity in enumerate(_unfolded(drawing.modelspace(), 0)):
         if count >= MOST_ENTITIES:
-            raise TargetError(f"The drawing unfolds to more than {MOST_ENTITIES} entities; export the outline alone.")
+            raise TargetError("dxf.too_many_entities", limit=MOST_ENTITIES)
         if not isinstance(entity, DXFGraphic) or entity.dxf.layer.lower() in hidden or entity.dxf.invisible:
             continue
         texts += entity.dxftype() in TEXTS
@@ -101,13 +101,13 @@ def _visible(drawing: Drawing) -> tuple[list[DXFGraphic], int]:
 
 def _unfolded(entities: Iterable[DXFEntity], depth: int) -> Iterator[DXFEntity]:
     if depth > DEEPEST_BLOCK:
-        raise TargetError(f"The drawing nests blocks more than {DEEPEST_BLOCK} deep; explode them and save again.")
+        raise TargetError("dxf.blocks_too_deep", limit=DEEPEST_BLOCK)
     for entity in entities:
         if not isinstance(entity, Insert):
             yield entity
             continue
         if entity.mcount > MOST_ENTITIES:
-            raise TargetError(f"A block is repeated {entity.mcount} times; export the outline alone.")
+            raise TargetError("dxf.block_repeated", times=entity.mcount)
         for single in entity.multi_insert() if entity.mcount > 1 else (entity,):
             yield from _unfolded(single.virtual_entities(), depth + 1)
 
@@ -116,11 +116,11 @@ def _flattened(curves: Iterable[DXFGraphic]) -> list[FloatArray]:
     """Curves as chains of (P, 2) vertices, drawing units; z is dropped."""
     paths = [path for path in map(make_path, curves) if len(path) > 0]
     if not paths:
-        raise TargetError("The lines of the drawing have no length; draw one closed contour.")
+        raise TargetError("dxf.no_length")
     corners = np.array([(corner.x, corner.y) for path in paths for corner in path.control_vertices()])
     if not np.isfinite(corners).all():
-        raise TargetError("The drawing has coordinates that are not finite numbers; redraw the lines there.")
+        raise TargetError("drawing.not_finite")
     distance = float(np.max(np.ptp(corners, axis=0))) * FLATNESS
     if distance == 0.0:
-        raise TargetError("All lines of the drawing lie on one point; draw one closed contour.")
+        raise TargetError("dxf.one_point")
     return [np.array([(vertex.x, vertex.y) for vertex in path.flattening(distance, segments=4)]) for path in paths]

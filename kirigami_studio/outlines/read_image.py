@@ -102,12 +102,12 @@ def trace_image(path: str | Path, threshold: float | None = None) -> Traced:
     """
     path = Path(path)
     content = read_bytes(path, MOST_MEGABYTES)
-    with decoding(path, "a picture (PNG, JPG or BMP)"):
+    with decoding(path, "image.damaged"):
         levels = _levels(content)
         level = _automatic(levels.grey) if threshold is None else _checked(threshold)
         ink = levels.grey - level if _shape_is_high(levels, level) else level - levels.grey
         if not np.any(ink > 0) or np.all(ink > 0):
-            raise TargetError(f"At the threshold {level:.2f} the picture is all one colour; try another threshold.")
+            raise TargetError("image.one_colour", threshold=level)
         ring, notes = trace(ink)
         outline = Outline.from_points(ring * levels.reduction, name=path.stem, notes=notes, unit="px")
         return _in_picture(outline, (ring + 0.5) * levels.reduction, levels)
@@ -132,7 +132,7 @@ def automatic_threshold(path: str | Path) -> float:
     """
     path = Path(path)
     content = read_bytes(path, MOST_MEGABYTES)
-    with decoding(path, "a picture (PNG, JPG or BMP)"):
+    with decoding(path, "image.damaged"):
         return _automatic(_levels(content).grey)
 
 
@@ -151,9 +151,9 @@ def outline_of_mask(mask: BoolArray, name: str) -> Outline:
     """
     mask = np.asarray(mask)
     if mask.ndim != 2 or mask.size == 0:
-        raise TargetError(f"A mask must have shape (height, width), got {mask.shape}.")
+        raise TargetError("mask.wrong_shape", shape=mask.shape)
     if not mask.any():
-        raise TargetError("The mask is empty; it must be true inside the shape.")
+        raise TargetError("mask.empty")
     ring, notes = trace(np.where(mask, 0.5, -0.5))
     return Outline.from_points(ring, name=name, notes=notes, unit="px")
 
@@ -166,15 +166,13 @@ def _levels(content: bytes) -> Levels:
         try:
             image = Image.open(io.BytesIO(content), formats=FORMATS)
         except Image.DecompressionBombError:
-            raise TargetError("The picture has far too many pixels; save it with at most 10000 x 10000.") from None
+            raise TargetError("image.far_too_many_pixels") from None
         except UnidentifiedImageError:
             # Pillow's own words name the object in memory and not the file.
-            raise ValueError("no such picture begins like this") from None
+            raise ValueError("it does not begin like one") from None
         width, height = image.size
         if width * height > MOST_PIXELS:
-            raise TargetError(
-                f"The picture has {width} x {height} pixels, more than {MOST_PIXELS // 10**6} million; save it smaller."
-            )
+            raise TargetError("image.too_many_pixels", width=width, height=height, limit=MOST_PIXELS // 10**6)
         image.load()
     channel, is_alpha = _channel(ImageOps.exif_transpose(image))
     reduction = math.ceil(max(width, height) / WORKING_SIDE)
@@ -214,10 +212,7 @@ def _shape_is_high(levels: Levels, level: float) -> bool:
 def _automatic(grey: FloatArray) -> float:
     contrast = float(np.ptp(grey))
     if contrast < LEAST_CONTRAST:
-        raise TargetError(
-            f"The picture is blank: its grey levels differ by {100 * contrast:.1f} % only; "
-            "draw a dark shape on light paper."
-        )
+        raise TargetError("image.blank", percent=100 * contrast)
     otsu = float(threshold_otsu(grey))
     above = grey > otsu
     # On clean two-level pictures Otsu sits on one of the levels; midway, sub-pixel contours are unbiased.
@@ -226,5 +221,5 @@ def _automatic(grey: FloatArray) -> float:
 
 def _checked(threshold: float) -> float:
     if isinstance(threshold, bool) or not isinstance(threshold, int | float) or not 0.0 < threshold < 1.0:
-        raise TargetError(f"The threshold must lie between 0 (black) and 1 (white), got {threshold!r}.")
+        raise TargetError("image.threshold", value=threshold)
     return float(threshold)

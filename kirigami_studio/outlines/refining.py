@@ -47,7 +47,7 @@ def simplified(target: Placed, strength: float) -> Placed:
     TargetError
         A strength outside 0..1.
     """
-    tolerance = COARSEST * _checked(strength, "simplifying") ** 2 * target.scale
+    tolerance = COARSEST * _checked(strength, "simplifying.strength") ** 2 * target.scale
     if tolerance == 0.0:
         return target
     ring = _thinned(target.polygon, tolerance)
@@ -62,14 +62,14 @@ def smoothed(target: Placed, strength: float) -> Placed:
     TargetError
         A strength outside 0..1, or the smooth outline crosses itself.
     """
-    sigma = SMOOTHEST * _checked(strength, "smoothing") ** 2 * SAMPLES
+    sigma = SMOOTHEST * _checked(strength, "smoothing.strength") ** 2 * SAMPLES
     if sigma == 0.0:
         return target
     samples = resampled(target.ring, SAMPLES)
     calm: FloatArray = gaussian_filter1d(samples, sigma, axis=0, mode="wrap")
     area, centroid = area_and_centroid(calm)
     if area <= 0:
-        raise TargetError("Smoothed this much, nothing of the target is left; smooth it less.")
+        raise TargetError("smoothing.nothing_left")
     grown = (calm - centroid) * (target.scale / math.sqrt(area)) + target.centre
     return target.reshaped(_thinned(target.reshaped(grown).polygon, STROKE_ERROR * target.scale))
 
@@ -83,7 +83,7 @@ def turned(target: Placed, angle: float) -> Placed:
         An angle that is not finite.
     """
     if not math.isfinite(angle):
-        raise TargetError(f"The angle of rotation must be a finite number, got {angle}.")
+        raise TargetError("placed.angle_not_finite", value=angle)
     cos, sin = math.cos(angle), math.sin(angle)
     matrix = np.array([[cos, sin], [-sin, cos]])
     centre = np.array(target.centre)
@@ -108,9 +108,8 @@ def stretched(target: Placed, factors: tuple[float, float], fixed: tuple[float, 
     """
     width, height = (abs(factor) * side for factor, side in zip(factors, target.size, strict=True))
     if not all(math.isfinite(side) and SMALLEST_MM <= side <= LARGEST_MM for side in (width, height)):
-        raise TargetError(
-            f"A target must be {SMALLEST_MM:g} to {LARGEST_MM:g} mm wide and high, got {width:.4g} x {height:.4g} mm."
-        )
+        limits = {"smallest": SMALLEST_MM, "largest": LARGEST_MM}
+        raise TargetError("placed.side_out_of_range", **limits, width=width, height=height)
     if factors[0] > 0 and math.isclose(*factors, rel_tol=1e-9):
         return target.enlarged(factors[0], target.centre if fixed is None else fixed)
     stay = np.array(target.centre if fixed is None else fixed)
@@ -122,7 +121,7 @@ def _thinned(polygon: Polygon, tolerance: float) -> FloatArray:
     return shapely.get_coordinates(polygon.simplify(tolerance))[:-1]
 
 
-def _checked(strength: float, doing: str) -> float:
+def _checked(strength: float, code: str) -> float:
     if not (isinstance(strength, int | float) and 0.0 <= strength <= 1.0):
-        raise TargetError(f"The strength of {doing} lies between 0 and 1, got {strength!r}.")
+        raise TargetError(code, value=strength)
     return float(strength)

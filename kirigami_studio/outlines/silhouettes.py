@@ -45,7 +45,7 @@ def _stored(name: str) -> tuple[Entry, Outline]:
         entry = Entry(stored["name"], stored["title"], stored["about"])
         points = stored["points"]
     except (OSError, ValueError, KeyError, TypeError):
-        raise TargetError(f"The bundled silhouette {path} is damaged; install Kirigami Studio again.") from None
+        raise TargetError("silhouette.damaged", path=path) from None
     return entry, Outline.from_points(points, name=entry.name)
 
 
@@ -60,7 +60,7 @@ def load(name: str) -> Outline:
     Raises
     ------
     TargetError
-        No silhouette has this name; the nearest names are in the sentence.
+        No silhouette has this name; the message names the nearest ones.
     """
     return _stored(known(name))[1]
 
@@ -77,5 +77,6 @@ def known(name: str) -> str:
     if wanted in names():
         return wanted
     near = difflib.get_close_matches(wanted, names(), n=3, cutoff=0.5)
-    hint = f"did you mean {' or '.join(near)}?" if near else f"the library has {', '.join(names())}."
-    raise TargetError(f"There is no file and no library silhouette called {name[:80]!r}; {hint}")
+    if near:
+        raise TargetError("silhouette.unknown_but_near", name=name, near=", ".join(near))
+    raise TargetError("silhouette.unknown", name=name, names=", ".join(names()))

@@ -1,4 +1,4 @@
-"""Opening a source: the checks every reader shares, and the file's name in every sentence."""
+"""Opening a source: the checks that all readers share, and the file's name in every problem."""
 
 from __future__ import annotations
 
@@ -22,19 +22,19 @@ def read_bytes(path: Path, most_megabytes: int = 20) -> bytes:
     """
     try:
         if path.is_dir():
-            raise TargetError(f"{path} is a folder; choose one file in it.")
+            raise TargetError("source.folder", path=path)
         size = path.stat().st_size
         if size > most_megabytes * MEGABYTE:
-            raise TargetError(
-                f"{path} has {size / MEGABYTE:.1f} MB, more than {most_megabytes} MB; save a simpler version of it."
-            )
+            raise TargetError("source.too_large", path=path, megabytes=size / MEGABYTE, limit=most_megabytes)
         content = path.read_bytes()
     except FileNotFoundError:
-        raise TargetError(f"There is no file {path}; check the name and the folder.") from None
-    except (OSError, ValueError) as error:
-        raise TargetError(f"{path} cannot be read: {getattr(error, 'strerror', None) or error}.") from error
+        raise TargetError("source.missing", path=path) from None
+    except OSError as error:
+        raise TargetError("source.not_readable", path=path, reason=error.strerror or str(error)) from error
+    except ValueError as error:  # a null character in the name
+        raise TargetError("target.not_a_file_name", name=str(path)) from error
     if not content:
-        raise TargetError(f"{path.name} is empty; save it again from the program that made it.")
+        raise TargetError("source.empty", name=path.name)
     return content
 
 
@@ -43,30 +43,27 @@ UNREADABLE = re.compile(r"(?:\\x[0-9a-fA-F]{2}|\\[a-z0]|[^\x20-\x7e\s\u00a0-\uff
 
 
 @contextmanager
-def decoding(path: Path, kind: str) -> Iterator[None]:
-    """Name the file in every error of a reader, and turn a decoder's own exceptions into a sentence.
+def decoding(path: Path, damaged: str) -> Iterator[None]:
+    """Name the file in every problem of a reader, and turn a decoder's own exceptions into one.
 
-    Decoders of foreign libraries raise whatever a damaged file makes them stumble over (struct.error,
-    SyntaxError, KeyError, RecursionError ...), so no list of types would be complete.
+    Decoders of other libraries raise all sorts of exceptions on damaged files (struct.error, SyntaxError, KeyError,
+    RecursionError ...), so no list of types would be complete.
 
     Parameters
     ----------
     path : Path
-    kind : str
-        What the file should be, e.g. "a picture (PNG, JPG or BMP)".
+    damaged : str
+        Code of the problem when a decoder fails, such as "dxf.damaged".
 
     Raises
     ------
     TargetError
-        Instead of any exception raised inside.
+        Instead of any exception raised inside; a problem raised inside is its ``__cause__``.
     """
     try:
         yield
     except TargetError as error:
-        sentence = str(error)
-        raise TargetError(sentence if str(path) in sentence else f"{path.name}: {sentence}") from error
+        raise TargetError("source.not_usable", name=path.name, reason=error) from error
     except Exception as error:
         reason = " ".join(UNREADABLE.sub("…", str(error)).split())[:160] or type(error).__name__
-        raise TargetError(
-            f"{path.name} is damaged or not {kind} ({reason}); open it in the program that made it and save it again."
-        ) from error
+        raise TargetError(damaged, name=path.name, reason=reason) from error

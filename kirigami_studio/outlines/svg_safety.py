@@ -8,6 +8,7 @@ from xml.etree.ElementTree import Element
 
 from kirigami_studio.foundation.errors import TargetError
 from kirigami_studio.foundation.units import MM_PER_INCH
+from kirigami_studio.foundation.words import tr
 
 #: ``use`` elements repeat others; a drawing that unfolds to more elements than this is no outline.
 MOST_ELEMENTS = 100_000
@@ -36,20 +37,20 @@ def checked_svg(content: bytes) -> tuple[bytes, float | None, tuple[str, ...]]:
         Compressed, with entity declarations, not well-formed, not SVG, or unfolding without end.
     """
     if content.startswith(b"\x1f\x8b"):
-        raise TargetError("The file is compressed (SVGZ); save it as plain SVG.")
+        raise TargetError("svg.compressed")
     # Without the zero bytes UTF-16 text is searched as well.
     if b"<!entity" in content.replace(b"\0", b"").lower():
-        raise TargetError("The file declares XML entities, which are not read for safety; save it as plain SVG.")
+        raise TargetError("svg.entities")
     try:
         root = ElementTree.fromstring(content)
     except ElementTree.ParseError as error:
-        raise TargetError(f"The file is not well-formed SVG ({error}); save it again as plain SVG.") from error
+        raise TargetError("svg.not_well_formed", reason=str(error)) from error
     if _tag(root) != "svg":
-        raise TargetError(f"The file is XML but not SVG: its root is <{_tag(root)}>; save it as plain SVG.")
+        raise TargetError("svg.other_root", tag=_tag(root))
     _refuse_bombs(root)
     clipped = any(element.get("clip-path") or element.get("mask") for element in root.iter())
     _drop_unpainted(root)
-    notes = ("Clip paths and masks are ignored; cut the shape itself if it looks different.",) if clipped else ()
+    notes = (tr("Clip paths and masks are ignored. Cut the shape itself if it looks different."),) if clipped else ()
     width = REAL_LENGTH.fullmatch(root.get("width", ""))
     width_mm = float(width[1]) * MM_PER_UNIT[width[2].lower()] if width else None
     return ElementTree.tostring(root), width_mm, notes
@@ -80,7 +81,7 @@ def _refuse_bombs(root: Element) -> None:
         if element in counted:
             return counted[element]
         if element in inside:
-            raise TargetError(f"The drawing uses <{_tag(element)}> inside itself; save it as plain SVG.")
+            raise TargetError("svg.inside_itself", tag=_tag(element))
         inside.add(element)
         total = 1 + sum(count(child) for child in element)
         if _tag(element) == "use" and (target := named.get(_reference(element))) is not None:
@@ -90,9 +91,7 @@ def _refuse_bombs(root: Element) -> None:
         return total
 
     if (total := count(root)) > MOST_ELEMENTS:
-        raise TargetError(
-            f"The drawing unfolds to {total:.3g} elements, more than {MOST_ELEMENTS}; export the outline alone."
-        )
+        raise TargetError("svg.too_many_elements", elements=total, limit=MOST_ELEMENTS)
 
 
 def _drop_unpainted(root: Element) -> None:
@@ -104,6 +103,6 @@ def _drop_unpainted(root: Element) -> None:
                 parent.remove(child)
             elif _tag(child) == "symbol":
                 child.tag = f"{namespace}g"
-                shelf = Element(f"{namespace}defs")
-                shelf.append(child)
-                parent[list(parent).index(child)] = shelf
+                definitions = Element(f"{namespace}defs")
+                definitions.append(child)
+                parent[list(parent).index(child)] = definitions

@@ -12,6 +12,7 @@ from skimage import measure
 
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray
 from kirigami_studio.foundation.errors import TargetError
+from kirigami_studio.foundation.words import tr, tr_n
 
 #: scikit-image carries no types; the annotation states what is used of it.
 find_contours: Callable[[FloatArray, float], list[FloatArray]] = measure.find_contours
@@ -54,7 +55,7 @@ def trace(ink: FloatArray) -> tuple[FloatArray, tuple[str, ...]]:
     piece, notes = _main_piece(ink > 0)
     solid = ndimage.binary_fill_holes(piece)
     if (filled := 1 - np.sum(piece) / np.sum(solid)) > 0:
-        notes = (*notes, f"Holes were filled ({100 * filled:.2g} % of the area).")
+        notes = (*notes, tr("Holes were filled ({percent:.2g} % of the area).", percent=100 * filled))
     highest = float(np.max(np.abs(ink)))
     field = np.where(solid & ~piece, highest, ink)
     field[~solid & (ink > 0)] = -highest
@@ -62,31 +63,32 @@ def trace(ink: FloatArray) -> tuple[FloatArray, tuple[str, ...]]:
     field = ndimage.gaussian_filter(np.pad(field, margin, constant_values=-highest), BLUR, mode="nearest")
     contours = [ring[:-1] for ring in find_contours(field, 0.0) if len(ring) > 4]
     if not contours:
-        raise TargetError("The shape is thinner than a pixel; use a larger or bolder picture.")
+        raise TargetError("trace.thinner_than_a_pixel")
     ring = max(contours, key=lambda ring: Polygon(ring).area) - margin
     points = np.column_stack([ring[:, 1], ink.shape[0] - 1 - ring[:, 0]])
     return _simplified(points), notes
 
 
 def _main_piece(mask: BoolArray) -> tuple[BoolArray, tuple[str, ...]]:
-    """Largest edge-connected piece of a mask, with a sentence on the others."""
+    """Largest edge-connected piece of a mask, with a note on the others."""
     labels = np.asarray(ndimage.label(mask)[0])
     sizes = np.bincount(labels.ravel())[1:]
     main = int(np.argmax(sizes))
     total, largest = int(np.sum(sizes)), int(sizes[main])
     if len(sizes) > MOST_SPECKS and largest < 0.5 * total:
-        raise TargetError(
-            f"The picture shows {len(sizes)} specks and no shape that holds half of them; "
-            "use a cleaner picture or another threshold."
-        )
+        raise TargetError("trace.specks", specks=len(sizes))
     if largest < LEAST_PIXELS:
-        raise TargetError(f"The largest shape has {largest} pixels only; use a picture of at least 64 x 64 pixels.")
+        raise TargetError("trace.too_few_pixels", pixels=largest)
     piece: BoolArray = labels == main + 1
     if len(sizes) == 1:
         return piece, ()
-    others = "1 island was" if len(sizes) == 2 else f"{len(sizes) - 1} islands were"
-    share = 100 * (1 - largest / total)
-    return piece, (f"Only the largest shape is kept: {others} left out ({share:.2g} % of the area).",)
+    note = tr_n(
+        "Only the largest shape is used: {count} island was left out ({percent:.2g} % of the area).",
+        "Only the largest shape is used: {count} islands were left out ({percent:.2g} % of the area).",
+        len(sizes) - 1,
+        percent=100 * (1 - largest / total),
+    )
+    return piece, (note,)
 
 
 def _simplified(points: FloatArray) -> FloatArray:

@@ -100,7 +100,7 @@ INPUTS: tuple[tuple[str, Maker, str], ...] = (
     ("huge.png", sparse(3 * 2**30), "huge.png"),
     ("huge.svg", sparse(3 * 2**30), "huge.svg"),
     ("huge.dxf", sparse(3 * 2**30), "huge.dxf"),
-    ("huge.kiri", sparse(3 * 2**30), "larger"),
+    ("huge.kiri", sparse(3 * 2**30), "too large"),
     ("bomb.kiri", bomb, "unpacks"),
     ("later.kiri", newer, "newer"),
     ("cut short.kiri", cut_short, "cut short.kiri"),

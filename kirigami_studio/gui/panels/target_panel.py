@@ -25,7 +25,7 @@ from kirigami_studio.gui.panels.number_field import LengthField, number_field
 from kirigami_studio.gui.views.target_view import TargetView, Tool
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.placed import LARGEST_MM, Placed
-from kirigami_studio.outlines.reach import reach_of, told
+from kirigami_studio.outlines.reach import reach_of, reach_texts
 
 #: Slider steps from nothing to most.
 REFINE_STEPS = 100
@@ -166,7 +166,7 @@ class TargetPanel(Card):
         known = placed is not None and placed.outline.unit == "mm"
         self._reach_texts = ("", "")
         if placed is not None and reach is not None:
-            self._reach_texts = told(reach, placed.outline, placed.scale if known else None)
+            self._reach_texts = reach_texts(reach, placed.outline, placed.scale if known else None)
         self._show_reach_text()
 
     def _show_reach_text(self) -> None:

@@ -148,10 +148,10 @@ def test_that_inner_contours_and_stray_lines_are_left_out_and_said(dxf, iou) -> 
     outline = read_dxf(dxf(draw))
     assert iou(outline, box_outline(1, 1)) > 0.999
     assert [
-        word for word in ("inside the outer", "Open lines", "1 smaller piece") if word in " ".join(outline.notes)
+        word for word in ("inside the outer", "open line", "1 smaller piece") if word in " ".join(outline.notes)
     ] == [
         "inside the outer",
-        "Open lines",
+        "open line",
         "1 smaller piece",
     ]
 
@@ -182,7 +182,7 @@ def wide_array(space, drawing) -> None:
     ("draw", "word"),
     [
         (lambda space, _: None, "no lines in model space"),
-        (lambda space, _: space.add_text("hello"), "convert the text to lines"),
+        (lambda space, _: space.add_text("hello"), "Convert the text to lines"),
         (lambda space, _: space.add_line((0, 0), (5, 5)), "open"),
         (lambda space, _: space.add_line((3, 3), (3, 3)), "one point"),
         (lambda space, _: space.add_circle((0, 0), 0), "no length"),

@@ -105,7 +105,7 @@ def test_that_a_star_drawn_in_one_stroke_is_the_whole_star() -> None:
     angle = np.pi / 2 + 2 * np.pi * np.arange(5) * 2 / 5
     outline = Outline.from_points(np.column_stack([np.cos(angle), np.sin(angle)]))
     assert len(outline.points) == 10
-    assert "4 more places" in outline.notes[0]
+    assert "at 5 places" in outline.notes[0]
 
 
 def test_that_a_spike_without_width_is_removed(iou) -> None:

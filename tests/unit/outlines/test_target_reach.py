@@ -17,7 +17,7 @@ from kirigami_studio.foundation.errors import TargetError
 from kirigami_studio.outlines import silhouettes
 from kirigami_studio.outlines.figures import Box, Figure, figure
 from kirigami_studio.outlines.outline import Outline
-from kirigami_studio.outlines.reach import NEEDED_PANELS, Reach, reach_of, told
+from kirigami_studio.outlines.reach import NEEDED_PANELS, Reach, reach_of, reach_texts
 from kirigami_studio.outlines.read import read_target
 
 DATA = Path(__file__).resolve().parents[2] / "data"
@@ -69,18 +69,20 @@ def test_that_the_mark_lies_on_the_arm() -> None:
 def test_that_a_finer_grid_is_named_that_shows_everything() -> None:
     outline = plate_with(1.6, inwards=True)
     reach = reach_of(outline, (10, 10))
-    said, brief = told(reach, outline, 9.6)
-    assert said.startswith("10 \N{MULTIPLICATION SIGN} 10 voids may lose 1 narrow notch (under 1.7 mm); try ")
-    assert brief.startswith("May lose 1 notch; try ")
-    rows, columns = (int(word) for word in said.removesuffix(".").split("try ")[1].split(" \N{MULTIPLICATION SIGN} "))
+    said, brief = reach_texts(reach, outline, 9.6)
+    assert said.startswith(
+        "A sheet of 10 \N{MULTIPLICATION SIGN} 10 voids may lose 1 narrow notch. It shows nothing under 1.7 mm. Try "
+    )
+    assert brief.startswith("May lose 1 notch. Try ")
+    rows, columns = (int(word) for word in said.removesuffix(".").split("Try ")[1].split(" \N{MULTIPLICATION SIGN} "))
     assert reach_of(outline, (rows, columns)).clear
 
 
 def test_that_hopeless_parts_should_be_made_wider_and_nothing_is_said_of_good_ones() -> None:
     hair = plate_with(0.1, inwards=False)
-    assert told(reach_of(hair, (10, 10)), hair)[0].endswith("1 thin arm; make them wider.")
+    assert reach_texts(reach_of(hair, (10, 10)), hair)[0].endswith("1 thin arm. Make them wider.")
     heart = silhouettes.load("heart")
-    assert told(reach_of(heart, (16, 16)), heart) == ("", "")
+    assert reach_texts(reach_of(heart, (16, 16)), heart) == ("", "")
 
 
 def test_that_a_grid_without_voids_is_refused() -> None:

@@ -12,7 +12,7 @@ from PIL import Image
 
 from kirigami_studio.foundation.errors import TargetError
 from kirigami_studio.outlines import silhouettes
-from kirigami_studio.outlines.read import READERS, read_json, read_many, read_target
+from kirigami_studio.outlines.read import READERS, read_json, read_target, target_files
 
 SQUARE = [[0, 0], [2, 0], [2, 2], [0, 2]]
 
@@ -92,7 +92,7 @@ def test_that_a_library_name_is_a_target() -> None:
 @pytest.mark.parametrize(
     ("source", "word"),
     [
-        ("haert", "did you mean heart"),
+        ("haert", "nearest names are: heart"),
         ("hexagn", "hexagon"),
         ("", "name of a library silhouette"),
         ("   ", "name of a library silhouette"),
@@ -119,18 +119,19 @@ def test_that_a_folder_is_read_in_the_order_of_names(tmp_path) -> None:
     for name in ("b", "A", "c"):
         (tmp_path / f"{name}.json").write_text(json.dumps(SQUARE))
     (tmp_path / "notes.txt").write_text("no target")
-    assert [outline.name for outline in read_many(tmp_path)] == ["A", "b", "c"]
-    assert [outline.name for outline in read_many("star")] == ["star"]
+    assert [read_target(file).name for file in target_files(tmp_path)] == ["A", "b", "c"]
 
 
 def test_that_a_folder_without_targets_or_with_a_bad_one_is_refused(tmp_path) -> None:
-    with pytest.raises(TargetError, match="holds no target"):
-        read_many(tmp_path)
+    with pytest.raises(TargetError, match="has no target files") as caught:
+        target_files(tmp_path)
+    assert caught.value.code == "target.none_in_folder"
+    with pytest.raises(TargetError, match="Cannot read the folder"):
+        target_files(tmp_path / "gone")
     (tmp_path / "bad.json").write_text("[[0, 0]]")
+    (file,) = target_files(tmp_path)
     with pytest.raises(TargetError, match=r"bad\.json"):
-        read_many(tmp_path)
-    with pytest.raises(TargetError, match="got None"):
-        read_many(None)  # type: ignore[arg-type]
+        read_target(file)
 
 
 @pytest.mark.parametrize("stored", [SQUARE, {"outline": SQUARE}, {"points": SQUARE}, {"outline": {"points": SQUARE}}])

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -144,7 +146,7 @@ def test_that_the_history_keeps_the_newest_steps_within_its_limit(document: Docu
 
 
 def test_that_another_target_drops_the_designs_of_the_old_one(document: Document, pentagon: Outline) -> None:
-    after = edits.set_target(document, pentagon.renamed("other")).document
+    after = edits.set_target(document, replace(pentagon, name="other")).document
     assert (after.candidates, after.chosen, dict(after.provenance)) == ((), None, {})
 
 
