@@ -200,7 +200,7 @@ def test_that_a_photo_larger_than_a_project_keeps_is_told(
     until(lambda: window.controller.document.target is not None)
     window.controller.save(tmp_path / "small.kiri")
     until(lambda: not window.controller.history.unsaved)
-    assert "more than 16" in told(window, "was not saved with the project")[0].sentence
+    assert "the limit is 16" in told(window, "was not saved with the project")[0].sentence
     assert (tmp_path / "small.kiri").stat().st_size < 100_000
 
 
