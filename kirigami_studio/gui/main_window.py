@@ -18,12 +18,12 @@ from PySide6.QtWidgets import (
 
 from kirigami_studio.foundation.resources import resource
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui.appearance import Appearance
+from kirigami_studio.gui.command import Switch, WindowState
 from kirigami_studio.gui.commands import all_commands
 from kirigami_studio.gui.commands.actions import CommandActions
-from kirigami_studio.gui.commands.command import Switch, WindowState
 from kirigami_studio.gui.commands.file import FileCommands
-from kirigami_studio.gui.commands.view import OVERLAY_COMMANDS
+from kirigami_studio.gui.commands.submenus import PictureMenu, RecentMenu
+from kirigami_studio.gui.commands.view import OVERLAY_COMMANDS, Appearance
 from kirigami_studio.gui.connections.window import Connections
 from kirigami_studio.gui.controller import Controller
 from kirigami_studio.gui.dialogs.files import FileDialogs, SystemFileDialogs
@@ -35,7 +35,6 @@ from kirigami_studio.gui.open_dialogs import Dialogs
 from kirigami_studio.gui.panels.fabrication_panel import Extent, FabricationPanel
 from kirigami_studio.gui.panels.gallery_panel import GalleryPanel
 from kirigami_studio.gui.panels.generate_bar import GenerateBar
-from kirigami_studio.gui.panels.menus import PictureMenu, RecentMenu
 from kirigami_studio.gui.panels.message_bar import MessageBar
 from kirigami_studio.gui.panels.settings_panel import SettingsPanel
 from kirigami_studio.gui.panels.stage_panel import StagePanel

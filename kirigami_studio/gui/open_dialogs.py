@@ -15,10 +15,10 @@ from kirigami_studio.gui.jobs.cut_jobs import Exported
 if TYPE_CHECKING:
     from kirigami_studio.gui.dialogs.export_report import ExportReport
     from kirigami_studio.gui.dialogs.help import GuideWindow, ShortcutSheet
+    from kirigami_studio.gui.dialogs.history_list import HistoryList
     from kirigami_studio.gui.dialogs.material_editor import MaterialEditor
     from kirigami_studio.gui.dialogs.silhouette_picker import SilhouettePicker
     from kirigami_studio.gui.main_window import MainWindow
-    from kirigami_studio.gui.panels.history_list import HistoryList
 
 
 class Dialogs(QObject):
@@ -72,7 +72,7 @@ class Dialogs(QObject):
 
     def show_history(self) -> None:
         """Open the list of all steps, or bring it to the front."""
-        from kirigami_studio.gui.panels.history_list import HistoryList
+        from kirigami_studio.gui.dialogs.history_list import HistoryList
 
         if self.history is None:
             self.history = HistoryList(self._window)

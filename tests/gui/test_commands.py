@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from kirigami_studio.gui.command import Command, WindowState, Wording
 from kirigami_studio.gui.commands.actions import CommandActions
-from kirigami_studio.gui.commands.command import Command, WindowState, Wording
 from kirigami_studio.gui.look.theme import LIGHT
 from kirigami_studio.gui.main_window import TOOLBAR, MainWindow
 from kirigami_studio.project.document import Mark

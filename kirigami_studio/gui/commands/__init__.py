@@ -1,6 +1,6 @@
 """Every command of the window: one record each, in one module for each menu.
 
-A record (:class:`~kirigami_studio.gui.commands.command.Command`) holds all that is to know of a command: its id, text,
+A record (:class:`~kirigami_studio.gui.command.Command`) holds all that is to know of a command: its id, text,
 keys, icon, when it is enabled and what it does.  :class:`~kirigami_studio.gui.commands.actions.CommandActions` makes
 the menus of them and keeps them up to date with the window's state; the sheet of shortcuts lists the same records.
 """
@@ -9,8 +9,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from kirigami_studio.gui.command import Command
 from kirigami_studio.gui.commands import design, draw, edit, file, help, view
-from kirigami_studio.gui.commands.command import Command
 
 if TYPE_CHECKING:
     from kirigami_studio.gui.main_window import MainWindow

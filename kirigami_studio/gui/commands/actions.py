@@ -8,7 +8,7 @@ from functools import partial
 from PySide6.QtGui import QAction, QKeySequence
 from PySide6.QtWidgets import QMainWindow, QMenu
 
-from kirigami_studio.gui.commands.command import Command, WindowState
+from kirigami_studio.gui.command import Command, WindowState
 from kirigami_studio.gui.look import icons
 from kirigami_studio.gui.look.theme import Palette
 

@@ -6,7 +6,7 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui.commands.command import Command, WindowState, Wording
+from kirigami_studio.gui.command import Command, WindowState, Wording
 from kirigami_studio.project.document import Mark
 
 if TYPE_CHECKING:

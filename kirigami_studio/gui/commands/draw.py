@@ -6,7 +6,7 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui.commands.command import Command
+from kirigami_studio.gui.command import Command
 from kirigami_studio.gui.messages import Message, Tone
 from kirigami_studio.gui.views.target_view import Tool
 from kirigami_studio.outlines.combining import Combine

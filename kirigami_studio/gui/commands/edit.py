@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from PySide6.QtGui import QGuiApplication
 
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui.commands.command import Command, WindowState, Wording
+from kirigami_studio.gui.command import Command, WindowState, Wording
 
 if TYPE_CHECKING:
     from kirigami_studio.gui.main_window import MainWindow

@@ -11,7 +11,7 @@ from PySide6.QtCore import QObject
 from kirigami_studio.fabricate.material import Material
 from kirigami_studio.foundation.resources import resource
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui.commands.command import Command
+from kirigami_studio.gui.command import Command
 from kirigami_studio.gui.controller import Controller
 from kirigami_studio.gui.jobs.project_jobs import Leftover
 from kirigami_studio.gui.messages import Message, Tone

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui.commands.command import Command
+from kirigami_studio.gui.command import Command
 
 if TYPE_CHECKING:
     from kirigami_studio.gui.main_window import MainWindow

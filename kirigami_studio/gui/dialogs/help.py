@@ -20,7 +20,7 @@ from PySide6.QtWidgets import (
 
 from kirigami_studio.foundation.resources import resource
 from kirigami_studio.foundation.words import tr, tr_n
-from kirigami_studio.gui.commands.command import Command
+from kirigami_studio.gui.command import Command
 
 
 class GuideWindow(QWidget):

@@ -1,4 +1,4 @@
-"""File > Open recent: projects, then targets, each by its name; missing ones are grey."""
+"""Submenus of the File menu that are filled when they open: recent files, and pictures of the views."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from kirigami_studio.project.recent import Recent
 
 
 class PictureMenu(QMenu):
-    """Asks where to, and lets the pictures be made."""
+    """Export picture of: every view in sight, how large, and with or without overlays."""
 
     def __init__(self, parent: QWidget, picturing: PictureMaker, ask: Callable[[str], Path | None]) -> None:
         super().__init__(tr("Export pi&cture of"), parent)
@@ -61,7 +61,7 @@ class PictureMenu(QMenu):
 
 
 class RecentMenu(QMenu):
-    """Lists what was used last, and opens it."""
+    """Open recent: projects, then targets, each by its name; missing ones are grey."""
 
     def __init__(self, parent: QWidget, files: RecentFiles, take: Callable[[str], None]) -> None:
         super().__init__(tr("Open &recent"), parent)
@@ -97,7 +97,7 @@ class RecentMenu(QMenu):
             action.setToolTip(tr("{path} no longer exists.", path=path) if path in missing else path)
 
     def _caption(self, title: str) -> QAction:
-        """A line that only says what follows; the style draws no titles of sections."""
+        """A heading in the menu; the style draws no titles of sections."""
         label = QLabel(title)
         label.setObjectName("muted")
         label.setContentsMargins(12, 6, 12, 2)
