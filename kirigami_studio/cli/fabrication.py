@@ -65,8 +65,8 @@ def export(arguments: argparse.Namespace) -> int:
     job = replace(_job(document), plan=plan, dxf_version=settings.dxf_version, profile=settings.profile,
                   paper=arguments.paper)  # fmt: skip
     written = _written(job, arguments)
-    warnings = [*plan.notes, *(problem.text for problem in report.problems)]
-    warnings += [text for found in written.verifications for text in found.warnings]
+    notes = [*plan.notes, *report.problems, *(note for found in written.verifications for note in found.warnings)]
+    warnings = [note.text for note in notes]
     if written.older:
         names = ", ".join(path.name for path in written.older)
         warnings.append(f"Left in the folder from an earlier export: {names}; delete what you do not want to cut.")

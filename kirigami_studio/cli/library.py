@@ -84,14 +84,14 @@ def _list(arguments: argparse.Namespace) -> int:
                 "materials": list(found.materials),
                 "own": sorted(found.own),
                 "calibrated": [key for key, material in found.materials.items() if material.calibrated],
-                "faults": list(found.faults),
+                "faults": [fault.text for fault in found.faults],
             }
         )
         return 0
     for key, material in found.materials.items():
         say(_line(material, key in found.own))
     for fault in found.faults:
-        say(f"Left out: {fault}")
+        say(f"Left out: {fault.text}")
     return 0
 
 
@@ -127,17 +127,17 @@ def coupon(arguments: argparse.Namespace) -> int:
             write_pdf(plan, path)
         case _:
             raise UsageError("coupon.unknown_extension", name=path.name)
-    report = check_plan(plan)
+    report, notes = check_plan(plan), [note.text for note in plan.notes]
     content: dict[str, object] = {
         "files": [str(path)],
         "size_mm": plan.size_mm,
         "seconds_estimate": plan.seconds_estimate,
         "pieces": report.pieces,
-        "notes": plan.notes,
+        "notes": notes,
     }
     width, height = plan.size_mm
     title = f"{path}: coupon of {width:g} x {height:g} mm for {material.key}, about {plan.seconds_estimate:.0f} s"
-    return _answer(arguments, content, "\n".join([title, *plan.notes]))
+    return _answer(arguments, content, "\n".join([title, *notes]))
 
 
 def _measured(arguments: argparse.Namespace) -> int:

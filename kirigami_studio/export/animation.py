@@ -56,7 +56,7 @@ def write_animation(job: ExportJob, path: str | Path, frames: int = FRAMES, long
         Fewer than 2 frames, an unwritable place, or a file that did not read back.
     """
     if frames < 2:
-        raise ExportError(f"An animation needs at least 2 frames, got {frames}.")
+        raise ExportError("gif.too_few_frames", frames=frames)
     pictures = animation_frames(job, frames, longest)
     durations = [HOLD_MS] + [FRAME_MS] * (frames - 2) + [HOLD_MS]
     stream = BytesIO()
@@ -76,7 +76,7 @@ def write_animation(job: ExportJob, path: str | Path, frames: int = FRAMES, long
         with Image.open(written) as read:
             found = int(getattr(read, "n_frames", 1))
             if found != frames or read.size != pictures[0].size:
-                raise ExportError(f"The GIF did not read back: {found} frames instead of {frames}.")
+                raise ExportError("gif.other_frames", found=found, planned=frames)
 
     write_atomically(Path(path), stream.getvalue(), verify)
     return frames

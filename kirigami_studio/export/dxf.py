@@ -10,6 +10,7 @@ import threading
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from io import StringIO
+from itertools import count
 from pathlib import Path
 
 import numpy as np
@@ -105,7 +106,7 @@ def strokes_dxf(
         Unknown version.
     """
     if version not in VERSIONS:
-        raise ExportError(f"The DXF version must be {' or '.join(VERSIONS)}, got {version!r}.")
+        raise ExportError("dxf.unknown_version", version=version)
     with _fixed_metadata():
         # R12 knows no units, and ezdxf.new would log that at every export.
         document = Drawing.new("R12") if version == "R12" else new(version, units=units.MM)
@@ -192,39 +193,39 @@ def check_written(path: Path, strokes: Sequence[Stroke], size: tuple[float, floa
     try:
         content = read_with_ezdxf(path)
     except ExportError as error:
-        raise ExportError(f"The DXF did not read back: {error} Nothing was written; please report it.") from error
-    if fault := _first_difference(content, strokes, size, version):
-        raise ExportError(f"The DXF did not pass its own check: {fault}. Nothing was written; please report it.")
+        raise ExportError("dxf.not_read_back", reason=str(error)) from error
+    if difference := _first_difference(content, strokes, size, version):
+        raise difference
 
 
 def _first_difference(
     content: FileContent, strokes: Sequence[Stroke], size: tuple[float, float], version: str
-) -> str | None:
+) -> ExportError | None:
+    """What differs first from what was meant; None where nothing does."""
     if version != "R12" and content.unit != units.MM:
-        return f"its unit is {content.unit} instead of 4 (mm)"
+        return ExportError("dxf.other_unit", unit=content.unit)
     if content.extent != size:
-        return f"its extents go to {content.extent}"
+        return ExportError("dxf.other_extent", extent=content.extent)
     if set(content.layers) - UNAVOIDABLE_LAYERS != set(layer_colours(strokes)):
-        return f"its layers are {', '.join(sorted(content.layers))}"
+        return ExportError("dxf.other_layers", layers=", ".join(sorted(content.layers)))
     if content.others:
-        return f"it holds a {content.others[0]} instead of a polyline"
+        return ExportError("dxf.other_kind", kind=content.others[0])
     if len(content.strokes) != len(strokes):
-        return f"it holds {len(content.strokes)} entities instead of {len(strokes)}"
-    for number, (found, meant) in enumerate(zip(content.strokes, strokes, strict=True)):
-        if fault := _stroke_difference(found, meant):
-            return f"entity {number} {fault}"
-    return None
+        return ExportError("dxf.other_count", found=len(content.strokes), planned=len(strokes))
+    differences = map(_stroke_difference, content.strokes, strokes, count())
+    return next((difference for difference in differences if difference is not None), None)
 
 
-def _stroke_difference(found: Stroke, meant: Stroke) -> str | None:
+def _stroke_difference(found: Stroke, meant: Stroke, number: int) -> ExportError | None:
+    """How one entity, by its number in the file, differs from what was meant."""
     if (found.layer, found.colour) != (meant.layer, meant.colour):
-        return f"is on layer {found.layer} in colour {found.colour}"
+        return ExportError("dxf.entity_on_other_layer", number=number, layer=found.layer, colour=found.colour)
     if found.closed != meant.closed:
-        return f"is {'closed' if found.closed else 'open'}"
+        return ExportError("dxf.entity_closed" if found.closed else "dxf.entity_open", number=number)
     if found.points.shape != meant.points.shape or not np.all(np.abs(found.points - meant.points) <= SAME_MM):
-        return f"has the points {found.points.tolist()} instead of {meant.points.tolist()}"
+        return ExportError("dxf.entity_moved", number=number)
     if bent_otherwise([found], [meant], SAME_MM):
-        return "has other arcs than were meant"
+        return ExportError("dxf.entity_bent", number=number)
     return None
 
 
@@ -256,7 +257,8 @@ def _mark(document: Drawing, plan: CutPlan, facts: dict[str, str]) -> None:
         _write(document, str(number), x + CIRCLE_MM, y + CIRCLE_MM, NUMBER_MM)
     width, height = plan.bounds_mm
     widths = "Numbers are those of single connector widths and removed connectors."
-    for line, text in enumerate([*(f"{key}: {value}" for key, value in facts.items()), *plan.notes, widths]):
+    facts_lines = [f"{key}: {value}" for key, value in facts.items()]
+    for line, text in enumerate([*facts_lines, *(note.text for note in plan.notes), widths]):
         _write(document, text, width + NOTE_GAP_MM, height - NOTE_MM - line * NOTE_LINE_MM, NOTE_MM)
 
 
@@ -275,5 +277,5 @@ def check_marked(path: Path, strokes: Sequence[Stroke], marks: Mapping[str, int]
     """
     content = read_with_ezdxf(path)
     wrong = [kind for kind, count in marks.items() if content.others.count(kind) != count]
-    if wrong or len(content.strokes) != len(strokes) or any(map(_stroke_difference, content.strokes, strokes)):
-        raise ExportError("The drawing did not read back as it was meant. Nothing was written; please report it.")
+    if wrong or len(content.strokes) != len(strokes) or any(map(_stroke_difference, content.strokes, strokes, count())):
+        raise ExportError("dxf.drawing_differs")

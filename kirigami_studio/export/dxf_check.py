@@ -18,7 +18,7 @@ from shapely.geometry import LineString, Polygon
 from shapely.geometry.base import BaseGeometry
 
 from kirigami_studio.export.dxf_reading import DxfContent, FilePath, read_content
-from kirigami_studio.fabricate.checks import OVERLAP_TOLERANCE_MM
+from kirigami_studio.fabricate.checks import OVERLAP_TOLERANCE_MM, place_of
 from kirigami_studio.fabricate.cut_plan import LARGEST_SHEET_MM, SMALLEST_SHEET_MM, Layer
 from kirigami_studio.fabricate.findings import Problem, Severity
 from kirigami_studio.fabricate.finished_sheet import Overlap, overlap, remaining_pieces, smallest_ligament
@@ -104,7 +104,7 @@ def check_file(path: str | Path, kerf_mm: float | None = None) -> FileReport:
     kerf = _kerf(content, kerf_mm)
     problems = [*content.problems, *_layer_problems(content.layers)]
     if not content.paths:
-        problems.append(Problem("The file holds nothing that can be cut."))
+        problems.append(Problem.error("cut_file.empty"))
         return FileReport(Path(path), tuple(problems), content.unit, content.layers, 0, 0.0, 0.0, (0.0, 0.0), kerf,
                           None, None)  # fmt: skip
     lines = [LineString(drawn.points) for drawn in content.paths]
@@ -130,7 +130,7 @@ def _kerf(content: DxfContent, kerf_mm: float | None) -> float:
     except (TypeError, ValueError):
         kerf = float("nan")
     if not 0.0 <= kerf <= LARGEST_SHEET_MM:
-        raise ExportError(f"The kerf must be a width in mm of 0 or more, got {text!r}; give the cut's full width.")
+        raise ExportError("cut_file.kerf_not_a_width", value=text)
     return kerf
 
 
@@ -138,21 +138,19 @@ def _layer_problems(layers: Sequence[str]) -> list[Problem]:
     trapped = [name for name in layers if any(word in name.upper() for word in TRAP_WORDS)]
     if not trapped:
         return []
-    return [
-        Problem(
-            f"Layer names with CUT or ENGRAVE in them ({', '.join(trapped)}) choose an operation by themselves in "
-            f"MeerK40t and K40 Whisperer, so that lines are cut twice or engraved; rename them."
-        )
-    ]
+    return [Problem.error("cut_file.trap_layers", layers=", ".join(trapped))]
 
 
 def _size_problems(bounds: tuple[float, float]) -> list[Problem]:
     if max(bounds) <= LARGEST_SHEET_MM and max(bounds) >= SMALLEST_SHEET_MM:
         return []
     return [
-        Problem(
-            f"The drawing is {bounds[0]:g} x {bounds[1]:g} mm, outside {SMALLEST_SHEET_MM:g} to "
-            f"{LARGEST_SHEET_MM:g} mm; its unit is probably wrong."
+        Problem.error(
+            "cut_file.size_unlikely",
+            width_mm=bounds[0],
+            height_mm=bounds[1],
+            smallest_mm=SMALLEST_SHEET_MM,
+            largest_mm=LARGEST_SHEET_MM,
         )
     ]
 
@@ -168,17 +166,10 @@ def _double_problems(paths: Sequence[FilePath], twice: Overlap) -> list[Problem]
     if doubles:
         (x, y), _ = doubles[0][0]
         where = (x * SAME_POINT_MM, y * SAME_POINT_MM)
-        problems.append(
-            Problem(
-                f"{sum(count - 1 for _, count in doubles)} lines are drawn more than once, the first at "
-                f"x = {where[0]:.2f}, y = {where[1]:.2f}; they would be cut twice, so delete the duplicates.",
-                Severity.ERROR,
-                where,
-            )
-        )
+        again = sum(count - 1 for _, count in doubles)
+        problems.append(Problem.error("cut_file.duplicates", where, count=again))
     if twice.length_mm > OVERLAP_TOLERANCE_MM:
-        text = f"{twice.length_mm:.3f} mm of the cuts overlap other cuts; join or trim them."
-        problems.append(Problem(text, Severity.ERROR, twice.where))
+        problems.append(Problem.error("cut_file.overlap", twice.where, length_mm=twice.length_mm))
     return problems
 
 
@@ -196,14 +187,11 @@ def _find_outline(paths: Sequence[FilePath], problems: list[Problem]) -> Polygon
         if not rings:
             problems.append(_open_outline(chains))
             return None
-        text = "The outline consists of lines that meet but is no closed polyline; some machines see it as open."
-        problems.append(Problem(text, Severity.WARNING))
+        problems.append(Problem.warning("cut_file.outline_of_lines"))
     outline = max(rings, key=lambda ring: float(ring.area))
     if not outline.is_valid:
         where = shapely.get_coordinates(outline)[0]
-        problems.append(
-            Problem("The outline crosses itself; redraw it.", Severity.ERROR, (float(where[0]), float(where[1])))
-        )
+        problems.append(Problem.error("cut_file.outline_crosses_itself", (float(where[0]), float(where[1]))))
         return None
     return outline
 
@@ -220,11 +208,10 @@ def _open_outline(chains: Sequence[LineString]) -> Problem:
             for chain in chains]  # fmt: skip
     nearly = [entry for entry in gaps if entry[1] < NEARLY_CLOSED_MM and entry[0] > SMALLEST_SHEET_MM]
     if not nearly:
-        return Problem("The file has no closed outline, so the sheet would not come free; add one closed contour.")
+        return Problem.error("cut_file.no_outline")
     _, gap, chain = max(nearly, key=lambda entry: entry[0])
     x, y = chain.coords[0]
-    text = f"The outline is open by {gap:.3f} mm at x = {x:.2f}, y = {y:.2f}; close it."
-    return Problem(text, Severity.ERROR, (float(x), float(y)))
+    return Problem.error("cut_file.outline_open", (float(x), float(y)), gap_mm=float(gap))
 
 
 def tabbed_outline(content: DxfContent, problems: list[Problem]) -> Polygon | None:
@@ -243,12 +230,9 @@ def tabbed_outline(content: DxfContent, problems: list[Problem]) -> Polygon | No
         parts = content.paths[-int(content.facts["TABS"]) :]
     closed = sum(drawn.closed for drawn in parts)
     if closed or f"{len(parts)}" != content.facts["TABS"]:
-        text = (
-            f"The file speaks of {content.facts['TABS']} tabs, but its outline consists of {len(parts)} paths, "
-            f"{closed} of them closed; write the file again."
-        )
         x, y = parts[0].points[-1] if parts else (0.0, 0.0)
-        problems.append(Problem(text, Severity.ERROR, (float(x), float(y))))
+        tabs, where = content.facts["TABS"], (float(x), float(y))
+        problems.append(Problem.error("cut_file.tab_count", where, tabs=tabs, paths=len(parts), closed=closed))
         return None
     wanted = _number(content, "TAB_MM") + _number(content, "KERF_MM")
     ends = np.array([drawn.points[[0, -1]] for drawn in parts]).reshape(-1, 2)
@@ -259,11 +243,8 @@ def tabbed_outline(content: DxfContent, problems: list[Problem]) -> Polygon | No
     if not np.all(np.abs(gaps - wanted) <= TAB_TOLERANCE_MM):
         worst = int(np.argmax(np.abs(gaps - wanted)))
         x, y = ends[worst]
-        text = (
-            f"The outline is open by {gaps[worst]:.3f} mm at x = {x:.2f}, y = {y:.2f}, where the file speaks of tabs "
-            f"with gaps of {wanted:.3f} mm; write the file again."
-        )
-        problems.append(Problem(text, Severity.ERROR, (float(x), float(y))))
+        gap, where = float(gaps[worst]), (float(x), float(y))
+        problems.append(Problem.error("cut_file.tab_gap", where, gap_mm=gap, promised_mm=wanted))
         return None
     return Polygon(joined_ring([drawn.points for drawn in parts]))
 
@@ -280,8 +261,7 @@ def placement_problems(paths: Sequence[FilePath], outline: Polygon | None) -> li
     problems: list[Problem] = []
     low = np.concatenate([drawn.points for drawn in paths]).min(axis=0)
     if low.min() < -TOUCH_MM:
-        text = f"Coordinates go down to ({low[0]:.2f}, {low[1]:.2f}); some machines cut off what lies below the origin."
-        problems.append(Problem(text, Severity.WARNING))
+        problems.append(Problem.warning("cut_file.below_origin", low_x=float(low[0]), low_y=float(low[1])))
     if outline is None:
         return problems
     inside, reach = outline.buffer(-TOUCH_MM), outline.buffer(REACH_MM)
@@ -289,16 +269,13 @@ def placement_problems(paths: Sequence[FilePath], outline: Polygon | None) -> li
     for drawn, line in zip(paths, lines, strict=True):
         x, y = drawn.points[0]
         if not line.within(reach):
-            text = f"The cut at x = {x:.2f}, y = {y:.2f} leaves the sheet; move it inside the outline or delete it."
-            problems.append(Problem(text, Severity.ERROR, (float(x), float(y))))
+            problems.append(Problem.error("cut_file.outside_sheet", (float(x), float(y))))
         elif drawn.layer == Layer.SLITS.value and not line.within(inside):
-            text = f"The slit at x = {x:.2f}, y = {y:.2f} reaches the outline; no connector is left at its end."
-            problems.append(Problem(text, Severity.ERROR, (float(x), float(y))))
+            problems.append(Problem.error("cut_file.slit_reaches_outline", (float(x), float(y))))
     ring = outline.exterior.buffer(TOUCH_MM)
     on_ring = np.array([bool(shapely.within(line, ring)) for line in lines])
     if on_ring.any() and not on_ring[-1]:
-        text = "Cuts come after the outline in the file; the sheet may move once it is free, so cut the outline last."
-        problems.append(Problem(text, Severity.WARNING))
+        problems.append(Problem.warning("cut_file.cuts_after_outline"))
     return problems
 
 
@@ -318,18 +295,19 @@ def _physics(
     left = remaining_pieces(sheet, cuts, kerf)
     pieces = len(left)
     if pieces != 1:
-        loose = left[1].representative_point() if left else outline.centroid
-        text = f"The sheet falls into {pieces} pieces with a kerf of {kerf:g} mm; leave wider connectors."
-        problems.append(Problem(text, Severity.ERROR, (float(loose.x), float(loose.y))))
+        if left:
+            where = place_of(left[1].representative_point())
+            problems.append(Problem.error("cut_file.falls_apart", where, kerf_mm=kerf, pieces=pieces))
+        else:
+            problems.append(Problem.error("cut_file.nothing_left", place_of(outline.centroid), kerf_mm=kerf))
     ligament = smallest_ligament(cuts, ring, kerf, joined)
     if ligament is None:
         return pieces, None
     if ligament.width_mm <= 0 and pieces == 1:
         # In a foreign drawing cuts may cross on purpose; in ours a connector is lost.
         ours = any(drawn.layer in (Layer.SLITS.value, Layer.EDGE_SLITS.value) for drawn in content.paths)
-        x, y = ligament.where
-        text = f"Cuts run into each other at x = {x:.2f}, y = {y:.2f}; no connector is left there."
-        problems.append(Problem(text, Severity.ERROR if ours else Severity.WARNING, ligament.where))
+        weighed = Problem.error if ours else Problem.warning
+        problems.append(weighed("cut_file.connector_lost", ligament.where))
     return pieces, ligament.width_mm
 
 
@@ -342,16 +320,8 @@ def _loose_discs(inner: Sequence[FilePath]) -> list[Problem]:
     if not wide:
         return []
     largest = max(wide, key=lambda ring: float(ring.area))
-    x, y = largest.centroid.coords[0]
     size = math.sqrt(4.0 * largest.area / math.pi)
-    return [
-        Problem(
-            f"{len(wide)} closed cuts inside the outline let a part fall out, the largest one, about {size:.1f} mm "
-            f"across, at x = {x:.2f}, y = {y:.2f}; make sure that it is meant.",
-            Severity.WARNING,
-            (float(x), float(y)),
-        )
-    ]
+    return [Problem.warning("cut_file.loose_parts", place_of(largest.centroid), count=len(wide), size_mm=size)]
 
 
 def _inner_cuts(
@@ -369,9 +339,6 @@ def _inner_cuts(
     if f"{len(ends)}" == facts["JOINS"]:
         return lines, set(ends)
     x, y = shapely.get_coordinates(lines[ends[0][0]])[0] if ends else inner[0].points[0]
-    text = (
-        f"{len(ends)} cuts end on another cut where the file speaks of {facts['JOINS']}: a connector is lost or a slit "
-        f"misses its end; write the file again."
-    )
-    problems.append(Problem(text, Severity.ERROR, (float(x), float(y))))
+    where = (float(x), float(y))
+    problems.append(Problem.error("cut_file.joins_differ", where, count=len(ends), promised=facts["JOINS"]))
     return lines, set()

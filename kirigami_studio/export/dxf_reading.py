@@ -25,7 +25,7 @@ from ezdxf.path import make_path
 
 from kirigami_studio.export.file_content import FileContent
 from kirigami_studio.export.strokes import Stroke
-from kirigami_studio.fabricate.findings import Problem, Severity
+from kirigami_studio.fabricate.findings import Problem
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import ExportError
 
@@ -66,9 +66,9 @@ def read_with_ezdxf(path: Path) -> FileContent:
         document = readfile(path)
         errors = document.audit().errors
     except (OSError, *PARSER_FAULTS) as error:
-        raise ExportError(f"{path} is not a readable DXF: {error}. Export it again.") from error
+        raise ExportError("dxf.not_readable", path=path, reason=str(error)) from error
     if errors:
-        raise ExportError(f"ezdxf's audit found {len(errors)} errors in {path}, the first: {errors[0].message}.")
+        raise ExportError("dxf.audit", path=path, first=errors[0].message, count=len(errors))
     return _content(document)
 
 
@@ -153,26 +153,27 @@ def read_content(path: Path) -> DxfContent:
     try:
         _collect(document, content)
     except PARSER_FAULTS as error:
-        raise ExportError(f"{path} is a damaged DXF; export it again from its program.") from error
+        raise ExportError("dxf.damaged", path=path) from error
     return content
 
 
 def _open(path: Path, content: DxfContent) -> Drawing:
     try:
         if path.stat().st_size > LARGEST_FILE:
-            raise ExportError(f"{path} is larger than {LARGEST_FILE // 1_000_000} MB; it cannot be a cut file.")
+            raise ExportError("dxf.too_large", path=path, limit=LARGEST_FILE // 1_000_000)
         try:
             return readfile(path)
         except PARSER_FAULTS:
             document, _ = recover.readfile(path)
-            content.problems.append(Problem("The file is damaged; only a part could be read. Export it again."))
+            content.problems.append(Problem.error("cut_file.only_partly_readable"))
             return document
     except OSError as error:
         # ezdxf raises a bare OSError for a file that is no DXF at all.
-        reason = error.strerror or "it is not a DXF file"
-        raise ExportError(f"Cannot read {path}: {reason}. Choose a DXF file.") from error
+        if error.strerror is None:
+            raise ExportError("dxf.no_dxf", path=path) from error
+        raise ExportError("dxf.cannot_open", path=path, reason=error.strerror) from error
     except PARSER_FAULTS as error:
-        raise ExportError(f"{path} is not a readable DXF; export it again from its program.") from error
+        raise ExportError("dxf.damaged", path=path) from error
 
 
 def _collect(document: Drawing, content: DxfContent) -> None:
@@ -192,12 +193,9 @@ def _collect(document: Drawing, content: DxfContent) -> None:
             risky[kind] += 1
         _add_path(content, entity, factor)
     for kind, count in sorted(others.items()):
-        content.problems.append(
-            Problem(f"The file holds {count} {kind}, which machines drop or burn as they like; remove them.")
-        )
+        content.problems.append(Problem.error("cut_file.other_entities", count=count, kind=kind))
     for kind, count in sorted(risky.items()):
-        text = f"The file holds {count} {kind}, which some machines read wrongly; use lines and arcs."
-        content.problems.append(Problem(text, Severity.WARNING))
+        content.problems.append(Problem.warning("cut_file.risky_curves", count=count, kind=kind))
 
 
 def _layer(entity: DXFEntity) -> str:
@@ -211,17 +209,15 @@ def _unit_factor(document: Drawing, content: DxfContent) -> float:
         content.unit = "mm"
         return 1.0
     if code == 0:
-        text = "The file does not say its unit; it was read as mm, and must be imported as mm."
-        content.problems.append(Problem(text, Severity.WARNING))
+        content.problems.append(Problem.warning("cut_file.no_unit"))
         return 1.0
     try:
         content.unit = units.decode(code) or str(code)
         factor = float(units.conversion_factor(InsertUnits(code), InsertUnits.Millimeters))
     except (ValueError, KeyError, IndexError, TypeError):
-        content.problems.append(Problem(f"The file's unit code {code} is unknown; set it to 4 (mm)."))
+        content.problems.append(Problem.error("cut_file.unknown_unit", unit=code))
         return 1.0
-    text = f"The file's unit is {content.unit} instead of mm; many machines ignore that and cut another size."
-    content.problems.append(Problem(text, Severity.WARNING))
+    content.problems.append(Problem.warning("cut_file.other_unit", unit=content.unit))
     return factor
 
 
@@ -236,19 +232,19 @@ def _facts(document: Drawing) -> dict[str, str]:
 
 def _add_path(content: DxfContent, entity: DXFEntity, factor: float) -> None:
     layer = _layer(entity)
-    name = f"{entity.dxftype()} {entity.dxf.get('handle', '?')} on layer {layer}"
+    name = {"kind": entity.dxftype(), "handle": str(entity.dxf.get("handle", "?")), "layer": layer}
     try:
         points = _flattened(entity, factor)
     except PARSER_FAULTS:
-        content.problems.append(Problem(f"The {name} cannot be read as a curve; draw it again."))
+        content.problems.append(Problem.error("cut_file.no_curve", **name))
         return
     if not np.all(np.isfinite(points)):
-        content.problems.append(Problem(f"The {name} has a coordinate that is not a number; draw it again."))
+        content.problems.append(Problem.error("cut_file.not_a_number", **name))
         return
     length = float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum()) if len(points) > 1 else 0.0
     if length < 1e-6:
         where = (float(points[0, 0]), float(points[0, 1])) if len(points) else None
-        content.problems.append(Problem(f"The {name} has no length; remove it.", Severity.ERROR, where))
+        content.problems.append(Problem.error("cut_file.no_length", where, **name))
         return
     closed = _is_closed(entity)
     content.paths.append(FilePath(_met(points) if closed else points, layer, closed))

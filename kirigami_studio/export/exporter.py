@@ -66,7 +66,7 @@ class ExportJob:
 
     @property
     def required_plan(self) -> CutPlan:
-        """The plan, which says where its design comes from, or a refusal.
+        """The plan, with the provenance of its design.
 
         Raises
         ------
@@ -74,7 +74,7 @@ class ExportJob:
             The job has none.
         """
         if self.plan is None:
-            raise ExportError("A cut file needs a cut plan: choose a material and a sheet width first.")
+            raise ExportError("export.no_plan")
         return replace(self.plan, origin=self.provenance) if self.provenance else self.plan
 
     @property

@@ -52,7 +52,7 @@ def read_group_codes(path: Path) -> FileContent:
         drawn = [entity for entity in entities if entity.kind in ("LWPOLYLINE", "POLYLINE")]
         strokes = tuple(_stroke(entity) for entity in drawn)
     except (ValueError, OSError) as error:
-        raise ExportError(f"{path} is not a readable DXF: {error}. Export it again.") from error
+        raise ExportError("dxf.not_readable", path=path, reason=str(error)) from error
     unit = header.get("$INSUNITS", {}).get(70)
     corner = header.get("$EXTMAX", {})
     others = tuple(entity.kind for entity in entities if entity.kind not in ("LWPOLYLINE", "POLYLINE"))

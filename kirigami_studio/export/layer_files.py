@@ -61,8 +61,7 @@ def write_layer_files(plan: CutPlan, path: str | Path, version: str, profile: Pr
         _put_in_place(fresh, folder)
         fresh = None
     except OSError as error:
-        reason = error.strerror or str(error)
-        raise ExportError(f"Cannot write {folder}: {reason}. Choose another folder or free some space.") from error
+        raise ExportError("file.not_written", path=folder, reason=error.strerror or str(error)) from error
     finally:
         if fresh is not None:
             shutil.rmtree(fresh, ignore_errors=True)
@@ -78,7 +77,7 @@ def layer_paths(folder: Path) -> list[Path]:
         No such folder, or other files in it.
     """
     if not folder.is_dir():
-        raise ExportError(f"{folder} is no folder of layer files; export it again.")
+        raise ExportError("layers.not_a_folder", folder=folder)
     _refuse_strange_content(folder)
     return sorted(folder.iterdir())
 
@@ -96,12 +95,10 @@ def _refuse_strange_content(folder: Path) -> None:
     if not folder.exists():
         return
     if not folder.is_dir():
-        raise ExportError(f"Cannot write {folder}: a file stands there. Choose another name.")
+        raise ExportError("layers.file_in_the_way", folder=folder)
     strange = sorted(entry.name for entry in folder.iterdir() if not OWN_NAME.fullmatch(entry.name))
     if strange:
-        raise ExportError(
-            f"The folder {folder} holds other files ({strange[0]}); layer files need a folder of their own."
-        )
+        raise ExportError("layers.other_files", folder=folder, name=strange[0])
 
 
 def _put_in_place(fresh: Path, folder: Path) -> None:

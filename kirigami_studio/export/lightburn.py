@@ -57,7 +57,7 @@ class LightBurnExporter:
             The profile asks for closed slots, which such a project does not hold; or as :func:`write_lightburn`.
         """
         if find_profile(job.profile).slots:
-            raise ExportError("A LightBurn project holds open cuts; write DXF or SVG for a cutting service.")
+            raise ExportError("lightburn.open_cuts_only")
         write_lightburn(job.required_plan, path)
 
 
@@ -78,8 +78,7 @@ def write_lightburn(plan: CutPlan, path: str | Path) -> None:
         for name, length in meant.items():
             if abs(found.get(name, 0.0) - length) > SAME_LENGTH * length:
                 raise ExportError(
-                    f"The LightBurn file did not read back: {found.get(name, 0.0):.3f} instead of {length:.3f} mm on "
-                    f"{name}. Nothing was written."
+                    "lightburn.other_length", found_mm=found.get(name, 0.0), planned_mm=length, layer=name
                 )
 
     write_atomically(Path(path), content, verify)
@@ -104,7 +103,8 @@ def lightburn_bytes(plan: CutPlan) -> bytes:
         )
         ElementTree.SubElement(marker, "XForm").text = f"1 0 0 1 {x:.4f} {y:.4f}"
     notes = [f"{key} {value}" for key, value in facts_of(plan, find_profile("lightburn")).items()]
-    ElementTree.SubElement(root, "Notes", {"ShowOnLoad": "0", "Notes": "\n".join([*notes, *plan.notes])})
+    notes += [note.text for note in plan.notes]
+    ElementTree.SubElement(root, "Notes", {"ShowOnLoad": "0", "Notes": "\n".join(notes)})
     ElementTree.indent(root)
     content: bytes = ElementTree.tostring(root, encoding="utf-8", xml_declaration=True)
     return content
@@ -202,7 +202,7 @@ def layer_lengths(path: Path) -> dict[str, float]:
             if index not in tools:
                 lengths[names[index]] += _length(shape)
     except (OSError, ElementTree.ParseError, KeyError, ValueError, IndexError) as error:
-        raise ExportError(f"{path} is not a readable LightBurn project: {error}. Export it again.") from error
+        raise ExportError("lightburn.not_readable", path=path, reason=str(error)) from error
     return lengths
 
 

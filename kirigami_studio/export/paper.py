@@ -81,12 +81,12 @@ def tile(size: Size, paper: str) -> Tiling:
     """
     upright = find_paper(paper)
     if upright is None:
-        raise ExportError("Pages need a paper size: choose a4 or letter.")
+        raise ExportError("paper.none")
     width, height = upright
     choices = [_tiling(size, page) for page in ((width, height), (height, width))]
     best = min(choices, key=lambda choice: choice.rows * choice.columns)
     if len(best.tiles) > MOST_PAGES:
-        raise ExportError(f"This sheet would need {len(best.tiles)} pages of {paper}; choose one large page.")
+        raise ExportError("paper.too_many_pages", pages=len(best.tiles), paper=paper)
     return best
 
 
@@ -100,7 +100,7 @@ def find_paper(name: str) -> Size | None:
     """
     key = str(name).strip().casefold()
     if key not in PAPERS:
-        raise ExportError(f"There is no paper {name!r}; choose one of {', '.join(PAPERS)}.")
+        raise ExportError("paper.unknown", name=name, known=", ".join(PAPERS))
     return PAPERS[key]
 
 

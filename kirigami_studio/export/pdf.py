@@ -226,9 +226,15 @@ def _verify(path: Path, plan: CutPlan, tiling: Tiling) -> None:
     pages = read_pages(path)
     for page in pages:
         if max(abs(a - b) for a, b in zip(page.size_mm, tiling.page, strict=True)) > SAME_SIZE_MM:
-            raise ExportError(f"The PDF did not read back: page {page.size_mm} instead of {tiling.page} mm.")
+            raise ExportError(
+                "pdf.other_page_size",
+                width_mm=page.size_mm[0],
+                height_mm=page.size_mm[1],
+                planned_width_mm=tiling.page[0],
+                planned_height_mm=tiling.page[1],
+            )
     if len(pages) != len(tiling.tiles) + (len(tiling.tiles) > 1):
-        raise ExportError(f"The PDF did not read back: {len(pages)} pages for {len(tiling.tiles)} parts.")
+        raise ExportError("pdf.other_page_count", pages=len(pages), parts=len(tiling.tiles))
     for layer in plan.layers:
         colour = picture.LAYER_COLOUR[layer]
         shown = zip(pages[-len(tiling.tiles) :], tiling.tiles, strict=True)
@@ -236,10 +242,7 @@ def _verify(path: Path, plan: CutPlan, tiling: Tiling) -> None:
         meant = sum(cut.length for cut in plan.on_layer(layer))
         corners = sum(len(cut.flattened) for cut in plan.on_layer(layer))
         if abs(found - meant) > SAME_LENGTH * meant + ROUNDING_MM * corners:
-            raise ExportError(
-                f"The PDF did not read back: {found:.3f} mm of {layer.value} instead of {meant:.3f} mm. Nothing was "
-                f"written."
-            )
+            raise ExportError("pdf.other_length", found_mm=found, planned_mm=meant, layer=layer.value)
 
 
 def _length_in_cell(page: Page, part: Tile, colour: Colour) -> float:
@@ -290,18 +293,18 @@ def read_pages(path: Path) -> list[Page]:
     """
     content = path.read_bytes()
     if not content.startswith(b"%PDF-") or not content.rstrip().endswith(b"%%EOF"):
-        raise ExportError(f"{path} is not a whole PDF; export it again.")
+        raise ExportError("pdf.not_whole", path=path)
     boxes = [tuple(float(side) * MM_PER_POINT for side in match) for match in _BOX.findall(content)]
     streams = _STREAM.findall(content)
     if len(boxes) != len(streams):
-        raise ExportError(f"{path} has {len(boxes)} pages but {len(streams)} drawings; export it again.")
+        raise ExportError("pdf.pages_without_drawing", path=path, pages=len(boxes), drawings=len(streams))
     try:
         return [
             Page((box[0], box[1]), tuple(_lines(_TEXT.sub(b"", stream).decode("latin-1"))))
             for box, stream in zip(boxes, streams, strict=True)
         ]
     except (ValueError, IndexError) as error:
-        raise ExportError(f"{path} holds a drawing that cannot be read: {error}. Export it again.") from error
+        raise ExportError("pdf.drawing_not_readable", path=path, reason=str(error)) from error
 
 
 def _lines(stream: str) -> Iterator[PageLine]:

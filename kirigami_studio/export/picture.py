@@ -66,7 +66,13 @@ def write_png(job: ExportJob, path: str | Path, longest: int = LONGEST_SIDE) -> 
         with Image.open(written) as read:
             read.load()
             if read.size != image.size:
-                raise ExportError(f"The PNG did not read back: {read.size} instead of {image.size} pixels.")
+                raise ExportError(
+                    "png.other_size",
+                    width=read.width,
+                    height=read.height,
+                    planned_width=image.width,
+                    planned_height=image.height,
+                )
 
     write_atomically(Path(path), stream.getvalue(), verify)
 

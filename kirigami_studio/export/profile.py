@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 
 from kirigami_studio.fabricate.cut_plan import Layer
+from kirigami_studio.fabricate.findings import Note
 from kirigami_studio.foundation.errors import ExportError
 
 RED, GREEN, BLUE, MAGENTA, WHITE = 1, 3, 5, 6, 7
@@ -38,8 +39,8 @@ class Profile:
         A folder of files instead of one file.
     slots : bool
         Closed contours only: every slit becomes the outline of the slot that it burns.
-    note : str
-        A sentence to read before importing, or nothing.
+    note : Note or None
+        What to know before importing.
     """
 
     key: str
@@ -49,7 +50,7 @@ class Profile:
     flatten: bool = False
     file_per_layer: bool = False
     slots: bool = False
-    note: str = ""
+    note: Note | None = None
 
     def layer_name(self, layer: Layer) -> str:
         """Name of a layer in files of this profile."""
@@ -70,21 +71,21 @@ _TABLE = (
         "One colour, one layer: for programs that sort by colour or layer",
         _ALL_WHITE,
         one_layer=True,
-        note="White lines are rastered by MeerK40t and engraved by some others: choose the k40 profile for those.",
+        note=Note.of("profile.white_lines"),
     ),
     Profile(
         "layers",
         "One file for each layer, in a folder (CircuitPro)",
         _ALL_WHITE,
         file_per_layer=True,
-        note="Import all files of the folder at one origin and cut them in the order of their numbers.",
+        note=Note.of("profile.one_origin"),
     ),
     Profile(
         "slots",
         "Cutting service: closed contours only, every slit as a slot",
         _BY_LAYER,
         slots=True,
-        note="Contours are the edges of the finished part: the service has to allow for its kerf.",
+        note=Note.of("profile.kerf_is_theirs"),
     ),
 )
 PROFILES: Mapping[str, Profile] = MappingProxyType({profile.key: profile for profile in _TABLE})
@@ -101,5 +102,5 @@ def find_profile(name: str) -> Profile:
     """
     found = PROFILES.get(str(name).strip().casefold())
     if found is None:
-        raise ExportError(f"There is no machine profile {name!r}; choose one of {', '.join(PROFILES)}.")
+        raise ExportError("profile.unknown", name=name, known=", ".join(PROFILES))
     return found

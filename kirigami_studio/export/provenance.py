@@ -94,7 +94,7 @@ def write_sidecar(job: ExportJob, path: str | Path, cut_files: Sequence[Path] = 
 
     def verify(written: Path) -> None:
         if json.loads(written.read_bytes()) != record:
-            raise ExportError(f"The record {goal} did not read back. Nothing was written; please report it.")
+            raise ExportError("sidecar.not_as_written", path=goal)
 
     write_atomically(goal, content, verify)
     return goal
@@ -143,7 +143,7 @@ def _expected(plan: CutPlan) -> dict[str, Any]:
         "seconds": {"low": plan.times.low, "estimate": plan.times.total, "high": plan.times.high},
         "paths": {layer.value: len(plan.on_layer(layer)) for layer in plan.layers},
         "min_connector_mm": plan.min_connector_mm,
-        "notes": list(plan.notes),
+        "notes": [note.text for note in plan.notes],
     }
 
 
@@ -173,4 +173,4 @@ def _digests(path: Path) -> list[tuple[str, str]]:
             (part.relative_to(path.parent).as_posix(), hashlib.sha256(part.read_bytes()).hexdigest()) for part in parts
         ]
     except OSError as error:
-        raise ExportError(f"Cannot read {path}: {error.strerror or error}. Export it again.") from error
+        raise ExportError("sidecar.file_not_readable", path=path, reason=error.strerror or str(error)) from error

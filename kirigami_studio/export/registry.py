@@ -53,8 +53,10 @@ def find_exporter(path: str | Path) -> Exporter:
     known = exporters()
     extension = Path(path).suffix.lower()
     if extension not in known:
-        shown = f"{extension} files" if extension else "a file without extension"
-        raise ExportError(f"Cannot write {shown} ({path}); use one of {', '.join(known)}.")
+        names = ", ".join(known)
+        if not extension:
+            raise ExportError("export.no_extension", path=path, known=names)
+        raise ExportError("export.unknown_kind", extension=extension, path=path, known=names)
     return known[extension]
 
 

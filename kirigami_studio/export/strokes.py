@@ -118,7 +118,7 @@ def slot_contours(plan: CutPlan) -> list[tuple[Layer, FloatArray]]:
         The plan has no kerf, or the sheet would not stay in one piece.
     """
     if plan.kerf_mm <= 0.0:
-        raise ExportError("Slots need a width, but the plan's kerf is 0 mm; plan the cuts with the width of the slots.")
+        raise ExportError("slots.no_kerf")
     sheet = _finished_sheet(plan)
     rings = [*_in_cutting_order(sheet, plan), sheet.exterior]
     contours = [shapely.get_coordinates(ring)[:-1] for ring in rings]
@@ -140,9 +140,7 @@ def _finished_sheet(plan: CutPlan) -> Polygon:
     left = shapely.get_parts(outline.difference(burned))
     pieces = [part for part in left if isinstance(part, Polygon) and part.area > DUST_MM2]
     if len(pieces) != 1:
-        raise ExportError(
-            f"The sheet would fall into {len(pieces)} pieces as slots of {plan.kerf_mm:g} mm; widen the connectors."
-        )
+        raise ExportError("slots.falls_apart", kerf_mm=plan.kerf_mm, pieces=len(pieces))
     return pieces[0]
 
 

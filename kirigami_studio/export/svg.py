@@ -173,7 +173,7 @@ def _write(root: ElementTree.Element, path: Path, paths: int, size: tuple[float,
         read = ElementTree.parse(written).getroot()
         found = len(read.findall(f".//{{{NAMESPACE}}}path"))
         if found != paths or read.get("width") != f"{_number(size[0])}mm":
-            raise ExportError(f"The SVG did not read back: {found} paths instead of {paths}. Nothing was written.")
+            raise ExportError("svg.not_as_written", found=found, planned=paths)
 
     write_atomically(path, content, verify)
 

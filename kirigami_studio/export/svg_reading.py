@@ -47,7 +47,7 @@ def read_with_svgelements(path: Path) -> FileContent:
             _stroke(*_segments(path), str(group.id), str(path.stroke.hex), height) for group, path in _grouped(svg)
         )
     except (OSError, ElementTree.ParseError, AttributeError, ValueError, TypeError, ZeroDivisionError) as error:
-        raise ExportError(f"{path} is not a readable SVG: {error}. Export it again.") from error
+        raise ExportError("svg.not_readable", path=path, reason=str(error)) from error
     unit = MILLIMETRES if abs(scale - 1.0) < SAME_SCALE else 0
     return FileContent("svgelements", strokes, unit, (width, height), _layers(strokes))
 
@@ -71,7 +71,7 @@ def read_with_xml(path: Path) -> FileContent:
             for element in group.findall(f"{{{NAMESPACE}}}path")
         )
     except (OSError, ElementTree.ParseError, ValueError, StopIteration) as error:
-        raise ExportError(f"{path} is not a readable SVG: {error}. Export it again.") from error
+        raise ExportError("svg.not_readable", path=path, reason=str(error)) from error
     millimetres = width.endswith("mm") and height.endswith("mm") and tuple(box) == (0.0, 0.0, *size)
     others = tuple(
         element.tag.removeprefix(f"{{{NAMESPACE}}}")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -20,32 +20,43 @@ from kirigami_studio.export.svg_reading import read_with_svgelements, read_with_
 from kirigami_studio.fabricate.checks import OVERLAP_TOLERANCE_MM, WIDTH_TOLERANCE_MM
 from kirigami_studio.fabricate.cut_path import MEASURED_CHORD_MM
 from kirigami_studio.fabricate.cut_plan import CutPlan, Layer
+from kirigami_studio.fabricate.findings import Note
 from kirigami_studio.fabricate.finished_sheet import overlap_length, remaining_pieces, smallest_ligament
 from kirigami_studio.fabricate.joints import Pair, joined_pairs
 from kirigami_studio.fabricate.tabs import joined_ring
 from kirigami_studio.foundation.errors import ExportError
+from kirigami_studio.foundation.sentences import sentence
 
 Reader = Callable[[Path], FileContent]
-#: Stands in a sentence for the name of who read the file.
-READER = "{reader}"
 
 
 @dataclass(frozen=True, slots=True)
-class Finding:
+class Finding(Note):
     """One line of the report.
 
     Attributes
     ----------
-    text : str
-        One sentence with its numbers.
     ok : bool
     warning : bool
         Fine, but a person should know.
+    reader : str
+        Which reader alone says so; empty where all agree.
     """
 
-    text: str
-    ok: bool
+    ok: bool = True
     warning: bool = False
+    reader: str = ""
+
+    @classmethod
+    def judged(cls, ok: bool, code: str, /, **fields: object) -> Finding:
+        """A finding that is good or bad."""
+        return Finding(code, fields, ok)
+
+    @property
+    def text(self) -> str:
+        """The sentence, after the name of the reader if only one says so."""
+        told = sentence(self.code, self.fields)
+        return sentence("verify.by_one_reader", {"reader": self.reader, "finding": told}) if self.reader else told
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,7 +77,7 @@ class Verification:
     seconds_low, seconds_high : float
         Estimated time of the job.
     findings : tuple of Finding
-    warnings : tuple of str
+    warnings : tuple of Note
         What a person should read before cutting.
     """
 
@@ -78,7 +89,7 @@ class Verification:
     seconds_low: float
     seconds_high: float
     findings: tuple[Finding, ...]
-    warnings: tuple[str, ...]
+    warnings: tuple[Note, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -132,7 +143,7 @@ def verify_export(plan: CutPlan, path: str | Path, profile_key: str, version: st
         contents = [one_drawing([read(part) for part in parts]) for read in kind.readers]
         return _judged(plan, goal, profile, version, strokes, contents, kind)
     if goal.suffix.lower() not in FORMATS:
-        raise ExportError(f"{goal} cannot be verified; cut files end in {', '.join(FORMATS)}.")
+        raise ExportError("verify.unknown_kind", path=goal, known=", ".join(FORMATS))
     kind = FORMATS[goal.suffix.lower()]
     contents = [read(goal) for read in kind.readers]
     return _judged(plan, goal, profile, version, strokes, contents, kind)
@@ -167,82 +178,102 @@ def _judged(
 
 
 def _agreed(contents: Sequence[FileContent], strokes: Sequence[Stroke], version: str, kind: Format) -> list[Finding]:
-    """Each finding once where all readers agree to the letter, else once for each reader by its name."""
-    told = zip(*(_reader_findings(content, strokes, version, kind) for content in contents), strict=True)
+    """Each finding once where all readers agree to the last digit, else once for each reader by its name."""
+    by_reader = [_reader_findings(content, strokes, version, kind) for content in contents]
     found: list[Finding] = []
-    for same in told:
-        if len(set(same)) == 1:
-            found.append(replace(same[0], text=same[0].text.replace(READER, "both readers")))
+    for first, *others in zip(*by_reader, strict=True):
+        if all(other == first for other in others):
+            found.append(first)
         else:
-            found += [
-                replace(finding, text=finding.text.replace(READER, content.reader))
-                for finding, content in zip(same, contents, strict=True)
-            ]
+            readers = [content.reader for content in contents]
+            found += [replace(one, reader=reader) for one, reader in zip((first, *others), readers, strict=True)]
     return found
 
 
 def _reader_findings(content: FileContent, strokes: Sequence[Stroke], version: str, kind: Format) -> list[Finding]:
-    """Everything that one reader can compare; the sentences have a place for its name."""
-    found = [_unit_finding(content, version), _count_finding(content, strokes), _layer_finding(content, strokes)]
-    shift = largest_shift(content.strokes, strokes)
-    total = sum(len(stroke.points) for stroke in strokes)
-    same = shift <= kind.shift_mm and not bent_otherwise(content.strokes, strokes, kind.bulge)
-    told = f"the farthest is {shift:.2g} mm off" if shift < float("inf") else "their numbers differ"
-    found.append(
-        Finding(f"All {total} points are where they were planned for {{reader}}, with the same arcs.", True)
-        if same
-        else Finding(f"Points or arcs are not where they were planned for {{reader}}: {told}.", False)
-    )
-    meant = sum(stroke.length for stroke in strokes)
-    agree = abs(content.length - meant) <= kind.shift_mm * max(total, 1)
-    found.append(
-        Finding(f"The cut length is {content.length:.3f} mm for {{reader}}, planned are {meant:.3f} mm.", agree)
-    )
-    found.append(_size_finding(content, strokes, kind))
-    return found
+    """Everything that one reader can compare."""
+    return [
+        _unit_finding(content, version),
+        _count_finding(content, strokes),
+        _layer_finding(content, strokes),
+        _point_finding(content, strokes, kind),
+        _length_finding(content, strokes, kind),
+        _size_finding(content, strokes, kind),
+    ]
 
 
 def _unit_finding(content: FileContent, version: str) -> Finding:
     if version == "R12" and content.unit is None:
-        return Finding("There is no unit in the file for {reader}: import it as mm.", True, warning=True)
-    text = f"The file's unit is {'mm' if content.unit == MILLIMETRES else content.unit} for {{reader}}."
-    return Finding(text, content.unit == MILLIMETRES)
+        return Finding("verify.no_unit_in_r12", {}, ok=True, warning=True)
+    if content.unit is None:
+        return Finding.judged(False, "verify.no_unit")
+    if content.unit != MILLIMETRES:
+        return Finding.judged(False, "verify.other_unit", unit=content.unit)
+    return Finding.judged(True, "verify.unit_is_mm")
 
 
 def _count_finding(content: FileContent, strokes: Sequence[Stroke]) -> Finding:
-    closed = sum(stroke.closed for stroke in content.strokes)
-    open_ = len(content.strokes) - closed
-    right = [stroke.closed for stroke in content.strokes] == [stroke.closed for stroke in strokes]
-    text = f"The file holds {open_} open and {closed} closed lines"
+    closed, planned = (sum(stroke.closed for stroke in lines) for lines in (content.strokes, strokes))
+    counts = {
+        "open_lines": len(content.strokes) - closed,
+        "closed_lines": closed,
+        "planned_open": len(strokes) - planned,
+        "planned_closed": planned,
+    }
     if content.others:
-        text += f" and {len(content.others)} other things ({content.others[0]})"
-    planned = sum(stroke.closed for stroke in strokes)
-    text += f" for {{reader}}, planned are {len(strokes) - planned} and {planned}."
-    return Finding(text, right and not content.others)
+        return Finding.judged(
+            False, "verify.other_things", others=len(content.others), kind=content.others[0], **counts
+        )
+    right = [stroke.closed for stroke in content.strokes] == [stroke.closed for stroke in strokes]
+    return Finding.judged(right, "verify.line_counts", **counts)
 
 
 def _layer_finding(content: FileContent, strokes: Sequence[Stroke]) -> Finding:
     meant = layer_colours(strokes)
     listed = {name: colour for name, colour in content.layers.items() if name in meant}
-    right = listed == meant and [(stroke.layer, stroke.colour) for stroke in content.strokes] == [
-        (stroke.layer, stroke.colour) for stroke in strokes
-    ]
-    used = dict.fromkeys((stroke.layer, stroke.colour) for stroke in content.strokes)
-    shown = ", ".join(f"{name} in colour {colour}" for name, colour in used)
-    text = f"The layers are {shown or 'none'} for {{reader}}"
-    if right:
-        return Finding(f"{text}, in that order.", True)
-    wanted = ", ".join(f"{name} in colour {colour}" for name, colour in meant.items())
-    return Finding(f"{text}; planned are {wanted}.", False)
+    used = [(stroke.layer, stroke.colour) for stroke in content.strokes]
+    found, planned = _layer_list(used), _layer_list(meant.items())
+    if listed == meant and used == [(stroke.layer, stroke.colour) for stroke in strokes]:
+        return Finding.judged(True, "verify.layers_as_planned", layers=found)
+    if not used:
+        return Finding.judged(False, "verify.no_layers", planned=planned)
+    return Finding.judged(False, "verify.layers_differ", layers=found, planned=planned)
+
+
+def _layer_list(layers: Iterable[tuple[str, int]]) -> str:
+    """Names with their colours, each once."""
+    return ", ".join(f"{name} ({colour})" for name, colour in dict.fromkeys(layers))
+
+
+def _point_finding(content: FileContent, strokes: Sequence[Stroke], kind: Format) -> Finding:
+    shift = largest_shift(content.strokes, strokes)
+    if shift == float("inf"):
+        return Finding.judged(False, "verify.point_count")
+    if shift > kind.shift_mm or bent_otherwise(content.strokes, strokes, kind.bulge):
+        return Finding.judged(False, "verify.points_moved", shift_mm=shift)
+    return Finding.judged(True, "verify.points_as_planned", points=sum(len(stroke.points) for stroke in strokes))
+
+
+def _length_finding(content: FileContent, strokes: Sequence[Stroke], kind: Format) -> Finding:
+    points, planned = sum(len(stroke.points) for stroke in strokes), sum(stroke.length for stroke in strokes)
+    right = abs(content.length - planned) <= kind.shift_mm * max(points, 1)
+    # Rounded as they are shown, so that readers that agree in print agree.
+    return Finding.judged(right, "verify.length", length_mm=round(content.length, 3), planned_mm=round(planned, 3))
 
 
 def _size_finding(content: FileContent, strokes: Sequence[Stroke], kind: Format) -> Finding:
     width, height = extent(strokes)
     if content.extent is None:
-        return Finding("The file's size is missing in its header for {reader}.", False)
+        return Finding.judged(False, "verify.no_size")
     right = max(abs(content.extent[0] - width), abs(content.extent[1] - height)) <= kind.shift_mm
-    text = f"The file's size is {content.extent[0]:.3f} x {content.extent[1]:.3f} mm for {{reader}}"
-    return Finding(f"{text}, planned are {width:.3f} x {height:.3f} mm.", right)
+    return Finding.judged(
+        right,
+        "verify.size",
+        width_mm=round(content.extent[0], 3),
+        height_mm=round(content.extent[1], 3),
+        planned_width_mm=round(width, 3),
+        planned_height_mm=round(height, 3),
+    )
 
 
 @dataclass(frozen=True, slots=True)
@@ -294,35 +325,30 @@ def _meant(lines: Sequence[LineString], plan: CutPlan) -> set[Pair]:
 
 def _physics_findings(physics: Physics, plan: CutPlan) -> list[Finding]:
     once = physics.overlap_mm <= OVERLAP_TOLERANCE_MM
-    found = [Finding("Nothing is cut twice." if once else f"{physics.overlap_mm:.4f} mm would be cut twice.", once)]
-    if physics.pieces is not None:
-        word = "piece" if physics.pieces == 1 else "pieces"
-        text = f"After cutting, the sheet is {physics.pieces} {word} with a kerf of {plan.kerf_mm:g} mm."
-        found.append(Finding(text, physics.pieces == 1))
+    found = [
+        Finding.judged(True, "verify.cut_once")
+        if once
+        else Finding.judged(False, "verify.cut_twice", length_mm=physics.overlap_mm),
+        Finding.judged(physics.pieces == 1, "verify.pieces", count=physics.pieces, kerf_mm=plan.kerf_mm),
+    ]
     ligament = physics.min_ligament_mm
     if ligament is not None:
-        asked = plan.min_connector_mm
-        narrow = ligament < asked - WIDTH_TOLERANCE_MM
-        text = f"The smallest ligament is {ligament:.3f} mm; the smallest connector is planned with {asked:.3f} mm."
-        found.append(Finding(text, ligament > 0.0, warning=narrow))
+        planned = plan.min_connector_mm
+        widths = {"ligament_mm": ligament, "planned_mm": planned}
+        narrow = ligament < planned - WIDTH_TOLERANCE_MM
+        found.append(Finding("verify.smallest_ligament", widths, ok=ligament > 0.0, warning=narrow))
     return found
 
 
-def _cautions(plan: CutPlan, profile: Profile, version: str, strokes: Sequence[Stroke], path: Path) -> list[str]:
+def _cautions(plan: CutPlan, profile: Profile, version: str, strokes: Sequence[Stroke], path: Path) -> list[Note]:
     """What a person should know about this profile and version."""
-    found = [profile.note] if profile.note else []
+    found = [profile.note] if profile.note is not None else []
     if version == "R12" and path.suffix.lower() != ".svg":
-        found.append("There is no unit in an R12 file: import it as mm.")
+        found.append(Note.of("verify.no_unit_in_r12"))
     if profile.slots:
         if plan.options.tabs:
-            found.append(f"Contours for a service have no gaps: the {plan.options.tabs} tabs are left out.")
-        length = sum(stroke.length for stroke in strokes)
-        found.append(
-            f"As slots the cut is {length:.1f} mm long instead of {plan.cut_length_mm:.1f} mm "
-            f"({length / plan.cut_length_mm:.2f} times), and so is what a service charges."
-        )
-        found.append(
-            f"The slots are {plan.kerf_mm:g} mm wide, the kerf of the plan; if the service asks for wider ones, plan "
-            f"the cuts with that kerf."
-        )
+            found.append(Note.of("verify.tabs_left_out", count=plan.options.tabs))
+        length, open_mm = sum(stroke.length for stroke in strokes), plan.cut_length_mm
+        found.append(Note.of("verify.slots_longer", length_mm=length, open_mm=open_mm, times=length / open_mm))
+        found.append(Note.of("verify.slots_width", kerf_mm=plan.kerf_mm))
     return found

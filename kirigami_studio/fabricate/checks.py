@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from shapely.geometry import LineString, Polygon
+from shapely.geometry import LineString, Point, Polygon
 
 from kirigami_studio.fabricate.cut_path import measured_line
 from kirigami_studio.fabricate.cut_plan import CutPath, CutPlan, Layer
@@ -50,8 +50,6 @@ class Report:
         Smallest finished distance between any two cuts.
     overlap_mm : float
         Length cut more than once.
-    min_edge_mm, min_neck_mm : float or None
-        Smallest finished edge and neck of the untrimmed panels; None without any.
     flexing : Flexing or None
         How far the connectors turn and how much that strains them; None without a target angle.
     """
@@ -61,8 +59,6 @@ class Report:
     min_connector_mm: float
     min_ligament_mm: float
     overlap_mm: float
-    min_edge_mm: float | None = None
-    min_neck_mm: float | None = None
     flexing: Flexing | None = None
 
     @property
@@ -95,6 +91,7 @@ def check_plan(plan: CutPlan, kerf_mm: float | None = None, phi: float | None = 
         *piece_problems(pieces, boundary, kerf, len(plan.options.removed)),
         *tab_problems(plan),
         *connector_problems(plan, kerf),
+        *slit_problems(plan),
         *_overlap_problems(twice),
         *_ligament_problems(plan, kerf, ligament),
         *panel_problems(plan, kerf, edge, neck),
@@ -106,8 +103,6 @@ def check_plan(plan: CutPlan, kerf_mm: float | None = None, phi: float | None = 
         min_connector_mm=plan.min_connector_mm + plan.kerf_mm - kerf,
         min_ligament_mm=ligament.width_mm if ligament is not None else float("inf"),
         overlap_mm=twice.length_mm,
-        min_edge_mm=None if edge is None else edge.size_mm,
-        min_neck_mm=None if neck is None else neck.size_mm,
         flexing=bent,
     )
 
@@ -123,18 +118,16 @@ def piece_problems(pieces: Sequence[Polygon], boundary: Polygon, kerf_mm: float,
     if len(pieces) == 1:
         return []
     if not pieces:
-        text = f"Nothing is left of the sheet with a kerf of {kerf_mm:g} mm; use a smaller kerf."
-        return [Problem(text, Severity.ERROR, (float(boundary.centroid.x), float(boundary.centroid.y)))]
-    loose = pieces[1].representative_point()
-    reason = f"; {removed} connectors were removed, so put some of them back" if removed else ""
-    return [
-        Problem(
-            f"With a kerf of {kerf_mm:g} mm the sheet falls into {len(pieces)} pieces, one of them at "
-            f"x = {loose.x:.2f}, y = {loose.y:.2f} mm{reason or '; widen the connectors or use a smaller kerf'}.",
-            Severity.ERROR,
-            (float(loose.x), float(loose.y)),
-        )
-    ]
+        return [Problem.error("plan.nothing_left", place_of(boundary.centroid), kerf_mm=kerf_mm)]
+    where, count = place_of(pieces[1].representative_point()), len(pieces)
+    if removed:
+        return [Problem.error("plan.falls_apart_after_removal", where, kerf_mm=kerf_mm, pieces=count, count=removed)]
+    return [Problem.error("plan.falls_apart", where, kerf_mm=kerf_mm, pieces=count)]
+
+
+def place_of(point: Point) -> tuple[float, float]:
+    """Coordinates of a point."""
+    return float(point.x), float(point.y)
 
 
 def tab_problems(plan: CutPlan) -> list[Problem]:
@@ -143,27 +136,20 @@ def tab_problems(plan: CutPlan) -> list[Problem]:
     tabs = plan.options.tabs
     opened = [path for path in paths if not path.closed]
     if len(opened) != tabs or len(paths) != max(tabs, 1):
-        where = (opened or paths)[0].points[-1] if paths else np.zeros(2)
-        text = (
-            f"The outline consists of {len(paths)} paths, {len(opened)} of them open, but the plan has {tabs} tabs; "
-            f"report this design, it should not happen."
-        )
-        return [Problem(text, Severity.ERROR, (float(where[0]), float(where[1])))]
-    wanted = plan.options.tab_mm + plan.kerf_mm
+        x, y = (opened or paths)[0].points[-1] if paths else np.zeros(2)
+        where = (float(x), float(y))
+        return [Problem.error("plan.tab_count", where, paths=len(paths), open_paths=len(opened), tabs=tabs)]
+    asked = plan.options.tab_mm
     for path, following in zip(opened, [*opened[1:], *opened[:1]], strict=True):
-        gap = float(np.linalg.norm(following.points[0] - path.points[-1]))
-        if abs(gap - wanted) > WIDTH_TOLERANCE_MM:
+        width = float(np.linalg.norm(following.points[0] - path.points[-1])) - plan.kerf_mm
+        if abs(width - asked) > WIDTH_TOLERANCE_MM:
             x, y = 0.5 * (following.points[0] + path.points[-1])
-            text = (
-                f"The tab at x = {x:.2f}, y = {y:.2f} mm is {gap - plan.kerf_mm:.3f} instead of "
-                f"{plan.options.tab_mm:g} mm wide; report this design, it should not happen."
-            )
-            return [Problem(text, Severity.ERROR, (float(x), float(y)))]
+            return [Problem.error("plan.tab_width", (float(x), float(y)), width_mm=width, asked_mm=asked)]
     return []
 
 
 def connector_problems(plan: CutPlan, kerf_mm: float) -> list[Problem]:
-    """Connectors narrower than asked (an error) or than the material bears (a warning); removed ones are as asked."""
+    """Connectors narrower than asked (an error) or than the material needs (a warning); removed ones are as asked."""
     hinges = plan.hinges
     there = np.flatnonzero(~hinges.removed)
     problems = _uncut(plan)
@@ -175,12 +161,12 @@ def connector_problems(plan: CutPlan, kerf_mm: float) -> list[Problem]:
         worst = int(np.argmax(short))
         x, y = hinges.position[there[worst]]
         problems.append(
-            Problem(
-                f"{int(np.sum(short > WIDTH_TOLERANCE_MM))} connectors come out narrower than asked, the worst "
-                f"{finished[worst]:.3f} instead of {hinges.requested_mm[there[worst]]:.3f} mm at x = {x:.2f}, "
-                f"y = {y:.2f} mm; plan the cuts with the kerf that the machine really has.",
-                Severity.ERROR,
+            Problem.error(
+                "plan.connectors_narrower",
                 (float(x), float(y)),
+                count=int(np.sum(short > WIDTH_TOLERANCE_MM)),
+                finished_mm=float(finished[worst]),
+                asked_mm=float(hinges.requested_mm[there[worst]]),
             )
         )
     thinnest = int(np.argmin(finished))
@@ -193,76 +179,73 @@ def _uncut(plan: CutPlan) -> list[Problem]:
     left = np.flatnonzero(hinges.removed & (hinges.finished_mm > 0.0))
     if not left.size:
         return []
-    x, y = (float(value) for value in hinges.position[left[0]])
-    text = (
-        f"{left.size} removed connectors are not cut through, the first at x = {x:.2f}, y = {y:.2f} mm; "
-        f"keep them or make the sheet larger."
-    )
-    return [Problem(text, Severity.WARNING, (x, y))]
+    x, y = hinges.position[left[0]]
+    return [Problem.warning("plan.removed_not_cut_through", (float(x), float(y)), count=int(left.size))]
 
 
 def _thin(plan: CutPlan, finished_mm: float, position: FloatArray) -> list[Problem]:
-    x, y = float(position[0]), float(position[1])
+    """What the narrowest connector is too narrow for, if it is."""
+    where, material = (float(position[0]), float(position[1])), plan.material
     if finished_mm <= 0.0:
-        text = (
-            f"Nothing is left of the connector at x = {x:.2f}, y = {y:.2f} mm: the sheet would fall into "
-            f"pieces there; widen the connectors."
-        )
-        return [Problem(text, Severity.ERROR, (x, y))]
-    if finished_mm < plan.material.min_ligament_mm - WIDTH_TOLERANCE_MM:
-        text = (
-            f"The connector at x = {x:.2f}, y = {y:.2f} mm is {finished_mm:.3f} mm wide; "
-            f"{plan.material.name!r} is known to bear {plan.material.min_ligament_mm:g} mm."
-        )
-        return [Problem(text, Severity.WARNING, (x, y))]
+        return [Problem.error("plan.connector_gone", where)]
+    if finished_mm < material.min_ligament_mm - WIDTH_TOLERANCE_MM:
+        least = material.min_ligament_mm
+        return [
+            Problem.warning(
+                "plan.connector_may_tear", where, finished_mm=finished_mm, material=material.name, least_mm=least
+            )
+        ]
     return []
+
+
+def slit_problems(plan: CutPlan) -> list[Problem]:
+    """Warn about cuts shorter than the material's shortest slit; shapes at the ends of a slit belong to it."""
+    longest: dict[int, CutPath] = {}
+    for path in plan.on_layer(Layer.SLITS) + plan.on_layer(Layer.EDGE_SLITS):
+        if path.cut not in longest or path.length > longest[path.cut].length:
+            longest[path.cut] = path
+    least = plan.material.min_slit_mm
+    short = [path for cut, path in longest.items() if cut >= 0 and path.length < least - WIDTH_TOLERANCE_MM]
+    if not short:
+        return []
+    shortest = min(short, key=lambda path: path.length)
+    x, y = shortest.points.mean(axis=0)
+    return [
+        Problem.warning(
+            "plan.slits_short",
+            (float(x), float(y)),
+            count=len(short),
+            least_mm=least,
+            material=plan.material.name,
+            length_mm=shortest.length,
+        )
+    ]
 
 
 def _overlap_problems(twice: Overlap) -> list[Problem]:
     if twice.where is None or twice.length_mm <= OVERLAP_TOLERANCE_MM:
         return []
-    text = (
-        f"{twice.length_mm:.4f} mm would be cut twice, near x = {twice.where[0]:.2f}, y = {twice.where[1]:.2f} mm; "
-        f"report this design, it should not happen."
-    )
-    return [Problem(text, Severity.ERROR, twice.where)]
+    return [Problem.error("plan.cut_twice", twice.where, length_mm=twice.length_mm)]
 
 
 def _ligament_problems(plan: CutPlan, kerf: float, ligament: Ligament | None) -> list[Problem]:
     """Two cuts nearer to each other than the connectors are wide."""
     if ligament is None or ligament.width_mm >= plan.min_connector_mm - plan.kerf_mm + kerf - WIDTH_TOLERANCE_MM:
         return []
-    x, y = ligament.where
-    return [
-        Problem(
-            f"Two cuts leave only {ligament.width_mm:.3f} mm of material at x = {x:.2f}, y = {y:.2f} mm, less than "
-            f"the connectors; a larger sheet or a calmer design widens it.",
-            Severity.ERROR if ligament.width_mm <= 0 else Severity.WARNING,
-            ligament.where,
-        )
-    ]
+    weighed = Problem.error if ligament.width_mm <= 0 else Problem.warning
+    return [weighed("plan.cuts_too_near", ligament.where, width_mm=ligament.width_mm)]
 
 
 def panel_problems(plan: CutPlan, kerf_mm: float, edge: SmallPlace | None, neck: SmallPlace | None) -> list[Problem]:
-    """Warn about panels smaller than what the material bears."""
-    least = plan.material.min_ligament_mm
+    """Warn about panels smaller than what the material needs."""
+    name, least = plan.material.name, plan.material.min_ligament_mm
     problems = []
-    for name, small in (("edge", edge), ("neck", neck)):
+    for code, small in (("plan.panel_edge_small", edge), ("plan.panel_neck_small", neck)):
         if small is not None and small.size_mm < least - WIDTH_TOLERANCE_MM:
-            x, y = small.where
-            text = (
-                f"A panel at x = {x:.2f}, y = {y:.2f} mm has a finished {name} of {small.size_mm:.3f} mm; "
-                f"{plan.material.name!r} is known to bear {least:g} mm. A larger sheet, a calmer design or a least "
-                f"panel size in the fit widens it."
-            )
-            problems.append(Problem(text, Severity.WARNING, small.where))
+            problems.append(Problem.warning(code, small.where, size_mm=small.size_mm, material=name, least_mm=least))
     place = trimmed_neck_below(plan.panels, kerf_mm, least)
     if place is not None:
-        text = (
-            f"A trimmed panel at x = {place[0]:.2f}, y = {place[1]:.2f} mm has a neck below the {least:g} mm that "
-            f"{plan.material.name!r} is known to bear; keep more material when trimming or make the sheet larger."
-        )
-        problems.append(Problem(text, Severity.WARNING, place))
+        problems.append(Problem.warning("plan.trimmed_neck_small", place, material=name, least_mm=least))
     return problems
 
 
@@ -316,28 +299,23 @@ def hinge_strains(plan: CutPlan, phi: float) -> FloatArray:
 
 
 def strain_problems(plan: CutPlan, found: Flexing, strain_limit: float) -> list[Problem]:
-    """Warn when the estimate is above what the material bears (breaking strain, 0.05 for 5 %)."""
+    """Warn when the estimate is above the material's breaking strain (0.05 for 5 %)."""
     if found.strain <= strain_limit:
         return []
-    x, y = found.where
+    # What to try first: another style, or room for the ends that this style could not be made at.
+    styled = plan.options.style in (ConnectorStyle.ARC, ConnectorStyle.DOUBLE)
     return [
-        Problem(
-            f"Opened to the target angle, every connector turns by {math.degrees(found.turn):.0f} degrees. If the one "
-            f"at x = {x:.2f}, y = {y:.2f} mm bends evenly over {found.flexure_mm:.3f} mm about its softer side of "
-            f"{found.softer_mm:g} mm (the assumption of this estimate), it is strained by about "
-            f"{100.0 * found.strain:.0f} %; {plan.material.name!r} is taken to break at {100.0 * strain_limit:g} %. "
-            f"{_advice(plan)}, thinner material or a target angle nearer to flat.",
-            Severity.WARNING,
+        Problem.warning(
+            "plan.strain_larger_sheet" if styled else "plan.strain_choose_style",
             found.where,
+            turn_deg=math.degrees(found.turn),
+            strain_percent=100.0 * found.strain,
+            material=plan.material.name,
+            limit_percent=100.0 * strain_limit,
+            flexure_mm=found.flexure_mm,
+            softer_mm=found.softer_mm,
         )
     ]
-
-
-def _advice(plan: CutPlan) -> str:
-    """What to try first: another style, or room for the ends that this style could not be made at."""
-    if plan.options.style in (ConnectorStyle.ARC, ConnectorStyle.DOUBLE):
-        return "Choose a larger sheet, so that every slit end has room for its style"
-    return "Choose arc or double connectors"
 
 
 def _lengths(plan: CutPlan) -> FloatArray:

@@ -83,13 +83,13 @@ def hinge_widths(
     FabricationError
         A width that is not finite and positive, or a hinge number that does not exist.
     """
-    widths = np.full(count, check_length("The connector width", default_mm))
+    widths = np.full(count, check_length("connector.width_not_positive", default_mm))
     for hinge in [*(single_mm or {}), *removed]:
         if not 0 <= hinge < count:
-            raise FabricationError(f"There is no hinge {hinge}: this sheet has hinges 0 to {count - 1}.")
+            raise FabricationError("hinge.unknown", hinge=hinge, last=count - 1)
     widths[list(removed)] = 0.0
     for hinge, width in (single_mm or {}).items():
-        widths[hinge] = check_length(f"The connector width of hinge {hinge}", width)
+        widths[hinge] = check_length("hinge.width_not_positive", width, hinge=hinge)
     return widths
 
 
@@ -141,11 +141,17 @@ def _refuse_cuts_without_room(
         return
     # Angles do not change with the size of the sheet: growing it by the worst ratio is enough for all cuts.
     worst = int(np.argmax(np.round(needed / length, 9)))
+    row, column = table.void_of(worst)
     raise FabricationError(
-        f"The {table.label(worst)} is {length[worst]:.2f} mm long, but connectors of "
-        f"{widths[table.hinge_cut == worst].max():g} mm and a kerf of {kerf_mm:g} mm need {needed[worst]:.2f} mm; make "
-        f"the sheet at least {math.ceil(100.0 * needed[worst] / length[worst]) / 100.0:.2f} times wider or the "
-        f"connectors narrower ({int(np.sum(length < needed))} cuts are too short)."
+        "slit.no_room" if worst < table.slit_count else "edge_cut.no_room",
+        row=row,
+        column=column,
+        length_mm=length[worst],
+        connector_mm=widths[table.hinge_cut == worst].max(),
+        kerf_mm=kerf_mm,
+        needed_mm=needed[worst],
+        times=math.ceil(100.0 * needed[worst] / length[worst]) / 100.0,
+        count=int(np.sum(length < needed)),
     )
 
 

@@ -6,7 +6,8 @@ Comb
 Tongues
     Rows of flaps, cut on three sides by one path and on the fourth by a slit that ends before both arms of it.  What is
     left at each end is a connector like those of a design.  From left to right the connectors get wider; from the
-    bottom row to the top the flaps do.  Lift them: the narrowest connectors that survive are what the material bears.
+    bottom row to the top the flaps do.  Lift them: the narrowest connectors that survive are the smallest ligament of
+    the material.
 Marks
     Short slits above a column count it; short cuts at the left edge count the row.
 """
@@ -22,6 +23,7 @@ import numpy as np
 from kirigami_studio.fabricate.connectors import OVERCUT_MM, SHORTEST_CUT_MM, Hinges, outline_path
 from kirigami_studio.fabricate.cut_path import CutPath, Layer, check_length
 from kirigami_studio.fabricate.cut_plan import DECIMALS, CutPlan
+from kirigami_studio.fabricate.findings import Note
 from kirigami_studio.fabricate.material import Material
 from kirigami_studio.fabricate.ordering import in_cutting_order
 from kirigami_studio.foundation.arrays import FloatArray
@@ -73,8 +75,8 @@ def kerf_from_gaps(gaps_mm: Sequence[float], slits: int = COMB_SLITS) -> Measure
         No reading, or one that cannot be a width.
     """
     if not len(gaps_mm):
-        raise FabricationError("Measure the gap beside the comb at least once.")
-    kerfs = np.array([check_length("The gap beside the comb", gap, zero_allowed=True) for gap in gaps_mm]) / slits
+        raise FabricationError("coupon.no_reading")
+    kerfs = np.array([check_length("coupon.gap_negative", gap, zero_allowed=True) for gap in gaps_mm]) / slits
     return MeasuredKerf(float(kerfs.mean()), 0.5 * float(np.ptp(kerfs)))
 
 
@@ -100,14 +102,17 @@ def plan_coupon(material: Material, kerf_mm: float | None = None) -> CutPlan:
     FabricationError
         A kerf above ``WIDEST_KERF_MM``, or a material whose ligaments are nowhere near 0.05 to 1 mm.
     """
-    kerf = check_length("The kerf", material.kerf_mm if kerf_mm is None else kerf_mm, zero_allowed=True)
+    kerf = check_length("kerf.negative", material.kerf_mm if kerf_mm is None else kerf_mm, zero_allowed=True)
     if kerf > WIDEST_KERF_MM:
-        raise FabricationError(f"The coupon suits kerfs up to {WIDEST_KERF_MM:g} mm, got {kerf:g} mm.")
+        raise FabricationError("coupon.kerf_too_wide", widest_mm=WIDEST_KERF_MM, kerf_mm=kerf)
     rungs = ligament_rungs(material)
     if not rungs:
         raise FabricationError(
-            f"The coupon tries connectors of {NARROWEST_RUNG_MM:g} to {WIDEST_RUNG_MM:g} mm, far from the smallest "
-            f"ligament of {material.key!r}, {material.min_ligament_mm:g} mm; correct the material."
+            "coupon.ligament_out_of_range",
+            narrowest_mm=NARROWEST_RUNG_MM,
+            widest_mm=WIDEST_RUNG_MM,
+            key=material.key,
+            ligament_mm=material.min_ligament_mm,
         )
     reach = 0.5 * kerf + OVERCUT_MM
     slits = [*_flaps(rungs, kerf), *_column_marks(len(rungs))]
@@ -156,9 +161,7 @@ def _flaps(rungs: Sequence[float], kerf: float) -> list[FloatArray]:
             left, right, top = middle - 0.5 * width, middle + 0.5 * width, base + FLAP_HEIGHT_MM
             inset = rung + kerf
             if right - left - 2.0 * inset < max(SHORTEST_CUT_MM, 2.0 * kerf):
-                raise FabricationError(
-                    f"A flap of {width:g} mm has no room for two connectors of {rung:g} mm and a kerf of {kerf:g} mm."
-                )
+                raise FabricationError("coupon.flap_too_narrow", flap_mm=width, connector_mm=rung, kerf_mm=kerf)
             cuts.append(np.array([[left, base - ARM_MM], [left, top], [right, top], [right, base - ARM_MM]]))
             cuts.append(np.array([[left + inset, base], [right - inset, base]]))
     return cuts
@@ -187,12 +190,10 @@ def _row_marks(reach: float) -> list[FloatArray]:
     return marks
 
 
-def _notes(rungs: Sequence[float]) -> tuple[str, ...]:
+def _notes(rungs: Sequence[float]) -> tuple[Note, ...]:
     widths = ", ".join(f"{rung:g}" for rung in rungs)
     flaps = ", ".join(f"{width:g}" for width in FLAP_WIDTHS_MM)
     return (
-        f"Kerf: push the {COMB_SLITS - 1} fingers of the comb and what lies beside them together; the gap that opens, "
-        f"divided by {COMB_SLITS}, is the kerf.",
-        f"Ligament: lift the flaps; connectors are {widths} mm wide from left to right (short slits count the "
-        f"columns), flaps {flaps} mm from bottom to top (short cuts at the left edge count the rows).",
+        Note.of("coupon.how_to_read_kerf", fingers=COMB_SLITS - 1, slits=COMB_SLITS),
+        Note.of("coupon.how_to_read_ligament", widths=widths, flaps=flaps),
     )

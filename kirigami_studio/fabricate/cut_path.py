@@ -93,8 +93,8 @@ class CutPath:
         return replace(self, points=np.roll(self.points, -vertex, axis=0), bulges=bulges)
 
 
-def check_length(what: str, value: float, zero_allowed: bool = False) -> float:
-    """Return a length in mm as float, or refuse it by name.
+def check_length(code: str, value: float, zero_allowed: bool = False, **fields: object) -> float:
+    """Return a length in mm as float, or refuse it with the code of that problem (and ``fields`` for its sentence).
 
     Raises
     ------
@@ -104,10 +104,9 @@ def check_length(what: str, value: float, zero_allowed: bool = False) -> float:
     try:
         length = float(value)
     except (TypeError, ValueError):
-        raise FabricationError(f"{what} must be a number of millimetres, got {value!r}.") from None
+        raise FabricationError(code, value=value, **fields) from None
     if not math.isfinite(length) or length < 0 or (length == 0 and not zero_allowed):
-        bound = "0 mm or more" if zero_allowed else "above 0 mm"
-        raise FabricationError(f"{what} must be {bound}, got {length:g} mm; type a positive width in millimetres.")
+        raise FabricationError(code, value=value, **fields)
     return length
 
 

@@ -19,6 +19,8 @@ from kirigami_studio.fabricate.cut_path import CutPath as CutPath
 from kirigami_studio.fabricate.cut_path import Layer as Layer
 from kirigami_studio.fabricate.cut_path import check_length
 from kirigami_studio.fabricate.endings import seats
+from kirigami_studio.fabricate.findings import Note
+from kirigami_studio.fabricate.fitting import Obstacle
 from kirigami_studio.fabricate.hinged_cuts import HingedCuts, hinged_cuts, relief_radius
 from kirigami_studio.fabricate.material import Material, default_material
 from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions
@@ -37,6 +39,12 @@ LARGEST_SHEET_MM = 3000.0
 DECIMALS = 4
 #: A connector counts as wider than asked above this difference (mm).
 WIDER_MM = 1e-3
+#: The note about slit ends that an obstacle kept straight.
+WHY_STRAIGHT = {
+    Obstacle.SLANT: "plan.straight_because_slanted",
+    Obstacle.LENGTH: "plan.straight_because_short",
+    Obstacle.NEIGHBOUR: "plan.straight_because_crowded",
+}
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,12 +65,12 @@ class CutPlan:
     design_hash : str
         Identifies the ratios that the plan was made from.
     options : CutOptions
-    notes : tuple of str
-        Sentences that a person should read before cutting.
+    notes : tuple of Note
+        What a person should read before cutting.
     panels : tuple of (P, 2) float, mm
         Panels between the centre lines of the cuts, row by row; four corners each unless trimmed.
     origin : mapping of str to str
-        Where the design comes from, told in every file of the plan; decides nothing.
+        Where the design comes from, repeated in every file of the plan; decides nothing.
     """
 
     paths: tuple[CutPath, ...]
@@ -74,7 +82,7 @@ class CutPlan:
     material: Material
     design_hash: str
     options: CutOptions = field(default_factory=CutOptions)
-    notes: tuple[str, ...] = ()
+    notes: tuple[Note, ...] = ()
     panels: tuple[FloatArray, ...] = ()
     origin: Mapping[str, str] = field(default_factory=lambda: MappingProxyType({}))
 
@@ -162,10 +170,11 @@ def plan_cuts(
         at a hinge.
     """
     material, options = material or default_material(), options or CutOptions()
-    width = check_length("The sheet width", width_mm)
-    connector = check_length("The connector width", material.connector_mm if connector_mm is None else connector_mm)
-    kerf = check_length("The kerf", material.kerf_mm if kerf_mm is None else kerf_mm, zero_allowed=True)
-    overcut = check_length("The overcut", overcut_mm)
+    width = check_length("sheet.width_not_positive", width_mm)
+    asked = material.connector_mm if connector_mm is None else connector_mm
+    connector = check_length("connector.width_not_positive", asked)
+    kerf = check_length("kerf.negative", material.kerf_mm if kerf_mm is None else kerf_mm, zero_allowed=True)
+    overcut = check_length("overcut.not_positive", overcut_mm)
     table = cut_table(deployment.field.rows, deployment.field.columns)
     lines, size = sheet_lines(deployment, width)
     _check_size(size)
@@ -214,8 +223,11 @@ def plan_cuts(
 def _check_size(size: tuple[float, float]) -> None:
     if min(size) < SMALLEST_SHEET_MM or max(size) > LARGEST_SHEET_MM:
         raise FabricationError(
-            f"A sheet of {size[0]:g} x {size[1]:g} mm cannot be planned; both sides must lie between "
-            f"{SMALLEST_SHEET_MM:g} and {LARGEST_SHEET_MM:g} mm, so change the sheet width."
+            "sheet.size_out_of_range",
+            width_mm=size[0],
+            height_mm=size[1],
+            smallest_mm=SMALLEST_SHEET_MM,
+            largest_mm=LARGEST_SHEET_MM,
         )
 
 
@@ -274,9 +286,9 @@ def plan_notes(
     connector_mm: float,
     kerf_mm: float,
     style: ConnectorStyle,
-    straight: Counter[str],
-) -> tuple[str, ...]:
-    """Say what is worth knowing about a plan.
+    straight: Counter[Obstacle],
+) -> tuple[Note, ...]:
+    """What is worth knowing about a plan before it is cut.
 
     Parameters
     ----------
@@ -285,42 +297,26 @@ def plan_notes(
     connector_mm, kerf_mm : float
         Finished width asked for, and full cut width.
     style : ConnectorStyle
-    straight : Counter of str
-        How many hinges stayed straight against the wish, by reason.
+    straight : Counter of Obstacle
+        How many hinges stayed straight although a style was asked for, by what was in the way.
     """
     notes = []
     if not material.calibrated:
-        notes.append(f"The preset {material.name!r} is uncalibrated: cut a test piece first.")
+        notes.append(Note.of("plan.material_uncalibrated", material=material.name))
     narrowest = float(hinges.requested_mm[~hinges.removed].min(initial=np.inf))
-    if narrowest < material.min_ligament_mm:
-        notes.append(
-            f"Connectors of {narrowest:g} mm are below the {material.min_ligament_mm:g} mm that {material.name!r} "
-            f"is known to bear; they may tear."
-        )
-    if straight:
-        why = " and ".join(f"{count} because {reason}" for reason, count in sorted(straight.items()))
-        notes.append(
-            f"{straight.total()} of {len(hinges)} slit ends are straight instead of {style.value}: {why}; a larger "
-            f"sheet, narrower connectors or a calmer design make room."
-        )
-    notes += _wider(hinges)
-    if connector_mm + kerf_mm < 2.0 * material.join_tolerance_mm:
-        notes.append(
-            f"Cut ends lie {connector_mm + kerf_mm:.3f} mm apart: programs that join gaps up to "
-            f"{material.join_tolerance_mm:g} mm may close them; switch joining off when importing."
-        )
-    return tuple(notes)
-
-
-def _wider(hinges: Hinges) -> list[str]:
+    least = material.min_ligament_mm
+    if narrowest < least:
+        notes.append(Note.of("plan.connectors_may_tear", width_mm=narrowest, material=material.name, least_mm=least))
+    for obstacle, count in sorted(straight.items(), key=lambda item: item[0].value):
+        notes.append(Note.of(WHY_STRAIGHT[obstacle], count=count, total=len(hinges), style=style.value))
     more = np.where(hinges.removed, 0.0, hinges.finished_mm - hinges.requested_mm)
     wider = more > WIDER_MM
-    if not np.any(wider):
-        return []
-    worst = int(np.argmax(more))
-    x, y = hinges.position[worst]
-    return [
-        f"{int(wider.sum())} of {len(hinges)} connectors come out wider than asked, because the slit they rest on "
-        f"ends before them (widest {hinges.finished_mm[wider].max():.3f} mm near x = {x:.1f}, "
-        f"y = {y:.1f} mm); a larger sheet or narrower connectors avoid it."
-    ]
+    if np.any(wider):
+        x, y = hinges.position[int(np.argmax(more))]
+        widest = float(hinges.finished_mm[wider].max())
+        count = int(wider.sum())
+        notes.append(Note.of("plan.connectors_wider", count=count, total=len(hinges), widest_mm=widest, x=x, y=y))
+    gap, tolerance = connector_mm + kerf_mm, material.join_tolerance_mm
+    if gap < 2.0 * tolerance:
+        notes.append(Note.of("plan.gaps_may_be_joined", gap_mm=gap, tolerance_mm=tolerance))
+    return tuple(notes)

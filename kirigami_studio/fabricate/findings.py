@@ -1,9 +1,12 @@
-"""What a check of a plan or file finds: sentences with a weight and a place."""
+"""What a person should know about a plan or a file: values with a code, whose sentence is made when it is read."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from enum import Enum
+
+from kirigami_studio.foundation.sentences import sentence
 
 
 class Severity(Enum):
@@ -14,18 +17,55 @@ class Severity(Enum):
 
 
 @dataclass(frozen=True, slots=True)
-class Problem:
-    """One finding.
+class Note:
+    """Something worth knowing.
 
     Attributes
     ----------
-    text : str
-        What is wrong and what to try.
-    severity : Severity
-    where : (x, y) or None, mm
-        A place to look at, in the frame of the plan or file.
+    code : str
+        Names the kind of note, ``topic.what``; stable, so that programs and tests can tell notes apart.
+    fields : mapping of str to object
+        The values that its sentence names.
     """
 
-    text: str
+    code: str
+    fields: Mapping[str, object] = field(default_factory=dict, hash=False)
+
+    @classmethod
+    def of(cls, code: str, /, **fields: object) -> Note:
+        """A note with the values that its sentence names."""
+        return Note(code, fields)
+
+    @property
+    def text(self) -> str:
+        """The sentence in the user's language: what it is, and what to try."""
+        return sentence(self.code, self.fields)
+
+
+@dataclass(frozen=True, slots=True)
+class Problem(Note):
+    """A note with a weight and a place.
+
+    Attributes
+    ----------
+    severity : Severity
+    where : (x, y) or None, mm
+        A place to look at, in the frame of the plan or file; its sentence may name it as ``x`` and ``y``.
+    """
+
     severity: Severity = Severity.ERROR
     where: tuple[float, float] | None = None
+
+    @classmethod
+    def error(cls, code: str, where: tuple[float, float] | None = None, /, **fields: object) -> Problem:
+        """What spoils the sheet."""
+        return Problem(code, _with_place(fields, where), Severity.ERROR, where)
+
+    @classmethod
+    def warning(cls, code: str, where: tuple[float, float] | None = None, /, **fields: object) -> Problem:
+        """What may spoil the sheet."""
+        return Problem(code, _with_place(fields, where), Severity.WARNING, where)
+
+
+def _with_place(fields: dict[str, object], where: tuple[float, float] | None) -> dict[str, object]:
+    return fields if where is None else {**fields, "x": where[0], "y": where[1]}

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
+from enum import Enum
 
 import numpy as np
 import numpy.typing as npt
@@ -23,13 +24,17 @@ from kirigami_studio.fabricate.trimmed_sheet import CutPiece
 
 #: Distances may fall short of what is demanded by this (mm), half of what finished widths are promised to.
 CLEAR_MM = 5e-4
-#: Why a style cannot be made; the words stand in a note.
-SLANTED = "the slit is too slanted or the cut that it rests on too short"
-SHORT = "the slit is too short"
-CROWDED = "another cut is too near"
 
 #: Where a slit's end is found: number of the piece, and whether it is the last point.
 Place = tuple[int, bool]
+
+
+class Obstacle(Enum):
+    """Why a style cannot be made at a hinge."""
+
+    SLANT = 1  #: the slit is too slanted, or the cut it rests on too short
+    LENGTH = 2  #: the slit is too short
+    NEIGHBOUR = 3  #: another cut is too near
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -90,10 +95,10 @@ class Fitting:
                 strict=True,
             )
         )
-        self.why_not: dict[int, str] = {}
+        self.why_not: dict[int, Obstacle] = {}
 
     def fit(self, hinges: Sequence[int]) -> dict[int, Fitted]:
-        """Fit a shape to each of the hinges; ``why_not`` then tells why some have none."""
+        """Fit a shape to each of the hinges; ``why_not`` then says why some have none."""
         chosen: dict[int, Fitted] = {}
         attempt = dict.fromkeys(hinges, 0)
         waiting = list(hinges)
@@ -103,12 +108,12 @@ class Fitting:
             for hinge in waiting:
                 del chosen[hinge]
                 attempt[hinge] += 1
-                self.why_not[hinge] = CROWDED
+                self.why_not[hinge] = Obstacle.NEIGHBOUR
         self.why_not = {hinge: why for hinge, why in sorted(self.why_not.items()) if hinge not in chosen}
         return chosen
 
-    def reasons(self) -> Counter[str]:
-        """How often each reason kept a hinge straight."""
+    def obstacles(self) -> Counter[Obstacle]:
+        """How often each obstacle kept a hinge straight."""
         return Counter(self.why_not.values())
 
     def _free_of_cuts(self, hinges: Sequence[int], attempt: dict[int, int]) -> dict[int, Fitted]:
@@ -124,7 +129,7 @@ class Fitting:
                         drawn[hinge] = shape
             crowded = self._near_cuts(drawn)
             found.update({hinge: shape for hinge, shape in drawn.items() if hinge not in crowded})
-            self.why_not.update(dict.fromkeys(crowded, CROWDED))
+            self.why_not.update(dict.fromkeys(crowded, Obstacle.NEIGHBOUR))
             left = [hinge for hinge in left if hinge not in found and attempt[hinge] + 1 < attempts(self._style)]
             for hinge in left:
                 attempt[hinge] += 1
@@ -136,12 +141,12 @@ class Fitting:
         piece = self._pieces[index]
         shape = ending(self._style, seat, self._radius, attempt)
         if shape is None:
-            self.why_not.setdefault(hinge, SLANTED)
+            self.why_not.setdefault(hinge, Obstacle.SLANT)
             return None
         tip, before = (piece.points[-1], piece.points[-2]) if last else (piece.points[0], piece.points[1])
         room = 0.5 * (float(np.linalg.norm(before - tip)) - self._shortest)
         if float(np.dot(shape.tip - tip, seat.along)) > max(room, CLEAR_MM):
-            self.why_not.setdefault(hinge, SHORT)
+            self.why_not.setdefault(hinge, Obstacle.LENGTH)
             return None
         return Fitted(shape, CutPiece(piece.cut, shape.points, piece.opens, shape.bulges, shape.closed))
 

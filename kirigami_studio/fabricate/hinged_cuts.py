@@ -17,7 +17,7 @@ from shapely.geometry import LineString, Point, Polygon
 from shapely.geometry.base import BaseGeometry
 
 from kirigami_studio.fabricate.endings import Seat
-from kirigami_studio.fabricate.fitting import Fitting, Place
+from kirigami_studio.fabricate.fitting import Fitting, Obstacle, Place
 from kirigami_studio.fabricate.material import Material
 from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions
 from kirigami_studio.fabricate.slits import SHEET_EDGE, CutTable
@@ -53,8 +53,8 @@ class HingedCuts:
         Number of the piece that is the shape at a hinge, for those that have one.
     flexure_mm : (H,) float
         Length over which each connector bends.
-    straight : Counter of str
-        How many hinges stayed straight against the wish, by reason.
+    straight : Counter of Obstacle
+        How many hinges stayed straight although a style was asked for, by what was in the way.
     """
 
     pieces: tuple[CutPiece, ...]
@@ -62,7 +62,7 @@ class HingedCuts:
     places: tuple[Place, ...]
     shapes: Mapping[int, int]
     flexure_mm: FloatArray
-    straight: Counter[str]
+    straight: Counter[Obstacle]
 
     def moved(self, move: Callable[[FloatArray], FloatArray]) -> HingedCuts:
         """The same cuts with all their points moved (and rounded)."""
@@ -99,10 +99,7 @@ def relief_radius(style: ConnectorStyle, material: Material) -> float:
     if style not in HOLED:
         return 0.0
     if material.relief_radius_mm == 0.0:
-        raise FabricationError(
-            f"{style.value.capitalize()} slit ends need a relief radius, but that of {material.name!r} is 0 mm; choose "
-            f"straight, arc or double connectors, or a material with a relief radius."
-        )
+        raise FabricationError("style.needs_relief_radius", style=style.value, material=material.name)
     return material.relief_radius_mm
 
 
@@ -155,7 +152,7 @@ def hinged_cuts(
         shapes[hinge] = len(made)
         made.append(shape.piece)
         flexure[hinge] = shape.ending.flexure_mm
-    return HingedCuts(tuple(made), tuple(hinge_seats), tuple(places), shapes, flexure, fitting.reasons())
+    return HingedCuts(tuple(made), tuple(hinge_seats), tuple(places), shapes, flexure, fitting.obstacles())
 
 
 def places_of_ends(pieces: Sequence[CutPiece], tips: FloatArray, table: CutTable) -> list[Place]:
@@ -178,7 +175,7 @@ def places_of_ends(pieces: Sequence[CutPiece], tips: FloatArray, table: CutTable
         ]
         if not found:
             x, y = tips[hinge]
-            raise FabricationError(f"No cut is left at x = {x:.2f}, y = {y:.2f} mm; keep more material when trimming.")
+            raise FabricationError("hinge.no_cut_left", x=x, y=y)
         _, index, last = min(found)
         places.append((index, last))
     return places

@@ -16,6 +16,7 @@ from pathlib import Path
 
 import platformdirs
 
+from kirigami_studio.fabricate.findings import Note
 from kirigami_studio.foundation.errors import FabricationError
 from kirigami_studio.foundation.resources import resource
 
@@ -43,7 +44,7 @@ class Material:
     connector_mm : float
         Default finished connector width.
     min_ligament_mm : float
-        Finished ligaments below this are warned about.
+        A warning is given about finished ligaments below this.
     relief_radius_mm : float
         Radius of a stress-relief slit end, 0 for none.
     speed_mm_s, travel_mm_s : float
@@ -61,7 +62,7 @@ class Material:
     passes : int
         How many times the job is cut; 1 in files without it.
     min_slit_mm : float
-        Slits shorter than this are warned about; 0.1 in files without it.
+        A warning is given about slits shorter than this; 0.1 in files without it.
     measured_on, measured_by : str
         Day (ISO 8601) and author of the calibration, both may be empty.
     """
@@ -96,10 +97,10 @@ class Material:
                 self._check_number(field.name, value, zero_allowed=field.name in may_be_zero)
             elif type(value).__name__ != field.type:
                 raise FabricationError(
-                    f"Material {self.key!r}: {field.name} must be a {field.type}, got {value!r}; correct the preset."
+                    "material.wrong_type", key=self.key, name=field.name, kind=field.type, value=value
                 )
         if self.passes < 1:
-            raise FabricationError(f"Material {self.key!r}: passes must be 1 or more, got {self.passes}.")
+            raise FabricationError("material.no_passes", key=self.key, passes=self.passes)
         if self.measured_on:
             self._check_day()
 
@@ -107,17 +108,13 @@ class Material:
         try:
             date.fromisoformat(self.measured_on)
         except ValueError:
-            raise FabricationError(
-                f"Material {self.key!r}: measured_on must be a day like 2026-11-21, got {self.measured_on!r}."
-            ) from None
+            raise FabricationError("material.not_a_day", key=self.key, value=self.measured_on) from None
 
     def _check_number(self, name: str, value: object, zero_allowed: bool) -> None:
         number = isinstance(value, (int, float)) and not isinstance(value, bool) and math.isfinite(value)
         if not number or value < 0 or (value == 0 and not zero_allowed):  # type: ignore[operator]
-            bound = "0 or more" if zero_allowed else "above 0"
-            raise FabricationError(
-                f"Material {self.key!r}: {name} must be a number {bound}, got {value!r}; correct the preset."
-            )
+            code = "material.number_negative" if zero_allowed else "material.number_not_positive"
+            raise FabricationError(code, key=self.key, name=name, value=value)
 
 
 @dataclass(frozen=True, slots=True)
@@ -130,13 +127,13 @@ class Library:
         By key: the default preset, the other presets in alphabetical order, then own materials with keys of their own.
     own : frozenset of str
         Keys of those that are not bundled, or that stand for the bundled ones of the same key.
-    faults : tuple of str
-        One sentence for each own file that cannot be used.
+    faults : tuple of Note
+        One for each own file that cannot be used.
     """
 
     materials: Mapping[str, Material]
     own: frozenset[str]
-    faults: tuple[str, ...]
+    faults: tuple[Note, ...]
 
 
 def presets() -> dict[str, Material]:
@@ -154,19 +151,20 @@ def own_folder() -> Path:
 
 
 def library() -> Library:
-    """Read presets and own materials; an own file that cannot be used becomes a sentence among the faults."""
-    materials, own, faults = presets(), set[str](), list[str]()
+    """Read presets and own materials; an own file that cannot be used is noted among the faults."""
+    materials, own, faults = presets(), set[str](), list[Note]()
     folder = own_folder()
     try:
         files = sorted(folder.glob("*.toml"))
     except OSError as error:
-        files, faults = [], [f"The folder of own materials {folder} cannot be read: {error.strerror or error}."]
+        reason = error.strerror or str(error)
+        files, faults = [], [Note.of("material.folder_not_readable", folder=folder, reason=reason)]
     for path in files:
         try:
             materials[path.stem] = read_preset(path)
             own.add(path.stem)
         except FabricationError as error:
-            faults.append(str(error))
+            faults.append(Note(error.code, error.fields))
     return Library(materials, frozenset(own), tuple(faults))
 
 
@@ -189,7 +187,7 @@ def find_material(name: str) -> Material:
     by_name = {material.name.casefold(): material for material in list(known.values())[::-1]}
     found = by_key.get(wanted) or by_name.get(wanted)
     if found is None:
-        raise FabricationError(f"There is no material {name!r}; choose one of {', '.join(known)}.")
+        raise FabricationError("material.unknown", name=name, known=", ".join(known))
     return found
 
 
@@ -204,10 +202,12 @@ def read_preset(path: Path) -> Material:
     try:
         entries = tomllib.loads(path.read_text(encoding="utf-8"))
     except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
-        raise FabricationError(f"The material file {path} cannot be read: {error}.") from error
+        raise FabricationError("material.file_not_readable", path=path, reason=str(error)) from error
     expected = {field.name: field.default is MISSING for field in fields(Material) if field.name != "key"}
     if missing := {name for name, needed in expected.items() if needed} - entries.keys():
-        raise FabricationError(f"The material file {path} lacks {', '.join(sorted(missing))}; add them.")
+        names = ", ".join(sorted(missing))
+        raise FabricationError("material.entries_missing", path=path, names=names, count=len(missing))
     if unknown := entries.keys() - expected.keys():
-        raise FabricationError(f"The material file {path} has unknown entries {', '.join(sorted(unknown))}; drop them.")
+        names = ", ".join(sorted(unknown))
+        raise FabricationError("material.entries_unknown", path=path, names=names, count=len(unknown))
     return Material(key=path.stem, **entries)

@@ -31,10 +31,7 @@ def check_key(key: str) -> str:
         Empty, too long, with other characters than a-z, 0-9, - and _, or reserved by a platform.
     """
     if not isinstance(key, str) or KEY.fullmatch(key) is None or key in RESERVED:
-        raise FabricationError(
-            f"A material's key needs 1 to 40 of the characters a-z, 0-9, - and _ and must be no device's name, "
-            f"got {key!r}; choose another, for example 'my-film'."
-        )
+        raise FabricationError("material.key_not_usable", key=key)
     return key
 
 
@@ -66,11 +63,14 @@ def delete_copy(key: str) -> None:
     try:
         path.unlink()
     except FileNotFoundError:
-        bundled = " It is a bundled preset, which stays." if key in presets() else ""
-        own = ", ".join(sorted(library().own)) or "none"
-        raise FabricationError(f"There is no own material {key!r} to delete (own ones: {own}).{bundled}") from None
+        if key in presets():
+            raise FabricationError("material.bundled_not_deleted", key=key) from None
+        own = ", ".join(sorted(library().own))
+        if not own:
+            raise FabricationError("material.none_own", key=key) from None
+        raise FabricationError("material.not_own", key=key, own=own) from None
     except OSError as error:
-        raise FabricationError(f"Cannot delete {path}: {error.strerror or error}.") from error
+        raise FabricationError("material.not_deleted", path=path, reason=error.strerror or str(error)) from error
 
 
 def changed_copy(source: str, key: str, changes: Mapping[str, object]) -> Material:
@@ -93,7 +93,7 @@ def changed_copy(source: str, key: str, changes: Mapping[str, object]) -> Materi
     kinds = {field.name: str(field.type) for field in fields(Material) if field.name not in ("key", "calibrated")}
     for name in changes:
         if name not in kinds:
-            raise FabricationError(f"A material has no entry {name!r} to set; choose from {', '.join(kinds)}.")
+            raise FabricationError("material.no_such_entry", name=name, known=", ".join(kinds))
     values = {name: _typed(name, kinds[name], value) for name, value in changes.items()}
     if key != original.key and "name" not in values:
         values["name"] = f"{original.name} ({key})"
@@ -126,7 +126,7 @@ def mark_calibrated(
         A value that makes no sense, or nobody's name.
     """
     if not by.strip():
-        raise FabricationError("A calibration needs the name of whoever measured; give an author.")
+        raise FabricationError("material.no_author")
     measured = replace(
         material,
         calibrated=True,
@@ -146,12 +146,12 @@ def _typed(name: str, kind: str, value: object) -> object:
     try:
         return int(value) if kind == "int" else float(value)
     except ValueError:
-        number = "a whole number" if kind == "int" else "a number"
-        raise FabricationError(f"{name} must be {number}, got {value!r}.") from None
+        code = "material.not_a_whole_number" if kind == "int" else "material.not_a_number"
+        raise FabricationError(code, name=name, value=value) from None
 
 
 def _own_file(key: str) -> Path:
     folder = own_folder()
     if folder.resolve() == resource("materials").resolve():
-        raise FabricationError(f"Own materials cannot be kept among the bundled ones in {folder}; name another folder.")
+        raise FabricationError("material.folder_is_bundled", folder=folder)
     return folder / f"{check_key(key)}.toml"

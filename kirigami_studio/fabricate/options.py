@@ -67,15 +67,15 @@ class CutOptions:
 
     def __post_init__(self) -> None:
         if not 0 <= self.tabs <= MOST_TABS:
-            raise FabricationError(f"The outline can have 0 to {MOST_TABS} tabs, got {self.tabs}.")
-        check_length("The width of a tab", self.tab_mm)
+            raise FabricationError("tabs.too_many", most=MOST_TABS, tabs=self.tabs)
+        check_length("tabs.width_not_positive", self.tab_mm)
         hinges = [hinge for hinge, _ in self.hinge_mm]
         if not (_ascending(hinges) and _ascending(self.removed)):
-            raise FabricationError("Every hinge can be given a width or removed once, in ascending order.")
+            raise FabricationError("hinge.named_twice")
         for hinge, width in self.hinge_mm:
-            check_length(f"The connector width of hinge {hinge}", width)
+            check_length("hinge.width_not_positive", width, hinge=hinge)
         if both := set(hinges) & set(self.removed):
-            raise FabricationError(f"Hinge {min(both)} has both a width and no connector; choose one.")
+            raise FabricationError("hinge.width_and_removed", hinge=min(both))
 
 
 def _ascending(numbers: Sequence[int]) -> bool:

@@ -58,14 +58,11 @@ class CutTable:
     def hinge_count(self) -> int:
         return int(self.hinge_node.size)
 
-    def label(self, cut: int) -> str:
-        """Return how to name a cut to a person, e.g. ``"slit of void (2, 3)"``; rows count from the top, from 0."""
-        if cut < self.slit_count:
-            row, column = divmod(cut, self.columns)
-            return f"slit of void ({row}, {column})"
-        through = self.hinge_through[2 * self.slit_count + cut - self.slit_count]
+    def void_of(self, cut: int) -> tuple[int, int]:
+        """The void (row, column), counted from 0 at the top left, whose slit a cut is or, at the edge, rests on."""
+        through = cut if cut < self.slit_count else self.hinge_through[self.slit_count + cut]
         row, column = divmod(int(through), self.columns)
-        return f"edge cut at void ({row}, {column})"
+        return row, column
 
 
 @cache

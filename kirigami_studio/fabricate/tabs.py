@@ -47,11 +47,9 @@ def tabbed(ring: FloatArray, count: int, gap_mm: float, busy: FloatArray) -> lis
     centres = _centres(line.length, blocked, count, gap_mm)
     if centres is None:
         most = next((n for n in range(count - 1, 0, -1) if _centres(line.length, blocked, n, gap_mm) is not None), 0)
-        raise FabricationError(
-            f"The outline of {line.length:.1f} mm has no room for {count} tabs that need {gap_mm:g} mm each, away from "
-            f"its corners, edge slits and connectors; ask for {f'at most {most} tabs' if most else 'none'} or narrower "
-            f"ones."
-        )
+        if most == 0:
+            raise FabricationError("tabs.no_room_for_any", length_mm=line.length, gap_mm=gap_mm)
+        raise FabricationError("tabs.no_room", length_mm=line.length, tabs=count, gap_mm=gap_mm, count=most)
     gaps = [line.gap(centre, gap_mm) for centre in centres]
     return [line.between(stop, gaps[(index + 1) % count][0]) for index, (_, stop) in enumerate(gaps)]
 

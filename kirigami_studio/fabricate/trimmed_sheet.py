@@ -99,7 +99,7 @@ def kept_area(deployment: Deployment, kept: Sequence[FloatArray | None], width_m
     """
     corners = deployment.compact[deployment.topology.panel_nodes.reshape(-1, 4)]
     if len(kept) != len(corners):
-        raise FabricationError(f"This sheet has {len(corners)} panels, but {len(kept)} trimmed ones were given.")
+        raise FabricationError("trimmed.panel_count", panels=len(corners), given=len(kept))
     low, high = deployment.compact.min(axis=0), deployment.compact.max(axis=0)
     scale = width_mm / (high[0] - low[0])
     parts = [whole if part is None else part for part, whole in zip(kept, corners, strict=True)]
@@ -109,7 +109,7 @@ def kept_area(deployment: Deployment, kept: Sequence[FloatArray | None], width_m
     united = shapely.get_parts(shapely.buffer(snapped, -3.0 * GRID_MM, join_style="mitre"))
     areas = [Polygon(part.exterior) for part in united if isinstance(part, Polygon) and part.area > INSIDE_MM**2]
     if len(areas) != 1:
-        raise FabricationError(f"The trimmed sheet falls into {len(areas)} parts; keep more material at the hinges.")
+        raise FabricationError("trimmed.falls_apart", parts=len(areas))
     return areas[0]
 
 
@@ -187,10 +187,7 @@ def remaining_cuts(
             pieces.append(_opened(cut, part, at_end, outline, kerf_mm, overcut_mm))
         if np.any(lost := tips[cut] & ~held):
             x, y = line[int(np.argmax(lost))]
-            raise FabricationError(
-                f"Trimming leaves too little material for the connector at x = {x:.2f}, y = {y:.2f} mm; keep more at "
-                f"the hinges when trimming, make the sheet wider or the connectors narrower."
-            )
+            raise FabricationError("trimmed.connector_lost", x=x, y=y)
     return pieces
 
 

@@ -130,7 +130,7 @@ class CutPlanner(QObject):
 def message_of(path: Path, made: Planned) -> Message:
     """Say what a written cut file holds, and whether cutting it would succeed."""
     plan, check = made.plan, made.report
-    details = "\n".join([str(path), *(problem.text for problem in check.problems), *plan.notes])
+    details = "\n".join([str(path), *(note.text for note in (*check.problems, *plan.notes))])
     if check.ok:
         name = tr("Folder “{name}”", name=path.name) if path.is_dir() else path.name
         values = {"name": name, "count": len(plan.paths)}

@@ -33,10 +33,13 @@ GOOD = Verification(
     cut_length_mm=1234.0,
     seconds_low=20.0,
     seconds_high=30.0,
-    findings=(Finding("The file's unit is mm.", True), Finding("A ligament is narrow.", True, warning=True)),
+    findings=(
+        Finding.judged(True, "verify.unit_is_mm"),
+        Finding("verify.smallest_ligament", {"ligament_mm": 0.2, "planned_mm": 0.3}, ok=True, warning=True),
+    ),
     warnings=(),
 )
-BAD = replace(GOOD, ok=False, findings=(*GOOD.findings, Finding("Two lines are missing.", False)))
+BAD = replace(GOOD, ok=False, findings=(*GOOD.findings, Finding.judged(False, "verify.point_count")))
 
 
 def export(window: MainWindow, path: Path, until: Until) -> ExportReport:
@@ -86,7 +89,7 @@ def test_that_the_verdict_is_said_in_words(report: Verification, said: str) -> N
 def test_that_a_bad_finding_comes_first_with_its_own_word_and_symbol(qtbot: QtBot, designed: MainWindow) -> None:
     assert [line[:2] for line in format_findings(BAD)] == [("Bad", "fault"), ("Note", "warning"), ("Good", "check")]
     dialog = ExportReport(designed, (BAD,), LIGHT)
-    assert dialog.findings.item(0).text() == "Bad: Two lines are missing."
+    assert dialog.findings.item(0).text() == "Bad: The file holds another number of points than planned."
     good = ExportReport(designed, (GOOD,), LIGHT)
     assert dialog.symbol.pixmap().toImage() != good.symbol.pixmap().toImage()
     for one in (dialog, good):
@@ -97,7 +100,8 @@ def test_that_the_copied_report_holds_every_line(designed: MainWindow, qtbot: Qt
     dialog = ExportReport(designed, (BAD,), LIGHT)
     dialog.copy.click()
     text = QApplication.clipboard().text()
-    assert text == as_text(BAD) and "Time: 20\N{EN DASH}30 s" in text and "Bad: Two lines are missing." in text
+    assert text == as_text(BAD) and "Time: 20\N{EN DASH}30 s" in text
+    assert "Bad: The file holds another number of points than planned." in text
     dialog.deleteLater()
 
 

@@ -91,7 +91,7 @@ def test_that_trimmed_sheets_are_one_piece_with_no_connector_narrower_than_asked
     assert (plan.hinges.finished_mm - plan.hinges.requested_mm).min() >= -1e-3
     report = check_plan(plan)
     assert report.pieces == 1
-    assert not any("narrower" in problem.text for problem in report.problems)
+    assert not any(problem.code == "plan.connectors_narrower" for problem in report.problems)
 
 
 @given(wish=st.one_of(wishes(), wishes(trimmed=True)))

@@ -1,5 +1,270 @@
-"""Sentences of ``export``, by the code of the problem."""
+"""Sentences of ``export``, by the code of the problem: files that cannot be written, and what reading back finds."""
 
 from __future__ import annotations
 
-SENTENCES: dict[str, str | tuple[str, str]] = {}
+from kirigami_studio.foundation.words import mark
+
+SENTENCES: dict[str, str | tuple[str, str]] = {
+    # What a file is asked for
+    "export.no_plan": mark("A cut file needs a cut plan: choose a material and a sheet width first."),
+    "export.unknown_kind": mark("Cannot write {extension:.20} files ({path}). Use one of {known}."),
+    "export.no_extension": mark("Cannot write a file without extension ({path}). Use one of {known}."),
+    "profile.unknown": mark("There is no machine profile {name!r:.40}. Choose one of {known}."),
+    "profile.white_lines": mark(
+        "MeerK40t rasters white lines, and some other programs engrave them: choose the k40 profile for those."
+    ),
+    "profile.one_origin": mark(
+        "Import all files of the folder at one origin and cut them in the order of their numbers."
+    ),
+    "profile.kerf_is_theirs": mark(
+        "Contours are the edges of the finished part: the cutting service has to allow for its kerf."
+    ),
+    "slots.no_kerf": mark(
+        "Slots need a width, but the kerf of the plan is 0 mm. Plan the cuts with the width of the slots."
+    ),
+    "slots.falls_apart": mark(
+        "As slots of {kerf_mm:g} mm, the sheet would fall into {pieces} pieces. Widen the connectors."
+    ),
+    "paper.unknown": mark("There is no paper {name!r:.40}. Choose one of {known}."),
+    "paper.none": mark("Pages need a paper size: choose a4 or letter."),
+    "paper.too_many_pages": mark("This sheet would need {pages} pages of {paper}. Choose one large page."),
+    "lightburn.open_cuts_only": mark(
+        "A LightBurn project holds open cuts, not slots. Write DXF or SVG for a cutting service."
+    ),
+    "gif.too_few_frames": mark("An animation needs at least 2 frames, got {frames}."),
+    "dxf.unknown_version": mark("The DXF version must be R2010 or R12, got {version!r:.40}."),
+    # Folders of layer files
+    "layers.file_in_the_way": mark("Cannot write the folder {folder}: a file has that name. Choose another name."),
+    "layers.not_a_folder": mark("{folder} is not a folder of layer files. Export it again."),
+    "layers.other_files": mark(
+        "The folder {folder} holds other files ({name:.60}). Layer files need a folder of their own."
+    ),
+    # Files that do not read back as they were written
+    "dxf.not_read_back": mark("The written DXF cannot be read back: {reason} Nothing was written. Please report it."),
+    "dxf.other_unit": mark(
+        "The DXF failed its own check: its unit is {unit} instead of 4 (mm). Nothing was written. Please report it."
+    ),
+    "dxf.other_extent": mark(
+        "The DXF failed its own check: its extents go to {extent}. Nothing was written. Please report it."
+    ),
+    "dxf.other_layers": mark(
+        "The DXF failed its own check: its layers are {layers}. Nothing was written. Please report it."
+    ),
+    "dxf.other_kind": mark(
+        "The DXF failed its own check: it holds a {kind} instead of a polyline. Nothing was written. Please report it."
+    ),
+    "dxf.other_count": mark(
+        "The DXF failed its own check: it holds {found} entities instead of {planned}. Nothing was written. Please "
+        "report it."
+    ),
+    "dxf.entity_on_other_layer": mark(
+        "The DXF failed its own check: entity {number} is on layer {layer} in colour {colour}. Nothing was written. "
+        "Please report it."
+    ),
+    "dxf.entity_closed": mark(
+        "The DXF failed its own check: entity {number} is closed. Nothing was written. Please report it."
+    ),
+    "dxf.entity_open": mark(
+        "The DXF failed its own check: entity {number} is open. Nothing was written. Please report it."
+    ),
+    "dxf.entity_moved": mark(
+        "The DXF failed its own check: the points of entity {number} are not where they were planned. Nothing was "
+        "written. Please report it."
+    ),
+    "dxf.entity_bent": mark(
+        "The DXF failed its own check: entity {number} has other arcs than planned. Nothing was written. Please report "
+        "it."
+    ),
+    "dxf.drawing_differs": mark("The drawing did not read back as planned. Nothing was written. Please report it."),
+    "svg.not_as_written": mark(
+        "The SVG did not read back as planned: {found} paths instead of {planned}, or another size. Nothing was "
+        "written. Please report it."
+    ),
+    "pdf.other_page_size": mark(
+        "The PDF did not read back as planned: a page of {width_mm:.2f} x {height_mm:.2f} mm instead of "
+        "{planned_width_mm:.2f} x {planned_height_mm:.2f} mm. Nothing was written. Please report it."
+    ),
+    "pdf.other_page_count": mark(
+        "The PDF did not read back as planned: {pages} pages for {parts} parts. Nothing was written. Please report it."
+    ),
+    "pdf.other_length": mark(
+        "The PDF did not read back as planned: {found_mm:.3f} instead of {planned_mm:.3f} mm of {layer}. Nothing was "
+        "written. Please report it."
+    ),
+    "lightburn.other_length": mark(
+        "The LightBurn project did not read back as planned: {found_mm:.3f} instead of {planned_mm:.3f} mm of {layer}. "
+        "Nothing was written. Please report it."
+    ),
+    "png.other_size": mark(
+        "The PNG did not read back as planned: {width} x {height} pixels instead of {planned_width} x "
+        "{planned_height}. Nothing was written. Please report it."
+    ),
+    "gif.other_frames": mark(
+        "The GIF did not read back as planned: {found} frames instead of {planned}, or another size. Nothing was "
+        "written. Please report it."
+    ),
+    "sidecar.not_as_written": mark(
+        "The record {path} did not read back as planned. Nothing was written. Please report it."
+    ),
+    # Files that cannot be read
+    "dxf.not_readable": mark("{path} is not a readable DXF: {reason!s:.200}. Export it again."),
+    "dxf.audit": (
+        mark("The audit of ezdxf found {count} error in {path}: {first:.120}."),
+        mark("The audit of ezdxf found {count} errors in {path}, the first: {first:.120}."),
+    ),
+    "dxf.damaged": mark("{path} is a damaged DXF. Export it again from its program."),
+    "dxf.too_large": mark("{path} is larger than {limit} MB and cannot be a cut file."),
+    "dxf.cannot_open": mark("Cannot read {path}: {reason}. Choose a DXF file."),
+    "dxf.no_dxf": mark("Cannot read {path}: it is not a DXF file. Choose a DXF file."),
+    "svg.not_readable": mark("{path} is not a readable SVG: {reason!s:.200}. Export it again."),
+    "lightburn.not_readable": mark("{path} is not a readable LightBurn project: {reason!s:.200}. Export it again."),
+    "pdf.not_whole": mark("{path} is not a whole PDF. Export it again."),
+    "pdf.pages_without_drawing": mark("{path} has {pages} pages but {drawings} drawings. Export it again."),
+    "pdf.drawing_not_readable": mark("{path} holds a drawing that cannot be read: {reason!s:.200}. Export it again."),
+    "sidecar.file_not_readable": mark("Cannot read {path}: {reason}. Export it again."),
+    "verify.unknown_kind": mark("{path} cannot be verified: cut files end in {known}."),
+    "cut_file.kerf_not_a_width": mark(
+        "The kerf must be a width of 0 mm or more, got {value!r:.40}. Give the full width of the cut."
+    ),
+    # What a check of any cut file finds
+    "cut_file.only_partly_readable": mark("The file is damaged; only a part could be read. Export it again."),
+    "cut_file.no_unit": mark("The file has no unit; it was read as mm, and must be imported as mm."),
+    "cut_file.unknown_unit": mark("The unit code {unit} of the file is unknown. Set it to 4 (mm)."),
+    "cut_file.other_unit": mark(
+        "The unit of the file is {unit} instead of mm; many machines ignore that and cut another size."
+    ),
+    "cut_file.other_entities": mark("The file holds {count} {kind}, which machines drop or burn. Remove them."),
+    "cut_file.risky_curves": mark(
+        "The file holds {count} {kind}, which some machines read wrongly. Use lines and arcs."
+    ),
+    "cut_file.no_curve": mark("The {kind} {handle:.20} on layer {layer:.40} cannot be read as a curve. Draw it again."),
+    "cut_file.not_a_number": mark(
+        "The {kind} {handle:.20} on layer {layer:.40} has a coordinate that is not a number. Draw it again."
+    ),
+    "cut_file.no_length": mark("The {kind} {handle:.20} on layer {layer:.40} has no length. Remove it."),
+    "cut_file.empty": mark("The file holds nothing that can be cut."),
+    "cut_file.trap_layers": mark(
+        "Layer names with CUT or ENGRAVE in them ({layers:.80}) choose an operation in MeerK40t and K40 Whisperer, so "
+        "that lines are cut twice or engraved. Rename them."
+    ),
+    "cut_file.size_unlikely": mark(
+        "The drawing is {width_mm:g} x {height_mm:g} mm, outside {smallest_mm:g} to {largest_mm:g} mm. Its unit is "
+        "probably wrong."
+    ),
+    "cut_file.duplicates": (
+        mark(
+            "{count} line is drawn more than once, at x = {x:.2f}, y = {y:.2f} mm, and would be cut twice. Delete the "
+            "duplicate."
+        ),
+        mark(
+            "{count} lines are drawn more than once, the first at x = {x:.2f}, y = {y:.2f} mm, and would be cut twice. "
+            "Delete the duplicates."
+        ),
+    ),
+    "cut_file.overlap": mark("{length_mm:.3f} mm of the cuts overlap other cuts. Join or trim them."),
+    "cut_file.outline_of_lines": mark(
+        "The outline consists of lines that meet but is not a closed polyline; some machines take it for open."
+    ),
+    "cut_file.outline_crosses_itself": mark("The outline crosses itself. Draw it again."),
+    "cut_file.no_outline": mark(
+        "The file has no closed outline, so the sheet would not come free. Add one closed contour."
+    ),
+    "cut_file.outline_open": mark("The outline is open by {gap_mm:.3f} mm at x = {x:.2f}, y = {y:.2f} mm. Close it."),
+    "cut_file.tab_count": mark(
+        "The file promises {tabs:.20} tabs, but its outline consists of {paths} paths, {closed} of them closed. Export "
+        "it again."
+    ),
+    "cut_file.tab_gap": mark(
+        "The outline is open by {gap_mm:.3f} mm at x = {x:.2f}, y = {y:.2f} mm, where the file promises tabs with gaps "
+        "of {promised_mm:.3f} mm. Export it again."
+    ),
+    "cut_file.below_origin": mark(
+        "Coordinates go down to ({low_x:.2f}, {low_y:.2f}) mm; some machines cut off what is below the origin."
+    ),
+    "cut_file.outside_sheet": mark(
+        "The cut at x = {x:.2f}, y = {y:.2f} mm leaves the sheet. Move it inside the outline or delete it."
+    ),
+    "cut_file.slit_reaches_outline": mark(
+        "The slit at x = {x:.2f}, y = {y:.2f} mm reaches the outline: no connector is left at its end."
+    ),
+    "cut_file.cuts_after_outline": mark(
+        "Cuts come after the outline in the file, and the sheet may move once it is free. Cut the outline last."
+    ),
+    "cut_file.falls_apart": mark(
+        "With a kerf of {kerf_mm:g} mm the sheet falls into {pieces} pieces, one of them at x = {x:.2f}, y = {y:.2f} "
+        "mm. Leave wider connectors."
+    ),
+    "cut_file.nothing_left": mark("With a kerf of {kerf_mm:g} mm nothing is left of the sheet. Use a smaller kerf."),
+    "cut_file.connector_lost": mark(
+        "Cuts run into each other at x = {x:.2f}, y = {y:.2f} mm: no connector is left there."
+    ),
+    "cut_file.loose_parts": (
+        mark(
+            "{count} closed cut inside the outline lets a part fall out, about {size_mm:.1f} mm across, at x = "
+            "{x:.2f}, y = {y:.2f} mm. Make sure that it is meant."
+        ),
+        mark(
+            "{count} closed cuts inside the outline let a part fall out, the largest about {size_mm:.1f} mm across, at "
+            "x = {x:.2f}, y = {y:.2f} mm. Make sure that they are meant."
+        ),
+    ),
+    "cut_file.joins_differ": (
+        mark(
+            "{count} cut ends on another cut, where the file promises {promised:.20}: a connector is lost or a slit "
+            "misses its end. Export it again."
+        ),
+        mark(
+            "{count} cuts end on another cut, where the file promises {promised:.20}: a connector is lost or a slit "
+            "misses its end. Export it again."
+        ),
+    ),
+    # What two readers find in a written file
+    "verify.by_one_reader": mark("{reader}: {finding}"),
+    "verify.unit_is_mm": mark("The unit of the file is mm."),
+    "verify.other_unit": mark("The unit of the file is {unit} instead of 4 (mm)."),
+    "verify.no_unit": mark("The file has no unit, but mm was planned."),
+    "verify.no_unit_in_r12": mark("An R12 file has no unit: import it as mm."),
+    "verify.line_counts": mark(
+        "The file holds {open_lines} open and {closed_lines} closed lines; {planned_open} open and {planned_closed} "
+        "closed were planned."
+    ),
+    "verify.other_things": mark(
+        "The file holds {others} entities that are no lines ({kind:.40}) beside {open_lines} open and {closed_lines} "
+        "closed lines; {planned_open} open and {planned_closed} closed were planned."
+    ),
+    "verify.layers_as_planned": mark("The layers and their colours are {layers}, in that order."),
+    "verify.layers_differ": mark("The layers and their colours are {layers}; planned were {planned}."),
+    "verify.no_layers": mark("The file has no layers; planned were {planned}."),
+    "verify.points_as_planned": mark("All {points} points are where they were planned, with the same arcs."),
+    "verify.points_moved": mark(
+        "Points or arcs are not where they were planned: the farthest is {shift_mm:.2g} mm off."
+    ),
+    "verify.point_count": mark("The file holds another number of points than planned."),
+    "verify.length": mark("The cut length is {length_mm:.3f} mm; {planned_mm:.3f} mm were planned."),
+    "verify.no_size": mark("The header of the file gives no size."),
+    "verify.size": mark(
+        "The size of the file is {width_mm:.3f} x {height_mm:.3f} mm; {planned_width_mm:.3f} x {planned_height_mm:.3f} "
+        "mm were planned."
+    ),
+    "verify.cut_once": mark("Nothing is cut twice."),
+    "verify.cut_twice": mark("{length_mm:.4f} mm would be cut twice."),
+    "verify.pieces": (
+        mark("After cutting with a kerf of {kerf_mm:g} mm, the sheet is {count} piece."),
+        mark("After cutting with a kerf of {kerf_mm:g} mm, the sheet is {count} pieces."),
+    ),
+    "verify.smallest_ligament": mark(
+        "The smallest ligament is {ligament_mm:.3f} mm; the smallest connector is planned with {planned_mm:.3f} mm."
+    ),
+    "verify.tabs_left_out": (
+        mark("Contours for a cutting service have no gaps: {count} tab is left out."),
+        mark("Contours for a cutting service have no gaps: {count} tabs are left out."),
+    ),
+    "verify.slots_longer": mark(
+        "As slots the cut is {length_mm:.1f} mm long instead of {open_mm:.1f} mm ({times:.2f} times), which is what a "
+        "cutting service charges for."
+    ),
+    "verify.slots_width": mark(
+        "The slots are {kerf_mm:g} mm wide, the kerf of the plan. If the cutting service asks for wider ones, plan the "
+        "cuts with that kerf."
+    ),
+}

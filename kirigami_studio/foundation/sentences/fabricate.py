@@ -1,5 +1,284 @@
-"""Sentences of ``fabricate``, by the code of the problem."""
+"""Sentences of ``fabricate``, by the code of the problem: widths, materials, and what a check of a plan finds."""
 
 from __future__ import annotations
 
-SENTENCES: dict[str, str | tuple[str, str]] = {}
+from kirigami_studio.foundation.words import mark
+
+SENTENCES: dict[str, str | tuple[str, str]] = {
+    # Lengths that make no sense
+    "sheet.width_not_positive": mark("The sheet width must be a number of millimetres above 0, got {value!r:.40}."),
+    "sheet.size_out_of_range": mark(
+        "A sheet of {width_mm:g} x {height_mm:g} mm cannot be planned: both sides must be between {smallest_mm:g} and "
+        "{largest_mm:g} mm. Change the sheet width."
+    ),
+    "connector.width_not_positive": mark(
+        "The connector width must be a number of millimetres above 0, got {value!r:.40}."
+    ),
+    "hinge.width_not_positive": mark(
+        "The width of connector {hinge} must be a number of millimetres above 0, got {value!r:.40}."
+    ),
+    "kerf.negative": mark("The kerf must be 0 mm or more, got {value!r:.40}."),
+    "overcut.not_positive": mark("The overcut must be a number of millimetres above 0, got {value!r:.40}."),
+    "tabs.width_not_positive": mark("The tab width must be a number of millimetres above 0, got {value!r:.40}."),
+    # Choices about the cuts
+    "tabs.too_many": mark("The outline can have 0 to {most} tabs, got {tabs}."),
+    "tabs.no_room": (
+        mark(
+            "The outline of {length_mm:.1f} mm has no room for {tabs} tabs of {gap_mm:g} mm away from its corners, "
+            "edge slits and connectors. Use {count} tab at most, or narrower ones."
+        ),
+        mark(
+            "The outline of {length_mm:.1f} mm has no room for {tabs} tabs of {gap_mm:g} mm away from its corners, "
+            "edge slits and connectors. Use {count} tabs at most, or narrower ones."
+        ),
+    ),
+    "tabs.no_room_for_any": mark(
+        "The outline of {length_mm:.1f} mm has no room for a tab of {gap_mm:g} mm away from its corners, edge slits "
+        "and connectors. Use narrower tabs or none."
+    ),
+    "hinge.unknown": mark("There is no connector {hinge}: this sheet has connectors 0 to {last}."),
+    "hinge.named_twice": mark("A connector can be given a width or removed only once; name connectors in ascending order."),
+    "hinge.width_and_removed": mark("Connector {hinge} is given a width and also removed. Choose one."),
+    "style.needs_relief_radius": mark(
+        "The connector style {style!r} needs a relief radius, but that of {material!r} is 0 mm. Choose straight, arc "
+        "or double connectors, or a material with a relief radius."
+    ),
+    # Cuts without room
+    "slit.no_room": (
+        mark(
+            "The slit of void ({row}, {column}) is {length_mm:.2f} mm long, but connectors of {connector_mm:g} mm and "
+            "a kerf of {kerf_mm:g} mm need {needed_mm:.2f} mm. Make the sheet at least {times:.2f} times wider or the "
+            "connectors narrower."
+        ),
+        mark(
+            "The slit of void ({row}, {column}) is {length_mm:.2f} mm long, but connectors of {connector_mm:g} mm and "
+            "a kerf of {kerf_mm:g} mm need {needed_mm:.2f} mm. Make the sheet at least {times:.2f} times wider or the "
+            "connectors narrower ({count} cuts are too short)."
+        ),
+    ),
+    "edge_cut.no_room": (
+        mark(
+            "The edge cut at void ({row}, {column}) is {length_mm:.2f} mm long, but a connector of {connector_mm:g} mm "
+            "and a kerf of {kerf_mm:g} mm need {needed_mm:.2f} mm. Make the sheet at least {times:.2f} times wider or "
+            "the connectors narrower."
+        ),
+        mark(
+            "The edge cut at void ({row}, {column}) is {length_mm:.2f} mm long, but a connector of {connector_mm:g} mm "
+            "and a kerf of {kerf_mm:g} mm need {needed_mm:.2f} mm. Make the sheet at least {times:.2f} times wider or "
+            "the connectors narrower ({count} cuts are too short)."
+        ),
+    ),
+    # Trimmed sheets
+    "hinge.no_cut_left": mark("No cut is left at x = {x:.2f}, y = {y:.2f} mm. Keep more material when trimming."),
+    "trimmed.panel_count": mark("This sheet has {panels} panels, but {given} trimmed ones were given."),
+    "trimmed.falls_apart": mark(
+        "The trimmed sheet falls into {parts} parts. Keep more material at the hinges when trimming."
+    ),
+    "trimmed.connector_lost": mark(
+        "Trimming leaves too little material for the connector at x = {x:.2f}, y = {y:.2f} mm. Keep more material at "
+        "the hinges, make the sheet wider or the connectors narrower."
+    ),
+    # Materials
+    "material.wrong_type": mark(
+        "Material {key!r:.60}: {name} must be of type {kind}, got {value!r:.40}. Correct its file."
+    ),
+    "material.number_not_positive": mark(
+        "Material {key!r:.60}: {name} must be a number above 0, got {value!r:.40}. Correct its file."
+    ),
+    "material.number_negative": mark(
+        "Material {key!r:.60}: {name} must be a number of 0 or more, got {value!r:.40}. Correct its file."
+    ),
+    "material.no_passes": mark("Material {key!r:.60}: passes must be 1 or more, got {passes}. Correct its file."),
+    "material.not_a_day": mark(
+        "Material {key!r:.60}: measured_on must be a day such as 2026-11-21, got {value!r:.40}. Correct its file."
+    ),
+    "material.unknown": mark("There is no material {name!r:.60}. Choose one of {known}."),
+    "material.folder_not_readable": mark("Cannot read your own materials in {folder}: {reason}."),
+    "material.file_not_readable": mark("Cannot read the material file {path}: {reason!s:.200}. Correct or remove it."),
+    "material.entries_missing": (
+        mark("The material file {path} lacks the entry {names}. Add it."),
+        mark("The material file {path} lacks the entries {names}. Add them."),
+    ),
+    "material.entries_unknown": (
+        mark("The material file {path} has an unknown entry: {names:.80}. Remove it."),
+        mark("The material file {path} has unknown entries: {names:.80}. Remove them."),
+    ),
+    "material.key_not_usable": mark(
+        "A material's key has 1 to 40 of the characters a-z, 0-9, - and _ and is not the name of a device, got "
+        "{key!r:.60}. Choose another, for example 'my-film'."
+    ),
+    "material.bundled_not_deleted": mark("{key!r:.60} is a bundled material and cannot be deleted."),
+    "material.not_own": mark("You have no material {key!r:.60} of your own. Your own materials: {own}."),
+    "material.none_own": mark("You have no materials of your own, so {key!r:.60} cannot be deleted."),
+    "material.not_deleted": mark("Cannot delete {path}: {reason}."),
+    "material.no_such_entry": mark("A material has no entry {name!r:.40}. Choose from {known}."),
+    "material.not_a_number": mark("{name} must be a number, got {value!r:.40}."),
+    "material.not_a_whole_number": mark("{name} must be a whole number, got {value!r:.40}."),
+    "material.no_author": mark("A calibration needs the name of the person who measured. Give an author."),
+    "material.folder_is_bundled": mark(
+        "Your own materials cannot be kept in {folder}, where the bundled ones are. Choose another folder."
+    ),
+    # The coupon
+    "coupon.gap_negative": mark("The gap beside the comb must be 0 mm or more, got {value!r:.40}."),
+    "coupon.no_reading": mark("Measure the gap beside the comb at least once."),
+    "coupon.kerf_too_wide": mark("The coupon suits kerfs up to {widest_mm:g} mm, got {kerf_mm:g} mm."),
+    "coupon.ligament_out_of_range": mark(
+        "The coupon tries connectors of {narrowest_mm:g} to {widest_mm:g} mm, but the smallest ligament of {key!r} is "
+        "{ligament_mm:g} mm. Correct the material."
+    ),
+    "coupon.flap_too_narrow": mark(
+        "A flap of {flap_mm:g} mm has no room for two connectors of {connector_mm:g} mm and a kerf of {kerf_mm:g} mm."
+    ),
+    "coupon.how_to_read_kerf": mark(
+        "Kerf: push the {fingers} fingers of the comb and the material beside them together. The gap that opens, "
+        "divided by {slits}, is the kerf."
+    ),
+    "coupon.how_to_read_ligament": mark(
+        "Ligament: lift the flaps. From left to right the connectors are {widths} mm wide (short slits count the "
+        "columns); from bottom to top the flaps are {flaps} mm wide (short cuts at the left edge count the rows)."
+    ),
+    # What to know before cutting
+    "plan.material_uncalibrated": mark("The material {material!r} is uncalibrated: cut a test piece first."),
+    "plan.connectors_may_tear": mark(
+        "Connectors of {width_mm:g} mm may tear: {material!r} needs {least_mm:g} mm or more."
+    ),
+    "plan.straight_because_slanted": (
+        mark(
+            "{count} of {total} slit ends is straight instead of {style}: the slit is too slanted, or the cut it ends "
+            "on too short. Use a larger sheet, narrower connectors or a more regular design."
+        ),
+        mark(
+            "{count} of {total} slit ends are straight instead of {style}: the slits are too slanted, or the cuts they "
+            "end on too short. Use a larger sheet, narrower connectors or a more regular design."
+        ),
+    ),
+    "plan.straight_because_short": (
+        mark(
+            "{count} of {total} slit ends is straight instead of {style}: the slit is too short. Use a larger sheet, "
+            "narrower connectors or a more regular design."
+        ),
+        mark(
+            "{count} of {total} slit ends are straight instead of {style}: the slits are too short. Use a larger "
+            "sheet, narrower connectors or a more regular design."
+        ),
+    ),
+    "plan.straight_because_crowded": (
+        mark(
+            "{count} of {total} slit ends is straight instead of {style}: another cut is too near. Use a larger sheet, "
+            "narrower connectors or a more regular design."
+        ),
+        mark(
+            "{count} of {total} slit ends are straight instead of {style}: other cuts are too near. Use a larger "
+            "sheet, narrower connectors or a more regular design."
+        ),
+    ),
+    "plan.connectors_wider": (
+        mark(
+            "{count} of {total} connectors is wider than asked for, because the slit it rests on ends before it: "
+            "{widest_mm:.3f} mm near x = {x:.1f}, y = {y:.1f} mm. Use a larger sheet or narrower connectors."
+        ),
+        mark(
+            "{count} of {total} connectors are wider than asked for, because the slits they rest on end before them: "
+            "up to {widest_mm:.3f} mm near x = {x:.1f}, y = {y:.1f} mm. Use a larger sheet or narrower connectors."
+        ),
+    ),
+    "plan.gaps_may_be_joined": mark(
+        "Cut ends are {gap_mm:.3f} mm apart, and programs that join gaps up to {tolerance_mm:g} mm may close them. "
+        "Switch joining off when importing."
+    ),
+    # What a check of a plan finds
+    "plan.nothing_left": mark("Nothing is left of the sheet with a kerf of {kerf_mm:g} mm. Use a smaller kerf."),
+    "plan.falls_apart": mark(
+        "With a kerf of {kerf_mm:g} mm the sheet falls into {pieces} pieces, one of them at x = {x:.2f}, y = {y:.2f} "
+        "mm. Widen the connectors or use a smaller kerf."
+    ),
+    "plan.falls_apart_after_removal": (
+        mark(
+            "With a kerf of {kerf_mm:g} mm the sheet falls into {pieces} pieces, one of them at x = {x:.2f}, y = "
+            "{y:.2f} mm. {count} connector was removed: put it back."
+        ),
+        mark(
+            "With a kerf of {kerf_mm:g} mm the sheet falls into {pieces} pieces, one of them at x = {x:.2f}, y = "
+            "{y:.2f} mm. {count} connectors were removed: put some of them back."
+        ),
+    ),
+    "plan.connectors_narrower": (
+        mark(
+            "{count} connector is narrower than asked for: {finished_mm:.3f} instead of {asked_mm:.3f} mm at x = "
+            "{x:.2f}, y = {y:.2f} mm. Plan the cuts with the kerf that the machine really has."
+        ),
+        mark(
+            "{count} connectors are narrower than asked for, the worst {finished_mm:.3f} instead of {asked_mm:.3f} mm "
+            "at x = {x:.2f}, y = {y:.2f} mm. Plan the cuts with the kerf that the machine really has."
+        ),
+    ),
+    "plan.connector_gone": mark(
+        "Nothing is left of the connector at x = {x:.2f}, y = {y:.2f} mm: the sheet would fall into pieces there. "
+        "Widen the connectors."
+    ),
+    "plan.connector_may_tear": mark(
+        "The connector at x = {x:.2f}, y = {y:.2f} mm is {finished_mm:.3f} mm wide and may tear: {material!r} needs "
+        "{least_mm:g} mm or more."
+    ),
+    "plan.removed_not_cut_through": (
+        mark(
+            "{count} removed connector is not cut through, at x = {x:.2f}, y = {y:.2f} mm. Keep it or make the sheet "
+            "larger."
+        ),
+        mark(
+            "{count} removed connectors are not cut through, the first at x = {x:.2f}, y = {y:.2f} mm. Keep them or "
+            "make the sheet larger."
+        ),
+    ),
+    "plan.cut_twice": mark(
+        "{length_mm:.4f} mm would be cut twice near x = {x:.2f}, y = {y:.2f} mm. This should not happen: please "
+        "report this design."
+    ),
+    "plan.cuts_too_near": mark(
+        "Two cuts leave only {width_mm:.3f} mm of material at x = {x:.2f}, y = {y:.2f} mm, less than the connectors. "
+        "Use a larger sheet or a more regular design."
+    ),
+    "plan.slits_short": (
+        mark(
+            "{count} cut is shorter than the {least_mm:g} mm that {material!r} needs: {length_mm:.3f} mm at x = "
+            "{x:.2f}, y = {y:.2f} mm. Use a larger sheet or a more regular design."
+        ),
+        mark(
+            "{count} cuts are shorter than the {least_mm:g} mm that {material!r} needs, the shortest {length_mm:.3f} "
+            "mm at x = {x:.2f}, y = {y:.2f} mm. Use a larger sheet or a more regular design."
+        ),
+    ),
+    "plan.panel_edge_small": mark(
+        "A panel at x = {x:.2f}, y = {y:.2f} mm has a finished edge of {size_mm:.3f} mm; {material!r} needs "
+        "{least_mm:g} mm or more. Use a larger sheet, a more regular design or a least panel size in the fit."
+    ),
+    "plan.panel_neck_small": mark(
+        "A panel at x = {x:.2f}, y = {y:.2f} mm has a finished neck of {size_mm:.3f} mm; {material!r} needs "
+        "{least_mm:g} mm or more. Use a larger sheet, a more regular design or a least panel size in the fit."
+    ),
+    "plan.trimmed_neck_small": mark(
+        "A trimmed panel at x = {x:.2f}, y = {y:.2f} mm has a neck below the {least_mm:g} mm that {material!r} needs. "
+        "Keep more material when trimming or make the sheet larger."
+    ),
+    "plan.tab_count": mark(
+        "The outline has {paths} paths, {open_paths} of them open, but the plan has {tabs} tabs. This should not "
+        "happen: please report this design."
+    ),
+    "plan.tab_width": mark(
+        "The tab at x = {x:.2f}, y = {y:.2f} mm is {width_mm:.3f} mm wide instead of {asked_mm:g} mm. This should not "
+        "happen: please report this design."
+    ),
+    "plan.strain_choose_style": mark(
+        "Opened to the target angle, every connector turns by {turn_deg:.0f} degrees. The one at x = {x:.2f}, y = "
+        "{y:.2f} mm is then strained by about {strain_percent:.0f} %, but {material!r} breaks at {limit_percent:g} % "
+        "(an estimate with the assumption that it bends evenly over {flexure_mm:.3f} mm about its softer side of "
+        "{softer_mm:g} mm). Choose arc or double connectors, thinner material or a target angle nearer to flat."
+    ),
+    "plan.strain_larger_sheet": mark(
+        "Opened to the target angle, every connector turns by {turn_deg:.0f} degrees. The one at x = {x:.2f}, y = "
+        "{y:.2f} mm is then strained by about {strain_percent:.0f} %, but {material!r} breaks at {limit_percent:g} % "
+        "(an estimate with the assumption that it bends evenly over {flexure_mm:.3f} mm about its softer side of "
+        "{softer_mm:g} mm). Choose a larger sheet, so that every slit end has room for its style, thinner material or "
+        "a target angle nearer to flat."
+    ),
+}

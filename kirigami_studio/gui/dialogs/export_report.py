@@ -183,7 +183,7 @@ def format_facts(verification: Verification) -> dict[str, str]:
 def format_findings(verification: Verification) -> list[tuple[str, str, str]]:
     """Word, icon and sentence of each line, the bad ones first."""
     lines = [_finding_line(finding) for finding in verification.findings]
-    lines += [(tr("Note"), "warning", text) for text in verification.warnings]
+    lines += [(tr("Note"), "warning", note.text) for note in verification.warnings]
     return sorted(lines, key=lambda line: ("fault", "warning", "check").index(line[1]))
 
 

@@ -195,7 +195,7 @@ class MaterialEditor(QDialog):
             item.setToolTip(f"{material.name} ({one})\n{material.machine}\n{_state(material)}")
             self.list.addItem(item)
         self.choose(key)
-        self.status.setText("\n".join(self._library.faults) or NEW)
+        self.status.setText("\n".join(fault.text for fault in self._library.faults) or NEW)
 
     def _show(self) -> None:
         if self.list.currentItem() is None:

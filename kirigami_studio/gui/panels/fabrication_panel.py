@@ -323,7 +323,7 @@ class FabricationPanel(Card):
         self.numbers["time"].setToolTip(format_times(plan.times))
         self.numbers["length"].setToolTip(format_slots(planned))
         self._sum_up(texts["size"], len(plan.paths), planned.removed_share)
-        found = [*(problem.text for problem in report.problems), *plan.notes]
+        found = [note.text for note in (*report.problems, *plan.notes)]
         self._warn("\n".join(found) if found else tr("The cut check found no problems."), calm=not found)
 
     def _sum_up(self, size: str, cuts: int, removed_share: float) -> None:

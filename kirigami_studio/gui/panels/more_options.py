@@ -53,7 +53,9 @@ class MoreOptions(QWidget):
         self.style_ = _choice("connectorStyle", tr("Connector style"), STYLES)
         self.order = _choice("cutOrder", tr("Cutting order"), ORDERS)
         self.profile = _choice(
-            "machineProfile", tr("Machine profile"), tuple((key, one.name, one.note) for key, one in PROFILES.items())
+            "machineProfile",
+            tr("Machine profile"),
+            tuple((key, one.name, one.note.text if one.note else "") for key, one in PROFILES.items()),
         )
         self.profile.setToolTip(PROFILE_TIP)
         self.dxf_version = _choice("dxfVersion", tr("DXF version"), VERSIONS)

@@ -55,7 +55,7 @@ def test_that_a_calibrated_copy_says_when_and_by_whom(capsys: pytest.CaptureFixt
 def test_that_broken_own_files_are_said_in_the_list(capsys: pytest.CaptureFixture[str], own_materials: Path) -> None:
     (own_materials / "bad.toml").write_text("no toml")
     assert main(["materials"]) == 0
-    assert "Left out: The material file" in capsys.readouterr().out.splitlines()[-1]
+    assert "Left out: Cannot read the material file" in capsys.readouterr().out.splitlines()[-1]
     assert len(answer(capsys, "materials", "--json")["faults"]) == 1
 
 
@@ -68,10 +68,10 @@ def test_that_broken_own_files_are_said_in_the_list(capsys: pytest.CaptureFixtur
         (2, ["--copy", "film-uv", "--set", "kerf_mm"], "NAME=VALUE"),
         (2, ["--copy", "film-uv", "--calibrated"], "--by NAME"),
         (1, ["--copy", "oak"], "no material 'oak'"),
-        (1, ["--copy", "film-uv", "--as", "../x"], "key needs"),
-        (1, ["--copy", "film-uv", "--set", "kerf_mm=-1"], "kerf_mm must be a number 0 or more"),
+        (1, ["--copy", "film-uv", "--as", "../x"], "key has 1 to 40"),
+        (1, ["--copy", "film-uv", "--set", "kerf_mm=-1"], "kerf_mm must be a number of 0 or more"),
         (1, ["--copy", "film-uv", "--set", "kerf=1"], "no entry 'kerf'"),
-        (1, ["--delete", "film-uv"], "bundled preset, which stays"),
+        (1, ["--delete", "film-uv"], "is a bundled material"),
     ],
 )
 def test_that_wrong_requests_are_one_sentence_and_change_nothing(

@@ -23,6 +23,7 @@ from kirigami_studio.export.provenance import write_sidecar
 from kirigami_studio.export.registry import export
 from kirigami_studio.export.verification import verify_export
 from kirigami_studio.fabricate.cut_plan import plan_cuts
+from kirigami_studio.fabricate.findings import Note
 from kirigami_studio.fabricate.material import Material
 from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions, CutOrder
 from kirigami_studio.foundation import files
@@ -64,7 +65,7 @@ def test_that_a_lightburn_project_of_closed_slots_is_refused(job: ExportJob, tmp
 def test_that_tabs_left_out_of_closed_contours_are_told(make_design: MakeDesign, tmp_path: Path) -> None:
     plan = plan_cuts(make_design(4, 5, seed=1), 90.0, options=CutOptions(tabs=3))
     path = export(ExportJob(make_design(4, 5, seed=1), plan=plan, profile="slots"), tmp_path / "sheet.dxf")
-    assert any("3 tabs are left out" in warning for warning in verify_export(plan, path, "slots").warnings)
+    assert any("3 tabs are left out" in warning.text for warning in verify_export(plan, path, "slots").warnings)
 
 
 def test_that_cut_files_of_an_earlier_export_are_told(job: ExportJob, tmp_path: Path) -> None:
@@ -160,7 +161,9 @@ def test_that_a_full_disk_leaves_the_old_file(
 
     monkeypatch.setattr(files.os, "fsync", full)
     with pytest.raises(ExportError, match="No space left on device"):
-        export_all(replace(job, plan=replace(job.required_plan, notes=("another",))), tmp_path)
+        export_all(
+            replace(job, plan=replace(job.required_plan, notes=(Note.of("plan.nothing_left", kerf_mm=0.1),))), tmp_path
+        )
     assert {path.name for path in tmp_path.iterdir()} == set(before)
     assert (tmp_path / name).read_bytes() == before[name]
 

@@ -22,7 +22,7 @@ def test_that_well_placed_cuts_have_no_problems() -> None:
     paths = [cut("SLITS", (10, 10), (20, 10)), cut("EDGE_SLITS", (30, 5), (30, -0.2)), OUTLINE]
     problems = placement_problems(paths, SHEET)
     assert [problem.severity for problem in problems] == [Severity.WARNING]
-    assert "origin" in problems[0].text
+    assert problems[0].code == "cut_file.below_origin"
     shifted = [FilePath(drawn.points + 1.0, drawn.layer, drawn.closed) for drawn in paths]
     assert placement_problems(shifted, box(1, 1, 51, 41)) == []
 
@@ -46,4 +46,4 @@ def test_that_misplaced_cuts_are_errors_with_a_place(path: FilePath, word: str) 
 def test_that_an_outline_before_the_cuts_is_warned_about() -> None:
     (problem,) = placement_problems([OUTLINE, cut("SLITS", (10, 10), (20, 10))], SHEET)
     assert problem.severity is Severity.WARNING
-    assert "outline last" in problem.text
+    assert problem.code == "cut_file.cuts_after_outline"

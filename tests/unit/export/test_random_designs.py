@@ -118,5 +118,5 @@ def test_that_r12_has_the_geometry_of_r2010_and_no_unit(
             assert name == "Defpoints" or (len(name) <= 31 and set(name) <= R12_LETTERS)
             assert not any(word in name for word in ("CUT", "ENGRAVE"))
     report = verify_export(made.required_plan, path, profile, "R12")
-    assert any("no unit" in warning for warning in report.warnings)
+    assert any(warning.code == "verify.no_unit_in_r12" for warning in report.warnings)
     assert any(finding.warning and "import it as mm" in finding.text for finding in report.findings)

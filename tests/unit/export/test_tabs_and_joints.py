@@ -88,7 +88,7 @@ def test_that_a_joint_too_many_or_too_few_is_an_error(plan: CutPlan, tmp_path: P
     assert drawn(plan, plan.paths, tmp_path).ok
     for wrong in (told - 1, told + 1):
         report = drawn(plan, plan.paths, tmp_path, JOINS=f"{wrong}")
-        assert not report.ok and f"{told} cuts end on another cut where the file speaks of {wrong}" in sentences(report)
+        assert not report.ok and f"{told} cuts end on another cut, where the file promises {wrong}" in sentences(report)
 
 
 def test_that_a_connector_lost_by_accident_is_an_error(plan: CutPlan, tmp_path: Path) -> None:
@@ -127,7 +127,7 @@ def test_that_a_gap_besides_the_tabs_is_an_error_with_a_place(plan: CutPlan, tmp
 def test_that_gaps_of_another_width_than_told_are_an_error(plan: CutPlan, tmp_path: Path) -> None:
     for wrong in ("0.5", "wide"):
         report = drawn(plan, plan.paths, tmp_path, TAB_MM=wrong)
-        assert not report.ok and "speaks of tabs" in sentences(report)
+        assert not report.ok and "promises tabs" in sentences(report)
 
 
 def test_that_an_outline_with_gaps_and_no_word_of_tabs_is_an_error(plan: CutPlan, tmp_path: Path) -> None:

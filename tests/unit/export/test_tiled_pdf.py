@@ -134,7 +134,7 @@ def test_that_cells_fill_the_sheet_and_windows_hold_their_cells(size: tuple[floa
 
 def test_that_unknown_paper_and_too_many_pages_are_refused(make_design: MakeDesign, tmp_path: Path) -> None:
     plan: CutPlan = plan_cuts(make_design(2, 3))
-    with pytest.raises(ExportError, match="no paper 'a9'; choose one of none, a4, letter"):
+    with pytest.raises(ExportError, match=r"no paper 'a9'\. Choose one of none, a4, letter"):
         pdf.write_pdf(plan, tmp_path / "sheet.pdf", "a9")
     with pytest.raises(ExportError, match=r"would need \d+ pages"):
         tile((10_000.0, 10_000.0), "letter")

@@ -38,14 +38,14 @@ def test_that_a_kerf_wider_than_the_gap_frees_every_panel(make_design: MakeDesig
     assert not report.ok
     assert report.pieces == 5 * 6
     assert report.min_connector_mm < 0
-    pieces = next(problem for problem in report.problems if "30 pieces" in problem.text)
+    pieces = next(problem for problem in report.problems if problem.fields.get("pieces") == 30)
     assert pieces.severity is Severity.ERROR and pieces.where is not None
 
 
 def test_that_a_kerf_somewhat_wider_than_planned_is_reported_with_a_place(make_design: MakeDesign) -> None:
     report = check_plan(plan_cuts(make_design(4, 5), connector_mm=0.2, kerf_mm=0.02), kerf_mm=0.15)
     assert report.pieces == 1 and not report.ok
-    assert "narrower than asked" in report.problems[0].text
+    assert report.problems[0].code == "plan.connectors_narrower"
     assert report.problems[0].where is not None
 
 
@@ -55,7 +55,7 @@ def test_that_one_cut_made_twice_is_found(make_design: MakeDesign) -> None:
     report = check_plan(doubled)
     assert not report.ok
     assert report.overlap_mm == pytest.approx(plan.paths[0].length)
-    place = next(problem.where for problem in report.problems if "cut twice" in problem.text)
+    place = next(problem.where for problem in report.problems if problem.code == "plan.cut_twice")
     assert place == pytest.approx(tuple(plan.paths[0].points.mean(axis=0)))
 
 
@@ -67,7 +67,7 @@ def test_that_a_cut_that_runs_through_a_connector_is_found(make_design: MakeDesi
     report = check_plan(faulty)
     assert not report.ok
     assert report.min_ligament_mm < 0
-    assert any("leave only" in problem.text and problem.where is not None for problem in report.problems)
+    assert any(problem.code == "plan.cuts_too_near" and problem.where is not None for problem in report.problems)
 
 
 def test_that_a_connector_below_what_the_material_bears_is_a_warning(make_design: MakeDesign) -> None:
@@ -104,3 +104,18 @@ def test_that_the_narrowest_place_is_measured_and_located() -> None:
 def test_that_overlaps_are_measured_but_crossings_are_not() -> None:
     assert overlap_length([LineString([(0, 0), (4, 0)]), LineString([(3, 0), (9, 0)])]) == pytest.approx(1.0)
     assert overlap_length([LineString([(0, 0), (4, 4)]), LineString([(0, 4), (4, 0)])]) == pytest.approx(0.0)
+
+
+def test_that_slits_shorter_than_the_material_needs_are_warned_about_with_the_place(make_design: MakeDesign) -> None:
+    plan = plan_cuts(make_design(4, 5, seed=3, spread=0.9))
+    slits = [path for path in plan.paths if path.layer in (Layer.SLITS, Layer.EDGE_SLITS)]
+    lengths = sorted(path.length for path in slits)
+    limit = 0.5 * (lengths[2] + lengths[3])
+    fussy = replace(plan, material=replace(plan.material, min_slit_mm=limit))
+    assert all(problem.code != "plan.slits_short" for problem in check_plan(plan).problems)
+    (problem,) = [problem for problem in check_plan(fussy).problems if problem.code == "plan.slits_short"]
+    assert problem.severity is Severity.WARNING and check_plan(fussy).ok
+    assert (problem.fields["count"], problem.fields["length_mm"]) == (3, pytest.approx(lengths[0]))
+    shortest = min(slits, key=lambda path: path.length)
+    assert problem.where == pytest.approx(tuple(shortest.points.mean(axis=0)))
+    assert problem.text.startswith("3 cuts are shorter than")

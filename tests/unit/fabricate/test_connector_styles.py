@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Callable
 from dataclasses import replace
 
@@ -122,25 +121,27 @@ def test_that_a_crowded_sheet_falls_back_to_straight_ends_says_so_and_keeps_ever
     design = make_design(8, 8, seed=4, spread=0.9)
     material = replace(find_material("card-co2"), relief_radius_mm=1.0)
     plan = plan_cuts(design, 110.0, material=material, options=CutOptions(style=style))
-    (note,) = [note for note in plan.notes if "straight instead of" in note]
-    found = re.match(rf"(\d+) of {len(plan.hinges)} slit ends are straight instead of {style.value}: \d+ because", note)
-    assert found
+    straight = [note for note in plan.notes if note.code.startswith("plan.straight_because_")]
+    assert straight
+    for note in straight:
+        assert note.text.startswith(f"{note.fields['count']} of {len(plan.hinges)} slit ends")
+        assert f"straight instead of {style.value}: " in note.text
     shapes = sum(path.cut >= 0 for path in plan.paths) - len({path.cut for path in plan.paths if path.cut >= 0})
-    assert shapes == len(plan.hinges) - int(found.group(1))
+    assert shapes == len(plan.hinges) - sum(int(str(note.fields["count"])) for note in straight)
     assert (plan.hinges.finished_mm - plan.hinges.requested_mm).min() > -1e-3
     assert check_plan(plan).pieces == 1
 
 
 def test_that_a_roomy_sheet_falls_back_nowhere(make_design: MakeDesign) -> None:
     for style in SHAPED:
-        assert not any("instead of" in note for note in styled(make_design(4, 4, spread=0.2), style).notes)
+        assert not any("straight_because" in note.code for note in styled(make_design(4, 4, spread=0.2), style).notes)
 
 
 @pytest.mark.parametrize("style", HOLED)
 def test_that_a_blade_without_relief_radius_is_refused_with_what_to_choose(
     style: ConnectorStyle, make_design: MakeDesign
 ) -> None:
-    with pytest.raises(FabricationError, match="choose straight, arc or double connectors"):
+    with pytest.raises(FabricationError, match="Choose straight, arc or double connectors"):
         styled(make_design(3, 3), style, "drag-knife")
 
 
@@ -178,7 +179,9 @@ def test_that_a_shape_too_near_to_its_through_cut_is_found(make_design: MakeDesi
         moved = replace(bar, points=bar.points + side * 0.15 * across)
         report = check_plan(replace(plan, paths=(*plan.paths[:index], moved, *plan.paths[index + 1 :])))
         if report.min_ligament_mm < 0.1:
-            assert any("leave only" in problem.text and problem.where is not None for problem in report.problems)
+            assert any(
+                problem.code == "plan.cuts_too_near" and problem.where is not None for problem in report.problems
+            )
             return
     pytest.fail("the bar came nearer to nothing")
 

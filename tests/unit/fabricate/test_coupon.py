@@ -132,7 +132,7 @@ def test_that_the_coupon_becomes_a_dxf_that_passes_its_check(tmp_path: Path) -> 
 def test_that_kerfs_and_ligaments_that_the_coupon_cannot_show_are_refused() -> None:
     with pytest.raises(FabricationError, match=r"kerfs up to 0.5 mm, got 0.6 mm"):
         plan_coupon(find_material("card-co2"), 0.6)
-    with pytest.raises(FabricationError, match=r"smallest ligament of 'card-co2', 200 mm"):
+    with pytest.raises(FabricationError, match=r"smallest ligament of 'card-co2' is 200 mm"):
         plan_coupon(replace(find_material("card-co2"), min_ligament_mm=200.0))
     with pytest.raises(FabricationError, match="no room for two connectors of 1 mm"):
         plan_coupon(find_material("card-co2"), 0.5)

@@ -38,7 +38,9 @@ def test_that_necks_are_distances_of_corners_to_edges_that_do_not_meet_them(make
     )
     neck = smallest_neck(plan.panels, plan.kerf_mm)
     assert neck is not None and neck.size_mm == pytest.approx(expected - plan.kerf_mm)
-    assert check_plan(plan).min_neck_mm == neck.size_mm
+    strict = replace(plan, material=replace(plan.material, min_ligament_mm=neck.size_mm + 0.01))
+    (problem,) = [problem for problem in check_plan(strict).problems if problem.code == "plan.panel_neck_small"]
+    assert problem.fields["size_mm"] == neck.size_mm
 
 
 def test_that_the_panels_of_a_plan_fill_the_sheet(make_design: MakeDesign) -> None:
@@ -51,11 +53,10 @@ def test_that_the_panels_of_a_plan_fill_the_sheet(make_design: MakeDesign) -> No
 
 def test_that_small_panels_are_warned_about_with_a_place(make_design: MakeDesign) -> None:
     plan = plan_cuts(make_design(6, 6, seed=3, spread=0.9))
-    calm = check_plan(plan)
-    assert calm.min_neck_mm is not None and calm.min_edge_mm is not None and calm.problems == ()
-    strict = replace(plan, material=replace(plan.material, min_ligament_mm=calm.min_neck_mm + 0.01))
-    texts = [problem for problem in check_plan(strict).problems if "finished neck" in problem.text]
-    (problem,) = texts
+    neck = smallest_neck(plan.panels, plan.kerf_mm)
+    assert neck is not None and check_plan(plan).problems == ()
+    strict = replace(plan, material=replace(plan.material, min_ligament_mm=neck.size_mm + 0.01))
+    (problem,) = [problem for problem in check_plan(strict).problems if problem.code == "plan.panel_neck_small"]
     assert problem.severity is Severity.WARNING and problem.where is not None
 
 
@@ -69,4 +70,4 @@ def test_that_a_neck_of_a_trimmed_panel_is_found_and_a_sound_one_is_not(make_des
     design = make_design(4, 4, spread=0.2)
     plan = plan_cuts(design, kept=bitten(design, [(2.5, 0.0)], 0.3))
     assert any(len(panel) > 4 for panel in plan.panels)
-    assert not any("trimmed panel" in problem.text for problem in check_plan(plan).problems)
+    assert not any(problem.code == "plan.trimmed_neck_small" for problem in check_plan(plan).problems)

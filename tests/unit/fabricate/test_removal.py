@@ -37,7 +37,7 @@ def test_that_a_removed_connector_is_cut_through_and_counts_as_no_fault(
     tip = Point(plan.hinges.position[inside])
     both = [path for path in plan.paths if path.layer is not Layer.OUTLINE and drawn_line(path).distance(tip) < 2e-4]
     assert {path.cut for path in both} == {int(plan.hinges.cut[inside]), int(plan.hinges.through[inside])}
-    assert not any("wider" in note or "may tear" in note for note in plan.notes)
+    assert not {"plan.connectors_wider", "plan.connectors_may_tear"} & {note.code for note in plan.notes}
 
 
 def test_that_a_slit_cut_through_to_the_edge_runs_over_it_like_an_edge_cut(make_design: MakeDesign) -> None:
@@ -99,7 +99,7 @@ def test_that_a_removed_connector_that_is_still_there_is_said(make_design: MakeD
     left[3] = 0.1
     report = check_plan(replace(plan, hinges=replace(plan.hinges, finished_mm=left)))
     (problem,) = report.problems
-    assert "not cut through" in problem.text and problem.where is not None
+    assert problem.code == "plan.removed_not_cut_through" and problem.where is not None
 
 
 def test_that_two_slits_that_meet_unasked_are_an_error(make_design: MakeDesign) -> None:
@@ -108,7 +108,7 @@ def test_that_two_slits_that_meet_unasked_are_an_error(make_design: MakeDesign) 
     report = check_plan(asked)
     assert not report.ok
     assert any("leave only -0.0" in problem.text for problem in report.problems)
-    assert any("narrower than asked" in problem.text for problem in report.problems)
+    assert any(problem.code == "plan.connectors_narrower" for problem in report.problems)
 
 
 def test_that_joints_are_the_removed_connectors_inside(make_design: MakeDesign) -> None:
@@ -121,7 +121,7 @@ def test_that_joints_are_the_removed_connectors_inside(make_design: MakeDesign) 
 
 
 def test_that_removing_an_unknown_hinge_is_refused(make_design: MakeDesign) -> None:
-    with pytest.raises(FabricationError, match="There is no hinge 400"):
+    with pytest.raises(FabricationError, match="There is no connector 400"):
         plan_cuts(make_design(3, 3), options=CutOptions(removed=(400,)))
 
 

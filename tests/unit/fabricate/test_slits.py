@@ -76,5 +76,5 @@ def test_that_even_slits_stand_and_odd_slits_lie_in_the_uniform_sheet(make_desig
 
 def test_that_a_cut_is_named_by_its_void() -> None:
     table = cut_table(3, 4)
-    assert table.label(5) == "slit of void (1, 1)"
-    assert table.label(table.slit_count) == "edge cut at void (0, 0)"
+    assert table.void_of(5) == (1, 1)
+    assert table.void_of(table.slit_count) == (0, 0)

@@ -129,7 +129,7 @@ def test_that_too_little_material_at_a_hinge_is_refused(design: Deployment) -> N
     length = float(np.linalg.norm(mouth - hinge))
     way = [hinge + share * (mouth - hinge) for share in np.linspace(0.18 / length, 1.0, 30)]
     kept = bitten(design, [(float(x), float(y)) for x, y in way], 0.15)
-    with pytest.raises(FabricationError, match=r"too little material for the connector at x = .* keep more"):
+    with pytest.raises(FabricationError, match=r"too little material for the connector at x = .* Keep more"):
         plan_cuts(design, 160.0, connector_mm=2.0, kept=kept)
 
 

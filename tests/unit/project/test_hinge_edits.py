@@ -59,7 +59,7 @@ def test_that_a_width_for_many_leaves_the_removed_among_them_removed() -> None:
 
 
 def test_that_a_width_of_nothing_is_refused() -> None:
-    with pytest.raises(FabricationError, match="hinge 3"):
+    with pytest.raises(FabricationError, match="connector 3"):
         edits.set_hinge_width(Document(), {3}, 0.0)
 
 

@@ -180,7 +180,7 @@ def test_that_all_choices_about_the_cuts_come_back(document: Document, tmp_path:
         ("tab_mm", 0.0, "width of a tab"),
         ("hinge_mm", [[3]], "is not the number of a connector with its width"),
         ("hinge_mm", [[3, "wide"]], "is not the width of a connector"),
-        ("hinge_mm", [[3, -1.0]], "hinge 3"),
+        ("hinge_mm", [[3, -1.0]], "connector 3"),
         ("removed", [5, 4], "ascending"),
         ("removed", ["5"], "is not the number of a connector"),
     ],
