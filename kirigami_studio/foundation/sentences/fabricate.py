@@ -37,7 +37,9 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "and connectors. Use narrower tabs or none."
     ),
     "hinge.unknown": mark("There is no connector {hinge}: this sheet has connectors 0 to {last}."),
-    "hinge.named_twice": mark("A connector can be given a width or removed only once; name connectors in ascending order."),
+    "hinge.named_twice": mark(
+        "A connector can be given a width or removed only once; name connectors in ascending order."
+    ),
     "hinge.width_and_removed": mark("Connector {hinge} is given a width and also removed. Choose one."),
     "style.needs_relief_radius": mark(
         "The connector style {style!r} needs a relief radius, but that of {material!r} is 0 mm. Choose straight, arc "
