@@ -160,7 +160,7 @@ def _run(request: Request, line: ProgressLine) -> Result:
         elif isinstance(event, Finished):
             line.clear()
             return event.result
-    raise Cancelled("design.no_result")
+    raise Cancelled("run.no_result")
 
 
 def _in_cells(length_mm: float, fabrication: FabricationSettings, grid: tuple[int, int]) -> float:

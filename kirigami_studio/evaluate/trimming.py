@@ -71,21 +71,6 @@ class Trim:
     untrimmed_iou: float = attribute(compare=False)
     removed_share: float = attribute(compare=False)
 
-    def compact(self, deployment: Deployment) -> list[FloatArray]:
-        """What stays of every panel in the compact sheet, whole ones included: list of (P, 2) float, unit cells."""
-        corners = deployment.compact[deployment.topology.panel_nodes.reshape(-1, 4)]
-        return [whole if part is None else part for part, whole in zip(self.kept, corners, strict=True)]
-
-    def deployed(self, deployment: Deployment, phi: float) -> list[FloatArray]:
-        """The same at any angle, in the layout's frame: list of (P, 2) float, unit cells, one for each panel."""
-        nodes = deployment.topology.panel_nodes
-        line, place = np.indices(nodes.shape[:2])
-        turn = _turn(((line + place) % 2 == 0).ravel(), phi)
-        anchors = nodes.reshape(-1, 4)[:, 0]
-        start, end = as_plane(deployment.compact)[anchors], as_plane(deployment.nodes(phi))[anchors]
-        parts = self.compact(deployment)
-        return [as_points((as_plane(p) - a) * t + b) for p, a, t, b in zip(parts, start, turn, end, strict=True)]
-
 
 def trim(
     deployment: Deployment,

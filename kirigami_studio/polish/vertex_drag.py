@@ -68,7 +68,7 @@ class VertexDrag:
 
     def __init__(self, field: RatioField, phi: float, vertex: int, locked: BoolArray | None = None) -> None:
         phi = check_fit(phi, 0, 1.0)
-        self._field, self._model = field, OutlineModel(field.rows, field.columns, phi)
+        self._model = OutlineModel(field.rows, field.columns, phi)
         self._given = field.ratio
         self._start: FloatArray = field.log10.ravel()
         self._deployment = deploy(field)
@@ -87,13 +87,8 @@ class VertexDrag:
         self._guarded = self._is_physical(self._deployment)
 
     @property
-    def field(self) -> RatioField:
-        """The field as it is now."""
-        return self._field
-
-    @property
     def deployment(self) -> Deployment:
-        """The exact motion of :attr:`field`."""
+        """The design as it is now."""
         return self._deployment
 
     @property
@@ -106,11 +101,8 @@ class VertexDrag:
         """Distance (unit cells) that the vertex is from ``place``; at most :data:`ARRIVED` once it has arrived."""
         return float(np.hypot(*(self.place - place)))
 
-    def cost(self, z: FloatArray, place: FloatArray) -> float:
-        """What is minimised, at z (m * n,) for a wanted place (2,), unit cells."""
-        return self._cost(z, self._model.outline(z), place)
-
-    def _cost(self, z: FloatArray, outline: FloatArray, place: FloatArray) -> float:
+    def cost(self, z: FloatArray, outline: FloatArray, place: FloatArray) -> float:
+        """What is minimised, at z (m * n,) with its outline (L, 2) for a wanted place (2,), unit cells."""
         change = z - self._start
         gaps = np.square(self._gaps(outline, place)).sum(axis=1)
         return float(self._weight @ gaps) + self._change * float(change @ change)
@@ -144,20 +136,19 @@ class VertexDrag:
                 if fresh and not moved:
                     break
                 self._slopes, fresh = None, False
-        return self._field
+        return self._deployment.field
 
     def _advance(self, place: FloatArray, slopes: FloatArray) -> bool:
         """Take one step, if a physical one is found that lowers the cost; whether it was."""
-        before, step = self._cost(self._z, self._here, place), self._step(place, slopes)
+        before, step = self.cost(self._z, self._here, place), self._step(place, slopes)
         for _ in range(HALVINGS):
             z = self._moved(step)
-            field = self._field_of(z)
-            deployment = deploy(field)
+            deployment = deploy(self._field_of(z))
             outline = deployment.outline(self._model.phi)
-            if self._cost(z, outline, place) < before:
+            if self.cost(z, outline, place) < before:
                 physical = self._is_physical(deployment)
                 if physical or not self._guarded:
-                    self._z, self._here, self._field, self._guarded = z, outline, field, physical
+                    self._z, self._here, self._guarded = z, outline, physical
                     self._deployment = deployment
                     return True
             step = 0.5 * step
@@ -193,7 +184,7 @@ class VertexDrag:
 
     def _field_of(self, z: FloatArray) -> RatioField:
         """The ratios of a state; those that were not touched keep every digit."""
-        table, start = z.reshape(self._field.ratio.shape), self._start.reshape(self._field.ratio.shape)
+        table, start = z.reshape(self._given.shape), self._start.reshape(self._given.shape)
         return RatioField(np.where(table == start, self._given, np.power(10.0, table)))
 
     def _is_physical(self, deployment: Deployment) -> bool:

@@ -41,7 +41,6 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "No design could be trimmed: all of them cross themselves. Try another seed, or leave --trim out to get "
         "untrimmed designs."
     ),
-    "design.no_result": mark("The run ended without a result."),
     "decode.other_grid": mark("{name} is a {rows} x {columns} field, not {grid}."),
     "score.nothing_to_score": mark("Name ratio fields and then a target: score RATIOS [RATIOS ...] TARGET."),
     "score.numbers_differ": mark(

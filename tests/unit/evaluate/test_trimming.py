@@ -8,9 +8,11 @@ import numpy as np
 import pytest
 import shapely
 from shapely.geometry import Point, Polygon
+from trimmed_panels import compact_parts, deployed_parts
 
 from kirigami_studio.evaluate.alignment import align
 from kirigami_studio.evaluate.kept_panels import edge_panels
+from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.evaluate.trimming import KEEP, Trim, trim
 from kirigami_studio.foundation.arrays import FloatArray
@@ -67,14 +69,16 @@ def test_that_the_trimmed_iou_is_that_of_the_silhouette_less_what_was_cut_off(ph
 def test_that_parts_move_with_their_panels(letter_l: FloatArray) -> None:
     deployment, target = design(6, 6, 5), Outline.from_points(letter_l)
     cut = trim(deployment, target, 0.0, laid(deployment, target, 0.0))
-    compact, deployed = cut.compact(deployment), cut.deployed(deployment, 0.8)
+    moved = PosedDesign(deployment, Similarity(), 0.8, cut).kept(deployment.nodes(0.8), 0.8)
     panels = deployment.panels(0.8).reshape(-1, 4, 2)
-    for part, before, after, panel in zip(cut.kept, compact, deployed, panels, strict=True):
-        if part is None:
-            np.testing.assert_allclose(after, panel, atol=1e-9)
+    assert sorted(moved) == [row for row, part in enumerate(cut.kept) if part is not None]
+    for row, after in moved.items():
+        before = cut.kept[row]
+        assert before is not None
         lengths = [np.linalg.norm(np.diff(points, axis=0), axis=1) for points in (before, after)]
         np.testing.assert_allclose(*lengths, atol=1e-9)
-        assert Polygon(after).difference(Polygon(panel).buffer(1e-8)).area == 0.0
+        assert Polygon(after).difference(Polygon(panels[row]).buffer(1e-8)).area == 0.0
+        np.testing.assert_allclose(after, deployed_parts(cut, deployment, 0.8)[row], atol=1e-12)
 
 
 @pytest.mark.parametrize("keep", [0.05, 0.15, 0.3])
@@ -110,7 +114,7 @@ def test_that_panels_inside_the_sheet_are_never_cut() -> None:
 def test_that_the_trimmed_compact_sheet_is_one_area_without_holes(seed: int) -> None:
     deployment, target = design(7, 6, seed), circle()
     cut = trim(deployment, target, 0.0, laid(deployment, target, 0.0, 1.2))
-    sheet = shapely.union_all([Polygon(part) for part in cut.compact(deployment)], grid_size=1e-8)
+    sheet = shapely.union_all([Polygon(part) for part in compact_parts(cut, deployment)], grid_size=1e-8)
     assert sheet.geom_type == "Polygon"
     assert not [ring for ring in sheet.interiors if Polygon(ring).area > 1e-6]
 

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from kirigami_studio.evaluate.candidate import Candidate
-from kirigami_studio.foundation.errors import AngleError, Cancelled, GridError, UsageError
+from kirigami_studio.foundation.errors import AngleError, Cancelled, GridError, KirigamiError, UsageError
 from kirigami_studio.generator.weights import load_model
 from kirigami_studio.outlines.silhouettes import load
 from kirigami_studio.pipeline.events import CandidateFound, CandidateImproved, Finished, Progress, Started
@@ -81,29 +81,35 @@ def test_that_a_partly_deployed_target_is_scored_at_its_angle() -> None:
 
 
 @pytest.mark.parametrize(
-    ("changes", "error"),
+    ("changes", "error", "code"),
     [
-        ({"k": 0}, UsageError),
-        ({"k": 5000}, UsageError),
-        ({"k": 2.5}, UsageError),
-        ({"k": True}, UsageError),
-        ({"seed": -1}, UsageError),
-        ({"steps": 0}, UsageError),
-        ({"grid": (1, 10)}, GridError),
-        ({"grid": (10, 65)}, GridError),
-        ({"phi": -0.1}, AngleError),
-        ({"phi": math.pi}, AngleError),
-        ({"phi": math.nan}, AngleError),
-        ({"search": 9}, UsageError),
-        ({"search": True}, UsageError),
-        ({"budget_seconds": 0.0}, UsageError),
-        ({"budget_seconds": math.inf}, UsageError),
-        ({"budget_seconds": "soon"}, UsageError),
+        ({"k": 0}, UsageError, "request.k_out_of_range"),
+        ({"k": 5000}, UsageError, "request.k_out_of_range"),
+        ({"k": 2.5}, UsageError, "request.k_out_of_range"),
+        ({"k": True}, UsageError, "request.k_out_of_range"),
+        ({"seed": -1}, UsageError, "request.seed_out_of_range"),
+        ({"steps": 0}, UsageError, "request.steps_out_of_range"),
+        ({"polish": 201}, UsageError, "request.polish_out_of_range"),
+        ({"prefer": "beauty"}, UsageError, "request.unknown_preference"),
+        ({"grid": (1, 10)}, GridError, "grid.out_of_range"),
+        ({"grid": (10, 65)}, GridError, "grid.out_of_range"),
+        ({"phi": -0.1}, AngleError, "request.angle_out_of_range"),
+        ({"phi": math.pi}, AngleError, "request.angle_out_of_range"),
+        ({"phi": math.nan}, AngleError, "request.angle_out_of_range"),
+        ({"search": 9}, UsageError, "request.search_out_of_range"),
+        ({"search": True}, UsageError, "request.search_out_of_range"),
+        ({"budget_seconds": 0.0}, UsageError, "request.budget_not_positive"),
+        ({"budget_seconds": math.inf}, UsageError, "request.budget_not_positive"),
+        ({"budget_seconds": "soon"}, UsageError, "request.budget_not_positive"),
     ],
 )
-def test_that_impossible_requests_are_refused(request_for_heart: Request, changes: dict, error: type) -> None:
-    with pytest.raises(error):
+def test_that_impossible_requests_are_refused(
+    request_for_heart: Request, changes: dict, error: type[KirigamiError], code: str
+) -> None:
+    with pytest.raises(error) as caught:
         replace(request_for_heart, **changes)
+    assert caught.value.code == code
+    assert str(caught.value).endswith(".") and "{" not in str(caught.value)
 
 
 def test_that_an_unknown_variant_is_refused_before_any_candidate(request_for_heart: Request) -> None:
