@@ -242,7 +242,7 @@ class FittedMask:
         coverage = (sampled >= 0.5).astype(np.float64)
         coverage.setflags(write=False)
         if not coverage.any():
-            raise KirigamiError("mask.too_thin", number=number, size=MASK_SIZE)
+            raise KirigamiError("siou.mask_too_thin", number=number, size=MASK_SIZE)
         middle = complex(left + 0.5 * width, source.shape[0] - top - 0.5 * height)
         shift = middle - factor * complex(0.5 * size[1], 0.5 * size[0])
         canvas = tuple(
@@ -323,14 +323,14 @@ def _foreground(mask: npt.ArrayLike, number: int) -> BoolArray:
     try:
         array = np.asarray(mask)
     except ValueError:
-        raise KirigamiError("mask.ragged", number=number) from None
+        raise KirigamiError("siou.mask_ragged", number=number) from None
     if array.ndim != 2 or array.size == 0 or array.dtype.kind not in "buif":
-        raise KirigamiError("mask.not_a_table", number=number, shape=array.shape, kind=array.dtype)
+        raise KirigamiError("siou.mask_not_a_table", number=number, shape=array.shape, kind=array.dtype)
     values = array.astype(np.float64)
     if not np.isfinite(values).all():
         row, column = np.argwhere(~np.isfinite(values))[0]
-        raise KirigamiError("mask.not_finite", number=number, value=values[row, column], row=row, column=column)
+        raise KirigamiError("siou.mask_not_finite", number=number, value=values[row, column], row=row, column=column)
     filled: BoolArray = values >= (0.5 if values.max() <= 1.0 else 127.5)
     if not filled.any():
-        raise KirigamiError("mask.empty", number=number, rows=values.shape[0], columns=values.shape[1])
+        raise KirigamiError("siou.mask_empty", number=number, rows=values.shape[0], columns=values.shape[1])
     return filled

@@ -70,7 +70,7 @@ def rasterise(polygon: npt.ArrayLike, size: int = MASK_SIZE) -> BoolArray:
     """
     points = checked_polygon(polygon)
     if isinstance(size, bool) or not isinstance(size, int | np.integer) or not 2 <= size <= LARGEST_MASK:
-        raise KirigamiError("mask.size_out_of_range", most=LARGEST_MASK, size=size)
+        raise KirigamiError("raster.size_out_of_range", most=LARGEST_MASK, size=size)
     return rasterise_in_frame(points, RasterFrame.around(points, int(size)))
 
 

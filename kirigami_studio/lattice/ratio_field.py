@@ -118,4 +118,4 @@ def _table(values: npt.ArrayLike) -> FloatArray:
             raise TypeError("text, truth values, complex numbers or whole numbers without bound")
         return frozen(table)
     except (TypeError, ValueError, OverflowError):
-        raise RatioError("ratios.not_a_table") from None
+        raise RatioError("ratios.not_numbers") from None

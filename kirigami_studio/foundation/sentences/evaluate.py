@@ -11,12 +11,12 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     ),
     "silhouette.not_finite": mark("Point {point} of the silhouette is ({x}, {y}); its coordinates must be finite."),
     "silhouette.no_area": mark("The silhouette has no area: its points lie on one line, or its parts cancel out."),
-    "mask.too_thin": mark("Mask {number} shows only lines thinner than 1/{size} of its length. Draw them bolder."),
-    "mask.ragged": mark("Mask {number} must be a 2-D array of numbers; its rows have different lengths."),
-    "mask.not_a_table": mark("Mask {number} must be a 2-D array of numbers, got shape {shape} of type {kind}."),
-    "mask.not_finite": mark("Mask {number} holds {value} at row {row}, column {column}; use 0 and 1."),
-    "mask.empty": mark("Mask {number} is empty: none of its {rows} x {columns} pixels is foreground."),
-    "mask.size_out_of_range": mark("The mask size must be a whole number from 2 to {most} pixels, got {size!r:.80}."),
+    "siou.mask_too_thin": mark("Mask {number} shows only lines thinner than 1/{size} of its length. Draw them bolder."),
+    "siou.mask_ragged": mark("Mask {number} must be a 2-D array of numbers; its rows have different lengths."),
+    "siou.mask_not_a_table": mark("Mask {number} must be a 2-D array of numbers, got shape {shape} of type {kind}."),
+    "siou.mask_not_finite": mark("Mask {number} holds {value} at row {row}, column {column}; use 0 and 1."),
+    "siou.mask_empty": mark("Mask {number} is empty: none of its {rows} x {columns} pixels is foreground."),
+    "raster.size_out_of_range": mark("The mask size must be a whole number from 2 to {most} pixels, got {size!r:.80}."),
     "opened_size.width_not_positive": mark("The width of the sheet must be above 0 mm, got {width_mm:g}."),
     "similarity.not_finite": mark(
         "A similarity needs a positive scale and finite numbers, got scale {scale:g}, angle {angle:g}, shift "

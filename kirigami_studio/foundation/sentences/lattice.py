@@ -7,7 +7,7 @@ from kirigami_studio.foundation.words import mark
 SENTENCES: dict[str, str | tuple[str, str]] = {
     "grid.not_whole_numbers": mark("The grid must be two whole numbers of voids, got {rows!r:.40} x {columns!r:.40}."),
     "grid.out_of_range": mark("The grid must have {least} to {most} voids each way, got {rows} x {columns}."),
-    "ratios.not_a_table": mark("Ratios must be an (m, n) table of numbers."),
+    "ratios.not_numbers": mark("Ratios must be an (m, n) table of numbers."),
     "ratios.wrong_shape": mark("Ratios must have shape (m, n), got {shape}."),
     "ratios.wrong_batch_shape": mark("Ratios must have shape (B, {rows}, {columns}), got {shape}."),
     "ratio.not_finite": mark("The ratio at void ({row}, {column}) is {ratio}; it must be finite."),
