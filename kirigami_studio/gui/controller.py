@@ -23,9 +23,9 @@ from kirigami_studio.gui.designs.generation import Generation
 from kirigami_studio.gui.designs.hand_editor import HandEditor
 from kirigami_studio.gui.file_kinds import kind_of
 from kirigami_studio.gui.files.filing import Filing
+from kirigami_studio.gui.files.user_preferences import UserPreferences
 from kirigami_studio.gui.jobs import importing
 from kirigami_studio.gui.jobs.queue import JobCallbacks, JobQueue
-from kirigami_studio.gui.look.preferring import Preferring
 from kirigami_studio.gui.messages import Message, Tone
 from kirigami_studio.gui.session import Entry, Session
 from kirigami_studio.gui.targeting import Targeting
@@ -48,7 +48,7 @@ class Controller(QObject):
         Making designs, and the run that makes them.
     fabrication, cutting
         The numbers a design is cut with, and its cut plan and files.
-    targeting, filing, preferring
+    targeting, filing, preferences
         The target, the project's files, the preferences.
     """
 
@@ -71,7 +71,7 @@ class Controller(QObject):
         self.cutting = CutPlanner(session, self)
         self.targeting = Targeting(session, self)
         self.filing = Filing(session, self.targeting, self)
-        self.preferring = Preferring(self)
+        self.preferences = UserPreferences(session)
         self._connect()
 
     def _connect(self) -> None:
@@ -84,7 +84,6 @@ class Controller(QObject):
         self.filing.saved.connect(self._note_saved)
         self.filing.opened.connect(self._show_opened)
         self.filing.recovered.connect(self._show_recovered)
-        self.preferring.message.connect(self.session.post)
 
     @property
     def document(self) -> Document:
@@ -127,10 +126,10 @@ class Controller(QObject):
 
     def use_preferences(self, path: Path) -> None:
         """Start with what was preferred the last time, and remember what is from now on."""
-        untouched = self.document == self.preferring.new_document()
-        self.preferring.load(path)
+        untouched = self.document == self.preferences.new_document()
+        self.preferences.load(path)
         if untouched:
-            self.session.restart(self.preferring.new_document(), self.path)
+            self.session.restart(self.preferences.new_document(), self.path)
 
     def warm_up(self) -> None:
         """Import in the worker what the first run needs, and learn which generators there are."""
@@ -143,7 +142,7 @@ class Controller(QObject):
 
     def start_with(self, source: str) -> None:
         """Read the first target; it is where the history starts, not a change to be undone or saved."""
-        self.targeting.start_with(source, self.preferring.new_document())
+        self.targeting.start_with(source, self.preferences.new_document())
 
     # settings ------------------------------------------------------------------------------------------------------
 
@@ -225,7 +224,7 @@ class Controller(QObject):
             self.session.post(Message(text, Tone.HINT))
         else:
             if kind_of(path.suffix).cuts:
-                self.preferring.remember(self.document)
+                self.preferences.remember(self.document)
             self.cutting.export(request, path)
 
     def export_all(self, folder: Path, name: str) -> None:
@@ -255,7 +254,7 @@ class Controller(QObject):
     def new_project(self) -> None:
         """Forget everything and start empty."""
         self._stop_all()
-        self.session.restart(self.preferring.new_document(), None)
+        self.session.restart(self.preferences.new_document(), None)
         self.session.set_status(tr("New project. Choose or draw a target."))
 
     def undo(self) -> None:

@@ -85,7 +85,7 @@ class MainWindow(QMainWindow):
         self.unsaved = UnsavedWork(self, controller)
         self.files = FileCommands(self, controller)
         self.dialogs = Dialogs(self, controller)
-        self.appearance = Appearance(self, controller.preferring)
+        self.appearance = Appearance(self, controller.preferences)
         self.pasting = PasteReader(controller.session, self)
         self.picturing = PictureMaker(self, controller.session, controller.cutting)
         self.heading = self._heading()

@@ -175,7 +175,7 @@ def test_that_damaged_preferences_are_told_and_left_alone(window: MainWindow, tm
     with pytest.raises(ProjectError):
         preferences.load(path)
     window.controller.use_preferences(path)
-    window.controller.preferring.remember(Preferences("lightburn").new_document())
+    window.controller.preferences.remember(Preferences("lightburn").new_document())
     assert window.messages.messages[-1].tone is Tone.WARNING and path.read_text(encoding="utf-8") == content
 
 

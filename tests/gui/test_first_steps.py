@@ -186,7 +186,7 @@ def test_that_the_tour_is_noted_beside_the_other_preferences(window: MainWindow,
     kept = tmp_path / "preferences.toml"
     preferences.save(Preferences("lightburn", theme="light"), kept)
     window.controller.use_preferences(kept)
-    window.controller.preferring.note_tour()
+    window.controller.preferences.note_tour()
     assert preferences.load(kept) == Preferences("lightburn", theme="light", tour_seen=True)
 
 

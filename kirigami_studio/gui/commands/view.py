@@ -12,8 +12,8 @@ from PySide6.QtWidgets import QAbstractButton, QComboBox
 
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.command import Command, WindowState, Wording
+from kirigami_studio.gui.files.user_preferences import UserPreferences
 from kirigami_studio.gui.look import theme
-from kirigami_studio.gui.look.preferring import Preferring
 from kirigami_studio.gui.views.layout_view import Overlay
 
 if TYPE_CHECKING:
@@ -37,7 +37,7 @@ OVERLAY_COMMANDS = {
 class Appearance(QObject):
     """The window's theme: the desktop's until the user chooses light or dark, and again when asked to."""
 
-    def __init__(self, window: MainWindow, preferences: Preferring) -> None:
+    def __init__(self, window: MainWindow, preferences: UserPreferences) -> None:
         super().__init__(window)
         self._window = window
         self._preferences = preferences

@@ -1,17 +1,20 @@
-"""The chosen design: the stage, its cuts and plots, and how it is fabricated."""
+"""The stage: the chosen design, its cuts and plots, how it is fabricated, and its voids changed by hand."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QObject
+from PySide6.QtCore import QObject, QPoint
+from PySide6.QtWidgets import QMenu
 
+from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.controller import Controller
 from kirigami_studio.gui.jobs.cut_jobs import Planned
 from kirigami_studio.gui.reshaping import OpenedSizes
+from kirigami_studio.gui.scene.void_items import VoidFacts
 from kirigami_studio.gui.session import Entry
-from kirigami_studio.project.document import Document
+from kirigami_studio.project.document import Document, Void
 
 if TYPE_CHECKING:
     from kirigami_studio.gui.main_window import MainWindow
@@ -100,3 +103,122 @@ def _facts(entry: Entry) -> list[str]:
     if trim is not None:
         facts.append(tr("trimmed IoU {iou:.1f} %", iou=100 * trim.iou))
     return [*facts, tr("feasible") if score.feasible else tr("not feasible")]
+
+
+class VoidConnections(QObject):
+    """Connects what is done to voids with the controller's hand editing."""
+
+    def __init__(self, window: MainWindow, controller: Controller) -> None:
+        super().__init__(window)
+        self._window, self._controller = window, controller
+        self._view, self._gestures = window.stage.view, window.stage.view.voids
+        self._bar, self._hand = window.stage.voids, controller.hand
+        self._facts, self._status_before = "", ""
+        self.menu: QMenu | None = None
+        self._connect()
+        self._refresh()
+
+    def _connect(self) -> None:
+        window, gestures, hand, bar, controller = self._window, self._gestures, self._hand, self._bar, self._controller
+        gestures.hovered.connect(self._describe)
+        gestures.selection_changed.connect(self._refresh)
+        gestures.nudged.connect(hand.nudge)
+        for begun in (gestures.pull_begun, gestures.vertex_begun):
+            begun.connect(self._pause)
+        gestures.pull_begun.connect(hand.begin_pull)
+        gestures.pulled.connect(hand.pull)
+        gestures.vertex_begun.connect(hand.begin_vertex)
+        gestures.vertex_moved.connect(hand.move_vertex)
+        gestures.drag_ended.connect(hand.let_go)
+        gestures.drag_cancelled.connect(hand.take_back)
+        gestures.lock_wanted.connect(hand.lock)
+        gestures.menu_wanted.connect(self._show_menu)
+        hand.drafted.connect(self._show_draft)
+        bar.ratio_wanted.connect(hand.set_ratio)
+        bar.lock_wanted.connect(hand.lock)
+        bar.all_wanted.connect(hand.lock_all)
+        bar.refit_wanted.connect(self.refit)
+        controller.session.document_changed.connect(self._refresh)
+        controller.session.display.stage_changed.connect(self._refresh)
+        controller.refitting.busy_changed.connect(bar.show_fitting)
+        controller.run.started.connect(self._refresh)
+        controller.run.ended.connect(self._refresh)
+        window.stage.switches_changed.connect(self._refresh)
+
+    def _pause(self) -> None:
+        """A drag is made at the angle at which it began."""
+        self._window.stage.deployment.play.setChecked(False)
+
+    def _refresh(self) -> None:
+        """The document, the stage or the mode has changed."""
+        document, stage = self._controller.document, self._window.stage
+        ready = document.candidate is not None and not self._controller.running
+        self._gestures.set_locked(document.locked)
+        self._gestures.enable(ready and not stage.showing_before)
+        stage.set_editable(ready)
+        field = self._hand.field if ready else None
+        chosen = min(self._gestures.selected, default=(0, 0))
+        fits = field is not None and chosen[0] < field.rows and chosen[1] < field.columns
+        ratio = float(field.ratio[chosen]) if field is not None and fits else None
+        self._bar.show_voids(self._gestures.selected, ratio, document.locked)
+        if self._gestures.void is not None:
+            self._describe(self._gestures.void)
+
+    def _show_draft(self, design: PosedDesign) -> None:
+        self._view.show_draft(design)
+        self._refresh()
+
+    # the label at the pointer --------------------------------------------------------------------------------------
+
+    def _describe(self, void: Void | None) -> None:
+        design = self._view.design
+        if void is None or design is None:
+            self._gestures.lines = ()
+            if self._window.status_text.text() == self._facts and self._facts:
+                self._window.status_text.setText(self._status_before)
+            self._facts = ""
+            return
+        document = self._controller.document
+        width, locked = document.fabrication.width_mm, void in document.locked
+        facts = VoidFacts.of(design.deployment, void, self._view.phi, width, locked)
+        self._gestures.lines = facts.lines()
+        if self._controller.running:  # the line tells how far the run is
+            return
+        if self._window.status_text.text() != self._facts or not self._facts:
+            self._status_before = self._window.status_text.text()
+        self._facts = facts.sentence()
+        self._window.status_text.setText(self._facts)
+
+    # locks and fit -------------------------------------------------------------------------------------------------
+
+    def toggle_lock(self) -> None:
+        """Lock what is selected, or else what is pointed at; unlock it when all of it is locked."""
+        here = self._gestures.void
+        voids = self._gestures.selected or (frozenset() if here is None else frozenset({here}))
+        if voids:
+            self._hand.lock(voids, not voids <= self._controller.document.locked)
+        else:
+            self._controller.session.set_status(tr("Point at a void or select some, then press L to lock them."))
+
+    def _show_menu(self, void: Void, place: QPoint) -> None:
+        voids, locked = self._gestures.selected, self._controller.document.locked
+        self.menu = QMenu(self._window)
+        lock = self.menu.addAction(tr("Unlock") if voids <= locked else tr("Lock"))
+        lock.triggered.connect(self.toggle_lock)
+        even = self.menu.addAction(tr("Set ratio to 1"))
+        even.setEnabled(not voids <= locked)
+        even.triggered.connect(lambda: self._hand.set_ratio(voids, 1.0))
+        self.menu.addSeparator()
+        for name in ("lock_all", "unlock_all", "refit"):
+            self.menu.addAction(self._window.commands[name])
+        self.menu.aboutToHide.connect(self.menu.deleteLater)
+        self.menu.popup(place)
+
+    def refit(self, on: bool) -> None:
+        """Fit the chosen design again, or stop doing so."""
+        controller = self._controller
+        if not on:
+            controller.cancel()
+        else:
+            controller.refit()
+        self._bar.show_fitting(controller.refitting.busy)

@@ -9,9 +9,8 @@ from PySide6.QtCore import QObject
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.connections.designs import DesignConnections
 from kirigami_studio.gui.connections.side_by_side import SideBySide
-from kirigami_studio.gui.connections.stage import StageConnections
+from kirigami_studio.gui.connections.stage import StageConnections, VoidConnections
 from kirigami_studio.gui.connections.target import TargetConnections
-from kirigami_studio.gui.connections.voids import VoidConnections
 from kirigami_studio.gui.controller import Controller
 
 if TYPE_CHECKING:

@@ -5,22 +5,19 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
-from PySide6.QtCore import QObject, Signal
-
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.gui.messages import Message, Tone
+from kirigami_studio.gui.session import Session
 from kirigami_studio.project import preferences
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.preferences import Preferences
 
 
-class Preferring(QObject):
+class UserPreferences:
     """Holds what new projects start with, and saves it once the path of its file is known."""
 
-    message = Signal(Message)
-
-    def __init__(self, parent: QObject) -> None:
-        super().__init__(parent)
+    def __init__(self, session: Session) -> None:
+        self._session = session
         self.present = Preferences()
         self._path: Path | None = None
 
@@ -29,7 +26,7 @@ class Preferring(QObject):
         try:
             self.present = preferences.load(path)
         except KirigamiError as error:
-            self.message.emit(Message(str(error), Tone.WARNING))
+            self._session.post(Message(str(error), Tone.WARNING))
         else:
             self._path = path
 
@@ -54,7 +51,7 @@ class Preferring(QObject):
         try:
             preferences.save(wanted, self._path)
         except KirigamiError as error:
-            self.message.emit(Message(str(error), Tone.WARNING))
+            self._session.post(Message(str(error), Tone.WARNING))
 
     def new_document(self) -> Document:
         """What a new project starts with."""
