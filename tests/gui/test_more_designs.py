@@ -131,7 +131,7 @@ def test_that_again_draws_on_the_designs_own_grid_with_the_chosen_model(drawn: M
     assert {one.field.ratio.shape for one in after.candidates} == {(6, 6)}
     assert after.provenance["model"] == "balanced; prior"
     tips = [str(drawn.gallery.view.model_.index(row, 0).data(Qt.ItemDataRole.ToolTipRole)) for row in range(6)]
-    assert sum("model prior" in tip for tip in tips) == 3
+    assert sum("Model: prior" in tip for tip in tips) == 3
 
 
 @pytest.mark.torch
@@ -241,7 +241,7 @@ def test_that_there_must_be_designs_to_add_to(heart: MainWindow) -> None:
         message = heart.messages.messages[-1]
         assert (
             message.tone is Tone.ERROR and "Generate first" in message.sentence
-        ) or "Choose the design" in message.sentence
+        ) or "Choose a design" in message.sentence
         assert not heart.controller.running
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QEvent, QSize, Qt, Signal
@@ -35,7 +36,7 @@ ICON_EDGE = 30
 class ExportReport(QDialog):
     """Shows the verdict by symbol, word and colour, then every finding."""
 
-    folder_wanted = Signal(object)  #: Path of what was written
+    folder_wanted = Signal(Path)  #: of what was written
 
     def __init__(self, parent: QWidget, verifications: tuple[Verification, ...], palette: Palette) -> None:
         super().__init__(parent)

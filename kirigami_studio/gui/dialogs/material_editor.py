@@ -35,7 +35,7 @@ class MaterialEditor(QDialog):
     """A list of all materials beside the form of the chosen one."""
 
     stock_changed = Signal(str)  #: key of the material that was saved, or "" after one was deleted
-    coupon_wanted = Signal(object)  #: Material
+    coupon_wanted = Signal(Material)
 
     def __init__(self, parent: QWidget, key: str) -> None:
         super().__init__(parent)
