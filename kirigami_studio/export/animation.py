@@ -88,10 +88,10 @@ def animation_frames(job: ExportJob, frames: int, longest: int) -> list[Image.Im
     poses = [design.parts(float(angle)) for angle in frame_angles(job.phi, frames)]
     clouds = [np.concatenate(panels) for panels in poses]
     box = PictureFrame.around(clouds if job.target is None else [*clouds, job.target], longest)
-    drawn = [draw_polygons(panels, box, job.target) for panels in poses]
+    pictures = [draw_polygons(panels, box, job.target) for panels in poses]
     # Open and closed states together show every colour.
     sample = Image.new("RGB", (box.pixels[0], 2 * box.pixels[1]))
-    sample.paste(drawn[frames // 2], (0, 0))
-    sample.paste(drawn[-1], (0, box.pixels[1]))
+    sample.paste(pictures[frames // 2], (0, 0))
+    sample.paste(pictures[-1], (0, box.pixels[1]))
     shared = sample.quantize(colors=PALETTE_COLOURS)
-    return [picture.quantize(palette=shared, dither=Image.Dither.NONE) for picture in drawn]
+    return [picture.quantize(palette=shared, dither=Image.Dither.NONE) for picture in pictures]

@@ -26,7 +26,7 @@ from kirigami_studio.fabricate.joints import ending_on_others
 from kirigami_studio.fabricate.tabs import joined_ring
 from kirigami_studio.foundation.errors import ExportError
 
-#: A tab may differ from the width that the file speaks of by this much (mm).
+#: A tab may differ from the width that the file promises by this much (mm).
 TAB_TOLERANCE_MM = 1e-3
 #: Cuts may end this far (mm) beyond the outline: edge cuts run over it on purpose.
 REACH_MM = 1.0
@@ -107,8 +107,8 @@ def check_file(path: str | Path, kerf_mm: float | None = None) -> FileReport:
         problems.append(Problem.error("cut_file.empty"))
         return FileReport(Path(path), tuple(problems), content.unit, content.layers, 0, 0.0, 0.0, (0.0, 0.0), kerf,
                           None, None)  # fmt: skip
-    lines = [LineString(drawn.points) for drawn in content.paths]
-    size = np.ptp(np.concatenate([drawn.points for drawn in content.paths]), axis=0)
+    lines = [LineString(path.points) for path in content.paths]
+    size = np.ptp(np.concatenate([path.points for path in content.paths]), axis=0)
     bounds = (float(size[0]), float(size[1]))
     twice = overlap(lines)
     problems += [*_size_problems(bounds), *_double_problems(content.paths, twice)]
@@ -157,8 +157,8 @@ def _size_problems(bounds: tuple[float, float]) -> list[Problem]:
 
 def _double_problems(paths: Sequence[FilePath], twice: Overlap) -> list[Problem]:
     seen: Counter[tuple[tuple[float, float], ...]] = Counter()
-    for drawn in paths:
-        points = np.round(drawn.points / SAME_POINT_MM).astype(np.int64)
+    for path in paths:
+        points = np.round(path.points / SAME_POINT_MM).astype(np.int64)
         for start, stop in zip(points[:-1].tolist(), points[1:].tolist(), strict=True):
             seen[tuple(sorted((tuple(start), tuple(stop))))] += 1
     doubles = [(ends, count) for ends, count in seen.items() if count > 1 and ends[0] != ends[1]]
@@ -179,8 +179,8 @@ def _find_outline(paths: Sequence[FilePath], problems: list[Problem]) -> Polygon
     The outline is what the OUTLINE layer holds; in a foreign file, the largest closed contour, be it one path or a
     chain of lines that meet.
     """
-    own = [drawn for drawn in paths if drawn.layer == Layer.OUTLINE.value]
-    rings = [Polygon(drawn.points) for drawn in own or paths if drawn.closed and len(drawn.points) > 3]
+    own = [path for path in paths if path.layer == Layer.OUTLINE.value]
+    rings = [Polygon(path.points) for path in own or paths if path.closed and len(path.points) > 3]
     if not rings:
         chains = _chains(own or paths)
         rings = [Polygon(chain.coords) for chain in chains if chain.is_closed and len(chain.coords) > 3]
@@ -198,7 +198,7 @@ def _find_outline(paths: Sequence[FilePath], problems: list[Problem]) -> Polygon
 
 def _chains(paths: Sequence[FilePath]) -> list[LineString]:
     """Join lines whose ends meet, each piece of line used once."""
-    snapped = shapely.set_precision(shapely.multilinestrings([LineString(drawn.points) for drawn in paths]), 1e-6)
+    snapped = shapely.set_precision(shapely.multilinestrings([LineString(path.points) for path in paths]), 1e-6)
     merged = shapely.line_merge(shapely.union_all(snapped))
     return [part for part in shapely.get_parts(merged) if isinstance(part, LineString)]
 
@@ -224,18 +224,18 @@ def tabbed_outline(content: DxfContent, problems: list[Problem]) -> Polygon | No
     problems : list of Problem
         Findings are added to it.
     """
-    parts = [drawn for drawn in content.paths if drawn.layer == Layer.OUTLINE.value]
+    parts = [path for path in content.paths if path.layer == Layer.OUTLINE.value]
     if not parts and content.facts["TABS"].isdecimal():
         # A file with everything on one layer: its outline comes last.
         parts = content.paths[-int(content.facts["TABS"]) :]
-    closed = sum(drawn.closed for drawn in parts)
+    closed = sum(path.closed for path in parts)
     if closed or f"{len(parts)}" != content.facts["TABS"]:
         x, y = parts[0].points[-1] if parts else (0.0, 0.0)
         tabs, where = content.facts["TABS"], (float(x), float(y))
         problems.append(Problem.error("cut_file.tab_count", where, tabs=tabs, paths=len(parts), closed=closed))
         return None
     wanted = _number(content, "TAB_MM") + _number(content, "KERF_MM")
-    ends = np.array([drawn.points[[0, -1]] for drawn in parts]).reshape(-1, 2)
+    ends = np.array([path.points[[0, -1]] for path in parts]).reshape(-1, 2)
     away = np.linalg.norm(ends[:, None] - ends, axis=2)
     np.fill_diagonal(away, np.inf)
     gaps = away.min(axis=1)
@@ -246,7 +246,7 @@ def tabbed_outline(content: DxfContent, problems: list[Problem]) -> Polygon | No
         gap, where = float(gaps[worst]), (float(x), float(y))
         problems.append(Problem.error("cut_file.tab_gap", where, gap_mm=gap, promised_mm=wanted))
         return None
-    return Polygon(joined_ring([drawn.points for drawn in parts]))
+    return Polygon(joined_ring([path.points for path in parts]))
 
 
 def _number(content: DxfContent, key: str) -> float:
@@ -259,18 +259,18 @@ def _number(content: DxfContent, key: str) -> float:
 def placement_problems(paths: Sequence[FilePath], outline: Polygon | None) -> list[Problem]:
     """List cuts outside the outline, slits that cross it, coordinates below the origin, and cuts after the outline."""
     problems: list[Problem] = []
-    low = np.concatenate([drawn.points for drawn in paths]).min(axis=0)
+    low = np.concatenate([path.points for path in paths]).min(axis=0)
     if low.min() < -TOUCH_MM:
         problems.append(Problem.warning("cut_file.below_origin", low_x=float(low[0]), low_y=float(low[1])))
     if outline is None:
         return problems
     inside, reach = outline.buffer(-TOUCH_MM), outline.buffer(REACH_MM)
-    lines = [LineString(drawn.points) for drawn in paths]
-    for drawn, line in zip(paths, lines, strict=True):
-        x, y = drawn.points[0]
+    lines = [LineString(path.points) for path in paths]
+    for path, line in zip(paths, lines, strict=True):
+        x, y = path.points[0]
         if not line.within(reach):
             problems.append(Problem.error("cut_file.outside_sheet", (float(x), float(y))))
-        elif drawn.layer == Layer.SLITS.value and not line.within(inside):
+        elif path.layer == Layer.SLITS.value and not line.within(inside):
             problems.append(Problem.error("cut_file.slit_reaches_outline", (float(x), float(y))))
     ring = outline.exterior.buffer(TOUCH_MM)
     on_ring = np.array([bool(shapely.within(line, ring)) for line in lines])
@@ -287,8 +287,8 @@ def _physics(
         return None, None
     ring = outline.exterior
     near_ring = ring.buffer(SAME_POINT_MM)
-    inner = [drawn for drawn in content.paths if not LineString(drawn.points).within(near_ring)]
-    holes = [Polygon(drawn.points) for drawn in inner if drawn.closed and len(drawn.points) > 3]
+    inner = [path for path in content.paths if not LineString(path.points).within(near_ring)]
+    holes = [Polygon(path.points) for path in inner if path.closed and len(path.points) > 3]
     problems += _loose_discs(inner)
     sheet: BaseGeometry = outline.difference(shapely.union_all([hole for hole in holes if hole.is_valid]))
     cuts, joined = _inner_cuts(inner, content.facts, problems)
@@ -305,7 +305,7 @@ def _physics(
         return pieces, None
     if ligament.width_mm <= 0 and pieces == 1:
         # In a foreign drawing cuts may cross on purpose; in ours a connector is lost.
-        ours = any(drawn.layer in (Layer.SLITS.value, Layer.EDGE_SLITS.value) for drawn in content.paths)
+        ours = any(path.layer in (Layer.SLITS.value, Layer.EDGE_SLITS.value) for path in content.paths)
         weighed = Problem.error if ours else Problem.warning
         problems.append(weighed("cut_file.connector_lost", ligament.where))
     return pieces, ligament.width_mm
@@ -313,8 +313,8 @@ def _physics(
 
 def _loose_discs(inner: Sequence[FilePath]) -> list[Problem]:
     """Closed cuts inside the outline, beside relief holes and slots: what they enclose falls out."""
-    closed = [Polygon(drawn.points) for drawn in inner if drawn.closed and drawn.layer != Layer.RELIEF.value
-              and len(drawn.points) > 3]  # fmt: skip
+    closed = [Polygon(path.points) for path in inner if path.closed and path.layer != Layer.RELIEF.value
+              and len(path.points) > 3]  # fmt: skip
     # Twice the area over half the length: about the width of a slot, the radius of a disc.
     wide = [ring for ring in closed if 4.0 * ring.area > WIDEST_SLOT_MM * 2.0 * ring.length]
     if not wide:
@@ -334,7 +334,7 @@ def _inner_cuts(
     """
     if "JOINS" not in facts:
         return (_chains(inner) if inner else []), set()
-    lines = [LineString(drawn.points) for drawn in inner]
+    lines = [LineString(path.points) for path in inner]
     ends = ending_on_others(lines)
     if f"{len(ends)}" == facts["JOINS"]:
         return lines, set(ends)

@@ -153,7 +153,7 @@ def read_content(path: Path) -> DxfContent:
     try:
         _collect(document, content)
     except PARSER_FAULTS as error:
-        raise ExportError("dxf.damaged", path=path) from error
+        raise ExportError("cut_file.damaged", path=path) from error
     return content
 
 
@@ -173,7 +173,7 @@ def _open(path: Path, content: DxfContent) -> Drawing:
             raise ExportError("dxf.no_dxf", path=path) from error
         raise ExportError("dxf.cannot_open", path=path, reason=error.strerror) from error
     except PARSER_FAULTS as error:
-        raise ExportError("dxf.damaged", path=path) from error
+        raise ExportError("cut_file.damaged", path=path) from error
 
 
 def _collect(document: Drawing, content: DxfContent) -> None:

@@ -44,7 +44,7 @@ class ExportSet:
 
 def export_all(
     job: ExportJob, folder: str | Path, name: str = "cut", sidecar: bool = True,
-    tell: Callable[[Path], None] | None = None,
+    on_written: Callable[[Path], None] | None = None,
 ) -> ExportSet:  # fmt: skip
     """Write the whole set into a folder; each file appears whole or not at all.
 
@@ -61,7 +61,7 @@ def export_all(
         Of the cut files, without extension.
     sidecar : bool
         Also write the record.
-    tell : function, optional
+    on_written : function, optional
         Is called with each path once it is written; may raise to stop.
 
     Raises
@@ -76,8 +76,8 @@ def export_all(
 
     def done(path: Path) -> None:
         written.append(path)
-        if tell is not None:
-            tell(path)
+        if on_written is not None:
+            on_written(path)
 
     for goal, version in ((cut, R2010), (home / f"{name}_r12.dxf", R12), (home / f"{name}.svg", R2010)):
         path = export(replace(job, dxf_version=version), goal)

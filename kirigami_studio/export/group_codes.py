@@ -49,8 +49,8 @@ def read_group_codes(path: Path) -> FileContent:
             if entity.kind == "LAYER"
         }
         entities = _with_vertices(_entities(sections.get("ENTITIES", [])))
-        drawn = [entity for entity in entities if entity.kind in ("LWPOLYLINE", "POLYLINE")]
-        strokes = tuple(_stroke(entity) for entity in drawn)
+        polylines = [entity for entity in entities if entity.kind in ("LWPOLYLINE", "POLYLINE")]
+        strokes = tuple(_stroke(entity) for entity in polylines)
     except (ValueError, OSError) as error:
         raise ExportError("dxf.not_readable", path=path, reason=str(error)) from error
     unit = header.get("$INSUNITS", {}).get(70)

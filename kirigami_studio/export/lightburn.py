@@ -143,12 +143,12 @@ def _vertices(path: CutPath) -> tuple[list[str], list[str]]:
     count = len(points) - 1 if path.closed else len(points)
     if path.closed and count in arriving:
         arriving[0] = arriving[count]
-    told = [
+    vertices = [
         f"V{points[i][0]:.4f} {points[i][1]:.4f}" + _handle("c0", leaving.get(i)) + _handle("c1", arriving.get(i))
         for i in range(count)
     ]
-    drawn = [f"{'B' if i in leaving else 'L'}{i} {(i + 1) % count}" for i in range(len(points) - 1)]
-    return told, drawn
+    primitives = [f"{'B' if i in leaving else 'L'}{i} {(i + 1) % count}" for i in range(len(points) - 1)]
+    return vertices, primitives
 
 
 def _handle(name: str, point: FloatArray | None) -> str:

@@ -126,11 +126,11 @@ def _draw_lines(canvas: Any, lines: Sequence[Line], part: Tile, whole: bool) -> 
     canvas.setLineWidth(CUT_LINE_MM * mm)
     window = shapely.box(*part.window)
     to_page = _placed(part.window)
-    drawn: Colour | None = None
+    current: Colour | None = None
     for points, closed, colour in lines:
-        if colour != drawn:
+        if colour != current:
             _stroke_colour(canvas, colour)
-            drawn = colour
+            current = colour
         line = LineString([*points, points[0]] if closed else points)
         if whole or line.within(window):
             _draw(canvas, to_page(points), closed)

@@ -51,7 +51,7 @@ class Stroke:
     colour: int
     bulges: FloatArray | None = None
 
-    def drawn(self, chord_mm: float = CHORD_MM) -> FloatArray:
+    def travelled(self, chord_mm: float = CHORD_MM) -> FloatArray:
         """Points (V, 2) from start to end with chords for arcs; a closed stroke comes back to its first point."""
         points = self.points
         if self.bulges is not None:
@@ -100,7 +100,7 @@ def layer_colours(strokes: Sequence[Stroke]) -> dict[str, int]:
 
 def extent(strokes: Sequence[Stroke]) -> tuple[float, float]:
     """Largest x and y that the head reaches; the smallest are 0."""
-    corner = np.concatenate([stroke.drawn() for stroke in strokes]).max(axis=0)
+    corner = np.concatenate([stroke.travelled() for stroke in strokes]).max(axis=0)
     return float(corner[0]), float(corner[1])
 
 

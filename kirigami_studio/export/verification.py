@@ -40,7 +40,7 @@ class Finding(Note):
     warning : bool
         Fine, but a person should know.
     reader : str
-        Which reader alone says so; empty where all agree.
+        The only reader that found it; empty where all agree.
     """
 
     ok: bool = True
@@ -54,9 +54,9 @@ class Finding(Note):
 
     @property
     def text(self) -> str:
-        """The sentence, after the name of the reader if only one says so."""
-        told = sentence(self.code, self.fields)
-        return sentence("verify.by_one_reader", {"reader": self.reader, "finding": told}) if self.reader else told
+        """The sentence, after the name of the reader if only one found it."""
+        text = sentence(self.code, self.fields)
+        return sentence("verify.by_one_reader", {"reader": self.reader, "finding": text}) if self.reader else text
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,7 +71,7 @@ class Verification:
     size_mm : (width, height)
         Everything that is drawn.
     pieces : int or None
-        Pieces of the sheet after cutting; must be 1; None where the file does not tell.
+        Pieces of the sheet after cutting; must be 1; None where the file does not say.
     cut_length_mm : float
         As the file says.
     seconds_low, seconds_high : float
@@ -305,9 +305,9 @@ def file_physics(strokes: Sequence[Stroke], plan: CutPlan, profile: Profile) -> 
     profile : Profile
     """
     outlines = 1 if profile.slots else len(plan.on_layer(Layer.OUTLINE))
-    drawn = [stroke.drawn(MEASURED_CHORD_MM) for stroke in strokes]
-    lines = [LineString(points) for points in drawn]
-    inner, rim = lines[:-outlines], drawn[-outlines:]
+    traced = [stroke.travelled(MEASURED_CHORD_MM) for stroke in strokes]
+    lines = [LineString(points) for points in traced]
+    inner, rim = lines[:-outlines], traced[-outlines:]
     boundary = Polygon(rim[0] if outlines == 1 else joined_ring(rim))
     kerf = 0.0 if profile.slots else plan.kerf_mm
     loops = [Polygon(line) for line, stroke in zip(inner, strokes, strict=False) if stroke.closed]

@@ -1,4 +1,4 @@
-"""A calibration coupon: one small sheet that tells the kerf and the smallest ligament of a machine and a material.
+"""A calibration coupon: one small sheet that shows the kerf and the smallest ligament of a machine and a material.
 
 Comb
     ``COMB_SLITS`` parallel cuts run in from the lower edge, so that fingers stand between them.  Pushed together to one

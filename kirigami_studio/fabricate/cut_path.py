@@ -45,7 +45,7 @@ class CutPath:
     cut : int
         Number of the cut in :class:`CutTable`, -1 for the outline.
     bulges : (P,) float or None
-        Arcs, as the head of this module says; None where all edges are straight.
+        Arcs, as described at the top of this module; None where all edges are straight.
     """
 
     points: FloatArray

@@ -1,4 +1,4 @@
-"""Choose how every slit ends: the wanted style where there is room for it, else a smaller one, else straight.
+"""Choose how every slit ends: the style asked for where it fits, else a smaller one, else straight.
 
 A shape fits where it stays as far from all other cuts, from their shapes and from the outline as the wider of the two
 connectors demands, and where its slit keeps half of what is left of it for either end.
@@ -121,21 +121,21 @@ class Fitting:
         found: dict[int, Fitted] = {}
         left = list(hinges)
         while left:
-            drawn: dict[int, Fitted] = {}
+            shapes: dict[int, Fitted] = {}
             for hinge in left:
                 if attempt[hinge] < attempts(self._style):
-                    shape = self._drawn(hinge, attempt[hinge])
+                    shape = self._shape_at(hinge, attempt[hinge])
                     if shape is not None:
-                        drawn[hinge] = shape
-            crowded = self._near_cuts(drawn)
-            found.update({hinge: shape for hinge, shape in drawn.items() if hinge not in crowded})
+                        shapes[hinge] = shape
+            crowded = self._near_cuts(shapes)
+            found.update({hinge: shape for hinge, shape in shapes.items() if hinge not in crowded})
             self.why_not.update(dict.fromkeys(crowded, Obstacle.NEIGHBOUR))
             left = [hinge for hinge in left if hinge not in found and attempt[hinge] + 1 < attempts(self._style)]
             for hinge in left:
                 attempt[hinge] += 1
         return found
 
-    def _drawn(self, hinge: int, attempt: int) -> Fitted | None:
+    def _shape_at(self, hinge: int, attempt: int) -> Fitted | None:
         seat = self._seats[hinge]
         index, last = self._places[hinge]
         piece = self._pieces[index]
@@ -150,12 +150,12 @@ class Fitting:
             return None
         return Fitted(shape, CutPiece(piece.cut, shape.points, piece.opens, shape.bulges, shape.closed))
 
-    def _near_cuts(self, drawn: dict[int, Fitted]) -> set[int]:
+    def _near_cuts(self, shapes: dict[int, Fitted]) -> set[int]:
         """Those of the shapes that come too near to a cut other than their own, or to the outline."""
-        if not drawn:
+        if not shapes:
             return set()
-        numbers = np.array(list(drawn))
-        lines = np.array([shape.piece.line for shape in drawn.values()], dtype=object)
+        numbers = np.array(list(shapes))
+        lines = np.array([shape.piece.line for shape in shapes.values()], dtype=object)
         which, obstacle = self._obstacle_tree.query(lines, "dwithin", float(self._span.max()))
         own, cut = self._table.hinge_cut[numbers[which]], self._obstacle_cut[obstacle]
         resting = [self._resting.get(pair, 0.0) for pair in zip(cut.tolist(), own.tolist(), strict=True)]

@@ -10,7 +10,7 @@ from itertools import pairwise
 from kirigami_studio.fabricate.cut_path import check_length
 from kirigami_studio.foundation.errors import FabricationError
 
-#: Finished width (mm) of a tab unless told otherwise: common for thin sheet.
+#: Finished width (mm) of a tab unless given: common for thin sheet.
 TAB_MM = 0.5
 #: More tabs than this on one outline are a typing error.
 MOST_TABS = 200

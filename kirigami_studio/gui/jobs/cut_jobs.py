@@ -137,7 +137,7 @@ def exporting_all(request: CutRequest, folder: Path, name: str, cancel: Cancel) 
             raise Cancelled("export.stopped", folder=folder)
 
     made = planned(request)
-    found = export_all(export_job(request, made), folder, name, tell=stop_if_asked)
+    found = export_all(export_job(request, made), folder, name, on_written=stop_if_asked)
     yield Exported(folder, made, found.verifications)
 
 

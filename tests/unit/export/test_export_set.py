@@ -43,12 +43,12 @@ def job(make_design: MakeDesign) -> ExportJob:
 
 @pytest.mark.parametrize("profile", PROFILES)
 def test_that_the_set_is_complete_and_every_cut_file_verified(profile: str, job: ExportJob, tmp_path: Path) -> None:
-    told: list[Path] = []
-    found = export_all(replace(job, profile=profile, paper="a4"), tmp_path / "set", tell=told.append)
+    seen: list[Path] = []
+    found = export_all(replace(job, profile=profile, paper="a4"), tmp_path / "set", on_written=seen.append)
     assert found.ok
     assert len(found.verifications) == 3
     assert all(report.pieces == 1 for report in found.verifications)
-    assert told == list(found.files)
+    assert seen == list(found.files)
     names = {"cut.svg", "cut.lbrn2", "cut.pdf", "cut.json", "layout.svg", "preview.png", "reference.dxf"}
     names |= {"cut", "cut_r12"} if profile == "layers" else {"cut.dxf", "cut_r12.dxf"}
     if profile == "slots":
@@ -62,7 +62,7 @@ def test_that_a_lightburn_project_of_closed_slots_is_refused(job: ExportJob, tmp
     assert not list(tmp_path.iterdir())
 
 
-def test_that_tabs_left_out_of_closed_contours_are_told(make_design: MakeDesign, tmp_path: Path) -> None:
+def test_that_tabs_left_out_of_closed_contours_are_named(make_design: MakeDesign, tmp_path: Path) -> None:
     plan = plan_cuts(make_design(4, 5, seed=1), 90.0, options=CutOptions(tabs=3))
     path = export(ExportJob(make_design(4, 5, seed=1), plan=plan, profile="slots"), tmp_path / "sheet.dxf")
     assert any("3 tabs are left out" in warning.text for warning in verify_export(plan, path, "slots").warnings)
@@ -177,10 +177,10 @@ def test_that_a_place_that_cannot_be_written_is_refused(job: ExportJob, tmp_path
     assert [path.name for path in tmp_path.iterdir()] == ["file"]
 
 
-def test_that_telling_may_stop_the_set(job: ExportJob, tmp_path: Path) -> None:
+def test_that_the_caller_may_stop_the_set(job: ExportJob, tmp_path: Path) -> None:
     def stop(path: Path) -> None:
         raise ExportError(f"stopped at {path.name}")
 
     with pytest.raises(ExportError, match=r"stopped at cut\.dxf"):
-        export_all(job, tmp_path, tell=stop)
+        export_all(job, tmp_path, on_written=stop)
     assert [path.name for path in tmp_path.iterdir()] == ["cut.dxf"]
