@@ -96,7 +96,7 @@ class MainWindow(QMainWindow):
         self.set_theme(palette)
 
     def _build_commands(self) -> None:
-        self.commands = CommandActions(self, all_commands(self), self.state, self.palette_)
+        self.commands = CommandActions(self, all_commands(self), self.state)
         self.recent_menu = RecentMenu(self, self.controller.filing.recent, self.files.open)
         self.commands.insert_menu("save", self.recent_menu)
         self.picture_menu = PictureMenu(self, self.picturing, lambda proposal: self.file_dialogs.picture(proposal))

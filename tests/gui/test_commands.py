@@ -6,7 +6,6 @@ from dataclasses import replace
 
 from kirigami_studio.gui.command import Command, WindowState, Wording
 from kirigami_studio.gui.commands.actions import CommandActions
-from kirigami_studio.gui.look.theme import LIGHT
 from kirigami_studio.gui.main_window import TOOLBAR, MainWindow
 from kirigami_studio.project.document import Mark
 
@@ -60,7 +59,7 @@ def test_that_a_changed_state_changes_enabling_checking_and_words_at_once(window
         worded=worded,
     )
     state = [window.state()]
-    made = CommandActions(window, (command,), lambda: state[0], LIGHT)
+    made = CommandActions(window, (command,), lambda: state[0])
     action = made["probe"]
     assert action.isEnabled() and not action.isChecked() and action.text() == "Idle"
     state[0] = replace(state[0], running=True)

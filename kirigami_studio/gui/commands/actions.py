@@ -16,17 +16,15 @@ from kirigami_studio.gui.look.theme import Palette
 class CommandActions:
     """The commands of one window as actions in its menus, by their ids."""
 
-    def __init__(
-        self, window: QMainWindow, commands: Iterable[Command], state: Callable[[], WindowState], palette: Palette
-    ) -> None:
+    def __init__(self, window: QMainWindow, commands: Iterable[Command], state: Callable[[], WindowState]) -> None:
         self.records = tuple(commands)
         self._window = window
         self._state_now = state
         self._state = state()
-        self._palette = palette
         self._menus: dict[str, QMenu] = {}
         self.actions = {command.id: self._action(command) for command in self.records}
-        self.set_palette(palette)
+        for command in self.records:
+            self._show(command)
 
     def __getitem__(self, command: str) -> QAction:
         return self.actions[command]
@@ -64,11 +62,9 @@ class CommandActions:
                 self._show(command)
 
     def set_palette(self, palette: Palette) -> None:
-        """Draw all icons in other colours."""
-        self._palette = palette
-        self._state = self._state_now()
+        """Draw all icons in the colours of a theme."""
+        self.refresh()
         for command in self.records:
-            self._show(command)
             icon = command.wording(self._state).icon
             if icon:
                 self.actions[command.id].setIcon(icons.icon(icon, palette))
