@@ -140,7 +140,7 @@ class AlignmentTarget:
         v -= place
         place *= LATTICE
         place += column
-        # Places are inside already; telling so spares a slow check.
+        # Places are inside already: mode "clip" spares a slow check.
         lower = table.take(place, mode="clip")
         place += 1
         lower += u * (table.take(place, mode="clip") - lower)

@@ -45,7 +45,7 @@ def checked_polygons(outlines: Sequence[npt.ArrayLike]) -> FloatArray:
     Raises
     ------
     KirigamiError
-        As ``checked_polygon`` of the first one that makes no sense.
+        As :func:`checked_polygon` of the first one that fails.
     """
     try:
         array = np.stack([np.asarray(outline, dtype=np.float64) for outline in outlines])

@@ -45,7 +45,7 @@ class EdgePanels:
     corners : (E, 4) int
         Nodes: top, left, bottom, right.
     hinged : (E, 4) bool
-        Corners where a neighbour hangs.
+        Corners that are shared with a neighbour.
     even : (E,) bool
         Panels with I + J even: they turn by -a when the sheet opens, the others by +a.
     """
@@ -76,7 +76,7 @@ class KeptPanels:
         None where a panel stays whole.
     removed : (E,) float, unit cells squared
     lost : (E,) float, unit cells squared
-        Removed area that lies on the target: pieces that hang on no hinge.
+        Removed area that lies on the target: pieces without a hinge.
     """
 
     shapes: GeometryArray

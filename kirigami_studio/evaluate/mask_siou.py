@@ -5,6 +5,8 @@ Procrustes start, principal axes otherwise, refinement), one is filled into the 
 taken at 128 x 128.  It differs from the paper's evaluator in two points: only a rim of three pixels around the canvas
 is left out, where the paper leaves out all that falls off its image grid, and both directions are averaged, so that
 swapping the masks changes nothing.
+
+Masks of any size are first brought to one scale: cropped, 128 pixels on the longer side, with the way back.
 """
 
 from __future__ import annotations
@@ -31,7 +33,7 @@ from kirigami_studio.foundation.paper import MASK_SIZE
 #: Contours are thinned to this deviation in pixels: half the staircase of a slanted edge.
 CONTOUR_TOLERANCE = 0.5
 
-#: Contours with less area (square pixels) say nothing about the pose.
+#: Contours with less area (square pixels) are left out of the alignment.
 SMALLEST_CONTOUR = 4.0
 
 #: Pixels beyond the canvas that do not count.  Silhouettes fill their image, so even good matches lose a pixel or two
@@ -39,10 +41,10 @@ SMALLEST_CONTOUR = 4.0
 #: (0: within 0.0144), while poor matches gain 0.005 on average (the full crop: 0.023, up to 0.18).
 RIM = 3
 
-#: Rotations tried for silhouettes with holes or several pieces, whose outer contour does not say all.
+#: Rotations tried for silhouettes with holes or several pieces, whose outer contour is not the whole shape.
 RAGGED_RING = 48
 
-#: How many of them are refined.
+#: How many of them are refined by a simplex.
 RAGGED_KEPT = 3
 
 #: First steps of the simplex in log scale, radians, and tenths of the mask (x, y); then its evaluations.
@@ -83,7 +85,7 @@ def mask_siou(a: npt.ArrayLike, b: npt.ArrayLike, *, crop: bool = False) -> tupl
 
 
 def _best_pose(moving: FittedMask, fixed: FittedMask, crop: bool) -> tuple[float, Similarity]:
-    """Align by outlines, and by pixels where outlines do not say all."""
+    """Align by outlines, and by pixels where outlines are not the whole shape."""
     poses = _outline_poses(moving, fixed)
     if not (moving.solid and fixed.solid):
         poses += _pixel_poses(moving, fixed)
@@ -269,7 +271,7 @@ class FittedMask:
 
     @property
     def solid(self) -> bool:
-        """Whether the silhouette is one piece without holes, so that its outer contour says all."""
+        """Whether the silhouette is one piece without holes, so that its outer contour is the whole shape."""
         return len(self._loops()) == 1
 
     def _loops(self) -> list[FloatArray]:

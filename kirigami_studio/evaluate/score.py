@@ -20,10 +20,10 @@ from kirigami_studio.lattice.deployment import Deployment, check_phi, deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.outlines.outline import Outline
 
-#: Turns below this (radians) are what any change brings about.
+#: Turns below this (radians) come with any change.
 SAME_TURN = 0.1
 #: Exact IoU that a design may lack to stay turned as it was.  After changes of single ratios by 16 % staying cost a
-#: circle, star or hexagon at most 0.00013 (12 changes each); what is clearly better turned may turn.
+#: circle, star or hexagon at most 0.00013 (12 changes each); a design that is clearly better turned may turn.
 STAY = 0.003
 
 

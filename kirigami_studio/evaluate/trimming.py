@@ -94,9 +94,9 @@ def trim(
     Raises
     ------
     AngleError, UsageError
-        An angle or a depth that makes no sense.
+        The angle or the depth is out of range.
     KirigamiError
-        The outline crosses itself at ``phi``: what is outside cannot be told.
+        The outline crosses itself at ``phi``, so that it has no outside.
     """
     phi, keep = check_phi(phi), check_keep(keep)
     sheet = Polygon(deployment.outline(phi))

@@ -1,5 +1,6 @@
-"""Outline + wishes -> ranked, scored candidates: the only package that composes the stages.
+"""Request -> ranked, scored candidates: the only package that composes the stages.
 
-Vocabulary: a *request* is everything that decides the result; *events* report the way there; a *result* holds the
-candidates best first.  Knows neither Qt nor files on disk.  May import ``polish``, ``export`` and all below them.
+Vocabulary: a *request* is the target outline and all else that decides the result; *events* report the way there; a
+*result* holds the candidates best first; a *redesign* makes another candidate of one.  Knows neither Qt nor files on
+disk.  May import ``polish``, ``export`` and all below them.
 """

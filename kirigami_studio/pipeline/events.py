@@ -1,4 +1,4 @@
-"""What a run tells its host.
+"""What a run reports on the way.
 
 Started, then Progress and CandidateFound for every sample, CandidateImproved in the order in which fits end, perhaps
 one more CandidateFound by the search, and Finished.
@@ -21,7 +21,7 @@ class Started:
 
 @dataclass(frozen=True, slots=True)
 class Progress:
-    """``done`` of ``total`` units are finished; ``message`` is fit for a status line."""
+    """``done`` of ``total`` units are done; ``message`` is fit for a status line."""
 
     done: int
     total: int
@@ -60,7 +60,7 @@ class Result:
     budget_ended : bool
         The time budget was used up before all was done: candidates may be unpolished or, of very many, missing.
     repeats : int
-        Designs that were left out because the host had them already; 0 unless it has looked for them.
+        Designs that were left out because the document had them already; 0 unless that was looked for.
     """
 
     request: Request

@@ -1,7 +1,7 @@
 """Worker processes that polish beside each other: NumPy and SciPy on arrays of this size keep the interpreter's lock.
 
 The workers are started by the first run that gains from them, while the generator is being loaded, and kept for the
-next one.  A pool that cannot start, or whose workers die, is no reason to fail: what is left undone is handed back.
+next one.  A pool that cannot start, or whose workers die, does not fail the run: the caller does what is left itself.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ THREAD_LIMITS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 #: Seconds that a worker gets to end by itself.
 PATIENCE = 1.0
 
-#: What an interpreter is told to run; the package's folder follows, for checkouts that are not installed.
+#: Code for the interpreter of a worker; the package's folder follows, for checkouts that are not installed.
 ENTRY = "import sys; sys.path.append(sys.argv[1]); from kirigami_studio.pipeline.worker import serve; sys.exit(serve())"
 
 

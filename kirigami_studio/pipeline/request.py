@@ -18,7 +18,7 @@ LARGEST_K = 1024
 LARGEST_STEPS = 64
 LARGEST_POLISH = 200
 LARGEST_SEARCH = 8
-#: What hosts ask for unless told otherwise: nearly converged from a generator sample.
+#: The default of window and command line: nearly converged from a generator sample.
 POLISH_STEPS = 15
 
 

@@ -146,7 +146,7 @@ def decodings(request: Request) -> int:
 
 @dataclass(frozen=True, slots=True)
 class Stage:
-    """A part of a run that works on several designs: what it says on the way, and the code for its cancellation."""
+    """A part of a run that works on several designs: its progress message, and the code of its cancellation."""
 
     words: str
     stopped: str
@@ -237,7 +237,7 @@ class _Work:
         self, tasks: Sequence[Task], stage: Stage, done: int, total: int
     ) -> Iterator[Progress | tuple[int, Answer]]:
         """Answers as they come, with signs of life in between."""
-        told = time.perf_counter()
+        reported = time.perf_counter()
         yield stage.progress(done, total)
         with closing(answers(self.pool, self.request, tasks, self.watch)) as reports:
             for report in reports:
@@ -247,8 +247,8 @@ class _Work:
                     done += 1
                     self.evaluations += report[1].evaluations
                     yield report
-                elif now - told > HEARTBEAT:
-                    told = now
+                elif now - reported > HEARTBEAT:
+                    reported = now
                     yield stage.progress(done, total)
         self.watch.check(stage.stopped, done, total)
         self.cut_short = self.cut_short or self.watch.expired()

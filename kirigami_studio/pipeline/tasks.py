@@ -124,7 +124,7 @@ def scored(
 ) -> list[Candidate]:
     """Decode fields exactly and score them against the request's target; their numbers count up from ``first``.
 
-    Unless told otherwise they are samples, near another design where the request names one.
+    By default they are samples, near another design where the request names one.
     """
     if origin is None:
         origin = Origin.SAMPLED if request.near is None else Origin.RESAMPLED

@@ -16,7 +16,7 @@ from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.pipeline.rank import ranked
 
-#: Nearer than this two candidates are one design: ratios that differ by under 5 % cannot be told apart on a cut sheet.
+#: Nearer than this two candidates are one design: ratios that differ by under 5 % look the same on a cut sheet.
 #: 32 samples for one target are 0.2 to 0.7 apart.
 DUPLICATE = 0.02
 
@@ -34,7 +34,7 @@ def distances(field: RatioField, others: Sequence[RatioField]) -> FloatArray:
 
 
 def turns(field: RatioField) -> list[FloatArray]:
-    """z of the same sheet in every way that it can lie: one, two or four arrays (rows, columns)."""
+    """z of the same sheet in all its turned positions: one, two or four arrays (rows, columns)."""
     z, rows, columns = field.log10, field.rows, field.columns
     if (rows + columns) % 2:
         return [z]

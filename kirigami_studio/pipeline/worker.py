@@ -76,10 +76,10 @@ def serve() -> int:
     os.dup2(2, 1)
     inbox = _Inbox(os.fdopen(os.dup(0), "rb"))
     threading.Thread(target=inbox.listen, name="assignments", daemon=True).start()
-    _say(answers, Ready())
+    _send(answers, Ready())
     while True:
         assignment = inbox.assignments.get()
-        _say(answers, _carried_out(assignment, inbox))
+        _send(answers, _carried_out(assignment, inbox))
 
 
 class _Inbox:
@@ -110,10 +110,10 @@ def _carried_out(assignment: Assignment, inbox: _Inbox) -> Report:
     return Done(assignment.batch, assignment.number, answer)
 
 
-def _say(answers: BinaryIO, report: Report) -> None:
+def _send(answers: BinaryIO, report: Report) -> None:
     try:
         content = pickle.dumps(report)
-    except Exception as fault:  # an error that cannot travel still has to be told
+    except Exception as fault:  # an error that cannot be pickled is still reported
         if not isinstance(report, Failed):
             raise
         content = pickle.dumps(Failed(report.batch, report.number, RuntimeError(f"{report.error!r} ({fault})")))

@@ -97,7 +97,7 @@ def fit_shape(
     Raises
     ------
     AngleError, GridError, UsageError
-        An angle, a grid or an effort that makes no sense.
+        An angle, a grid or an effort that is out of range.
     """
     check_grid(*grid)
     phi = check_fit(phi, LAST_STEPS, NEAR)
@@ -238,10 +238,10 @@ class _Search:
 def _best(found: list[_Found], count: int) -> list[_Found]:
     """The ``count`` best by IoU, those that touch themselves last; equal ones keep their order."""
 
-    def merit(one: _Found) -> tuple[bool, float]:
+    def key(one: _Found) -> tuple[bool, float]:
         return not one.clear, -one.iou - (FAIR_LOSS if one.symmetry else 0.0)
 
-    return sorted(found, key=merit)[:count]
+    return sorted(found, key=key)[:count]
 
 
 def _rotations(grid: tuple[int, int], phi: float, effort: int) -> list[float]:

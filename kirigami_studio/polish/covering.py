@@ -85,7 +85,7 @@ def fit_cover(
     Raises
     ------
     AngleError, UsageError
-        An angle, a number of steps, a depth or a table of locked voids that makes no sense.
+        An angle, a number of steps, a depth or a table of locked voids that is out of range.
     KirigamiError
         The field's outline crosses itself.
     """

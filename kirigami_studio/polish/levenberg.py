@@ -162,7 +162,7 @@ def _allowed(symmetry: Symmetry | None, field: RatioField, locked: BoolArray) ->
 
 
 def check_locked(locked: BoolArray | None, field: RatioField) -> BoolArray:
-    """A table of the field's shape that says which voids stay as they are; none of them unless told.
+    """A table of the field's shape that says which voids stay as they are; by default none.
 
     Raises
     ------
@@ -178,7 +178,7 @@ def check_locked(locked: BoolArray | None, field: RatioField) -> BoolArray:
 
 
 def check_fit(phi: float, steps: int, trust: float) -> float:
-    """The angle, once everything is known to make sense."""
+    """The angle as a float, after checking it, the number of steps and the trusted distance."""
     angle = check_phi(phi)
     if angle >= math.pi:
         raise AngleError("fit.angle_compact")

@@ -145,7 +145,7 @@ def outer_hinges(rows: int, columns: int, phi: float) -> BoolArray:
 
 
 def check_excess(excess: float) -> float:
-    """The weight of what sticks out, once it makes sense.
+    """The weight of what sticks out, checked.
 
     Raises
     ------

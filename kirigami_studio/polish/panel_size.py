@@ -80,7 +80,7 @@ def panel_sizes(nodes: FloatArray, rows: int, columns: int) -> PanelSizes:
 
 
 def check_least(least: float) -> float:
-    """The least size, once it makes sense.
+    """The least size, checked.
 
     Raises
     ------

@@ -68,7 +68,7 @@ class SymmetricPose:
 
 
 def shared_symmetries(target: Outline, grid: tuple[int, int], phi: float) -> list[SymmetricPose]:
-    """Symmetries of ``target`` that the lattice of ``grid`` has at ``phi`` too, the most telling first."""
+    """Symmetries of ``target`` that the lattice of ``grid`` has at ``phi`` too, the most specific first."""
     rows, columns = grid
     axis = mirror_axis(target) if rows % 2 or columns % 2 else None
     found = []

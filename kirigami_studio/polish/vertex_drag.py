@@ -32,7 +32,7 @@ from kirigami_studio.polish.sensitivity import OutlineModel
 
 #: Weight of the other vertices and of the change of z, relative to the vertex that is moved.
 HOLD, CHANGE = 2e-2, 1e-3
-#: No step changes any z by more than this: the derivative says little about what lies further away.
+#: No step changes any z by more than this: the derivative holds only nearby.
 LONGEST_STEP = 0.25
 #: Halvings of a step that does not lower the cost or would not be physical.
 HALVINGS = 6
@@ -45,7 +45,7 @@ DECIMALS = 9
 
 
 class VertexDrag:
-    """One vertex in the hand, from where it was taken hold of until it is let go.
+    """One vertex that is dragged, from the press of the button to its release.
 
     Parameters
     ----------
@@ -114,7 +114,7 @@ class VertexDrag:
         return gradient
 
     def move(self, place: FloatArray, steps: int = 3) -> RatioField:
-        """Bring the vertex to ``place`` (2,), unit cells, or as far as ratios and matter allow.
+        """Bring the vertex to ``place`` (2,), unit cells, or as far as ratio limits, locked voids and collisions allow.
 
         Parameters
         ----------
@@ -132,7 +132,7 @@ class VertexDrag:
             after = self.gap(place)
             if moved and after <= ARRIVED:
                 break
-            if not moved or after > KEPT_GAP * before:  # the derivative has served, or this is as far as it goes
+            if not moved or after > KEPT_GAP * before:  # the derivative is used up, or the vertex comes no nearer
                 if fresh and not moved:
                     break
                 self._slopes, fresh = None, False

@@ -1,4 +1,4 @@
-"""What a vertex in the hand promises: it arrives, little else moves, held ratios stay, and the sheet stays physical."""
+"""A dragged vertex arrives, little else moves, locked ratios stay, and the sheet stays physical."""
 
 from __future__ import annotations
 
