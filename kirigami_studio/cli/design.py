@@ -20,6 +20,7 @@ from kirigami_studio.export.registry import export
 from kirigami_studio.export.svg import write_layout_svg
 from kirigami_studio.foundation.errors import Cancelled, FabricationError
 from kirigami_studio.foundation.files import check_folder, write_atomically
+from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.pipeline.events import Finished, Progress, Result
 from kirigami_studio.pipeline.redesign import keep_for_connectors
@@ -73,7 +74,7 @@ def design(arguments: argparse.Namespace) -> int:
         elif arguments.json:
             print_json(answer)
         else:
-            _tell(target, result, files)
+            _say_result(target, result, files)
 
     return for_each(read_targets(arguments.targets, arguments.threshold), batch, one)
 
@@ -185,17 +186,35 @@ def _folder_name(name: str, used: set[str]) -> str:
     return unique
 
 
-def _tell(target: Outline, result: Result, files: dict[str, str]) -> None:
-    score, trim = result.best.score, result.best.trim
+def _say_result(target: Outline, result: Result, files: dict[str, str]) -> None:
+    score, trim, angle = result.best.score, result.best.trim, math.degrees(result.request.phi)
     for note in target.notes:
         say(f"{target.name}: {note}")
-    say(
-        f"{target.name}: best of {len(result.candidates)} has sIoU {score.siou:.4f} "
-        f"({score.siou_gain:+.4f} over the uniform layout), TV {score.tv:.3f}, "
-        f"{'feasible' if score.feasible else 'not feasible'} at {math.degrees(result.request.phi):.0f} degrees; "
-        f"{result.seconds:.1f} s{', ended by the budget' if result.budget_ended else ''}"
+    best = tr_n(
+        "{name}: the design has sIoU {siou:.4f} ({gain:+.4f} over the uniform layout) and TV {tv:.3f}; "
+        "{seconds:.1f} s.",
+        "{name}: the best of {count} designs has sIoU {siou:.4f} ({gain:+.4f} over the uniform layout) and "
+        "TV {tv:.3f}; {seconds:.1f} s.",
+        len(result.candidates),
+        name=target.name,
+        siou=score.siou,
+        gain=score.siou_gain,
+        tv=score.tv,
+        seconds=result.seconds,
     )
+    feasible = tr("It is feasible at {angle:.0f} degrees.", angle=angle)
+    if not score.feasible:
+        feasible = tr("It is not feasible at {angle:.0f} degrees.", angle=angle)
+    ended = [tr("The budget ended the run.")] if result.budget_ended else []
+    say(" ".join((best, feasible, *ended)))
     if trim is not None:
-        say(f"{target.name}: trimmed, with {100 * trim.removed_share:.1f} % of the sheet cut off, IoU {trim.iou:.4f}")
+        say(
+            tr(
+                "{name}: trimmed, IoU {iou:.4f}; {percent:.1f} % of the sheet is cut off.",
+                name=target.name,
+                iou=trim.iou,
+                percent=100 * trim.removed_share,
+            )
+        )
     for path in files.values():
         say(f"  {path}")

@@ -25,6 +25,7 @@ from kirigami_studio.fabricate.material import default_material, find_material
 from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions, CutOrder
 from kirigami_studio.fabricate.slits import cut_table
 from kirigami_studio.foundation.errors import ExportError, FabricationError, ProjectError, UsageError
+from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.project.cutting import plan_of
 from kirigami_studio.project.design_facts import design_facts
 from kirigami_studio.project.document import Document
@@ -69,7 +70,9 @@ def export(arguments: argparse.Namespace) -> int:
     warnings = [note.text for note in notes]
     if written.older:
         names = ", ".join(path.name for path in written.older)
-        warnings.append(f"Left in the folder from an earlier export: {names}; delete what you do not want to cut.")
+        warnings.append(
+            tr("The folder has files of an earlier export: {names}. Delete what you do not want to cut.", names=names)
+        )
     warnings = list(dict.fromkeys(warnings))
     bad = [finding.text for found in written.verifications for finding in found.findings if not finding.ok]
     if arguments.json:
@@ -88,17 +91,30 @@ def export(arguments: argparse.Namespace) -> int:
         )
         return 0 if written.ok else 1
     say(
-        f"{', '.join(str(path) for path in written.files)}: {plan.size_mm[0]:.2f} x {plan.size_mm[1]:.2f} mm, cut "
-        f"{plan.cut_length_mm:.1f} mm, travel {plan.travel_mm:.1f} mm, about {plan.seconds_estimate:.0f} s, "
-        f"{report.pieces} piece(s), smallest connector {plan.min_connector_mm:.3f} mm"
+        tr_n(
+            "{files}: {width:.2f} x {height:.2f} mm, cut {cut:.1f} mm, travel {travel:.1f} mm, about {seconds:.0f} s, "
+            "{count} piece, smallest connector {connector:.3f} mm",
+            "{files}: {width:.2f} x {height:.2f} mm, cut {cut:.1f} mm, travel {travel:.1f} mm, about {seconds:.0f} s, "
+            "{count} pieces, smallest connector {connector:.3f} mm",
+            report.pieces,
+            files=", ".join(str(path) for path in written.files),
+            width=plan.size_mm[0],
+            height=plan.size_mm[1],
+            cut=plan.cut_length_mm,
+            travel=plan.travel_mm,
+            seconds=plan.seconds_estimate,
+            connector=plan.min_connector_mm,
+        )
     )
     for found in written.verifications:
-        state = "verified by two readers" if found.ok else "NOT as planned"
-        say(f"  {found.path}: {state}, {len(found.findings)} findings")
+        if found.ok:
+            say("  " + tr("{path}: verified by two readers", path=found.path))
+        else:
+            say("  " + tr("{path}: NOT as planned", path=found.path))
     for text in bad:
-        say(f"  fault: {text}")
+        say("  " + tr("fault: {text}", text=text))
     for warning in warnings:
-        say(f"  note: {warning}")
+        say("  " + tr("note: {text}", text=warning))
     return 0 if written.ok else 1
 
 
@@ -146,7 +162,8 @@ def check(arguments: argparse.Namespace) -> int:
             }
         )
     else:
-        say(f"{arguments.file}: {'ready to cut' if report.ok else 'not ready to cut'}")
+        ready = tr("{file}: ready to cut", file=arguments.file)
+        say(ready if report.ok else tr("{file}: not ready to cut", file=arguments.file))
         for problem in problems:
             say(f"  {problem}")
     return 0 if report.ok else 1
@@ -162,7 +179,7 @@ def animate(arguments: argparse.Namespace) -> int:
     if arguments.json:
         print_json({"frames": frames, "files": [str(path)]})
     else:
-        say(f"{path}: {frames} frames")
+        say(tr("{path}: {frames} frames", path=path, frames=frames))
     return 0
 
 

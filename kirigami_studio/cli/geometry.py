@@ -23,6 +23,7 @@ from kirigami_studio.evaluate.mask_siou import mask_siou
 from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.foundation.errors import AngleError, RatioError, UsageError
 from kirigami_studio.foundation.files import write_atomically
+from kirigami_studio.foundation.words import tr
 from kirigami_studio.lattice.deployment import check_phi, deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.outlines.outline import Outline
@@ -39,8 +40,16 @@ def decode(arguments: argparse.Namespace) -> int:
         _deliver(arguments, {"source": name} | answer if batch else answer, name, batch, "layout")
         if not arguments.json and not batch:
             say(
-                f"{field.rows} x {field.columns} voids at {math.degrees(phi):.1f} degrees: area {answer['area']:.4f} "
-                f"unit cells, {answer['n_invalid']} invalid, overlap {answer['overlap_ratio']:.4f}"
+                tr(
+                    "{rows} x {columns} voids at {angle:.1f} degrees: area {area:.4f} unit cells, {invalid} invalid, "
+                    "overlap {overlap:.4f}",
+                    rows=field.rows,
+                    columns=field.columns,
+                    angle=math.degrees(phi),
+                    area=answer["area"],
+                    invalid=answer["n_invalid"],
+                    overlap=answer["overlap_ratio"],
+                )
             )
 
     return for_each(read_fields(arguments.ratios), batch, one)
@@ -86,11 +95,14 @@ def score(arguments: argparse.Namespace) -> int:
         elif arguments.json:
             print_json(result.to_json())
         else:
-            verdict = "feasible" if result.feasible else "not feasible"
-            say(
-                f"sIoU {result.siou:.4f} ({result.siou_gain:+.4f} over the uniform layout), exact IoU "
-                f"{result.iou_exact:.4f}, TV {result.tv:.3f}, {verdict}"
+            figures = tr(
+                "sIoU {siou:.4f} ({gain:+.4f} over the uniform layout), exact IoU {iou:.4f}, TV {tv:.3f}.",
+                siou=result.siou,
+                gain=result.siou_gain,
+                iou=result.iou_exact,
+                tv=result.tv,
             )
+            say(f"{figures} {tr('Feasible.') if result.feasible else tr('Not feasible.')}")
 
     return for_each((_paired(*pair) for pair in zip(fields, targets, strict=True)), batch, one)
 

@@ -188,7 +188,7 @@ def read_mask(path: Path) -> BoolArray:
 
 
 def _inside(levels: FloatArray) -> BoolArray:
-    """What lies above half of the highest level; of a bool mask or 0 and 1, what is set."""
+    """Pixels above half of the highest level; of a bool mask or 0 and 1, those that are set."""
     highest = max(float(levels.max(initial=0.0)), 0.0)
     inside: BoolArray = levels > 0.5 * highest
     return inside

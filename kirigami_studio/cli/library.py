@@ -13,6 +13,7 @@ from kirigami_studio.fabricate.coupon import kerf_from_gaps, plan_coupon
 from kirigami_studio.fabricate.material import Material, default_material, find_material, library
 from kirigami_studio.fabricate.material_copies import changed_copy, delete_copy, mark_calibrated, save_copy
 from kirigami_studio.foundation.errors import UsageError
+from kirigami_studio.foundation.words import tr
 
 
 def targets(arguments: argparse.Namespace) -> int:
@@ -43,7 +44,7 @@ def materials(arguments: argparse.Namespace) -> int:
     _refuse_loose_options(arguments)
     if arguments.delete is not None:
         delete_copy(arguments.delete)
-        return _answer(arguments, {"deleted": arguments.delete}, f"{arguments.delete}: deleted")
+        return _answer(arguments, {"deleted": arguments.delete}, tr("{key}: deleted", key=arguments.delete))
     if arguments.copy is not None:
         return _copy(arguments)
     return _list(arguments)
@@ -60,7 +61,7 @@ def _refuse_loose_options(arguments: argparse.Namespace) -> None:
 
 
 def _copy(arguments: argparse.Namespace) -> int:
-    """Save a changed copy under its new key, or under the old one, which it then stands for."""
+    """Save a changed copy under its new key, or under the old one, which it then replaces."""
     changes: dict[str, object] = {}
     for entry in arguments.set:
         name, equals, value = entry.partition("=")
@@ -73,7 +74,11 @@ def _copy(arguments: argparse.Namespace) -> int:
         made = mark_calibrated(made, date.today(), arguments.by)
     else:
         save_copy(made)
-    return _answer(arguments, {"saved": made.key, "calibrated": made.calibrated}, f"{_line(made, own=True)}: saved")
+    return _answer(
+        arguments,
+        {"saved": made.key, "calibrated": made.calibrated},
+        tr("{material}: saved", material=_row(made, own=True)),
+    )
 
 
 def _list(arguments: argparse.Namespace) -> int:
@@ -89,18 +94,18 @@ def _list(arguments: argparse.Namespace) -> int:
         )
         return 0
     for key, material in found.materials.items():
-        say(_line(material, key in found.own))
+        say(_row(material, key in found.own))
     for fault in found.faults:
-        say(f"Left out: {fault.text}")
+        say(tr("Left out: {fault}", fault=fault.text))
     return 0
 
 
-def _line(material: Material, own: bool) -> str:
+def _row(material: Material, own: bool) -> str:
     """Key, whose it is, whether and when it was calibrated, and its name."""
-    state = "uncalibrated"
+    state = tr("uncalibrated")
     if material.calibrated:
-        state = " ".join(part for part in ("calibrated", material.measured_on, material.measured_by) if part)
-    return f"{material.key:<12} {'own' if own else 'bundled':<8} {state:<14} {material.name}"
+        state = " ".join(part for part in (tr("calibrated"), material.measured_on, material.measured_by) if part)
+    return f"{material.key:<12} {tr('own') if own else tr('bundled'):<8} {state:<14} {material.name}"
 
 
 def coupon(arguments: argparse.Namespace) -> int:
@@ -136,16 +141,25 @@ def coupon(arguments: argparse.Namespace) -> int:
         "notes": notes,
     }
     width, height = plan.size_mm
-    title = f"{path}: coupon of {width:g} x {height:g} mm for {material.key}, about {plan.seconds_estimate:.0f} s"
+    title = tr(
+        "{path}: coupon of {width:g} x {height:g} mm for {material}, about {seconds:.0f} s",
+        path=path,
+        width=width,
+        height=height,
+        material=material.key,
+        seconds=plan.seconds_estimate,
+    )
     return _answer(arguments, content, "\n".join([title, *notes]))
 
 
 def _measured(arguments: argparse.Namespace) -> int:
     found = kerf_from_gaps(arguments.gap_mm)
     kerf, doubt = round(found.kerf_mm, 4), round(found.doubt_mm, 4)
-    sentence = (
-        f"Kerf {kerf:g} mm (readings within {doubt:g} mm of it). Keep it, for example, with: "
-        f"kirigami-studio materials --copy KEY --as NEW --set kerf_mm={kerf:g} --calibrated --by NAME"
+    sentence = tr(
+        "Kerf {kerf:g} mm (readings within {doubt:g} mm of it). Save it, for example, with: "
+        "kirigami-studio materials --copy KEY --as NEW --set kerf_mm={kerf:g} --calibrated --by NAME",
+        kerf=kerf,
+        doubt=doubt,
     )
     return _answer(arguments, {"kerf_mm": found.kerf_mm, "doubt_mm": found.doubt_mm}, sentence)
 

@@ -355,7 +355,7 @@ class StateSheet(BoardStates):
         window, dialogs = self.window, self.window.dialogs
         filing, folder = window.controller.filing, self.out / "recovery"
         left = folder / "left.kiri"
-        note = Note("teapot.kiri", str(self.out / "teapot.kiri"), "2026-11-21T12:03:00+00:00", 1)
+        note = Note("teapot.kiri", str(self.out / "teapot.kiri"), "2026-11-21T12:03:00+00:00")
         recovery.keep(window.controller.document, note, left)
         filing.recovery.use(folder)
         self.until(lambda: "quit unexpectedly" in window.messages.sentence.text(), "the lost work was not offered")

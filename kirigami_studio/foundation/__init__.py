@@ -1,6 +1,6 @@
-"""Ground floor: the errors, units, bundled files and log that every other room may use.
+"""Errors, sentences, units, files and log: what every other package may use.
 
 Vocabulary: a *resource* is a file shipped with the program; a *unit cell* is the edge of one
 undeformed panel, the length unit of layouts; millimetres appear first in a cut plan.
-Imports nothing of this project and of the outside world numpy at most.
+Imports nothing else of this project, and of third-party packages at most numpy.
 """

@@ -6,5 +6,5 @@ import logging
 
 
 def topic(name: str) -> logging.Logger:
-    """Return the logger of one room, e.g. ``topic("export")``."""
+    """Return the logger of one package, e.g. ``topic("export")``."""
     return logging.getLogger(f"kirigami_studio.{name}")

@@ -1,6 +1,6 @@
 """What the program says, in the language of the person who uses it.
 
-Sentences are written in English where they are said, ``tr("Reading {name} …", name=name)``; a catalogue in the format
+Sentences are written in English where they are used, ``tr("Reading {name} …", name=name)``; a catalogue in the format
 of GNU gettext, ``locale/LANGUAGE/LC_MESSAGES/kirigami_studio.mo``, may hold them in another language.  The language is
 chosen once, when the first sentence is asked for: by ``LANGUAGE``, ``LC_ALL``, ``LC_MESSAGES`` or ``LANG``.
 """

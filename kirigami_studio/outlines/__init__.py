@@ -7,9 +7,9 @@ outline
 piece
     A connected filled region of a source; the outline follows the largest one.
 island
-    A smaller piece that is left out, and said in the notes.
+    A smaller piece that is left out; a note says so.
 hole
-    A void inside the outline; a kirigami sheet cannot leave one there, so it is filled, and said.
+    A void inside the outline; a kirigami sheet cannot leave one there, so it is filled, and a note says so.
 notes
     What was changed between the source and the outline, as sentences for the user.
 

@@ -32,7 +32,7 @@ class Combine(Enum):
 
 
 class Half(Enum):
-    """The half of a target that is kept and reflected onto the other."""
+    """The half of a target that is reflected onto the other."""
 
     LEFT = "left"
     RIGHT = "right"

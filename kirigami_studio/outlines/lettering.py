@@ -1,6 +1,6 @@
 """Letters -> one ring: a sheet is one piece, so each letter is moved until it overlaps the one before.
 
-The dot of an i and the dots of an umlaut are held by a bridge.
+The dot of an i and the dots of an umlaut are joined to their letter by a bridge.
 """
 
 from __future__ import annotations

@@ -107,7 +107,7 @@ class Mirror:
         Raises
         ------
         TargetError
-            Nothing lies there.
+            Nothing of it is there.
         """
         if self.axis is Axis.NONE:
             return drawn

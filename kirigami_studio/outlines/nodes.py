@@ -29,7 +29,7 @@ class Kind(Enum):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Nodes:
-    """The nodes of one outline, in its order and its frame.
+    """The nodes of one outline, in its order and its coordinates.
 
     Attributes
     ----------
@@ -39,7 +39,7 @@ class Nodes:
     handles : (K, 2, 2) float, units of the outline
         From each node to its handle towards the node before, and to that towards the next; zero where there is none.
     kept : (K,) bool
-        Whether the line from a node to the next keeps vertices of its own, traced or read, instead of following
+        Whether the line from a node to the next has vertices of its own, traced or read, instead of following
         the handles.
 
     Raises

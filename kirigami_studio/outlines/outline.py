@@ -40,7 +40,7 @@ class Outline:
     unit : str
         Unit of ``size``: "mm", "px", or "" when the source has none.
     place : (x, y) float or None, mm
-        Where its area centroid lies on the drawing board, y up; None for one that was not drawn there.
+        Of its area centroid on the drawing board, y up; None for an outline that was not drawn there.
     nodes : Nodes or None
         Its points and handles, when it was drawn with them.
 

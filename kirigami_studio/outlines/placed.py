@@ -1,4 +1,4 @@
-"""An outline at its place on the drawing board: the frame in which shapes are drawn, added and taken away."""
+"""An outline at its place on the drawing board: where shapes are drawn, added and subtracted."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ LARGEST_MM = 10_000.0
 
 @dataclass(frozen=True, slots=True)
 class Placed:
-    """An outline, its size in mm and where it lies.
+    """An outline, its size in mm and its place.
 
     Attributes
     ----------
@@ -32,7 +32,7 @@ class Placed:
     scale : float, mm
         Length on the board of one unit of the outline.
     centre : (x, y) float, mm
-        Where the outline's area centroid lies, y up.
+        Of the outline's area centroid, y up.
 
     Raises
     ------
@@ -65,7 +65,7 @@ class Placed:
 
     @classmethod
     def from_ring(cls, ring: npt.ArrayLike, name: str, notes: Iterable[str] = ()) -> Placed:
-        """Make raw vertices an outline that lies where they do.
+        """Make raw vertices an outline in their place.
 
         Parameters
         ----------
@@ -104,7 +104,7 @@ class Placed:
         return width, height
 
     def reshaped(self, ring: npt.ArrayLike, notes: Iterable[str] = ()) -> Placed:
-        """The same target with other vertices (L, 2), mm; what was said of the old ones no longer holds."""
+        """The same target with other vertices (L, 2), mm; notes on the old ones are dropped."""
         return Placed.from_ring(ring, self.outline.name, notes)
 
     def mapped(self, matrix: npt.ArrayLike, shift: npt.ArrayLike) -> Placed:

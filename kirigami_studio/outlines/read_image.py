@@ -56,7 +56,7 @@ class Levels(NamedTuple):
 
 
 class Traced(NamedTuple):
-    """An outline and where it lies in its picture.
+    """An outline and its place in its picture.
 
     Attributes
     ----------
@@ -114,7 +114,7 @@ def trace_image(path: str | Path, threshold: float | None = None) -> Traced:
 
 
 def _in_picture(outline: Outline, ring: FloatArray, levels: Levels) -> Traced:
-    """Where an outline lies: its box is that of the ring (L, 2), source pixels, also where a loop was dropped."""
+    """The place of an outline: its box is that of the ring (L, 2), source pixels, also where a loop was dropped."""
     width = outline.size[0] if outline.size is not None else float(np.ptp(ring[:, 0]))
     scale = width / float(np.ptp(outline.points[:, 0]))
     x, y = (ring.min(axis=0) - scale * outline.points.min(axis=0)).tolist()
@@ -205,7 +205,7 @@ def _border(grey: FloatArray) -> FloatArray:
 
 
 def _shape_is_high(levels: Levels, level: float) -> bool:
-    """The border is ground: where most of it lies above the level, the shape is what lies below."""
+    """The border is background: where most of it is above the level, the shape is what is below."""
     return levels.is_alpha or bool(np.mean(_border(levels.grey) > level) < 0.5)
 
 

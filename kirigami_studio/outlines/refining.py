@@ -55,7 +55,7 @@ def simplified(target: Placed, strength: float) -> Placed:
 
 
 def smoothed(target: Placed, strength: float) -> Placed:
-    """Round corners and calm edges; the area stays; ``strength`` 0 changes nothing.
+    """Round corners and smooth edges; the area stays; ``strength`` 0 changes nothing.
 
     Raises
     ------

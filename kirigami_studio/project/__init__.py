@@ -11,5 +11,5 @@ history
 project file
     A zip with a manifest, the document as JSON and the ratios as one array; a *migration* lifts an older version.
 
-May import ``evaluate``, ``fabricate``, ``lattice``, ``outlines`` and ``foundation``; ``pipeline`` is a stranger.
+May import ``evaluate``, ``fabricate``, ``lattice``, ``outlines`` and ``foundation``, not ``pipeline``.
 """

@@ -47,7 +47,7 @@ def set_mark(document: Document, index: int, mark: Mark, chosen: int | None = No
 
 
 @dataclass(frozen=True, slots=True)
-class Brought:
+class NewDesigns:
     """What a finished run adds to a project.
 
     Attributes
@@ -66,7 +66,7 @@ class Brought:
     target: Outline | None = None
 
 
-def add_candidates(document: Document, brought: Brought, rank: RankKey, limit: int = LARGEST_COLLECTION) -> Edit:
+def add_candidates(document: Document, new: NewDesigns, rank: RankKey, limit: int = LARGEST_COLLECTION) -> Edit:
     """Join the designs of another run for the same target, grid and angle to those there are.
 
     All are ranked together; marks stay with their designs, and the same design stays chosen.  A field that is there
@@ -75,19 +75,19 @@ def add_candidates(document: Document, brought: Brought, rank: RankKey, limit: i
     """
     marked = dict(zip(document.candidates, document.marks, strict=True))
     fields = {candidate.field for candidate in document.candidates}
-    added = with_run(_without_repeats(brought.candidates, fields), brought.provenance)
+    added = with_run(_without_repeats(new.candidates, fields), new.provenance)
     present = with_run(document.candidates, document.provenance)
     kept = _within([*present, *added], marked, document.candidate, rank, limit)
     changed = _collected(document, kept, marked, document.candidate)
-    changed = replace(changed, provenance=joined_provenance(document.provenance, brought.provenance))
-    if brought.seed is not None:
-        changed = replace(changed, settings=replace(document.settings, seed=brought.seed))
+    changed = replace(changed, provenance=joined_provenance(document.provenance, new.provenance))
+    if new.seed is not None:
+        changed = replace(changed, settings=replace(document.settings, seed=new.seed))
     if not added:
         return Edit(tr("Change the seed"), replace(document, settings=changed.settings))
     return Edit(tr_n("Add {count} design", "Add {count} designs", len(added)), changed)
 
 
-def renew_candidates(document: Document, brought: Brought, rank: RankKey, chosen: Candidate | None = None) -> Edit:
+def renew_candidates(document: Document, new: NewDesigns, rank: RankKey, chosen: Candidate | None = None) -> Edit:
     """Take the designs of a new run in the place of all but the pinned ones, and choose one, by default the best.
 
     Pinned designs stay only where they share target, grid and angle with the new ones, which the caller has checked.
@@ -95,14 +95,14 @@ def renew_candidates(document: Document, brought: Brought, rank: RankKey, chosen
     known = with_run(document.candidates, document.provenance)
     pinned = [one for one, mark in zip(known, document.marks, strict=True) if mark is Mark.PINNED]
     fields = {candidate.field for candidate in pinned}
-    fresh = with_run(_without_repeats(brought.candidates, fields), brought.provenance)
+    fresh = with_run(_without_repeats(new.candidates, fields), new.provenance)
     found = sorted([*pinned, *fresh], key=rank)
-    joined = joined_provenance(document.provenance, brought.provenance) if pinned else brought.provenance
-    edit = set_candidates(document, found, joined, brought.target)
-    label = tr_n("Generate {count} design", "Generate {count} designs", len(brought.candidates))
+    joined = joined_provenance(document.provenance, new.provenance) if pinned else new.provenance
+    edit = set_candidates(document, found, joined, new.target)
+    label = tr_n("Generate {count} design", "Generate {count} designs", len(new.candidates))
     changed = _collected(edit.document, found, dict.fromkeys(pinned, Mark.PINNED), chosen or found[0])
-    if brought.seed is not None:
-        changed = replace(changed, settings=replace(document.settings, seed=brought.seed))
+    if new.seed is not None:
+        changed = replace(changed, settings=replace(document.settings, seed=new.seed))
     return Edit(label, changed)
 
 

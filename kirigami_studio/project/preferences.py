@@ -38,8 +38,7 @@ class Preferences:
     tour_seen: bool = False
 
     def __post_init__(self) -> None:
-        for name in ("profile", "dxf_version", "theme"):
-            value = getattr(self, name)
+        for name, value in (("profile", self.profile), ("dxf_version", self.dxf_version), ("theme", self.theme)):
             if not isinstance(value, str) or not value:
                 raise ProjectError("preferences.not_a_name", name=name, value=value)
         if self.theme not in THEMES:

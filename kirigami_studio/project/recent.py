@@ -17,7 +17,7 @@ MOST = 10
 
 @dataclass(frozen=True, slots=True)
 class Recent:
-    """What was used last, the newest first.
+    """The files that were used last, the newest first.
 
     Attributes
     ----------
@@ -34,8 +34,7 @@ class Recent:
     targets: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
-        for name in ("projects", "targets"):
-            entries = getattr(self, name)
+        for name, entries in (("projects", self.projects), ("targets", self.targets)):
             if not isinstance(entries, tuple | list) or not all(isinstance(entry, str) and entry for entry in entries):
                 raise ProjectError("recent.not_paths", name=name, value=entries)
             object.__setattr__(self, name, tuple(entries)[:MOST])

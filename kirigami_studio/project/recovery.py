@@ -36,14 +36,11 @@ class Note:
         Where the project was saved last, absolute; "" if it never was.
     changed : str
         When the latest change was made, ISO 8601 with the offset of its time zone.
-    pid : int
-        Process that wrote it.
     """
 
     name: str
     path: str
     changed: str
-    pid: int
 
     @property
     def when(self) -> datetime:
@@ -91,7 +88,7 @@ def read_note(path: Path) -> Note:
         raise ProjectError("recovery.damaged", path=path, reason=str(error)) from error
     try:
         record = Record(read_json(content, NOTE), NOTE)
-        note = Note(record.text("name"), record.text("path"), record.text("changed"), record.whole("pid"))
+        note = Note(record.text("name"), record.text("path"), record.text("changed"))
         if note.when.tzinfo is None:
             raise ProjectError("recovery.no_time_zone", name=NOTE)
     except (KirigamiError, ValueError) as error:

@@ -1,9 +1,8 @@
-"""What the packages below the window say: one table a package, from a problem's code to its English sentence.
+"""Sentences of the packages below the window: one table a package, from a problem's code to its English sentence.
 
 A sentence is whole, says what happened, where, and what to try, and names its values: ``"{name} is empty."``.  Where
-the
-number of things changes the words, the entry is a pair (one, many) and the values hold ``count``.  Translators get
-all of them: ``mark`` is a word that ``make messages`` collects.
+the number of things changes the words, the entry is a pair (one, many) and the values include ``count``.  All of them
+are collected for translators: ``make messages`` looks for ``mark``.
 """
 
 from __future__ import annotations

@@ -26,7 +26,7 @@ from kirigami_studio.pipeline.rank import rank_key, ranked
 from kirigami_studio.pipeline.request import Request, provenance
 from kirigami_studio.pipeline.variety import distinct
 from kirigami_studio.project import candidate_edits
-from kirigami_studio.project.candidate_edits import Brought
+from kirigami_studio.project.candidate_edits import NewDesigns
 from kirigami_studio.project.document import Document, Mark
 from kirigami_studio.project.edits import Edit
 from kirigami_studio.project.settings import DesignSettings
@@ -218,8 +218,8 @@ class RunPlanner:
         seed = None if plan is None else plan.seed
         if plan is not None and plan.joins:
             self.added = frozenset(result.candidates)
-            brought = Brought(result.candidates, facts, seed)
-            edit = candidate_edits.add_candidates(document, brought, rank_key)
+            new = NewDesigns(result.candidates, facts, seed)
+            edit = candidate_edits.add_candidates(document, new, rank_key)
             return _choosing(edit, preview)
         self.added = frozenset()
         staying = _staying(document, result.request)
@@ -227,9 +227,9 @@ class RunPlanner:
             sentence = tr("Pinned designs for another grid or angle were removed. Undo restores them.")
             self._session.post(Message(sentence, Tone.HINT))
             document = replace(document, marks=())
-        brought = Brought(result.candidates, facts, seed, result.request.target)
+        new = NewDesigns(result.candidates, facts, seed, result.request.target)
         chosen = preview if preview is not None and preview in (*staying, *result.candidates) else None
-        return candidate_edits.renew_candidates(document, brought, rank_key, chosen)
+        return candidate_edits.renew_candidates(document, new, rank_key, chosen)
 
     def summary(self, result: Result, before: Document) -> str:
         """What the status line says of a completed run."""

@@ -112,7 +112,7 @@ class Recovery(QObject):
             return
         document = session.document
         path = "" if session.path is None else str(session.path.absolute())
-        note = Note(_name_of(document, session.path), path, recovery.now(), os.getpid())
+        note = Note(_name_of(document, session.path), path, recovery.now())
         callbacks = JobCallbacks(self._take_kept, self._look_again, on_failed=self._report_not_kept)
         steps = partial(keeping, document, self._tracer.picture_of(document.target), note, self._own)
         self._job = session.queue.start(tr("autosaving"), steps, callbacks)

@@ -12,7 +12,7 @@ from kirigami_studio.foundation.errors import ProjectError
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.candidate_edits import (
-    Brought,
+    NewDesigns,
     add_candidates,
     renew_candidates,
     set_mark,
@@ -82,7 +82,7 @@ def test_that_added_designs_join_by_rank_and_keep_choice_and_marks(document: Doc
         other(document.candidates[0], 1, 0.99),
         other(document.candidates[0], 2, 0.95),
     )
-    edit = add_candidates(marked, Brought((middle, best, document.candidates[0]), {"model": "prior"}, seed=5), rank)
+    edit = add_candidates(marked, NewDesigns((middle, best, document.candidates[0]), {"model": "prior"}, seed=5), rank)
     after = edit.document
     assert edit.label == "Add 2 designs"
     assert [one.score.siou for one in after.candidates] == sorted(
@@ -97,7 +97,7 @@ def test_that_added_designs_join_by_rank_and_keep_choice_and_marks(document: Doc
 
 
 def test_that_nothing_new_changes_nothing(document: Document) -> None:
-    edit = add_candidates(document, Brought(document.candidates, {"model": "balanced"}), rank)
+    edit = add_candidates(document, NewDesigns(document.candidates, {"model": "balanced"}), rank)
     assert edit.document == document
 
 
@@ -107,30 +107,30 @@ def test_that_too_many_designs_drop_the_rejected_then_the_worst_but_never_a_pinn
     best, middle, worst = document.candidates
     marked = replace(document, marks=(Mark.REJECTED, Mark.NONE, Mark.PINNED))
     added = tuple(other(best, seed, 0.5 + 0.01 * seed) for seed in range(1, 4))
-    within_five = add_candidates(marked, Brought(added, {}), rank, limit=5).document
+    within_five = add_candidates(marked, NewDesigns(added, {}), rank, limit=5).document
     assert best not in within_five.candidates and len(within_five.candidates) == 5
-    within_three = add_candidates(marked, Brought(added, {}), rank, limit=3).document
+    within_three = add_candidates(marked, NewDesigns(added, {}), rank, limit=3).document
     assert set(within_three.candidates) == {middle, worst, added[-1]}
     assert within_three.candidate == middle
-    within_one = add_candidates(marked, Brought(added, {}), rank, limit=1).document
+    within_one = add_candidates(marked, NewDesigns(added, {}), rank, limit=1).document
     assert set(within_one.candidates) == {middle, worst}
 
 
 def test_that_a_new_run_keeps_pinned_designs_and_drops_the_others(document: Document) -> None:
     marked = replace(document, marks=(Mark.NONE, Mark.PINNED, Mark.REJECTED))
     new = other(document.candidates[0], 4, 0.97)
-    edit = renew_candidates(marked, Brought((new, document.candidates[1]), {"model": "balanced"}), rank)
+    edit = renew_candidates(marked, NewDesigns((new, document.candidates[1]), {"model": "balanced"}), rank)
     assert edit.label == "Generate 2 designs"
     assert edit.document.candidates == (new, document.candidates[1])
     assert edit.document.marks == (Mark.NONE, Mark.PINNED) and edit.document.chosen == 0
     assert edit.document.provenance["model"] == "prior; balanced"
-    looked_at = renew_candidates(marked, Brought((new,), {}), rank, chosen=document.candidates[1])
+    looked_at = renew_candidates(marked, NewDesigns((new,), {}), rank, chosen=document.candidates[1])
     assert looked_at.document.chosen == 1
 
 
 def test_that_a_new_run_without_pins_forgets_what_was_known(document: Document) -> None:
     new = other(document.candidates[0], 4, 0.97)
-    after = renew_candidates(document, Brought((new,), {"model": "balanced"}), rank).document
+    after = renew_candidates(document, NewDesigns((new,), {"model": "balanced"}), rank).document
     assert after.candidates == (new,) and dict(after.provenance) == {"model": "balanced"}
 
 

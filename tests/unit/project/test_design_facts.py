@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from kirigami_studio.evaluate.candidate import Candidate, Origin
 from kirigami_studio.lattice.ratio_field import RatioField
-from kirigami_studio.project.candidate_edits import Brought, add_candidates, renew_candidates
+from kirigami_studio.project.candidate_edits import NewDesigns, add_candidates, renew_candidates
 from kirigami_studio.project.design_facts import design_facts
 from kirigami_studio.project.document import Document, Mark
 from kirigami_studio.project.edits import replace_candidate, take_changed
@@ -55,14 +55,14 @@ def test_that_designs_of_several_runs_tell_the_settings_of_their_own(document: D
     start = replace(document, provenance=first, marks=())
     best = start.candidates[0]
     new = replace(best, field=RatioField(best.field.ratio * 1.01), seed=77, variant="balanced")
-    both = add_candidates(start, Brought((new,), second), lambda one: -one.score.siou).document
+    both = add_candidates(start, NewDesigns((new,), second), lambda one: -one.score.siou).document
     assert both.provenance["polish"] == "0; 3"
     for one in both.candidates:
         facts, run = design_facts(both, one), second if one == new else first
         assert {name: facts.get(name) for name in second} == {name: run.get(name) for name in second}
     assert design_facts(both, new)["k"] == "8", "a design that has not been told is looked up"
     third = add_candidates(
-        both, Brought((replace(new, seed=78, field=RatioField(best.field.ratio * 1.02)),), first), lambda one: 0
+        both, NewDesigns((replace(new, seed=78, field=RatioField(best.field.ratio * 1.02)),), first), lambda one: 0
     )
     assert design_facts(third.document, new)["polish"] == "3"
 
@@ -72,7 +72,7 @@ def test_that_changed_and_pinned_designs_keep_the_settings_of_their_run(document
     best = document.candidates[0]
     start = replace(document, provenance=first, marks=(Mark.PINNED, Mark.NONE, Mark.NONE))
     new = replace(best, field=RatioField(best.field.ratio * 1.01), seed=77)
-    renewed = renew_candidates(start, Brought((new,), second), lambda one: -one.score.siou).document
+    renewed = renew_candidates(start, NewDesigns((new,), second), lambda one: -one.score.siou).document
     assert {design_facts(renewed, one)["polish"] for one in renewed.candidates} == {"0", "3"}
     edited = replace(best, field=RatioField(best.field.ratio * 1.02), origin=Origin.EDITED)
     changed = take_changed(renewed, best, edited, "Change by hand")
