@@ -199,7 +199,7 @@ def _outline_of(mask: npt.NDArray[np.generic], name: str) -> Outline:
         levels = np.asarray(mask, dtype=np.float64)
         if not np.all(np.isfinite(levels)):
             row, column = np.argwhere(~np.isfinite(levels))[0]
-            raise TargetError("mask.not_finite", row=int(row), column=int(column))
+            raise TargetError("input.mask_not_finite", row=int(row), column=int(column))
         return outline_of_mask(_inside(levels), name)
     except KirigamiError as error:
         raise TargetError("input.not_valid", name=name, reason=error) from error

@@ -83,7 +83,7 @@ def read_json(path: str | Path) -> Outline:
     """
     path = Path(path)
     content = read_bytes(path)
-    with decoding(path, "json_outline.damaged"):
+    with decoding(path, "source.json_damaged"):
         stored = json.loads(content.decode("utf-8-sig"), parse_constant=_refuse_constant)
         name, unit = path.stem, ""
         while isinstance(stored, dict):

@@ -60,7 +60,7 @@ def read_dxf(path: str | Path) -> Outline:
     """
     path = Path(path)
     content = read_bytes(path, most_megabytes=50)
-    with decoding(path, "dxf.damaged"):
+    with decoding(path, "source.dxf_damaged"):
         drawing, notes = _opened(path, content)
         curves, texts = _visible(drawing)
         if not curves:

@@ -102,7 +102,7 @@ def trace_image(path: str | Path, threshold: float | None = None) -> Traced:
     """
     path = Path(path)
     content = read_bytes(path, MOST_MEGABYTES)
-    with decoding(path, "image.damaged"):
+    with decoding(path, "source.image_damaged"):
         levels = _levels(content)
         level = _automatic(levels.grey) if threshold is None else _checked(threshold)
         ink = levels.grey - level if _shape_is_high(levels, level) else level - levels.grey
@@ -132,7 +132,7 @@ def automatic_threshold(path: str | Path) -> float:
     """
     path = Path(path)
     content = read_bytes(path, MOST_MEGABYTES)
-    with decoding(path, "image.damaged"):
+    with decoding(path, "source.image_damaged"):
         return _automatic(_levels(content).grey)
 
 

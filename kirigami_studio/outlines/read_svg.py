@@ -68,7 +68,7 @@ def read_svg(path: str | Path) -> Outline:
     """
     path = Path(path)
     content = read_bytes(path)
-    with decoding(path, "svg.damaged"):
+    with decoding(path, "source.svg_damaged"):
         checked, width_mm, notes = checked_svg(content)
         svg = svgelements.SVG.parse(io.BytesIO(checked), reify=True, ppi=PIXELS_PER_INCH)
         scale, unit = (width_mm / svg.width, "mm") if width_mm and svg.width else (1.0, "px")

@@ -53,7 +53,7 @@ def decoding(path: Path, damaged: str) -> Iterator[None]:
     ----------
     path : Path
     damaged : str
-        Code of the problem when a decoder fails, such as "dxf.damaged".
+        Code of the problem when a decoder fails, such as "source.dxf_damaged".
 
     Raises
     ------

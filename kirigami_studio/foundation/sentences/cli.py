@@ -24,7 +24,7 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "ratios.damaged": mark("Cannot read ratios from {path}: the file is damaged or of another kind."),
     "ratios.not_a_table": mark('{name} must contain {{"ratio": [[...], ...]}}, the top row first.'),
     "mask.not_readable": mark("Cannot read the mask image {path}: it is missing, damaged or not an image."),
-    "mask.not_finite": mark("The mask is not finite in row {row}, column {column}; every pixel must be a number."),
+    "input.mask_not_finite": mark("The mask is not finite in row {row}, column {column}. Every pixel must be finite."),
     "archive.not_readable": mark("Cannot read {path}: it is missing, damaged or not an .npz archive."),
     "archive.too_large": mark("{path} is larger than {limit} MB. Split it."),
     "archive.array_missing": mark("{name} must contain an array named '{key}'; its arrays: {found:.80}"),

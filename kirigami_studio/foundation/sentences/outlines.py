@@ -28,13 +28,13 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "source.too_large": mark("{path} has {megabytes:.1f} MB, more than {limit} MB. Save a simpler version of it."),
     "source.not_usable": mark("{name}: {reason}"),
     # JSON
-    "json_outline.damaged": mark("{name} is damaged or not a JSON outline ({reason:.100}). Save it again."),
+    "source.json_damaged": mark("{name} is damaged or not a JSON outline ({reason:.100}). Save it again."),
     "json_outline.no_vertices": mark('The file has neither "outline": [[x, y], ...] nor "points": [[x, y], ...].'),
     "json_outline.not_finite": mark("The file contains {constant}; every coordinate must be a finite number."),
     "json_outline.not_a_list": mark("The outline must be a list of [x, y] pairs, got {value!r:.40}."),
     "json_outline.not_a_pair": mark("Vertex {number} must be a pair [x, y] of numbers, got {value!r:.40}."),
     # Pictures and masks
-    "image.damaged": mark(
+    "source.image_damaged": mark(
         "{name} is damaged or not a picture (PNG, JPG or BMP): {reason:.100}. Open it in the program that made it and "
         "save it again."
     ),
@@ -58,7 +58,7 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "The largest shape has only {pixels} pixels. Use a picture of at least 64 x 64 pixels."
     ),
     # SVG
-    "svg.damaged": mark(
+    "source.svg_damaged": mark(
         "{name} is damaged or not an SVG drawing ({reason:.100}). Open it in the program that made it and save it "
         "again."
     ),
@@ -73,7 +73,7 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "svg.no_shape": mark("The drawing has no visible shape. Draw one filled shape."),
     "svg.no_shape_but_others": mark("The drawing has no visible shape. {left_out} Draw one filled shape."),
     # DXF
-    "dxf.damaged": mark(
+    "source.dxf_damaged": mark(
         "{name} is damaged or not a DXF drawing ({reason:.100}). Open it in the program that made it and save it again."
     ),
     "dxf.no_lines": mark(
