@@ -152,7 +152,7 @@ def test_that_copying_takes_the_view_in_use(designed: MainWindow, picturing: Pic
         with qtbot.waitSignal(picturing.copied, timeout=30_000):
             qtbot.keyClick(designed, Qt.Key.Key_C, both)
         assert QGuiApplication.clipboard().image().size() == view.size() * 2
-        assert "Copied a picture" in designed.status_text.text()
+        assert "px picture" in designed.status_text.text()
     designed.settings.candidates.setFocus()
     largest = picturing.view_at_work()
     assert isinstance(largest, Canvas) and largest is designed.stage.view

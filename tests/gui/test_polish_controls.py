@@ -42,7 +42,7 @@ def test_that_preference_and_search_are_settings_that_can_be_undone(window: Main
 
 def test_that_there_is_nothing_to_prefer_without_a_fit(window: MainWindow) -> None:
     window.controller.change_settings(polish=0)
-    assert not window.settings.prefer.isEnabled() and "off" in window.settings.prefer.toolTip()
+    assert not window.settings.prefer.isEnabled() and "Turn on Polish" in window.settings.prefer.toolTip()
     window.controller.change_settings(polish=15)
     assert window.settings.prefer.isEnabled()
 

@@ -110,7 +110,7 @@ def test_that_two_studios_do_not_recover_each_others_work(designed: MainWindow, 
     told: list[Message] = []
     other.message.connect(told.append)
     other.filing.recovery.use(folder)
-    assert not other.board.busy, "there is nothing to look at: the only file belongs to a living session"
+    assert not other.queue.busy, "there is nothing to look at: the only file belongs to a living session"
     other.close()
     assert told == [] and len(kept_files(folder)) == 1
     designed.controller.undo()
@@ -217,7 +217,7 @@ def test_that_a_place_that_cannot_be_written_is_told_once_and_the_work_goes_on(
         heart.controller.fabrication.change(width_mm=width)
         heart.controller.end_drag()
         until(lambda: not heart.controller.queue.busy and not recovering.waiting)
-    told = [one for one in heart.messages.messages if "Could not save" in one.sentence]
+    told = [one for one in heart.messages.messages if "Autosave is unavailable" in one.sentence]
     assert len(told) == 1 and told[0].tone is Tone.WARNING
     assert heart.controller.document.fabrication.width_mm == 90.0
     if obstacle == "file":
