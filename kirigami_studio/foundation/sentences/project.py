@@ -5,6 +5,9 @@ from __future__ import annotations
 from kirigami_studio.foundation.words import mark
 
 SENTENCES: dict[str, str | tuple[str, str]] = {
+    # The photo behind a target
+    "photo.too_large": mark("{name} has {size_mb:.0f} MB; the limit is {most_mb} MB."),
+    "photo.not_read": mark("Cannot read {name}: {reason}."),
     # What a document cannot hold
     "project.designs_without_target": mark("A project with designs also needs the target they were made for."),
     "project.grids_differ": mark(

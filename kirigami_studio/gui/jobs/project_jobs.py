@@ -56,7 +56,7 @@ def saving(document: Document, picture: Picture | None, path: Path, cancel: Canc
     try:
         kept = stored(picture)
     except ProjectError as error:
-        left_out = tr("The target's photo was not saved with the project: {reason}.", reason=error)
+        left_out = tr("The target's photo was not saved with the project. {reason}", reason=error)
     store.save(document, path, kept)
     yield Saved(path, left_out)
 
@@ -70,7 +70,7 @@ def loading(path: Path, folder: Path, cancel: Cancel) -> Iterator[Project]:
     try:
         picture = extracted_picture(opened, folder)
     except (OSError, ProjectError) as error:
-        left_out = tr("The project's photo could not be loaded and was left out: {reason}.", reason=error)
+        left_out = tr("The project's photo could not be loaded and was left out. {reason}", reason=error)
         notes = (*notes, left_out)
     yield Project(opened.document, picture, notes)
 
@@ -90,16 +90,11 @@ def stored(picture: Picture | None) -> TracedPicture | None:
         size = path.stat().st_size
         if size > LARGEST_PICTURE:
             raise ProjectError(
-                tr(
-                    "{name} is {size:.0f} MB; the limit is {most} MB",
-                    name=path.name,
-                    size=size / 2**20,
-                    most=LARGEST_PICTURE // 2**20,
-                )
+                "photo.too_large", name=path.name, size_mb=size / 2**20, most_mb=LARGEST_PICTURE // 2**20
             )
         content = path.read_bytes()
     except OSError as error:
-        raise ProjectError(f"{path.name}: {error.strerror or error}") from error
+        raise ProjectError("photo.not_read", name=path.name, reason=error.strerror or error) from error
     levels = (picture.automatic, picture.threshold)
     return TracedPicture(path.name, content, *levels, traced.scale, traced.centre, traced.picture)
 
