@@ -50,7 +50,7 @@ FRAME = QSize(16, 48)
 LEFT_WIDTH, RIGHT_WIDTH = (284, 340), (322, 372)
 LEFT_SHARE, RIGHT_SHARE = 0.225, 0.25
 #: Least height (pixels) of the window at which the fabrication panel shows as much and the gallery has two whole rows.
-ROOM_FOR = ((1000, Extent.ALL), (860, Extent.CHOICES), (0, Extent.EXPORT))
+EXTENT_BY_HEIGHT = ((1000, Extent.ALL), (860, Extent.CHOICES), (0, Extent.EXPORT))
 #: Commands of the toolbar by their ids, before and after the name of the project; "" is a separator.
 TOOLBAR = (("open_project", "save", "", "undo", "redo"), ("theme", "guide"))
 
@@ -94,6 +94,48 @@ class MainWindow(QMainWindow):
         self._build_toolbar()
         self.tour = Tour(self, controller)
         self.set_theme(palette)
+
+    def _build_columns(self) -> None:
+        design = QWidget()
+        design.setObjectName("body")
+        column = QVBoxLayout(design)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.setSpacing(8)
+        self.settings.body.addWidget(self.run)
+        column.addWidget(self.target, 1)
+        column.addWidget(self.settings)
+        right = QWidget()
+        right.setObjectName("body")
+        results = QVBoxLayout(right)
+        results.setContentsMargins(0, 0, 0, 0)
+        results.setSpacing(8)
+        results.addWidget(self.gallery, 1)
+        results.addWidget(self.fabrication)
+        self.columns = QSplitter(Qt.Orientation.Horizontal)
+        for part in (design, self.stage, right):
+            self.columns.addWidget(part)
+        self.columns.setChildrenCollapsible(False)
+        self.columns.setStretchFactor(1, 1)
+        self.columns.splitterMoved.connect(self._keep_columns)
+        self.target.editing_changed.connect(self._make_room)
+        body = QWidget()
+        body.setObjectName("body")
+        whole = QVBoxLayout(body)
+        whole.setContentsMargins(10, 0, 10, 2)
+        whole.setSpacing(8)
+        whole.addWidget(self.messages)
+        whole.addWidget(self.columns, 1)
+        self.setCentralWidget(body)
+
+    def _build_status(self) -> None:
+        self.status_text = QLabel()
+        self.status_text.setAccessibleName(tr("Status"))
+        self.status_text.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
+        self.facts = QLabel()
+        bar = self.statusBar()
+        bar.setSizeGripEnabled(False)
+        bar.addWidget(self.status_text, 1)
+        bar.addPermanentWidget(self.facts)
 
     def _build_commands(self) -> None:
         self.commands = CommandActions(self, all_commands(self), self.state)
@@ -162,48 +204,6 @@ class MainWindow(QMainWindow):
         for name in after:
             bar.addAction(self.commands[name])
 
-    def _build_columns(self) -> None:
-        design = QWidget()
-        design.setObjectName("body")
-        column = QVBoxLayout(design)
-        column.setContentsMargins(0, 0, 0, 0)
-        column.setSpacing(8)
-        self.settings.body.addWidget(self.run)
-        column.addWidget(self.target, 1)
-        column.addWidget(self.settings)
-        right = QWidget()
-        right.setObjectName("body")
-        results = QVBoxLayout(right)
-        results.setContentsMargins(0, 0, 0, 0)
-        results.setSpacing(8)
-        results.addWidget(self.gallery, 1)
-        results.addWidget(self.fabrication)
-        self.columns = QSplitter(Qt.Orientation.Horizontal)
-        for part in (design, self.stage, right):
-            self.columns.addWidget(part)
-        self.columns.setChildrenCollapsible(False)
-        self.columns.setStretchFactor(1, 1)
-        self.columns.splitterMoved.connect(self._keep_columns)
-        self.target.editing_changed.connect(self._make_room)
-        body = QWidget()
-        body.setObjectName("body")
-        whole = QVBoxLayout(body)
-        whole.setContentsMargins(10, 0, 10, 2)
-        whole.setSpacing(8)
-        whole.addWidget(self.messages)
-        whole.addWidget(self.columns, 1)
-        self.setCentralWidget(body)
-
-    def _build_status(self) -> None:
-        self.status_text = QLabel()
-        self.status_text.setAccessibleName(tr("Status"))
-        self.status_text.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
-        self.facts = QLabel()
-        bar = self.statusBar()
-        bar.setSizeGripEnabled(False)
-        bar.addWidget(self.status_text, 1)
-        bar.addPermanentWidget(self.facts)
-
     def showEvent(self, event: QShowEvent) -> None:  # noqa: N802 - Qt's name
         super().showEvent(event)
         self._share_width()
@@ -212,7 +212,7 @@ class MainWindow(QMainWindow):
     def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802 - Qt's name
         super().resizeEvent(event)
         self._share_width()
-        self.fabrication.fit(next(extent for height, extent in ROOM_FOR if self.height() >= height))
+        self.fabrication.fit(next(extent for height, extent in EXTENT_BY_HEIGHT if self.height() >= height))
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802 - Qt's name
         """A number has no use for Space: leave it to the window, which plays."""

@@ -113,7 +113,7 @@ class VoidConnections(QObject):
         self._window, self._controller = window, controller
         self._view, self._gestures = window.stage.view, window.stage.view.voids
         self._bar, self._hand = window.stage.voids, controller.hand
-        self._facts, self._status_before = "", ""
+        self._void_facts, self._status_before = "", ""
         self.menu: QMenu | None = None
         self._connect()
         self._refresh()
@@ -174,9 +174,9 @@ class VoidConnections(QObject):
         design = self._view.design
         if void is None or design is None:
             self._gestures.lines = ()
-            if self._window.status_text.text() == self._facts and self._facts:
+            if self._window.status_text.text() == self._void_facts and self._void_facts:
                 self._window.status_text.setText(self._status_before)
-            self._facts = ""
+            self._void_facts = ""
             return
         document = self._controller.document
         width, locked = document.fabrication.width_mm, void in document.locked
@@ -184,10 +184,10 @@ class VoidConnections(QObject):
         self._gestures.lines = facts.lines()
         if self._controller.running:  # the line tells how far the run is
             return
-        if self._window.status_text.text() != self._facts or not self._facts:
+        if self._window.status_text.text() != self._void_facts or not self._void_facts:
             self._status_before = self._window.status_text.text()
-        self._facts = facts.sentence()
-        self._window.status_text.setText(self._facts)
+        self._void_facts = facts.sentence()
+        self._window.status_text.setText(self._void_facts)
 
     # locks and fit -------------------------------------------------------------------------------------------------
 
