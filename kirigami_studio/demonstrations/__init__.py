@@ -1,4 +1,4 @@
-"""The window demonstrated: a whole session without a display, and pictures of every state for people to look at.
+"""Demonstrations of the window: a whole session without a display, and screenshots of every state for review.
 
-Nothing imports this package; it drives the real window as a person would.
+Nothing imports this package; it drives the real window as a user would.
 """

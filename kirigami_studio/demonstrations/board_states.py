@@ -1,4 +1,4 @@
-"""States of the target and its drawing board, pictured in all sizes and both themes."""
+"""Screenshots of the target and its drawing board, in all sizes and both themes."""
 
 from __future__ import annotations
 
@@ -23,16 +23,16 @@ SIZES = (QSize(1000, 640), QSize(1280, 720), QSize(1440, 900))
 #: A large screen, for the states that look different there.
 LARGE = QSize(2560, 1440)
 LARGE_STATES = frozenset({"editor-points", "designs", "cuts", "half-open", "tour"})
-#: What is drawn at twice the scale: 2560 x 1440 dots.
+#: Size of the window at twice the scale: 2560 x 1440 device pixels.
 SCALED = QSize(1280, 720)
 LONG_NAME = "a scanned drawing with the long name that scanners like to give, page 3 of 12"
 
 
 class BoardStates(Session):
-    """Leads one window through what can be done to a target, and knows how a state is pictured."""
+    """Takes one window through the states of the target, and a screenshot of each in all sizes and themes."""
 
     def sizes(self, name: str) -> tuple[QSize, ...]:
-        """The sizes that a state is pictured in."""
+        """The window sizes of a state's screenshots."""
         if self.window.devicePixelRatioF() > 1.0:
             return (SCALED,)
         return (*SIZES, LARGE) if name in LARGE_STATES else SIZES
@@ -75,7 +75,7 @@ class BoardStates(Session):
         target.view.show_preview(None)
 
     def points_and_mirror(self) -> None:
-        """Selected points with their handles, a field that selects, and a shape that is mirrored as it is drawn."""
+        """Selected points with their handles, a selection box, and a shape that is mirrored as it is drawn."""
         target, reshaping = self.window.target, self.window.connections.target.reshaping
         disc = placed_figure(Figure.ELLIPSE, Box(-30.0, -25.0, 30.0, 25.0))
         reshaping.take(Change("Draw ellipse", lambda: disc))
@@ -101,7 +101,7 @@ class BoardStates(Session):
         target.tools.axis.set_axis(Axis.NONE)
 
     def lost_designs(self) -> None:
-        """A turned target whose designs wait to be brought back."""
+        """A rotated target whose discarded designs can be restored."""
         target, controller = self.window.target, self.window.controller
         target.set_tool(Tool.POSE)
         target.tools.options.pose.turn.setValue(20.0)

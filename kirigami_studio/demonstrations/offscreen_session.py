@@ -24,7 +24,7 @@ from kirigami_studio.gui.main_window import FIRST, MainWindow
 from kirigami_studio.gui.messages import Tone
 
 DESIGNS = 8
-#: Seconds until a step that does not happen is given up; the first run loads the generator.
+#: Timeout of a step in seconds; the first run loads the generator.
 PATIENCE = 180.0
 
 
@@ -33,7 +33,7 @@ class SessionError(KirigamiError):
 
 
 class PresetFiles:
-    """Answers the questions for files with places in the output folder."""
+    """File dialogs that answer with files in the output folder."""
 
     def __init__(self, out: Path) -> None:
         self._out = out
@@ -58,7 +58,7 @@ class PresetFiles:
 
 
 class Session:
-    """Plays the steps on one window and takes pictures."""
+    """Plays the steps on one window and takes screenshots."""
 
     def __init__(self, out: Path) -> None:
         self.out = out
@@ -115,13 +115,13 @@ class Session:
         self.picture("4-designs")
 
     def choose_second(self) -> None:
-        """Walk from the best design to the next."""
+        """Go from the best design to the next."""
         press_key(self.window.gallery.view, Qt.Key.Key_Right)
         self.until(lambda: self.window.controller.document.chosen == 1, "the second design was not chosen")
         self.until(lambda: self.window.fabrication.export.isEnabled(), "no cut plan was made")
 
     def scrub(self) -> None:
-        """Move the slider from flat to the target and stop half way in the dark."""
+        """Move the slider from flat to half open, there in the dark theme, then to the target."""
         slider = self.window.stage.deployment.slider
         for degrees, name, palette in ((180, "5-flat", LIGHT), (90, "6-half-open", DARK)):
             self.window.set_theme(palette)
@@ -151,7 +151,7 @@ class Session:
         self.files.append(path)
 
     def until(self, happened: Callable[[], bool], otherwise: str) -> None:
-        """Let the window live until something has happened."""
+        """Process events until something has happened."""
         end = time.monotonic() + PATIENCE
         while not happened():
             refusals = [one.sentence for one in self.window.messages.messages if one.tone is Tone.ERROR]

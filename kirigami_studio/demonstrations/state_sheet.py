@@ -1,4 +1,4 @@
-"""One picture of every state of the window, in every size and both themes, to be looked at.
+"""A screenshot of every state of the window, in every size and both themes, for review.
 
 ``python -m kirigami_studio.demonstrations.state_sheet --out out/states`` writes them, and a page of small ones
 for every size and theme; ``--scale 2`` draws them for a high-resolution screen.
@@ -92,7 +92,7 @@ def _small(path: Path) -> Image.Image:
 
 
 class StateSheet(BoardStates):
-    """Leads one window from state to state and takes each picture in all sizes and themes."""
+    """Takes one window from state to state, with a screenshot of each in all sizes and themes."""
 
     def play(self) -> list[Path]:
         """Make all pictures and return their files."""
@@ -280,7 +280,7 @@ class StateSheet(BoardStates):
         self.until(lambda: not self._planned() and self.window.fabrication.export.isEnabled(), "no whole cut plan")
 
     def by_hand(self) -> None:
-        """The mode in which voids are changed: with locks and a label at the pointer."""
+        """Hand editing, with locked voids and a label at the pointer."""
         window, view, controller = self.window, self.window.stage.view, self.window.controller
         click(window.stage.hand)
         controller.hand.lock(frozenset((row, column) for row in (2, 3) for column in (3, 4, 5)), True)
@@ -351,7 +351,7 @@ class StateSheet(BoardStates):
         return "trimmed" in self.window.fabrication.summary.text()
 
     def project(self) -> None:
-        """Work of a session that was cut off, the menus about files and pictures, the history with undone steps."""
+        """Recovered work, the submenus of files and pictures, the history with undone steps."""
         window, dialogs = self.window, self.window.dialogs
         filing, folder = window.controller.filing, self.out / "recovery"
         left = folder / "left.kiri"

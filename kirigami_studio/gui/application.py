@@ -36,9 +36,9 @@ NO_DISPLAY = tr(
     "off-screen session: python -m kirigami_studio.demonstrations.offscreen_session --out "
     "out."
 )
-#: Seconds after which a thread that computes in Python lets another one go on that waits for the interpreter.  With
-#: Python's own 5 ms the window stood still for 50 to 160 ms while the worker trimmed a design: a worker that often lets
-#: go for a moment wakes the window each time, too late, and each time the wait begins anew.
+#: Python's switch interval in seconds: how long a computing thread may keep the interpreter from the UI thread.
+#: With the default of 5 ms the UI froze for 50 to 160 ms while the worker trimmed: a worker that often releases
+#: the interpreter wakes the UI thread each time, too late, and the wait starts again.
 SWITCH_INTERVAL = 0.0005
 #: Where distributions keep fonts; the off-screen platform does not ask fontconfig.
 FONT_FOLDERS = ("/usr/share/fonts/truetype/dejavu", "/usr/share/fonts/TTF", "/usr/share/fonts/dejavu")
@@ -58,7 +58,7 @@ TOUCHES = frozenset(
 
 
 class WarmUp(QObject):
-    """Calls ``act`` once, after the application has had no input for a while and ``busy`` says no."""
+    """Calls ``act`` once, when the application has had no input for a while and ``busy`` returns False."""
 
     def __init__(
         self, act: Callable[[], None], busy: Callable[[], bool], parent: QObject, rest_ms: int = REST_MS
@@ -77,7 +77,7 @@ class WarmUp(QObject):
 
     @property
     def waiting(self) -> bool:
-        """Whether it has not happened yet."""
+        """Whether ``act`` has not been called yet."""
         return self.timer.isActive()
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802 - Qt's name
@@ -96,7 +96,7 @@ class WarmUp(QObject):
 
 
 def create_application(argv: list[str]) -> QApplication:
-    """Return the application object, made on first use."""
+    """Return the application object; the first call makes it."""
     existing = QApplication.instance()
     if isinstance(existing, QApplication):
         return existing
@@ -115,7 +115,7 @@ def create_application(argv: list[str]) -> QApplication:
 
 
 def readable_font(font: QFont) -> QFont:
-    """Return the system's font, or a bundled system's best when it has none, not too small."""
+    """Return the system's font, or the best one installed when it has none, at a readable size."""
     result = QFont(font)
     if not QFontDatabase.hasFamily(result.family()) or result.family() == "Sans Serif":
         known = ("Inter", "Noto Sans", "Cantarell", "Ubuntu", "DejaVu Sans")
@@ -137,7 +137,7 @@ def create_window(palette: theme.Palette | None = None) -> MainWindow:
 
 
 def display_present() -> bool:
-    """Whether a window can be shown: Qt ends the process when it finds no display, so ask before."""
+    """Whether there is a display; without one Qt would end the process."""
     if not sys.platform.startswith("linux") or "QT_QPA_PLATFORM" in os.environ:
         return True
     return bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))

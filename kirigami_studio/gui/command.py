@@ -1,4 +1,4 @@
-"""What a command is, and the state of the window that decides how it is offered."""
+"""A command of the window as a record, and the state of the window that enables, checks and names it."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from kirigami_studio.project.document import Mark
 
 
 class Switch(NamedTuple):
-    """A button of the stage that stays down, as the command of the same name follows it."""
+    """A checkable button of the stage, whose command has the same state."""
 
     enabled: bool
     checked: bool
@@ -80,7 +80,7 @@ class Wording(NamedTuple):
 
 
 def always(state: WindowState) -> bool:
-    """A command that can be given at any time."""
+    """The condition of commands that are always enabled."""
     return True
 
 
@@ -127,5 +127,5 @@ class Command:
     worded: Callable[[WindowState], Wording] | None = None
 
     def wording(self, state: WindowState) -> Wording:
-        """How it is shown in a state of the window."""
+        """Return its text, tip and icon in a state of the window."""
         return Wording(self.text, self.tip, self.icon) if self.worded is None else self.worded(state)

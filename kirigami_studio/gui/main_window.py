@@ -1,4 +1,4 @@
-"""The one window: three columns with everything in sight, its menus, toolbar and status line."""
+"""The main window: three columns of panels, menus, toolbar and status line."""
 
 from __future__ import annotations
 
@@ -44,12 +44,12 @@ from kirigami_studio.gui.unsaved_work import UnsavedWork
 
 SMALLEST = QSize(1000, 640)
 FIRST = QSize(1440, 900)
-#: What a title bar and borders may add.
+#: Allowance for the title bar and borders.
 FRAME = QSize(16, 48)
 #: Least and largest first width (pixels) of the outer columns, and their share of the window in between.
 LEFT_WIDTH, RIGHT_WIDTH = (284, 340), (322, 372)
 LEFT_SHARE, RIGHT_SHARE = 0.225, 0.25
-#: Least height (pixels) of the window at which the fabrication panel shows as much and the gallery has two whole rows.
+#: Smallest window height (pixels) for each extent of the fabrication panel that leaves the gallery two whole rows.
 EXTENT_BY_HEIGHT = ((1000, Extent.ALL), (860, Extent.CHOICES), (0, Extent.EXPORT))
 #: Commands of the toolbar by their ids, before and after the name of the project; "" is a separator.
 TOOLBAR = (("open_project", "save", "", "undo", "redo"), ("theme", "guide"))
@@ -215,7 +215,7 @@ class MainWindow(QMainWindow):
         self.fabrication.fit(next(extent for height, extent in EXTENT_BY_HEIGHT if self.height() >= height))
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802 - Qt's name
-        """A number has no use for Space: leave it to the window, which plays."""
+        """Number fields leave Space to the window, which plays the deployment."""
         asked = event.type() == QEvent.Type.ShortcutOverride
         if asked and isinstance(event, QKeyEvent) and event.key() == Qt.Key.Key_Space:
             event.ignore()
@@ -251,7 +251,7 @@ class MainWindow(QMainWindow):
         self._laid_out = True
 
     def set_theme(self, palette: Palette) -> None:
-        """Draw everything in other colours."""
+        """Change to another palette."""
         self.palette_ = palette
         application = QApplication.instance()
         if isinstance(application, QApplication):
@@ -261,7 +261,7 @@ class MainWindow(QMainWindow):
         self.commands.set_palette(palette)
 
     def restore(self, settings: QSettings) -> None:
-        """Take the size and columns of the last time."""
+        """Restore the size and columns of the last session."""
         for key, take in (("geometry", self.restoreGeometry), ("columns", self.columns.restoreState)):
             value = settings.value(key)
             if isinstance(value, QByteArray) and take(value) and key == "columns":
@@ -270,7 +270,7 @@ class MainWindow(QMainWindow):
         self.fabrication.restore(settings)
 
     def remember(self, settings: QSettings) -> None:
-        """Keep size and columns for the next time."""
+        """Save size and columns for the next session."""
         settings.setValue("geometry", self.saveGeometry())
         if self._laid_out:
             settings.setValue("columns", self.columns.saveState())

@@ -87,7 +87,7 @@ def _shown(wanted: QWidget, otherwise: QWidget) -> QWidget:
 
 
 class Tour(QObject):
-    """Leads through the steps; the window can be used as always meanwhile."""
+    """Shows one step after another; the window stays usable meanwhile."""
 
     def __init__(self, window: MainWindow, controller: Controller) -> None:
         super().__init__(window)
@@ -123,7 +123,7 @@ class Tour(QObject):
         self.callout.setFocus(Qt.FocusReason.OtherFocusReason)
 
     def end(self) -> None:
-        """Leave the tour; the work goes on where it is."""
+        """End the tour."""
         self.at = -1
         self._soon.stop()
         self._share_escape()

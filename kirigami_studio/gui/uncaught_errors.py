@@ -1,4 +1,4 @@
-"""What nobody caught: errors become messages in the window, Qt's own messages go to the log."""
+"""Uncaught errors become messages in the window; Qt's own messages go to the log."""
 
 from __future__ import annotations
 
@@ -33,12 +33,12 @@ def log_qt_message(kind: QtMsgType, context: QMessageLogContext, text: str) -> N
 
 
 def log_qt_messages() -> None:
-    """From now on Qt's messages go to the log."""
+    """Send Qt's messages to the log from now on."""
     qInstallMessageHandler(log_qt_message)
 
 
 def show_uncaught(tell: Callable[[Message], None]) -> None:
-    """From now on an uncaught error becomes a message in the window."""
+    """Show uncaught errors as messages in the window from now on."""
 
     def hook(kind: type[BaseException], error: BaseException, trace: TracebackType | None) -> None:
         if issubclass(kind, KeyboardInterrupt):
@@ -51,7 +51,7 @@ def show_uncaught(tell: Callable[[Message], None]) -> None:
 
 
 def message_for(error: BaseException) -> Message:
-    """The sentence for an error that nobody expected, or the error's own when it has one for the user."""
+    """Return the message for an uncaught error: its own sentence where it has one for the user."""
     details = "".join(traceback.format_exception(error))
     if isinstance(error, KirigamiError):
         return Message(str(error), Tone.ERROR, details)

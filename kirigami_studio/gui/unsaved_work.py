@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Replacement:
-    """Something that puts another project in the place of this one, in words.
+    """How the user is asked before another project replaces this one.
 
     Attributes
     ----------

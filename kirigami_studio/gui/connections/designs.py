@@ -70,7 +70,7 @@ class DesignConnections(QObject):
         window.messages.dismiss(Tone.HINT, Tone.DONE)
 
     def _show_idle(self) -> None:
-        """No run goes on, or no longer."""
+        """No run is in progress."""
         window = self._window
         window.run.show_idle()
         window.stage.set_trimmable(True)
@@ -79,7 +79,7 @@ class DesignConnections(QObject):
         self._show_ready(self._controller.document)
 
     def _show_ready(self, document: Document) -> None:
-        """Whether designs can be generated, and added to those there are."""
+        """Show whether designs can be generated or added."""
         window, running = self._window, self._controller.running
         window.gallery.bar.set_ready(bool(document.candidates) and not running)
         window.run.show_ready(document.target is not None)
@@ -117,7 +117,7 @@ class DesignConnections(QObject):
             self._window.stage.set_rank(view.model_.number_of(stage.candidate))
 
     def _show_chosen(self) -> None:
-        """The bar knows the chosen design by its number."""
+        """Tell the bar which design is chosen."""
         model, candidate = self._window.gallery.view.model_, self.chosen
         number = model.number_of(candidate)
         self._window.gallery.bar.set_chosen(None if candidate is None or not number else (candidate.field, number))
@@ -137,7 +137,7 @@ class DesignConnections(QObject):
     # the menu of a card --------------------------------------------------------------------------------------------
 
     def show_menu(self, candidate: Candidate, place: QPoint) -> None:
-        """Offer what can be done to one design, beside its card."""
+        """Open the context menu of a card."""
         menu = QMenu(self._window)
         menu.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         menu.setToolTipsVisible(True)

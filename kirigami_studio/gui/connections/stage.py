@@ -94,7 +94,7 @@ class StageConnections(QObject):
 
 
 def _facts(entry: Entry) -> list[str]:
-    """What the status line says of a design."""
+    """Facts about a design for the status line."""
     field, score, trim = entry.candidate.field, entry.candidate.score, entry.candidate.trim
     facts = [
         tr("{rows} \N{MULTIPLICATION SIGN} {columns} voids", rows=field.rows, columns=field.columns),
@@ -106,7 +106,7 @@ def _facts(entry: Entry) -> list[str]:
 
 
 class VoidConnections(QObject):
-    """Connects what is done to voids with the controller's hand editing."""
+    """Connects gestures on voids and the void bar with hand editing."""
 
     def __init__(self, window: MainWindow, controller: Controller) -> None:
         super().__init__(window)
@@ -146,7 +146,7 @@ class VoidConnections(QObject):
         window.stage.switches_changed.connect(self._refresh)
 
     def _pause(self) -> None:
-        """A drag is made at the angle at which it began."""
+        """Stop playing, so that the angle stays the same during a drag."""
         self._window.stage.deployment.play.setChecked(False)
 
     def _refresh(self) -> None:
@@ -192,7 +192,7 @@ class VoidConnections(QObject):
     # locks and fit -------------------------------------------------------------------------------------------------
 
     def toggle_lock(self) -> None:
-        """Lock what is selected, or else what is pointed at; unlock it when all of it is locked."""
+        """Lock the selected voids, or the one under the pointer; unlock them when all are locked."""
         here = self._gestures.void
         voids = self._gestures.selected or (frozenset() if here is None else frozenset({here}))
         if voids:
@@ -215,7 +215,7 @@ class VoidConnections(QObject):
         self.menu.popup(place)
 
     def refit(self, on: bool) -> None:
-        """Fit the chosen design again, or stop doing so."""
+        """Fit the chosen design again, or stop fitting."""
         controller = self._controller
         if not on:
             controller.cancel()

@@ -1,4 +1,4 @@
-"""The target: where it comes from, its drawing board, and what a change of it means for the designs."""
+"""The target: its sources, its drawing board, and the designs that a change of it discards."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 class TargetConnections(QObject):
-    """Connects the target panel with the controller, and takes back error messages that no longer hold."""
+    """Connects the target panel with the controller, and withdraws error messages that no longer apply."""
 
     def __init__(self, window: MainWindow, controller: Controller) -> None:
         super().__init__(window)
@@ -63,12 +63,12 @@ class TargetConnections(QObject):
         controller.run.started.connect(lambda _: window.target.set_editing(False))
 
     def _refuse(self, error: KirigamiError) -> None:
-        """A shape could not be made; the message holds until one can."""
+        """A shape could not be made; the message stays until one can be."""
         self._errors.append(Message(str(error), Tone.ERROR))
         self._controller.session.refuse(error)
 
     def _note_unread(self, sentence: str, trace: str) -> None:
-        """A file could not be read as a target; the message holds until there is another one."""
+        """A file could not be read as a target; the message stays until there is another target."""
         self._errors.append(Message(sentence, Tone.ERROR, trace))
 
     def _drop_errors(self) -> None:

@@ -1,1 +1,1 @@
-"""What asks: file choosers, the library, the guide.  Dialogs ask, the controller does."""
+"""Dialogs: files, the silhouette library, materials, the export report, the history, help."""

@@ -148,7 +148,7 @@ class ExportReport(QDialog):
 
 
 def label(verification: Verification) -> str:
-    """One file in the list of files: its verdict comes first, in a word."""
+    """A line of the list of files: the verdict, then the file's name."""
     if verification.ok:
         return tr("Verified  ·  {name}", name=verification.path.name)
     return tr("Do not cut  ·  {name}", name=verification.path.name)
@@ -170,7 +170,7 @@ def verdict(verification: Verification) -> str:
 
 
 def format_facts(verification: Verification) -> dict[str, str]:
-    """Size, pieces, length and time by what they are called."""
+    """Size, pieces, cut length and time by their captions."""
     width, height = verification.size_mm
     pieces = UNKNOWN if verification.pieces is None else str(verification.pieces)
     return {
@@ -195,7 +195,7 @@ def _finding_line(finding: Finding) -> tuple[str, str, str]:
 
 
 def as_text(verification: Verification) -> str:
-    """The whole report, to be pasted."""
+    """The whole report as plain text."""
     facts = [f"{name}: {text}" for name, text in format_facts(verification).items()]
     lines = [f"{word}: {text}" for word, _, text in format_findings(verification)]
     return "\n".join([str(verification.path), verdict(verification), *facts, *lines])

@@ -40,13 +40,13 @@ class GuideWindow(QWidget):
         self.resize(680, 720)
 
 
-#: What a line is found by.
+#: Role of the words that a line is found by.
 WORDS = Qt.ItemDataRole.UserRole
 
 
 @dataclass(frozen=True, slots=True)
 class Gesture:
-    """What a hand does with the mouse, where, and what happens."""
+    """A mouse gesture: in which view, how, and with what effect."""
 
     view: str
     does: str
@@ -54,7 +54,7 @@ class Gesture:
 
 
 def gestures() -> tuple[Gesture, ...]:
-    """The gestures that every view takes, and those of each."""
+    """Gestures of all views, then those of single ones."""
     anywhere, board, cuts, numbers = tr("All views"), tr("Drawing board"), tr("Cuts"), tr("Numbers and angle")
     hand, gallery = tr("Edit by hand"), tr("Designs")
     return (
@@ -144,7 +144,7 @@ class ShortcutSheet(QWidget):
         heads[0].addChild(line)
 
     def showing(self) -> list[tuple[str, str]]:
-        """The lines in sight: effect, keys."""
+        """The visible lines: effect, keys."""
         return [(line.text(0), line.text(1)) for line in self._lines() if not line.isHidden()]
 
     def _heads(self) -> list[QTreeWidgetItem]:
@@ -163,7 +163,7 @@ class ShortcutSheet(QWidget):
         self.found.setText(tr_n("{count} line", "{count} lines", len(self.showing())))
 
     def keyPressEvent(self, event: QKeyEvent) -> None:  # noqa: N802 - Qt's name
-        """Esc empties the search first, then closes."""
+        """Esc clears the search, then closes the sheet."""
         if event.key() != Qt.Key.Key_Escape:
             super().keyPressEvent(event)
         elif self.search.text():
@@ -173,7 +173,7 @@ class ShortcutSheet(QWidget):
 
 
 def lines_of(head: QTreeWidgetItem) -> list[QTreeWidgetItem]:
-    """What stands under a heading."""
+    """The lines under a heading."""
     return [line for line in (head.child(row) for row in range(head.childCount())) if line is not None]
 
 

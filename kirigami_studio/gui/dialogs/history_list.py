@@ -15,9 +15,9 @@ WIDTH = 300
 
 
 class HistoryList(QWidget):
-    """A small window beside the work; the present step is chosen, undone ones are pale."""
+    """A small window; the present step is selected, undone ones are pale."""
 
-    step_wanted = Signal(int)  #: how many steps shall be done
+    step_wanted = Signal(int)  #: number of steps to keep done
 
     def __init__(self, parent: QWidget) -> None:
         super().__init__(parent, Qt.WindowType.Tool)

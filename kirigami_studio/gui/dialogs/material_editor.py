@@ -1,4 +1,4 @@
-"""Own materials: copy a preset, set its numbers, mark it as calibrated, delete it, cut its coupon."""
+"""The material editor: copy a preset, edit it, mark it as calibrated, delete it, export its coupon."""
 
 from __future__ import annotations
 
@@ -142,7 +142,7 @@ class MaterialEditor(QDialog):
         self.form.texts["name"].setFocus()
 
     def save(self) -> None:
-        """Save the form; new numbers are uncalibrated ones."""
+        """Save the form; changed numbers count as uncalibrated."""
         made = self._edited()
         material_copies.save_copy(made)
         self._saved(made.key, tr("Saved."))
@@ -214,7 +214,7 @@ class MaterialEditor(QDialog):
         self.buttons["calibrate"].setEnabled(own and bool(self.author.text().strip()))
 
     def _try(self, act: Callable[[], None]) -> None:
-        """Do something with files; say why where it cannot be done."""
+        """Run an action on files; show the error if it fails."""
         try:
             act()
         except KirigamiError as error:
@@ -222,7 +222,7 @@ class MaterialEditor(QDialog):
 
 
 def _state(material: Material) -> str:
-    """Whether the numbers were measured, in words."""
+    """Return in words whether the numbers were measured."""
     if not material.calibrated:
         return tr("Not calibrated: starting values only. Cut a coupon and measure it.")
     by, on = material.measured_by, material.measured_on

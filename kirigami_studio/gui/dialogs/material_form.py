@@ -99,7 +99,7 @@ TEXTS = (
 
 
 class MaterialForm(QWidget):
-    """Shows one material; an own one can be changed."""
+    """Shows one material; the user's own can be edited."""
 
     changed = Signal()
 
@@ -146,7 +146,7 @@ class MaterialForm(QWidget):
         self.passes.setEnabled(editable)
 
     def changes(self) -> dict[str, object]:
-        """What differs from the material that is shown, by field."""
+        """Return the fields that differ from the material shown."""
         if self._shown is None:
             return {}
         values = asdict(self._shown)
@@ -198,9 +198,9 @@ def _number(number: Number) -> DecimalField:
 
 
 class GapRow(QWidget):
-    """One line for the gaps beside the coupon's comb, and a button that makes a kerf of them."""
+    """A field for the gaps measured at the coupon's comb, and a button that computes the kerf."""
 
-    measured = Signal(float, str)  #: kerf in mm; what to say about it
+    measured = Signal(float, str)  #: kerf in mm, sentence about it
     refused = Signal(str)
 
     def __init__(self, parent: QWidget | None = None) -> None:
@@ -233,7 +233,7 @@ class GapRow(QWidget):
         self.button.setEnabled(editable and bool(self.gaps.text().strip()))
 
     def take(self) -> None:
-        """Tell the kerf that the gaps amount to, or why they amount to none."""
+        """Compute the kerf from the gaps, or report why that is not possible."""
         words = re.split(r"[\s;]+", self.gaps.text().strip())
         try:
             found = kerf_from_gaps([float(word.replace(",", ".")) for word in words])

@@ -62,7 +62,7 @@ class SilhouettePicker(QFrame):
             self.list.addItem(item)
 
     def show_below(self, button: QWidget) -> None:
-        """Open under a button, inside the screen."""
+        """Open below a button, inside the screen."""
         place = button.mapToGlobal(QPoint(0, button.height() + 4))
         screen = QGuiApplication.screenAt(place) or QGuiApplication.primaryScreen()
         area = screen.availableGeometry()
@@ -84,7 +84,7 @@ class SilhouettePicker(QFrame):
             super().keyPressEvent(event)
 
     def _best(self) -> QListWidgetItem | None:
-        """The marked silhouette, else the one whose title fits the search best: "star" is the star."""
+        """The selected silhouette, or else the one whose title matches the search best."""
         shown = [self.list.item(row) for row in range(self.list.count()) if self._shown(row)]
         if self.list.currentItem() in shown:
             return self.list.currentItem()
