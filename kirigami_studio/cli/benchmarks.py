@@ -1,4 +1,4 @@
-"""``benchmark SUITE``: every figure that README and model card quote, from one command each."""
+"""``benchmark SUITE``: one command for each figure in README, measurements and model card."""
 
 from __future__ import annotations
 
