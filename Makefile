@@ -1,14 +1,14 @@
-# Kirigami Studio.  `make run` and `make test` are all a fresh clone needs; both set up .venv first.
+# Kirigami Studio.  In a fresh clone, `make run` or `make test` is enough; both set up .venv first.
 PYTHON ?= python3
 BIN := .venv/bin
 STAMP := .venv/.setup-done
 TORCH_INDEX := https://download.pytorch.org/whl/cpu
 
-# Designs are small: more threads only get in each other's way.
+# Arrays are small: more threads only slow each other down.
 export OMP_NUM_THREADS ?= 2
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 
-# Values and geometry; the readers of files and the raster scores take longer and wait for `make test`.
+# Values and geometry; file readers and raster scores take longer and run in `make test` only.
 QUICK_TESTS := tests/architecture tests/property $(wildcard $(addprefix tests/unit/,foundation lattice evaluate fabricate project)) \
   --ignore=tests/unit/evaluate/test_siou.py
 
@@ -16,25 +16,25 @@ QUICK_TESTS := tests/architecture tests/property $(wildcard $(addprefix tests/un
 .DEFAULT_GOAL := help
 
 help:
-	@echo "make setup   create .venv with everything the program and its tests need"
-	@echo "make run     open the studio (without a display: play the session off-screen into out/)"
-	@echo "make test    lint, then every test"
-	@echo "make quick   the tests that need neither Qt nor torch, in under 20 seconds"
-	@echo "make lint    ruff, mypy and the import contracts"
-	@echo "make bench   print the timings of the exact geometry"
-	@echo "make consumers  let MeerK40t, in an environment of its own, plan our cut files"
+	@echo "make setup   create .venv with everything that the program and its tests need"
+	@echo "make run     open the window (without a display: play a session off-screen into out/)"
+	@echo "make test    run lint, then every test"
+	@echo "make quick   only tests that need neither Qt nor torch; under 20 seconds"
+	@echo "make lint    run ruff, mypy and the import contracts"
+	@echo "make bench   time the exact geometry"
+	@echo "make consumers  check cut files with MeerK40t, installed in an environment of its own"
 	@echo "make demo    design a heart on the command line into out/heart"
-	@echo "make states  pictures of every state of the window into out/states, at 200 % into out/states-200"
-	@echo "make pictures  the pictures of the README, from the real program"
-	@echo "make messages  collect the sentences for translators in resources/locale"
-	@echo "make clean   remove what the other targets made, .venv excepted"
+	@echo "make states  save pictures of every state of the window to out/states, at 200 % to out/states-200"
+	@echo "make pictures  make the README's pictures with the program"
+	@echo "make messages  collect all sentences for translators in resources/locale"
+	@echo "make clean   remove what the other targets made, except .venv"
 
 setup: $(STAMP)
 
 # torch first and by itself: only it needs the extra index, and only once.
 $(STAMP): pyproject.toml setup.py packaging/constraints-cpu.txt packaging/system_libraries.sh
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' \
-	  || { echo "Kirigami Studio needs Python 3.11 or newer; name one with: make PYTHON=/path/to/python3 $(MAKECMDGOALS)"; exit 1; }
+	  || { echo "Kirigami Studio needs Python 3.11 or newer. Choose one with: make PYTHON=/path/to/python3 $(MAKECMDGOALS)"; exit 1; }
 	@sh packaging/system_libraries.sh
 	test -x $(BIN)/python || $(PYTHON) -m venv .venv
 	$(BIN)/python -m pip install -q --retries 1 --extra-index-url $(TORCH_INDEX) -c packaging/constraints-cpu.txt torch
@@ -45,11 +45,11 @@ run: setup
 	@if [ -n "$$DISPLAY$$WAYLAND_DISPLAY" ] || [ "$$(uname)" = Darwin ]; then \
 	  $(BIN)/kirigami-studio; \
 	else \
-	  echo "No display here: playing the session off-screen; pictures and the cut file go to out/"; \
+	  echo "No display: playing a session off-screen. Pictures and the cut file go to out/"; \
 	  QT_QPA_PLATFORM=offscreen $(BIN)/python -m kirigami_studio.demonstrations.offscreen_session --out out; \
 	fi
 
-# What watches a clock, alone; then everything else, file by file in two processes of one thread each.
+# First the tests that measure time, alone; then all others in two processes of one thread each, one file at a time.
 test: lint
 	@sh packaging/system_libraries.sh tests
 	QT_QPA_PLATFORM=offscreen $(BIN)/python -m pytest -m clock
@@ -68,7 +68,7 @@ lint: setup
 bench: setup
 	$(BIN)/python -m kirigami_studio benchmark lattice
 
-# MeerK40t pins what it likes, so it lives apart; the tests find it here.
+# MeerK40t pins its own dependencies, so it has its own environment; the tests look for it here.
 CONSUMERS := .venv-consumers
 consumers: setup
 	test -x $(CONSUMERS)/bin/python || $(PYTHON) -m venv $(CONSUMERS)
@@ -87,7 +87,7 @@ pictures: setup
 	cp out/pictures/4-designs.png docs/pictures/window.png
 	$(BIN)/kirigami-studio animate resources/examples/heart.kiri --out docs/pictures/heart.gif
 
-# What translators start from: every sentence of the program, without places, so that it changes with the words alone.
+# The translators' template: every sentence of the program, without line numbers, so that only new words change it.
 messages: setup
 	$(BIN)/pybabel -q extract -k tr -k mark -k tr_n:1,2 --no-default-keywords --no-location --sort-output --omit-header \
 	  -o resources/locale/kirigami_studio.pot kirigami_studio

@@ -1,11 +1,11 @@
 #!/bin/sh
-# Qt's wheels bring everything but a few libraries of the system.  Look for them; install them where that is possible
-# without asking, else say in one sentence what is missing.  Never fails: the command line works without a window.
-# With the word "tests", also look for the display and the hands that some tests use; those are skipped without them.
+# Qt's wheels need a few system libraries.  Install those that are missing if that is possible without asking, else
+# print the command that does.  Never fails: the command line works without a window.
+# With the argument "tests", also look for the programs that some tests use; those tests are skipped without them.
 set -u
 [ "$(uname)" = Linux ] || exit 0
 
-# The second half is what the window needs on an X display; Qt asks for all of it and starts with none missing.
+# From libxcb-cursor on: what the window needs on an X display; Qt does not start if one of them is missing.
 missing=""
 cache=$(PATH="$PATH:/sbin:/usr/sbin" ldconfig -p 2>/dev/null)
 for pair in libEGL.so.1:libegl1 libGL.so.1:libgl1 libxkbcommon.so.0:libxkbcommon0 \
@@ -27,11 +27,11 @@ fi
 [ -n "$missing" ] || exit 0
 
 if [ "$(id -u)" = 0 ] && command -v apt-get >/dev/null 2>&1; then
-    echo "Installing what the window needs:$missing"
+    echo "Installing system packages for the window:$missing"
     apt-get update -q >/dev/null 2>&1
     # shellcheck disable=SC2086  # a list of package names
     DEBIAN_FRONTEND=noninteractive apt-get install -yq --no-install-recommends $missing xvfb >/dev/null 2>&1 && exit 0
 fi
-echo "The window${1:+ and its $1} need what is missing here ($(echo "$missing" | sed 's/^ //; s/ /, /g'));" \
-     "on Debian or Ubuntu run: sudo apt-get install$missing xvfb"
+echo "System packages for the window${1:+ and its $1} are missing:$missing." \
+     "On Debian or Ubuntu run: sudo apt-get install$missing xvfb"
 exit 0
