@@ -1,0 +1,112 @@
+"""The documents stay true: links lead somewhere, paths exist, and the commands they show are accepted."""
+
+from __future__ import annotations
+
+import argparse
+import re
+import shlex
+from pathlib import Path
+
+import pytest
+
+from kirigami_studio.cli.parser import SUB_COMMANDS, build_parser
+
+#: Folders with documents, beside those in the root.
+FOLDERS = ("docs", "resources", "tests", "packaging", "kirigami_studio")
+#: ``[text](place)`` and ``![text](place)``; the place without its anchor and title.
+LINK = re.compile(r"\[[^\]\n]*\]\(\s*<?([^)\s#>]+)")
+#: A path with a folder: ``gui/session.py``, ``tests/data/oracles``.
+PATH = re.compile(r"(?<![\w./:-])(?:[\w-]+/)+[\w-]+(?:\.[\w-]+)*/?(?![\w/*(])")
+COMMAND = re.compile(r"kirigami-studio ([^`#\n|]+)")
+#: Made by the program or by ``make``.
+MADE = ("out/", "runs/")
+
+
+@pytest.fixture(scope="module")
+def documents(repository: Path) -> dict[Path, str]:
+    """Text of every Markdown file of the repository."""
+    found = [*repository.glob("*.md"), *(path for folder in FOLDERS for path in (repository / folder).rglob("*.md"))]
+    assert len(found) > 12
+    return {path: path.read_text(encoding="utf-8") for path in found}
+
+
+@pytest.fixture(scope="module")
+def present(documents: dict[Path, str]) -> dict[Path, str]:
+    """The documents that describe the present program: all but the changelog, which also tells what was."""
+    return {path: text for path, text in documents.items() if path.name != "CHANGELOG.md"}
+
+
+def dead_links(document: Path, text: str) -> list[str]:
+    """Relative links and images of a document that lead to no file."""
+    places = [place for place in LINK.findall(text) if not re.match(r"[a-z]+:", place)]
+    return [place for place in places if not (document.parent / place).exists()]
+
+
+def missing_paths(repository: Path, text: str) -> list[str]:
+    """Paths in a document that begin in the repository or in the package, or name a module, and do not exist."""
+    roots = (repository, repository / "kirigami_studio")
+    places = [place.rstrip("/") for place in PATH.findall(text) if not place.startswith(MADE)]
+    ours = [
+        place
+        for place in places
+        if place.endswith(".py") or any((root / place.partition("/")[0]).is_dir() for root in roots)
+    ]
+    return [place for place in ours if not any((root / place).exists() for root in roots)]
+
+
+def refused_commands(text: str) -> list[str]:
+    """Commands in a document that the command line does not take."""
+    first_words = {command.name.partition(" ")[0] for command in SUB_COMMANDS}
+    refused = []
+    for shown in COMMAND.findall(text.replace("\\\n", " ")):
+        words = shlex.split(shown.replace("...", ""))
+        if words[0] in first_words:
+            try:
+                build_parser().parse_args(words)
+            except (SystemExit, argparse.ArgumentError):
+                refused.append(shown.strip())
+    return refused
+
+
+def missing_targets(makefile: str, text: str) -> list[str]:
+    """Targets of ``make`` that a document names and the Makefile does not have."""
+    named = re.findall(r"(?:`|^ {4})make (\w+)", text, flags=re.MULTILINE)
+    return [target for target in named if not re.search(rf"^{target}:", makefile, flags=re.MULTILINE)]
+
+
+def test_that_every_relative_link_and_picture_exists(documents: dict[Path, str]) -> None:
+    assert {path.as_posix(): found for path, text in documents.items() if (found := dead_links(path, text))} == {}
+
+
+def test_that_every_path_in_the_documents_exists(present: dict[Path, str], repository: Path) -> None:
+    assert {
+        path.as_posix(): found for path, text in present.items() if (found := missing_paths(repository, text))
+    } == {}
+
+
+def test_that_the_command_line_accepts_every_command_shown(present: dict[Path, str]) -> None:
+    assert {path.as_posix(): found for path, text in present.items() if (found := refused_commands(text))} == {}
+
+
+def test_that_every_make_target_shown_exists(present: dict[Path, str], repository: Path) -> None:
+    makefile = (repository / "Makefile").read_text(encoding="utf-8")
+    assert {
+        path.as_posix(): found for path, text in present.items() if (found := missing_targets(makefile, text))
+    } == {}
+
+
+def test_that_planted_faults_are_found(repository: Path) -> None:
+    text = (
+        "See [the map](docs/map.md), [here](README.md) and ![it](docs/pictures/none.png).\n"
+        "`lattice/gone.py` and `lattice/marching.py`, `tests/unit/nowhere`, `kirigami_studio/gone.py`, 10 m/s.\n\n"
+        "    kirigami-studio benchmark lattice --json   # fits\n"
+        "    kirigami-studio benchmark lattice --variant prior\n"
+        "    make demo\n"
+        "    make tea\n"
+    )
+    assert dead_links(repository / "README.md", text) == ["docs/map.md", "docs/pictures/none.png"]
+    found = missing_paths(repository, text)
+    assert {"lattice/gone.py", "tests/unit/nowhere", "kirigami_studio/gone.py"} <= set(found)
+    assert "lattice/marching.py" not in found
+    assert refused_commands(text) == ["benchmark lattice --variant prior"]
+    assert missing_targets("demo: setup\n", text) == ["tea"]
