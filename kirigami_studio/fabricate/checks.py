@@ -50,8 +50,6 @@ class Report:
         Smallest finished distance between any two cuts.
     overlap_mm : float
         Length cut more than once.
-    flexing : Flexing or None
-        How far the connectors turn and how much that strains them; None without a target angle.
     """
 
     problems: tuple[Problem, ...]
@@ -59,7 +57,6 @@ class Report:
     min_connector_mm: float
     min_ligament_mm: float
     overlap_mm: float
-    flexing: Flexing | None = None
 
     @property
     def ok(self) -> bool:
@@ -103,7 +100,6 @@ def check_plan(plan: CutPlan, kerf_mm: float | None = None, phi: float | None = 
         min_connector_mm=plan.min_connector_mm + plan.kerf_mm - kerf,
         min_ligament_mm=ligament.width_mm if ligament is not None else float("inf"),
         overlap_mm=twice.length_mm,
-        flexing=bent,
     )
 
 

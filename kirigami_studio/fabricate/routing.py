@@ -13,7 +13,6 @@ import numpy as np
 
 from kirigami_studio.foundation.arrays import ComplexArray, IntArray
 
-ComplexArray = ComplexArray
 #: A change that saves less (mm) is rounding.
 SAVED_MM = 1e-9
 #: Longest run of paths that is lifted out of a tour and put in elsewhere.
