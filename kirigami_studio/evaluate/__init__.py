@@ -18,6 +18,8 @@ contact
 trim
     Cutting the edge panels along the target in the deployed state; what stays around hinges is *keep* cells deep.  The
     trimmed IoU is another number than the untrimmed one and never shown as such.
+posed design
+    The moving sheet in the target's frame; screen, pictures and animation show this one motion.
 
 May import ``lattice``, ``outlines`` and ``foundation``; neither ``generator`` nor ``fabricate``.
 """
