@@ -18,7 +18,7 @@ from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.gui.jobs import vertex_drag
 from kirigami_studio.gui.jobs.queue import JobCallbacks, JobQueue
-from kirigami_studio.gui.jobs.vertex_drag import Follower, Grasp
+from kirigami_studio.gui.jobs.vertex_drag import DragStart, Follower
 from kirigami_studio.gui.main_window import MainWindow
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
@@ -248,9 +248,9 @@ def test_that_a_vertex_that_cannot_move_says_so_and_holds_nothing_back(by_hand: 
     assert by_hand.controller.history.undo_label == "Lock all voids"
 
 
-def grasp(shape: tuple[int, int], vertex: int) -> Grasp:
+def start_of(shape: tuple[int, int], vertex: int) -> DragStart:
     field = RatioField.from_log10(0.05 * np.random.default_rng(2).normal(size=shape))
-    return Grasp(PosedDesign(deploy(field), Similarity(), 0.0), OPEN, vertex, np.zeros(shape, dtype=np.bool_))
+    return DragStart(PosedDesign(deploy(field), Similarity(), 0.0), OPEN, vertex, np.zeros(shape, dtype=np.bool_))
 
 
 def where(design: PosedDesign, vertex: int) -> np.ndarray:
@@ -259,17 +259,17 @@ def where(design: PosedDesign, vertex: int) -> np.ndarray:
 
 
 def test_that_places_that_were_replaced_are_never_looked_at_and_a_new_one_comes_before_the_next_step() -> None:
-    held = grasp((6, 6), 5)
-    follower, start = Follower(held), where(held.design, 5)
+    begun = start_of((6, 6), 5)
+    follower, start = Follower(begun), where(begun.design, 5)
     for far in np.linspace(0.5, 0.05, 50):
-        follower.want((float(start[0] + far), float(start[1])))
+        follower.move_to((float(start[0] + far), float(start[1])))
     found = list(follower.steps(lambda: False))
     assert len(found) <= 3 and found[-1].arrived and not follower.waiting and follower.newest is found[-1]
     assert where(found[-1].design, 5) == pytest.approx(start + np.array((0.05, 0.0)), abs=4e-3)
-    follower.want((float(start[0] + 0.4), float(start[1])))
+    follower.move_to((float(start[0] + 0.4), float(start[1])))
     steps = follower.steps(lambda: False)
     assert not next(steps).arrived
-    follower.want((float(start[0]), float(start[1] + 0.05)))
+    follower.move_to((float(start[0]), float(start[1] + 0.05)))
     last = list(steps)[-1]
     assert last.arrived and where(last.design, 5) == pytest.approx(start + np.array((0.0, 0.05)), abs=4e-3)
 
@@ -277,17 +277,17 @@ def test_that_places_that_were_replaced_are_never_looked_at_and_a_new_one_comes_
 def test_that_a_follower_stops_when_asked_and_after_letting_go_when_its_time_is_over(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    held = grasp((6, 6), 5)
-    far = where(held.design, 5) + np.array((40.0, 0.0))
-    follower = Follower(held)
-    follower.want((float(far[0]), float(far[1])))
+    begun = start_of((6, 6), 5)
+    far = where(begun.design, 5) + np.array((40.0, 0.0))
+    follower = Follower(begun)
+    follower.move_to((float(far[0]), float(far[1])))
     asked: list[bool] = []
     steps = follower.steps(lambda: bool(asked))
     assert not next(steps).stuck
     asked.append(True)
     assert list(steps) == [] and follower.waiting
     monkeypatch.setattr(vertex_drag, "LAST_SECONDS", 0.0)
-    follower.let_go()
+    follower.release()
     found = list(follower.steps(lambda: False))
     assert [one.stuck for one in found] == [False] * (vertex_drag.LAST_STEPS - 1) + [True]
     assert not found[-1].arrived and not follower.waiting

@@ -25,11 +25,12 @@ from PySide6.QtCore import QObject, QTimer, Signal
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.foundation.arrays import FloatArray
+from kirigami_studio.foundation.paper import LOG_RATIO_LIMIT
 from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.gui.designs.outline_drag import OutlineDrag
 from kirigami_studio.gui.jobs.design_jobs import Decoded
 from kirigami_studio.gui.jobs.queue import Cancel, JobCallbacks, LatestJob, single
-from kirigami_studio.gui.jobs.vertex_drag import Followed, Grasp
+from kirigami_studio.gui.jobs.vertex_drag import DragStart, DragStep
 from kirigami_studio.gui.session import Session
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
@@ -69,11 +70,11 @@ def score_sentence(label: str, before: Candidate, after: Candidate) -> str:
 
 
 #: Ratios that can be given by hand, the same as those of the generator and the fits.
-SMALLEST, LARGEST = 0.1, 10.0
+SMALLEST, LARGEST = 10.0**-LOG_RATIO_LIMIT, 10.0**LOG_RATIO_LIMIT
 #: Share of a slit by which the motion of a void's corners is measured.
 PROBE = 0.02
 #: Corners that move less than this share of the one that moves most are not dragged.
-LIVELY = 0.6
+MOVES_ENOUGH = 0.6
 #: Least motion (lengths of the world per whole slit) that is believed, in cells of the sheet.
 LEAST = 0.25
 #: Milliseconds after the last notch of the wheel, or the last press of a key, that end the gesture.
@@ -86,7 +87,7 @@ P = ParamSpec("P")
 Gesture = Callable[Concatenate["HandEditor", P], None]
 
 
-def _in_turn(gesture: Gesture[P]) -> Gesture[P]:
+def _after_arrival(gesture: Gesture[P]) -> Gesture[P]:
     """Carry a gesture out at once, or when the outline that was released before has arrived."""
 
     @wraps(gesture)
@@ -133,7 +134,7 @@ class VoidDrag:
         here = _corners(design, void, share, phi)
         length = np.hypot(*motion.T)
         distance = np.hypot(*(here - place).T)
-        distance[length < LIVELY * length.max()] = np.inf
+        distance[length < MOVES_ENOUGH * length.max()] = np.inf
         corner = int(distance.argmin())
         least = LEAST * design.pose.scale
         return cls(void, place, share, motion[corner] * max(1.0, least / max(float(length[corner]), 1e-12)), corner)
@@ -191,7 +192,10 @@ class HandEditor(QObject):
         self._field: RatioField | None = None  # as it is shown
         self._last: RatioField | None = None  # as the last complete gesture left it
         self._open: str | None = None  # label of the gesture under way
-        self._turned: tuple[tuple[Void, ...], float] = ((), -math.inf)  # what the wheel or a key changed last, and when
+        self._last_turn: tuple[tuple[Void, ...], float] = (
+            (),
+            -math.inf,
+        )  # what the wheel or a key changed last, and when
         self._turns = 0
         self._key: str | None = None  # merges the gesture under way with the one before it
         self._waiting: deque[_Gesture] = deque()
@@ -201,7 +205,7 @@ class HandEditor(QObject):
         self._outline.followed.connect(self._follow)
         self._outline.ended.connect(self._arrive)
         self._outline.failed.connect(self._fail)
-        self._grasped: Candidate | None = None  # the document's design since the drag of a vertex began
+        self._dragged_from: Candidate | None = None  # the document's design since the drag of a vertex began
         self._decoded: PosedDesign | None = None  # the draft, if the outline's thread has decoded it
         self._later: deque[Callable[[], None]] = deque()
         self._pause = QTimer(self, singleShot=True, interval=PAUSE_MS)
@@ -241,7 +245,7 @@ class HandEditor(QObject):
         self._postponed.clear()
         self._later.clear()
         self._drop()
-        self._over()
+        self._finish()
 
     def close(self) -> None:
         """The window is going away."""
@@ -249,23 +253,23 @@ class HandEditor(QObject):
 
     # ratios --------------------------------------------------------------------------------------------------------
 
-    @_in_turn
+    @_after_arrival
     def nudge(self, voids: frozenset[Void], step: float) -> None:
         """Change the log10 of ratios by ``step``; steps that follow one another soon undo together."""
         free = self._free(voids)
         if free and self.field is not None:
-            self._turns += not self._goes_on(tuple(free))
+            self._turns += not self._continues(tuple(free))
             key = f"turn {self._turns}"
             self._change({void: float(self.field.ratio[void]) * math.pow(10.0, step) for void in free}, key)
             self._pause.start()
 
-    def _goes_on(self, voids: tuple[Void, ...]) -> bool:
+    def _continues(self, voids: tuple[Void, ...]) -> bool:
         """Whether a notch on these voids continues the one before it."""
-        (before, when), now = self._turned, time.monotonic()
-        self._turned = voids, now
+        (before, when), now = self._last_turn, time.monotonic()
+        self._last_turn = voids, now
         return voids == before and now - when <= JOINS_WITHIN
 
-    @_in_turn
+    @_after_arrival
     def set_ratio(self, voids: frozenset[Void], ratio: float) -> None:
         """Give voids a ratio, as typed."""
         free = self._free(voids)
@@ -273,16 +277,16 @@ class HandEditor(QObject):
             self._change(dict.fromkeys(free, ratio))
             self._pause.start()
 
-    @_in_turn
-    def begin_pull(self, void: Void, place: tuple[float, float], phi: float) -> None:
+    @_after_arrival
+    def begin_drag(self, void: Void, place: tuple[float, float], phi: float) -> None:
         """Begin to drag a void at a place in the world."""
-        self._begin_drag()
+        self._prepare_drag()
         design = self._design()
         if self._free(frozenset({void})) and design is not None:
             self._drag = VoidDrag.of(design, void, place, phi)
 
-    @_in_turn
-    def pull(self, place: tuple[float, float]) -> None:
+    @_after_arrival
+    def drag(self, place: tuple[float, float]) -> None:
         """The pointer has moved to a place in the world; the void follows."""
         if self._drag is not None:
             self._change({self._drag.void: self._drag.ratio_at(place)})
@@ -322,29 +326,29 @@ class HandEditor(QObject):
 
     # the outline ---------------------------------------------------------------------------------------------------
 
-    @_in_turn
+    @_after_arrival
     def begin_vertex(self, vertex: int, phi: float) -> None:
         """Begin to drag a vertex of the outline at the angle that is shown."""
-        self._begin_drag()
+        self._prepare_drag()
         design, document = self._design(), self._session.document
         if design is None or phi >= math.pi:
             self._session.set_status(tr("The flat sheet is always a rectangle. Open it to move its outline."))
             return
-        held = np.zeros(design.deployment.field.ratio.shape, dtype=np.bool_)
+        locked = np.zeros(design.deployment.field.ratio.shape, dtype=np.bool_)
         for void in document.locked:
-            held[void] = True
-        self._grasped = document.candidate
-        self._outline.begin(Grasp(design, phi, vertex, held))
+            locked[void] = True
+        self._dragged_from = document.candidate
+        self._outline.begin(DragStart(design, phi, vertex, locked))
         self._session.set_status(tr("Preparing the outline …"))
 
-    @_in_turn
+    @_after_arrival
     def move_vertex(self, place: tuple[float, float]) -> None:
         """The pointer has moved to a place in the world; the newest place wins."""
         self._outline.move(place)
 
-    def _follow(self, found: Followed) -> None:
+    def _follow(self, found: DragStep) -> None:
         """The outline has come a step nearer to the pointer."""
-        if self._session.document.candidate != self._grasped:  # something else has changed the design meanwhile
+        if self._session.document.candidate != self._dragged_from:  # something else has changed the design meanwhile
             self._drop()
             self._arrive()
             return
@@ -364,9 +368,9 @@ class HandEditor(QObject):
         for act in later:
             act()
         if not self.busy:
-            self._over()
+            self._finish()
 
-    def _begin_drag(self) -> None:
+    def _prepare_drag(self) -> None:
         self.commit()
         self._drop()
 
@@ -375,16 +379,16 @@ class HandEditor(QObject):
         self._drag = None
         self._outline.stop()
 
-    @_in_turn
-    def let_go(self) -> None:
+    @_after_arrival
+    def release(self) -> None:
         """The button was released: the gesture is complete, for an outline when it has arrived."""
         if self._outline.active:
-            self._outline.let_go()
+            self._outline.release()
         else:
             self.commit()
 
-    @_in_turn
-    def take_back(self) -> None:
+    @_after_arrival
+    def cancel(self) -> None:
         """Cancel the gesture under way."""
         self._pause.stop()
         self._drop()
@@ -465,14 +469,14 @@ class HandEditor(QObject):
             self._discard_draft()
             return
         self._session.cache.put(report.candidate, report.deployment)
-        self._base = self._grasped = report.candidate
+        self._base = self._dragged_from = report.candidate
         self._session.apply(edit)
         self._session.set_status(score_sentence(gesture.label, before, report.candidate))
         if self._waiting or self._open is not None:
             self._show_draft()
             self._score_next()
         else:
-            self._over()
+            self._finish()
 
     def _fail(self, sentence: str, trace: str) -> None:
         self._discard_draft()
@@ -489,7 +493,7 @@ class HandEditor(QObject):
         for act in postponed:
             act()
 
-    def _over(self) -> None:
+    def _finish(self) -> None:
         """Nothing is under way any more; what was postponed is carried out."""
         self._pause.stop()
         self._base = self._field = self._last = self._open = self._decoded = None

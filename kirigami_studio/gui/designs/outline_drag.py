@@ -18,22 +18,22 @@ from PySide6.QtCore import QObject, Signal
 
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.jobs.queue import JobCallbacks, JobQueue, LatestJob
-from kirigami_studio.gui.jobs.vertex_drag import Followed, Follower, Grasp
+from kirigami_studio.gui.jobs.vertex_drag import DragStart, DragStep, Follower
 
 
 class OutlineDrag(QObject):
     """At most one drag at a time; owns the thread of gestures."""
 
-    followed = Signal(Followed)
+    followed = Signal(DragStep)
     ended = Signal()  #: released, and the last place is reached
     failed = Signal(str, str)  #: sentence, trace
 
     def __init__(self, parent: QObject) -> None:
         super().__init__(parent)
         self._queue: JobQueue | None = None
-        self._job: LatestJob[Followed] | None = None
+        self._job: LatestJob[DragStep] | None = None
         self._follower: Follower | None = None
-        self._shown: Followed | None = None
+        self._shown: DragStep | None = None
         self._held = False
 
     @property
@@ -46,22 +46,22 @@ class OutlineDrag(QObject):
         """Whether the vertex was released and is still on its way."""
         return self.active and not self._held
 
-    def begin(self, grasp: Grasp) -> None:
+    def begin(self, start: DragStart) -> None:
         """Begin to drag a vertex."""
         self.stop()
-        self._follower, self._held = Follower(grasp), True
+        self._follower, self._held = Follower(start), True
 
     def move(self, place: tuple[float, float]) -> None:
         """The pointer has moved to a place in the world."""
         if self._follower is not None and self._held:
-            self._follower.want(place)
+            self._follower.move_to(place)
             self._go_on()
 
-    def let_go(self) -> None:
+    def release(self) -> None:
         """The button was released; :attr:`ended` follows when the vertex has arrived."""
         if self._follower is not None:
             self._held = False
-            self._follower.let_go()
+            self._follower.release()
             self._go_on()
 
     def stop(self) -> None:
@@ -84,14 +84,14 @@ class OutlineDrag(QObject):
         if follower.waiting:
             if self._job is None:
                 self._queue = JobQueue(self, "kirigami-gestures")
-                self._job = LatestJob[Followed](self._queue)
+                self._job = LatestJob[DragStep](self._queue)
             callbacks = JobCallbacks(self._show, self._go_on, on_failed=self._fail)
             self._job.start(tr("moving the outline"), follower.steps, callbacks)
         elif not self._held:
             self.stop()
             self.ended.emit()
 
-    def _show(self, _: Followed) -> None:
+    def _show(self, _: DragStep) -> None:
         """A step is finished; what it has made may have been shown already, with what came before it."""
         newest = None if self._follower is None else self._follower.newest
         if newest is not None and newest is not self._shown:

@@ -29,7 +29,7 @@ IN_VAIN = 2
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Grasp:
+class DragStart:
     """A vertex when its drag began.
 
     Attributes
@@ -40,18 +40,18 @@ class Grasp:
         Angle that was shown.
     vertex : int
         Number in ``Deployment.outline(phi)``.
-    held : (m, n) bool
+    locked : (m, n) bool
         Voids that are locked.
     """
 
     design: PosedDesign
     phi: float
     vertex: int
-    held: BoolArray
+    locked: BoolArray
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Followed:
+class DragStep:
     """The design after a step.
 
     Attributes
@@ -73,23 +73,23 @@ class Follower:
 
     Attributes
     ----------
-    newest : Followed or None
+    newest : DragStep or None
         What the last finished step has made.
     """
 
-    def __init__(self, grasp: Grasp) -> None:
-        self._grasp = grasp
+    def __init__(self, start: DragStart) -> None:
+        self._start = start
         self._drag: VertexDrag | None = None
         self._wanted: tuple[int, tuple[float, float]] = (0, (0.0, 0.0))
         self._served = 0
         self._last, self._spent = False, 0.0
-        self.newest: Followed | None = None
+        self.newest: DragStep | None = None
 
-    def want(self, place: tuple[float, float]) -> None:
+    def move_to(self, place: tuple[float, float]) -> None:
         """The pointer is at a place (x, y) in the world now."""
         self._wanted = (self._wanted[0] + 1, place)
 
-    def let_go(self) -> None:
+    def release(self) -> None:
         """The button was released: the present place is the last; the vertex goes there, or as far as time allows."""
         self._last = True
 
@@ -98,7 +98,7 @@ class Follower:
         """Whether there is a place that has not been served."""
         return self._wanted[0] != self._served
 
-    def steps(self, cancel: Cancel) -> Iterator[Followed]:
+    def steps(self, cancel: Cancel) -> Iterator[DragStep]:
         """Take steps until the newest place is reached, or as nearly as it can be."""
         number = taken = in_vain = 0
         while self.waiting and not cancel():
@@ -113,22 +113,22 @@ class Follower:
             stuck = not found.arrived and (in_vain == IN_VAIN or taken == MOST_STEPS or late)
             if found.arrived or stuck:
                 self._served = number
-            self.newest = Followed(found.design, found.arrived, stuck)
+            self.newest = DragStep(found.design, found.arrived, stuck)
             yield self.newest
 
-    def _step(self, place: tuple[float, float]) -> tuple[Followed, float]:
+    def _step(self, place: tuple[float, float]) -> tuple[DragStep, float]:
         """One step towards a place in the world, and how much nearer (unit cells) it has brought the vertex."""
         from kirigami_studio.pipeline.redesign import drag_step
         from kirigami_studio.polish.vertex_drag import ARRIVED, VertexDrag
 
-        grasp = self._grasp
-        before = grasp.design if self.newest is None else self.newest.design
+        start = self._start
+        before = start.design if self.newest is None else self.newest.design
         if self._drag is None:
-            self._drag = VertexDrag(grasp.design.deployment.field, grasp.phi, grasp.vertex, grasp.held)
+            self._drag = VertexDrag(start.design.deployment.field, start.phi, start.vertex, start.locked)
         drag = self._drag
-        wanted = before.to_layout(place, grasp.phi)
+        wanted = before.to_layout(place, start.phi)
         gap = drag.gap(wanted)
         drag_step(drag, wanted)
-        design = PosedDesign(drag.deployment, grasp.design.pose, grasp.design.phi_target)
-        left = drag.gap(design.to_layout(place, grasp.phi))  # the design keeps its middle, so that places shift
-        return Followed(design, left <= ARRIVED, stuck=False), gap - left
+        design = PosedDesign(drag.deployment, start.design.pose, start.design.phi_target)
+        left = drag.gap(design.to_layout(place, start.phi))  # the design keeps its middle, so that places shift
+        return DragStep(design, left <= ARRIVED, stuck=False), gap - left
