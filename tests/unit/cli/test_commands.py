@@ -7,6 +7,7 @@ import math
 import os
 import subprocess
 import sys
+from importlib import import_module
 from pathlib import Path
 
 import ezdxf
@@ -16,6 +17,7 @@ from command_line import answer, refusal
 from PIL import Image
 
 from kirigami_studio.cli import main
+from kirigami_studio.cli.parser import SUB_COMMANDS, SubCommand
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 
@@ -27,6 +29,12 @@ def ratios(tmp_path: Path) -> Path:
     path = tmp_path / "ratios.json"
     path.write_text(json.dumps({"ratio": FIELD.tolist()}))
     return path
+
+
+@pytest.mark.parametrize("command", SUB_COMMANDS, ids=lambda command: command.name)
+def test_that_every_sub_command_finds_its_function(command: SubCommand) -> None:
+    module, function = command.run.split(":")
+    assert callable(vars(import_module(f"kirigami_studio.cli.{module}"))[function])
 
 
 def test_that_decode_answers_with_the_exact_layout(capsys: pytest.CaptureFixture[str], ratios: Path) -> None:

@@ -133,19 +133,20 @@ def test_that_without_a_target_or_as_new_the_ring_is_the_target() -> None:
 
 
 @pytest.mark.parametrize(
-    ("ring", "how", "says"),
+    ("ring", "how", "code"),
     [
-        (rectangle(200, 0, 230, 20), Combine.ADD, "beside"),
-        (rectangle(200, 0, 230, 20), Combine.SUBTRACT, "beside"),
-        (rectangle(-100, -100, 100, 100), Combine.SUBTRACT, "whole target"),
-        (rectangle(0, 0, 5, 5), Combine.SUBTRACT, "hole"),
-        (rectangle(0, 0, 5, 5), Combine.ADD, "changes nothing"),
+        (rectangle(200, 0, 230, 20), Combine.ADD, "combine.beside_adding"),
+        (rectangle(200, 0, 230, 20), Combine.SUBTRACT, "combine.beside_subtracting"),
+        (rectangle(-100, -100, 100, 100), Combine.SUBTRACT, "combine.nothing_left"),
+        (rectangle(0, 0, 5, 5), Combine.SUBTRACT, "combine.hole"),
+        (rectangle(0, 0, 5, 5), Combine.ADD, "combine.no_change"),
     ],
 )
-def test_that_a_ring_that_cannot_be_combined_is_refused_with_what_to_try(ring, how, says) -> None:
+def test_that_a_ring_that_cannot_be_combined_is_refused_with_what_to_try(ring, how, code) -> None:
     target = Placed.from_ring(figure(Figure.RECTANGLE, BOX), "plate")
-    with pytest.raises(TargetError, match=says):
+    with pytest.raises(TargetError, match=r"Draw ") as caught:
         combined(target, ring, how, "rectangle")
+    assert caught.value.code == code
 
 
 def test_that_what_a_cut_splits_off_is_said() -> None:
