@@ -42,7 +42,7 @@ class Dialogs(QObject):
         key = self._controller.document.fabrication.material
         if self.materials is None:
             self.materials = MaterialEditor(self._window, key)
-            self.materials.stock_changed.connect(self.reload_materials)
+            self.materials.materials_changed.connect(self.reload_materials)
             self.materials.coupon_wanted.connect(self._window.files.export_coupon)
         self.materials.choose(key)
         bring_to_front(self.materials)

@@ -59,7 +59,7 @@ class UnsavedWork(QObject):
         self._controller = controller
         self._discarded = False  # the user closes without saving
         self._quit_when_saved = False
-        controller.saved.connect(lambda _: self._close_when_saved())
+        controller.saved.connect(self._close_when_saved)
         controller.filing.projects.save_failed.connect(self._stay)
 
     def save(self) -> bool:

@@ -12,6 +12,7 @@ from kirigami_studio.gui.connections.side_by_side import SideBySide
 from kirigami_studio.gui.connections.stage import StageConnections, VoidConnections
 from kirigami_studio.gui.connections.target import TargetConnections
 from kirigami_studio.gui.controller import Controller
+from kirigami_studio.project.document import Document
 
 if TYPE_CHECKING:
     from kirigami_studio.gui.main_window import MainWindow
@@ -40,8 +41,8 @@ class Connections(QObject):
         window.settings.edited.connect(controller.end_drag)
         window.settings.keep_changed.connect(self._keep_seed)
         controller.variants_known.connect(window.settings.set_variants)
-        controller.session.document_changed.connect(lambda document: window.settings.show_settings(document.settings))
-        window.settings.show_settings(controller.document.settings)
+        controller.session.document_changed.connect(self._show_settings)
+        self._show_settings(controller.document)
 
     def _connect_messages(self) -> None:
         window, controller = self._window, self._controller
@@ -52,6 +53,9 @@ class Connections(QObject):
         controller.filing.recovery.recover_wanted.connect(window.files.recover)
         controller.filing.materials.material_added.connect(window.dialogs.reload_materials)
         window.pasting.file_wanted.connect(window.files.open)
+
+    def _show_settings(self, document: Document) -> None:
+        self._window.settings.show_settings(document.settings)
 
     def _keep_seed(self, keeps: bool) -> None:
         self._controller.generation.planner.keeps_seed = keeps

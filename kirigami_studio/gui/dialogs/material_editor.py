@@ -34,7 +34,7 @@ NEW = tr("Presets are read-only. Copy one to change it.")
 class MaterialEditor(QDialog):
     """A list of all materials beside the form of the chosen one."""
 
-    stock_changed = Signal(str)  #: key of the material that was saved, or "" after one was deleted
+    materials_changed = Signal()  #: one was saved or deleted
     coupon_wanted = Signal(Material)
 
     def __init__(self, parent: QWidget, key: str) -> None:
@@ -106,7 +106,7 @@ class MaterialEditor(QDialog):
         whole.addLayout(right, 1)
 
     def _connect(self) -> None:
-        self.list.currentItemChanged.connect(lambda *_: self._show())
+        self.list.currentItemChanged.connect(self._show)
         self.form.changed.connect(self._show_buttons)
         self.author.textChanged.connect(self._show_buttons)
         self.gaps.measured.connect(self._take_kerf)
@@ -158,7 +158,7 @@ class MaterialEditor(QDialog):
         material_copies.delete_copy(key)
         self._list(key)
         self.status.setText(tr("Deleted {name!r}.", name=name))
-        self.stock_changed.emit("")
+        self.materials_changed.emit()
 
     def _take_kerf(self, kerf_mm: float, sentence: str) -> None:
         """A coupon was measured; the form holds its kerf until it is saved."""
@@ -181,7 +181,7 @@ class MaterialEditor(QDialog):
     def _saved(self, key: str, sentence: str) -> None:
         self._list(key)
         self.status.setText(sentence)
-        self.stock_changed.emit(key)
+        self.materials_changed.emit()
 
     def _list(self, key: str) -> None:
         """Read the library again and show a material."""

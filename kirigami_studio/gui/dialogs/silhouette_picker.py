@@ -47,7 +47,7 @@ class SilhouettePicker(QFrame):
         self._fill(palette)
         self.list.itemClicked.connect(self._take)
         self.list.itemActivated.connect(self._take)
-        self.list.currentItemChanged.connect(lambda item: self._tell(item))
+        self.list.currentItemChanged.connect(self._describe)
         self.search.textChanged.connect(self._filter)
         self.resize(560, 470)
 
@@ -100,7 +100,7 @@ class SilhouettePicker(QFrame):
             item = self.list.item(row)
             item.setHidden(text.strip().lower() not in item.text().lower())
 
-    def _tell(self, item: QListWidgetItem | None) -> None:
+    def _describe(self, item: QListWidgetItem | None) -> None:
         self.about.setText(item.toolTip() if item is not None else tr("Choose a silhouette"))
 
     def _take(self, item: QListWidgetItem) -> None:
