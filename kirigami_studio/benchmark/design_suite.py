@@ -179,13 +179,13 @@ def _tiles(one: Made) -> list[tuple[Image.Image, tuple[str, str]]]:
     grid = f"{one.request.grid[0]} x {one.request.grid[1]}"
     plain = replace(one.best, trim=None)
     agreement = f"IoU {plain.score.iou_exact:.3f} (uniform {plain.score.uniform_iou:.3f})"
-    tiles = [(_drawn(plain, one), (f"{one.target.name}, {grid}", agreement))]
+    tiles = [(_picture_of(plain, one), (f"{one.target.name}, {grid}", agreement))]
     if one.best.trim is not None:
-        tiles.append((_drawn(one.best, one), ("trimmed", f"IoU {one.best.trim.iou:.3f}")))
+        tiles.append((_picture_of(one.best, one), ("trimmed", f"IoU {one.best.trim.iou:.3f}")))
     return tiles
 
 
-def _drawn(candidate: Candidate, one: Made) -> Image.Image:
+def _picture_of(candidate: Candidate, one: Made) -> Image.Image:
     job = ExportJob.of(candidate, one.target.points)
     panels = job.posed.parts(job.phi)
     return draw_polygons(panels, PictureFrame.around([*panels, one.target.points], TILE), one.target.points)

@@ -15,7 +15,7 @@ from kirigami_studio.pipeline.request import Request
 from kirigami_studio.pipeline.run import best_of
 from kirigami_studio.pipeline.variety import distances, distinct
 
-#: What is measured unless told otherwise: the two ends of the window's slider and their middle.
+#: What is measured by default: the two ends of the window's slider and their middle.
 NEARNESS = (0.1, 0.5, 0.9)
 #: The name of samples that were not asked to be like anything.
 FRESH = "fresh"

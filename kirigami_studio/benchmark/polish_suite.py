@@ -124,8 +124,8 @@ def measure_regularity(
     -------
     figures : dict
         For ``unpolished`` and every preference: mean ``siou``, ``iou_exact`` and ``tv`` (paper's total variation per
-        void) with a 95 % interval, and for the preferences ``calmer_at_equal_siou``: the share of targets whose sIoU is
-        no more than 0.003 below and whose total variation is not above that of the unpolished sample.
+        void) with a 95 % interval, and for the preferences ``lower_tv_at_equal_siou``: the share of targets whose sIoU
+        is no more than 0.003 below and whose total variation is not above that of the unpolished sample.
     """
     found: dict[str, list[Score]] = {"unpolished": [], **{name: [] for name in PREFERENCES}}
     for number, target in enumerate(targets):
@@ -139,8 +139,8 @@ def measure_regularity(
         figures[name] = _line(scores)
         if name != "unpolished":
             pairs = zip(scores, found["unpolished"], strict=True)
-            calmer = [now.siou >= before.siou - MOST_LOST and now.tv <= before.tv for now, before in pairs]
-            figures[name] |= {"calmer_at_equal_siou": float(np.mean(calmer))}  # type: ignore[operator]
+            lower = [now.siou >= before.siou - MOST_LOST and now.tv <= before.tv for now, before in pairs]
+            figures[name] |= {"lower_tv_at_equal_siou": float(np.mean(lower))}  # type: ignore[operator]
     return figures
 
 

@@ -155,9 +155,9 @@ def measure_robustness(
             row = []
             for seed in seeds:
                 target = case.seen(shape, np.random.default_rng([seed, number]))
-                drawn = Request(target, grid, k=1, seed=seed, variant=variant, steps=steps, polish=polish)
+                disturbed = Request(target, grid, k=1, seed=seed, variant=variant, steps=steps, polish=polish)
                 wanted = Request(clean, grid, k=1, seed=seed, variant=variant, steps=steps)
-                fields = (best_of(drawn).best.field,) if polish else sample(drawn)
+                fields = (best_of(disturbed).best.field,) if polish else sample(disturbed)
                 row.append(scored(wanted, fields, 0)[0].score)
                 report(done := done + 1, total)
             scores[name].append(row)

@@ -16,7 +16,7 @@ from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.score import Score
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import UsageError
-from kirigami_studio.generator.sampler import draw_fields, one_pose, pose_angle
+from kirigami_studio.generator.sampler import one_pose, pose_angle, sample_fields
 from kirigami_studio.generator.weights import load_model
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.outlines.outline import Outline
@@ -178,7 +178,7 @@ def measure_spread(
         for name in names:
             request = Request(target, grid, k=k, seed=seed, variant=name, steps=steps)
             for poses, angle in POSES.items():
-                fields = draw_fields(load_model(name), target, grid, k, seed, steps, poses=angle)
+                fields = sample_fields(load_model(name), target, grid, k, seed, steps, poses=angle)
                 found[name][poses].append(spread_of(scored(request, fields, 0)))
                 report(done := done + 1, total)
     settings = {"targets": len(targets), "seed": seed, "k": k, "steps": steps, "grid": list(grid), "alike": ALIKE}

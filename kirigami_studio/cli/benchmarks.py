@@ -142,13 +142,14 @@ def polish(arguments: argparse.Namespace) -> int:
 def regularity(arguments: argparse.Namespace) -> int:
     """Match and total variation, unpolished and at every preference."""
     from kirigami_studio.benchmark.polish_suite import measure_regularity
+    from kirigami_studio.pipeline.request import POLISH_STEPS
 
     return _on_targets(
         arguments,
         lambda outlines, report: measure_regularity(
             outlines,
             arguments.variant,
-            polish=arguments.polish,
+            polish=arguments.polish or POLISH_STEPS,
             grid=parse_grid(arguments.grid),
             seed=arguments.seed,
             report=report,

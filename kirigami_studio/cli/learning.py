@@ -17,6 +17,9 @@ if TYPE_CHECKING:
 
 #: Fits of drawn shapes by default: about 3800 shapes, each fitted twice, of which nine in ten come near enough.
 DRAWN_COUNT = 7_000
+#: Validation targets of each family, and of the figures on groups of samples.
+VALIDATION_COUNT = 200
+GROUP_COUNT = 50
 
 
 def dataset(arguments: argparse.Namespace) -> int:
@@ -102,7 +105,7 @@ def train(arguments: argparse.Namespace) -> int:
         settings,
         folder,
         device,
-        validator(200, device),
+        validator(VALIDATION_COUNT, device),
         sources=sources,
         seconds=seconds,
         validate_every=arguments.validate_every,
@@ -147,11 +150,6 @@ def _sources(arguments: argparse.Namespace) -> Sources:
         raise UsageError("training.fit_share_out_of_range", share=arguments.fit_share)
     start = None if arguments.warm_start is None else starting_model(arguments.warm_start)
     return Sources(start, None if arguments.fits is None else FittedFields.load(Path(arguments.fits)))
-
-
-#: Validation targets of each family, and of the figures on groups of samples.
-VALIDATION_COUNT = 200
-GROUP_COUNT = 50
 
 
 def grpo(arguments: argparse.Namespace) -> int:

@@ -11,7 +11,6 @@ from typing import Any
 from kirigami_studio import __version__
 from kirigami_studio.cli.option_types import amount, angle, count, number, positive, whole
 from kirigami_studio.fabricate.options import ConnectorStyle, CutOrder
-from kirigami_studio.pipeline.request import POLISH_STEPS
 from kirigami_studio.polish.preferences import PREFERENCES
 
 Option = tuple[tuple[str, ...], dict[str, Any]]
@@ -359,7 +358,7 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
     ), ("kirigami-studio benchmark polish --targets library --effort 1",)),
     SubCommand("benchmark regularity", "measure match and variation by preference", "benchmarks:regularity", (
         *targets_of_a_suite(500), EXACT, GRID, VARIANT,
-        option("--polish", type=count, default=POLISH_STEPS, help=f"polishing steps (default {POLISH_STEPS})"),
+        option("--polish", type=count, default=None, help="polishing steps (default: as many as 'design' takes)"),
         SEED, *FIGURES,
     ), ("kirigami-studio benchmark regularity --exact --count 100",)),
     SubCommand("benchmark designs", "design a sheet for each target and list the results", "benchmarks:designs", (

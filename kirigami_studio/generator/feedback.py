@@ -15,8 +15,8 @@ import torch
 from torch import Tensor
 
 from kirigami_studio.generator.conditioning import normalised
-from kirigami_studio.generator.gauss_newton import Residuals, evenness_terms, gauss_newton_direction
-from kirigami_studio.generator.sheet import Sheet, carrier_between
+from kirigami_studio.generator.gauss_newton import Residuals, gauss_newton_direction, variation_terms
+from kirigami_studio.generator.sheet import Sheet, grid_transfer
 from kirigami_studio.lattice.batched import BatchedLattice, BatchedSlopes
 
 #: z is decoded within these bounds: early in the flow it still is noise.
@@ -32,7 +32,7 @@ CHUNK = 32
 
 
 @dataclass(frozen=True, slots=True)
-class Sight:
+class Observation:
     """What a network sees of fields.
 
     Attributes
@@ -62,7 +62,7 @@ class Feedback:
     def __init__(self, own: tuple[int, int], sheet: Sheet, device: torch.device) -> None:
         self.sheet, self.device = sheet, device
         self.lattice, self.slopes = _geometry(sheet.rows, sheet.columns, sheet.zipped, device)
-        self.carrier = carrier_between(own, sheet, device)
+        self.transfer = grid_transfer(own, sheet, device)
 
     @staticmethod
     def width(rows: int, columns: int, loop_points: int, direction: bool) -> int:
@@ -70,40 +70,44 @@ class Feedback:
         vertices = 2 * (rows + columns) + 4
         return 2 * vertices + 4 * vertices + loop_points + (rows * columns if direction else 0)
 
-    def __call__(self, z: Tensor, loop: Tensor, direction: bool, evenness: Tensor | None = None) -> Sight:
+    def __call__(self, z: Tensor, loop: Tensor, direction: bool, variation_cost: Tensor | None = None) -> Observation:
         """Describe fields z (B, m * n) of the sheet against target loops (B, S, 2), without gradient.
 
-        The Gauss-Newton direction takes most of the time and is left out where nobody asks for it; ``evenness`` (B,)
-        is the cost of TV(x) / (m n) in it.
+        The Gauss-Newton direction takes most of the time and is left out where nobody asks for it;
+        ``variation_cost`` (B,) is the cost of TV(x) / (m n) in it.
         """
         with torch.no_grad():
             if not direction or self.device.type != "cpu":
-                return self._described(z, loop, direction, evenness)
+                return self._described(z, loop, direction, variation_cost)
             none = [None] * -(-len(z) // CHUNK)
-            costs = none if evenness is None else torch.split(evenness, CHUNK)
+            costs = none if variation_cost is None else torch.split(variation_cost, CHUNK)
             parts = zip(torch.split(z, CHUNK), torch.split(loop, CHUNK), costs, strict=True)
             seen = [self._described(field, target, direction, cost) for field, target, cost in parts]
-            return Sight(torch.cat([one.features for one in seen]), torch.cat([one.direction for one in seen]))
+            return Observation(torch.cat([one.features for one in seen]), torch.cat([one.direction for one in seen]))
 
-    def _described(self, z: Tensor, loop: Tensor, wanted: bool, evenness: Tensor | None) -> Sight:
+    def _described(self, z: Tensor, loop: Tensor, wanted: bool, variation_cost: Tensor | None) -> Observation:
         field = z.clamp(-Z_BOUND, Z_BOUND).view(-1, self.sheet.rows, self.sheet.columns)
         outline, slopes = self._outline(field, wanted)
         samples = _with_middles(outline)
         squared = squared_distances(samples, loop)
         out, _ = to_loop(samples, loop, squared.argmin(dim=2))
         back, place = to_loop(loop[:, ::2], samples, squared[:, :, ::2].argmin(dim=1))
-        stations, away = self.carrier.stations(outline), out
-        if not self.carrier.same_outline:
+        stations, away = self.transfer.stations(outline), out
+        if not self.transfer.same_outline:
             read = _with_middles(stations)
             away, _ = to_loop(read, loop, squared_distances(read, loop).argmin(dim=2))
         seen = [stations.flatten(1) / PLACE_SCALE, away.flatten(1) / GAP_SCALE, back.flatten(1) / GAP_SCALE]
         if slopes is None:
-            return Sight(torch.cat(seen, dim=1), z[:, :0])
-        even = evenness_terms(field, evenness) if evenness is not None and bool(evenness.any()) else None
-        direction = gauss_newton_direction(Residuals.of(outline, loop, out, back, 0.5 * place), slopes, even)
+            return Observation(torch.cat(seen, dim=1), z[:, :0])
+        variation = (
+            variation_terms(field, variation_cost)
+            if variation_cost is not None and bool(variation_cost.any())
+            else None
+        )
+        direction = gauss_newton_direction(Residuals.of(outline, loop, out, back, 0.5 * place), slopes, variation)
         direction = direction.clamp(-DIRECTION_BOUND, DIRECTION_BOUND)
-        seen.append(self.carrier.down(direction) / DIRECTION_SCALE)
-        return Sight(torch.cat(seen, dim=1), direction)
+        seen.append(self.transfer.down(direction) / DIRECTION_SCALE)
+        return Observation(torch.cat(seen, dim=1), direction)
 
     def _outline(self, field: Tensor, wanted: bool) -> tuple[Tensor, Tensor | None]:
         """Outlines of fields (B, m, n), unit area about the centroid; if wanted their derivatives (B, L, 2, m * n)."""

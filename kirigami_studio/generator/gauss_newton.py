@@ -84,7 +84,9 @@ class Residuals:
         )
 
 
-def gauss_newton_direction(residuals: Residuals, slopes: Tensor, even: tuple[Tensor, Tensor] | None = None) -> Tensor:
+def gauss_newton_direction(
+    residuals: Residuals, slopes: Tensor, variation: tuple[Tensor, Tensor] | None = None
+) -> Tensor:
     """Damped Gauss-Newton change of z; the outline's shift is free.
 
     Parameters
@@ -92,8 +94,8 @@ def gauss_newton_direction(residuals: Residuals, slopes: Tensor, even: tuple[Ten
     residuals : Residuals of B outlines
     slopes : (B, L, 2, C) tensor
         Derivative of the outlines (unit-area lengths) by the C entries of z.
-    even : ((B, C) tensor, (B, C, C) tensor), optional
-        Descent and matrix of what else is wanted of z, see ``evenness``.
+    variation : ((B, C) tensor, (B, C, C) tensor), optional
+        What total variation costs, see :func:`variation_terms`.
 
     Returns
     -------
@@ -107,9 +109,9 @@ def gauss_newton_direction(residuals: Residuals, slopes: Tensor, even: tuple[Ten
     diagonal = normal.diagonal(dim1=1, dim2=2)
     diagonal += DAMPING * diagonal[:, :-2].mean(dim=1, keepdim=True) + 1e-12
     descent = columns.mT @ gradient[..., None]
-    if even is not None:
-        descent[:, :-2, 0] += even[0]
-        normal[:, :-2, :-2] += even[1]
+    if variation is not None:
+        descent[:, :-2, 0] += variation[0]
+        normal[:, :-2, :-2] += variation[1]
     factor, _ = torch.linalg.cholesky_ex(normal)
     change: Tensor = torch.cholesky_solve(descent, factor)
     return torch.nan_to_num(change[:, :-2, 0], nan=0.0, posinf=0.0, neginf=0.0)
@@ -139,8 +141,11 @@ LN10 = math.log(10.0)
 SMALLEST_DIFFERENCE = 0.1
 
 
-def evenness_terms(z: Tensor, weight: Tensor) -> tuple[Tensor, Tensor]:
-    """Quadratic model of ``weight`` times TV(x) / (m n) around fields.
+def variation_terms(z: Tensor, weight: Tensor) -> tuple[Tensor, Tensor]:
+    """Quadratic model of ``weight`` times the total variation TV(x) / (m n) around fields.
+
+    The paper's TV(x) is a sum of absolute differences of neighbours; around a field it is matched by a quadratic whose
+    weights are the inverse differences (iteratively reweighted least squares), linear in z through dx = x ln 10 dz.
 
     Parameters
     ----------

@@ -10,12 +10,12 @@ from torch import Tensor, nn
 
 from kirigami_studio.generator.conditioning import ConditionLayout, condition, smoothed_points
 from kirigami_studio.generator.feedback import Feedback
-from kirigami_studio.generator.sheet import Carrier, Sheet, carrier_between
+from kirigami_studio.generator.sheet import GridTransfer, Sheet, grid_transfer
 
 #: What corrections take TV(x) / (m n) to cost at full preference for regularity, in squared unit-area lengths: a third
 #: less variation for half a point of match or less (tried once on 40 structured and 40 Sobol outlines with the prior);
 #: drawn shapes with arms lose more.
-EVENNESS = 1.5e-4
+VARIATION_COST = 1.5e-4
 #: Numbers that describe a sheet.
 SHEET_FEATURES = 5
 
@@ -47,7 +47,7 @@ class NetworkShape:
     preference : bool
         The network takes a preference between match (0) and regularity (1).
     sheets : bool
-        The network is told the sheet's grid and angle, which it may have met in training.
+        The network is given the sheet's grid and angle, which it may have met in training.
     """
 
     rows: int = 10
@@ -86,23 +86,23 @@ class TargetCode:
     encoded : (B, blocks * hidden) tensor
     loop : (B, loop_points, 2) tensor
         Target boundary for feedback.
-    carrier : Carrier
+    transfer : GridTransfer
         Between the network's grid and the sheet that all of them are for.
     feedback : Feedback, optional
         The exact geometry of that sheet; missing where the network does not look at it.
-    evenness : (B,) tensor
-        What corrections take TV(x) / (m n) to cost, see ``evenness``.
+    variation_cost : (B,) tensor
+        What corrections take TV(x) / (m n) to cost, see ``gauss_newton``.
     """
 
     encoded: Tensor
     loop: Tensor
-    carrier: Carrier
+    transfer: GridTransfer
     feedback: Feedback | None
-    evenness: Tensor
+    variation_cost: Tensor
 
     def picked(self, rows: slice) -> TargetCode:
         """Some of the targets."""
-        return replace(self, encoded=self.encoded[rows], loop=self.loop[rows], evenness=self.evenness[rows])
+        return replace(self, encoded=self.encoded[rows], loop=self.loop[rows], variation_cost=self.variation_cost[rows])
 
     def repeated(self, count: int) -> TargetCode:
         """Every target ``count`` times in a row."""
@@ -110,12 +110,12 @@ class TargetCode:
             self,
             encoded=self.encoded.repeat_interleave(count, dim=0),
             loop=self.loop.repeat_interleave(count, dim=0),
-            evenness=self.evenness.repeat_interleave(count),
+            variation_cost=self.variation_cost.repeat_interleave(count),
         )
 
     def on_sheet(self, z: Tensor) -> Tensor:
         """Fields (B, cells) of the network's grid as fields of the sheet: (B, m * n)."""
-        return self.carrier.up(z)
+        return self.transfer.up(z)
 
 
 class _Block(nn.Module):
@@ -196,15 +196,17 @@ class VelocityNetwork(nn.Module):
             preference = polygons.new_zeros(len(polygons))
         if self.prefer is not None:
             encoded = encoded + self.prefer(preference[:, None])
-        evenness = EVENNESS * preference.square()
+        variation_cost = VARIATION_COST * preference.square()
         sheet = sheet or Sheet(shape.rows, shape.columns)
         if self.lie is not None:
             encoded = encoded + self.lie(_sheet_features(sheet, shape, polygons))
         own, device = (shape.rows, shape.columns), polygons.device
         if not shape.loop_points:
-            return TargetCode(encoded, polygons[:, :0], carrier_between(own, sheet, device), None, evenness)
+            return TargetCode(encoded, polygons[:, :0], grid_transfer(own, sheet, device), None, variation_cost)
         feedback = Feedback(own, sheet, device)
-        return TargetCode(encoded, smoothed_points(polygons, shape.loop_points), feedback.carrier, feedback, evenness)
+        return TargetCode(
+            encoded, smoothed_points(polygons, shape.loop_points), feedback.transfer, feedback, variation_cost
+        )
 
     def forward(self, z: Tensor, t: Tensor, code: TargetCode) -> Tensor:
         """Velocity.
@@ -222,39 +224,39 @@ class VelocityNetwork(nn.Module):
         features = z[:, :0]
         if code.feedback is not None:
             features = code.feedback(code.on_sheet(z), code.loop, self.shape.direction).features
-        velocity: Tensor = self.leave(self._thought(z, t, code, features))
+        velocity: Tensor = self.leave(self._hidden(z, t, code, features))
         return velocity
 
     @property
     def corrects(self) -> bool:
-        """Whether the network looks at the exact geometry, which then can correct finished fields."""
+        """Whether the network looks at the exact geometry, which then can correct the fields that the flow ends at."""
         return self.shape.loop_points > 0
 
     def correction(self, z: Tensor, code: TargetCode) -> Tensor:
-        """Change of finished fields z (B, m * n) of the sheet that brings their outlines nearer: (B, m * n).
+        """Change of fields z (B, m * n) of the sheet that brings their outlines nearer: (B, m * n).
 
         The Gauss-Newton direction; a network that was trained to correct takes it as far in each ratio as it thinks
         fit, and adds to it.
         """
         if code.feedback is None:
             return torch.zeros_like(z)
-        sight = code.feedback(z, code.loop, True, code.evenness)
+        observed = code.feedback(z, code.loop, True, code.variation_cost)
         if self.follow is None or self.amend is None:
-            return sight.direction
-        carrier = code.carrier
-        x = self._thought(carrier.down(z), torch.ones_like(z[:, 0]), code, sight.features)
-        change: Tensor = (1.0 + carrier.up(self.follow(x))) * sight.direction + carrier.up(self.amend(x))
+            return observed.direction
+        transfer = code.transfer
+        x = self._hidden(transfer.down(z), torch.ones_like(z[:, 0]), code, observed.features)
+        change: Tensor = (1.0 + transfer.up(self.follow(x))) * observed.direction + transfer.up(self.amend(x))
         return change
 
-    def _thought(self, z: Tensor, t: Tensor, code: TargetCode, features: Tensor) -> Tensor:
+    def _hidden(self, z: Tensor, t: Tensor, code: TargetCode, features: Tensor) -> Tensor:
         """What the last block makes of a state: (B, width)."""
         time = time_features(t, self.shape.time_features)
         conditions = (code.encoded + self.time_per_block(time)).chunk(self.shape.blocks, dim=-1)
         x: Tensor = self.enter(torch.cat([z / self.shape.z_scale, time, features], dim=-1))
         for block, bias in zip(self.blocks, conditions, strict=True):
             x = block(x, bias)
-        thought: Tensor = self.norm(x)
-        return thought
+        hidden: Tensor = self.norm(x)
+        return hidden
 
 
 def _sheet_features(sheet: Sheet, shape: NetworkShape, like: Tensor) -> Tensor:

@@ -71,7 +71,7 @@ class Near:
     nearness: float
 
 
-def draw_fields(
+def sample_fields(
     model: Model,
     target: Outline,
     grid: tuple[int, int],
@@ -105,18 +105,18 @@ def draw_fields(
     whole = -(-k // BATCH) * BATCH
     noise = np.random.default_rng(seed).standard_normal((whole, shape.rows * shape.columns)) * shape.z_scale
     sheet = Sheet(*grid, phi)
-    drawn: list[Tensor] = []
+    sampled: list[Tensor] = []
     with torch.inference_mode(), one_torch_thread():
         for start in range(0, whole, BATCH):
             batch = range(start, start + BATCH)
-            seen = posed(target, batch, poses) if near is None else lying(target, len(batch), near.angle)
+            seen = posed(target, batch, poses) if near is None else turned_target(target, len(batch), near.angle)
             code = model.code(seen, sheet)
             rows = torch.tensor(noise[start : start + BATCH], dtype=torch.float32)
             late = None
             if near is not None:
                 rows, late = _late_start(near, rows, (shape.rows, shape.columns), code)
-            drawn.append(integrate(model.network, rows, code, steps, late))
-    z = torch.cat(drawn)[:k].double().numpy()
+            sampled.append(integrate(model.network, rows, code, steps, late))
+    z = torch.cat(sampled)[:k].double().numpy()
     fields: FloatArray = np.clip(z.reshape(k, *grid), -LOG_RATIO_LIMIT, LOG_RATIO_LIMIT)
     return tuple(RatioField.from_log10(np.round(field, 6)) for field in fields)
 
@@ -130,7 +130,7 @@ def _late_start(near: Near, noise: Tensor, own: tuple[int, int], code: Code) -> 
     return (1.0 - near.nearness) * noise + near.nearness * design, LateStart(near.nearness, remainder)
 
 
-def lying(target: Outline, count: int, angle: float) -> Tensor:
+def turned_target(target: Outline, count: int, angle: float) -> Tensor:
     """The target's polygon turned by one angle (radians) for every candidate: (count, L, 2)."""
     polygon = normalised(torch.tensor(target.points, dtype=torch.float32)[None])
     return turned(polygon.expand(count, -1, -1), torch.full((count,), angle))

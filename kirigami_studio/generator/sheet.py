@@ -1,6 +1,6 @@
 """How fields of one grid and one outline stand in for those of every other sheet.
 
-A network draws on its own grid; a sheet may have any.  Fields are carried between the two by the lattice's parity-wise
+A network draws on its own grid; a sheet may have any.  Fields go from one to the other by the lattice's parity-wise
 interpolation, which is linear, and outlines are read at as many stations, side by side, as the network's own has
 vertices.  On the network's own sheet both are the identity.
 """
@@ -45,7 +45,7 @@ class Sheet:
         return m, n, m, n
 
 
-class Carrier:
+class GridTransfer:
     """Constant matrices between a network's own grid and a sheet.
 
     Parameters
@@ -83,16 +83,16 @@ class Carrier:
         return outline if self.same_outline else self._stations @ outline
 
 
-def carrier_between(own: tuple[int, int], sheet: Sheet, device: torch.device) -> Carrier:
-    """The carrier of a sheet; it depends on the angle only by whether the edge hinges have zipped."""
-    return _carrier(own, sheet.rows, sheet.columns, sheet.zipped, device)
+def grid_transfer(own: tuple[int, int], sheet: Sheet, device: torch.device) -> GridTransfer:
+    """The transfer to a sheet; it depends on the angle only by whether the edge hinges have zipped."""
+    return _transfer(own, sheet.rows, sheet.columns, sheet.zipped, device)
 
 
 @lru_cache(maxsize=256)
-def _carrier(own: tuple[int, int], rows: int, columns: int, zipped: bool, device: torch.device) -> Carrier:
+def _transfer(own: tuple[int, int], rows: int, columns: int, zipped: bool, device: torch.device) -> GridTransfer:
     # Kept for later: a table made while sampling, without gradients, must serve training too.
     with torch.inference_mode(False):
-        return Carrier(own, Sheet(rows, columns, 0.0 if zipped else 1.0), device)
+        return GridTransfer(own, Sheet(rows, columns, 0.0 if zipped else 1.0), device)
 
 
 def _resizing(old: tuple[int, int], new: tuple[int, int]) -> FloatArray:

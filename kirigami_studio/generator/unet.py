@@ -1,4 +1,4 @@
-"""The paper's network: a U-Net on the resized field, told the target's mask by a ControlNet branch.
+"""The paper's network: a U-Net on the resized field, which gets the target's mask through a ControlNet branch.
 
 A field of m x n is resized to 32 x 32, passes a U-Net of four levels (64, 128, 256, 384 channels, two residual blocks
 each, attention in the last three, 32 groups, residual up and down sampling) and is resized back (paper, Appendix
@@ -6,7 +6,7 @@ each, attention in the last three, 32 groups, residual up and down sampling) and
 the U-Net's downward half sees the field and the mask and adds its features, through convolutions that begin at zero, to
 what the U-Net's upward half takes over (ControlNet: Zhang et al. 2023).
 
-Readings where the text leaves room: attention is one multi-head layer after each residual block, with two heads (the
+Readings where the text is open: attention is one multi-head layer after each residual block, with two heads (the
 paper's head widths are half the channels), not the "12 transformer layers" of the paper's table, which would add about
 270 million weights to these 64 million; nothing is frozen, both branches train together from random weights.
 
@@ -36,7 +36,7 @@ from torch.nn import functional
 from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.foundation.paper import MASK_SIZE
 from kirigami_studio.generator.conditioning import ConditionLayout
-from kirigami_studio.generator.sheet import Carrier, Sheet, carrier_between
+from kirigami_studio.generator.sheet import GridTransfer, Sheet, grid_transfer
 
 
 def filled_masks(polygons: Tensor, size: int = MASK_SIZE) -> Tensor:
@@ -248,24 +248,24 @@ class MaskCode:
     ----------
     hint : (B, channels[0], latent, latent) tensor
         The encoded mask, which the ControlNet branch adds to the field.
-    carrier : Carrier
+    transfer : GridTransfer
         Between the network's grid and the sheet that the targets are for.
     """
 
     hint: Tensor
-    carrier: Carrier
+    transfer: GridTransfer
 
     def repeated(self, count: int) -> MaskCode:
         """Every target ``count`` times in a row."""
-        return MaskCode(self.hint.repeat_interleave(count, dim=0), self.carrier)
+        return MaskCode(self.hint.repeat_interleave(count, dim=0), self.transfer)
 
     def picked(self, rows: slice) -> MaskCode:
         """Some of the targets."""
-        return MaskCode(self.hint[rows], self.carrier)
+        return MaskCode(self.hint[rows], self.transfer)
 
     def on_sheet(self, z: Tensor) -> Tensor:
         """Fields (B, cells) of the network's grid as fields of the sheet: (B, m * n)."""
-        return self.carrier.up(z)
+        return self.transfer.up(z)
 
 
 def _attention(shape: UNetShape, level: int) -> SelfAttention | None:
@@ -384,8 +384,8 @@ class UNetVelocity(nn.Module):
         """
         masks = filled_masks(polygons, self.shape.mask)[:, None]
         own = self.shape.rows, self.shape.columns
-        carrier = carrier_between(own, sheet or Sheet(*own), polygons.device)
-        return MaskCode(self.hint(functional.avg_pool2d(masks, self.shape.mask // self.shape.latent)), carrier)
+        transfer = grid_transfer(own, sheet or Sheet(*own), polygons.device)
+        return MaskCode(self.hint(functional.avg_pool2d(masks, self.shape.mask // self.shape.latent)), transfer)
 
     def forward(self, z: Tensor, t: Tensor, code: MaskCode) -> Tensor:
         """Velocity.

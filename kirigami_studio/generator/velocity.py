@@ -76,7 +76,7 @@ class Velocity(Protocol):
 
     @property
     def corrects(self) -> bool:
-        """Whether the network can also correct finished fields."""
+        """Whether the network can also correct the fields that the flow ends at."""
         ...
 
     def code(
@@ -93,7 +93,7 @@ class Velocity(Protocol):
         ...
 
     def correction(self, z: Tensor, code: Any) -> Tensor:
-        """Change of finished fields z (B, m * n) of the sheet that brings their outlines nearer: (B, m * n)."""
+        """Change of fields z (B, m * n) of the sheet that brings their outlines nearer: (B, m * n)."""
         ...
 
     def __call__(self, z: Tensor, t: Tensor, code: Any) -> Tensor:

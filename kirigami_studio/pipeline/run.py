@@ -121,15 +121,15 @@ def best_of(request: Request, cancel: Callable[[], bool] = never, pool: Pool | N
 
 def sample(request: Request) -> tuple[RatioField, ...]:
     """Sample the request's fields; torch is imported here, on the first run, and not when the program starts."""
-    from kirigami_studio.generator.sampler import Near, draw_fields
+    from kirigami_studio.generator.sampler import Near, sample_fields
     from kirigami_studio.generator.weights import load_model
 
     model = load_model(request.variant)
     wanted = model, request.target, request.grid, request.k, request.seed, request.steps, request.phi
     if request.near is None:
-        return draw_fields(*wanted)
+        return sample_fields(*wanted)
     near = Near(request.near, rotation_of_target(request.near, request.target, request.phi), request.nearness)
-    return draw_fields(*wanted, near=near)
+    return sample_fields(*wanted, near=near)
 
 
 def rotation_of_target(field: RatioField, target: Outline, phi: float) -> float:

@@ -1,4 +1,4 @@
-"""Fields -> weights: data sets and training, beside the app, which never imports this room.
+"""Fields -> weights: data sets and training; the app never imports this package.
 
 What training hands over is one safetensors file and its card.  May import everything below the GUI.
 """

@@ -132,10 +132,10 @@ def verify(split: Split, seed: int = 0) -> float:
 def _batches(family: str, grid: tuple[int, int], seed: int) -> Iterator[FloatArray]:
     """Endless candidate fields of one family."""
     if family == "sobol":
-        drawn = 0
+        taken = 0
         while True:
-            yield sobol_fields(BATCH, *grid, seed=seed, skip=drawn)
-            drawn += BATCH
+            yield sobol_fields(BATCH, *grid, seed=seed, skip=taken)
+            taken += BATCH
     if family == "structured":
         rng: Generator = np.random.default_rng(seed)
         while True:

@@ -36,7 +36,7 @@ from kirigami_studio.foundation.errors import KirigamiError, UsageError
 from kirigami_studio.foundation.files import write_atomically
 from kirigami_studio.foundation.paper import LOG_RATIO_LIMIT
 from kirigami_studio.generator.conditioning import normalised, square_pose
-from kirigami_studio.generator.sampler import BATCH, draw_fields, pose_angle
+from kirigami_studio.generator.sampler import BATCH, pose_angle, sample_fields
 from kirigami_studio.generator.weights import load_model
 from kirigami_studio.lattice.batched import BatchedLattice
 from kirigami_studio.lattice.deployment import deploy
@@ -194,7 +194,7 @@ def fitted_block(block: int, seed: int, grid: tuple[int, int], variant: str, siz
     rows: list[tuple[Float32Array, Float32Array, float, int, int]] = []
     for number in range(block * size, (block + 1) * size):
         target = drawn_shape(seed, number)
-        fields = draw_fields(load_model(variant), target, grid, BATCH, number, SAMPLING_STEPS)
+        fields = sample_fields(load_model(variant), target, grid, BATCH, number, SAMPLING_STEPS)
         # Odd candidates see the target in poses between the quarter turns.
         between = 1 + 2 * int(np.random.default_rng((seed, number, 1)).integers(BATCH // 2))
         for candidate in (0, between):

@@ -210,7 +210,7 @@ def train_grpo(
     """
     if start.digest != settings.start:
         raise ModelError("training.other_start")
-    run = _Run(settings, opened(folder), device, start)
+    run = GrpoRun(settings, opened(folder), device, start)
     began = time.perf_counter()
 
     def record() -> dict[str, float]:
@@ -237,8 +237,8 @@ def aligned_network(folder: Path, start: Model) -> Network:
     return network.eval()
 
 
-class _Run:
-    """The mutable part of a run."""
+class GrpoRun:
+    """The mutable part of a run: one rollout, its rewards and one update a step."""
 
     def __init__(self, settings: GrpoSettings, path: Path, device: torch.device, start: Model) -> None:
         self.settings, self.path, self.device = settings, path, device

@@ -64,16 +64,16 @@ def preference_terms(lattice: BatchedLattice, sheet: Sheet, z: Tensor, loop: Ten
 
 
 def trail_gap(
-    lattice: BatchedLattice, sheet: Sheet, finished: list[Tensor], loop: Tensor
+    lattice: BatchedLattice, sheet: Sheet, designs: list[Tensor], loop: Tensor
 ) -> tuple[PreferenceTerms, Tensor]:
-    """Terms of the last of several finished fields, and the mean gap of those before it, 0 if there are none.
+    """Terms of the last of several designs of a sampler, and the mean gap of those before it, 0 if there are none.
 
-    A correction is not differentiated through, so what it starts from has to be told by itself how good it is.
+    A correction is not differentiated through, so the designs that corrections start from have a loss of their own.
     """
-    terms = preference_terms(lattice, sheet, finished[-1], loop)
-    if len(finished) == 1:
+    terms = preference_terms(lattice, sheet, designs[-1], loop)
+    if len(designs) == 1:
         return terms, torch.zeros_like(terms.match).mean()
-    early = [preference_terms(lattice, sheet, z, loop) for z in finished[:-1]]
+    early = [preference_terms(lattice, sheet, z, loop) for z in designs[:-1]]
     return terms, torch.stack([one.match + one.excess for one in early]).mean()
 
 
@@ -102,6 +102,6 @@ def _soft_length(gap: Tensor) -> Tensor:
 
 
 def total_variation(x: Tensor) -> Tensor:
-    """The paper's TV(x) / (m n) of ratios (B, m, n): (B,), differentiable; ``evaluate.regularity`` for one field."""
+    """The paper's TV(x) / (m n) of ratios (B, m, n): (B,), differentiable."""
     down, right = x.diff(dim=1).abs().sum(dim=(1, 2)), x.diff(dim=2).abs().sum(dim=(1, 2))
     return (down + right) / x[0].numel()

@@ -46,11 +46,11 @@ def pictured(polygons: Tensor, count: int, generator: torch.Generator) -> Tensor
     """
     chosen = torch.rand((2, len(polygons)), generator=generator, device=generator.device).cpu().numpy()
     sizes = np.round(PIXELS[0] * (PIXELS[1] / PIXELS[0]) ** chosen[0]).astype(int)
-    drawn = []
+    traced = []
     for polygon, size, turn in zip(polygons.cpu().double().numpy(), sizes, chosen[1], strict=True):
         ring = torch.tensor(_redrawn(polygon, int(size), 2.0 * math.pi * float(turn)), dtype=torch.float32)
-        drawn.append(contour_points(normalised(ring[None]), count))
-    return torch.cat(drawn).to(polygons.device)
+        traced.append(contour_points(normalised(ring[None]), count))
+    return torch.cat(traced).to(polygons.device)
 
 
 def _redrawn(polygon: FloatArray, size: int, angle: float) -> FloatArray:

@@ -224,9 +224,9 @@ class AlignRun:
         noise = torch.randn((settings.batch, cells), generator=self.generator, device=self.device)
         noise = noise * settings.shape.z_scale
         code = targets.code(self.network, sheet, preference)
-        finished = trail(self.network, noise, code, settings.sampling_steps)
-        terms, early = trail_gap(self._lattice(sheet), sheet, finished, targets.loop)
-        z = finished[-1]
+        designs = trail(self.network, noise, code, settings.sampling_steps)
+        terms, early = trail_gap(self._lattice(sheet), sheet, designs, targets.loop)
+        z = designs[-1]
         anchored = slice(0, None, settings.anchored_every)
         with torch.no_grad():
             code = targets.code(self.prior, sheet, preference).picked(anchored)

@@ -161,7 +161,7 @@ def train_flow(
     """
     sources = sources or Sources()
     sources.check(settings)
-    run = _Run(settings, opened(folder), device, sources)
+    run = FlowRun(settings, opened(folder), device, sources)
     began = time.perf_counter()
     running = math.nan
     while run.step < settings.steps:
@@ -179,11 +179,20 @@ def train_flow(
 
 def trained_network(settings: FlowSettings, folder: Path, device: torch.device) -> Network:
     """The averaged network of the checkpoint in ``folder``: what is shipped."""
-    return _Run(settings, folder / CHECKPOINT, device, Sources()).averaged()
+    return FlowRun(settings, folder / CHECKPOINT, device, Sources()).averaged()
 
 
-class _Run:
-    """The mutable part of a training run."""
+class FlowRun:
+    """The mutable part of a training run.
+
+    Parameters
+    ----------
+    settings : FlowSettings
+    path : Path
+        Of the checkpoint.
+    device : torch.device
+    sources : Sources
+    """
 
     def __init__(self, settings: FlowSettings, path: Path, device: torch.device, sources: Sources) -> None:
         self.settings, self.path, self.device = settings, path, device

@@ -57,10 +57,10 @@ def _sampled(network: Velocity, seen: Tensor, lattice: BatchedLattice, steps: in
     """Outlines of one sample for each target as seen."""
     generator = torch.Generator().manual_seed(seed)
     noise = torch.randn((len(seen), lattice.rows * lattice.columns), generator=generator) * network.shape.z_scale
-    drawn = integrate(network, noise.to(seen.device), network.code(seen), steps).clamp(
+    sampled = integrate(network, noise.to(seen.device), network.code(seen), steps).clamp(
         -LOG_RATIO_LIMIT, LOG_RATIO_LIMIT
     )
-    return normalised(zero_outline(lattice, drawn.view(-1, lattice.rows, lattice.columns)))
+    return normalised(zero_outline(lattice, sampled.view(-1, lattice.rows, lattice.columns)))
 
 
 def _ious(results: Tensor, targets: Tensor) -> FloatArray:
@@ -112,8 +112,8 @@ def group_figures(
         code = network.code(turned(targets, -square_pose(targets)), preference=asked).repeated(samples)
         generator = torch.Generator().manual_seed(0)
         noise = torch.randn((count * samples, rows * columns), generator=generator) * network.shape.z_scale
-        drawn = integrate(network, noise.to(device), code, steps).clamp(-LOG_RATIO_LIMIT, LOG_RATIO_LIMIT)
-    designs = drawn.cpu().double().view(count, samples, rows, columns)
+        sampled = integrate(network, noise.to(device), code, steps).clamp(-LOG_RATIO_LIMIT, LOG_RATIO_LIMIT)
+    designs = sampled.cpu().double().view(count, samples, rows, columns)
     variation = [total_variation(RatioField.from_log10(z)) for z in designs.flatten(0, 1).numpy()]
     return {"spread": float(designs.std(dim=1).mean()), "tv": float(np.mean(variation))}
 

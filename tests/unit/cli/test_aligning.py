@@ -31,6 +31,13 @@ def sighted(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return store_model("prior", VelocityNetwork(NetworkShape()), tmp_path_factory.mktemp("sighted"), {})
 
 
+@pytest.fixture(autouse=True)
+def few_targets(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Watching 200 targets of each family takes most of a minute."""
+    monkeypatch.setattr("kirigami_studio.cli.learning.VALIDATION_COUNT", 3)
+    monkeypatch.setattr("kirigami_studio.cli.learning.GROUP_COUNT", 3)
+
+
 def test_that_weights_are_aligned_and_written_with_their_manifest(
     capsys: pytest.CaptureFixture[str], tmp_path: Path, weights: Path
 ) -> None:
@@ -77,10 +84,8 @@ def test_that_what_is_missing_or_makes_no_sense_is_refused_in_a_sentence(
 
 
 def test_that_a_prior_is_aligned_to_three_variants_of_one_file_and_resumed(
-    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path, sighted: Path
+    capsys: pytest.CaptureFixture[str], tmp_path: Path, sighted: Path
 ) -> None:
-    # Watching 200 targets of each family takes most of a minute.
-    monkeypatch.setattr("kirigami_studio.cli.learning.VALIDATION_COUNT", 3)
     run = tmp_path / "run"
     words = ["train", "align", "--start", str(sighted), "--steps", "2", "--batch", "4", "--drawn", "3",
              "--learning-rate", "0.01", "--device", "cpu", "--out", str(run)]  # fmt: skip

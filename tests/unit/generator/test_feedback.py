@@ -96,7 +96,7 @@ def test_that_the_direction_reaches_the_features_on_the_networks_grid() -> None:
     sheet = Sheet(9, 8)
     feedback = Feedback(OWN, sheet, CPU)
     other = feedback(smooth_noise(2, 72), own_loop(-smooth_noise(2, 72), 64, sheet), True)
-    torch.testing.assert_close(other.features[:, -36:] * DIRECTION_SCALE, feedback.carrier.down(other.direction))
+    torch.testing.assert_close(other.features[:, -36:] * DIRECTION_SCALE, feedback.transfer.down(other.direction))
 
 
 def test_that_many_fields_are_described_like_few() -> None:

@@ -9,7 +9,7 @@ import torch
 from small_networks import SMALL, random_fields, random_network, silhouettes
 
 from kirigami_studio.generator.conditioning import contour_points
-from kirigami_studio.generator.network import EVENNESS, NetworkShape, VelocityNetwork
+from kirigami_studio.generator.network import VARIATION_COST, NetworkShape, VelocityNetwork
 from kirigami_studio.generator.sheet import Sheet
 from kirigami_studio.generator.velocity import joined
 from kirigami_studio.training.preference_loss import boundary_gap
@@ -88,7 +88,7 @@ def test_that_networks_that_were_not_trained_to_correct_take_the_plain_gauss_new
     assert code.feedback is not None
     change = network.correction(z, code)
     assert float(change.abs().mean()) > 0.01
-    assert torch.equal(change, code.feedback(z, code.loop, True, code.evenness).direction)
+    assert torch.equal(change, code.feedback(z, code.loop, True, code.variation_cost).direction)
     # The same as where gates begin.
     assert torch.equal(change, trained.correction(z, trained.code(TARGETS, preference=preference, sheet=sheet)))
     # Its velocity does without the direction, so it has fewer inputs.
@@ -128,7 +128,7 @@ def test_that_a_preference_counts_once_its_weights_are_not_zero() -> None:
     assert not torch.allclose(mixed[3], whole[3], atol=1e-4)
     # What gates make of the preference, with the Gauss-Newton step itself held to the match alone.
     codes = [network.code(TARGETS, preference=torch.full((4,), p)) for p in (0.0, 1.0)]
-    codes = [replace(code, evenness=torch.zeros(4)) for code in codes]
+    codes = [replace(code, variation_cost=torch.zeros(4)) for code in codes]
     before = [network.correction(z, code) for code in codes]
     assert torch.equal(before[0], before[1])
     assert network.follow is not None
@@ -152,9 +152,9 @@ def test_that_networks_without_a_preference_draw_the_same_but_correct_by_it(dire
 
 def test_that_the_cost_of_variation_grows_with_the_square_of_the_preference() -> None:
     network = random_network()
-    evenness = network.code(TARGETS, preference=torch.tensor([0.0, 0.5, 1.0, 0.25])).evenness
-    torch.testing.assert_close(evenness, EVENNESS * torch.tensor([0.0, 0.25, 1.0, 0.0625]))
-    assert not network.code(TARGETS).evenness.any()
+    cost = network.code(TARGETS, preference=torch.tensor([0.0, 0.5, 1.0, 0.25])).variation_cost
+    torch.testing.assert_close(cost, VARIATION_COST * torch.tensor([0.0, 0.25, 1.0, 0.0625]))
+    assert not network.code(TARGETS).variation_cost.any()
     z = random_fields(OWN, 4, seed=2)
     mixed = network.correction(z, network.code(TARGETS, preference=torch.tensor([0.0, 0.0, 1.0, 1.0])))
     match, even = (network.correction(z, network.code(TARGETS, preference=torch.full((4,), p))) for p in (0.0, 1.0))

@@ -12,7 +12,7 @@ import torch
 from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.foundation.paper import LOG_RATIO_LIMIT
 from kirigami_studio.generator.network import VelocityNetwork
-from kirigami_studio.generator.sampler import draw_fields, one_pose, pose_angle, posed
+from kirigami_studio.generator.sampler import one_pose, pose_angle, posed, sample_fields
 from kirigami_studio.generator.sheet import Sheet
 from kirigami_studio.generator.weights import Model, load_model
 from kirigami_studio.lattice.deployment import deploy
@@ -44,31 +44,31 @@ def mean_match(fields: tuple[RatioField, ...], target: Outline, phi: float = 0.0
 
 
 def test_that_the_same_seed_draws_the_same_fields(model: Model) -> None:
-    first, second = (draw_fields(model, load("heart"), (10, 10), 3, 7, 4) for _ in range(2))
+    first, second = (sample_fields(model, load("heart"), (10, 10), 3, 7, 4) for _ in range(2))
     assert first == second
 
 
 def test_that_another_seed_draws_other_fields(model: Model) -> None:
-    first, second = (draw_fields(model, load("heart"), (10, 10), 1, seed, 4) for seed in (0, 1))
+    first, second = (sample_fields(model, load("heart"), (10, 10), 1, seed, 4) for seed in (0, 1))
     assert first != second
 
 
 def test_that_asking_for_more_keeps_the_first_candidates(model: Model) -> None:
-    few = draw_fields(model, load("star"), (10, 10), 2, 0, 4)
-    many = draw_fields(model, load("star"), (10, 10), 9, 0, 4)
+    few = sample_fields(model, load("star"), (10, 10), 2, 0, 4)
+    many = sample_fields(model, load("star"), (10, 10), 9, 0, 4)
     assert few == many[:2]
 
 
 @pytest.mark.parametrize("grid", [(2, 2), (6, 6), (8, 12), (13, 9)])
 def test_that_any_grid_can_be_asked_for(model: Model, grid: tuple[int, int]) -> None:
-    fields = draw_fields(model, load("drop"), grid, 2, 0, 4)
+    fields = sample_fields(model, load("drop"), grid, 2, 0, 4)
     assert all(field.ratio.shape == grid for field in fields)
     assert all(np.abs(field.log10).max() <= LOG_RATIO_LIMIT + 1e-12 for field in fields)
 
 
 def test_that_sampling_leaves_the_thread_setting_alone(model: Model) -> None:
     before = torch.get_num_threads()
-    draw_fields(model, load("circle"), (10, 10), 1, 0, 1)
+    sample_fields(model, load("circle"), (10, 10), 1, 0, 1)
     assert torch.get_num_threads() == before
 
 
@@ -90,8 +90,8 @@ def test_that_all_candidates_can_be_drawn_in_the_first_ones_pose(model: Model) -
     polygons = posed(load("heart"), range(5), one_pose)
     assert torch.equal(polygons, polygons[:1].expand_as(polygons))
     assert torch.equal(polygons[0], posed(load("heart"), range(5))[0])
-    own = draw_fields(model, load("heart"), (10, 10), 4, 0, 4)
-    same = draw_fields(model, load("heart"), (10, 10), 4, 0, 4, poses=one_pose)
+    own = sample_fields(model, load("heart"), (10, 10), 4, 0, 4)
+    same = sample_fields(model, load("heart"), (10, 10), 4, 0, 4, poses=one_pose)
     assert np.allclose(same[0].log10, own[0].log10, atol=1e-4)
     assert not np.allclose(same[1].log10, own[1].log10, atol=0.1)
 
@@ -101,33 +101,33 @@ def test_that_every_sheet_gets_fields_of_its_own_grid_that_seed_and_number_decid
     corrector: Model, sheet: Sheet
 ) -> None:
     grid = sheet.rows, sheet.columns
-    few, many = (draw_fields(corrector, load("star"), grid, k, 3, 4, sheet.phi) for k in (2, 9))
+    few, many = (sample_fields(corrector, load("star"), grid, k, 3, 4, sheet.phi) for k in (2, 9))
     assert all(field.ratio.shape == grid for field in many)
     assert all(np.abs(field.log10).max() <= LOG_RATIO_LIMIT + 1e-12 for field in many)
     assert many[:2] == few
     assert many[8] not in many[:8]
-    assert draw_fields(corrector, load("star"), grid, 2, 4, 4, sheet.phi)[0] != few[0]
+    assert sample_fields(corrector, load("star"), grid, 2, 4, 4, sheet.phi)[0] != few[0]
 
 
 def test_that_the_angle_is_taken_into_account(corrector: Model) -> None:
     target = load("drop")
-    flat, opened = (draw_fields(corrector, target, (10, 10), 4, 0, 4, phi) for phi in (0.0, 0.6))
+    flat, opened = (sample_fields(corrector, target, (10, 10), 4, 0, 4, phi) for phi in (0.0, 0.6))
     assert not np.allclose(flat[0].log10, opened[0].log10, atol=0.05)
     assert mean_match(opened, target, 0.6) > mean_match(flat, target, 0.6)
 
 
 def test_that_another_grid_is_matched_better_than_by_carrying_fields_over(model: Model, corrector: Model) -> None:
     heart = load("heart")
-    own = draw_fields(model, heart, (10, 10), 16, 0, 4)
+    own = sample_fields(model, heart, (10, 10), 16, 0, 4)
     carried = resize_fields(np.stack([field.log10 for field in own]), 16, 16)
     resized = tuple(RatioField.from_log10(np.clip(z, -LOG_RATIO_LIMIT, LOG_RATIO_LIMIT)) for z in carried)
     plain = mean_match(resized, heart)
-    assert mean_match(draw_fields(model, heart, (16, 16), 16, 0, 4), heart) > plain
-    assert mean_match(draw_fields(corrector, heart, (16, 16), 16, 0, 4), heart) > plain + 0.005
+    assert mean_match(sample_fields(model, heart, (16, 16), 16, 0, 4), heart) > plain
+    assert mean_match(sample_fields(corrector, heart, (16, 16), 16, 0, 4), heart) > plain + 0.005
 
 
 def test_that_a_correction_improves_what_the_euler_step_drew(corrector: Model) -> None:
     target = load("heart")
-    half = draw_fields(corrector, target, (12, 12), 8, 0, 1)
-    whole = draw_fields(corrector, target, (12, 12), 8, 0, 2)  # the same Euler step and one correction
+    half = sample_fields(corrector, target, (12, 12), 8, 0, 1)
+    whole = sample_fields(corrector, target, (12, 12), 8, 0, 2)  # the same Euler step and one correction
     assert mean_match(whole, target) > mean_match(half, target)

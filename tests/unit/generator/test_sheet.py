@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import torch
 
-from kirigami_studio.generator.sheet import Sheet, carrier_between
+from kirigami_studio.generator.sheet import Sheet, grid_transfer
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 
@@ -30,42 +30,42 @@ def waves(rows: int, columns: int) -> np.ndarray:
 
 
 def test_that_the_own_sheet_is_left_untouched() -> None:
-    carrier = carrier_between((6, 5), Sheet(6, 5), CPU)
+    transfer = grid_transfer((6, 5), Sheet(6, 5), CPU)
     z, outline = torch.randn(2, 30), torch.randn(2, 26, 2)
-    assert carrier.up(z) is z and carrier.down(z) is z and carrier.stations(outline) is outline
+    assert transfer.up(z) is z and transfer.down(z) is z and transfer.stations(outline) is outline
 
 
 def test_that_the_own_grid_at_an_angle_keeps_its_fields_but_not_its_outline() -> None:
-    carrier = carrier_between((6, 5), Sheet(6, 5, 0.3), CPU)
+    transfer = grid_transfer((6, 5), Sheet(6, 5, 0.3), CPU)
     z = torch.randn(2, 30)
-    assert carrier.up(z) is z and carrier.down(z) is z
-    assert carrier.stations(torch.randn(2, 48, 2)).shape == (2, 26, 2)
+    assert transfer.up(z) is z and transfer.down(z) is z
+    assert transfer.stations(torch.randn(2, 48, 2)).shape == (2, 26, 2)
 
 
 @pytest.mark.parametrize("grid", [(16, 16), (12, 9), (9, 14)])
 def test_that_a_smooth_field_comes_back_from_another_grid(grid: tuple[int, int]) -> None:
-    carrier = carrier_between((10, 10), Sheet(*grid), CPU)
+    transfer = grid_transfer((10, 10), Sheet(*grid), CPU)
     z = torch.tensor(waves(10, 10), dtype=torch.float32).view(1, -1)
-    there = carrier.up(z)
+    there = transfer.up(z)
     assert there.shape == (1, grid[0] * grid[1])
     assert np.abs(there.numpy().reshape(grid) - waves(*grid)).max() < 0.03
-    assert float((carrier.down(there) - z).abs().max()) < 0.02
+    assert float((transfer.down(there) - z).abs().max()) < 0.02
 
 
 def test_that_rows_and_columns_are_not_mixed_up() -> None:
-    carrier = carrier_between((4, 6), Sheet(8, 5), CPU)
+    transfer = grid_transfer((4, 6), Sheet(8, 5), CPU)
     down = torch.linspace(0, 1, 4)[:, None].expand(4, 6).reshape(1, -1)
-    there = carrier.up(down).view(8, 5)
+    there = transfer.up(down).view(8, 5)
     assert float(there.std(dim=1).max()) < 1e-4
     assert float(there.diff(dim=0).min()) > 0.05
 
 
 def test_that_as_many_stations_as_vertices_are_the_vertices() -> None:
     # An open sheet of 4 x 3 voids has 9 and 7 vertices a side, like a zipped one of 8 x 6.
-    carrier = carrier_between((8, 6), Sheet(4, 3, 0.5), CPU)
+    transfer = grid_transfer((8, 6), Sheet(4, 3, 0.5), CPU)
     outline = torch.tensor(outline_of(Sheet(4, 3, 0.5)), dtype=torch.float32)[None]
-    assert not carrier.same_outline
-    assert torch.equal(carrier.stations(outline), outline)
+    assert not transfer.same_outline
+    assert torch.equal(transfer.stations(outline), outline)
 
 
 @pytest.mark.parametrize("sheet", SHEETS, ids=str)
@@ -83,7 +83,7 @@ def test_that_sides_begin_at_the_corners_of_the_sheet(sheet: Sheet) -> None:
 def test_that_corners_are_met_exactly_and_stations_lie_on_the_outline(sheet: Sheet) -> None:
     own = Sheet(6, 6)
     outline = outline_of(sheet)
-    read = carrier_between((6, 6), sheet, CPU).stations(torch.tensor(outline, dtype=torch.float32)[None])[0].numpy()
+    read = grid_transfer((6, 6), sheet, CPU).stations(torch.tensor(outline, dtype=torch.float32)[None])[0].numpy()
     assert read.shape == (sum(own.side_vertices), 2)
     corners = np.cumsum([0, *sheet.side_vertices[:-1]]), np.cumsum([0, *own.side_vertices[:-1]])
     assert np.abs(read[corners[1]] - outline[corners[0]]).max() < 1e-5
@@ -102,7 +102,7 @@ def test_that_edge_hinges_are_zipped_at_zero_only() -> None:
 
 def test_that_a_carrier_made_while_sampling_serves_training_too() -> None:
     with torch.inference_mode():
-        carrier = carrier_between((4, 4), Sheet(5, 3, math.pi / 7), CPU)
+        transfer = grid_transfer((4, 4), Sheet(5, 3, math.pi / 7), CPU)
     z = torch.randn(2, 16, requires_grad=True)
-    carrier.down(carrier.up(z)).square().sum().backward()
+    transfer.down(transfer.up(z)).square().sum().backward()
     assert z.grad is not None and float(z.grad.abs().max()) > 0

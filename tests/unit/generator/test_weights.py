@@ -13,8 +13,8 @@ import torch
 from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.foundation.errors import ModelError, UsageError
 from kirigami_studio.generator.feedback import Feedback
-from kirigami_studio.generator.network import EVENNESS, NetworkShape, TargetCode, VelocityNetwork
-from kirigami_studio.generator.sampler import BATCH, draw_fields, posed
+from kirigami_studio.generator.network import VARIATION_COST, NetworkShape, TargetCode, VelocityNetwork
+from kirigami_studio.generator.sampler import BATCH, posed, sample_fields
 from kirigami_studio.generator.sheet import Sheet
 from kirigami_studio.generator.unet import UNetShape, UNetVelocity
 from kirigami_studio.generator.weights import (
@@ -79,7 +79,7 @@ def test_that_networks_that_look_at_the_geometry_decode_once_a_step(
     for variant, expected in (("tiny", steps), ("corrector", steps), ("blind", 0), ("picture", 0)):
         looked.clear()
         model = load_model(variant, folder)
-        draw_fields(model, load("heart"), (4, 4), k=BATCH, seed=0, steps=steps)
+        sample_fields(model, load("heart"), (4, 4), k=BATCH, seed=0, steps=steps)
         assert model.decodings(steps) == expected == sum(looked) / BATCH, variant
 
 
@@ -96,7 +96,7 @@ def test_that_one_network_serves_variants_that_prefer_differently(folder: Path) 
     polygon = posed(load("heart"), range(2))
     codes = [model.code(polygon, Sheet(4, 4)) for model in (match, even)]
     assert all(isinstance(code, TargetCode) for code in codes)
-    assert [code.evenness.tolist() for code in codes] == [[0.0, 0.0], pytest.approx([EVENNESS] * 2)]  # type: ignore[attr-defined]
+    assert [code.variation_cost.tolist() for code in codes] == [[0.0, 0.0], pytest.approx([VARIATION_COST] * 2)]  # type: ignore[attr-defined]
 
 
 def test_that_a_manifest_without_a_preference_means_the_match(folder: Path) -> None:
@@ -112,7 +112,7 @@ def test_that_a_preference_for_regularity_gives_smoother_designs_at_a_small_cost
     pair: Path, shape: str, cost: float, grid: tuple[int, int]
 ) -> None:
     def measured(variant: str) -> tuple[float, float]:
-        fields = draw_fields(load_model(variant, pair), load(shape), grid, k=8, seed=0, steps=8)
+        fields = sample_fields(load_model(variant, pair), load(shape), grid, k=8, seed=0, steps=8)
         scores = [evaluate(deploy(field), load(shape)) for field in fields]
         return float(np.mean([score.tv for score in scores])), float(np.mean([score.iou_exact for score in scores]))
 
@@ -134,8 +134,8 @@ def test_that_a_unet_comes_back_beside_a_perceptron(folder: Path) -> None:
     assert (loaded.shape, loaded.training) == (shape, False)
     halves = {name: value.half().float() for name, value in original.state_dict().items()}
     assert all(torch.equal(halves[name], value) for name, value in loaded.state_dict().items())
-    (drawn,) = draw_fields(load_model("picture", folder), load("heart"), (4, 4), k=1, seed=0, steps=2)
-    (flat,) = draw_fields(load_model("tiny", folder), load("heart"), (4, 4), k=1, seed=0, steps=2)
+    (drawn,) = sample_fields(load_model("picture", folder), load("heart"), (4, 4), k=1, seed=0, steps=2)
+    (flat,) = sample_fields(load_model("tiny", folder), load("heart"), (4, 4), k=1, seed=0, steps=2)
     assert not np.allclose(drawn.log10, flat.log10)
 
 

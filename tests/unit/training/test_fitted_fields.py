@@ -81,9 +81,10 @@ def test_that_a_stopped_run_goes_on_to_the_same_fits(tmp_path: Path) -> None:
 @pytest.mark.slow
 def test_that_two_processes_make_the_fits_of_one(tmp_path: Path) -> None:
     path = tmp_path / "two.npz"
-    list(fit_shapes(path, 6, 5, GRID, processes=2, block_size=2))
+    list(fit_shapes(path, 3, 5, GRID, processes=2, block_size=1))
     fits = FittedFields.load(path)
-    alone = [fitted_block(block, 5, GRID, "prior", 2) for block in fits.about["blocks"]]  # type: ignore[attr-defined]
+    assert len(fits.about["blocks"]) >= 2  # type: ignore[arg-type]
+    alone = [fitted_block(block, 5, GRID, "prior", 1) for block in fits.about["blocks"]]  # type: ignore[attr-defined]
     assert np.array_equal(fits.z, np.concatenate([one.z for one in alone]))
 
 

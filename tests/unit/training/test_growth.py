@@ -47,7 +47,7 @@ def test_that_a_grown_corrector_begins_as_the_plain_gauss_newton_step() -> None:
     z, targets = random_fields(OWN, 4, seed=1), silhouettes(random_fields(OWN, 4), OWN)
     code = larger.code(targets, preference=torch.ones(4))
     assert code.feedback is not None
-    step = code.feedback(z, code.loop, True, code.evenness).direction
+    step = code.feedback(z, code.loop, True, code.variation_cost).direction
     assert float(step.abs().mean()) > 0.01
     assert torch.equal(larger.correction(z, code), step)
     assert torch.equal(network.correction(z, network.code(targets, preference=torch.ones(4))), step)

@@ -64,7 +64,7 @@ def measured(network: VelocityNetwork, preference: float, even: bool = True) -> 
     noise = random_fields(OWN, 48, SMALL.z_scale, seed=12)
     with torch.no_grad():
         code = network.code(targets, preference=torch.full((48,), preference))
-        finished = trail(network, noise, code if even else replace(code, evenness=torch.zeros(48)), 4)
+        finished = trail(network, noise, code if even else replace(code, variation_cost=torch.zeros(48)), 4)
         terms, early = trail_gap(BatchedLattice(4, 4), OWN, finished, contour_points(targets, 384))
     return terms, float(early)
 

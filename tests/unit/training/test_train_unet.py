@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 import torch
 
@@ -12,7 +13,7 @@ from kirigami_studio.foundation.errors import ModelError
 from kirigami_studio.generator.unet import UNetShape, UNetVelocity
 from kirigami_studio.generator.weights import load_model, store_model
 from kirigami_studio.training.fitted_fields import fitted_block
-from kirigami_studio.training.train_flow import FlowSettings, Sources, train_flow, trained_network
+from kirigami_studio.training.train_flow import FlowRun, FlowSettings, Sources, train_flow, trained_network
 from kirigami_studio.training.validation import validator
 
 pytestmark = pytest.mark.torch
@@ -56,11 +57,14 @@ def test_that_dropout_takes_part_in_training(tmp_path: Path) -> None:
     assert not all(torch.equal(ours[name], theirs[name]) for name in ours)
 
 
-def test_that_the_loss_falls_and_the_control_branch_moves(tmp_path: Path) -> None:
-    settings = replace(TINY, steps=300)
-    records = train(settings, tmp_path)
-    assert records[-1]["loss"] < 0.85 * records[0]["loss"]
-    network = trained_network(settings, tmp_path, CPU)
+def test_that_the_loss_falls_and_the_control_branch_moves(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    # The learning rate takes 200 steps to rise by default; wide noise leaves more to learn in the first steps.
+    monkeypatch.setattr("kirigami_studio.training.train_flow.WARM_UP_STEPS", 4)
+    settings = replace(TINY, steps=24, learning_rate=1e-2, shape=replace(TINY.shape, z_scale=2.0))
+    run = FlowRun(settings, tmp_path / "checkpoint.pt", CPU, Sources())
+    losses = [run.advance() for _ in range(settings.steps)]
+    assert np.mean(losses[-8:]) < 0.75 * np.mean(losses[:8])
+    network = run.averaged()
     assert isinstance(network, UNetVelocity)
     assert all(gate.weight.abs().max() > 0 for gate in [*network.gates, network.middle_gate])
 

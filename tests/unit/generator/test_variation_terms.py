@@ -8,8 +8,8 @@ from small_networks import random_fields, silhouettes
 
 from kirigami_studio.generator.conditioning import smoothed_points
 from kirigami_studio.generator.feedback import Feedback
-from kirigami_studio.generator.gauss_newton import LN10, SMALLEST_DIFFERENCE, evenness_terms
-from kirigami_studio.generator.network import EVENNESS
+from kirigami_studio.generator.gauss_newton import LN10, SMALLEST_DIFFERENCE, variation_terms
+from kirigami_studio.generator.network import VARIATION_COST
 from kirigami_studio.generator.sheet import Sheet
 from kirigami_studio.training.preference_loss import boundary_gap
 
@@ -40,7 +40,7 @@ def test_that_the_descent_is_the_negative_gradient_of_the_weighted_variation(row
     z = rough_fields(rows, columns).requires_grad_(True)
     (WEIGHT * total_variation(z) / (rows * columns)).sum().backward()
     assert z.grad is not None
-    descent, matrix = evenness_terms(z.detach(), WEIGHT)
+    descent, matrix = variation_terms(z.detach(), WEIGHT)
     torch.testing.assert_close(descent, -z.grad.flatten(1))
     assert float(descent.abs().max()) > 0.01
     assert matrix.shape == (2, rows * columns, rows * columns)
@@ -49,7 +49,7 @@ def test_that_the_descent_is_the_negative_gradient_of_the_weighted_variation(row
 @pytest.mark.parametrize("scale", [0.02, 0.3])
 def test_that_the_matrix_is_symmetric_and_positive_semi_definite(scale: float) -> None:
     z = random_fields(Sheet(4, 5), 6, scale).double().view(6, 4, 5)
-    _, matrix = evenness_terms(z, torch.linspace(0.5, 3.0, 6, dtype=torch.float64))
+    _, matrix = variation_terms(z, torch.linspace(0.5, 3.0, 6, dtype=torch.float64))
     torch.testing.assert_close(matrix, matrix.mT)
     values = torch.linalg.eigvalsh(matrix)
     assert float(values.min()) > -1e-12 * float(values.max())
@@ -62,19 +62,19 @@ def test_that_the_matrix_is_symmetric_and_positive_semi_definite(scale: float) -
 def test_that_small_differences_count_quadratically() -> None:
     # Two voids at ratios 1 and 1 + d: weight / 2 times d^2 / (2 * 0.1) has the slope that the model tells.
     x = torch.tensor([[[1.0, 1.02]]], dtype=torch.float64)
-    descent, _ = evenness_terms(x.log10(), torch.ones(1, dtype=torch.float64))
+    descent, _ = variation_terms(x.log10(), torch.ones(1, dtype=torch.float64))
     pull = 0.5 * 0.02 / SMALLEST_DIFFERENCE
     torch.testing.assert_close(descent, torch.tensor([[pull * LN10, -pull * LN10 * 1.02]], dtype=torch.float64))
-    level, _ = evenness_terms(torch.zeros(1, 3, 3), torch.ones(1))
+    level, _ = variation_terms(torch.zeros(1, 3, 3), torch.ones(1))
     assert not level.any()
 
 
 def test_that_the_terms_grow_with_each_fields_own_weight() -> None:
     z = rough_fields(4, 4)
-    once, twice = evenness_terms(z, WEIGHT), evenness_terms(z, 2.0 * WEIGHT)
+    once, twice = variation_terms(z, WEIGHT), variation_terms(z, 2.0 * WEIGHT)
     for few, many in zip(once, twice, strict=True):
         torch.testing.assert_close(many, 2.0 * few)
-    none = evenness_terms(z, torch.tensor([0.0, 2.0], dtype=torch.float64))
+    none = variation_terms(z, torch.tensor([0.0, 2.0], dtype=torch.float64))
     for part, whole in zip(none, once, strict=True):
         assert not part[0].any()
         torch.testing.assert_close(part[1], whole[1])
@@ -101,7 +101,7 @@ def test_that_corrections_with_a_cost_of_variation_smooth_at_nearly_the_same_out
     def gap(field: torch.Tensor) -> float:
         return float(boundary_gap(silhouettes(field, sheet), measure).mean())
 
-    plain, even = corrected(0.0), corrected(EVENNESS)
+    plain, even = corrected(0.0), corrected(VARIATION_COST)
     assert float((variation(even) / variation(plain)).max()) < 0.6
     # A fifth of a pixel of a mask of 128.
     assert gap(even) < gap(plain) + 0.002
@@ -115,7 +115,7 @@ def test_that_a_cost_of_nothing_is_no_cost() -> None:
     plain = feedback(z, loop, True)
     free = feedback(z, loop, True, torch.zeros(3))
     assert torch.equal(free.direction, plain.direction) and torch.equal(free.features, plain.features)
-    some = feedback(z, loop, True, torch.tensor([0.0, EVENNESS, EVENNESS]))
+    some = feedback(z, loop, True, torch.tensor([0.0, VARIATION_COST, VARIATION_COST]))
     torch.testing.assert_close(some.direction[0], plain.direction[0])
     assert float((some.direction - plain.direction)[1:].abs().amax(dim=1).min()) > 1e-3
     # What is seen of the outline does not depend on what is wanted of the field.
