@@ -108,7 +108,7 @@ def test_that_two_studios_do_not_recover_each_others_work(designed: MainWindow, 
     until(lambda: len(kept_files(folder)) == 1)
     other = Controller()
     told: list[Message] = []
-    other.message.connect(told.append)
+    other.session.message_posted.connect(told.append)
     other.filing.recovery.use(folder)
     assert not other.queue.busy, "there is nothing to look at: the only file belongs to a living session"
     other.close()
@@ -174,7 +174,7 @@ def test_that_recovering_asks_before_it_takes_the_place_of_unsaved_work(
     dict(asked(designed)[0].actions)["Recover"]()
     assert designed.controller.document is before
     question = next(one for one in designed.messages.messages if "unsaved changes" in one.sentence)
-    dict(question.actions)["Recover another without saving"]()
+    dict(question.actions)["Recover another project without saving"]()
     until(lambda: designed.controller.document.chosen == 2)
     assert designed.controller.path is None and designed.controller.history.unsaved
 
