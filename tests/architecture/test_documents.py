@@ -1,8 +1,9 @@
-"""The documents stay true: links lead somewhere, paths exist, and the commands they show are accepted."""
+"""The documents stay true: links and paths exist, commands are accepted, the guide names what the window shows."""
 
 from __future__ import annotations
 
 import argparse
+import ast
 import re
 import shlex
 from pathlib import Path
@@ -72,6 +73,31 @@ def missing_targets(makefile: str, text: str) -> list[str]:
     """Targets of ``make`` that a document names and the Makefile does not have."""
     named = re.findall(r"(?:`|^ {4})make (\w+)", text, flags=re.MULTILINE)
     return [target for target in named if not re.search(rf"^{target}:", makefile, flags=re.MULTILINE)]
+
+
+def texts_of_the_window(package: Path) -> set[str]:
+    """What the window's modules give to ``tr`` and ``tr_n``, without mnemonics and dots."""
+    found = set()
+    for path in (package / "gui").rglob("*.py"):
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in ("tr", "tr_n"):
+                words = [one.value for one in node.args if isinstance(one, ast.Constant) and isinstance(one.value, str)]
+                found |= {re.sub(r"&(?=\w)", "", text) for text in words}
+    return found
+
+
+def not_in_the_window(guide: str, texts: set[str]) -> list[str]:
+    """Bold words of the guide with which no text of the window begins."""
+    bold = [part for words in re.findall(r"\*\*([^*]+)\*\*", guide) for part in words.split(" > ")]
+    return [part for part in bold if not any(re.match(rf"{re.escape(part)}(?!\w)", text) for text in texts)]
+
+
+def test_that_the_guide_calls_things_as_the_window_does(repository: Path) -> None:
+    texts = texts_of_the_window(repository / "kirigami_studio")
+    guide = (repository / "resources" / "guide" / "guide.md").read_text(encoding="utf-8")
+    assert guide.count("**") > 80
+    assert not_in_the_window(guide, texts) == []
+    assert not_in_the_window("**File > Open recent**, **Take away**", texts) == ["Take away"]
 
 
 def test_that_every_relative_link_and_picture_exists(documents: dict[Path, str]) -> None:
