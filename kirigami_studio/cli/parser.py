@@ -1,4 +1,4 @@
-"""The command table: every option with its help and an example, read by one small loop."""
+"""The table of sub-commands, with the help of every option and examples, and the parser that is built from it."""
 
 from __future__ import annotations
 
