@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 
+from kirigami_studio.foundation.resources import resource
 from kirigami_studio.gui.command import Command, WindowState, Wording
 from kirigami_studio.gui.commands.actions import CommandActions
 from kirigami_studio.gui.main_window import TOOLBAR, MainWindow
@@ -65,3 +67,11 @@ def test_that_a_changed_state_changes_enabling_checking_and_words_at_once(window
     state[0] = replace(state[0], running=True)
     made.refresh()
     assert not action.isEnabled() and action.isChecked() and action.text() == "Running"
+
+
+def test_that_the_guide_lists_keys_that_commands_have(window: MainWindow) -> None:
+    guide = resource("guide", "guide.md").read_text(encoding="utf-8")
+    arrows = {"←": "Left", "→": "Right", "↑": "Up", "↓": "Down"}
+    listed = {re.sub("[←→↑↓]", lambda found: arrows[found[0]], keys) for keys in re.findall(r"`(Ctrl\+[^`]+)`", guide)}
+    known = {keys for command in window.commands.records for keys in command.shortcuts}
+    assert len(listed) > 15 and listed - known == {"Ctrl+A"}  # which selects all in every list
