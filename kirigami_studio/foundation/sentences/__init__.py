@@ -1,4 +1,4 @@
-"""Sentences of the packages below the window: one table a package, from a problem's code to its English sentence.
+"""Sentences of problems: tables by topic, from a problem's code to its English sentence.
 
 A sentence is whole, says what happened, where, and what to try, and names its values: ``"{name} is empty."``.  Where
 the number of things changes the words, the entry is a pair (one, many) and the values include ``count``.  All of them
@@ -10,48 +10,26 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from kirigami_studio.foundation.sentences import (
-    benchmark,
-    cli,
-    evaluate,
+    designs,
     export,
     fabricate,
-    foundation,
-    generator,
-    gui,
-    lattice,
+    interface,
     outlines,
-    pipeline,
-    polish,
     project,
-    training,
+    training_and_benchmarks,
 )
 from kirigami_studio.foundation.words import tr, tr_n
 
 #: Every sentence by the code of its problem.
 SENTENCES: Mapping[str, str | tuple[str, str]] = {
     code: text
-    for package in (
-        benchmark,
-        cli,
-        evaluate,
-        export,
-        fabricate,
-        foundation,
-        generator,
-        gui,
-        lattice,
-        outlines,
-        pipeline,
-        polish,
-        project,
-        training,
-    )
-    for code, text in package.SENTENCES.items()
+    for table in (designs, export, fabricate, interface, outlines, project, training_and_benchmarks)
+    for code, text in table.SENTENCES.items()
 }
 
 
 def sentence(code: str, fields: Mapping[str, object]) -> str:
-    """The sentence of a problem in the user's language, with its values in place."""
+    """The sentence of a problem in the user's language, with its values in place; an unknown code is shown as it is."""
     text = SENTENCES.get(code, code)
     if isinstance(text, tuple):
         one, many = text

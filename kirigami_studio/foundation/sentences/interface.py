@@ -1,10 +1,11 @@
-"""Sentences of the command line, by the code of the problem: options, inputs, and what each sub-command refuses."""
+"""Sentences of the command line and the window, and of files and folders that cannot be used."""
 
 from __future__ import annotations
 
 from kirigami_studio.foundation.words import mark
 
 SENTENCES: dict[str, str | tuple[str, str]] = {
+    # cli
     "cli.interrupted": mark("Stopped. No file was left half written."),
     "cli.out_of_memory": mark("Not enough memory. Ask for fewer or smaller inputs."),
     "cli.file_not_usable": mark("Cannot read or write {path}: {reason}."),
@@ -61,4 +62,20 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "materials.not_name_and_value": mark("--set takes NAME=VALUE, for example kerf_mm=0.03; got '{entry:.60}'."),
     "coupon.nothing_to_do": mark("Give --out FILE to write a coupon, or --gap-mm with the gaps measured on one."),
     "coupon.unknown_extension": mark("A coupon is written as .dxf, .svg or .pdf, got {name}."),
+    # gui
+    "designs.none_chosen": mark("Choose a design first, then generate more like it."),
+    "designs.none_to_add_to": mark("No designs to add to yet. Press Generate first."),
+    "coupon.not_dxf": mark("Coupons are exported as .dxf, not {name}. The command line supports other types."),
+    "export.stopped": mark("Export to {folder} stopped; files already written are kept."),
+    # foundation
+    "file.not_written": mark("Cannot write {path}: {reason}. Choose another folder or free some space."),
+    "file.is_a_folder": mark("Cannot write {path}: it is a folder. Give a file name."),
+    "file.link_to_nothing": mark(
+        "Cannot write {path}: it is a link to {target}, which does not exist. Delete the link or choose another name."
+    ),
+    "file.link_in_circle": mark(
+        "Cannot write {path}: the link leads back to itself. Delete it or choose another name."
+    ),
+    "file.folder_not_writable": mark("Cannot write to {folder}. Choose a folder where you have permission to write."),
+    "installation.incomplete": mark("Bundled files are missing beside {package}. Install Kirigami Studio again."),
 }

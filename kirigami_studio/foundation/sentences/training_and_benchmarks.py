@@ -1,10 +1,11 @@
-"""Sentences of training: data sets, settings, checkpoints and weights to start from, by the code of the problem."""
+"""Sentences of ``training`` and ``benchmark``, by the code of the problem."""
 
 from __future__ import annotations
 
 from kirigami_studio.foundation.words import mark
 
 SENTENCES: dict[str, str | tuple[str, str]] = {
+    # training
     "training.unknown_family": mark("There is no family of designs called '{family:.40}'. Choose one of {choices}."),
     "training.no_samples_wanted": mark("A data set needs at least 1 sample, got {count_wanted}."),
     "training.fields_ended": mark("The data set could not be filled: no more fields to try."),
@@ -66,4 +67,14 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "training.fit_share_out_of_range": mark("--fit-share must be between 0 and 1, got {share:g}."),
     "training.share_above_one": mark("{option} is a share from 0 to 1, got {share:g}."),
     "training.minutes_not_positive": mark("--minutes must be above 0, got {minutes:g}."),
+    # benchmark
+    "benchmark.no_targets_found": mark(
+        "No targets found to measure on. Name a file, a folder with shapes, or 'library'."
+    ),
+    "benchmark.no_targets": mark("This suite needs at least one target, got none."),
+    "benchmark.starts_differ": mark("Fits need one start for each outline, got {starts} for {outlines}."),
+    "benchmark.too_few_to_time": mark(
+        "Timings need at least one variant and two targets, got {variants} and {targets}."
+    ),
+    "benchmark.spread_of_one": mark("A spread needs at least 2 samples of each target, got {k}."),
 }

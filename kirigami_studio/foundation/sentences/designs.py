@@ -1,0 +1,135 @@
+"""Sentences about designs on their way: fields, scores, fits, runs and the models that sample them."""
+
+from __future__ import annotations
+
+from kirigami_studio.foundation.words import mark
+
+SENTENCES: dict[str, str | tuple[str, str]] = {
+    # lattice
+    "grid.not_whole_numbers": mark("The grid must be two whole numbers of voids, got {rows!r:.40} x {columns!r:.40}."),
+    "grid.out_of_range": mark("The grid must have {least} to {most} voids each way, got {rows} x {columns}."),
+    "ratios.not_numbers": mark("Ratios must be an (m, n) table of numbers."),
+    "ratios.wrong_shape": mark("Ratios must have shape (m, n), got {shape}."),
+    "ratios.wrong_batch_shape": mark("Ratios must have shape (B, {rows}, {columns}), got {shape}."),
+    "ratio.not_finite": mark("The ratio at void ({row}, {column}) is {ratio}; it must be finite."),
+    "ratio.not_positive": mark("The ratio at void ({row}, {column}) is {ratio:g}; it must be above 0."),
+    "ratio.out_of_range": mark(
+        "The ratio at void ({row}, {column}) is {ratio:g}; it must be {least:g} to {most:g}, where the layout is exact."
+    ),
+    "angle.not_a_number": mark("The deployment angle must be a number in radians, got {phi!r:.80}."),
+    "angle.out_of_range": mark("The deployment angle must be 0 to pi radians (pi is the compact sheet), got {phi:g}."),
+    "cell.not_positive": mark("A cell needs a width and a height above 0, got {cell!r:.80}."),
+    # evaluate
+    "silhouette.not_a_table": mark("A silhouette must be a table of numbers, one x, y pair per row."),
+    "silhouette.too_few_points": mark(
+        "A silhouette needs at least three points, one x, y pair per row; got an array of shape {shape}."
+    ),
+    "silhouette.not_finite": mark("Point {point} of the silhouette is ({x}, {y}); its coordinates must be finite."),
+    "silhouette.no_area": mark("The silhouette has no area: its points lie on one line, or its parts cancel out."),
+    "siou.mask_too_thin": mark("Mask {number} shows only lines thinner than 1/{size} of its length. Draw them bolder."),
+    "siou.mask_ragged": mark("Mask {number} must be a 2-D array of numbers; its rows have different lengths."),
+    "siou.mask_not_a_table": mark("Mask {number} must be a 2-D array of numbers, got shape {shape} of type {kind}."),
+    "siou.mask_not_finite": mark("Mask {number} holds {value} at row {row}, column {column}; use 0 and 1."),
+    "siou.mask_empty": mark("Mask {number} is empty: none of its {rows} x {columns} pixels is foreground."),
+    "raster.size_out_of_range": mark("The mask size must be a whole number from 2 to {most} pixels, got {size!r:.80}."),
+    "opened_size.width_not_positive": mark("The width of the sheet must be above 0 mm, got {width_mm:g}."),
+    "similarity.not_finite": mark(
+        "A similarity needs a positive scale and finite numbers, got scale {scale:g}, angle {angle:g}, shift "
+        "({x:g}, {y:g})."
+    ),
+    "trim.crosses_itself": mark(
+        "This design crosses itself at the target angle, so it cannot be trimmed. Choose another design."
+    ),
+    "trim.keep_out_of_range": mark(
+        "The material kept at hinges must be {least:g} to {most:g} cells deep, got {keep!r:.80}."
+    ),
+    # polish
+    "drag.no_such_vertex": mark("The outline has vertices 0 to {last}, got {vertex}."),
+    "fit.angle_compact": mark(
+        "A fit needs an angle below pi radians: at pi the sheet is compact and shows a rectangle whatever its ratios."
+    ),
+    "fit.excess_out_of_range": mark("The weight of what sticks out must be a number from 0 to 1, got {excess!r:.80}."),
+    "fit.least_panel_out_of_range": mark("The least panel size must be 0 to {most:g} cells, got {least!r:.80}."),
+    "fit.locks_and_symmetry": mark(
+        "A fit cannot keep locked voids and a symmetry at the same time. Choose one of them."
+    ),
+    "fit.locks_wrong_table": mark(
+        "Locked voids must be a table of truth values of shape {shape}, got {got} of type {kind}."
+    ),
+    "fit.steps_not_whole": mark("The number of steps must be a whole number of at least 0, got {steps!r:.80}."),
+    "fit.trust_not_positive": mark("The trusted distance must be a finite number above 0, got {trust:g}."),
+    "fit.weights_out_of_range": mark(
+        "The weights of a fit must be finite numbers of at least 0, got {start:g} for the start, {smooth:g} "
+        "for smoothness and {total_variation:g} for total variation."
+    ),
+    "search.effort_out_of_range": mark(
+        "The search effort must be a whole number from 1 to {most}, got {effort!r:.80}."
+    ),
+    # generator
+    "model.unet_channels": mark(
+        "The U-Net needs even numbers of at least 4 as channels, one for each level, got {channels}."
+    ),
+    "model.unet_levels": mark(
+        "A U-Net of {levels} levels cannot halve {latent} pixels {halvings} times, or its mask of {mask} "
+        "pixels is not a multiple of {latent}. Give it fewer levels."
+    ),
+    "model.unknown_backbone": mark(
+        "This version does not know the network '{backbone:.40}' of these weights. Install the latest version of "
+        "Kirigami Studio."
+    ),
+    "model.weights_missing": mark(
+        "The weights {file} of the model '{variant:.40}' are missing. Install Kirigami Studio again."
+    ),
+    "model.weights_damaged": mark(
+        "The weights {file} are damaged (checksum {found}, expected {expected}). Install Kirigami Studio again."
+    ),
+    "model.weights_do_not_fit": mark(
+        "The weights {file} do not fit the network that their list describes. Install Kirigami Studio again."
+    ),
+    "model.weights_not_listed": mark(
+        "The list of models in {folder} does not name {file}. Choose a file that training wrote."
+    ),
+    "model.list_unreadable": mark("Cannot read the list of models in {folder}. Install Kirigami Studio again."),
+    "model.list_of_other_format": mark(
+        "The list of models in {folder} has a format that this version cannot read. Install the latest "
+        "version of Kirigami Studio."
+    ),
+    "model.unknown_variant": mark("There is no generator variant '{variant:.40}'. Choose one of {choices}."),
+    # pipeline
+    "fit.stopped": mark("Fitting stopped; nothing changed."),
+    "request.angle_out_of_range": mark(
+        "The target angle must be at least 0 and below pi radians, got {phi:g}. The usual choice is 0."
+    ),
+    "request.budget_not_positive": mark(
+        "The time budget must be a finite number of seconds above 0, got {budget!r:.80}."
+    ),
+    "request.k_out_of_range": mark(
+        "The number of candidates (k) must be a whole number from {least} to {most}, got {value!r:.80}."
+    ),
+    "request.near_other_grid": mark(
+        "Samples near a design have its grid of {near_rows} x {near_columns} voids, not {rows} x {columns}."
+    ),
+    "request.nearness_out_of_range": mark("The nearness must be a number from 0 to less than 1, got {nearness!r:.80}."),
+    "request.nearness_without_design": mark("A nearness needs the design that the samples should be near."),
+    "request.polish_out_of_range": mark(
+        "The number of polishing steps must be a whole number from {least} to {most}, got {value!r:.80}."
+    ),
+    "request.search_out_of_range": mark(
+        "The search effort must be a whole number from {least} to {most}, got {value!r:.80}."
+    ),
+    "request.seed_out_of_range": mark("The seed must be a whole number from {least} to {most}, got {value!r:.80}."),
+    "request.steps_out_of_range": mark(
+        "The number of sampling steps must be a whole number from {least} to {most}, got {value!r:.80}."
+    ),
+    "request.unknown_preference": mark("A fit can prefer {choices}, not {prefer!r:.80}."),
+    "run.no_result": mark("The run ended without a result."),
+    "run.stopped_polishing": mark("Stopped while polishing, with {done} of {total} done; nothing changed."),
+    "run.stopped_scoring": mark("Stopped after {done} of {total} candidates; nothing changed."),
+    "run.stopped_searching": mark("Stopped while searching, with {done} of {total} done; nothing changed."),
+    "run.stopped_trimming": mark("Stopped while trimming, with {done} of {total} done; nothing changed."),
+    "trim.connectors_too_wide": mark(
+        "Connectors of {connector_mm:g} mm leave nothing to trim on a sheet {width_mm:g} mm wide. Make the "
+        "sheet at least {least_mm} mm wide or the connectors narrower."
+    ),
+    "trim.stopped": mark("Trimming stopped; nothing changed."),
+}
