@@ -245,7 +245,7 @@ class HandEditor(QObject):
         self._postponed.clear()
         self._later.clear()
         self._drop()
-        self._finish()
+        self._settle()
 
     def close(self) -> None:
         """The window is going away."""
@@ -368,7 +368,7 @@ class HandEditor(QObject):
         for act in later:
             act()
         if not self.busy:
-            self._finish()
+            self._settle()
 
     def _prepare_drag(self) -> None:
         self.commit()
@@ -476,7 +476,7 @@ class HandEditor(QObject):
             self._show_draft()
             self._score_next()
         else:
-            self._finish()
+            self._settle()
 
     def _fail(self, sentence: str, trace: str) -> None:
         self._discard_draft()
@@ -493,7 +493,7 @@ class HandEditor(QObject):
         for act in postponed:
             act()
 
-    def _finish(self) -> None:
+    def _settle(self) -> None:
         """Nothing is under way any more; what was postponed is carried out."""
         self._pause.stop()
         self._base = self._field = self._last = self._open = self._decoded = None

@@ -8,8 +8,8 @@ first drag and ends with the window.
 No sheet is too large.  Processor seconds until the first answer, of which half is spent once for each kind of grid, and
 for each step after it: 0.13 and 0.004 at 24 x 24 voids, 0.85 and 0.014 at 40 x 40, 5.5 and 0.03 at 64 x 64.
 
-While a step is being taken, only the newest place is kept; its result is shown when it is finished, and only the newest
-where there are several.  After the release, steps go on until the last place is reached; then the drag has ended.
+While a step is being taken, only the newest place is kept; its result is shown when it is complete, and only the
+newest where there are several.  After the release, steps go on until the last place is reached; then the drag ends.
 """
 
 from __future__ import annotations
@@ -92,7 +92,7 @@ class OutlineDrag(QObject):
             self.ended.emit()
 
     def _show(self, _: DragStep) -> None:
-        """A step is finished; what it has made may have been shown already, with what came before it."""
+        """A step is complete; what it has made may have been shown already, with the step before."""
         newest = None if self._follower is None else self._follower.newest
         if newest is not None and newest is not self._shown:
             self._shown = newest

@@ -12,7 +12,6 @@ from kirigami_studio.foundation.errors import KirigamiError, ProjectError
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.jobs.queue import Cancel
 from kirigami_studio.gui.jobs.target_jobs import Picture, reduced_picture
-from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project import recovery
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.picture_record import LARGEST_PICTURE, TracedPicture
@@ -104,7 +103,7 @@ def extracted_picture(opened: Opened, folder: Path) -> Picture | None:
     from kirigami_studio.outlines.read_image import Traced
 
     kept, target = opened.picture, opened.document.target
-    if kept is None or not isinstance(target, Outline):
+    if kept is None or target is None:
         return None
     folder.mkdir(parents=True, exist_ok=True)
     path = folder / kept.name

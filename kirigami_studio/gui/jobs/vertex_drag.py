@@ -74,7 +74,7 @@ class Follower:
     Attributes
     ----------
     newest : DragStep or None
-        What the last finished step has made.
+        What the last complete step has made.
     """
 
     def __init__(self, start: DragStart) -> None:

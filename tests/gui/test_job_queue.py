@@ -1,4 +1,4 @@
-"""The job board: order, failure, cancel, many at once."""
+"""The job queue: order, failure, cancel, many at once."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from PySide6.QtCore import QEventLoop, QThread, QTimer
 from pytestqt.qtbot import QtBot
 
 from kirigami_studio.foundation.errors import TargetError
-from kirigami_studio.gui.jobs.queue import JobCallbacks, JobQueue
+from kirigami_studio.gui.jobs.queue import JobCallbacks, JobQueue, single
 
 Until = Callable[[Callable[[], bool]], None]
 
@@ -42,6 +42,14 @@ def test_that_reports_arrive_in_order_in_the_window_thread(queue: JobQueue, unti
     until(lambda: bool(done))
     assert heard == list(range(50)) and threads != {threading.main_thread().ident}
     assert not queue.busy
+
+
+def test_that_a_single_job_reports_once_what_its_work_returns(queue: JobQueue, until: Until) -> None:
+    heard: list[int] = []
+    done: list[bool] = []
+    queue.start("counting", single(lambda cancel: 6 * 7), JobCallbacks(heard.append, lambda: done.append(True)))
+    until(lambda: bool(done))
+    assert heard == [42]
 
 
 def test_that_a_short_job_does_not_wait_for_a_long_one(queue: JobQueue, until: Until) -> None:

@@ -1,4 +1,4 @@
-"""Before and after polish, and the finishing switch that trims a design."""
+"""Before and after polish, and the switch that trims a design."""
 
 from __future__ import annotations
 
