@@ -20,11 +20,20 @@ from kirigami_studio.foundation.errors import TargetError
 from kirigami_studio.generator.conditioning import contour_points, normalised, square_pose, turned
 from kirigami_studio.generator.sheet import Sheet
 from kirigami_studio.generator.velocity import Code, Network, joined
+from kirigami_studio.outlines.editing import resampled
 from kirigami_studio.outlines.trace import trace
-from kirigami_studio.training.validation import drawn_polygons
+from kirigami_studio.training.drawn_shapes import drawn_shape
 
+#: Points of drawn shapes, at equal arc length.
+DRAWN_POINTS = 256
 #: Fewest and most pixels of a picture along its longer side.
 PIXELS = 48, 256
+
+
+def drawn_polygons(count: int, seed: int) -> Tensor:
+    """Shapes that people would draw, as polygons of equally many points: (count, L, 2)."""
+    shapes = [resampled(drawn_shape(seed, number), DRAWN_POINTS) for number in range(count)]
+    return torch.tensor(np.stack(shapes), dtype=torch.float32)
 
 
 def pictured(polygons: Tensor, count: int, generator: torch.Generator) -> Tensor:

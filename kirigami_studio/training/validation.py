@@ -17,16 +17,13 @@ from kirigami_studio.generator.flow import integrate
 from kirigami_studio.generator.velocity import Network, Velocity
 from kirigami_studio.lattice.batched import BatchedLattice
 from kirigami_studio.lattice.ratio_field import RatioField
-from kirigami_studio.outlines.editing import resampled
 from kirigami_studio.training.corpus import zero_outline
-from kirigami_studio.training.drawn_shapes import drawn_shape
 from kirigami_studio.training.fields import sobol_fields, structured_fields
 from kirigami_studio.training.preference_loss import total_variation as batched_variation
+from kirigami_studio.training.sampled_targets import drawn_polygons
 
 #: Seed of the fields that training watches; the test splits of ``dataset`` use others.
 VALIDATION_SEED = 20_001
-#: Points of drawn shapes, at equal arc length.
-DRAWN_POINTS = 256
 
 
 def own_pose_iou(network: Velocity, z: Tensor, lattice: BatchedLattice, steps: int, seed: int) -> FloatArray:
@@ -45,12 +42,6 @@ def upright_iou(network: Velocity, targets: Tensor, lattice: BatchedLattice, ste
         seen = normalised(targets)
         seen = turned(seen, -square_pose(seen))
         return _ious(_sampled(network, seen, lattice, steps, seed), seen)
-
-
-def drawn_polygons(count: int, seed: int) -> Tensor:
-    """Shapes that people would draw, as polygons of equally many points: (count, L, 2)."""
-    shapes = [resampled(drawn_shape(seed, number), DRAWN_POINTS) for number in range(count)]
-    return torch.tensor(np.stack(shapes), dtype=torch.float32)
 
 
 def _sampled(network: Velocity, seen: Tensor, lattice: BatchedLattice, steps: int, seed: int) -> Tensor:

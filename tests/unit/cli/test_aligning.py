@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -12,23 +14,18 @@ from safetensors.torch import load_file
 from kirigami_studio.cli import main
 from kirigami_studio.generator.network import NetworkShape, VelocityNetwork
 from kirigami_studio.generator.weights import load_model, store_model, variants
-from kirigami_studio.training.train_aligned import VARIANTS
+from kirigami_studio.training.learner import grown_state
+from kirigami_studio.training.train_aligned import VARIANTS, AlignSettings
 
 pytestmark = pytest.mark.torch
+SMALL = NetworkShape(4, 4, 32, 64, 1, 16, 24, 32, 48)
 
 
 @pytest.fixture(scope="module")
 def weights(tmp_path_factory: pytest.TempPathFactory) -> Path:
     torch.manual_seed(0)
-    network = VelocityNetwork(NetworkShape(4, 4, 32, 64, 1, 16, 24, 32, 48))
+    network = VelocityNetwork(SMALL)
     return store_model("prior", network, tmp_path_factory.mktemp("prior"), {})
-
-
-@pytest.fixture(scope="module")
-def sighted(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A prior of the shape that is aligned, which is the bundled one's."""
-    torch.manual_seed(0)
-    return store_model("prior", VelocityNetwork(NetworkShape()), tmp_path_factory.mktemp("sighted"), {})
 
 
 @pytest.fixture(autouse=True)
@@ -36,6 +33,11 @@ def few_targets(monkeypatch: pytest.MonkeyPatch) -> None:
     """Watching 200 targets of each family takes most of a minute."""
     monkeypatch.setattr("kirigami_studio.cli.learning.VALIDATION_COUNT", 3)
     monkeypatch.setattr("kirigami_studio.cli.learning.GROUP_COUNT", 3)
+
+
+def test_that_the_bundled_prior_can_be_aligned() -> None:
+    shape = AlignSettings(prior="").shape
+    assert grown_state(load_model("prior").network, shape).keys() == VelocityNetwork(shape).state_dict().keys()
 
 
 def test_that_weights_are_aligned_and_written_with_their_manifest(
@@ -84,10 +86,12 @@ def test_that_what_is_missing_or_makes_no_sense_is_refused_in_a_sentence(
 
 
 def test_that_a_prior_is_aligned_to_three_variants_of_one_file_and_resumed(
-    capsys: pytest.CaptureFixture[str], tmp_path: Path, sighted: Path
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path, weights: Path
 ) -> None:
+    shape = replace(SMALL, direction=True, preference=True, sheets=True)
+    monkeypatch.setattr("kirigami_studio.training.train_aligned.AlignSettings", partial(AlignSettings, shape=shape))
     run = tmp_path / "run"
-    words = ["train", "align", "--start", str(sighted), "--steps", "2", "--batch", "4", "--drawn", "3",
+    words = ["train", "align", "--start", str(weights), "--steps", "2", "--batch", "4", "--drawn", "3",
              "--learning-rate", "0.01", "--device", "cpu", "--out", str(run)]  # fmt: skip
     # Stopped at once, which means after one step.
     assert main([*words, "--minutes", "0.00001", "--json"]) == 0
@@ -106,7 +110,7 @@ def test_that_a_prior_is_aligned_to_three_variants_of_one_file_and_resumed(
     assert [model.preference for model in models] == list(VARIANTS.values()) == [0.0, 0.35, 0.9]
     assert len({model.digest for model in models}) == 1
     about = json.loads((run / "manifest.json").read_text())["variants"]["balanced"]["about"]
-    assert about["settings"]["prior"] == load_model("prior", sighted.parent).digest
+    assert about["settings"]["prior"] == load_model("prior", weights.parent).digest
     assert about["validation"]["step"] == 2
     steps = [json.loads(line)["step"] for line in (run / "log.jsonl").read_text().splitlines()]
     assert steps == [1, 2]

@@ -149,10 +149,10 @@ def test_that_the_regularity_reward_smooths_the_designs(tmp_path: Path, tiny: Gr
         tiny,
         start=start.digest,
         reward="regularity",
-        calls=640,
+        calls=320,
         group=4,
         batch=8,
-        learning_rate=3e-3,
+        learning_rate=6e-3,
         average_decay=0.0,
     )
     before = group_figures(start.network, 8, 2)
