@@ -28,7 +28,7 @@ DESIGNS = 8
 PATIENCE = 180.0
 
 
-class SessionError(KirigamiError):
+class SessionError(RuntimeError):
     """A step of the session did not happen."""
 
 
@@ -217,7 +217,7 @@ def main(argv: list[str] | None = None, kind: type[Session] = Session) -> int:
         chosen.out.mkdir(parents=True, exist_ok=True)
         session = kind(chosen.out)
         files = session.play()
-    except (KirigamiError, OSError) as error:
+    except (SessionError, KirigamiError, OSError) as error:
         sys.stderr.write(f"The session failed: {error}\n")
         if session is not None:
             session.window.controller.close()

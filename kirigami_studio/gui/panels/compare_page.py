@@ -223,7 +223,7 @@ def _rows() -> tuple[tuple[str, str], ...]:
     return (
         (tr("sIoU"), tr("Match with the target, %; then the difference from the other design, points.")),
         (tr("Gain"), tr("Gain over the uniform sheet, points; then the difference from the other design.")),
-        (tr("TV"), tr("Total variation of the ratios, lower is calmer; then the difference from the other design.")),
+        (tr("TV"), tr("Total variation of the ratios, lower is more even; then the difference from the other design.")),
         (tr("Panel, mm"), tr("Smallest panel edge or neck, mm; then the difference from the other design.")),
         (tr("Feasible"), tr("Whether the sheet can be built and opens without touching itself.")),
     )

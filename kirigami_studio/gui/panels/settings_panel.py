@@ -48,7 +48,7 @@ POLISH = (
 #: What a fit prefers among nearly equal matches: name of the preference, label, what it means.
 PREFER = (
     ("accuracy", tr("Accuracy"), tr("The closest match, regardless of panel shape.")),
-    ("balanced", tr("Balanced"), tr("Recommended: nearly as close, and about 20 % calmer.")),
+    ("balanced", tr("Balanced"), tr("Recommended: nearly as close, and about 20 % more even.")),
     ("regularity", tr("Regularity"), tr("A third less TV than Balanced, at 0.1 to 0.2 % less match.")),
     ("calm", tr("Calm"), tr("About half the TV of Balanced, at 0.2 to 0.9 % less match.")),
 )
