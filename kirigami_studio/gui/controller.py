@@ -41,7 +41,7 @@ class Controller(QObject):
     Attributes
     ----------
     session : Session
-        Document, history, stage; the parts speak to the user through it.
+        Document, history, stage; the parts report to the user through it.
     hand, trimming, refitting, sampled, marks, curves
         What is done to the chosen design, or found out about it.
     generation, run

@@ -1,4 +1,4 @@
-"""Gestures on the drawing board -> named edits of the target, and the size that the opened sheet has."""
+"""Gestures of the target's editor -> named edits of the target, and the size that the opened sheet has."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class TargetReshaper(QObject):
         self._result: Placed | None = None
 
     def take(self, change: Change) -> None:
-        """Carry out a gesture, or tell why it cannot be."""
+        """Carry out a gesture, or say why it is impossible."""
         before = self._context.placed
         try:
             made = change.make()
@@ -132,7 +132,7 @@ class OpenedSizes(QObject):
         self.size: OpenedSize | None = None
 
     def follow(self, entry: Entry | None, document: Document) -> None:
-        """Another design, target or width holds now."""
+        """There is another design, target or width now."""
         self.size = None
         if entry is not None and document.target is not None:
             design = entry.design

@@ -1,8 +1,8 @@
 """What is open in the window: the document with its history, its designs, the design on the stage.
 
 The parts of the window share one :class:`Session`.  An edit goes ``apply`` -> history -> ``document_changed`` ->
-:class:`DesignDisplay`, which decodes what it must and tells the views.  Messages, status lines and failures go through
-the session too.  It knows no widgets.
+:class:`DesignDisplay`, which decodes what is missing and emits what the views show.  Messages, status lines and
+failures go through the session too.  It imports no widgets.
 """
 
 from __future__ import annotations
@@ -180,7 +180,7 @@ class DesignDisplay(QObject):
 
 
 class Session(QObject):
-    """The open project, and the one way to change it and to speak to the user.
+    """The open project, the one way to change it and to report to the user.
 
     Attributes
     ----------
@@ -247,14 +247,14 @@ class Session(QObject):
         self.history.restart(document, saved)
         self.announce()
 
-    # speaking to the user ------------------------------------------------------------------------------------------
+    # reporting to the user ------------------------------------------------------------------------------------------
 
     def post(self, message: Message) -> None:
         """Show a message above the columns."""
         self.message_posted.emit(message)
 
     def withdraw(self, message: Message) -> None:
-        """Take a message away that no longer holds."""
+        """Take a message away that no longer applies."""
         self.message_withdrawn.emit(message)
 
     def set_status(self, text: str) -> None:
@@ -263,7 +263,7 @@ class Session(QObject):
 
     def refuse(self, error: KirigamiError) -> None:
         """Say why nothing was changed."""
-        self.document_changed.emit(self.document)  # so that the control shows the value that holds
+        self.document_changed.emit(self.document)  # so that the control shows the present value again
         self.post(Message(str(error), Tone.ERROR))
         self.set_status(tr("Nothing changed."))
 

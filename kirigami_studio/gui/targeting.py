@@ -95,7 +95,7 @@ class PictureTracer(QObject):
 
 
 class TargetReader(QObject):
-    """Reads one target at a time and tells the tracer which picture it came from."""
+    """Reads one target at a time and registers the picture it was traced from."""
 
     read = Signal(Outline, bool)  #: whether it is the first target of the session
     failed = Signal(str, str)  #: sentence, trace
@@ -164,7 +164,7 @@ class Targeting(QObject):
             self.tracer.retrace(picture, threshold)
 
     def reshape(self, edit: Edit) -> None:
-        """Take an edit that the drawing board made of the target."""
+        """Take an edit of the target that was made by drawing."""
         self.replaced.emit(edit)
         self._session.set_status(f"{edit.label}.")
 

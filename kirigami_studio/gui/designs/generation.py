@@ -460,7 +460,7 @@ class StoppedRun:
         self._session.post(self._offer)
 
     def follow(self, document: Document) -> None:
-        """Another document holds now: designs for another target, or beside other designs, are of no use."""
+        """The document has changed: designs for another target, or beside other designs, are of no use."""
         target, candidates = self._belongs_to
         if self._offer is not None and (document.target != target or document.candidates is not candidates):
             self.withdraw()

@@ -1,1 +1,1 @@
-"""Files as the window's middle knows them: projects, recovery, recent files, pictures, the clipboard."""
+"""The window's files: projects, recovery, recent files, preferences, pictures of views, the clipboard."""

@@ -1,4 +1,4 @@
-"""What is pasted or dropped -> a file or a text that a reader of targets knows."""
+"""What is pasted or dropped -> a file that can be read as a target."""
 
 from __future__ import annotations
 

@@ -130,7 +130,7 @@ class PictureMaker(QObject):
         request = self._cutting.request
         return {} if request is None else request.facts
 
-    # news ----------------------------------------------------------------------------------------------------------
+    # results --------------------------------------------------------------------------------------------------------
 
     def _report_failure(self, sentence: str, trace: str) -> None:
         self._session.post(Message(sentence, Tone.ERROR, trace))

@@ -35,7 +35,7 @@ class Planned:
     removed_share : float, 0..1
         Share of the sheet that was trimmed away.
     slots_mm : float or None
-        Cut length where the machine profile makes a closed slot of every slit; the plan knows that of open cuts.
+        Cut length where the machine profile makes a closed slot of every slit; ``plan`` has that of open cuts.
     """
 
     plan: CutPlan

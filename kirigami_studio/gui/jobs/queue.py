@@ -246,7 +246,7 @@ class JobQueue(QObject):
 
 
 class LatestJob(Generic[T]):
-    """Holds at most one job of a queue; it is empty again before a callback hears how the job ended."""
+    """Holds at most one job of a queue; it is empty again before the callback at the job's end."""
 
     def __init__(self, queue: JobQueue) -> None:
         self._queue = queue
