@@ -11,7 +11,6 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 import shapely
 from scipy.interpolate import CubicSpline
 from shapely.affinity import rotate, scale, translate
@@ -32,13 +31,6 @@ class Silhouette(NamedTuple):
     title: str
     about: str
     make: Callable[[], BaseGeometry]
-
-
-def polar(radius: Callable[[npt.NDArray[np.float64]], npt.NDArray[np.float64]], count: int = 720) -> Polygon:
-    """Polygon of a radius given as a function of the angle from the upward axis."""
-    angle = 2 * np.pi * np.arange(count) / count
-    r = radius(angle)
-    return Polygon(np.column_stack([-r * np.sin(angle), r * np.cos(angle)]))
 
 
 def regular(corners: int, turn: float = 0.0) -> Polygon:

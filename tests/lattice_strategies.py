@@ -9,7 +9,8 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
 
 from kirigami_studio.foundation.arrays import FloatArray
-from kirigami_studio.lattice.deployment import signed_area
+from kirigami_studio.lattice.deployment import rotate, signed_area
+from kirigami_studio.lattice.marching import void_angle
 from kirigami_studio.lattice.ratio_field import RatioField
 
 
@@ -87,3 +88,13 @@ __all__ = [
     "ratio_fields",
     "signed_area",
 ]
+
+
+def local_rule_residual(field: RatioField, corners: FloatArray, phi: float) -> float:
+    """Largest violation of Eq. 2 over all voids, in the length unit of ``corners`` (m, n, 4, 2)."""
+    even = np.add.outer(np.arange(field.rows), np.arange(field.columns)) % 2 == 0
+    seed = corners[:, :, 3] - corners[:, :, 0]
+    turned = np.where(even[..., None], rotate(seed, -void_angle(0, 0, phi)), rotate(seed, -void_angle(0, 1, phi)))
+    side = field.ratio[..., None] * turned
+    gaps = (corners[:, :, 1] - corners[:, :, 0] - side, corners[:, :, 2] - corners[:, :, 3] - side)
+    return float(max(np.abs(gap).max() for gap in gaps))

@@ -31,7 +31,6 @@ def measure_nearness(
     polish: int = 0,
     grid: tuple[int, int] = (10, 10),
     seed: int = 0,
-    nearness: Sequence[float] = NEARNESS,
     report: Callable[[int, int], None] = lambda done, total: None,
 ) -> dict[str, object]:
     """Take the best of ``k`` designs for every target, and draw ``k`` more from the next seed, near it and not.
@@ -41,7 +40,6 @@ def measure_nearness(
     targets : sequence of Outline
     variant, k, steps, polish, grid, seed
         As in :class:`Request`.
-    nearness : sequence of float, in [0, 1)
     report : callable
         Told (done, total) targets.
 
@@ -60,7 +58,7 @@ def measure_nearness(
     """
     if not targets:
         raise UsageError("benchmark.no_targets")
-    names = (FRESH, *(f"{near:g}" for near in nearness))
+    names = (FRESH, *(f"{near:g}" for near in NEARNESS))
     rows: dict[str, list[dict[str, float]]] = {name: [] for name in names}
     designs = []
     for number, target in enumerate(targets):
@@ -68,7 +66,7 @@ def measure_nearness(
         before = best_of(request).candidates
         designs.append(before[0].score.siou)
         more = replace(request, seed=seed + 1)
-        asked = [more, *(replace(more, near=before[0].field, nearness=near) for near in nearness)]
+        asked = [more, *(replace(more, near=before[0].field, nearness=near) for near in NEARNESS)]
         for name, one in zip(names, asked, strict=True):
             rows[name].append(_figures(before, best_of(one).candidates))
         report(number + 1, len(targets))

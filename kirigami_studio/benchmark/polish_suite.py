@@ -25,25 +25,20 @@ def measure_polish(
     outlines: Sequence[Outline],
     *,
     grid: tuple[int, int] = (10, 10),
-    phi: float = 0.0,
     steps: int = 40,
     effort: int | None = None,
-    starts: Sequence[RatioField] | None = None,
     report: Callable[[int, int], None] = lambda done, total: None,
 ) -> dict[str, object]:
-    """Fit every outline and score the best field.
+    """Fit every outline, from the uniform sheet, and score the best field at phi = 0.
 
     Parameters
     ----------
     outlines : sequence of Outline
     grid : (rows, columns)
-    phi : float, radians, in [0, pi)
     steps : int
         Steps of the plain fit; without meaning for a search.
     effort : int, optional
         Search by continuation with this effort; a plain fit when missing.
-    starts : sequence of RatioField, optional
-        Where each fit begins, one for an outline; the uniform sheet when missing.
     report : callable
         Told (done, total).
 
@@ -57,32 +52,28 @@ def measure_polish(
     Raises
     ------
     UsageError
-        No outlines, or not one start for each.
+        No outlines.
     """
     if not outlines:
         raise UsageError("benchmark.no_targets")
-    if starts is not None and len(starts) != len(outlines):
-        raise UsageError("benchmark.starts_differ", starts=len(starts), outlines=len(outlines))
     scores: list[Score] = []
     seconds: list[float] = []
     evaluations: list[int] = []
     for number, outline in enumerate(outlines):
         began = time.process_time()
-        fit = _fitted(outline, grid, phi, steps, effort, None if starts is None else starts[number])
+        fit = _fitted(outline, grid, steps, effort)
         seconds.append(time.process_time() - began)
         evaluations.append(fit.evaluations)
-        scores.append(evaluate(deploy(fit.field), outline, phi))
+        scores.append(evaluate(deploy(fit.field), outline))
         report(number + 1, len(outlines))
-    settings = {"grid": list(grid), "phi": phi, "steps": steps if effort is None else None, "effort": effort}
+    settings = {"grid": list(grid), "phi": 0.0, "steps": steps if effort is None else None, "effort": effort}
     return {**settings, **_figures(outlines, scores), "seconds": _spread(seconds), "evaluations": _spread(evaluations)}
 
 
-def _fitted(
-    outline: Outline, grid: tuple[int, int], phi: float, steps: int, effort: int | None, start: RatioField | None
-) -> Fit:
+def _fitted(outline: Outline, grid: tuple[int, int], steps: int, effort: int | None) -> Fit:
     if effort is not None:
-        return fit_shape(outline, grid, phi, () if start is None else (start,), effort)[0]
-    return polish(RatioField.uniform(*grid) if start is None else start, outline, phi, steps)
+        return fit_shape(outline, grid, effort=effort)[0]
+    return polish(RatioField.uniform(*grid), outline, steps=steps)
 
 
 def _figures(outlines: Sequence[Outline], scores: list[Score]) -> dict[str, object]:

@@ -109,7 +109,7 @@ def _seconds(work: Callable[[], object]) -> float:
     return time.perf_counter() - began
 
 
-def polish_timings(target: Outline | None = None) -> dict[str, object]:
+def polish_timings() -> dict[str, object]:
     """Time everything for a 10 x 10 heart, and the fit at 24 x 24.
 
     Returns
@@ -120,7 +120,7 @@ def polish_timings(target: Outline | None = None) -> dict[str, object]:
         ``polish_32_s`` (the polishing part of a run with 32 candidates and ten steps) and the ``workers`` that did it,
         ``fit_24_s``; the fastest of several runs where they are short.
     """
-    target = target or load("heart")
+    target = load("heart")
     request = Request(target, k=K, polish=STEPS)
     fields = sample(request)
     with one_blas_thread():

@@ -118,6 +118,27 @@ def samples(usual: int) -> Option:
     return option("--k", type=count, default=usual, help=f"samples for each target (default {usual})")
 
 
+#: Where every training run keeps its files.
+RUN_FOLDER = option("--out", required=True, help="run folder for checkpoint, log and weights")
+
+
+def run_of_training(validate_every: int) -> tuple[Option, ...]:
+    """Options of every training run; ``validate_every`` is the default number of steps between validations."""
+    return (
+        option("--minutes", type=number, default=None, help="stop after this time and keep a checkpoint"),
+        option(
+            "--validate-every",
+            type=count,
+            default=validate_every,
+            help=f"steps between validations (default {validate_every})",
+        ),
+        option("--threads", type=count, default=1, help="processor threads (default 1)"),
+        option("--device", default="auto", help="auto, cpu or cuda (default auto)"),
+        SEED,
+        JSON,
+    )
+
+
 SUB_COMMANDS: tuple[SubCommand, ...] = (
     SubCommand("design", "design sheets for a target, rank them and write a cut file", "design:design", (
         option("targets", nargs="+", metavar="TARGET",
@@ -127,7 +148,7 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
                help="grey level that separates an image's shape from its background, 0 to 1 (default: automatic)"),
         option("--k", type=int, default=32, help="number of designs (default 32)"),
         option("--seed", type=int, default=0, help="random seed; the same seed gives the same result (default 0)"),
-        option("--grid", default="10x10", help="voids, ROWSxCOLUMNS (default 10x10)"),
+        GRID,
         PHI,
         option("--variant", default="balanced",
                help="generator variant, see 'kirigami-studio variants' (default balanced)"),
@@ -233,17 +254,16 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
                help="split to write (default all: 5000, 500 and 500 designs)"),
         option("--count", type=count, default=None,
                help="designs in each split (default: the paper's); drawn: total number of fits (default 7000)"),
-        option("--grid", default="10x10", help="voids, ROWSxCOLUMNS (default 10x10)"),
-        option("--seed", type=whole, default=0, help="random seed (default 0)"),
+        GRID,
+        SEED,
         option("--processes", type=count, default=1, help="drawn: number of fits at the same time (default 1)"),
         JSON,
     ), ("kirigami-studio dataset sobol --out data --split test",
         "kirigami-studio dataset drawn --out runs/drawn --processes 2")),
     SubCommand("train prior", "train a generator; resumes from the checkpoint in its run folder",
         "learning:train", (
-        option("--out", required=True, help="run folder for checkpoint, log and weights"),
+        RUN_FOLDER,
         option("--steps", type=count, default=12_000, help="total optimiser steps (default 12000)"),
-        option("--minutes", type=number, default=None, help="stop after this time and keep a checkpoint"),
         option("--backbone", choices=("perceptron", "unet"), default="perceptron",
                help="network; unet is the paper's U-Net with a ControlNet branch (default perceptron)"),
         option("--channels", default=None, metavar="LIST",
@@ -262,11 +282,7 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
         option("--feedback", action=argparse.BooleanOptionalAction, default=None,
                help="perceptron: give it the gap between current outline and target (default: yes)"),
         option("--outline-weight", type=amount, default=50.0, help="weight of the outline error (default 50)"),
-        option("--validate-every", type=count, default=500, help="steps between validations (default 500)"),
-        option("--threads", type=count, default=1, help="processor threads (default 1)"),
-        option("--device", default="auto", help="auto, cpu or cuda (default auto)"),
-        option("--seed", type=whole, default=0, help="random seed (default 0)"),
-        JSON,
+        *run_of_training(500),
     ), ("kirigami-studio train prior --out runs/prior --device auto",
         "kirigami-studio train prior --warm-start bundled --fits runs/drawn/drawn.npz --out runs/again",
         "the paper's network and settings, 400 epochs of 5000 targets (on a GPU):",
@@ -274,7 +290,7 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
         "--weight-decay 0.05 --outline-weight 0 --steps 31250 --out runs/unet")),
     SubCommand("train align", "align a prior for match and regularity, by gradients through sampler and geometry",
         "learning:align", (
-        option("--out", required=True, help="run folder for checkpoint, log and weights"),
+        RUN_FOLDER,
         option("--start", default="bundled", metavar="WEIGHTS",
                help="prior to align: 'bundled' (default), or the .safetensors of a run"),
         option("--steps", type=count, default=3_000, help="total optimiser steps (default 3000)"),
@@ -291,18 +307,13 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
                help="share of targets that are traced from a picture (default 0.5)"),
         option("--go-on", default=None, metavar="WEIGHTS",
                help="start from these aligned weights: 'bundled', or a .safetensors file (default: the prior's)"),
-        option("--minutes", type=number, default=None, help="stop after this time and keep a checkpoint"),
-        option("--validate-every", type=count, default=500, help="steps between validations (default 500)"),
-        option("--threads", type=count, default=1, help="processor threads (default 1)"),
-        option("--device", default="auto", help="auto, cpu or cuda (default auto)"),
-        option("--seed", type=whole, default=0, help="random seed (default 0)"),
-        JSON,
+        *run_of_training(500),
     ), ("kirigami-studio train align --out runs/aligned",
         "kirigami-studio train align --go-on bundled --seed 1 --out runs/further",
         "kirigami-studio train align --start runs/prior/prior.safetensors --minutes 30 --out runs/aligned")),
     SubCommand("train grpo", "align a generator with a reward, by the paper's GRPO; resumes from its checkpoint",
         "learning:grpo", (
-        option("--out", required=True, help="run folder for checkpoint, log and weights"),
+        RUN_FOLDER,
         option("--reward", choices=("accuracy", "regularity", "balanced"), default="accuracy",
                help="what the reward prefers (default accuracy)"),
         option("--start", default="bundled", metavar="WEIGHTS",
@@ -325,12 +336,7 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
                help="skip groups whose rewards have a smaller standard deviation (default 0)"),
         option("--average-decay", type=amount, default=0.0,
                help="decay of the averaged weights to write (default 0: write the last weights)"),
-        option("--minutes", type=number, default=None, help="stop after this time and keep a checkpoint"),
-        option("--validate-every", type=count, default=50, help="steps between validations (default 50)"),
-        option("--threads", type=count, default=1, help="processor threads (default 1)"),
-        option("--device", default="auto", help="auto, cpu or cuda (default auto)"),
-        option("--seed", type=whole, default=0, help="random seed (default 0)"),
-        JSON,
+        *run_of_training(50),
     ), ("kirigami-studio train grpo --reward accuracy --start bundled --calls 10000 --out runs/accuracy",
         "kirigami-studio train grpo --reward balanced --start runs/prior/prior.safetensors --out runs/both")),
     SubCommand("benchmark generator", "score one bundled variant on a set of targets", "benchmarks:generator", (

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import cmath
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from functools import lru_cache
 
 import numpy as np
@@ -78,19 +78,9 @@ class Score:
     def to_json(self) -> dict[str, object]:
         """The keys of the command line's ``score``, plain numbers only."""
         return {
-            "siou": self.siou,
-            "siou_gain": self.siou_gain,
-            "uniform_siou": self.uniform_siou,
-            "iou_exact": self.iou_exact,
-            "uniform_iou": self.uniform_iou,
-            "tv": self.tv,
-            "tv_log10": self.tv_log10,
-            "feasible": self.feasible,
-            "n_invalid": self.n_invalid,
-            "overlap_ratio": self.overlap_ratio,
+            **asdict(self),
             "contact": None if self.contact is None else self.contact.to_json(),
             "transform": self.transform.to_json(),
-            "phi": self.phi,
         }
 
 

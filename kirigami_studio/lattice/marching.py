@@ -50,13 +50,3 @@ def march(field: RatioField, left: FloatArray, top: FloatArray, phi: float) -> F
             side = field.ratio[i, j] * rotate(p3 - p0, -void_angle(i, j, phi))
             corners[i, j] = p0, p0 + side, p3 + side, p3
     return corners
-
-
-def local_rule_residual(field: RatioField, corners: FloatArray, phi: float) -> float:
-    """Largest violation of Eq. 2 over all voids, in the length unit of ``corners`` (m, n, 4, 2)."""
-    even = np.add.outer(np.arange(field.rows), np.arange(field.columns)) % 2 == 0
-    seed = corners[:, :, 3] - corners[:, :, 0]
-    turned = np.where(even[..., None], rotate(seed, -void_angle(0, 0, phi)), rotate(seed, -void_angle(0, 1, phi)))
-    side = field.ratio[..., None] * turned
-    gaps = (corners[:, :, 1] - corners[:, :, 0] - side, corners[:, :, 2] - corners[:, :, 3] - side)
-    return float(max(np.abs(gap).max() for gap in gaps))

@@ -26,7 +26,7 @@ SAMPLES = 720
 SMALLEST_MM = 0.1
 
 
-def stroked(points: npt.ArrayLike, name: str = "drawing") -> Placed:
+def stroked(points: npt.ArrayLike) -> Placed:
     """Turn a hand-drawn stroke (P, 2), mm, into a target in its place: tremor smoothed, corners kept, ends joined.
 
     Raises
@@ -35,7 +35,7 @@ def stroked(points: npt.ArrayLike, name: str = "drawing") -> Placed:
         Too short, without area, or crossing itself so that no single shape is meant.
     """
     ring, notes = smoothed_stroke(points)
-    drawn = Placed.from_ring(ring, name, notes)
+    drawn = Placed.from_ring(ring, "drawing", notes)
     return drawn.reshaped(_thinned(drawn.polygon, STROKE_ERROR * drawn.scale), drawn.outline.notes)
 
 

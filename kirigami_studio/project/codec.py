@@ -38,17 +38,7 @@ def encode(document: Document) -> dict[str, bytes]:
     runs = list(dict.fromkeys(entry.made_with for entry in document.candidates if entry.made_with))
     design = {
         "target": None if document.target is None else _outline_json(document.target),
-        "settings": {
-            "grid": list(document.settings.grid),
-            "phi": document.settings.phi,
-            "k": document.settings.k,
-            "seed": document.settings.seed,
-            "variant": document.settings.variant,
-            "steps": document.settings.steps,
-            "polish": document.settings.polish,
-            "prefer": document.settings.prefer,
-            "search": document.settings.search,
-        },
+        "settings": asdict(document.settings),
         "fabrication": _fabrication_json(document.fabrication),
         "candidates": [_candidate_json(entry, runs) for entry in document.candidates],
         "runs": [dict(run) for run in runs],
@@ -89,17 +79,7 @@ def decode(members: Members) -> Document:
     target = _outline(design.record("target")) if design.holds("target") else None
     return Document(
         target=target,
-        settings=DesignSettings(
-            grid=(rows, columns),
-            phi=settings.number("phi"),
-            k=settings.whole("k"),
-            seed=settings.whole("seed"),
-            variant=settings.text("variant"),
-            steps=settings.whole("steps"),
-            polish=settings.whole("polish"),
-            prefer=settings.text("prefer"),
-            search=settings.whole("search"),
-        ),
+        settings=DesignSettings(**_plain_fields(settings, DesignSettings), grid=(rows, columns)),
         candidates=tuple(
             replace(
                 _candidate(record, field, next(sampled) if record.flag("sampled") else None, target),
@@ -180,7 +160,7 @@ def _fabrication_json(settings: FabricationSettings) -> dict[str, object]:
         },
         "profile": settings.profile,
         "dxf_version": settings.dxf_version,
-        "own": None if settings.own is None else _material_json(settings.own),
+        "own": None if settings.own is None else asdict(settings.own),
     }
 
 
@@ -201,7 +181,7 @@ def _fabrication(record: Record) -> FabricationSettings:
         ),
         profile=record.text("profile"),
         dxf_version=record.text("dxf_version"),
-        own=_material(record.record("own")) if record.holds("own") else None,
+        own=Material(**_plain_fields(record.record("own"), Material)) if record.holds("own") else None,
     )
 
 
@@ -220,14 +200,10 @@ def _hinge_width(entry: object) -> tuple[int, float]:
     return _hinge(hinge), float(width)
 
 
-def _material_json(material: Material) -> dict[str, object]:
-    return asdict(material)
-
-
-def _material(record: Record) -> Material:
+def _plain_fields(record: Record, kind: type[DesignSettings | Material | Score]) -> dict[str, Any]:
+    """What a record has for those fields of a dataclass that hold one text, number or flag."""
     read = {"str": record.text, "float": record.number, "int": record.whole, "bool": record.flag}
-    values: dict[str, Any] = {entry.name: read[str(entry.type)](entry.name) for entry in fields(Material)}
-    return Material(**values)
+    return {entry.name: read[str(entry.type)](entry.name) for entry in fields(kind) if entry.type in read}
 
 
 def _candidate_json(entry: Candidate, runs: list[tuple[tuple[str, str], ...]]) -> dict[str, object]:
@@ -274,20 +250,12 @@ def _pose(record: Record) -> Similarity:
 def _score(record: Record) -> Score:
     """Read back what :meth:`Score.to_json` wrote."""
     contact = record.record("contact") if record.holds("contact") else None
+    plain = _plain_fields(record, Score)
+    check_phi(plain["phi"])
     return Score(
-        siou=record.number("siou"),
-        siou_gain=record.number("siou_gain"),
-        uniform_siou=record.number("uniform_siou"),
-        iou_exact=record.number("iou_exact"),
-        uniform_iou=record.number("uniform_iou"),
-        tv=record.number("tv"),
-        tv_log10=record.number("tv_log10"),
-        feasible=record.flag("feasible"),
-        n_invalid=record.whole("n_invalid"),
-        overlap_ratio=record.number("overlap_ratio"),
+        **plain,
         contact=None if contact is None else Contact(contact.number("phi"), contact.pair("where")),
         transform=_pose(record.record("transform")),
-        phi=check_phi(record.number("phi")),
     )
 
 

@@ -19,6 +19,8 @@ from torch import Tensor
 from kirigami_studio.foundation.errors import UsageError
 
 COUPLINGS = ("independent", "ot", "conditional-ot")
+#: What a squared distance between targets costs beside one between noise and design.
+CONDITION_WEIGHT = 10.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,7 +78,7 @@ def cfm_errors(velocity: Tensor, sample: PathSample) -> Tensor:
     return (velocity - sample.dx_t).square().mean(dim=1)
 
 
-def pair_noise(coupling: str, noise: Tensor, z: Tensor, conditions: Tensor, condition_weight: float = 10.0) -> Tensor:
+def pair_noise(coupling: str, noise: Tensor, z: Tensor, conditions: Tensor) -> Tensor:
     """Reorder ``noise`` (B, D) so that row b belongs to design ``z[b]`` with condition ``conditions[b]``."""
     if coupling == "independent":
         return noise
@@ -85,6 +87,6 @@ def pair_noise(coupling: str, noise: Tensor, z: Tensor, conditions: Tensor, cond
     cost = torch.cdist(z, noise).square()
     if coupling == "conditional-ot":
         # Noise b was drawn for target b: moving it to another target costs the squared distance between the two.
-        cost = cost + condition_weight * torch.cdist(conditions, conditions).square()
+        cost = cost + CONDITION_WEIGHT * torch.cdist(conditions, conditions).square()
     _, columns = linear_sum_assignment(cost.cpu().numpy())
     return noise[torch.as_tensor(columns, device=noise.device)]

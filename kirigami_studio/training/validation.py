@@ -82,9 +82,7 @@ def validator(count: int, device: torch.device, steps: int = 4) -> Callable[[Net
     return measure
 
 
-def group_figures(
-    network: Network, count: int, steps: int, samples: int = 16, preference: float = 0.0
-) -> dict[str, float]:
+def group_figures(network: Network, count: int, steps: int, samples: int = 16) -> dict[str, float]:
     """How ``samples`` designs of one target in one pose differ, on ``count`` structured validation targets.
 
     Returns
@@ -99,8 +97,7 @@ def group_figures(
     fields = structured_fields(count, rows, columns, np.random.default_rng(VALIDATION_SEED))
     with torch.no_grad():
         targets = normalised(zero_outline(lattice, torch.tensor(fields, dtype=torch.float32, device=device)))
-        asked = torch.full((count,), preference, device=device)
-        code = network.code(turned(targets, -square_pose(targets)), preference=asked).repeated(samples)
+        code = network.code(turned(targets, -square_pose(targets))).repeated(samples)
         generator = torch.Generator().manual_seed(0)
         noise = torch.randn((count * samples, rows * columns), generator=generator) * network.shape.z_scale
         sampled = integrate(network, noise.to(device), code, steps).clamp(-LOG_RATIO_LIMIT, LOG_RATIO_LIMIT)

@@ -7,11 +7,10 @@ import math
 import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
-from lattice_strategies import angles, corner_angles, open_angles, polygon_areas, ratio_fields
+from lattice_strategies import angles, corner_angles, local_rule_residual, open_angles, polygon_areas, ratio_fields
 
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.lattice.deployment import deploy, rotate
-from kirigami_studio.lattice.marching import local_rule_residual
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.topology import topology
 

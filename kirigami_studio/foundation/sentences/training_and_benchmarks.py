@@ -72,7 +72,6 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "No targets found to measure on. Name a file, a folder with shapes, or 'library'."
     ),
     "benchmark.no_targets": mark("This suite needs at least one target, got none."),
-    "benchmark.starts_differ": mark("Fits need one start for each outline, got {starts} for {outlines}."),
     "benchmark.too_few_to_time": mark(
         "Timings need at least one variant and two targets, got {variants} and {targets}."
     ),

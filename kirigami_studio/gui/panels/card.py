@@ -159,9 +159,9 @@ def captioned(text: str, buddy: QWidget, content: QWidget | QLayout) -> QVBoxLay
     return column
 
 
-def muted_label(text: str = "") -> QLabel:
+def muted_label() -> QLabel:
     """A muted label that wraps."""
-    label = QLabel(text)
+    label = QLabel()
     label.setObjectName("muted")
     label.setWordWrap(True)
     return label

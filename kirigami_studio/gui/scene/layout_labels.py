@@ -156,7 +156,7 @@ class SmallPart:
         return line
 
 
-def smallest_parts(panels: FloatArray, trimmed: frozenset[int] = frozenset(), count: int = SHOWN) -> list[SmallPart]:
+def smallest_parts(panels: FloatArray, trimmed: frozenset[int] = frozenset()) -> list[SmallPart]:
     """Find the smallest part of each panel, and return the smallest of them all, smallest first.
 
     Parameters
@@ -173,7 +173,7 @@ def smallest_parts(panels: FloatArray, trimmed: frozenset[int] = frozenset(), co
     which = np.argmin(sizes, axis=1)
     smallest = sizes[np.arange(len(sizes)), which]
     found = []
-    for panel in np.argsort(smallest, kind="stable")[:count].tolist():
+    for panel in np.argsort(smallest, kind="stable")[:SHOWN].tolist():
         number, size = int(which[panel]), float(smallest[panel])
         if np.isfinite(size):
             kind = PartKind.EDGE if number < edges.shape[1] else PartKind.NECK

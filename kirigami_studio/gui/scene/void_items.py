@@ -73,24 +73,24 @@ class VoidShapes:
         """Whether a ratio can move the outline at this angle."""
         return self.phi < math.pi - STIFF_WITHIN
 
-    def void_at(self, x: float, y: float, reach: float = VOID_REACH) -> Void | None:
-        """The void that pixel (x, y) lies in; else the nearest one within ``reach`` pixels: closed ones are slits."""
+    def void_at(self, x: float, y: float) -> Void | None:
+        """The void that pixel (x, y) lies in; else the nearest one in reach: closed ones are slits."""
         quads = self.corners.reshape(-1, 4, 2)
         distance = edge_distance(quads, np.array((x, y)))
         distance[inside(quads, np.array((x, y)))] = -1.0
         nearest = int(distance.argmin())
-        if distance[nearest] > reach:
+        if distance[nearest] > VOID_REACH:
             return None
         row, column = divmod(nearest, self.corners.shape[1])
         return row, column
 
-    def vertex_at(self, x: float, y: float, reach: float = VERTEX_REACH) -> int | None:
-        """The vertex of the outline that is nearest to pixel (x, y), within ``reach`` pixels; none that cannot move."""
+    def vertex_at(self, x: float, y: float) -> int | None:
+        """The vertex of the outline that is nearest to pixel (x, y), if in reach; none that cannot move."""
         if not self.movable:
             return None
         distance = np.hypot(*(self.vertices - (x, y)).T)
         nearest = int(distance.argmin())
-        return nearest if distance[nearest] <= reach else None
+        return nearest if distance[nearest] <= VERTEX_REACH else None
 
     def voids_within(self, left: float, top: float, right: float, bottom: float) -> frozenset[Void]:
         """Voids whose middle lies in a box of pixels."""

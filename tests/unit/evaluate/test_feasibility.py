@@ -8,6 +8,7 @@ import math
 import numpy as np
 import pytest
 import shapely
+from lattice_strategies import local_rule_residual
 
 from kirigami_studio.evaluate.boundary import as_plane
 from kirigami_studio.evaluate.crossing import deepest_crossing
@@ -21,7 +22,6 @@ from kirigami_studio.evaluate.feasibility import (
 )
 from kirigami_studio.foundation.errors import AngleError
 from kirigami_studio.lattice.deployment import Deployment, deploy, even_panel_part
-from kirigami_studio.lattice.marching import local_rule_residual
 from kirigami_studio.lattice.ratio_field import RatioField, frozen
 
 
