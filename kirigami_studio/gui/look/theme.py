@@ -39,6 +39,8 @@ class Palette:
     on_accent: str
     disabled: str
     warning: str
+    warning_soft: str
+    error_soft: str
     canvas: str
     grid: str
     panel_even: str
@@ -81,6 +83,8 @@ LIGHT = Palette(
     on_accent="#ffffff",
     disabled="#98a3af",
     warning="#a34a00",
+    warning_soft="#fff1df",
+    error_soft="#fdebdc",
     canvas="#fbfcfe",
     grid="#e6ebf0",
     panel_even="#8bb9e6",
@@ -119,6 +123,8 @@ DARK = Palette(
     on_accent="#06131f",
     disabled="#66727e",
     warning="#ffb066",
+    warning_soft="#35260f",
+    error_soft="#3a2511",
     canvas="#0f1215",
     grid="#1c2127",
     panel_even="#2c669f",
