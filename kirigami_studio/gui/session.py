@@ -226,7 +226,7 @@ class Session(QObject):
         """Make an edit part of the history and show what it changed."""
         before = self.document
         if self.history.apply(edit):
-            self.set_status(f"{edit.label}.")
+            self.set_status(tr("Done: {label}.", label=edit.label))
             self.announce(before)
 
     def announce(self, before: Document | None = None) -> None:

@@ -166,7 +166,7 @@ class Targeting(QObject):
     def reshape(self, edit: Edit) -> None:
         """Take an edit of the target that was made by drawing."""
         self.replaced.emit(edit)
-        self._session.set_status(f"{edit.label}.")
+        self._session.set_status(tr("Done: {label}.", label=edit.label))
 
     def clear(self) -> None:
         """Start over with an empty target."""

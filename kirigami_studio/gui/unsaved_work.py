@@ -59,6 +59,8 @@ class UnsavedWork(QObject):
         self._controller = controller
         self._discarded = False  # the user closes without saving
         self._quit_when_saved = False
+        self._questions: list[Message] = []
+        controller.session.document_changed.connect(self._drop_questions)
         controller.saved.connect(self._close_when_saved)
         controller.filing.projects.save_failed.connect(self._stay)
 
@@ -92,7 +94,7 @@ class UnsavedWork(QObject):
             then()
             return
         actions = ((tr("Save first"), self._save_first), (replacement.proceed, then))
-        self._window.messages.add(Message(replacement.question, Tone.WARNING, actions=actions))
+        self._ask(Message(replacement.question, Tone.WARNING, actions=actions))
 
     def may_close(self) -> bool:
         """Whether the window may close now; asks when work would be lost."""
@@ -102,8 +104,19 @@ class UnsavedWork(QObject):
             return True
         sentence = tr("This project has unsaved changes. Save before you quit?")
         actions = ((tr("Save and quit"), self._save_and_quit), (tr("Quit without saving"), self._quit))
-        self._window.messages.add(Message(sentence, Tone.WARNING, actions=actions))
+        self._ask(Message(sentence, Tone.WARNING, actions=actions))
         return False
+
+    def _ask(self, question: Message) -> None:
+        self._questions.append(question)
+        self._window.messages.add(question)
+
+    def _drop_questions(self) -> None:
+        """Close the questions that are still open once there are no unsaved changes."""
+        if not self._controller.history.unsaved:
+            for question in self._questions:
+                self._window.messages.drop(question)
+            self._questions.clear()
 
     def _save_first(self) -> None:
         self.save()

@@ -32,8 +32,10 @@ def test_that_a_card_is_pinned_without_being_chosen(designed: MainWindow, qtbot:
     assert document.marks == (Mark.NONE, Mark.PINNED, Mark.NONE) and document.chosen == 0
     assert designed.controller.history.undo_label == "Pin design 2"
     assert "Pinned" in str(designed.gallery.view.model_.index(1, 0).data(Qt.ItemDataRole.AccessibleTextRole))
+    assert designed.status_text.text() == "Design 2 pinned. Undo to unpin."
     press_button(designed, qtbot, 1, CardButton.PIN)
     assert designed.controller.history.undo_label == "Unpin design 2"
+    assert designed.status_text.text() == "Design 2 unpinned. Undo to pin again."
     designed.commands["undo"].trigger()
     designed.commands["undo"].trigger()
     assert set(designed.controller.document.marks) == {Mark.NONE}
@@ -45,6 +47,7 @@ def test_that_a_rejected_card_goes_and_comes_back_with_undo(designed: MainWindow
     assert designed.controller.document.marks[1] is Mark.REJECTED and model.rowCount() == 2
     assert designed.controller.document.chosen == 0
     assert designed.gallery.count.text().startswith("2 of 3 shown")
+    assert designed.status_text.text() == "Design 2 rejected. Undo to restore."
     designed.commands["undo"].trigger()
     assert model.rowCount() == 3
 

@@ -132,8 +132,21 @@ def test_that_a_gesture_which_waits_for_its_score_is_unsaved_work(designed: Main
     assert "unsaved changes" in designed.messages.messages[-1].sentence
 
 
+def test_that_a_question_about_unsaved_work_is_asked_once_and_closed_when_there_is_none(designed: MainWindow) -> None:
+    designed.commands["next"].trigger()
+    for name in ("new", "open_project", "sample"):
+        before = len(designed.messages.messages)
+        designed.commands[name].trigger()
+        designed.commands[name].trigger()
+        assert len(designed.messages.messages) == before + 1, name
+    assert not designed.close()
+    designed.commands["undo"].trigger()
+    assert not designed.controller.history.unsaved
+    assert not any("unsaved changes" in message.sentence for message in designed.messages.messages)
+
+
 def test_that_undo_names_its_step_and_every_shortcut_reaches_it(heart: MainWindow, qtbot: QtBot) -> None:
-    assert heart.commands["undo"].text().replace("&", "") == "Undo set target heart"
+    assert heart.commands["undo"].text().replace("&", "") == "Undo: Set target heart"
     qtbot.keyClick(heart, Qt.Key.Key_Z, CONTROL)
     assert heart.controller.document.target is None and not heart.commands["undo"].isEnabled()
     qtbot.keyClick(heart, Qt.Key.Key_Y, CONTROL)

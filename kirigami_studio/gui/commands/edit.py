@@ -87,15 +87,10 @@ def commands(window: MainWindow) -> tuple[Command, ...]:
 def _undo_wording(now: WindowState) -> Wording:
     if now.undo_label is None:
         return Wording(tr("&Undo"), tr("Undo"), "undo")
-    return Wording(tr("&Undo {step}", step=_inside(now.undo_label)), tr("Undo: {step}", step=now.undo_label), "undo")
+    return Wording(tr("&Undo: {step}", step=now.undo_label), tr("Undo: {step}", step=now.undo_label), "undo")
 
 
 def _redo_wording(now: WindowState) -> Wording:
     if now.redo_label is None:
         return Wording(tr("&Redo"), tr("Redo"), "redo")
-    return Wording(tr("&Redo {step}", step=_inside(now.redo_label)), tr("Redo: {step}", step=now.redo_label), "redo")
-
-
-def _inside(label: str) -> str:
-    """The name of a step as it is written inside a sentence."""
-    return f"{label[0].lower()}{label[1:]}"
+    return Wording(tr("&Redo: {step}", step=now.redo_label), tr("Redo: {step}", step=now.redo_label), "redo")

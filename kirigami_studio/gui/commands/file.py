@@ -57,8 +57,10 @@ class FileCommands(QObject):
 
     def open_sample(self) -> None:
         """Open the bundled project; it is saved elsewhere."""
-        sample = resource("examples", "heart.kiri")
-        self._window.unsaved.guard(SAMPLE, partial(self._controller.open_project, sample))
+        self._window.unsaved.guard(SAMPLE, self._open_sample)
+
+    def _open_sample(self) -> None:
+        self._controller.open_project(resource("examples", "heart.kiri"))
 
     def recover(self, leftover: Leftover) -> None:
         """Open what a session that ended unexpectedly has left."""

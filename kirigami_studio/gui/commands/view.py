@@ -89,7 +89,7 @@ def _deployment(window: MainWindow) -> tuple[Command, ...]:
         Command(
             "slower",
             menu,
-            tr("S&lower"),
+            tr("Slower"),
             tr("Play the deployment slower, down to a quarter of normal speed"),
             partial(bar.options.change_speed, -1),
             shortcuts=("<",),
@@ -97,7 +97,7 @@ def _deployment(window: MainWindow) -> tuple[Command, ...]:
         Command(
             "faster",
             menu,
-            tr("Fa&ster"),
+            tr("Faster"),
             tr("Play the deployment faster, up to four times normal speed"),
             partial(bar.options.change_speed, 1),
             shortcuts=(">",),
@@ -149,7 +149,7 @@ def _overlays(window: MainWindow) -> tuple[Command, ...]:
     small = tr("Mark the shortest edges and narrowest necks, in mm between cut centre lines")
     opening = tr("Colour voids by their area at this angle, mm²")
     return (
-        overlay("show_target", tr("Target &outline"), "T", "target", tr("Show the target's outline"), gap=True),
+        overlay("show_target", tr("Tar&get outline"), "T", "target", tr("Show the target's outline"), gap=True),
         overlay("show_mismatch", tr("&Mismatch"), "M", "mismatch", tr("Show missing and extra area")),
         overlay("show_faults", tr("F&aults"), "F", "fault", tr("Mark inverted panels and contacts")),
         overlay("show_ratios", tr("&Ratio heat map"), "Shift+H", "heat", tr("Colour voids by their ratio")),
@@ -223,7 +223,7 @@ def _pages(window: MainWindow) -> tuple[Command, ...]:
         Command(
             "compare",
             menu,
-            tr("Side by &side"),
+            tr("Si&de by side"),
             tr("Compare two designs side by side"),
             lambda: comparison.show(not stage.comparing),
             shortcuts=("K",),
@@ -258,7 +258,7 @@ def _themes(window: MainWindow) -> tuple[Command, ...]:
         Command(
             "theme",
             tr("&View"),
-            tr("&Dark theme"),
+            tr("Dark t&heme"),
             tr("Switch between light and dark"),
             window.appearance.switch,
             shortcuts=("Ctrl+D",),
@@ -279,7 +279,7 @@ def _themes(window: MainWindow) -> tuple[Command, ...]:
 
 def _theme_wording(now: WindowState) -> Wording:
     tip = tr("Switch between light and dark")
-    return Wording(tr("&Light theme"), tip, "sun") if now.dark else Wording(tr("&Dark theme"), tip, "moon")
+    return Wording(tr("Light t&heme"), tip, "sun") if now.dark else Wording(tr("Dark t&heme"), tip, "moon")
 
 
 def _play(window: MainWindow) -> None:

@@ -33,12 +33,23 @@ class DesignMarks:
             self._session.post(Message(sentence, Tone.HINT))
             return
         index = document.candidates.index(candidate)
-        wanted = Mark.NONE if document.marks[index] is mark else mark
+        before = document.marks[index]
+        wanted = Mark.NONE if before is mark else mark
         moves = wanted is Mark.REJECTED and index == document.chosen and beside in document.candidates
         chosen = document.candidates.index(beside) if moves and beside is not None else None
-        edit = candidate_edits.set_mark(document, index, wanted, chosen)
-        self._session.apply(edit)
-        self._session.set_status(tr("{what}. Undo to revert.", what=edit.label))
+        self._session.apply(candidate_edits.set_mark(document, index, wanted, chosen))
+        self._session.set_status(_what_happened(index + 1, before, wanted))
+
+
+def _what_happened(number: int, before: Mark, now: Mark) -> str:
+    """The status line after a design was marked."""
+    if now is Mark.PINNED:
+        return tr("Design {number} pinned. Undo to unpin.", number=number)
+    if now is Mark.REJECTED:
+        return tr("Design {number} rejected. Undo to restore.", number=number)
+    if before is Mark.PINNED:
+        return tr("Design {number} unpinned. Undo to pin again.", number=number)
+    return tr("Design {number} restored. Undo to reject again.", number=number)
 
 
 class DiscardedDesigns(QObject):
