@@ -256,8 +256,9 @@ class MainWindow(QMainWindow):
         application = QApplication.instance()
         if isinstance(application, QApplication):
             theme.apply(application, palette)
-        for part in (self.target, self.settings, self.run, self.stage, self.gallery, self.fabrication, self.messages):
-            part.set_palette(palette)
+        for part in self.findChildren(QWidget):
+            if isinstance(part, theme.Themed):
+                part.set_palette(palette)
         self.commands.set_palette(palette)
 
     def restore(self, settings: QSettings) -> None:

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from dataclasses import asdict, dataclass
 from string import Template
+from typing import Protocol, runtime_checkable
 
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QColor, QGuiApplication, QPalette
@@ -66,6 +67,15 @@ class Palette:
     @property
     def dark(self) -> bool:
         return self.name == "dark"
+
+
+@runtime_checkable
+class Themed(Protocol):
+    """A widget with colours of its own; the window gives it the palette of the theme."""
+
+    def set_palette(self, palette: Palette) -> None:
+        """Draw in other colours."""
+        ...
 
 
 LIGHT = Palette(

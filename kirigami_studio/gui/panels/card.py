@@ -17,6 +17,8 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from kirigami_studio.gui.look import icons
+from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.panels.number_field import number_field
 
 TOOL_ICON = QSize(18, 18)
@@ -44,16 +46,30 @@ class Card(QFrame):
         outer.addLayout(self.body, 1)
 
 
-def tool_button(name: str, tip: str, checkable: bool = False) -> QToolButton:
-    """A flat icon button; its icon is set when the theme is known."""
-    button = QToolButton()
-    button.setObjectName(name)
-    button.setToolTip(tip)
-    button.setAccessibleName(tip.split(".")[0])
-    button.setCheckable(checkable)
-    button.setIconSize(TOOL_ICON)
-    button.setFocusPolicy(Qt.FocusPolicy.TabFocus)
-    return button
+class ToolButton(QToolButton):
+    """A flat button with one of the program's icons, in the colours of the theme once that is known."""
+
+    def __init__(self, name: str, icon: str, tip: str, checkable: bool = False) -> None:
+        super().__init__()
+        self._icon_name = icon
+        self._palette: Palette | None = None
+        self.setObjectName(name)
+        self.setToolTip(tip)
+        self.setAccessibleName(tip.split(".")[0])
+        self.setCheckable(checkable)
+        self.setIconSize(TOOL_ICON)
+        self.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+
+    def show_icon(self, name: str) -> None:
+        """Show another icon."""
+        self._icon_name = name
+        if self._palette is not None:
+            self.setIcon(icons.icon(name, self._palette))
+
+    def set_palette(self, palette: Palette) -> None:
+        """Draw in other colours."""
+        self._palette = palette
+        self.show_icon(self._icon_name)
 
 
 class ElidedLabel(QLabel):

@@ -11,9 +11,7 @@ from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QLabel, QToolButton, QVB
 from kirigami_studio.fabricate.panel_sizes import least_panel_share
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.designs.gallery_selection import differences
-from kirigami_studio.gui.look import icons
-from kirigami_studio.gui.look.theme import Palette
-from kirigami_studio.gui.panels.card import FittingLabel, tool_button
+from kirigami_studio.gui.panels.card import FittingLabel, ToolButton
 from kirigami_studio.gui.panels.deployment_bar import DeploymentBar
 from kirigami_studio.gui.scene.view_transform import Bounds
 from kirigami_studio.gui.session import Entry
@@ -117,9 +115,9 @@ class ComparePage(QWidget):
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self._entries: tuple[Entry | None, Entry | None] = (None, None)
-        self.swap = tool_button("swap", tr("Swap: choose the other design (Shift+K)."))
+        self.swap = ToolButton("swap", "swap", tr("Swap: choose the other design (Shift+K)."))
         self.swap.clicked.connect(self.swap_wanted)
-        self.leave = tool_button("leaveCompare", tr("Close the comparison (K)."))
+        self.leave = ToolButton("leaveCompare", "close", tr("Close the comparison (K)."))
         self.leave.clicked.connect(self.leave_wanted)
         self.left = Side("comparedLeft", tr("Layout of the chosen design"), self.swap)
         self.right = Side("comparedRight", tr("Layout of the design it is compared with"), self.leave)
@@ -209,14 +207,6 @@ class ComparePage(QWidget):
         """Show one part of both."""
         for side in self.sides:
             side.view.set_view(zoom, shift)
-
-    def set_palette(self, palette: Palette) -> None:
-        """Draw in other colours."""
-        for side in self.sides:
-            side.view.set_palette(palette)
-        self.bar.set_palette(palette)
-        self.swap.setIcon(icons.icon("swap", palette))
-        self.leave.setIcon(icons.icon("close", palette))
 
 
 def _rows() -> tuple[tuple[str, str], ...]:

@@ -11,7 +11,6 @@ from PySide6.QtWidgets import (
     QListWidget,
     QListWidgetItem,
     QSlider,
-    QToolButton,
     QVBoxLayout,
     QWidget,
 )
@@ -21,7 +20,7 @@ from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.gui.look import icons
 from kirigami_studio.gui.look.readable import readable_length, readable_size, readable_time
 from kirigami_studio.gui.look.theme import LIGHT, Palette
-from kirigami_studio.gui.panels.card import tool_button
+from kirigami_studio.gui.panels.card import ToolButton
 from kirigami_studio.gui.panels.hinge_bar import HingeBar
 from kirigami_studio.gui.scene.cut_items import CutSteps, cut_steps
 from kirigami_studio.gui.views.cut_view import CutOverlay, CutView
@@ -62,9 +61,9 @@ class CutsPage(QWidget):
         self.problems = ProblemList()
         self.hinges = HingeBar()
         self.bar = CutBar()
-        self.toggles: dict[CutOverlay, QToolButton] = {}
-        for overlay, _, tip in OVERLAYS:
-            button = tool_button(f"cut{overlay.value.capitalize()}", tip, checkable=True)
+        self.toggles: dict[CutOverlay, ToolButton] = {}
+        for overlay, icon, tip in OVERLAYS:
+            button = ToolButton(f"cut{overlay.value.capitalize()}", icon, tip, checkable=True)
             button.setChecked(overlay in self.view.overlays)
             button.toggled.connect(self._update_overlays)
             self.toggles[overlay] = button
@@ -127,13 +126,6 @@ class CutsPage(QWidget):
         self.view.set_caption(
             tr("Preview out of date: {sentence}", sentence=sentence) if self._plan is not None else ""
         )
-
-    def set_palette(self, palette: Palette) -> None:
-        """Draw in other colours."""
-        for part in (self.view, self.problems, self.hinges, self.bar):
-            part.set_palette(palette)
-        for overlay, icon, _ in OVERLAYS:
-            self.toggles[overlay].setIcon(icons.icon(icon, palette))
 
     def _take_picked(self, problem: int) -> None:
         self.problems.show_picked(problem)
@@ -218,11 +210,10 @@ class CutBar(QWidget):
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
-        self._palette: Palette = LIGHT
         self._steps: CutSteps | None = None
         self._seconds = 0.0
         self._clock = QElapsedTimer()
-        self.play = tool_button("playCuts", tr("Play or pause cutting (Space)."), checkable=True)
+        self.play = ToolButton("playCuts", "play", tr("Play or pause cutting (Space)."), checkable=True)
         self.slider = QSlider(Qt.Orientation.Horizontal)
         self.slider.setObjectName("cutStep")
         self.slider.setAccessibleName(tr("Cuts made so far"))
@@ -263,14 +254,6 @@ class CutBar(QWidget):
         self.slider.setValue(last)
         self._show_numbers()
 
-    def set_palette(self, palette: Palette) -> None:
-        """Draw in other colours."""
-        self._palette = palette
-        self._update_play_icon()
-
-    def _update_play_icon(self) -> None:
-        self.play.setIcon(icons.icon("pause" if self.play.isChecked() else "play", self._palette))
-
     def _take_step(self, step: int) -> None:
         self._show_numbers()
         self.step_changed.emit(step)
@@ -291,7 +274,7 @@ class CutBar(QWidget):
         self.so_far.setMinimumWidth(metrics.horizontalAdvance(widest))
 
     def _toggle(self, playing: bool) -> None:
-        self._update_play_icon()
+        self.play.show_icon("pause" if self.play.isChecked() else "play")
         if playing and self._steps is not None:
             at_end = self.slider.value() == self._steps.last
             self._seconds = 0.0 if at_end else float(self._steps.seconds[self.slider.value()])

@@ -13,7 +13,7 @@ from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.look import icons
 from kirigami_studio.gui.look.readable import TIMES
 from kirigami_studio.gui.look.theme import LIGHT, Palette
-from kirigami_studio.gui.panels.card import TOOL_ICON, tool_button
+from kirigami_studio.gui.panels.card import TOOL_ICON, ToolButton
 from kirigami_studio.gui.panels.number_field import DecimalField, number_field
 from kirigami_studio.gui.views.phi_slider import PhiSlider
 
@@ -63,11 +63,10 @@ class DeploymentBar(QWidget):
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
-        self._palette: Palette = LIGHT
         self._phase = 0.0
         self._target = 0.0
         self._clock = QElapsedTimer()
-        self.play = tool_button("play", tr("Play or pause the deployment (Space)."), checkable=True)
+        self.play = ToolButton("play", "play", tr("Play or pause the deployment (Space)."), checkable=True)
         self.options = PlayOptions()
         self.slider = PhiSlider()
         self.number = DecimalField()
@@ -117,23 +116,13 @@ class DeploymentBar(QWidget):
         for part in (self.play, self.slider, self.number):
             part.setEnabled(ready)
 
-    def set_palette(self, palette: Palette) -> None:
-        """Draw in other colours."""
-        self._palette = palette
-        self.slider.set_palette(palette)
-        self.options.set_palette(palette)
-        self._update_play_icon()
-
-    def _update_play_icon(self) -> None:
-        self.play.setIcon(icons.icon("pause" if self.play.isChecked() else "play", self._palette))
-
     def _take_phi(self, phi: float) -> None:
         with QSignalBlocker(self.number):
             self.number.setValue(math.degrees(phi))
         self.phi_changed.emit(phi)
 
     def _toggle(self, playing: bool) -> None:
-        self._update_play_icon()
+        self.play.show_icon("pause" if self.play.isChecked() else "play")
         if playing:
             mode, last = self.options.mode, self._last()
             self._phase = phase_of(self.slider.phi, mode, last)

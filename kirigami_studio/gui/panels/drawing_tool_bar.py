@@ -14,9 +14,7 @@ from PySide6.QtWidgets import (
 )
 
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui.look import icons
-from kirigami_studio.gui.look.theme import Palette
-from kirigami_studio.gui.panels.card import tool_button
+from kirigami_studio.gui.panels.card import ToolButton
 from kirigami_studio.gui.panels.tool_options import AxisButton, ToolOptions
 from kirigami_studio.gui.sketching.sketch_context import SketchContext
 from kirigami_studio.gui.views.target_view import Tool
@@ -62,7 +60,6 @@ class DrawingToolBar(QWidget):
     def __init__(self, context: SketchContext, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self._context = context
-        self._icons: list[tuple[QToolButton, str]] = []
         self.buttons: dict[Tool, QToolButton] = {}
         self.modes: dict[Combine, QToolButton] = {}
         row = QHBoxLayout(self)
@@ -72,13 +69,13 @@ class DrawingToolBar(QWidget):
         row.addWidget(_rule())
         self._add_modes(row)
         row.addWidget(_rule())
-        self.mirror = self._button("mirror", "mirror", tr("Mirror. Reflect one half of the target, or flip it."))
+        self.mirror = ToolButton("mirror", "mirror", tr("Mirror. Reflect one half of the target, or flip it."))
         self.mirror.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)
         menu = QMenu(self)
         for how, text in MIRRORS:
             menu.addAction(text).triggered.connect(lambda _=False, how=how: self.mirror_wanted.emit(how))
         self.mirror.setMenu(menu)
-        self.grid = self._button("grid", "grid", tr("Snap to the grid (Ctrl+Shift+G). Hold Ctrl to ignore it."), True)
+        self.grid = ToolButton("grid", "grid", tr("Snap to the grid (Ctrl+Shift+G). Hold Ctrl to ignore it."), True)
         self.grid.setChecked(context.snapping)
         self.grid.toggled.connect(self.grid_switched)
         self.axis = AxisButton(context)
@@ -95,18 +92,13 @@ class DrawingToolBar(QWidget):
         row.addWidget(self.done_button)
         self.options = ToolOptions(context)
 
-    def _button(self, name: str, icon: str, tip: str, checkable: bool = False) -> QToolButton:
-        button = tool_button(name, tip, checkable)
-        self._icons.append((button, icon))
-        return button
-
     def _add_tools(self, row: QHBoxLayout) -> None:
         for entry in TOOLS:
             if entry is None:
                 row.addWidget(_rule())
                 continue
             tool, icon, tip = entry
-            button = self._button(tool.value, icon, tip, True)
+            button = ToolButton(tool.value, icon, tip, True)
             button.clicked.connect(lambda down, tool=tool: self.tool_wanted.emit(tool if down else Tool.LOOK))
             self.buttons[tool] = button
             row.addWidget(button)
@@ -114,7 +106,7 @@ class DrawingToolBar(QWidget):
     def _add_modes(self, row: QHBoxLayout) -> None:
         group = QButtonGroup(self)
         for mode, icon, tip in MODES:
-            button = self._button(mode.value, icon, tip, True)
+            button = ToolButton(mode.value, icon, tip, True)
             button.clicked.connect(lambda _=False, mode=mode: self.set_mode(mode))
             group.addButton(button)
             self.modes[mode] = button
@@ -139,13 +131,6 @@ class DrawingToolBar(QWidget):
             button.setEnabled(present)
         for mode in (Combine.ADD, Combine.SUBTRACT):
             self.modes[mode].setEnabled(present)
-
-    def set_palette(self, palette: Palette) -> None:
-        """Draw in other colours."""
-        for button, icon in self._icons:
-            button.setIcon(icons.icon(icon, palette))
-        self.axis.set_palette(palette)
-        self.options.set_palette(palette)
 
 
 def _rule() -> QFrame:

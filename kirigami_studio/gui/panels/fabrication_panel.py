@@ -19,7 +19,6 @@ from PySide6.QtWidgets import (
 from kirigami_studio.evaluate.opened_size import OpenedSize
 from kirigami_studio.fabricate.material import library
 from kirigami_studio.foundation.words import tr, tr_n
-from kirigami_studio.gui.look import icons
 from kirigami_studio.gui.look.readable import (
     TIMES,
     UNKNOWN,
@@ -28,15 +27,14 @@ from kirigami_studio.gui.look.readable import (
     readable_size,
     readable_time,
 )
-from kirigami_studio.gui.look.theme import LIGHT, Palette
 from kirigami_studio.gui.panels.card import (
     Card,
     ElidedLabel,
     ScrolledWhenShort,
+    ToolButton,
     captioned,
     compact,
     muted_label,
-    tool_button,
 )
 from kirigami_studio.gui.panels.export_row import ExportRow
 from kirigami_studio.gui.panels.more_options import MoreOptions
@@ -121,7 +119,6 @@ class FabricationPanel(Card):
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(tr("Fabrication"), parent)
-        self._palette: Palette = LIGHT
         self._calm = True
         self._extent, self._by_hand = Extent.ALL, False
         self._summaries = ("", "")  # with the live numbers in sight, and without
@@ -133,7 +130,9 @@ class FabricationPanel(Card):
         self.material.setMinimumContentsLength(8)
         self.material.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
         self.material.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
-        self.edit_materials = tool_button("editMaterials", tr("Copy, edit and calibrate materials (Ctrl+M)."))
+        self.edit_materials = ToolButton(
+            "editMaterials", "material", tr("Copy, edit and calibrate materials (Ctrl+M).")
+        )
         self.edit_materials.clicked.connect(self.materials_wanted)
         self.reload_materials()
         self.material.activated.connect(self._take_material)
@@ -163,7 +162,7 @@ class FabricationPanel(Card):
         self.details.setObjectName("plain")
         self.summary = QLabel()
         self.summary.setObjectName("muted")
-        self.fold = tool_button("foldFabrication", tr("Show more or fewer fabrication settings."))
+        self.fold = ToolButton("foldFabrication", "down", tr("Show more or fewer fabrication settings."))
         self.header.addWidget(self.summary)
         self.header.addWidget(self.fold)
         self.fold.clicked.connect(self._change_by_hand)
@@ -191,7 +190,7 @@ class FabricationPanel(Card):
         self.options.setVisible(extent is Extent.ALL or self.options.fold.isChecked())  # what was opened stays
         self._show_summary()
         self._show_warning()
-        self._update_fold_icon()
+        self.fold.show_icon("down" if extent is Extent.ALL else "up")
 
     def restore(self, settings: QSettings) -> None:
         """Show as much as the user chose the last time."""
@@ -203,9 +202,6 @@ class FabricationPanel(Card):
         """Keep how much the user chose to see for the next time."""
         if self._by_hand:
             settings.setValue("fabrication", self._extent.value)
-
-    def _update_fold_icon(self) -> None:
-        self.fold.setIcon(icons.icon("down" if self._extent is Extent.ALL else "up", self._palette))
 
     def _length(
         self, field: str, accessible: str, low: float, high: float, step: float, digits: int, tip: str
@@ -378,14 +374,6 @@ class FabricationPanel(Card):
         """What is wrong stays in sight even when the numbers are folded away."""
         self.warnings.setVisible(self._extent is Extent.ALL or not self._calm)
 
-    def set_palette(self, palette: Palette) -> None:
-        """Draw in other colours."""
-        self._palette = palette
-        for part in (self.options, self.exports, self.opened):
-            part.set_palette(palette)
-        self.edit_materials.setIcon(icons.icon("material", palette))
-        self._update_fold_icon()
-
 
 class OpenedRow(QWidget):
     """Hidden until there is a design."""
@@ -400,7 +388,7 @@ class OpenedRow(QWidget):
         row.setSpacing(4)
         self.text = ElidedLabel()
         self.text.setAccessibleName(tr("Size of the opened sheet"))
-        self.link = tool_button("cutAtDrawnSize", "")
+        self.link = ToolButton("cutAtDrawnSize", "chain", "")
         self.link.setAccessibleName(tr("Cut at the drawn size"))
         self.link.clicked.connect(self.link_wanted)
         row.addWidget(self.text, 1)
@@ -430,10 +418,6 @@ class OpenedRow(QWidget):
             )
         self.link.setToolTip(tip)
         self.link.setEnabled(size.drawn is not None and not size.agrees)
-
-    def set_palette(self, palette: Palette) -> None:
-        """Draw in other colours."""
-        self.link.setIcon(icons.icon("chain", palette))
 
 
 def format_slots(planned: Planned) -> str:

@@ -21,9 +21,7 @@ from PySide6.QtWidgets import (
 
 from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.gui.designs.gallery_selection import Selection, SortOrder, count_texts
-from kirigami_studio.gui.look import icons
-from kirigami_studio.gui.look.theme import Palette
-from kirigami_studio.gui.panels.card import INSET, Card, FittingLabel, tool_button
+from kirigami_studio.gui.panels.card import INSET, Card, FittingLabel, ToolButton
 from kirigami_studio.gui.panels.number_field import DecimalField, number_field
 from kirigami_studio.gui.views.gallery_view import GalleryView
 from kirigami_studio.lattice.ratio_field import RatioField
@@ -67,11 +65,6 @@ class GalleryPanel(Card):
         self._fit_count()
         super().resizeEvent(event)
 
-    def set_palette(self, palette: Palette) -> None:
-        """Draw in other colours."""
-        self.view.set_palette(palette)
-        self.bar.set_palette(palette)
-
     def minimumSizeHint(self) -> QSize:  # noqa: N802 - Qt's name
         return QSize(250, 236)
 
@@ -88,11 +81,11 @@ class GalleryBar(QWidget):
         self._selection = Selection()
         self._chosen: tuple[RatioField, int] | None = None
         self.order = self._order_box()
-        self.filter = tool_button("filterGallery", tr("Filter designs."), checkable=True)
-        self.again = tool_button("again", tr("More designs (Ctrl+R)."))
-        self.alike = tool_button("moreLike", tr("More like the chosen design (Ctrl+Shift+R)."), checkable=True)
+        self.filter = ToolButton("filterGallery", "filter", tr("Filter designs."), checkable=True)
+        self.again = ToolButton("again", "again", tr("More designs (Ctrl+R)."))
+        self.alike = ToolButton("moreLike", "alike", tr("More like the chosen design (Ctrl+Shift+R)."), checkable=True)
         tip = tr("Compare two designs side by side (K). Ctrl+click a card to compare with it.")
-        self.compare = tool_button("compare", tip, checkable=True)
+        self.compare = ToolButton("compare", "compare", tip, checkable=True)
         row = QHBoxLayout()
         row.setSpacing(4)
         row.addWidget(self.order, 1)
@@ -231,12 +224,6 @@ class GalleryBar(QWidget):
                 count,
             )
         )
-
-    def set_palette(self, palette: Palette) -> None:
-        """Draw in other colours."""
-        buttons = (self.filter, "filter"), (self.compare, "compare"), (self.again, "again"), (self.alike, "alike")
-        for button, icon in buttons:
-            button.setIcon(icons.icon(icon, palette))
 
     def _choose_order(self) -> None:
         order: SortOrder = self.order.currentData()

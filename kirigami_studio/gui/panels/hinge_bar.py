@@ -13,9 +13,7 @@ from kirigami_studio.fabricate.cut_plan import CutPlan, Layer
 from kirigami_studio.fabricate.slits import SHEET_EDGE
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray
 from kirigami_studio.foundation.words import tr, tr_n
-from kirigami_studio.gui.look import icons
-from kirigami_studio.gui.look.theme import Palette
-from kirigami_studio.gui.panels.card import FittingLabel, tool_button
+from kirigami_studio.gui.panels.card import FittingLabel, ToolButton
 from kirigami_studio.gui.panels.number_field import LengthField, number_field
 
 #: Which connectors of a plan are meant.
@@ -112,8 +110,8 @@ class HingeBar(QWidget):
         self.width_mm.setAccessibleName(tr("Width of the selected connectors in millimetres"))
         self.width_mm.setFixedWidth(108)
         number_field(self.width_mm)
-        self.remove = tool_button("removeHinges", tr("Cut through: leave no connector here (Delete)."))
-        self.reset = tool_button("resetHinges", tr("Reset to the sheet's connector width."))
+        self.remove = ToolButton("removeHinges", "sever", tr("Cut through: leave no connector here (Delete)."))
+        self.reset = ToolButton("resetHinges", "reset", tr("Reset to the sheet's connector width."))
         self._lay_out()
         self.width_mm.valueChanged.connect(self.width_wanted)
         self.width_mm.editingFinished.connect(self.edited)
@@ -158,11 +156,6 @@ class HingeBar(QWidget):
         """Show the longest text on the selection that fits."""
         others = (self.rules, self.width_mm, self.remove, self.reset)
         self.selection_text.fit(self.width() - sum(part.sizeHint().width() + 6 for part in others) - 8)
-
-    def set_palette(self, palette: Palette) -> None:
-        """Draw in other colours."""
-        self.remove.setIcon(icons.icon("sever", palette))
-        self.reset.setIcon(icons.icon("reset", palette))
 
     def type_width(self, letter: str) -> None:
         """Start typing a width with this letter."""

@@ -21,7 +21,7 @@ from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.look import icons
 from kirigami_studio.gui.look.theme import LIGHT, Palette
 from kirigami_studio.gui.messages import Message, Tone
-from kirigami_studio.gui.panels.card import tool_button
+from kirigami_studio.gui.panels.card import ToolButton
 
 #: Lines of details that are shown without scrolling.
 MOST_LINES = 9
@@ -45,12 +45,12 @@ class MessageBar(QFrame):
         self.details.setObjectName("link")
         self.details.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         self.details.setCheckable(True)
-        self.copy = tool_button("copyMessage", tr("Copy the message and its details."))
-        self.previous = tool_button("previousMessage", tr("Previous message."))
+        self.copy = ToolButton("copyMessage", "copy", tr("Copy the message and its details."))
+        self.previous = ToolButton("previousMessage", "previous", tr("Previous message."))
         self.position = QLabel()
         self.position.setObjectName("muted")
-        self.next = tool_button("nextMessage", tr("Next message."))
-        self.close_button = tool_button("closeMessage", tr("Close this message."))
+        self.next = ToolButton("nextMessage", "next", tr("Next message."))
+        self.close_button = ToolButton("closeMessage", "close", tr("Close this message."))
         self.close_all_button = QPushButton(tr("Close all"))
         self.close_all_button.setObjectName("link")
         self.close_all_button.setFocusPolicy(Qt.FocusPolicy.TabFocus)
@@ -127,13 +127,6 @@ class MessageBar(QFrame):
     def set_palette(self, palette: Palette) -> None:
         """Draw in other colours."""
         self._palette = palette
-        for button, name in (
-            (self.copy, "copy"),
-            (self.previous, "previous"),
-            (self.next, "next"),
-            (self.close_button, "close"),
-        ):
-            button.setIcon(icons.icon(name, palette))
         self._go(self._at)
 
     def _go(self, index: int) -> None:

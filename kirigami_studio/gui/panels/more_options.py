@@ -8,9 +8,7 @@ from PySide6.QtWidgets import QComboBox, QGridLayout, QSizePolicy, QSpinBox, QVB
 from kirigami_studio.export.profile import PROFILES
 from kirigami_studio.fabricate.options import MOST_TABS, ConnectorStyle, CutOrder
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui.look import icons
-from kirigami_studio.gui.look.theme import LIGHT, Palette
-from kirigami_studio.gui.panels.card import captioned, compact, tool_button
+from kirigami_studio.gui.panels.card import ToolButton, captioned, compact
 from kirigami_studio.gui.panels.number_field import LengthField
 from kirigami_studio.project.settings import FabricationSettings
 
@@ -45,8 +43,9 @@ class MoreOptions(QWidget):
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
-        self._palette: Palette = LIGHT
-        self.fold = tool_button("moreOptions", tr("More options: connector style, order, tabs, machine, DXF version."))
+        self.fold = ToolButton(
+            "moreOptions", "down", tr("More options: connector style, order, tabs, machine, DXF version.")
+        )
         self.fold.setText(tr("More options"))
         self.fold.setToolButtonStyle(Qt.ToolButtonStyle.ToolButtonTextBesideIcon)
         self.fold.setCheckable(True)
@@ -131,14 +130,9 @@ class MoreOptions(QWidget):
             self.tab_mm.setValue(options.tab_mm)
         self.tab_mm.setEnabled(options.tabs > 0)
 
-    def set_palette(self, palette: Palette) -> None:
-        """Draw in other colours."""
-        self._palette = palette
-        self.fold.setIcon(icons.icon("up" if self.fold.isChecked() else "down", palette))
-
     def _show_content(self, shown: bool) -> None:
         self.content.setVisible(shown)
-        self.set_palette(self._palette)
+        self.fold.show_icon("up" if shown else "down")
 
 
 def _choice(name: str, accessible: str, rows: tuple[tuple[object, str, str], ...]) -> QComboBox:

@@ -176,10 +176,8 @@ class PlotsPanel(QWidget):
             chart.set_target(phi)
 
     def set_palette(self, palette: Palette) -> None:
-        """Draw in other colours."""
+        """Draw the charts to come in other colours."""
         self._palette = palette
-        for chart in self.charts:
-            chart.set_palette(palette)
 
     def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802 - Qt's name
         super().resizeEvent(event)

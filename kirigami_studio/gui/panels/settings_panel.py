@@ -17,9 +17,7 @@ from PySide6.QtWidgets import (
 )
 
 from kirigami_studio.foundation.words import tr, tr_n
-from kirigami_studio.gui.look import icons
-from kirigami_studio.gui.look.theme import Palette
-from kirigami_studio.gui.panels.card import Card, captioned, compact, tool_button
+from kirigami_studio.gui.panels.card import Card, ToolButton, captioned, compact
 from kirigami_studio.gui.panels.number_field import DecimalField
 from kirigami_studio.lattice.ratio_field import LARGEST_GRID, SMALLEST_GRID
 from kirigami_studio.pipeline.request import LARGEST_K
@@ -114,9 +112,9 @@ class SettingsPanel(Card):
         self.angle.setToolTip(
             tr("Deployment angle at which the sheet matches the target, in degrees; 0° is fully turned.")
         )
-        self.dice = tool_button("newSeed", tr("New random seed."))
+        self.dice = ToolButton("newSeed", "dice", tr("New random seed."))
         self.dice.setFixedSize(29, 29)
-        self.keep = tool_button("keepSeed", KEEP_SEED, checkable=True)
+        self.keep = ToolButton("keepSeed", "keep", KEEP_SEED, checkable=True)
         self.keep.setChecked(True)
         self.keep.setFixedSize(29, 29)
         self.keep.toggled.connect(self.keep_changed)
@@ -236,11 +234,6 @@ class SettingsPanel(Card):
         self.variant.setToolTip(
             tr("Model that generates the designs. {about}", about=VARIANTS.get(name, ("", ""))[1]).strip()
         )
-
-    def set_palette(self, palette: Palette) -> None:
-        """Draw in other colours."""
-        self.dice.setIcon(icons.icon("dice", palette))
-        self.keep.setIcon(icons.icon("keep", palette))
 
 
 def _choice(name: str, accessible: str) -> QComboBox:

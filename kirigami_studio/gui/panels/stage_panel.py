@@ -8,9 +8,7 @@ from PySide6.QtWidgets import QMenu, QSplitter, QStackedWidget, QToolButton, QVB
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui.look import icons
-from kirigami_studio.gui.look.theme import Palette
-from kirigami_studio.gui.panels.card import INSET, Card, FittingLabel, tool_button
+from kirigami_studio.gui.panels.card import INSET, Card, FittingLabel, ToolButton
 from kirigami_studio.gui.panels.compare_page import ComparePage
 from kirigami_studio.gui.panels.cuts_page import CutBar, CutsPage
 from kirigami_studio.gui.panels.deployment_bar import DeploymentBar
@@ -71,17 +69,17 @@ class StagePanel(Card):
         self.numbers = FittingLabel()
         self.header.addWidget(self.numbers)
         self.header.addSpacing(8)
-        self.cuts_switch = tool_button("cuts", CUTS, checkable=True)
+        self.cuts_switch = ToolButton("cuts", "cuts", CUTS, checkable=True)
         self.cuts_switch.toggled.connect(self._toggle_cuts)
-        self.before = tool_button("before", BEFORE, checkable=True)
+        self.before = ToolButton("before", "before", BEFORE, checkable=True)
         self.before.toggled.connect(self._toggle_before)
-        self.trim = tool_button("trim", TRIM, checkable=True)
+        self.trim = ToolButton("trim", "trim", TRIM, checkable=True)
         self.trim.clicked.connect(self.trim_wanted)
         tip = tr(
             "Edit by hand (H). Scroll over a void to change its ratio (Shift: fine). Drag a void "
             "or an outline corner. Alt+click or L: lock. Arrows: next void; + and -: ratio."
         )
-        self.hand = tool_button("hand", tip, checkable=True)
+        self.hand = ToolButton("hand", "hand", tip, checkable=True)
         self.hand.toggled.connect(self._toggle_hand)
         for switch in (self.cuts_switch, self.before, self.trim, self.hand):
             self.header.addWidget(switch)
@@ -99,15 +97,15 @@ class StagePanel(Card):
 
     def _add_overlays(self) -> None:
         """The switches at the right of the header: what is drawn over the layout, or over the cuts."""
-        self.toggles: dict[Overlay, QToolButton] = {}
-        for overlay, _, tip in OVERLAYS:
-            button = tool_button(f"show{overlay.value.capitalize()}", tip, checkable=True)
+        self.toggles: dict[Overlay, ToolButton] = {}
+        for overlay, icon, tip in OVERLAYS:
+            button = ToolButton(f"show{overlay.value.capitalize()}", icon, tip, checkable=True)
             button.setChecked(True)
             button.toggled.connect(self._update_overlays)
             self.toggles[overlay] = button
             self.header.addWidget(button)
         self._other_overlays: frozenset[Overlay] = USUAL - self.toggles.keys()
-        self.overlays_button = tool_button("overlays", tr("Overlays on the layout."))
+        self.overlays_button = ToolButton("overlays", "overlays", tr("Overlays on the layout."))
         self.overlays_button.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)
         self.overlay_menu = QMenu(self.overlays_button)
         self.overlay_menu.setToolTipsVisible(True)
@@ -116,10 +114,10 @@ class StagePanel(Card):
         for button in self.cuts.toggles.values():
             self.header.addWidget(button)
             button.hide()
-        self.plots_switch = tool_button("plots", PLOTS, checkable=True)
+        self.plots_switch = ToolButton("plots", "plots", PLOTS, checkable=True)
         self.plots_switch.toggled.connect(self._toggle_plots)
         self.header.addWidget(self.plots_switch)
-        self.whole = tool_button("fit", tr("Fit view (0)."))
+        self.whole = ToolButton("fit", "fit", tr("Fit view (0)."))
         self.whole.clicked.connect(self.fit)
         self.header.addWidget(self.whole)
         for button in (self.whole, *self.toggles.values()):
@@ -357,27 +355,6 @@ class StagePanel(Card):
         self._fit_numbers()
         super().resizeEvent(event)
         self._place_plots()
-
-    def set_palette(self, palette: Palette) -> None:
-        """Draw in other colours."""
-        self.view.set_palette(palette)
-        self.deployment.set_palette(palette)
-        self.plots.set_palette(palette)
-        self.cuts.set_palette(palette)
-        self.compare.set_palette(palette)
-        self.voids.set_palette(palette)
-        for overlay, icon, _ in OVERLAYS:
-            self.toggles[overlay].setIcon(icons.icon(icon, palette))
-        for button, icon in (
-            (self.cuts_switch, "cuts"),
-            (self.before, "before"),
-            (self.trim, "trim"),
-            (self.overlays_button, "overlays"),
-            (self.plots_switch, "plots"),
-            (self.hand, "hand"),
-            (self.whole, "fit"),
-        ):
-            button.setIcon(icons.icon(icon, palette))
 
     def set_overlay(self, overlay: Overlay, on: bool) -> None:
         """Draw something over the layout, or no longer."""

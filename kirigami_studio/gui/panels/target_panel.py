@@ -17,9 +17,7 @@ from PySide6.QtWidgets import (
 
 from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.gui.jobs.target_jobs import Picture
-from kirigami_studio.gui.look import icons
-from kirigami_studio.gui.look.theme import Palette
-from kirigami_studio.gui.panels.card import Card, ElidedLabel, muted_label, tool_button
+from kirigami_studio.gui.panels.card import Card, ElidedLabel, ToolButton, muted_label
 from kirigami_studio.gui.panels.drawing_tool_bar import DrawingToolBar
 from kirigami_studio.gui.panels.number_field import LengthField, number_field
 from kirigami_studio.gui.views.target_view import TargetView, Tool
@@ -64,8 +62,8 @@ class TargetPanel(Card):
         self.refine = RefineBar()
         self.header.addWidget(self.tools.options)
         self.buttons = {tool.value: button for tool, button in self.tools.buttons.items()}
-        for name, _, tip, checkable in BUTTONS:
-            self.buttons[name] = tool_button(name, tip, checkable)
+        for name, icon, tip, checkable in BUTTONS:
+            self.buttons[name] = ToolButton(name, icon, tip, checkable)
             self.header.addWidget(self.buttons[name])
         self.facts = ElidedLabel()
         self.size_ = QLabel()
@@ -175,14 +173,6 @@ class TargetPanel(Card):
         self.reach.setToolTip(whole)
         self.reach.setVisible(bool(whole))
 
-    def set_palette(self, palette: Palette) -> None:
-        """Draw in other colours."""
-        self.view.set_palette(palette)
-        self.tools.set_palette(palette)
-        self.refine.set_palette(palette)
-        for name, icon, _, _ in BUTTONS:
-            self.buttons[name].setIcon(icons.icon(icon, palette))
-
     def minimumSizeHint(self) -> QSize:  # noqa: N802 - Qt's name
         return QSize(250, 195)
 
@@ -232,8 +222,8 @@ class RefineBar(QWidget):
         for caption, field in ((tr("Size"), self.width_), ("\N{MULTIPLICATION SIGN}", self.height_)):
             row.addWidget(_caption(caption, field))
             row.addWidget(field)
-        self.proportions = tool_button(
-            "keepProportions", tr("Keep proportions. Off: change width and height separately."), True
+        self.proportions = ToolButton(
+            "keepProportions", "chain", tr("Keep proportions. Off: change width and height separately."), True
         )
         self.proportions.setChecked(True)
         row.addWidget(self.proportions)
@@ -245,10 +235,6 @@ class RefineBar(QWidget):
 
     def _take_height(self, height: float) -> None:
         self.size_wanted.emit(height * self._ratio if self.proportions.isChecked() else self._size[0], height)
-
-    def set_palette(self, palette: Palette) -> None:
-        """Draw in other colours."""
-        self.proportions.setIcon(icons.icon("chain", palette))
 
     def show_placed(self, placed: Placed | None) -> None:
         """Show the target's size on the board."""

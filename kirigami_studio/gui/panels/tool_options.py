@@ -12,7 +12,7 @@ from PySide6.QtWidgets import QFontComboBox, QHBoxLayout, QLabel, QLineEdit, QMe
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.look import icons
 from kirigami_studio.gui.look.theme import LIGHT, Palette
-from kirigami_studio.gui.panels.card import TOOL_ICON, tool_button
+from kirigami_studio.gui.panels.card import TOOL_ICON, ToolButton
 from kirigami_studio.gui.panels.number_field import DecimalField, LengthField, number_field
 from kirigami_studio.gui.sketching.sketch_context import Change, SketchContext, middle_of
 from kirigami_studio.gui.views.target_view import Tool
@@ -88,11 +88,6 @@ class ToolOptions(QWidget):
             for widget in widgets:
                 widget.setVisible(tool in tools)
 
-    def set_palette(self, palette: Palette) -> None:
-        """Draw in other colours."""
-        self.nodes.set_palette(palette)
-        self.font_.set_palette(palette)
-
 
 class NodeOptions(QWidget):
     """One button for each kind; those of the selected points are down."""
@@ -112,7 +107,7 @@ class NodeOptions(QWidget):
             (Kind.SYMMETRIC, tr("Symmetric (Shift+Y). Handles stay in line and equally long, as with Shift+drag.")),
             (Kind.AUTO, tr("Automatic (Shift+A). Neighbouring points set the handles.")),
         ):
-            button = tool_button(f"node{kind.value.capitalize()}", tip, checkable=True)
+            button = ToolButton(f"node{kind.value.capitalize()}", f"node-{kind.value}", tip, checkable=True)
             button.clicked.connect(lambda _=False, kind=kind: context.kind_wanted.emit(kind))
             self.buttons[kind] = button
             row.addWidget(button)
@@ -124,11 +119,6 @@ class NodeOptions(QWidget):
         for kind, button in self.buttons.items():
             button.setEnabled(bool(kinds))
             button.setChecked(kind in kinds)
-
-    def set_palette(self, palette: Palette) -> None:
-        """Draw in other colours."""
-        for kind, button in self.buttons.items():
-            button.setIcon(icons.icon(f"node-{kind.value}", palette))
 
 
 class PoseOptions(QWidget):
@@ -211,8 +201,8 @@ class FontOptions(QWidget):
         self._row.setContentsMargins(0, 0, 0, 0)
         self._row.setSpacing(2)
         self.family: QFontComboBox | None = None
-        self.bold = tool_button("fontBold", tr("Bold letters. Thick strokes work better than thin ones."), True)
-        self.italic = tool_button("fontItalic", tr("Italic letters."), True)
+        self.bold = ToolButton("fontBold", "bold", tr("Bold letters. Thick strokes work better than thin ones."), True)
+        self.italic = ToolButton("fontItalic", "italic", tr("Italic letters."), True)
         self.bold.setChecked(context.bold)
         self.bold.toggled.connect(self._take_style)
         self.italic.toggled.connect(self._take_style)
@@ -238,11 +228,6 @@ class FontOptions(QWidget):
 
     def _take_family(self, font: QFont) -> None:
         self._context.family = font.family()
-
-    def set_palette(self, palette: Palette) -> None:
-        """Draw in other colours."""
-        self.bold.setIcon(icons.icon("bold", palette))
-        self.italic.setIcon(icons.icon("italic", palette))
 
 
 class AxisButton(QToolButton):

@@ -8,9 +8,7 @@ from PySide6.QtWidgets import QHBoxLayout, QMenu, QToolButton, QWidget
 
 from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.gui.designs.hand_editor import LARGEST, SMALLEST
-from kirigami_studio.gui.look import icons
-from kirigami_studio.gui.look.theme import Palette
-from kirigami_studio.gui.panels.card import FittingLabel, tool_button
+from kirigami_studio.gui.panels.card import FittingLabel, ToolButton
 from kirigami_studio.gui.panels.number_field import DecimalField, number_field
 from kirigami_studio.project.document import Void
 
@@ -41,8 +39,9 @@ class VoidBar(QWidget):
         )
         self.ratio.setFixedWidth(104)
         number_field(self.ratio)
-        self.lock = tool_button(
+        self.lock = ToolButton(
             "lockVoid",
+            "lock",
             tr("Lock (L). Keeps the ratio in manual edits and Fit again; Generate makes new designs."),
             checkable=True,
         )
@@ -57,7 +56,8 @@ class VoidBar(QWidget):
         self.lock_all = menu.addAction(tr("Lock all voids"))
         self.unlock_all = menu.addAction(tr("Unlock all voids"))
         self.all.setMenu(menu)
-        self.refit = tool_button(
+        self.refit = ToolButton(
+            "refit",
             "refit",
             tr("Fit again (Ctrl+F). Improves the match from here; locked voids stay, a trim is redone."),
             checkable=True,
@@ -110,11 +110,6 @@ class VoidBar(QWidget):
     def _fit(self) -> None:
         others = (self.ratio, self.lock, self.all, self.refit)
         self.selection_text.fit(self.width() - sum(part.width() + 6 for part in others) - 8)
-
-    def set_palette(self, palette: Palette) -> None:
-        """Draw in other colours."""
-        self.lock.setIcon(icons.icon("lock", palette))
-        self.refit.setIcon(icons.icon("refit", palette))
 
     def keyPressEvent(self, event: QKeyEvent) -> None:  # noqa: N802 - Qt's name
         """Enter in the number field is for the number, not for the window."""
