@@ -13,6 +13,7 @@ LARGEST_NUMBER = 1e300
 _NOT_GIVEN = object()
 
 Choice = TypeVar("Choice", bound=Enum)
+Value = TypeVar("Value")
 
 
 def read_json(content: bytes, place: str) -> object:
@@ -68,22 +69,13 @@ class Record:
         return int(value)
 
     def flag(self, name: str) -> bool:
-        value = self._get(name)
-        if not isinstance(value, bool):
-            self._refuse("json.not_true_or_false", name, value)
-        return bool(value)
+        return self._of_kind(bool, name, "json.not_true_or_false")
 
     def text(self, name: str) -> str:
-        value = self._get(name)
-        if not isinstance(value, str):
-            self._refuse("json.not_a_text", name, value)
-        return str(value)
+        return self._of_kind(str, name, "json.not_a_text")
 
     def list(self, name: str) -> list[Any]:
-        value = self._get(name)
-        if not isinstance(value, list):
-            self._refuse("json.not_a_list", name, value)
-        return list(value)
+        return self._of_kind(list, name, "json.not_a_list").copy()
 
     def texts(self, name: str) -> dict[str, str]:
         value = self._get(name)
@@ -105,6 +97,12 @@ class Record:
     def holds(self, name: str) -> bool:
         """Whether the field is there and not null."""
         return self._value.get(name) is not None
+
+    def _of_kind(self, kind: type[Value], name: str, code: str) -> Value:
+        value = self._get(name)
+        if not isinstance(value, kind):
+            self._refuse(code, name, value)
+        return value
 
     def _get(self, name: str) -> Any:
         value = self._value.get(name, _NOT_GIVEN)

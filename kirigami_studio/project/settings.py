@@ -69,10 +69,8 @@ class DesignSettings:
         ):
             if not _is_whole(value) or value < lowest:
                 raise UsageError(code, value=value, lowest=lowest)
-        if not isinstance(self.variant, str) or not self.variant:
-            raise UsageError("settings.variant_not_a_name", value=self.variant)
-        if not isinstance(self.prefer, str) or not self.prefer:
-            raise UsageError("settings.preference_not_a_name", value=self.prefer)
+        _check_name("settings.variant_not_a_name", self.variant)
+        _check_name("settings.preference_not_a_name", self.prefer)
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,12 +114,9 @@ class FabricationSettings:
     def __post_init__(self) -> None:
         if not _is_number(self.width_mm) or not 0 < self.width_mm <= LARGEST_SHEET_MM:
             raise UsageError("settings.sheet_width", value=self.width_mm, largest_mm=LARGEST_SHEET_MM)
-        if not isinstance(self.material, str) or not self.material:
-            raise UsageError("settings.material_not_a_name", value=self.material)
-        if not isinstance(self.profile, str) or not self.profile:
-            raise UsageError("settings.profile_not_a_name", value=self.profile)
-        if not isinstance(self.dxf_version, str) or not self.dxf_version:
-            raise UsageError("settings.dxf_version_not_a_name", value=self.dxf_version)
+        _check_name("settings.material_not_a_name", self.material)
+        _check_name("settings.profile_not_a_name", self.profile)
+        _check_name("settings.dxf_version_not_a_name", self.dxf_version)
         for code, value, zero_allowed in (
             ("settings.connector_width", self.connector_mm, False),
             ("settings.kerf_width", self.kerf_mm, True),
@@ -130,6 +125,11 @@ class FabricationSettings:
                 continue
             if not _is_number(value) or value < 0 or (value == 0 and not zero_allowed) or value > LARGEST_SHEET_MM:
                 raise UsageError(code, value=value, largest_mm=LARGEST_SHEET_MM)
+
+
+def _check_name(code: str, value: object) -> None:
+    if not isinstance(value, str) or not value:
+        raise UsageError(code, value=value)
 
 
 def _is_whole(value: object) -> bool:

@@ -17,7 +17,7 @@ from kirigami_studio.fabricate import timing
 from kirigami_studio.fabricate.cut_plan import CutPath, CutPlan, Layer
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray
 from kirigami_studio.gui.look.theme import Palette
-from kirigami_studio.gui.scene.paths import line_path
+from kirigami_studio.gui.scene.paths import line_path, round_pen
 from kirigami_studio.gui.scene.view_transform import Bounds, ViewTransform
 
 #: No cut is drawn thinner than this (pixels), whatever its kerf.
@@ -127,13 +127,13 @@ def paint_cuts(
     with_transform(painter, transform)
     painter.setBrush(Qt.BrushStyle.NoBrush)
     for layer, of_layer in reversed(drawing.on_layer.items()):
-        painter.setPen(_pen(layer_colour(layer, palette), width))
+        painter.setPen(round_pen(layer_colour(layer, palette), width))
         for opacity, which in ((FAINT, seen & of_layer & ~done), (1.0, seen & of_layer & done)):
             painter.setOpacity(opacity)
             _stroke(painter, [cuts[index] for index in np.flatnonzero(which)], thin)
     painter.setOpacity(1.0)
     if 0 < step < last:
-        painter.setPen(_pen(palette.current_cut, width + 3.0 / transform.scale))
+        painter.setPen(round_pen(palette.current_cut, width + 3.0 / transform.scale))
         painter.drawPath(drawing.cuts[step - 1])
     painter.restore()
 
@@ -208,10 +208,6 @@ def cut_steps(plan: CutPlan) -> CutSteps:
     if seconds[-1] > 0.0:
         seconds = seconds * (plan.seconds_estimate / seconds[-1])
     return CutSteps(seconds, np.concatenate([[0.0], np.cumsum([path.length for path in plan.paths])]))
-
-
-def _pen(colour: str, width: float) -> QPen:
-    return QPen(QColor(colour), width, Qt.PenStyle.SolidLine, Qt.PenCapStyle.RoundCap, Qt.PenJoinStyle.RoundJoin)
 
 
 def _stroke(painter: QPainter, cuts: list[QPainterPath], thin: bool) -> None:

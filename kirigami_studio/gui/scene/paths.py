@@ -1,16 +1,22 @@
-"""Points in pixels -> painter paths."""
+"""Points in pixels -> painter paths, and the pen that draws them."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from PySide6.QtGui import QPainterPath
+from PySide6.QtCore import Qt
+from PySide6.QtGui import QColor, QPainterPath, QPen
 
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.gui.scene.view_transform import ViewTransform
 
 if TYPE_CHECKING:
     from shapely.geometry.base import BaseGeometry
+
+
+def round_pen(colour: str, width: float) -> QPen:
+    """A pen with round ends and corners."""
+    return QPen(QColor(colour), width, Qt.PenStyle.SolidLine, Qt.PenCapStyle.RoundCap, Qt.PenJoinStyle.RoundJoin)
 
 
 def line_path(points: FloatArray, closed: bool) -> QPainterPath:

@@ -13,14 +13,14 @@ from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.scene.mismatch_items import stripes
-from kirigami_studio.gui.scene.paths import line_path
+from kirigami_studio.gui.scene.paths import line_path, round_pen
 from kirigami_studio.gui.scene.view_transform import ViewTransform
 from kirigami_studio.outlines.mirroring import Axis, Mirror
 
 
 def paint_target_shape(painter: QPainter, points: FloatArray, palette: Palette) -> None:
     """Fill the target: (L, 2) pixels."""
-    painter.setPen(_line(palette.target, 2.0))
+    painter.setPen(round_pen(palette.target, 2.0))
     painter.setBrush(QColor(palette.target_fill))
     painter.drawPath(line_path(points, closed=True))
 
@@ -31,22 +31,22 @@ def paint_target_line(painter: QPainter, points: FloatArray, palette: Palette, w
     painter.setBrush(Qt.BrushStyle.NoBrush)
     halo = QColor(palette.canvas)
     halo.setAlpha(190)
-    pen = _line(palette.target, width + 2.4)
+    pen = round_pen(palette.target, width + 2.4)
     pen.setColor(halo)
     painter.setPen(pen)
     painter.drawPath(path)
-    painter.setPen(_line(palette.target, width))
+    painter.setPen(round_pen(palette.target, width))
     painter.drawPath(path)
 
 
 def paint_sketch(painter: QPainter, points: FloatArray, palette: Palette, corners: bool) -> None:
     """Draw a stroke that is still being made: (L, 2) pixels, with handles on the corners of a polygon."""
     painter.setBrush(Qt.BrushStyle.NoBrush)
-    painter.setPen(_line(palette.accent, 2.0))
+    painter.setPen(round_pen(palette.accent, 2.0))
     painter.drawPath(line_path(points, closed=False))
     if not corners:
         return
-    painter.setPen(_line(palette.accent, 1.5))
+    painter.setPen(round_pen(palette.accent, 1.5))
     for index, (x, y) in enumerate(points.tolist()):
         painter.setBrush(QColor(palette.accent if index == 0 else palette.canvas))
         painter.drawEllipse(QPointF(x, y), 4.0, 4.0)
@@ -56,7 +56,7 @@ def paint_proposal(painter: QPainter, points: FloatArray, palette: Palette) -> N
     """Draw a shape that would come when the button is let go: (L, 2) pixels."""
     fill = QColor(palette.accent)
     fill.setAlpha(36)
-    painter.setPen(_line(palette.accent, 2.0))
+    painter.setPen(round_pen(palette.accent, 2.0))
     painter.setBrush(fill)
     painter.drawPath(line_path(points, closed=True))
 
@@ -89,7 +89,7 @@ def paint_reach(painter: QPainter, arms: Sequence[FloatArray], notches: Sequence
     """Mark what a grid can hardly show, (L, 2) pixels each: arms hatched one way, notches the other, both framed."""
     ratio = painter.device().devicePixelRatioF()
     for rings, colour, rising in ((arms, palette.warning, True), (notches, palette.extra, False)):
-        painter.setPen(_line(colour, 1.2))
+        painter.setPen(round_pen(colour, 1.2))
         painter.setBrush(QBrush(stripes(colour, rising, ratio)))
         for ring in rings:
             painter.drawPath(line_path(ring, closed=True))
@@ -121,10 +121,3 @@ def paint_axes(painter: QPainter, transform: ViewTransform, mirror: Mirror, area
         painter.drawLine(QPointF(x, area.top()), QPointF(x, area.bottom()))
     if mirror.axis in (Axis.LEVEL, Axis.BOTH):
         painter.drawLine(QPointF(area.left(), y), QPointF(area.right(), y))
-
-
-def _line(colour: str, width: float) -> QPen:
-    pen = QPen(QColor(colour), width)
-    pen.setJoinStyle(Qt.PenJoinStyle.RoundJoin)
-    pen.setCapStyle(Qt.PenCapStyle.RoundCap)
-    return pen

@@ -16,7 +16,7 @@ from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.scene.legends import paint_chip
 from kirigami_studio.gui.scene.mismatch_items import stripes
-from kirigami_studio.gui.scene.paths import line_path
+from kirigami_studio.gui.scene.paths import line_path, round_pen
 from kirigami_studio.gui.scene.view_transform import Bounds, ViewTransform
 from kirigami_studio.lattice.deployment import Deployment
 from kirigami_studio.project.document import Void
@@ -204,10 +204,10 @@ def paint_marked(painter: QPainter, shapes: VoidShapes, voids: Iterable[Void], p
         tint = QColor(palette.accent)
         tint.setAlpha(60)
         painter.setBrush(tint)
-        painter.setPen(_pen(palette.canvas, width + 3.5))
+        painter.setPen(round_pen(palette.canvas, width + 3.5))
         painter.drawPath(path)
         painter.setBrush(Qt.BrushStyle.NoBrush)
-        painter.setPen(_pen(palette.accent_hover, width))
+        painter.setPen(round_pen(palette.accent_hover, width))
         painter.drawPath(path)
 
 
@@ -216,7 +216,7 @@ def paint_locks(painter: QPainter, shapes: VoidShapes, voids: Iterable[Void], pa
     ratio = painter.device().devicePixelRatio()
     for void in voids:
         corners = shapes.corners[void]
-        painter.setPen(_pen(palette.text, 1.6))
+        painter.setPen(round_pen(palette.text, 1.6))
         painter.setBrush(QBrush(stripes(palette.text, True, ratio)))
         painter.drawPath(line_path(corners, closed=True))
         room = max(float(np.hypot(*(corners[2] - corners[0]))), float(np.hypot(*(corners[3] - corners[1]))))
@@ -230,7 +230,7 @@ def _paint_padlock(painter: QPainter, middle: QPointF, palette: Palette) -> None
     arch = QRectF(middle.x() - 2.8, middle.y() - 6.0, 5.6, 8.0)
     painter.setBrush(Qt.BrushStyle.NoBrush)
     for colour, width in ((palette.surface, 4.0), (palette.text, 1.6)):
-        painter.setPen(_pen(colour, width))
+        painter.setPen(round_pen(colour, width))
         painter.drawArc(arch, 0, 180 * 16)
         painter.drawRoundedRect(body, 1.5, 1.5)
     painter.setPen(Qt.PenStyle.NoPen)
@@ -275,10 +275,3 @@ def paint_band(painter: QPainter, band: QRectF, palette: Palette) -> None:
     painter.setPen(QPen(QColor(palette.accent), 1.2, Qt.PenStyle.DashLine))
     painter.setBrush(Qt.BrushStyle.NoBrush)
     painter.drawRect(band)
-
-
-def _pen(colour: str, width: float) -> QPen:
-    pen = QPen(QColor(colour), width)
-    pen.setJoinStyle(Qt.PenJoinStyle.RoundJoin)
-    pen.setCapStyle(Qt.PenCapStyle.RoundCap)
-    return pen
