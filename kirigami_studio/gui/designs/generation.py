@@ -236,10 +236,12 @@ class RunPlanner:
         plan, document = self.plan, self._session.document
         if plan is None or not plan.joins:
             score = result.best.score
-            return tr(
-                "Generated {count} in {seconds:.1f} s. "
+            return tr_n(
+                "Generated {count} design in {seconds:.1f} s: "
+                "sIoU {siou:.1f} %, {siou_gain:+.1f} over the uniform sheet.",
+                "Generated {count} designs in {seconds:.1f} s. "
                 "Best: sIoU {siou:.1f} %, {siou_gain:+.1f} over the uniform sheet.",
-                count=len(result.candidates),
+                len(result.candidates),
                 seconds=result.seconds,
                 siou=100 * score.siou,
                 siou_gain=100 * score.siou_gain,
