@@ -52,6 +52,8 @@ Float32Array = npt.NDArray[np.float32]
 
 #: Shapes of a block, and candidates of the generator that are fitted for each: the upright one and one in between.
 BLOCK = 32
+#: The generator that guesses.
+VARIANT = "prior"
 #: Euler steps of the generator, and of the fit: first with far parts pulling, then for the area.
 SAMPLING_STEPS, EASY_STEPS, LAST_STEPS = 4, 6, 12
 #: Trusted distance (unit-area lengths) of the easy steps, as in the search by continuation.
@@ -129,7 +131,6 @@ def fit_shapes(
     count: int,
     seed: int,
     grid: tuple[int, int] = (10, 10),
-    variant: str = "prior",
     processes: int = 1,
     block_size: int = BLOCK,
 ) -> Iterator[int]:
@@ -142,8 +143,6 @@ def fit_shapes(
     seed : int
         Of the drawn shapes.
     grid : (rows, columns)
-    variant : str
-        The generator that guesses.
     processes : int
         Blocks at a time.
     block_size : int
@@ -154,14 +153,14 @@ def fit_shapes(
     KirigamiError
         The archive there was made with another grid, seed or generator.
     """
-    generator = load_model(variant).digest
+    generator = load_model(VARIANT).digest
     made_by = {"grid": list(grid), "seed": seed, "generator": generator, "block size": block_size}
     fits = FittedFields.load(path) if path.exists() else _nothing(grid, made_by)
     other = [name for name, value in made_by.items() if fits.about.get(name) != value]
     if other:
         raise KirigamiError("training.fits_differ", path=path, settings=", ".join(other))
     done = {int(number) for number in fits.about["blocks"]}  # type: ignore[attr-defined]
-    work = partial(fitted_block, seed=seed, grid=grid, variant=variant, size=block_size)
+    work = partial(fitted_block, seed=seed, grid=grid, size=block_size)
     blocks = _each(work, (number for number in count_from(0) if number not in done), processes)
     while len(fits.z) < count:
         number, new = next(blocks)
@@ -189,12 +188,12 @@ def _each(
                 yield running.pop(future), future.result()
 
 
-def fitted_block(block: int, seed: int, grid: tuple[int, int], variant: str, size: int = BLOCK) -> FittedFields:
+def fitted_block(block: int, seed: int, grid: tuple[int, int], size: int = BLOCK) -> FittedFields:
     """Fit the ``size`` shapes from number ``block * size`` on."""
     rows: list[tuple[Float32Array, Float32Array, float, int, int]] = []
     for number in range(block * size, (block + 1) * size):
         target = drawn_shape(seed, number)
-        fields = sample_fields(load_model(variant), target, grid, BATCH, number, SAMPLING_STEPS)
+        fields = sample_fields(load_model(VARIANT), target, grid, BATCH, number, SAMPLING_STEPS)
         # Odd candidates see the target in poses between the quarter turns.
         between = 1 + 2 * int(np.random.default_rng((seed, number, 1)).integers(BATCH // 2))
         for candidate in (0, between):

@@ -103,7 +103,7 @@ class SideBySide(QObject):
         if shown != self._shown:
             self._shown = shown
             window.stage.compare.show_pair(*shown)
-            window.stage.refresh_header()
+            window.stage.show_title()
         window.gallery.view.show_compared(other.candidate)
 
     def _show_switches(self, on: bool) -> None:

@@ -86,7 +86,7 @@ class StageConnections(QObject):
     def _show_plan(self, planned: Planned | None) -> None:
         self._window.fabrication.show_plan(planned)
         self._window.stage.cuts.show_plan(planned)
-        self._window.stage.refresh_header()
+        self._window.stage.show_title()
 
     def _show_refusal(self, sentence: str) -> None:
         self._window.fabrication.show_refusal(sentence)

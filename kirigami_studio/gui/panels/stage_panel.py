@@ -171,10 +171,6 @@ class StagePanel(Card):
             self.cuts_switch.setChecked(False)
             self._turn_to(self.compare if on else self._layout_page)
 
-    def refresh_header(self) -> None:
-        """The cut plan has changed."""
-        self._show_title()
-
     def _toggle_cuts(self, on: bool) -> None:
         self._turn_to(self.cuts if on else self._layout_page)
 
@@ -191,7 +187,7 @@ class StagePanel(Card):
         for button in self.cuts.toggles.values():
             button.setVisible(cuts)
         (self.cuts.view if cuts else self.compare.left.view if self.comparing else self.view).setFocus()
-        self._show_title()
+        self.show_title()
         self.switches_changed.emit()
         if compared != self.comparing:
             self.comparing_changed.emit(self.comparing)
@@ -244,7 +240,7 @@ class StagePanel(Card):
     def set_rank(self, rank: int) -> None:
         """The same design has another place now."""
         self._rank = rank
-        self._show_title()
+        self.show_title()
 
     def _toggle_before(self, on: bool) -> None:
         self._sample = None
@@ -269,7 +265,7 @@ class StagePanel(Card):
     def _show(self) -> None:
         """Show the present design, or its sample."""
         entry = self._entry
-        self._show_title()
+        self.show_title()
         if entry is None:
             self.view.show_design(None, None, None)
             return
@@ -281,7 +277,8 @@ class StagePanel(Card):
         self.deployment.set_marks(shown.design.phi_target, None if contact is None else contact.phi)
         self.plots.set_target(shown.design.phi_target)
 
-    def _show_title(self) -> None:
+    def show_title(self) -> None:
+        """Show what the header says of the design or of its cuts."""
         entry, rank = self._entry, self._rank
         self.title.setText(tr("Layout") if entry is None or rank <= 0 else tr("Design {rank}", rank=rank))
         self.numbers.set_texts(*self._texts())

@@ -24,7 +24,6 @@ class VoidBar(QWidget):
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self._voids: frozenset[Void] = frozenset()
-        self._fitting = False
         self.selection_text = FittingLabel()
         self.ratio = DecimalField()
         self.ratio.setObjectName("voidRatio")

@@ -28,7 +28,7 @@ def small_runs(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.fixture(scope="module")
 def fits(tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp("fits") / "drawn.npz"
-    fitted_block(0, seed=2, grid=(10, 10), variant="prior", size=3).save(path)
+    fitted_block(0, seed=2, grid=(10, 10), size=3).save(path)
     return path
 
 

@@ -34,7 +34,7 @@ GRID = (6, 6)
 
 @pytest.fixture(scope="module")
 def fits() -> FittedFields:
-    return fitted_block(0, seed=5, grid=GRID, variant="prior", size=10)
+    return fitted_block(0, seed=5, grid=GRID, size=10)
 
 
 def ious(z: FloatArray, polygons: FloatArray) -> FloatArray:
@@ -84,7 +84,7 @@ def test_that_two_processes_make_the_fits_of_one(tmp_path: Path) -> None:
     list(fit_shapes(path, 3, 5, GRID, processes=2, block_size=1))
     fits = FittedFields.load(path)
     assert len(fits.about["blocks"]) >= 2  # type: ignore[arg-type]
-    alone = [fitted_block(block, 5, GRID, "prior", 1) for block in fits.about["blocks"]]  # type: ignore[attr-defined]
+    alone = [fitted_block(block, 5, GRID, 1) for block in fits.about["blocks"]]  # type: ignore[attr-defined]
     assert np.array_equal(fits.z, np.concatenate([one.z for one in alone]))
 
 

@@ -33,7 +33,7 @@ def train(
 
 @pytest.fixture(scope="module")
 def fits() -> FittedFields:
-    return fitted_block(0, seed=1, grid=(4, 4), variant="prior", size=4)
+    return fitted_block(0, seed=1, grid=(4, 4), size=4)
 
 
 @pytest.fixture(scope="module")

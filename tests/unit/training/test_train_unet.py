@@ -78,7 +78,7 @@ def test_that_fits_take_part_and_a_warm_start_begins_with_its_weights(tmp_path: 
     train(TINY, tmp_path / "first")
     store_model("prior", trained_network(TINY, tmp_path / "first", CPU), tmp_path / "first", {})
     start = load_model("prior", tmp_path / "first")
-    fits = fitted_block(0, seed=1, grid=(4, 4), variant="prior", size=2)
+    fits = fitted_block(0, seed=1, grid=(4, 4), size=2)
     settings = replace(TINY, steps=4, learning_rate=1e-12, warm_start=start.digest, fits=fits.digest)
     train(settings, tmp_path / "second", Sources(start, fits))
     ended = trained_network(settings, tmp_path / "second", CPU).state_dict()
