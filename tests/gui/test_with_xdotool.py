@@ -100,12 +100,13 @@ def person(tmp_path: Path) -> Iterator[Person]:
         environment[name] = str(folder)
     reading, writing = os.pipe()
     screen = "x".join(map(str, (*SIZE, 24)))
-    command = ["Xvfb", "-displayfd", str(writing), "-screen", "0", screen, "-nolisten", "tcp"]
+    # Without -noreset the server starts over whenever its last client leaves, and refuses whoever comes meanwhile.
+    command = ["Xvfb", "-displayfd", str(writing), "-screen", "0", screen, "-nolisten", "tcp", "-noreset"]
     server = subprocess.Popen(command, pass_fds=(writing,), stderr=subprocess.DEVNULL)
     os.close(writing)
     try:
-        with os.fdopen(reading) as told:
-            yield Person(f":{told.readline().strip()}", environment)
+        with os.fdopen(reading) as chosen:
+            yield Person(f":{chosen.readline().strip()}", environment)
     finally:
         server.terminate()
         server.wait(10)

@@ -45,7 +45,7 @@ def too_long(turns: Turns, limit: float) -> Turns:
 
 
 @pytest.mark.parametrize("script", SCRIPTS)
-def test_that_no_step_of_a_session_holds_the_window_up(script: str, tmp_path: Path) -> None:
+def test_that_no_step_of_a_session_freezes_the_ui(script: str, tmp_path: Path) -> None:
     best: Turns = {}
     steps, limit = SCRIPTS[script]
     for _ in range(SESSIONS):
