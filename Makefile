@@ -60,10 +60,8 @@ quick: setup
 	  -m "not slow and not torch and not qt" $(QUICK_TESTS)
 
 lint: setup
-	$(BIN)/ruff check .
-	$(BIN)/ruff format --check .
-	$(BIN)/mypy
-	$(BIN)/lint-imports
+	@$(BIN)/mypy & types=$$!; $(BIN)/ruff check . && $(BIN)/ruff format --check . && $(BIN)/lint-imports; rest=$$?; \
+	  wait $$types && exit $$rest
 
 bench: setup
 	$(BIN)/python -m kirigami_studio benchmark lattice
