@@ -10,14 +10,12 @@ from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
 from functools import lru_cache
 
-import numpy as np
-
 from kirigami_studio.evaluate.feasibility import Contact, Feasibility, feasibility_of_many
 from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.evaluate.siou import ShapeMatch, siou_near, siou_of_many
 from kirigami_studio.evaluate.total_variation import log_variation, total_variation
 from kirigami_studio.lattice.deployment import Deployment, check_phi, deploy
-from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.outlines.outline import Outline
 
 #: Turns below this (radians) come with any change.
@@ -110,8 +108,8 @@ def evaluate_many(deployments: Sequence[Deployment], outline: Outline, phi: floa
     phi = check_phi(phi)
     found: dict[int, Score] = {}
     # Designs of one grid are scored together.
-    for grid in dict.fromkeys(_grid(deployment) for deployment in deployments):
-        members = [index for index, deployment in enumerate(deployments) if _grid(deployment) == grid]
+    for grid in dict.fromkeys(deployment.sheet.grid for deployment in deployments):
+        members = [index for index, deployment in enumerate(deployments) if deployment.sheet.grid == grid]
         sheets = [deployments[index] for index in members]
         matches = siou_of_many([sheet.outline(phi) for sheet in sheets], outline)
         checks = feasibility_of_many(sheets, phi)
@@ -146,12 +144,8 @@ def evaluate_near(deployment: Deployment, outline: Outline, phi: float, pose: Si
     return replace(best, siou=near.siou, siou_gain=gain, iou_exact=near.iou_exact, transform=near.transform)
 
 
-def _grid(deployment: Deployment) -> tuple[int, int]:
-    return deployment.field.rows, deployment.field.columns
-
-
 def _complete(deployment: Deployment, match: ShapeMatch, check: Feasibility, outline: Outline, phi: float) -> Score:
-    floor = _uniform_match(*_grid(deployment), _cell(deployment), phi, outline)
+    floor = _uniform_match(deployment.sheet.plain(), phi, outline)
     return Score(
         siou=match.siou,
         siou_gain=match.siou - floor.siou,
@@ -169,15 +163,7 @@ def _complete(deployment: Deployment, match: ShapeMatch, check: Feasibility, out
     )
 
 
-def _cell(deployment: Deployment) -> tuple[float, float]:
-    """Size of a cell of the compact sheet, from the sheet's own size."""
-    width, height = np.ptp(deployment.compact, axis=0)
-    field = deployment.field
-    return round(float(width) / (field.columns + 1), 9), round(float(height) / (field.rows + 1), 9)
-
-
 @lru_cache(maxsize=256)
-def _uniform_match(rows: int, columns: int, cell: tuple[float, float], phi: float, outline: Outline) -> ShapeMatch:
-    """The floor that a target sets: how well the uniform layout matches it, kept per grid, angle and target."""
-    uniform = deploy(RatioField.uniform(rows, columns), cell)
-    return siou_of_many([uniform.outline(phi)], outline)[0]
+def _uniform_match(plain: Sheet, phi: float, outline: Outline) -> ShapeMatch:
+    """The floor that a target sets: how well the uniform sheet matches it, kept per sheet, angle and target."""
+    return siou_of_many([deploy(plain).outline(phi)], outline)[0]

@@ -47,6 +47,10 @@ class RatioError(KirigamiError):
     """A ratio field has the wrong shape or holds values that are not finite and positive."""
 
 
+class SheetError(KirigamiError):
+    """A rim or a start outline does not make a sheet."""
+
+
 class AngleError(UsageError):
     """A deployment angle lies outside the range that the operation accepts."""
 

@@ -20,9 +20,9 @@ from scipy.sparse import csc_matrix
 from scipy.sparse.linalg import splu
 
 from kirigami_studio.foundation.arrays import FloatArray, IntArray
-from kirigami_studio.foundation.errors import UsageError
-from kirigami_studio.lattice.ratio_field import RatioField, frozen
-from kirigami_studio.lattice.topology import Topology, topology
+from kirigami_studio.lattice.ratio_field import frozen
+from kirigami_studio.lattice.sheet import Sheet, rim_nodes, rim_table
+from kirigami_studio.lattice.topology import topology
 
 
 @cache
@@ -49,56 +49,37 @@ def barycentric_stencil(rows: int, columns: int) -> tuple[IntArray, IntArray, In
     return node, np.stack([first, second], axis=1), owner
 
 
-def solve_compact(field: RatioField, cell: tuple[float, float] = (1.0, 1.0)) -> FloatArray:
-    """Solve the barycentric system of one design.
-
-    Parameters
-    ----------
-    field : RatioField
-        Ratios of an m x n grid.
-    cell : (width, height), unit cells
-        Size of one cell; other than (1, 1) gives a sheet of another aspect.
+def solve_compact(sheet: Sheet) -> FloatArray:
+    """Solve the barycentric system of one sheet.
 
     Returns
     -------
     nodes : (N, 2) float, unit cells, read-only
         All compact node positions, numbered as in :class:`Topology`.
-
-    Raises
-    ------
-    UsageError
-        The cell is not two lengths above 0.
     """
-    size = _cell_size(cell)
-    tables = topology(field.rows, field.columns)
-    node, ends, void = barycentric_stencil(field.rows, field.columns)
+    field, tables = sheet.field, topology(*sheet.grid)
+    node, ends, void = barycentric_stencil(*sheet.grid)
     x = field.ratio.ravel()[void]
     weights = np.stack([x / (1.0 + x), 1.0 / (1.0 + x)], axis=1)
-    nodes = tables.uniform_nodes.copy()
-    nodes[node] = _solve(tables, node, ends, weights)
-    return frozen(nodes * size)
+    nodes = np.zeros((tables.node_count, 2))
+    nodes[rim_table(*sheet.grid).node] = rim_nodes(sheet)
+    nodes[node] = _solve(nodes, node, ends, weights)
+    return frozen(nodes)
 
 
-def _cell_size(cell: tuple[float, float]) -> FloatArray:
-    try:
-        size = frozen(cell)
-    except (TypeError, ValueError, OverflowError):
-        size = frozen([])
-    if size.shape != (2,) or not np.all(np.isfinite(size) & (size > 0)):
-        raise UsageError("cell.not_positive", cell=cell)
-    return size
+def _solve(given: FloatArray, node: IntArray, ends: IntArray, weights: FloatArray) -> FloatArray:
+    """Solve (I - S) P = B for the free nodes, from those ``given`` (N, 2).
 
-
-def _solve(tables: Topology, node: IntArray, ends: IntArray, weights: FloatArray) -> FloatArray:
-    """Solve (I - S) P = B for the free nodes; sparse LU keeps the cost near (m n)^1.5 up to 64 x 64."""
+    Sparse LU keeps the cost near (m n)^1.5 up to 64 x 64.
+    """
     count = node.size
-    position = np.full(tables.node_count, -1)
+    position = np.full(len(given), -1)
     position[node] = np.arange(count)
     row = np.repeat(np.arange(count), 2)
     column = position[ends].ravel()
     weight = weights.ravel()
     free = column >= 0
-    known = weight[:, None] * tables.uniform_nodes[ends.ravel()]
+    known = weight[:, None] * given[ends.ravel()]
     right = np.zeros((count, 2))
     np.add.at(right, row[~free], known[~free])
     diagonal = np.arange(count)

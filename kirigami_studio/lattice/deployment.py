@@ -20,6 +20,7 @@ from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import AngleError
 from kirigami_studio.lattice.compact import solve_compact
 from kirigami_studio.lattice.ratio_field import RatioField, frozen
+from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.lattice.topology import Topology, topology
 
 #: Below this angle (radians) the edge hinges count as zipped and leave the outline.
@@ -59,21 +60,27 @@ class Deployment:
 
     Attributes
     ----------
-    field : RatioField
+    sheet : Sheet
     compact : (N, 2) float, unit cells
-        Node positions at phi = pi, numbered as in :class:`Topology`; sheet corner (0, 0), x right, y up.
+        Node positions at phi = pi, numbered as in :class:`Topology`; a rectangle has its top left corner at (0, 0),
+        x right, y up.
     even_part, odd_part : (N, 2) float, unit cells
         U and V of the module's formula, relative to the root node (top left corner of the sheet).
     """
 
-    field: RatioField
+    sheet: Sheet
     compact: FloatArray
     even_part: FloatArray
     odd_part: FloatArray
 
     @property
+    def field(self) -> RatioField:
+        """The sheet's ratios."""
+        return self.sheet.field
+
+    @property
     def topology(self) -> Topology:
-        return topology(self.field.rows, self.field.columns)
+        return topology(*self.sheet.grid)
 
     def nodes(self, phi: float) -> FloatArray:
         """All node positions at angle ``phi``: (N, 2) float, unit cells."""
@@ -108,18 +115,18 @@ def signed_area(polygon: FloatArray) -> float:
     return 0.5 * float(np.sum(polygon[:, 0] * following[:, 1] - polygon[:, 1] * following[:, 0]))
 
 
-def deploy(field: RatioField, cell: tuple[float, float] = (1.0, 1.0)) -> Deployment:
-    """Decode ratios into the exact motion: one barycentric solve, then cumulative sums.
+def deploy(design: Sheet | RatioField) -> Deployment:
+    """Decode a sheet into the exact motion: one barycentric solve, then cumulative sums.
 
     Parameters
     ----------
-    field : RatioField
-    cell : (width, height), unit cells
-        Cell size of the compact sheet.
+    design : Sheet or RatioField
+        Ratios alone stand for the paper's sheet: a rectangle of unit cells with an even rim.
     """
-    compact = solve_compact(field, cell)
-    even = frozen(even_panel_part(compact, topology(field.rows, field.columns)))
-    return Deployment(field, compact, even, frozen(compact - compact[0] - even))
+    sheet = Sheet.of(design)
+    compact = solve_compact(sheet)
+    even = frozen(even_panel_part(compact, topology(*sheet.grid)))
+    return Deployment(sheet, compact, even, frozen(compact - compact[0] - even))
 
 
 def even_panel_part(nodes: FloatArray, tables: Topology) -> FloatArray:

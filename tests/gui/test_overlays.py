@@ -200,7 +200,7 @@ def test_that_an_overlap_is_marked_where_it_is_at_the_angle_that_is_shown(posed:
     folded = sheet.even_part.copy()
     through = 2.5 * (nodes.mean(axis=0) - nodes[corner])  # this corner reaches through the sheet
     folded[corner] += rotate(through, 0.5 * (math.pi - 1.0))
-    broken = replace(posed, deployment=Deployment(sheet.field, sheet.compact, folded, sheet.odd_part))
+    broken = replace(posed, deployment=Deployment(sheet.sheet, sheet.compact, folded, sheet.odd_part))
     where = crossing_place(broken, 1.0)
     assert where is not None
     outline = shapely.LinearRing(broken.outline(broken.nodes(1.0), 1.0))

@@ -13,6 +13,7 @@ from kirigami_studio.lattice.compact import barycentric_stencil, solve_compact
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.marching import march
 from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.lattice.topology import topology
 
 
@@ -129,8 +130,10 @@ def test_that_equal_ratios_give_rotating_squares(grid: tuple[int, int]) -> None:
 
 @given(ratio_fields(decades=2.0), st.floats(0.1, 10), st.floats(0.1, 10))
 def test_that_the_sheet_is_linear_in_its_cell(field: RatioField, width: float, height: float) -> None:
-    square = solve_compact(field)
-    assert np.allclose(solve_compact(field, (width, height)), square * (width, height), rtol=1e-14, atol=1e-13)
+    square = solve_compact(Sheet(field))
+    assert np.allclose(
+        solve_compact(Sheet(field, cell=(width, height))), square * (width, height), rtol=1e-14, atol=1e-13
+    )
 
 
 @given(ratio_fields(grids(5), decades=0.5), st.floats(0.0, math.pi))

@@ -12,6 +12,7 @@ from lattice_strategies import angles, corner_angles, local_rule_residual, open_
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.lattice.deployment import deploy, rotate
 from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.lattice.topology import topology
 
 
@@ -147,4 +148,4 @@ def test_that_angle_and_aspect_combine_four_basis_layouts(
         for size, axis in ((width, only_x), (height, only_y))
         for even, odd in [(design.even_part * axis, design.odd_part * axis)]
     )
-    assert np.abs(deploy(field, (width, height)).nodes(phi) - combined).max() < 1e-9
+    assert np.abs(deploy(Sheet(field, cell=(width, height))).nodes(phi) - combined).max() < 1e-9

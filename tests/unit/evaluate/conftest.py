@@ -12,6 +12,7 @@ from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.lattice.compact import barycentric_stencil
 from kirigami_studio.lattice.deployment import Deployment, even_panel_part
 from kirigami_studio.lattice.ratio_field import RatioField, frozen
+from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.lattice.topology import topology
 
 ORACLES = Path(__file__).parents[2] / "data" / "oracles" / "reference_layouts.npz"
@@ -57,4 +58,4 @@ def ring_sector(rows: int, columns: int, opening: float) -> Deployment:
     right[node] = 0.0
     nodes = frozen(np.linalg.solve(matrix, right))
     even = frozen(even_panel_part(nodes, tables))
-    return Deployment(field, nodes, even, frozen(nodes - nodes[0] - even))
+    return Deployment(Sheet(field), nodes, even, frozen(nodes - nodes[0] - even))

@@ -15,6 +15,7 @@ from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.foundation.errors import AngleError
 from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.outlines import silhouettes
 from kirigami_studio.outlines.outline import Outline
 
@@ -58,7 +59,7 @@ def test_that_the_uniform_layout_gains_nothing() -> None:
 
 
 def test_that_the_floor_belongs_to_the_sheet_of_the_design() -> None:
-    stretched = deploy(RatioField.uniform(6, 6), cell=(3.0, 1.0))
+    stretched = deploy(Sheet(RatioField.uniform(6, 6), cell=(3.0, 1.0)))
     assert evaluate(stretched, silhouettes.load("circle")).siou_gain == 0.0
 
 

@@ -10,6 +10,7 @@ import pytest
 
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.lattice.topology import topology
 
 
@@ -68,7 +69,7 @@ def test_that_the_compact_sheet_hangs_from_the_origin() -> None:
 
 
 def test_that_a_wider_cell_gives_a_wider_sheet() -> None:
-    design = deploy(RatioField.uniform(3, 5), (2.0, 0.5))
+    design = deploy(Sheet(RatioField.uniform(3, 5), cell=(2.0, 0.5)))
     assert math.isclose(design.area(math.pi), 4 * 6, rel_tol=1e-12)
     assert np.allclose(np.ptp(design.outline(math.pi), axis=0), (12, 2))
 

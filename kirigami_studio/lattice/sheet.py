@@ -1,0 +1,386 @@
+"""The sheet that is cut: ratios, where cuts meet its rim, the outline it has while flat, and the size of its cells.
+
+Along each side, *mouths* and *edge hinges* alternate.  At a mouth a cut leaves the sheet: two panels own a node each,
+at the same place while the sheet is flat.  At an edge hinge two panels share the node.  The paper spaces both evenly.
+All that the second compact state needs is that each edge hinge sits halfway between its two neighbouring mouths (a
+corner counts as a mouth): its two rim edges then still fold onto each other.  That frees the mouths, and as every
+compact node is a fixed combination of the rim's, all nodes are linear in them.
+
+Nor does the flat sheet have to be a rectangle: with mouths and corners on any convex outline and edge hinges halfway
+along the chords between them, the barycentric system of ``compact`` divides that polygon into panels all the same.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+from typing import Literal
+
+import numpy as np
+import numpy.typing as npt
+import shapely
+
+from kirigami_studio.foundation.arrays import FloatArray, IntArray
+from kirigami_studio.foundation.errors import SheetError, UsageError
+from kirigami_studio.lattice.ratio_field import RatioField, check_grid, frozen
+from kirigami_studio.lattice.resize import resize_fields
+from kirigami_studio.lattice.topology import topology
+
+Side = Literal["top", "right", "bottom", "left"]
+SIDES: tuple[Side, ...] = ("top", "right", "bottom", "left")
+
+#: Mouths, corners and hinges may not come nearer to each other than this (unit cells): what is exact needs room.
+LEAST_GAP = 1e-3
+#: A start outline is convex when its hull is larger by no more than this share of it.
+CONVEX = 1e-6
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class RimTable:
+    """Where the rim's nodes are, for one grid: everything is a combination of mouths and corners.
+
+    The *anchors* of a side are its two corners and its mouths.  They are numbered along the rim, clockwise from the
+    top left corner.
+
+    Attributes
+    ----------
+    mouths : (R,) int
+        Anchor numbers of the mouths, side by side: top and bottom left to right, right and left top to bottom.
+    even : (R,) float, unit cells
+        Where the paper has these mouths, along their sides.
+    side : (R,) int
+        The side of each mouth: 0 top, 1 right, 2 bottom, 3 left.
+    anchor_place : (A,) float, unit cells
+        Where the paper has the anchors, along the rim clockwise from the top left corner.
+    node : (G,) int
+        The given nodes, numbered as in :class:`~kirigami_studio.lattice.topology.Topology`.
+    share : (G, A) float
+        Each given node as a combination of the anchors: 1 at its own, one half at both neighbours of an edge hinge.
+    """
+
+    mouths: IntArray
+    even: FloatArray
+    side: IntArray
+    anchor_place: FloatArray
+    node: IntArray
+    share: FloatArray
+
+
+@cache
+def rim_table(rows: int, columns: int) -> RimTable:
+    """The (cached) table of an m x n grid."""
+    tables = topology(rows, columns)
+    width, height = columns + 1, rows + 1
+    around = 2 * (width + height)
+    node = np.flatnonzero(tables.fixed)
+    x, depth = tables.uniform_nodes[node, 0], -tables.uniform_nodes[node, 1]
+    right, bottom, left = (x == width) & (depth > 0), (depth == height) & (x < width), (x == 0) & (depth > 0)
+    place = np.where(depth == 0, x, 0.0)
+    place = np.where(right, width + depth, place)
+    place = np.where(bottom, width + height + (width - x), place)
+    place = np.where(left & ~bottom, around - depth, place)
+    corners = [0, width, width + height, 2 * width + height]
+    hinge = np.isin(node, _edge_hinges(rows, columns))
+    anchor_place = np.unique(place[~hinge])
+    share = np.zeros((node.size, anchor_place.size))
+    at = np.searchsorted(anchor_place, place)
+    share[~hinge, at[~hinge]] = 1.0
+    share[hinge, at[hinge] - 1] = 0.5
+    share[hinge, at[hinge] % anchor_place.size] = 0.5
+    mouths, even, side = [], [], []
+    for number, (first, length, along) in enumerate(
+        zip(corners, (width, height, width, height), (1, 1, -1, -1), strict=True)
+    ):
+        inside = np.flatnonzero((anchor_place > first) & (anchor_place < first + length))[::along]
+        mouths.append(inside)
+        even.append(anchor_place[inside] - first if along > 0 else first + length - anchor_place[inside])
+        side.append(np.full(inside.size, number))
+    table = RimTable(np.concatenate(mouths), np.concatenate(even), np.concatenate(side), anchor_place, node, share)
+    for values in (table.mouths, table.even, table.side, table.anchor_place, table.node, table.share):
+        values.setflags(write=False)
+    return table
+
+
+def _edge_hinges(rows: int, columns: int) -> IntArray:
+    """Given nodes that two panels share."""
+    tables = topology(rows, columns)
+    shared = np.concatenate([tables.h[1:-1].ravel(), tables.v[:, 1:-1].ravel()])
+    hinges: IntArray = shared[tables.fixed[shared]]
+    return hinges
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Rim:
+    """Where the cuts meet the rim: positions of the mouths along each side.
+
+    Attributes
+    ----------
+    top, bottom : (k,) float, unit cells
+        From left to right, inside 0 .. n + 1.
+    right, left : (k,) float, unit cells
+        From top to bottom, inside 0 .. m + 1.
+    """
+
+    top: FloatArray
+    right: FloatArray
+    bottom: FloatArray
+    left: FloatArray
+
+    def __post_init__(self) -> None:
+        for name, given in zip(SIDES, self.sides, strict=True):
+            try:
+                values = frozen(given)
+            except (TypeError, ValueError, OverflowError):
+                values = frozen([np.nan])
+            if values.ndim != 1 or not np.all(np.isfinite(values)):
+                raise SheetError("rim.not_numbers", side=name)
+            object.__setattr__(self, name, values)
+
+    @classmethod
+    def even(cls, rows: int, columns: int) -> Rim:
+        """The paper's: mouths and hinges at whole positions."""
+        return cls.moved(rows, columns, np.zeros(rim_table(rows, columns).even.size))
+
+    @classmethod
+    def moved(cls, rows: int, columns: int, offsets: FloatArray) -> Rim:
+        """Mouths moved along their sides by ``offsets`` (R,), unit cells, in the order of :class:`RimTable`."""
+        table = rim_table(rows, columns)
+        positions = table.even + offsets
+        top, right, bottom, left = (positions[table.side == number] for number in range(4))
+        return cls(top, right, bottom, left)
+
+    @property
+    def sides(self) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+        """Top, right, bottom, left."""
+        return self.top, self.right, self.bottom, self.left
+
+    @property
+    def positions(self) -> FloatArray:
+        """All mouths in the order of :class:`RimTable`: (R,) float, unit cells."""
+        return np.concatenate(self.sides)
+
+    def offsets(self, rows: int, columns: int) -> FloatArray:
+        """How far each mouth is from its even place: (R,) float, unit cells."""
+        return self.positions - rim_table(rows, columns).even
+
+    def check(self, rows: int, columns: int) -> None:
+        """Refuse a rim that does not belong to the grid.
+
+        Raises
+        ------
+        SheetError
+            A side has another number of mouths, or mouths that are not in order between its corners.
+        """
+        table = rim_table(rows, columns)
+        for number, (name, values) in enumerate(zip(SIDES, self.sides, strict=True)):
+            wanted = int(np.count_nonzero(table.side == number))
+            if values.size != wanted:
+                raise SheetError(
+                    "rim.wrong_count", side=name, wanted=wanted, got=values.size, rows=rows, columns=columns
+                )
+            length = float(columns + 1 if number % 2 == 0 else rows + 1)
+            if np.any(np.diff(np.concatenate([[0.0], values, [length]])) < LEAST_GAP):
+                raise SheetError("rim.not_in_order", side=name, length=length, least=LEAST_GAP)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Rim) and all(
+            np.array_equal(mine, yours) for mine, yours in zip(self.sides, other.sides, strict=True)
+        )
+
+    def __hash__(self) -> int:
+        return hash(self.positions.tobytes())
+
+    def __reduce__(self) -> tuple[type[Rim], tuple[FloatArray, ...]]:
+        return Rim, self.sides
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Sheet:
+    """One design before it moves: everything that decides where its cuts are.
+
+    Attributes
+    ----------
+    field : RatioField
+    rim : Rim
+        Evenly spaced unless given.
+    start : (P, 2) float or None, unit cells
+        Outline of the flat sheet, convex, clockwise (y up) from the place of the top left corner panel's corner; the
+        other three corners follow at the shares of its length that they have on the rectangle.  None for the rectangle
+        of (n + 1) x (m + 1) cells.
+    cell : (width, height), unit cells
+        Scales the flat sheet; other than (1, 1) gives a rectangle of another aspect.
+    """
+
+    field: RatioField
+    rim: Rim
+    start: FloatArray | None
+    cell: tuple[float, float]
+
+    def __init__(
+        self,
+        field: RatioField,
+        rim: Rim | None = None,
+        start: npt.ArrayLike | None = None,
+        cell: tuple[float, float] = (1.0, 1.0),
+    ) -> None:
+        if rim is None:
+            rim = Rim.even(field.rows, field.columns)
+        else:
+            rim.check(field.rows, field.columns)
+        object.__setattr__(self, "field", field)
+        object.__setattr__(self, "rim", rim)
+        object.__setattr__(self, "start", None if start is None else _checked_start(start))
+        object.__setattr__(self, "cell", _checked_cell(cell))
+
+    @classmethod
+    def of(cls, design: Sheet | RatioField) -> Sheet:
+        """A sheet, or the paper's sheet with these ratios."""
+        return design if isinstance(design, Sheet) else cls(design)
+
+    @classmethod
+    def uniform(cls, rows: int, columns: int) -> Sheet:
+        """All ratios 1 and an even rim: the floor that every score is compared with."""
+        return cls(RatioField.uniform(rows, columns))
+
+    @property
+    def rows(self) -> int:
+        return self.field.rows
+
+    @property
+    def columns(self) -> int:
+        return self.field.columns
+
+    @property
+    def grid(self) -> tuple[int, int]:
+        """(rows, columns) of voids."""
+        return self.field.rows, self.field.columns
+
+    @property
+    def has_even_rim(self) -> bool:
+        """Whether the mouths are where the paper has them."""
+        return self.rim == Rim.even(*self.grid)
+
+    def with_field(self, field: RatioField) -> Sheet:
+        """The same sheet with other ratios of the same grid."""
+        return replace_sheet(self, field=field)
+
+    def plain(self) -> Sheet:
+        """The uniform sheet of the same grid, start outline and cell: what a score compares with."""
+        return Sheet(RatioField.uniform(*self.grid), None, self.start, self.cell)
+
+    def __eq__(self, other: object) -> bool:
+        return (
+            isinstance(other, Sheet)
+            and self.field == other.field
+            and self.rim == other.rim
+            and self.cell == other.cell
+            and (self.start is None) == (other.start is None)
+            and (self.start is None or other.start is None or np.array_equal(self.start, other.start))
+        )
+
+    def __hash__(self) -> int:
+        return hash((self.field, self.rim, self.cell, None if self.start is None else self.start.tobytes()))
+
+    def __reduce__(self) -> tuple[type[Sheet], tuple[object, ...]]:
+        return Sheet, (self.field, self.rim, self.start, self.cell)
+
+
+def replace_sheet(sheet: Sheet, field: RatioField | None = None, rim: Rim | None = None) -> Sheet:
+    """The same sheet with other ratios or another rim."""
+    return Sheet(field or sheet.field, rim or sheet.rim, sheet.start, sheet.cell)
+
+
+def rim_nodes(sheet: Sheet) -> FloatArray:
+    """The given nodes of a sheet: (G, 2) float, unit cells, in the order of ``rim_table(...).node``."""
+    table = rim_table(*sheet.grid)
+    return np.asarray(table.share @ anchor_points(sheet))
+
+
+def anchor_points(sheet: Sheet) -> FloatArray:
+    """Corners and mouths of a sheet, clockwise from the top left corner: (A, 2) float, unit cells."""
+    table = rim_table(*sheet.grid)
+    place = table.anchor_place.copy()
+    width, height = sheet.columns + 1, sheet.rows + 1
+    position = sheet.rim.positions
+    first = np.array([0, width, 2 * width + height, 2 * (width + height)])[table.side]
+    place[table.mouths] = np.where(table.side < 2, first + position, first - position)
+    return _on_rim(sheet, place) * sheet.cell
+
+
+def anchor_slopes(sheet: Sheet) -> FloatArray:
+    """Derivative of each mouth's own point by its position along the side: (R, 2) float."""
+    table = rim_table(*sheet.grid)
+    if sheet.start is None:
+        along = np.array([[1.0, 0.0], [0.0, -1.0], [1.0, 0.0], [0.0, -1.0]])[table.side]
+        return np.asarray(along * sheet.cell)
+    width, height = sheet.columns + 1, sheet.rows + 1
+    position = sheet.rim.positions
+    first = np.array([0, width, 2 * width + height, 2 * (width + height)])[table.side]
+    sign = np.where(table.side < 2, 1.0, -1.0)
+    step = 1e-6
+    ahead = _on_rim(sheet, first + sign * (position + step))
+    behind = _on_rim(sheet, first + sign * (position - step))
+    return np.asarray((ahead - behind) / (2 * step) * sheet.cell)
+
+
+def _on_rim(sheet: Sheet, place: FloatArray) -> FloatArray:
+    """Points of the flat sheet's outline at places along it, clockwise from the top left corner: (K, 2)."""
+    width, height = float(sheet.columns + 1), float(sheet.rows + 1)
+    around = 2.0 * (width + height)
+    if sheet.start is None:
+        corner_place = np.array([0.0, width, width + height, 2 * width + height, around])
+        corners = np.array([[0.0, 0.0], [width, 0.0], [width, -height], [0.0, -height], [0.0, 0.0]])
+    else:
+        corners = np.concatenate([sheet.start, sheet.start[:1]])
+        steps = np.hypot(*np.diff(corners, axis=0).T)
+        corner_place = np.concatenate([[0.0], np.cumsum(steps)])
+        corner_place *= around / corner_place[-1]
+    return np.stack([np.interp(place, corner_place, corners[:, axis]) for axis in (0, 1)], axis=1)
+
+
+def _checked_cell(cell: tuple[float, float]) -> tuple[float, float]:
+    try:
+        size = frozen(cell)
+    except (TypeError, ValueError, OverflowError):
+        size = frozen([])
+    if size.shape != (2,) or not np.all(np.isfinite(size) & (size > 0)):
+        raise UsageError("cell.not_positive", cell=cell)
+    return float(size[0]), float(size[1])
+
+
+def _checked_start(start: npt.ArrayLike) -> FloatArray:
+    """A convex polygon, clockwise; its first vertex stays the first."""
+    try:
+        points = np.array(start, dtype=np.float64)
+    except (TypeError, ValueError, OverflowError):
+        raise SheetError("start.not_points") from None
+    if points.ndim != 2 or points.shape[1:] != (2,) or len(points) < 3 or not np.all(np.isfinite(points)):
+        raise SheetError("start.not_points")
+    polygon = shapely.Polygon(points)
+    if not polygon.is_valid or polygon.area <= 0.0:
+        raise SheetError("start.crosses_itself")
+    if polygon.convex_hull.area > (1.0 + CONVEX) * polygon.area:
+        raise SheetError("start.not_convex")
+    if polygon.exterior.is_ccw:
+        points = np.concatenate([points[:1], points[:0:-1]])
+    return frozen(points)
+
+
+def resized_sheet(sheet: Sheet, rows: int, columns: int) -> Sheet:
+    """The sheet carried to another grid: ratios parity by parity, and the rim's offsets along each side."""
+    check_grid(rows, columns)
+    if sheet.grid == (rows, columns):
+        return sheet
+    z = resize_fields(sheet.field.log10[np.newaxis], rows, columns)[0]
+    old, new = rim_table(*sheet.grid), rim_table(rows, columns)
+    offsets = np.zeros(new.even.size)
+    share = sheet.rim.offsets(*sheet.grid)
+    for number in range(4):
+        before = (sheet.columns if number % 2 == 0 else sheet.rows) + 1
+        after = (columns if number % 2 == 0 else rows) + 1
+        mine, theirs = old.side == number, new.side == number
+        place = np.concatenate([[0.0], old.even[mine] / before, [1.0]])
+        value = np.concatenate([[0.0], share[mine] / before, [0.0]])
+        offsets[theirs] = after * np.interp(new.even[theirs] / after, place, value)
+    rim = Rim.moved(rows, columns, offsets)
+    return Sheet(RatioField.from_log10(z), rim, sheet.start, sheet.cell)

@@ -1,0 +1,130 @@
+"""Any rim and any convex start outline: the partition, the local rule, the zip and the crossing rule still hold."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import shapely
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from lattice_strategies import grids, local_rule_residual, polygon_areas
+
+from kirigami_studio.evaluate.feasibility import path_contact
+from kirigami_studio.foundation.arrays import FloatArray
+from kirigami_studio.lattice.deployment import Deployment, deploy
+from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.lattice.sheet import Rim, Sheet, anchor_points, anchor_slopes, rim_table
+
+angles = st.floats(0.0, math.pi)
+
+
+@st.composite
+def sheets(draw: st.DrawFn, largest: int = 8, decades: float = 1.0) -> Sheet:
+    """Random ratios, mouths anywhere that keeps their order, a rectangle or a random convex start, any cell."""
+    rows, columns = draw(grids(largest))
+    random = np.random.default_rng(draw(st.integers(0, 2**32 - 1)))
+    field = RatioField.from_log10(random.uniform(-decades, decades, (rows, columns)))
+    sides = []
+    for side, length in enumerate((columns + 1, rows + 1, columns + 1, rows + 1)):
+        count = int(np.count_nonzero(rim_table(rows, columns).side == side))
+        gaps = random.uniform(0.2, 1.8, count + 1)
+        sides.append(length * np.cumsum(gaps)[:-1] / gaps.sum())
+    start = None
+    if draw(st.booleans()):
+        turn = np.sort(random.uniform(0.0, 2.0 * math.pi, random.integers(5, 12)))
+        circle = np.stack([np.cos(turn), np.sin(turn)], axis=1)
+        hull = shapely.convex_hull(shapely.MultiPoint(6.0 * circle + random.uniform(-1, 1, circle.shape)))
+        # Three cuts of the rim on one straight side leave no panel without area; a sliver of a start would.
+        if isinstance(hull, shapely.Polygon) and hull.area > 20.0:
+            start = shapely.get_coordinates(hull.exterior)[:-1]
+    return Sheet(field, Rim(*sides), start, (1.0, draw(st.floats(0.5, 2.0))))
+
+
+def rim_polygon(sheet: Sheet) -> shapely.Polygon:
+    """The flat sheet's outline: through corners and mouths."""
+    return shapely.Polygon(anchor_points(sheet))
+
+
+@given(sheets())
+def test_that_panels_divide_the_flat_sheet(sheet: Sheet) -> None:
+    design = deploy(sheet)
+    areas = polygon_areas(design.panels(math.pi))
+    whole = rim_polygon(sheet).area
+    assert areas.min() > -1e-9 * whole
+    assert abs(areas.sum() - whole) < 1e-9 * whole
+    assert np.abs(polygon_areas(design.voids(math.pi))).max() < 1e-9 * whole
+
+
+@given(sheets(), angles)
+def test_that_every_void_keeps_the_local_rule(sheet: Sheet, phi: float) -> None:
+    design = deploy(sheet)
+    assert local_rule_residual(sheet.field, design.voids(phi), phi) < 1e-9
+
+
+@given(sheets())
+def test_that_edge_hinges_zip_at_the_second_compact_state(sheet: Sheet) -> None:
+    """Both rim edges at an edge hinge fold onto each other: its two neighbours on the loop meet."""
+    design = deploy(sheet)
+    loop = design.topology.outline_nodes
+    nodes = design.nodes(0.0)[loop]
+    zipped = np.isin(loop, np.setdiff1d(loop, design.topology.outline_at_zero))
+    hinge = np.flatnonzero(zipped & np.roll(zipped, -1) | zipped & np.isin(loop, np.flatnonzero(_edge_hinge(design))))
+    for place in hinge:
+        if _edge_hinge(design)[loop[place]]:
+            assert np.abs(nodes[place - 1] - nodes[(place + 1) % len(loop)]).max() < 1e-9 * 10
+
+
+def _edge_hinge(design: Deployment) -> FloatArray:
+    rows, columns = design.sheet.grid
+    table = rim_table(rows, columns)
+    flags = np.zeros(design.topology.node_count, dtype=bool)
+    flags[table.node[np.isclose(table.share.max(axis=1), 0.5)]] = True
+    return flags
+
+
+@settings(deadline=None)
+@given(sheets(5), st.floats(0.0, 3.0))
+def test_that_panels_overlap_only_where_the_outline_crosses_itself(sheet: Sheet, phi: float) -> None:
+    """The rule against an independent union of panels: a clear way means no area is lost."""
+    design = deploy(sheet)
+    panels = shapely.polygons(design.panels(phi).reshape(-1, 4, 2))
+    lost = 1.0 - shapely.union_all(shapely.buffer(panels, 0.0)).area / shapely.area(panels).sum()
+    if path_contact(design, phi) is None:
+        assert lost < 1e-6
+    elif lost > 1e-3:
+        assert not shapely.LinearRing(design.outline(phi)).is_simple or path_contact(design, phi) is not None
+
+
+@given(grids(9))
+def test_that_the_even_rim_is_the_papers(grid: tuple[int, int]) -> None:
+    uniform = RatioField.uniform(*grid)
+    assert np.array_equal(deploy(Sheet(uniform, Rim.even(*grid))).compact, deploy(uniform).compact)
+    assert rim_table(*grid).even.size == sum(grid)
+
+
+@given(sheets())
+def test_that_nodes_follow_the_mouths_linearly_on_a_rectangle(sheet: Sheet) -> None:
+    if sheet.start is not None:
+        return
+    grid = sheet.grid
+    even = deploy(Sheet(sheet.field, None, None, sheet.cell)).compact
+    moved = deploy(sheet).compact
+    half = Rim.moved(*grid, 0.5 * sheet.rim.offsets(*grid))
+    assert np.abs(deploy(Sheet(sheet.field, half, None, sheet.cell)).compact - 0.5 * (even + moved)).max() < 1e-9
+
+
+@given(sheets())
+def test_that_the_slopes_of_the_rim_are_differences(sheet: Sheet) -> None:
+    if sheet.start is not None:  # not smooth where a mouth passes a vertex of the start
+        return
+    step = 1e-4
+    table = rim_table(*sheet.grid)
+    offsets = sheet.rim.offsets(*sheet.grid)
+    slopes = anchor_slopes(sheet)
+    for mouth in range(0, offsets.size, 3):
+        there = offsets.copy()
+        there[mouth] += step
+        moved = Sheet(sheet.field, Rim.moved(*sheet.grid, there), None, sheet.cell)
+        change = (anchor_points(moved) - anchor_points(sheet)) / step
+        assert np.abs(change[table.mouths[mouth]] - slopes[mouth]).max() < 1e-6
