@@ -25,11 +25,12 @@ from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField, check_grid
 from kirigami_studio.lattice.resize import resize_fields
+from kirigami_studio.lattice.symmetry import Symmetry
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.polish.levenberg import Fit, check_fit, polish
 from kirigami_studio.polish.panel_size import check_least
 from kirigami_studio.polish.preferences import Preference
-from kirigami_studio.polish.symmetry import Symmetry, shared_symmetries
+from kirigami_studio.polish.symmetry import shared_symmetries
 
 #: Largest grid that is searched directly; finer ones start from a search on about this many voids each way.
 COARSE = 10

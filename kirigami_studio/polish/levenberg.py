@@ -23,13 +23,13 @@ from kirigami_studio.foundation.errors import AngleError, UsageError
 from kirigami_studio.foundation.paper import LOG_RATIO_LIMIT
 from kirigami_studio.lattice.deployment import check_phi, deploy
 from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.lattice.symmetry import Symmetry
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.polish.boundary_target import BoundaryTarget
 from kirigami_studio.polish.objective import POSE, TRUST, Look, Objective, Quadratic
 from kirigami_studio.polish.panel_size import check_least
 from kirigami_studio.polish.preferences import Preference, PreferenceTerms
 from kirigami_studio.polish.sensitivity import OutlineModel
-from kirigami_studio.polish.symmetry import Symmetry
 
 #: Even samples of the target boundary.
 SAMPLES = 256

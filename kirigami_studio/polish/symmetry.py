@@ -1,55 +1,24 @@
-"""Symmetric targets get symmetric fields, where the grid allows it.
+"""Symmetries that a target shares with the lattice of a grid.
 
-The lattice has few exact symmetries.  With z = log10 x, row i from the top and column j from the left:
-
-* half turn, when rows and columns are both even or both odd: z stays;
-* flip top to bottom, when the number of rows is odd: z changes its sign;
-* flip left to right, when the number of columns is odd: z changes its sign;
-* quarter turn, on square grids with an even number of rows, in the second compact state alone: z changes its sign.
-
-A target has such a symmetry when it covers itself after the turn or the flip about an axis through its centroid.
+A target has a symmetry when it covers itself after the turn or the flip about an axis through its centroid.
 """
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from enum import Enum
 
 import numpy as np
 import shapely
 
-from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.lattice.deployment import ZIPPED_BELOW
+from kirigami_studio.lattice.symmetry import Symmetry
 from kirigami_studio.outlines.outline import Outline
 
 #: A shape is symmetric when it shares this much of its area with its turned or flipped self: a hand-drawn heart is not.
 LEAST_OVERLAP = 0.985
 #: Axes tried for flips: every 2 degrees, then refined.
 AXES = 90
-
-
-class Symmetry(Enum):
-    """One exact symmetry of the lattice; the value is (turns by a quarter, flipped left to right, sign of z)."""
-
-    HALF_TURN = (2, False, 1.0)
-    QUARTER_TURN = (1, False, -1.0)
-    LEFT_RIGHT = (0, True, -1.0)
-    TOP_BOTTOM = (2, True, -1.0)
-
-    def image(self, z: FloatArray) -> FloatArray:
-        """The field (m, n) of the turned or flipped sheet."""
-        turns, flipped, sign = self.value
-        image: FloatArray = sign * np.rot90(np.fliplr(z) if flipped else z, turns)
-        return image
-
-    def symmetric(self, z: FloatArray) -> FloatArray:
-        """The nearest field (m, n) that equals its own image."""
-        total, image = z.copy(), z
-        count = 1
-        while not np.array_equal(image := self.image(image), z) and count < 4:
-            total, count = total + image, count + 1
-        return total / count
 
 
 @dataclass(frozen=True, slots=True)

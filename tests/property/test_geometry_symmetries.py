@@ -1,4 +1,4 @@
-"""Which grids carry which symmetries: congruent silhouettes, used to augment training data."""
+"""Which grids carry which symmetries: congruent silhouettes, and sheets that are their own image at every angle."""
 
 from __future__ import annotations
 
@@ -10,10 +10,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from lattice_strategies import distance_signature, fit_residual, ratio_fields
+from scipy.spatial.distance import cdist
 
 from kirigami_studio.foundation.arrays import FloatArray
+from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.lattice.sheet import Rim, Sheet, rim_table
+from kirigami_studio.lattice.symmetry import GridSymmetry, Symmetry
 
 Grid = st.SearchStrategy[tuple[int, int]]
 EVEN = st.sampled_from([2, 4, 6, 8])
@@ -90,3 +94,90 @@ def test_that_reflections_are_no_symmetries_of_even_grids(change: Callable[[Floa
     field = RatioField.from_log10(np.random.default_rng(3).uniform(-1, 1, (6, 6)))
     before, after = deploy(field), changed(field, change)
     assert np.abs(distance_signature(before.outline(0.0)) - distance_signature(after.outline(0.0))).max() > 1e-2
+
+
+@st.composite
+def grid_symmetries(draw: st.DrawFn) -> GridSymmetry:
+    """Every symmetry on every small grid that has it."""
+    symmetry = draw(st.sampled_from(Symmetry))
+    counts = st.integers(2, 7)
+    rows, columns = draw(st.tuples(counts, counts).filter(lambda grid: symmetry.fits(*grid)))
+    return symmetry.on(rows, columns)
+
+
+def rough_state(symmetry: GridSymmetry, seed: int) -> tuple[FloatArray, FloatArray]:
+    """Random z (m, n) and rim offsets (R,) that keep the mouths' order."""
+    random = np.random.default_rng(seed)
+    mouths = rim_table(symmetry.rows, symmetry.columns).even.size
+    return random.uniform(-1, 1, (symmetry.rows, symmetry.columns)), random.uniform(-0.45, 0.45, mouths)
+
+
+def worst_image(symmetry: GridSymmetry, z: FloatArray, offsets: FloatArray, phi: float) -> float:
+    """Largest distance between the outline at ``phi`` and its images under the moves about its middle."""
+    rim = Rim.moved(symmetry.rows, symmetry.columns, offsets)
+    outline = deploy(Sheet(RatioField.from_log10(z), rim)).outline(phi)
+    outline = outline - outline.mean(axis=0)
+    apart = [cdist(outline @ move.matrix, outline) for move in symmetry.symmetry.moves]
+    return max(float(np.maximum(gaps.min(axis=0), gaps.min(axis=1)).max()) for gaps in apart)
+
+
+@given(grid_symmetries(), st.integers(0, 1000), st.floats(0.0, math.pi))
+def test_that_symmetric_ratios_and_rims_make_a_sheet_that_is_its_own_image_at_every_angle(
+    symmetry: GridSymmetry, seed: int, phi: float
+) -> None:
+    z, offsets = rough_state(symmetry, seed)
+    both = symmetry.symmetric(z), symmetry.symmetric_offsets(offsets)
+    assert worst_image(symmetry, *both, phi) < 1e-9
+
+
+@pytest.mark.parametrize(
+    ("member", "grid"),
+    [
+        (Symmetry.LEFT_RIGHT, (4, 5)),
+        (Symmetry.TOP_BOTTOM, (5, 4)),
+        (Symmetry.HALF_TURN, (4, 6)),
+        (Symmetry.QUARTER_TURN, (4, 4)),
+        (Symmetry.TWO_MIRRORS, (5, 3)),
+    ],
+)
+def test_that_ratios_alone_or_the_rim_alone_are_not_enough(member: Symmetry, grid: tuple[int, int]) -> None:
+    symmetry = member.on(*grid)
+    z, offsets = rough_state(symmetry, 0)
+    assert worst_image(symmetry, symmetry.symmetric(z), offsets, 0.4) > 0.02
+    assert worst_image(symmetry, z, symmetry.symmetric_offsets(offsets), 0.4) > 0.02
+
+
+@given(grid_symmetries(), st.integers(0, 1000))
+def test_that_the_basis_spans_the_symmetric_states(symmetry: GridSymmetry, seed: int) -> None:
+    z, offsets = rough_state(symmetry, seed)
+    state = np.concatenate([z.ravel(), offsets])
+    nearest = np.concatenate([symmetry.symmetric(z).ravel(), symmetry.symmetric_offsets(offsets)])
+    basis = symmetry.basis.toarray()
+    squares = basis.T @ basis
+    assert np.array_equal(squares, np.diag(np.diag(squares))) and np.diag(squares).min() >= 1
+    assert np.abs(basis @ np.linalg.lstsq(basis, state, rcond=None)[0] - nearest).max() < 1e-12
+
+
+def test_that_a_batch_of_fields_is_made_symmetric_one_by_one() -> None:
+    symmetry = Symmetry.TWO_MIRRORS.on(5, 7)
+    z = np.random.default_rng(1).uniform(-1, 1, (3, 5, 7))
+    assert np.array_equal(symmetry.symmetric(z)[1], symmetry.symmetric(z[1]))
+    offsets = np.random.default_rng(1).uniform(-0.4, 0.4, (3, rim_table(5, 7).even.size))
+    assert np.array_equal(symmetry.symmetric_offsets(offsets)[2], symmetry.symmetric_offsets(offsets[2]))
+
+
+@pytest.mark.parametrize(
+    ("member", "grid"),
+    [
+        (Symmetry.LEFT_RIGHT, (5, 10)),
+        (Symmetry.TOP_BOTTOM, (10, 5)),
+        (Symmetry.TWO_MIRRORS, (5, 10)),
+        (Symmetry.HALF_TURN, (5, 10)),
+        (Symmetry.QUARTER_TURN, (5, 5)),
+        (Symmetry.QUARTER_TURN, (4, 6)),
+    ],
+)
+def test_that_a_grid_refuses_a_symmetry_that_its_lattice_lacks(member: Symmetry, grid: tuple[int, int]) -> None:
+    with pytest.raises(UsageError) as caught:
+        member.on(*grid)
+    assert caught.value.code == "symmetry.not_on_grid"

@@ -8,6 +8,10 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     # lattice
     "grid.not_whole_numbers": mark("The grid must be two whole numbers of voids, got {rows!r:.40} x {columns!r:.40}."),
     "grid.out_of_range": mark("The grid must have {least} to {most} voids each way, got {rows} x {columns}."),
+    "symmetry.not_on_grid": mark(
+        "A grid of {rows} x {columns} voids does not have the symmetry {symmetry}. A mirror needs an odd number of "
+        "voids across its axis, a half turn two even or two odd numbers, a quarter turn a square grid with an even one."
+    ),
     "ratios.not_numbers": mark("Ratios must be an (m, n) table of numbers."),
     "ratios.wrong_shape": mark("Ratios must have shape (m, n), got {shape}."),
     "ratios.wrong_batch_shape": mark("Ratios must have shape (B, {rows}, {columns}), got {shape}."),

@@ -16,11 +16,11 @@ from kirigami_studio.evaluate.total_variation import total_variation
 from kirigami_studio.foundation.errors import AngleError, UsageError
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.lattice.symmetry import Symmetry
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.silhouettes import load
 from kirigami_studio.polish.levenberg import Fit, polish
 from kirigami_studio.polish.preferences import Preference
-from kirigami_studio.polish.symmetry import Symmetry
 
 
 def iou(fit: Fit, target: Outline, phi: float = 0.0) -> float:
