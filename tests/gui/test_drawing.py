@@ -105,6 +105,17 @@ def test_that_a_thumbnail_is_sharp_and_shows_sheet_and_target(
     assert {LIGHT.panel_even, LIGHT.panel_odd, LIGHT.target} <= seen
 
 
+def test_that_a_thumbnail_shows_the_flat_sheet_upright_beside_the_sheet_over_its_target(
+    qapp: QApplication, posed: PosedDesign, designs: Document
+) -> None:
+    image = candidate_pixmap(posed, designs.target, QSize(200, 112), 1.0, LIGHT).toImage()
+    painted = np.array([[image.pixelColor(x, y).alpha() > 200 for x in range(115, 200)] for y in range(112)])
+    rows, columns = np.flatnonzero(painted.any(axis=1)), np.flatnonzero(painted.any(axis=0))
+    assert painted[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1].all()
+    height, width = posed.deployment.sheet.rows + 1, posed.deployment.sheet.columns + 1
+    assert rows.size / columns.size == pytest.approx(height / width, rel=0.05)
+
+
 @pytest.mark.parametrize("palette", [LIGHT, DARK], ids=lambda palette: palette.name)
 def test_that_text_is_readable_on_every_ground(palette: Palette) -> None:
     for ground in (palette.window, palette.surface, palette.raised, palette.canvas):

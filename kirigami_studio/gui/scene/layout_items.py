@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 
 import numpy as np
@@ -9,6 +10,7 @@ from PySide6.QtCore import QRectF, QSize, Qt
 from PySide6.QtGui import QColor, QPainter, QPen, QPixmap
 
 from kirigami_studio.evaluate.posed_design import PosedDesign
+from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray
 from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.scene.paths import line_path, quad_paths
@@ -17,8 +19,11 @@ from kirigami_studio.gui.scene.view_transform import Bounds, ViewTransform
 from kirigami_studio.outlines.outline import Outline
 
 #: Panels smaller than this (pixels) get no line: it would swallow them.
-SMALLEST_LINED_PANEL = 5.0
-MARGIN = 6.0
+SMALLEST_LINED_PANEL = 3.6
+#: Pixels around the picture of a target, and around the pictures on a card.
+MARGIN, CARD_MARGIN = 6.0, 3.5
+#: Share of a card's picture that the sheet over its target gets; the rest shows it flat.
+TARGET_SHARE = 0.56
 
 
 def paint_panels(
@@ -44,7 +49,7 @@ def paint_panels(
     size = np.median(np.linalg.norm(panels[:, 2] - panels[:, 0], axis=-1)) if len(panels) else 0.0
     line = QPen(Qt.PenStyle.NoPen)
     if size >= SMALLEST_LINED_PANEL:
-        line = QPen(QColor(palette.panel_line), 1.0 if size > 14 else 0.6)
+        line = QPen(QColor(palette.panel_line), 1.0 if size > 14 else 0.6 if size > 6 else 0.4)
         line.setJoinStyle(Qt.PenJoinStyle.MiterJoin)
     for chosen, colour in ((~turns_left, palette.panel_even), (turns_left, palette.panel_odd)):
         # A pen in the fill's colour keeps hairline gaps of antialiasing from showing between closed panels.
@@ -71,7 +76,7 @@ def paint_candidate(
     bounds = Bounds.of(nodes)
     if target is not None:
         bounds = bounds.united(Bounds.of(target.points))
-    transform = ViewTransform.fitting(bounds, rect, MARGIN)
+    transform = ViewTransform.fitting(bounds, rect, CARD_MARGIN)
     field = design.deployment.field
     trimmed = {row: transform.to_pixels(part) for row, part in design.kept(nodes, design.phi_target).items()}
     panels = transform.to_pixels(design.panels(nodes))
@@ -80,13 +85,25 @@ def paint_candidate(
         paint_target_line(painter, transform.to_pixels(target.points), palette, width=1.4)
 
 
+def paint_flat(painter: QPainter, rect: QRectF, design: PosedDesign, palette: Palette) -> None:
+    """Draw the sheet as it is cut, upright, into ``rect``."""
+    flat = PosedDesign(design.deployment, Similarity(), math.pi, design.trim)
+    nodes = flat.nodes(math.pi)
+    transform = ViewTransform.fitting(Bounds.of(nodes), rect, CARD_MARGIN)
+    trimmed = {row: transform.to_pixels(part) for row, part in flat.kept(nodes, math.pi).items()}
+    turning = turning_left(*design.deployment.sheet.grid)
+    paint_panels(painter, transform.to_pixels(flat.panels(nodes)), turning, palette, trimmed)
+
+
 def candidate_pixmap(
     design: PosedDesign, target: Outline | None, size: QSize, ratio: float, palette: Palette
 ) -> QPixmap:
-    """Return the picture for a gallery card, ``size`` in logical pixels."""
+    """Return the picture for a gallery card, ``size`` in logical pixels: the sheet over its target, and flat."""
     pixmap = _blank(size, ratio)
     painter = _painter(pixmap)
-    paint_candidate(painter, QRectF(0, 0, size.width(), size.height()), design, target, palette)
+    width, height = TARGET_SHARE * size.width(), float(size.height())
+    paint_candidate(painter, QRectF(0.0, 0.0, width, height), design, target, palette)
+    paint_flat(painter, QRectF(width, 0.0, size.width() - width, height), design, palette)
     painter.end()
     return pixmap
 

@@ -16,7 +16,7 @@ from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.look import icons
 from kirigami_studio.gui.look.theme import LIGHT, Palette
-from kirigami_studio.gui.scene.layout_items import candidate_pixmap
+from kirigami_studio.gui.scene.layout_items import TARGET_SHARE, candidate_pixmap
 from kirigami_studio.gui.views.gallery_model import (
     CANDIDATE_ROLE,
     DESIGN_ROLE,
@@ -30,7 +30,8 @@ from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.document import Mark
 
 SMALLEST_CARD = 132
-TEXT_HEIGHT = 58
+#: Pixels above the picture, for the number and the marks, and below it, for two lines of text.
+HEAD_HEIGHT, TEXT_HEIGHT = 24, 48
 GAP = 8
 #: What polishing must have added to sIoU at least for a card to say so.
 SMALLEST_RISE = 5e-4
@@ -59,7 +60,7 @@ class CardDelegate(QStyledItemDelegate):
         super().__init__(parent)
         self.palette_: Palette = LIGHT
         self.target: Outline | None = None
-        self.card = QSize(SMALLEST_CARD, SMALLEST_CARD + TEXT_HEIGHT - 26)
+        self.card = card_size(SMALLEST_CARD)
         self.under_mouse: Candidate | None = None  #: the design under the mouse
         self.hovered_button: CardButton | None = None  #: the button there
         self.compared: Candidate | None = None  #: the design that is compared with the chosen one
@@ -144,7 +145,7 @@ class CardDelegate(QStyledItemDelegate):
     def _paint_number(self, painter: QPainter, card: QRect, number: int, mark: Mark, fresh: bool) -> None:
         """The design's number, a dot where it is new, and a pin, or a sign where it is rejected."""
         painter.setPen(QColor(self.palette_.muted))
-        text, place = f"{number}", card.adjusted(10, 8, -10, 0)
+        text, place = f"{number}", card.adjusted(10, 6, -10, 0)
         painter.drawText(place, int(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignTop), text)
         metrics = painter.fontMetrics()
         left = place.left() + metrics.horizontalAdvance(text) + 5
@@ -175,11 +176,11 @@ class CardDelegate(QStyledItemDelegate):
             painter.drawPixmap(box.topLeft() + QPoint(4, 4), icon)
 
     def _paint_chip(self, painter: QPainter, card: QRect, text: str, icon: str = "") -> None:
-        """A small mark in the upper right corner of the picture."""
+        """A small mark in the upper right corner."""
         metrics = painter.fontMetrics()
         edge = metrics.ascent() + 2 if icon else 0
         width = metrics.horizontalAdvance(text) + 10 + (edge + (3 if text else 0) if icon else 0)
-        chip = QRectF(card.right() - 7 - width, card.top() + 7, width, metrics.height() + 3)
+        chip = QRectF(card.right() - 7 - width, card.top() + 5, width, metrics.height() + 3)
         painter.setPen(QPen(QColor(self.palette_.accent), 1.0))
         painter.setBrush(QColor(self.palette_.accent_soft))
         painter.drawRoundedRect(chip, 5, 5)
@@ -193,7 +194,7 @@ class CardDelegate(QStyledItemDelegate):
 
     def _paint_numbers(self, painter: QPainter, card: QRect, candidate: Candidate, value: str) -> None:
         score = candidate.score
-        text = card.adjusted(11, card.height() - TEXT_HEIGHT + 4, -11, -8)
+        text = card.adjusted(11, card.height() - TEXT_HEIGHT + 2, -11, -7)
         left, right = int(Qt.AlignmentFlag.AlignLeft), int(Qt.AlignmentFlag.AlignRight)
         top, bottom = int(Qt.AlignmentFlag.AlignTop), int(Qt.AlignmentFlag.AlignBottom)
         plain = QFont(painter.font())
@@ -230,9 +231,15 @@ def card_of(rect: QRect) -> QRect:
     return rect.adjusted(GAP // 2, GAP // 2, -GAP // 2, -GAP // 2)
 
 
+def card_size(width: int) -> QSize:
+    """Size of a card of a width, pixels: the sheet over its target is drawn in a square."""
+    return QSize(width, round(TARGET_SHARE * (width - 8)) + HEAD_HEIGHT + TEXT_HEIGHT)
+
+
 def picture_of(card: QRect) -> QRect:
     """The part of a card that shows the design."""
-    return QRect(card.left() + 4, card.top() + 4, card.width() - 8, card.height() - TEXT_HEIGHT)
+    height = card.height() - HEAD_HEIGHT - TEXT_HEIGHT
+    return QRect(card.left() + 4, card.top() + HEAD_HEIGHT, card.width() - 8, height)
 
 
 def button_boxes(rect: QRect) -> dict[CardButton, QRect]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from PySide6.QtCore import QEvent, QModelIndex, QPoint, QSize, Qt, QTimer, Signal
+from PySide6.QtCore import QEvent, QModelIndex, QPoint, Qt, QTimer, Signal
 from PySide6.QtGui import QColor, QContextMenuEvent, QKeyEvent, QMouseEvent, QPainter, QPaintEvent, QResizeEvent
 from PySide6.QtWidgets import QAbstractItemView, QListView, QWidget
 
@@ -13,7 +13,7 @@ from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.designs.gallery_selection import Selection
 from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.session import Entry
-from kirigami_studio.gui.views.card_delegate import GAP, SMALLEST_CARD, TEXT_HEIGHT, CardButton, CardDelegate, button_at
+from kirigami_studio.gui.views.card_delegate import GAP, SMALLEST_CARD, CardButton, CardDelegate, button_at, card_size
 from kirigami_studio.gui.views.gallery_model import CANDIDATE_ROLE, GalleryModel
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.document import Mark
@@ -193,7 +193,7 @@ class GalleryView(QListView):
         width = self.width() - SCROLL_BAR
         columns = max(1, width // (SMALLEST_CARD + GAP))
         card = width // columns - GAP
-        wanted = QSize(card, round(card * 0.86) + TEXT_HEIGHT - 16)
+        wanted = card_size(card)
         if wanted != self.cards.card:
             self.cards.card = wanted
             self.cards.forget_pictures()
