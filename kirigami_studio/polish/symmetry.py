@@ -1,73 +1,163 @@
-"""Symmetries that a target shares with the lattice of a grid.
-
-A target has a symmetry when it covers itself after the turn or the flip about an axis through its centroid.
-"""
+"""Symmetric set-ups of a fit: which symmetries target and lattice share, and how the target then has to lie."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Literal, get_args
 
-import numpy as np
-import shapely
-
+from kirigami_studio.foundation.errors import TargetError, UsageError
 from kirigami_studio.lattice.deployment import ZIPPED_BELOW
 from kirigami_studio.lattice.symmetry import Symmetry
 from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.outlines.symmetry import (
+    AS_GOOD_AS_EXACT,
+    LEAST_MEANT,
+    TOLERANCE,
+    MirrorAxis,
+    different_axes,
+    mirrored_mean,
+    symmetry_of,
+    turned_mean,
+)
 
-#: A shape is symmetric when it shares this much of its area with its turned or flipped self: a hand-drawn heart is not.
-LEAST_OVERLAP = 0.985
-#: Axes tried for flips: every 2 degrees, then refined.
-AXES = 90
+#: "auto": what the target shows within a tolerance; "mirror" and "turn": also what a rough sketch may have meant.
+SymmetrySetting = Literal["auto", "none", "mirror", "turn"]
+SETTINGS: tuple[SymmetrySetting, ...] = get_args(SymmetrySetting)
+
+#: A sketch has a second axis when both overlap this much.
+BOTH_MEANT = 0.95
 
 
 @dataclass(frozen=True, slots=True)
 class SymmetricPose:
-    """A symmetry that target and lattice share, and how the target has to lie for it.
+    """A symmetry that a target and suitable lattices share, and how the target has to lie for it.
 
     Attributes
     ----------
     symmetry : Symmetry
     angle : float or None, radians
-        Direction in the target's frame that the sheet's upward direction must have; None when any will do.
+        Direction in the target's frame that the sheet's upward direction must have, or the opposite one; None when
+        any will do.
+    overlap : float
+        IoU of the target and its worst image under the symmetry.
+    axes : tuple of MirrorAxis
+        The target's axes that it uses: none for a turn, two for two mirrors.
     """
 
     symmetry: Symmetry
     angle: float | None
+    overlap: float = 1.0
+    axes: tuple[MirrorAxis, ...] = ()
+
+    def fits(self, grid: tuple[int, int], phi: float = 0.0) -> bool:
+        """Whether sheets of a grid can have it at an angle: quarter turns are kept in the compact state alone."""
+        return self.symmetry.fits(*grid) and (self.symmetry is not Symmetry.QUARTER_TURN or phi < ZIPPED_BELOW)
 
 
-def shared_symmetries(target: Outline, grid: tuple[int, int], phi: float) -> list[SymmetricPose]:
-    """Symmetries of ``target`` that the lattice of ``grid`` has at ``phi`` too, the most specific first."""
-    rows, columns = grid
-    axis = mirror_axis(target) if rows % 2 or columns % 2 else None
-    found = []
-    if axis is not None and columns % 2:
-        found.append(SymmetricPose(Symmetry.LEFT_RIGHT, axis))
-    if axis is not None and rows % 2:
-        found.append(SymmetricPose(Symmetry.TOP_BOTTOM, axis + 0.5 * math.pi))
-    if rows == columns and rows % 2 == 0 and phi < ZIPPED_BELOW and _overlap(target, 0.5 * math.pi) >= LEAST_OVERLAP:
-        found.append(SymmetricPose(Symmetry.QUARTER_TURN, None))
-    elif (rows + columns) % 2 == 0 and _overlap(target, math.pi) >= LEAST_OVERLAP:
-        found.append(SymmetricPose(Symmetry.HALF_TURN, None))
+def shared_symmetries(
+    target: Outline, grid: tuple[int, int], phi: float = 0.0, setting: SymmetrySetting = "auto"
+) -> list[SymmetricPose]:
+    """Symmetries of ``target`` that the lattice of ``grid`` has at ``phi`` too, the most specific first.
+
+    What is only a part of another one in the list is left out: the half turn of two mirrors, for instance.
+
+    Raises
+    ------
+    TargetError, UsageError
+        As :func:`symmetric_poses`.
+    """
+    found: list[SymmetricPose] = []
+    for pose in symmetric_poses(target, setting):
+        moves = set(pose.symmetry.moves)
+        if pose.fits(grid, phi) and not any(moves < set(other.symmetry.moves) for other in found):
+            found.append(pose)
     return found
 
 
-def mirror_axis(target: Outline) -> float | None:
-    """Direction (radians, in [0, pi)) of the axis that the target is its own mirror image about, or None."""
-    angles = np.arange(AXES) * math.pi / AXES
-    overlaps = np.array([_overlap(target, 2.0 * angle, flipped=True) for angle in angles])
-    best, width = float(angles[overlaps.argmax()]), math.pi / AXES
-    while width > 1e-4:
-        near = best + width * np.array([-0.5, 0.0, 0.5])
-        best = float(near[np.argmax([_overlap(target, 2.0 * angle, flipped=True) for angle in near])])
-        width *= 0.5
-    return best % math.pi if _overlap(target, 2.0 * best, flipped=True) >= LEAST_OVERLAP else None
+def symmetric_poses(target: Outline, setting: SymmetrySetting = "auto") -> tuple[SymmetricPose, ...]:
+    """All symmetric set-ups that are worth trying for a target, the most specific first, whatever the grid.
+
+    Axes that a turn of the target onto itself carries to each other count once: a star has one axis, a hexagon two
+    (with a corner or a side up).
+
+    Parameters
+    ----------
+    target : Outline
+    setting : {"auto", "none", "mirror", "turn"}
+        ``auto``: symmetries with an overlap of at least ``TOLERANCE``; ``mirror`` and ``turn``: the best axis or turn,
+        if there is any that overlaps by ``LEAST_MEANT``; ``none``: nothing.
+
+    Raises
+    ------
+    TargetError
+        A symmetry is asked for and the target is far from any.
+    UsageError
+        There is no such setting.
+    """
+    if setting not in SETTINGS:
+        raise UsageError("symmetry.unknown_setting", setting=setting, choices=", ".join(SETTINGS))
+    poses: list[SymmetricPose] = []
+    if setting in ("auto", "mirror"):
+        poses += _mirror_poses(target, forced=setting == "mirror")
+    if setting in ("auto", "turn"):
+        poses += _turn_poses(target, forced=setting == "turn")
+    return tuple(sorted(poses, key=lambda pose: -len(pose.symmetry.moves)))
 
 
-def _overlap(target: Outline, angle: float, flipped: bool = False) -> float:
-    """IoU of a unit-area target with itself, mirrored at the x axis if ``flipped``, turned about the centroid."""
-    c, s = math.cos(angle), math.sin(angle)
-    points = target.points * (1.0, -1.0) if flipped else target.points
-    image = shapely.Polygon(points @ np.array([[c, s], [-s, c]]))
-    common = target.polygon.intersection(image).area
-    return float(common / (2.0 * target.polygon.area - common))
+def _mirror_poses(target: Outline, forced: bool) -> list[SymmetricPose]:
+    found = symmetry_of(target)
+    axes = found.mirrors(TOLERANCE)
+    if forced and not axes:
+        best = found.axes[0]
+        if best.overlap < LEAST_MEANT:
+            raise TargetError("symmetry.no_mirror_axis", percent=100.0 * best.overlap, least=100.0 * LEAST_MEANT)
+        axes = (best, *(other for other in found.mirrors(BOTH_MEANT) if best.crosses(other)))
+    different = different_axes(target, axes)
+    poses = []
+    for axis in different:
+        crossing = next((other for other in axes if axis.crosses(other)), None)
+        if crossing is not None:
+            overlap = min(axis.overlap, crossing.overlap)
+            poses.append(SymmetricPose(Symmetry.TWO_MIRRORS, axis.angle, overlap, (axis, crossing)))
+    for axis in different:
+        poses.append(SymmetricPose(Symmetry.LEFT_RIGHT, axis.angle, axis.overlap, (axis,)))
+    for axis in different:
+        upward = (axis.angle + 0.5 * math.pi) % math.pi
+        poses.append(SymmetricPose(Symmetry.TOP_BOTTOM, upward, axis.overlap, (axis,)))
+    return poses
+
+
+def _turn_poses(target: Outline, forced: bool) -> list[SymmetricPose]:
+    found = symmetry_of(target)
+    quarter, half = min(found.quarter_turn, found.half_turn), found.half_turn
+    if forced and half < LEAST_MEANT:
+        raise TargetError("symmetry.no_turn", percent=100.0 * half, least=100.0 * LEAST_MEANT)
+    least = LEAST_MEANT if forced and half < TOLERANCE else TOLERANCE
+    poses = []
+    if quarter >= (BOTH_MEANT if least < TOLERANCE else TOLERANCE):
+        poses.append(SymmetricPose(Symmetry.QUARTER_TURN, None, quarter))
+    if half >= least:
+        poses.append(SymmetricPose(Symmetry.HALF_TURN, None, half))
+    return poses
+
+
+def symmetric_target(target: Outline, pose: SymmetricPose) -> Outline:
+    """What a symmetric sheet should be fitted to: the target, or the mean of its images where it is only a sketch.
+
+    Scores stay against the target itself.
+
+    Raises
+    ------
+    TargetError
+        The target and its images have nothing in common.
+    """
+    if pose.overlap >= AS_GOOD_AS_EXACT:
+        return target
+    match pose.symmetry:
+        case Symmetry.HALF_TURN:
+            return turned_mean(target)
+        case Symmetry.QUARTER_TURN:
+            return turned_mean(target, quarter=True)
+        case _:
+            return mirrored_mean(target, *pose.axes)

@@ -193,5 +193,15 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "smoothing.strength": mark("The strength of smoothing must be between 0 and 1, got {value!r:.40}."),
     "smoothing.nothing_left": mark("Smoothed this much, nothing of the target is left. Smooth it less."),
     "simplifying.strength": mark("The strength of simplifying must be between 0 and 1, got {value!r:.40}."),
+    "symmetry.no_mirror_axis": mark(
+        "The target has no mirror axis: it covers {percent:.0f} % of its best mirror image, {least:.0f} % are needed. "
+        "Choose another symmetry, or draw with the mirror."
+    ),
+    "symmetry.no_turn": mark(
+        "The target cannot be turned onto itself: it covers {percent:.0f} % of itself after a turn, {least:.0f} % are "
+        "needed. Choose another symmetry."
+    ),
+    "symmetry.unknown_setting": mark("Unknown symmetry {setting!r:.40}. Choose one of: {choices}."),
+    "symmetry.nothing_in_common": mark("The target and its image have too little in common for a symmetric shape."),
     "reach.no_voids": mark("A grid has at least one void in each direction, got {rows} x {columns}."),
 }

@@ -11,14 +11,21 @@ import shapely
 from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.evaluate.siou import exact_iou
 from kirigami_studio.foundation.arrays import FloatArray
+from kirigami_studio.foundation.errors import TargetError
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.symmetry import Symmetry
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.silhouettes import load
+from kirigami_studio.outlines.symmetry import symmetry_of
 from kirigami_studio.polish.continuation import fit_shape
 from kirigami_studio.polish.levenberg import polish
-from kirigami_studio.polish.symmetry import mirror_axis, shared_symmetries
+from kirigami_studio.polish.symmetry import (
+    SymmetrySetting,
+    shared_symmetries,
+    symmetric_poses,
+    symmetric_target,
+)
 
 
 def outline_of(z: FloatArray, phi: float) -> Outline:
@@ -57,11 +64,17 @@ def test_that_a_symmetric_field_makes_a_symmetric_outline(
         assert exact_iou(moved(other, angle, flipped), other) < 0.99, "a rough field is not symmetric"
 
 
-def test_that_shapes_show_the_symmetries_that_they_have() -> None:
-    assert mirror_axis(load("heart")) == pytest.approx(0.5 * math.pi, abs=0.01)
-    assert mirror_axis(load("letter-l")) is None
+def test_that_the_sheet_lies_along_the_axis_of_the_target() -> None:
+    def angle(target: Outline, grid: tuple[int, int]) -> float:
+        found = shared_symmetries(target, grid)[0].angle
+        assert found is not None
+        return found
+
+    assert angle(load("heart"), (4, 5)) == pytest.approx(0.5 * math.pi, abs=1e-3)
+    assert shared_symmetries(load("letter-l"), (5, 5)) == []
     tilted = Outline.from_points(moved(load("heart"), 0.4, False))
-    assert mirror_axis(tilted) == pytest.approx(0.5 * math.pi + 0.4, abs=0.01)
+    assert angle(tilted, (4, 5)) == pytest.approx(0.5 * math.pi + 0.4, abs=1e-3)
+    assert math.remainder(angle(tilted, (5, 4)) - 0.4, math.pi) == pytest.approx(0.0, abs=1e-3)
 
 
 def test_that_a_grid_offers_only_the_symmetries_of_its_lattice() -> None:
@@ -75,6 +88,33 @@ def test_that_a_grid_offers_only_the_symmetries_of_its_lattice() -> None:
     assert offered("plus", (10, 10), 0.5) == [Symmetry.HALF_TURN]
     assert offered("wave", (8, 12)) == [Symmetry.HALF_TURN]
     assert offered("wave", (8, 11)) == []
+    assert offered("hexagon", (9, 11)) == [Symmetry.TWO_MIRRORS] * 2
+    assert offered("hexagon", (10, 10)) == [Symmetry.HALF_TURN]
+    assert offered("star", (10, 11)) == [Symmetry.LEFT_RIGHT]
+    assert offered("square", (11, 11)) == [Symmetry.TWO_MIRRORS] * 2
+
+
+def test_that_a_symmetry_can_be_switched_off_or_forced_on_a_sketch() -> None:
+    def asked(name: str, setting: SymmetrySetting) -> list[Symmetry]:
+        return [pose.symmetry for pose in symmetric_poses(load(name), setting)]
+
+    assert asked("heart", "none") == [] and asked("hexagon", "turn") == [Symmetry.HALF_TURN]
+    assert asked("cloud", "auto") == []
+    assert asked("cloud", "mirror") == [Symmetry.LEFT_RIGHT, Symmetry.TOP_BOTTOM]
+    with pytest.raises(TargetError) as refused:
+        symmetric_poses(load("letter-l"), "mirror")
+    assert refused.value.code == "symmetry.no_mirror_axis"
+    with pytest.raises(TargetError) as refused:
+        symmetric_poses(load("heart"), "turn")
+    assert refused.value.code == "symmetry.no_turn"
+
+
+def test_that_a_sketch_is_fitted_by_the_shape_that_it_is_meant_to_be() -> None:
+    heart, cloud = load("heart"), load("cloud")
+    (axis, _) = symmetric_poses(heart, "mirror")
+    assert symmetric_target(heart, axis) is heart
+    (axis, _) = symmetric_poses(cloud, "mirror")
+    assert symmetry_of(symmetric_target(cloud, axis)).axes[0].overlap > 1.0 - 1e-6
 
 
 def test_that_a_fit_keeps_the_symmetry_it_was_given() -> None:
