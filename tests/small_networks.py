@@ -7,10 +7,10 @@ from dataclasses import replace
 import torch
 
 from kirigami_studio.generator.conditioning import normalised
+from kirigami_studio.generator.deployed_grid import DeployedGrid
 from kirigami_studio.generator.network import NetworkShape, VelocityNetwork
-from kirigami_studio.generator.sheet import Sheet
 from kirigami_studio.lattice.batched import BatchedLattice
-from kirigami_studio.training.corpus import sheet_outline
+from kirigami_studio.training.corpus import deployed_outline
 
 SMALL = NetworkShape(4, 4, 32, 64, 1, 16, 24, 32, 96, direction=True)
 
@@ -24,13 +24,13 @@ def random_network(kind: type[VelocityNetwork] = VelocityNetwork, **changes: obj
     return network.eval().requires_grad_(False)
 
 
-def random_fields(sheet: Sheet, count: int, scale: float = 0.3, seed: int = 0) -> torch.Tensor:
+def random_fields(grid: DeployedGrid, count: int, scale: float = 0.3, seed: int = 0) -> torch.Tensor:
     """z of fields of a sheet: (count, m * n)."""
     generator = torch.Generator().manual_seed(seed)
-    return scale * torch.randn((count, sheet.rows * sheet.columns), generator=generator)
+    return scale * torch.randn((count, grid.rows * grid.columns), generator=generator)
 
 
-def silhouettes(z: torch.Tensor, sheet: Sheet) -> torch.Tensor:
+def silhouettes(z: torch.Tensor, grid: DeployedGrid) -> torch.Tensor:
     """Outlines of fields z (B, m * n) of a sheet: (B, L, 2), unit area about the centroid."""
-    lattice = BatchedLattice(sheet.rows, sheet.columns)
-    return normalised(sheet_outline(lattice, sheet, z.view(-1, sheet.rows, sheet.columns)))
+    lattice = BatchedLattice(grid.rows, grid.columns)
+    return normalised(deployed_outline(lattice, grid, z.view(-1, grid.rows, grid.columns)))

@@ -15,8 +15,8 @@ import torch
 from torch import Tensor
 
 from kirigami_studio.generator.conditioning import normalised
+from kirigami_studio.generator.deployed_grid import DeployedGrid, grid_transfer
 from kirigami_studio.generator.gauss_newton import Residuals, gauss_newton_direction, variation_terms
-from kirigami_studio.generator.sheet import Sheet, grid_transfer
 from kirigami_studio.lattice.batched import BatchedLattice, BatchedSlopes
 
 #: z is decoded within these bounds: early in the flow it still is noise.
@@ -40,7 +40,7 @@ class Observation:
     features : (B, F) tensor
         Outline stations, displacements both ways and the direction on the network's grid, each near unit variance.
     direction : (B, m * n) tensor
-        Gauss-Newton change of the fields on their sheet; empty without it.
+        Gauss-Newton change of the fields on their grid; empty without it.
     """
 
     features: Tensor
@@ -48,21 +48,21 @@ class Observation:
 
 
 class Feedback:
-    """Boundary displacements of one sheet's fields against targets.
+    """Boundary displacements of one grid's fields against targets.
 
     Parameters
     ----------
     own : (rows, columns)
         The network's grid.
-    sheet : Sheet
+    grid : DeployedGrid
         Where the fields lie.
     device : torch.device
     """
 
-    def __init__(self, own: tuple[int, int], sheet: Sheet, device: torch.device) -> None:
-        self.sheet, self.device = sheet, device
-        self.lattice, self.slopes = _geometry(sheet.rows, sheet.columns, sheet.zipped, device)
-        self.transfer = grid_transfer(own, sheet, device)
+    def __init__(self, own: tuple[int, int], grid: DeployedGrid, device: torch.device) -> None:
+        self.grid, self.device = grid, device
+        self.lattice, self.slopes = _geometry(grid.rows, grid.columns, grid.zipped, device)
+        self.transfer = grid_transfer(own, grid, device)
 
     @staticmethod
     def width(rows: int, columns: int, loop_points: int, direction: bool) -> int:
@@ -71,7 +71,7 @@ class Feedback:
         return 2 * vertices + 4 * vertices + loop_points + (rows * columns if direction else 0)
 
     def __call__(self, z: Tensor, loop: Tensor, direction: bool, variation_cost: Tensor | None = None) -> Observation:
-        """Describe fields z (B, m * n) of the sheet against target loops (B, S, 2), without gradient.
+        """Describe fields z (B, m * n) of the grid against target loops (B, S, 2), without gradient.
 
         The Gauss-Newton direction takes most of the time and is left out where nobody asks for it;
         ``variation_cost`` (B,) is the cost of TV(x) / (m n) in it.
@@ -86,7 +86,7 @@ class Feedback:
             return Observation(torch.cat([one.features for one in seen]), torch.cat([one.direction for one in seen]))
 
     def _described(self, z: Tensor, loop: Tensor, wanted: bool, variation_cost: Tensor | None) -> Observation:
-        field = z.clamp(-Z_BOUND, Z_BOUND).view(-1, self.sheet.rows, self.sheet.columns)
+        field = z.clamp(-Z_BOUND, Z_BOUND).view(-1, self.grid.rows, self.grid.columns)
         outline, slopes = self._outline(field, wanted)
         samples = _with_middles(outline)
         squared = squared_distances(samples, loop)
@@ -112,10 +112,10 @@ class Feedback:
     def _outline(self, field: Tensor, wanted: bool) -> tuple[Tensor, Tensor | None]:
         """Outlines of fields (B, m, n), unit area about the centroid; if wanted their derivatives (B, L, 2, m * n)."""
         if wanted:
-            decoded, slopes = self.slopes(field, self.sheet.phi)
+            decoded, slopes = self.slopes(field, self.grid.phi)
             return normalised(decoded), _normalised_slopes(decoded, slopes)
-        decoded = self.lattice.outline(torch.pow(10.0, field), self.sheet.phi)
-        return normalised(decoded[:, self.lattice.unzipped] if self.sheet.zipped else decoded), None
+        decoded = self.lattice.outline(torch.pow(10.0, field), self.grid.phi)
+        return normalised(decoded[:, self.lattice.unzipped] if self.grid.zipped else decoded), None
 
 
 @lru_cache(maxsize=256)

@@ -63,7 +63,7 @@ def trail(network: Velocity, start: Tensor, code: Code, steps: int, late: LateSt
     for step in range(euler):
         t = full((z.shape[0],), begin + (1.0 - begin) * step / euler, dtype=z.dtype, device=z.device)
         z = z + (1.0 - begin) * network(z, t, code) / euler
-    z = code.on_sheet(z)
+    z = code.on_grid(z)
     if late is not None:
         z = z + late.remainder
     designs = [z]

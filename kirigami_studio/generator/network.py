@@ -9,15 +9,15 @@ import torch
 from torch import Tensor, nn
 
 from kirigami_studio.generator.conditioning import ConditionLayout, condition, smoothed_points
+from kirigami_studio.generator.deployed_grid import DeployedGrid, GridTransfer, grid_transfer
 from kirigami_studio.generator.feedback import Feedback
-from kirigami_studio.generator.sheet import GridTransfer, Sheet, grid_transfer
 
 #: What corrections take TV(x) / (m n) to cost at full preference for regularity, in squared unit-area lengths: a third
 #: less variation for half a point of match or less (tried once on 40 structured and 40 Sobol outlines with the prior);
 #: drawn shapes with arms lose more.
 VARIATION_COST = 1.5e-4
-#: Numbers that describe a sheet.
-SHEET_FEATURES = 5
+#: Numbers that describe a grid and its angle.
+GRID_FEATURES = 5
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,9 +87,9 @@ class TargetCode:
     loop : (B, loop_points, 2) tensor
         Target boundary for feedback.
     transfer : GridTransfer
-        Between the network's grid and the sheet that all of them are for.
+        Between the network's grid and the grid that all of them are for.
     feedback : Feedback, optional
-        The exact geometry of that sheet; missing where the network does not look at it.
+        The exact geometry of that grid; missing where the network does not look at it.
     variation_cost : (B,) tensor
         What corrections take TV(x) / (m n) to cost, see ``gauss_newton``.
     """
@@ -113,8 +113,8 @@ class TargetCode:
             variation_cost=self.variation_cost.repeat_interleave(count),
         )
 
-    def on_sheet(self, z: Tensor) -> Tensor:
-        """Fields (B, cells) of the network's grid as fields of the sheet: (B, m * n)."""
+    def on_grid(self, z: Tensor) -> Tensor:
+        """Fields (B, cells) of the network's grid as fields of the sheet's: (B, m * n)."""
         return self.transfer.up(z)
 
 
@@ -151,8 +151,8 @@ class VelocityNetwork(nn.Module):
         self.enter = nn.Linear(cells + shape.time_features + shape.feedback_width, shape.width)
         self.time_per_block = nn.Linear(shape.time_features, shape.hidden * shape.blocks, bias=False)
         self.prefer = nn.Linear(1, shape.hidden * shape.blocks, bias=False) if shape.preference else None
-        # How the sheet lies: its grid and angle.
-        self.lie = nn.Linear(SHEET_FEATURES, shape.hidden * shape.blocks, bias=False) if shape.sheets else None
+        # What it knows of the sheet: its grid and angle.
+        self.lie = nn.Linear(GRID_FEATURES, shape.hidden * shape.blocks, bias=False) if shape.sheets else None
         for layer in (self.prefer, self.lie):
             if layer is not None:
                 nn.init.zeros_(layer.weight)
@@ -173,7 +173,7 @@ class VelocityNetwork(nn.Module):
         polygons: Tensor,
         shift: Tensor | None = None,
         preference: Tensor | None = None,
-        sheet: Sheet | None = None,
+        grid: DeployedGrid | None = None,
     ) -> TargetCode:
         """Prepare targets.
 
@@ -186,7 +186,7 @@ class VelocityNetwork(nn.Module):
         preference : (B,) tensor, optional
             0 for match, 1 for regularity, 0 when missing.  Corrections follow it in any network; those with
             ``preference`` also draw by it.
-        sheet : Sheet, optional
+        grid : DeployedGrid, optional
             What is to show them; the network's own grid at phi = 0 when missing.
         """
         shape = self.shape
@@ -197,13 +197,13 @@ class VelocityNetwork(nn.Module):
         if self.prefer is not None:
             encoded = encoded + self.prefer(preference[:, None])
         variation_cost = VARIATION_COST * preference.square()
-        sheet = sheet or Sheet(shape.rows, shape.columns)
+        grid = grid or DeployedGrid(shape.rows, shape.columns)
         if self.lie is not None:
-            encoded = encoded + self.lie(_sheet_features(sheet, shape, polygons))
+            encoded = encoded + self.lie(_grid_features(grid, shape, polygons))
         own, device = (shape.rows, shape.columns), polygons.device
         if not shape.loop_points:
-            return TargetCode(encoded, polygons[:, :0], grid_transfer(own, sheet, device), None, variation_cost)
-        feedback = Feedback(own, sheet, device)
+            return TargetCode(encoded, polygons[:, :0], grid_transfer(own, grid, device), None, variation_cost)
+        feedback = Feedback(own, grid, device)
         return TargetCode(
             encoded, smoothed_points(polygons, shape.loop_points), feedback.transfer, feedback, variation_cost
         )
@@ -223,7 +223,7 @@ class VelocityNetwork(nn.Module):
         """
         features = z[:, :0]
         if code.feedback is not None:
-            features = code.feedback(code.on_sheet(z), code.loop, self.shape.direction).features
+            features = code.feedback(code.on_grid(z), code.loop, self.shape.direction).features
         velocity: Tensor = self.leave(self._hidden(z, t, code, features))
         return velocity
 
@@ -259,16 +259,16 @@ class VelocityNetwork(nn.Module):
         return hidden
 
 
-def _sheet_features(sheet: Sheet, shape: NetworkShape, like: Tensor) -> Tensor:
-    """Grid and angle as numbers about zero, which are zero on the network's own sheet: (1, SHEET_FEATURES)."""
+def _grid_features(grid: DeployedGrid, shape: NetworkShape, like: Tensor) -> Tensor:
+    """Grid and angle as numbers about zero, which are zero on the network's own grid: (1, GRID_FEATURES)."""
     return like.new_tensor(
         [
             [
-                math.log(sheet.rows / shape.rows),
-                math.log(sheet.columns / shape.columns),
-                math.sin(sheet.phi),
-                1.0 - math.cos(sheet.phi),
-                float(not sheet.zipped),
+                math.log(grid.rows / shape.rows),
+                math.log(grid.columns / shape.columns),
+                math.sin(grid.phi),
+                1.0 - math.cos(grid.phi),
+                float(not grid.zipped),
             ]
         ]
     )

@@ -14,8 +14,8 @@ from torch import Tensor
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.paper import LOG_RATIO_LIMIT
 from kirigami_studio.generator.conditioning import normalised, square_pose, turned
+from kirigami_studio.generator.deployed_grid import DeployedGrid
 from kirigami_studio.generator.flow import LateStart, integrate
-from kirigami_studio.generator.sheet import Sheet
 from kirigami_studio.generator.velocity import Code
 from kirigami_studio.generator.weights import Model
 from kirigami_studio.lattice.ratio_field import RatioField
@@ -93,7 +93,8 @@ def sample_fields(
     model : Model
     target : Outline
     grid : (rows, columns)
-        Other grids than the network's are reached by interpolation, see ``sheet``; it sees their exact geometry.
+        Other grids than the network's are reached by interpolation, see ``deployed_grid``; the network sees their
+        exact geometry.
     k, seed, steps : int
     phi : float, radians, in [0, pi)
     poses : callable
@@ -104,13 +105,13 @@ def sample_fields(
     shape = model.network.shape
     whole = -(-k // BATCH) * BATCH
     noise = np.random.default_rng(seed).standard_normal((whole, shape.rows * shape.columns)) * shape.z_scale
-    sheet = Sheet(*grid, phi)
+    deployed = DeployedGrid(*grid, phi)
     sampled: list[Tensor] = []
     with torch.inference_mode(), one_torch_thread():
         for start in range(0, whole, BATCH):
             batch = range(start, start + BATCH)
             seen = posed(target, batch, poses) if near is None else turned_target(target, len(batch), near.angle)
-            code = model.code(seen, sheet)
+            code = model.code(seen, deployed)
             rows = torch.tensor(noise[start : start + BATCH], dtype=torch.float32)
             late = None
             if near is not None:
@@ -126,7 +127,7 @@ def _late_start(near: Near, noise: Tensor, own: tuple[int, int], code: Code) -> 
     z = near.field.log10[np.newaxis]
     design = torch.tensor(resize_fields(z, *own).reshape(1, -1), dtype=torch.float32)
     on_sheet = torch.tensor(z.reshape(1, -1), dtype=torch.float32)
-    remainder = near.nearness * (on_sheet - code.on_sheet(design))
+    remainder = near.nearness * (on_sheet - code.on_grid(design))
     return (1.0 - near.nearness) * noise + near.nearness * design, LateStart(near.nearness, remainder)
 
 

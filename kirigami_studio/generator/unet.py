@@ -36,7 +36,7 @@ from torch.nn import functional
 from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.foundation.paper import MASK_SIZE
 from kirigami_studio.generator.conditioning import ConditionLayout
-from kirigami_studio.generator.sheet import GridTransfer, Sheet, grid_transfer
+from kirigami_studio.generator.deployed_grid import DeployedGrid, GridTransfer, grid_transfer
 
 
 def filled_masks(polygons: Tensor, size: int = MASK_SIZE) -> Tensor:
@@ -249,7 +249,7 @@ class MaskCode:
     hint : (B, channels[0], latent, latent) tensor
         The encoded mask, which the ControlNet branch adds to the field.
     transfer : GridTransfer
-        Between the network's grid and the sheet that the targets are for.
+        Between the network's grid and the grid that the targets are for.
     """
 
     hint: Tensor
@@ -263,8 +263,8 @@ class MaskCode:
         """Some of the targets."""
         return MaskCode(self.hint[rows], self.transfer)
 
-    def on_sheet(self, z: Tensor) -> Tensor:
-        """Fields (B, cells) of the network's grid as fields of the sheet: (B, m * n)."""
+    def on_grid(self, z: Tensor) -> Tensor:
+        """Fields (B, cells) of the network's grid as fields of the sheet's: (B, m * n)."""
         return self.transfer.up(z)
 
 
@@ -376,15 +376,15 @@ class UNetVelocity(nn.Module):
         polygons: Tensor,
         shift: Tensor | None = None,
         preference: Tensor | None = None,
-        sheet: Sheet | None = None,
+        grid: DeployedGrid | None = None,
     ) -> MaskCode:
-        """Prepare normalised, posed target polygons (B, L, 2) for a sheet, the network's own grid when missing.
+        """Prepare normalised, posed target polygons (B, L, 2) for a grid, the network's own when missing.
 
         A mask does not know where the contour starts, and the network has no preference.
         """
         masks = filled_masks(polygons, self.shape.mask)[:, None]
         own = self.shape.rows, self.shape.columns
-        transfer = grid_transfer(own, sheet or Sheet(*own), polygons.device)
+        transfer = grid_transfer(own, grid or DeployedGrid(*own), polygons.device)
         return MaskCode(self.hint(functional.avg_pool2d(masks, self.shape.mask // self.shape.latent)), transfer)
 
     def forward(self, z: Tensor, t: Tensor, code: MaskCode) -> Tensor:

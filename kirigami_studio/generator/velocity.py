@@ -11,8 +11,8 @@ from torch import Tensor
 
 from kirigami_studio.foundation.errors import ModelError
 from kirigami_studio.generator.conditioning import ConditionLayout
+from kirigami_studio.generator.deployed_grid import DeployedGrid
 from kirigami_studio.generator.network import NetworkShape, VelocityNetwork
-from kirigami_studio.generator.sheet import Sheet
 from kirigami_studio.generator.unet import UNetShape, UNetVelocity
 
 if TYPE_CHECKING:
@@ -63,8 +63,8 @@ class Code(Protocol):
         """Some of the targets."""
         ...
 
-    def on_sheet(self, z: Tensor) -> Tensor:
-        """Fields (B, cells) of the network's grid as fields of the sheet: (B, m * n)."""
+    def on_grid(self, z: Tensor) -> Tensor:
+        """Fields (B, cells) of the network's grid as fields of the sheet's: (B, m * n)."""
         ...
 
 
@@ -84,9 +84,9 @@ class Velocity(Protocol):
         polygons: Tensor,
         shift: Tensor | None = None,
         preference: Tensor | None = None,
-        sheet: Sheet | None = None,
+        grid: DeployedGrid | None = None,
     ) -> Code:
-        """Prepare normalised, posed target polygons (B, L, 2) for a sheet, the network's own grid when missing.
+        """Prepare normalised, posed target polygons (B, L, 2) for a grid, the network's own when missing.
 
         ``shift`` (B,) moves the contour's start; ``preference`` (B,) runs from match, 0, to regularity, 1.
         """
@@ -102,7 +102,7 @@ class Velocity(Protocol):
 
 
 def joined(codes: Sequence[Coded]) -> Coded:
-    """One code of all targets of several codes of one network for one sheet, in order."""
+    """One code of all targets of several codes of one network for one grid, in order."""
 
     def merged(values: list[Any]) -> Any:
         return torch.cat(values) if isinstance(values[0], Tensor) else values[0]

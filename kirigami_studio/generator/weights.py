@@ -23,7 +23,7 @@ from torch import Tensor
 from kirigami_studio.foundation.errors import ModelError, UsageError
 from kirigami_studio.foundation.files import write_atomically
 from kirigami_studio.foundation.resources import resource
-from kirigami_studio.generator.sheet import Sheet
+from kirigami_studio.generator.deployed_grid import DeployedGrid
 from kirigami_studio.generator.velocity import PERCEPTRON, Code, Network, backbone_of, network_of, shape_from_json
 
 MANIFEST = "manifest.json"
@@ -54,10 +54,10 @@ class Model:
         """How often one sample of ``steps`` network evaluations decodes a layout: comparable with the paper's #F."""
         return steps if self.network.corrects else 0
 
-    def code(self, polygons: Tensor, sheet: Sheet) -> Code:
-        """Prepare normalised, posed target polygons (B, L, 2) for a sheet."""
+    def code(self, polygons: Tensor, grid: DeployedGrid) -> Code:
+        """Prepare normalised, posed target polygons (B, L, 2) for a grid and angle."""
         preference = torch.full((len(polygons),), self.preference)
-        return self.network.code(polygons, preference=preference, sheet=sheet)
+        return self.network.code(polygons, preference=preference, grid=grid)
 
 
 def model_folder() -> Path:

@@ -12,7 +12,7 @@ from torch import Tensor
 
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.generator.conditioning import normalised
-from kirigami_studio.generator.sheet import Sheet
+from kirigami_studio.generator.deployed_grid import DeployedGrid
 from kirigami_studio.lattice.batched import BatchedLattice
 
 FieldSampler = Callable[[int, int, int, Generator], FloatArray]
@@ -66,7 +66,7 @@ def zero_outline(lattice: BatchedLattice, z: Tensor) -> Tensor:
     return lattice.outline(torch.pow(10.0, z), 0.0)[:, lattice.unzipped]
 
 
-def sheet_outline(lattice: BatchedLattice, sheet: Sheet, z: Tensor) -> Tensor:
+def deployed_outline(lattice: BatchedLattice, grid: DeployedGrid, z: Tensor) -> Tensor:
     """Outline of fields z (B, m, n) at the sheet's angle, zipped edge hinges left out: (B, L, 2), differentiable."""
-    outline = lattice.outline(torch.pow(10.0, z), sheet.phi)
-    return outline[:, lattice.unzipped] if sheet.zipped else outline
+    outline = lattice.outline(torch.pow(10.0, z), grid.phi)
+    return outline[:, lattice.unzipped] if grid.zipped else outline

@@ -18,10 +18,10 @@ import torch
 from torch import Tensor
 
 from kirigami_studio.generator.conditioning import normalised
+from kirigami_studio.generator.deployed_grid import DeployedGrid
 from kirigami_studio.generator.feedback import squared_distances, to_loop
-from kirigami_studio.generator.sheet import Sheet
 from kirigami_studio.lattice.batched import BatchedLattice
-from kirigami_studio.training.corpus import sheet_outline
+from kirigami_studio.training.corpus import deployed_outline
 
 #: Distance (unit-area lengths) above which a gap counts linearly; below, its square over twice this.
 SOFTNESS = 0.002
@@ -48,7 +48,7 @@ class PreferenceTerms:
     excess: Tensor
 
 
-def preference_terms(lattice: BatchedLattice, sheet: Sheet, z: Tensor, loop: Tensor) -> PreferenceTerms:
+def preference_terms(lattice: BatchedLattice, grid: DeployedGrid, z: Tensor, loop: Tensor) -> PreferenceTerms:
     """Measure fields z (B, m * n) of a sheet against target boundaries (B, S, 2); differentiable.
 
     Both have unit area about the centroid and lie in the same pose.
@@ -57,23 +57,23 @@ def preference_terms(lattice: BatchedLattice, sheet: Sheet, z: Tensor, loop: Ten
     inside = field.clamp(-1.0, 1.0)
     # Bounded where it counts, but with a way back for what lies outside.
     return PreferenceTerms(
-        boundary_gap(normalised(sheet_outline(lattice, sheet, inside)), loop),
+        boundary_gap(normalised(deployed_outline(lattice, grid, inside)), loop),
         total_variation(torch.pow(10.0, inside)),
         (field - inside).square().mean(dim=(1, 2)) * RANGE_WEIGHT,
     )
 
 
 def trail_gap(
-    lattice: BatchedLattice, sheet: Sheet, designs: list[Tensor], loop: Tensor
+    lattice: BatchedLattice, grid: DeployedGrid, designs: list[Tensor], loop: Tensor
 ) -> tuple[PreferenceTerms, Tensor]:
     """Terms of the last of several designs of a sampler, and the mean gap of those before it, 0 if there are none.
 
     A correction is not differentiated through, so the designs that corrections start from have a loss of their own.
     """
-    terms = preference_terms(lattice, sheet, designs[-1], loop)
+    terms = preference_terms(lattice, grid, designs[-1], loop)
     if len(designs) == 1:
         return terms, torch.zeros_like(terms.match).mean()
-    early = [preference_terms(lattice, sheet, z, loop) for z in designs[:-1]]
+    early = [preference_terms(lattice, grid, z, loop) for z in designs[:-1]]
     return terms, torch.stack([one.match + one.excess for one in early]).mean()
 
 

@@ -18,7 +18,7 @@ from kirigami_studio.evaluate.silhouette import RasterFrame, rasterise
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import TargetError
 from kirigami_studio.generator.conditioning import contour_points, normalised, square_pose, turned
-from kirigami_studio.generator.sheet import Sheet
+from kirigami_studio.generator.deployed_grid import DeployedGrid
 from kirigami_studio.generator.velocity import Code, Network, joined
 from kirigami_studio.outlines.editing import resampled
 from kirigami_studio.outlines.trace import trace
@@ -104,13 +104,13 @@ class SampledTargets:
     shifts: tuple[Tensor, ...]
     loop: Tensor
 
-    def code(self, network: Network, sheet: Sheet, preference: Tensor | None = None) -> Code:
+    def code(self, network: Network, grid: DeployedGrid, preference: Tensor | None = None) -> Code:
         """The targets for a network and a sheet, with a preference (B,) for each where it takes one."""
         if preference is None:
             chosen: list[Tensor | None] = [None] * len(self.seen)
         else:
             chosen = list(torch.split(preference, [len(part) for part in self.seen]))
-        return joined([network.code(*part, sheet) for part in zip(self.seen, self.shifts, chosen, strict=True)])
+        return joined([network.code(*part, grid) for part in zip(self.seen, self.shifts, chosen, strict=True)])
 
 
 class TargetSource:

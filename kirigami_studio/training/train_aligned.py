@@ -20,12 +20,12 @@ from torch import Tensor
 from kirigami_studio.foundation.errors import ModelError
 from kirigami_studio.foundation.paper import LOG_RATIO_LIMIT
 from kirigami_studio.generator.conditioning import normalised
+from kirigami_studio.generator.deployed_grid import DeployedGrid
 from kirigami_studio.generator.flow import integrate, trail
 from kirigami_studio.generator.network import NetworkShape, VelocityNetwork
-from kirigami_studio.generator.sheet import Sheet
 from kirigami_studio.generator.weights import Model
 from kirigami_studio.lattice.batched import BatchedLattice
-from kirigami_studio.training.corpus import sheet_outline
+from kirigami_studio.training.corpus import deployed_outline
 from kirigami_studio.training.fields import mixed_fields
 from kirigami_studio.training.learner import CHECKPOINT, Checkpoint, Learner, grown_state, logged, opened
 from kirigami_studio.training.preference_loss import EARLY_WEIGHT, PreferenceTerms, trail_gap
@@ -216,20 +216,20 @@ class AlignRun:
         settings = self.settings
         for group in self.learner.optimiser.param_groups:
             group["lr"] = group["pace"] * settings.learning_rate * schedule(self.step, settings.steps)
-        sheet = self._sheet()
+        grid = self._grid()
         drawn = round(settings.drawn_share * settings.batch) if settings.drawn else 0
-        targets = self.source.targets(self._silhouettes(sheet, settings.batch - drawn), drawn)
+        targets = self.source.targets(self._silhouettes(grid, settings.batch - drawn), drawn)
         preference = self._preferences(settings.batch)
         cells = settings.shape.rows * settings.shape.columns
         noise = torch.randn((settings.batch, cells), generator=self.generator, device=self.device)
         noise = noise * settings.shape.z_scale
-        code = targets.code(self.network, sheet, preference)
+        code = targets.code(self.network, grid, preference)
         designs = trail(self.network, noise, code, settings.sampling_steps)
-        terms, early = trail_gap(self._lattice(sheet), sheet, designs, targets.loop)
+        terms, early = trail_gap(self._lattice(grid), grid, designs, targets.loop)
         z = designs[-1]
         anchored = slice(0, None, settings.anchored_every)
         with torch.no_grad():
-            code = targets.code(self.prior, sheet, preference).picked(anchored)
+            code = targets.code(self.prior, grid, preference).picked(anchored)
             reference = integrate(self.prior, noise[anchored], code, settings.sampling_steps).clamp(
                 -LOG_RATIO_LIMIT, LOG_RATIO_LIMIT
             )
@@ -257,28 +257,28 @@ class AlignRun:
         smooth = settings.variation_weight * preference * terms.variation
         return (terms.match + smooth + terms.excess).mean() + settings.anchor_weight * anchor
 
-    def _sheet(self) -> Sheet:
+    def _grid(self) -> DeployedGrid:
         """The sheet of this step: the network's own, or any of 6 to 16 voids each way and any useful angle."""
-        settings, own = self.settings, Sheet(self.settings.shape.rows, self.settings.shape.columns)
+        settings, own = self.settings, DeployedGrid(self.settings.shape.rows, self.settings.shape.columns)
         rng = np.random.default_rng((settings.seed, self.step))
         if rng.random() >= settings.other_sheets:
             return own
         rows, columns = (int(count) for count in rng.integers(GRIDS[0], GRIDS[1] + 1, size=2))
         phi = 0.0 if rng.random() < FLAT_SHARE else float(rng.uniform(0.0, LARGEST_PHI))
-        return Sheet(rows, columns, phi)
+        return DeployedGrid(rows, columns, phi)
 
-    def _lattice(self, sheet: Sheet) -> BatchedLattice:
-        grid = sheet.rows, sheet.columns
-        if grid not in self._lattices:
-            self._lattices[grid] = BatchedLattice(*grid, self.device)
-        return self._lattices[grid]
+    def _lattice(self, grid: DeployedGrid) -> BatchedLattice:
+        counts = grid.rows, grid.columns
+        if counts not in self._lattices:
+            self._lattices[counts] = BatchedLattice(*counts, self.device)
+        return self._lattices[counts]
 
-    def _silhouettes(self, sheet: Sheet, count: int) -> Tensor:
+    def _silhouettes(self, grid: DeployedGrid, count: int) -> Tensor:
         """What random fields of a sheet show: (B, L, 2), unit area about the centroid."""
         rng = np.random.default_rng((self.settings.seed, 1, self.step))
-        fields = torch.tensor(mixed_fields(count, sheet.rows, sheet.columns, rng), dtype=torch.float32)
+        fields = torch.tensor(mixed_fields(count, grid.rows, grid.columns, rng), dtype=torch.float32)
         with torch.no_grad():
-            return normalised(sheet_outline(self._lattice(sheet), sheet, fields.to(self.device)))
+            return normalised(deployed_outline(self._lattice(grid), grid, fields.to(self.device)))
 
     def _preferences(self, rows: int) -> Tensor:
         """0 for two in five rows, 1 for three in ten, anything between for the others."""

@@ -6,23 +6,23 @@ import pytest
 import torch
 
 from kirigami_studio.generator.conditioning import contour_points, normalised
+from kirigami_studio.generator.deployed_grid import DeployedGrid
 from kirigami_studio.generator.feedback import CHUNK, DIRECTION_SCALE, GAP_SCALE, PLACE_SCALE, Feedback
 from kirigami_studio.generator.feedback import _normalised_slopes as normalised_slopes
-from kirigami_studio.generator.sheet import Sheet
 from kirigami_studio.lattice.batched import BatchedLattice, BatchedSlopes
-from kirigami_studio.training.corpus import sheet_outline
+from kirigami_studio.training.corpus import deployed_outline
 
 pytestmark = pytest.mark.torch
 CPU = torch.device("cpu")
 OWN = 6, 6
-SHEET = Sheet(*OWN)
+SHEET = DeployedGrid(*OWN)
 #: Outline features of the own grid: coordinates of its 28 vertices.
 PLACES = 2 * 28
 
 
-def own_loop(z: torch.Tensor, points: int, sheet: Sheet = SHEET) -> torch.Tensor:
-    lattice = BatchedLattice(sheet.rows, sheet.columns)
-    return contour_points(normalised(sheet_outline(lattice, sheet, z.view(-1, sheet.rows, sheet.columns))), points)
+def own_loop(z: torch.Tensor, points: int, grid: DeployedGrid = SHEET) -> torch.Tensor:
+    lattice = BatchedLattice(grid.rows, grid.columns)
+    return contour_points(normalised(deployed_outline(lattice, grid, z.view(-1, grid.rows, grid.columns))), points)
 
 
 def smooth_noise(count: int, cells: int, scale: float = 0.3) -> torch.Tensor:
@@ -61,16 +61,18 @@ def test_that_feedback_points_from_the_outline_to_the_target() -> None:
 def test_that_the_first_features_are_the_outline() -> None:
     z = smooth_noise(2, 36)
     features = Feedback(OWN, SHEET, CPU)(z, own_loop(z, 64), False).features
-    outline = normalised(sheet_outline(BatchedLattice(*OWN), SHEET, z.view(-1, 6, 6)))
+    outline = normalised(deployed_outline(BatchedLattice(*OWN), SHEET, z.view(-1, 6, 6)))
     torch.testing.assert_close(features[:, :PLACES].view(2, 28, 2) * PLACE_SCALE, outline, atol=1e-5, rtol=0)
 
 
 @pytest.mark.parametrize("direction", [False, True])
-@pytest.mark.parametrize("sheet", [SHEET, Sheet(6, 6, 0.7), Sheet(4, 7), Sheet(4, 7, 0.7), Sheet(9, 8)], ids=str)
-def test_that_the_promised_feature_count_is_delivered_on_every_sheet(sheet: Sheet, direction: bool) -> None:
-    cells = sheet.rows * sheet.columns
+@pytest.mark.parametrize(
+    "grid", [SHEET, DeployedGrid(6, 6, 0.7), DeployedGrid(4, 7), DeployedGrid(4, 7, 0.7), DeployedGrid(9, 8)], ids=str
+)
+def test_that_the_promised_feature_count_is_delivered_on_every_sheet(grid: DeployedGrid, direction: bool) -> None:
+    cells = grid.rows * grid.columns
     z = smooth_noise(2, cells)
-    sight = Feedback(OWN, sheet, CPU)(z, own_loop(-z, 64, sheet), direction)
+    sight = Feedback(OWN, grid, CPU)(z, own_loop(-z, 64, grid), direction)
     assert sight.features.shape == (2, Feedback.width(*OWN, 64, direction))
     assert sight.direction.shape == (2, cells if direction else 0)
     assert torch.isfinite(sight.features).all()
@@ -78,10 +80,10 @@ def test_that_the_promised_feature_count_is_delivered_on_every_sheet(sheet: Shee
     assert 0.5 < float(sight.features[:, :PLACES].std()) < 1.5
 
 
-@pytest.mark.parametrize("sheet", [Sheet(4, 7), Sheet(9, 8, 0.7)], ids=str)
-def test_that_gaps_vanish_on_another_sheets_own_outline_too(sheet: Sheet) -> None:
-    z = smooth_noise(2, sheet.rows * sheet.columns)
-    sight = Feedback(OWN, sheet, CPU)(z, own_loop(z, 960, sheet), True)
+@pytest.mark.parametrize("grid", [DeployedGrid(4, 7), DeployedGrid(9, 8, 0.7)], ids=str)
+def test_that_gaps_vanish_on_another_sheets_own_outline_too(grid: DeployedGrid) -> None:
+    z = smooth_noise(2, grid.rows * grid.columns)
+    sight = Feedback(OWN, grid, CPU)(z, own_loop(z, 960, grid), True)
     gaps = gaps_of(sight.features, 960)
     # Stations lie on the outline; the middles between them may cut its corners.
     assert float(gaps[:, 0:56:2].abs().max()) < 4e-3
@@ -93,9 +95,9 @@ def test_that_the_direction_reaches_the_features_on_the_networks_grid() -> None:
     z = smooth_noise(2, 36)
     own = Feedback(OWN, SHEET, CPU)(z, own_loop(-z, 64), True)
     assert torch.equal(own.features[:, -36:] * DIRECTION_SCALE, own.direction)
-    sheet = Sheet(9, 8)
-    feedback = Feedback(OWN, sheet, CPU)
-    other = feedback(smooth_noise(2, 72), own_loop(-smooth_noise(2, 72), 64, sheet), True)
+    grid = DeployedGrid(9, 8)
+    feedback = Feedback(OWN, grid, CPU)
+    other = feedback(smooth_noise(2, 72), own_loop(-smooth_noise(2, 72), 64, grid), True)
     torch.testing.assert_close(other.features[:, -36:] * DIRECTION_SCALE, feedback.transfer.down(other.direction))
 
 

@@ -6,31 +6,31 @@ import pytest
 import torch
 
 from kirigami_studio.generator.conditioning import contour_points, normalised
+from kirigami_studio.generator.deployed_grid import DeployedGrid
 from kirigami_studio.generator.feedback import Feedback
 from kirigami_studio.generator.gauss_newton import TRUST, Residuals, gauss_newton_direction
-from kirigami_studio.generator.sheet import Sheet
 from kirigami_studio.lattice.batched import BatchedLattice
-from kirigami_studio.training.corpus import sheet_outline
+from kirigami_studio.training.corpus import deployed_outline
 from kirigami_studio.training.preference_loss import boundary_gap
 
 pytestmark = pytest.mark.torch
 CPU = torch.device("cpu")
-SHEETS = [Sheet(6, 6), Sheet(5, 8), Sheet(6, 5, 0.8)]
+GRIDS = [DeployedGrid(6, 6), DeployedGrid(5, 8), DeployedGrid(6, 5, 0.8)]
 SQUARE = torch.tensor([[[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]]])
 
 
-def shape_of(z: torch.Tensor, sheet: Sheet) -> torch.Tensor:
-    lattice = BatchedLattice(sheet.rows, sheet.columns)
-    return normalised(sheet_outline(lattice, sheet, z.view(-1, sheet.rows, sheet.columns)))
+def shape_of(z: torch.Tensor, grid: DeployedGrid) -> torch.Tensor:
+    lattice = BatchedLattice(grid.rows, grid.columns)
+    return normalised(deployed_outline(lattice, grid, z.view(-1, grid.rows, grid.columns)))
 
 
-def fields(sheet: Sheet, scale: float, seed: int) -> torch.Tensor:
+def fields(grid: DeployedGrid, scale: float, seed: int) -> torch.Tensor:
     generator = torch.Generator().manual_seed(seed)
-    return scale * torch.randn((6, sheet.rows * sheet.columns), generator=generator)
+    return scale * torch.randn((6, grid.rows * grid.columns), generator=generator)
 
 
-def directions(z: torch.Tensor, loop: torch.Tensor, sheet: Sheet) -> torch.Tensor:
-    return Feedback((sheet.rows, sheet.columns), sheet, CPU)(z, loop, True).direction
+def directions(z: torch.Tensor, loop: torch.Tensor, grid: DeployedGrid) -> torch.Tensor:
+    return Feedback((grid.rows, grid.columns), grid, CPU)(z, loop, True).direction
 
 
 def vertex_residuals(outline: torch.Tensor, gap: torch.Tensor) -> Residuals:
@@ -39,24 +39,24 @@ def vertex_residuals(outline: torch.Tensor, gap: torch.Tensor) -> Residuals:
     return Residuals.of(outline, outline, out, torch.zeros(1, 1, 2), torch.zeros(1, 1))
 
 
-@pytest.mark.parametrize("sheet", SHEETS, ids=str)
-def test_that_one_step_from_nearby_closes_most_of_the_gap(sheet: Sheet) -> None:
-    wanted = fields(sheet, 0.3, 0)
-    target = contour_points(shape_of(wanted, sheet), 384)
-    z = wanted + fields(sheet, 0.08, 1)
-    before = boundary_gap(shape_of(z, sheet), target)
-    after = boundary_gap(shape_of(z + directions(z, target, sheet), sheet), target)
+@pytest.mark.parametrize("grid", GRIDS, ids=str)
+def test_that_one_step_from_nearby_closes_most_of_the_gap(grid: DeployedGrid) -> None:
+    wanted = fields(grid, 0.3, 0)
+    target = contour_points(shape_of(wanted, grid), 384)
+    z = wanted + fields(grid, 0.08, 1)
+    before = boundary_gap(shape_of(z, grid), target)
+    after = boundary_gap(shape_of(z + directions(z, target, grid), grid), target)
     assert float(before.min()) > 1e-3
     assert float((after / before).max()) < 0.4
 
 
-@pytest.mark.parametrize("sheet", SHEETS, ids=str)
-def test_that_a_shifted_target_asks_for_no_change(sheet: Sheet) -> None:
-    z = fields(sheet, 0.3, 0)
-    loop = contour_points(shape_of(z, sheet), 960)
-    shifted = directions(z, loop + torch.tensor([0.01, -0.006]), sheet)
+@pytest.mark.parametrize("grid", GRIDS, ids=str)
+def test_that_a_shifted_target_asks_for_no_change(grid: DeployedGrid) -> None:
+    z = fields(grid, 0.3, 0)
+    loop = contour_points(shape_of(z, grid), 960)
+    shifted = directions(z, loop + torch.tensor([0.01, -0.006]), grid)
     # As far as the nearest points let a shift of a hundredth be recognised; a real change is ten times as large.
-    other = directions(z, contour_points(shape_of(z + fields(sheet, 0.08, 1), sheet), 960), sheet)
+    other = directions(z, contour_points(shape_of(z + fields(grid, 0.08, 1), grid), 960), grid)
     assert float(shifted.square().mean().sqrt()) < 0.15 * float(other.square().mean().sqrt())
 
 
@@ -121,10 +121,10 @@ def test_that_places_past_the_last_vertex_are_on_the_first() -> None:
     assert residuals.share[0, -2:].tolist() == [0.75, 0.0]
 
 
-@pytest.mark.parametrize("sheet", SHEETS, ids=str)
-def test_that_no_distance_means_no_change(sheet: Sheet) -> None:
-    z = fields(sheet, 0.3, 0)
-    outline = shape_of(z, sheet)
+@pytest.mark.parametrize("grid", GRIDS, ids=str)
+def test_that_no_distance_means_no_change(grid: DeployedGrid) -> None:
+    z = fields(grid, 0.3, 0)
+    outline = shape_of(z, grid)
     nowhere = torch.zeros(6, 2 * outline.shape[1], 2)
     residuals = Residuals.of(outline, outline, nowhere, torch.zeros(6, 10, 2), torch.zeros(6, 10))
     slopes = torch.randn((6, outline.shape[1], 2, z.shape[1]), generator=torch.Generator().manual_seed(1))

@@ -11,9 +11,9 @@ import torch
 
 from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.foundation.paper import LOG_RATIO_LIMIT
+from kirigami_studio.generator.deployed_grid import DeployedGrid
 from kirigami_studio.generator.network import VelocityNetwork
 from kirigami_studio.generator.sampler import one_pose, pose_angle, posed, sample_fields
-from kirigami_studio.generator.sheet import Sheet
 from kirigami_studio.generator.weights import Model, load_model
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
@@ -96,17 +96,21 @@ def test_that_all_candidates_can_be_drawn_in_the_first_ones_pose(model: Model) -
     assert not np.allclose(same[1].log10, own[1].log10, atol=0.1)
 
 
-@pytest.mark.parametrize("sheet", [Sheet(10, 10, 0.5), Sheet(7, 12), Sheet(12, 7, 1.2), Sheet(3, 4, 0.8)], ids=str)
+@pytest.mark.parametrize(
+    "deployed",
+    [DeployedGrid(10, 10, 0.5), DeployedGrid(7, 12), DeployedGrid(12, 7, 1.2), DeployedGrid(3, 4, 0.8)],
+    ids=str,
+)
 def test_that_every_sheet_gets_fields_of_its_own_grid_that_seed_and_number_decide(
-    corrector: Model, sheet: Sheet
+    corrector: Model, deployed: DeployedGrid
 ) -> None:
-    grid = sheet.rows, sheet.columns
-    few, many = (sample_fields(corrector, load("star"), grid, k, 3, 4, sheet.phi) for k in (2, 9))
+    grid = deployed.rows, deployed.columns
+    few, many = (sample_fields(corrector, load("star"), grid, k, 3, 4, deployed.phi) for k in (2, 9))
     assert all(field.ratio.shape == grid for field in many)
     assert all(np.abs(field.log10).max() <= LOG_RATIO_LIMIT + 1e-12 for field in many)
     assert many[:2] == few
     assert many[8] not in many[:8]
-    assert sample_fields(corrector, load("star"), grid, 2, 4, 4, sheet.phi)[0] != few[0]
+    assert sample_fields(corrector, load("star"), grid, 2, 4, 4, deployed.phi)[0] != few[0]
 
 
 def test_that_the_angle_is_taken_into_account(corrector: Model) -> None:

@@ -7,10 +7,10 @@ import torch
 from small_networks import random_fields, silhouettes
 
 from kirigami_studio.generator.conditioning import smoothed_points
+from kirigami_studio.generator.deployed_grid import DeployedGrid
 from kirigami_studio.generator.feedback import Feedback
 from kirigami_studio.generator.gauss_newton import LN10, SMALLEST_DIFFERENCE, variation_terms
 from kirigami_studio.generator.network import VARIATION_COST
-from kirigami_studio.generator.sheet import Sheet
 from kirigami_studio.training.preference_loss import boundary_gap
 
 pytestmark = pytest.mark.torch
@@ -48,7 +48,7 @@ def test_that_the_descent_is_the_negative_gradient_of_the_weighted_variation(row
 
 @pytest.mark.parametrize("scale", [0.02, 0.3])
 def test_that_the_matrix_is_symmetric_and_positive_semi_definite(scale: float) -> None:
-    z = random_fields(Sheet(4, 5), 6, scale).double().view(6, 4, 5)
+    z = random_fields(DeployedGrid(4, 5), 6, scale).double().view(6, 4, 5)
     _, matrix = variation_terms(z, torch.linspace(0.5, 3.0, 6, dtype=torch.float64))
     torch.testing.assert_close(matrix, matrix.mT)
     values = torch.linalg.eigvalsh(matrix)
@@ -80,14 +80,14 @@ def test_that_the_terms_grow_with_each_fields_own_weight() -> None:
         torch.testing.assert_close(part[1], whole[1])
 
 
-@pytest.mark.parametrize("sheet", [Sheet(10, 10), Sheet(8, 12), Sheet(10, 8, 0.6)], ids=str)
-def test_that_corrections_with_a_cost_of_variation_smooth_at_nearly_the_same_outline(sheet: Sheet) -> None:
-    cells = sheet.rows * sheet.columns
-    z = random_fields(sheet, 8, 0.25)
+@pytest.mark.parametrize("grid", [DeployedGrid(10, 10), DeployedGrid(8, 12), DeployedGrid(10, 8, 0.6)], ids=str)
+def test_that_corrections_with_a_cost_of_variation_smooth_at_nearly_the_same_outline(grid: DeployedGrid) -> None:
+    cells = grid.rows * grid.columns
+    z = random_fields(grid, 8, 0.25)
     # A target that the field already shows: only the variation can be improved.
-    targets = silhouettes(z, sheet)
+    targets = silhouettes(z, grid)
     loop, measure = smoothed_points(targets, 192), smoothed_points(targets, 384)
-    feedback = Feedback((sheet.rows, sheet.columns), sheet, torch.device("cpu"))
+    feedback = Feedback((grid.rows, grid.columns), grid, torch.device("cpu"))
 
     def corrected(cost: float) -> torch.Tensor:
         field = z
@@ -96,10 +96,10 @@ def test_that_corrections_with_a_cost_of_variation_smooth_at_nearly_the_same_out
         return field
 
     def variation(field: torch.Tensor) -> torch.Tensor:
-        return total_variation(field.view(-1, sheet.rows, sheet.columns)) / cells
+        return total_variation(field.view(-1, grid.rows, grid.columns)) / cells
 
     def gap(field: torch.Tensor) -> float:
-        return float(boundary_gap(silhouettes(field, sheet), measure).mean())
+        return float(boundary_gap(silhouettes(field, grid), measure).mean())
 
     plain, even = corrected(0.0), corrected(VARIATION_COST)
     assert float((variation(even) / variation(plain)).max()) < 0.6
@@ -108,10 +108,10 @@ def test_that_corrections_with_a_cost_of_variation_smooth_at_nearly_the_same_out
 
 
 def test_that_a_cost_of_nothing_is_no_cost() -> None:
-    sheet = Sheet(6, 6)
-    z = random_fields(sheet, 3)
-    feedback = Feedback((6, 6), sheet, torch.device("cpu"))
-    loop = smoothed_points(silhouettes(-z, sheet), 96)
+    grid = DeployedGrid(6, 6)
+    z = random_fields(grid, 3)
+    feedback = Feedback((6, 6), grid, torch.device("cpu"))
+    loop = smoothed_points(silhouettes(-z, grid), 96)
     plain = feedback(z, loop, True)
     free = feedback(z, loop, True, torch.zeros(3))
     assert torch.equal(free.direction, plain.direction) and torch.equal(free.features, plain.features)

@@ -12,10 +12,10 @@ import torch
 
 from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.foundation.errors import ModelError, UsageError
+from kirigami_studio.generator.deployed_grid import DeployedGrid
 from kirigami_studio.generator.feedback import Feedback
 from kirigami_studio.generator.network import VARIATION_COST, NetworkShape, TargetCode, VelocityNetwork
 from kirigami_studio.generator.sampler import BATCH, posed, sample_fields
-from kirigami_studio.generator.sheet import Sheet
 from kirigami_studio.generator.unet import UNetShape, UNetVelocity
 from kirigami_studio.generator.weights import (
     digest_of,
@@ -94,7 +94,7 @@ def test_that_one_network_serves_variants_that_prefer_differently(folder: Path) 
     entry = json.loads((folder / "manifest.json").read_text())["variants"]["even"]
     assert (entry["file"], entry["about"]) == ("pair.safetensors", {"steps": 3})
     polygon = posed(load("heart"), range(2))
-    codes = [model.code(polygon, Sheet(4, 4)) for model in (match, even)]
+    codes = [model.code(polygon, DeployedGrid(4, 4)) for model in (match, even)]
     assert all(isinstance(code, TargetCode) for code in codes)
     assert [code.variation_cost.tolist() for code in codes] == [[0.0, 0.0], pytest.approx([VARIATION_COST] * 2)]  # type: ignore[attr-defined]
 

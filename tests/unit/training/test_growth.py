@@ -9,13 +9,13 @@ import torch
 from small_networks import SMALL, random_fields, random_network, silhouettes
 
 from kirigami_studio.foundation.errors import ModelError
+from kirigami_studio.generator.deployed_grid import DeployedGrid
 from kirigami_studio.generator.network import NetworkShape, VelocityNetwork
-from kirigami_studio.generator.sheet import Sheet
 from kirigami_studio.generator.unet import UNetShape, UNetVelocity
 from kirigami_studio.training.learner import grown_state
 
 pytestmark = pytest.mark.torch
-OWN = Sheet(4, 4)
+OWN = DeployedGrid(4, 4)
 ALL = {"direction": True, "preference": True, "sheets": True}
 
 
@@ -26,15 +26,15 @@ def grown(network: VelocityNetwork, shape: NetworkShape) -> VelocityNetwork:
 
 
 @pytest.mark.parametrize("new", [{"direction": True}, {"preference": True}, {"sheets": True}, ALL], ids=str)
-@pytest.mark.parametrize("sheet", [OWN, Sheet(6, 5, 0.7)], ids=str)
-def test_that_a_grown_network_gives_the_same_velocity(new: dict[str, bool], sheet: Sheet) -> None:
+@pytest.mark.parametrize("grid", [OWN, DeployedGrid(6, 5, 0.7)], ids=str)
+def test_that_a_grown_network_gives_the_same_velocity(new: dict[str, bool], grid: DeployedGrid) -> None:
     network = random_network(direction=False)
     larger = grown(network, replace(network.shape, **new))
-    targets = silhouettes(random_fields(sheet, 4), sheet)
+    targets = silhouettes(random_fields(grid, 4), grid)
     z, t = random_fields(OWN, 4, 0.6, seed=1), torch.linspace(0, 0.9, 4)
     asked = torch.tensor([0.0, 1.0, 0.5, 1.0])
-    ours = larger(z, t, larger.code(targets, preference=asked, sheet=sheet))
-    theirs = network(z, t, network.code(targets, sheet=sheet))
+    ours = larger(z, t, larger.code(targets, preference=asked, grid=grid))
+    theirs = network(z, t, network.code(targets, grid=grid))
     assert float(theirs.abs().mean()) > 0.05
     torch.testing.assert_close(ours, theirs, atol=1e-4, rtol=1e-4)
     assert larger.corrects

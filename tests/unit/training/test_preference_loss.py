@@ -10,13 +10,13 @@ from small_networks import random_fields, silhouettes
 
 from kirigami_studio.evaluate.total_variation import total_variation
 from kirigami_studio.generator.conditioning import contour_points
-from kirigami_studio.generator.sheet import Sheet
+from kirigami_studio.generator.deployed_grid import DeployedGrid
 from kirigami_studio.lattice.batched import BatchedLattice
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.training.preference_loss import SOFTNESS, boundary_gap, preference_terms, trail_gap
 
 pytestmark = pytest.mark.torch
-SHEETS = [Sheet(4, 4), Sheet(5, 6), Sheet(6, 5, 0.7)]
+GRIDS = [DeployedGrid(4, 4), DeployedGrid(5, 6), DeployedGrid(6, 5, 0.7)]
 
 
 def square(per_side: int) -> torch.Tensor:
@@ -26,8 +26,8 @@ def square(per_side: int) -> torch.Tensor:
     return torch.cat([a + share * (b - a) for a, b in zip(corners, corners.roll(-1, 0), strict=True)])[None]
 
 
-def decoder(sheet: Sheet) -> BatchedLattice:
-    return BatchedLattice(sheet.rows, sheet.columns)
+def decoder(grid: DeployedGrid) -> BatchedLattice:
+    return BatchedLattice(grid.rows, grid.columns)
 
 
 @pytest.mark.parametrize("per_side", [1, 3, 40])
@@ -86,25 +86,25 @@ def test_that_the_gradient_of_the_gap_is_that_of_finite_differences() -> None:
         assert abs(slope) > 1e-3
 
 
-@pytest.mark.parametrize("sheet", SHEETS, ids=str)
-def test_that_terms_are_measured_on_the_sheet(sheet: Sheet) -> None:
-    z = random_fields(sheet, 3).clamp(-0.9, 0.9)
-    loop = contour_points(silhouettes(z, sheet), 4000)
-    own = preference_terms(decoder(sheet), sheet, z, loop)
-    other = preference_terms(decoder(sheet), sheet, z + random_fields(sheet, 3, 0.1, seed=1), loop)
+@pytest.mark.parametrize("grid", GRIDS, ids=str)
+def test_that_terms_are_measured_on_the_sheet(grid: DeployedGrid) -> None:
+    z = random_fields(grid, 3).clamp(-0.9, 0.9)
+    loop = contour_points(silhouettes(z, grid), 4000)
+    own = preference_terms(decoder(grid), grid, z, loop)
+    other = preference_terms(decoder(grid), grid, z + random_fields(grid, 3, 0.1, seed=1), loop)
     assert float(own.match.max()) < 1e-3
     assert float(other.match.min()) > 0.01
-    expected = [total_variation(RatioField.from_log10(one)) for one in z.view(3, sheet.rows, sheet.columns).numpy()]
+    expected = [total_variation(RatioField.from_log10(one)) for one in z.view(3, grid.rows, grid.columns).numpy()]
     assert own.variation.tolist() == pytest.approx(expected, rel=1e-4)
     assert not own.excess.any()
 
 
 def test_that_what_lies_outside_the_bounds_costs_and_is_led_back() -> None:
-    sheet = SHEETS[1]
-    z = random_fields(sheet, 2, 0.2)
+    grid = GRIDS[1]
+    z = random_fields(grid, 2, 0.2)
     z[0, 3], z[0, 7] = 1.3, -1.2
     z.requires_grad_(True)
-    terms = preference_terms(decoder(sheet), sheet, z, contour_points(silhouettes(z.detach(), sheet), 384))
+    terms = preference_terms(decoder(grid), grid, z, contour_points(silhouettes(z.detach(), grid), 384))
     assert terms.excess.tolist() == pytest.approx([(0.3**2 + 0.2**2) / 30, 0.0], rel=1e-4)
     (terms.excess + terms.match + terms.variation).sum().backward()
     assert z.grad is not None
@@ -116,28 +116,28 @@ def test_that_what_lies_outside_the_bounds_costs_and_is_led_back() -> None:
 
 
 def test_that_variation_and_match_have_gradients_that_lower_them() -> None:
-    sheet = SHEETS[2]
-    z = random_fields(sheet, 4).requires_grad_(True)
-    loop = contour_points(silhouettes(random_fields(sheet, 4, seed=5), sheet), 384)
+    grid = GRIDS[2]
+    z = random_fields(grid, 4).requires_grad_(True)
+    loop = contour_points(silhouettes(random_fields(grid, 4, seed=5), grid), 384)
     for part in ("match", "variation"):
-        before = getattr(preference_terms(decoder(sheet), sheet, z, loop), part)
+        before = getattr(preference_terms(decoder(grid), grid, z, loop), part)
         (slope,) = torch.autograd.grad(before.sum(), z)
         step = 0.02 * slope / slope.norm(dim=1, keepdim=True)
-        after = getattr(preference_terms(decoder(sheet), sheet, z - step, loop), part)
+        after = getattr(preference_terms(decoder(grid), grid, z - step, loop), part)
         assert bool((after < before).all())
 
 
 def test_that_the_fields_before_the_last_count_by_themselves() -> None:
-    sheet = SHEETS[0]
-    loop = contour_points(silhouettes(random_fields(sheet, 2), sheet), 384)
-    first, second, last = (random_fields(sheet, 2, 0.5, seed) for seed in (1, 2, 3))
+    grid = GRIDS[0]
+    loop = contour_points(silhouettes(random_fields(grid, 2), grid), 384)
+    first, second, last = (random_fields(grid, 2, 0.5, seed) for seed in (1, 2, 3))
     first[0, 0] = 1.5
-    terms, early = trail_gap(decoder(sheet), sheet, [first, second, last], loop)
-    measured = [preference_terms(decoder(sheet), sheet, z, loop) for z in (first, second, last)]
+    terms, early = trail_gap(decoder(grid), grid, [first, second, last], loop)
+    measured = [preference_terms(decoder(grid), grid, z, loop) for z in (first, second, last)]
     torch.testing.assert_close(terms.match, measured[2].match)
     assert float(measured[0].excess.max()) > 0
     expected = 0.5 * sum(float((one.match + one.excess).mean()) for one in measured[:2])
     assert float(early) == pytest.approx(expected, rel=1e-5)
-    alone, nothing = trail_gap(decoder(sheet), sheet, [last], loop)
+    alone, nothing = trail_gap(decoder(grid), grid, [last], loop)
     torch.testing.assert_close(alone.match, terms.match)
     assert float(nothing) == 0.0

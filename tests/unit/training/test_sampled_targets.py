@@ -9,13 +9,13 @@ import torch
 from small_networks import random_fields, random_network, silhouettes
 
 from kirigami_studio.generator.conditioning import contour_points, square_pose, turned
-from kirigami_studio.generator.sheet import Sheet
+from kirigami_studio.generator.deployed_grid import DeployedGrid
 from kirigami_studio.training.preference_loss import boundary_gap
 from kirigami_studio.training.sampled_targets import LOSS_POINTS, SEEN_POINTS, TargetSource
 
 pytestmark = pytest.mark.torch
 CPU = torch.device("cpu")
-OWN = Sheet(4, 4)
+OWN = DeployedGrid(4, 4)
 #: Contour points tell the turn of an outline to within this.
 NEAR = 0.01
 
@@ -83,22 +83,22 @@ def test_that_the_same_generator_draws_the_same_targets() -> None:
     assert not torch.equal(first.loop, other.loop)
 
 
-@pytest.mark.parametrize("sheet", [OWN, Sheet(5, 6, 0.7)], ids=str)
-def test_that_codes_keep_each_targets_own_preference_and_boundary(sheet: Sheet) -> None:
+@pytest.mark.parametrize("grid", [OWN, DeployedGrid(5, 6, 0.7)], ids=str)
+def test_that_codes_keep_each_targets_own_preference_and_boundary(grid: DeployedGrid) -> None:
     network = random_network(preference=True)
     assert network.prefer is not None
     torch.nn.init.normal_(network.prefer.weight)
-    made = source(drawn=4).targets(silhouettes(random_fields(sheet, 3), sheet), 2)
+    made = source(drawn=4).targets(silhouettes(random_fields(grid, 3), grid), 2)
     preference = torch.tensor([0.0, 0.25, 0.5, 0.75, 1.0])
-    code = made.code(network, sheet, preference)
+    code = made.code(network, grid, preference)
     shapes = [one[None] for part in made.seen for one in part]
     for row, (shape, asked) in enumerate(zip(shapes, preference, strict=True)):
-        alone = network.code(shape, torch.zeros(1), asked[None], sheet)
+        alone = network.code(shape, torch.zeros(1), asked[None], grid)
         torch.testing.assert_close(code.encoded[row], alone.encoded[0], atol=1e-4, rtol=1e-4)
         assert int(boundary_gap(code.loop[row].expand(5, -1, -1), made.loop).argmin()) == row
-    assert code.feedback is not None and code.feedback.sheet == sheet
+    assert code.feedback is not None and code.feedback.grid == grid
     torch.testing.assert_close(
-        made.code(network, sheet).encoded, made.code(network, sheet, torch.zeros(5)).encoded, atol=1e-5, rtol=1e-5
+        made.code(network, grid).encoded, made.code(network, grid, torch.zeros(5)).encoded, atol=1e-5, rtol=1e-5
     )
 
 

@@ -13,9 +13,9 @@ from small_networks import SMALL, random_fields, random_network, silhouettes
 
 from kirigami_studio.foundation.errors import ExportError, ModelError
 from kirigami_studio.generator.conditioning import contour_points
+from kirigami_studio.generator.deployed_grid import DeployedGrid
 from kirigami_studio.generator.flow import trail
 from kirigami_studio.generator.network import VelocityNetwork
-from kirigami_studio.generator.sheet import Sheet
 from kirigami_studio.generator.weights import Model, load_model, store_model
 from kirigami_studio.lattice.batched import BatchedLattice
 from kirigami_studio.training.preference_loss import PreferenceTerms, trail_gap
@@ -23,7 +23,7 @@ from kirigami_studio.training.train_aligned import GRIDS, LARGEST_PHI, AlignRun,
 
 pytestmark = pytest.mark.torch
 CPU = torch.device("cpu")
-OWN = Sheet(4, 4)
+OWN = DeployedGrid(4, 4)
 
 
 @pytest.fixture(scope="module")
@@ -180,11 +180,11 @@ def test_that_another_prior_other_settings_or_folders_are_refused(
 
 
 def test_that_sheets_follow_from_seed_and_step(tmp_path: Path, prior: Model, tiny: AlignSettings) -> None:
-    def sheets(settings: AlignSettings, steps: range) -> list[Sheet]:
+    def sheets(settings: AlignSettings, steps: range) -> list[DeployedGrid]:
         run = run_of(settings, tmp_path, prior)
         drawn = []
         for run.learner.step in steps:
-            drawn.append(run._sheet())
+            drawn.append(run._grid())
         return drawn
 
     many = sheets(tiny, range(400))

@@ -1,8 +1,8 @@
-"""How fields of one grid and one outline stand in for those of every other sheet.
+"""The grid and angle at which fields show a target, and the matrices between it and a network's own grid.
 
-A network draws on its own grid; a sheet may have any.  Fields go from one to the other by the lattice's parity-wise
-interpolation, which is linear, and outlines are read at as many stations, side by side, as the network's own has
-vertices.  On the network's own sheet both are the identity.
+A network draws on its own grid at phi = 0; a sheet may have any grid and angle.  Fields go from one to the other by
+the lattice's parity-wise interpolation, which is linear, and outlines are read at as many stations, side by side, as
+the network's own has vertices.  On the network's own grid at phi = 0 both are the identity.
 """
 
 from __future__ import annotations
@@ -20,8 +20,8 @@ from kirigami_studio.lattice.resize import resize_fields
 
 
 @dataclass(frozen=True, slots=True)
-class Sheet:
-    """What is to show the target.
+class DeployedGrid:
+    """The grid of a sheet and the angle at which it shows the target.
 
     Attributes
     ----------
@@ -46,20 +46,21 @@ class Sheet:
 
 
 class GridTransfer:
-    """Constant matrices between a network's own grid and a sheet.
+    """Constant matrices between a network's own grid and that of a sheet.
 
     Parameters
     ----------
     own : (rows, columns)
         The network's grid.
-    sheet : Sheet
+    deployed : DeployedGrid
+        Of the sheet.
     device : torch.device
     """
 
-    def __init__(self, own: tuple[int, int], sheet: Sheet, device: torch.device) -> None:
-        grid = sheet.rows, sheet.columns
+    def __init__(self, own: tuple[int, int], deployed: DeployedGrid, device: torch.device) -> None:
+        grid = deployed.rows, deployed.columns
         self.same_grid = own == grid
-        self.same_outline = self.same_grid and sheet.zipped
+        self.same_outline = self.same_grid and deployed.zipped
         self._up = self._down = self._stations = torch.empty(0, device=device)
         if not self.same_grid:
             self._up, self._down = (
@@ -67,7 +68,7 @@ class GridTransfer:
                 for table in (_resizing(own, grid), _resizing(grid, own))
             )
         if not self.same_outline:
-            table = _reading(Sheet(*own).side_vertices, sheet.side_vertices)
+            table = _reading(DeployedGrid(*own).side_vertices, deployed.side_vertices)
             self._stations = torch.tensor(table, dtype=torch.float32, device=device)
 
     def up(self, z: Tensor) -> Tensor:
@@ -83,16 +84,16 @@ class GridTransfer:
         return outline if self.same_outline else self._stations @ outline
 
 
-def grid_transfer(own: tuple[int, int], sheet: Sheet, device: torch.device) -> GridTransfer:
-    """The transfer to a sheet; it depends on the angle only by whether the edge hinges have zipped."""
-    return _transfer(own, sheet.rows, sheet.columns, sheet.zipped, device)
+def grid_transfer(own: tuple[int, int], deployed: DeployedGrid, device: torch.device) -> GridTransfer:
+    """The transfer to another grid; it depends on the angle only by whether the edge hinges have zipped."""
+    return _transfer(own, deployed.rows, deployed.columns, deployed.zipped, device)
 
 
 @lru_cache(maxsize=256)
 def _transfer(own: tuple[int, int], rows: int, columns: int, zipped: bool, device: torch.device) -> GridTransfer:
     # Kept for later: a table made while sampling, without gradients, must serve training too.
     with torch.inference_mode(False):
-        return GridTransfer(own, Sheet(rows, columns, 0.0 if zipped else 1.0), device)
+        return GridTransfer(own, DeployedGrid(rows, columns, 0.0 if zipped else 1.0), device)
 
 
 def _resizing(old: tuple[int, int], new: tuple[int, int]) -> FloatArray:
