@@ -10,4 +10,4 @@ from kirigami_studio.lattice.deployment import deploy
 
 def decoded(candidate: Candidate) -> Entry:
     """The card of a candidate at its own angle."""
-    return Entry(candidate, PosedDesign(deploy(candidate.field), candidate.score.transform, candidate.score.phi))
+    return Entry(candidate, PosedDesign(deploy(candidate.sheet.field), candidate.score.transform, candidate.score.phi))

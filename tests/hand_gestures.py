@@ -66,7 +66,7 @@ def chosen(window: MainWindow) -> Candidate:
 
 
 def ratio(window: MainWindow, void: Void) -> float:
-    return float(chosen(window).field.ratio[void])
+    return float(chosen(window).sheet.field.ratio[void])
 
 
 def settle(window: MainWindow, until: Until) -> None:

@@ -30,6 +30,7 @@ from kirigami_studio.gui.messages import Tone
 from kirigami_studio.gui.panels.settings_panel import POLISH
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.outlines import silhouettes
 from kirigami_studio.project import edits, store
 from kirigami_studio.project.document import Document
@@ -210,8 +211,8 @@ def write_project(path: Path, designs: int, grid: tuple[int, int]) -> None:
     """So many designs of so many voids; one score serves them all."""
     target, draw = silhouettes.load("heart"), np.random.default_rng(3)
     fields = [RatioField.from_log10(0.05 * draw.normal(size=grid)) for _ in range(designs)]
-    first = Candidate(fields[0], evaluate(deploy(fields[0]), target, 0.0), seed=3, index=0)
-    many = tuple(replace(first, field=field, index=index) for index, field in enumerate(fields))
+    first = Candidate(Sheet(fields[0]), evaluate(deploy(fields[0]), target, 0.0), seed=3, index=0)
+    many = tuple(replace(first, sheet=Sheet(field), index=index) for index, field in enumerate(fields))
     start = edits.set_target(Document(), target).document
     store.save(edits.set_candidates(start, many, {}).document, path)
 

@@ -66,7 +66,7 @@ def measure_nearness(
         before = best_of(request).candidates
         designs.append(before[0].score.siou)
         more = replace(request, seed=seed + 1)
-        asked = [more, *(replace(more, near=before[0].field, nearness=near) for near in NEARNESS)]
+        asked = [more, *(replace(more, near=before[0].sheet.field, nearness=near) for near in NEARNESS)]
         for name, one in zip(names, asked, strict=True):
             rows[name].append(_figures(before, best_of(one).candidates))
         report(number + 1, len(targets))
@@ -79,7 +79,7 @@ def measure_nearness(
 def _figures(before: Sequence[Candidate], found: Sequence[Candidate]) -> dict[str, float]:
     siou = [one.score.siou for one in found]
     return {
-        "distance": float(distances(before[0].field, [one.field for one in found]).mean()),
+        "distance": float(distances(before[0].sheet.field, [one.sheet.field for one in found]).mean()),
         "siou_mean": float(np.mean(siou)),
         "siou_best": float(max(siou)),
         "feasible": float(np.mean([one.score.feasible for one in found])),

@@ -20,6 +20,7 @@ from kirigami_studio.evaluate.silhouette import rasterise
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.foundation.paper import MASK_SIZE
+from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.read_image import outline_of_mask
 from kirigami_studio.pipeline.request import Request
@@ -157,8 +158,8 @@ def measure_robustness(
                 target = case.seen(shape, np.random.default_rng([seed, number]))
                 disturbed = Request(target, grid, k=1, seed=seed, variant=variant, steps=steps, polish=polish)
                 wanted = Request(clean, grid, k=1, seed=seed, variant=variant, steps=steps)
-                fields = (best_of(disturbed).best.field,) if polish else sample(disturbed)
-                row.append(scored(wanted, fields, 0)[0].score)
+                sheets = [best_of(disturbed).best.sheet] if polish else [Sheet(field) for field in sample(disturbed)]
+                row.append(scored(wanted, sheets, 0)[0].score)
                 report(done := done + 1, total)
             scores[name].append(row)
     siou = {name: np.array([[score.siou for score in row] for row in rows]) for name, rows in scores.items()}

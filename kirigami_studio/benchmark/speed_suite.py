@@ -13,6 +13,7 @@ from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.generator.weights import load_model
 from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.silhouettes import load, names
 from kirigami_studio.pipeline.pool import Pool, worker_count
@@ -122,15 +123,15 @@ def polish_timings() -> dict[str, object]:
     """
     target = load("heart")
     request = Request(target, k=K, polish=STEPS)
-    fields = sample(request)
+    sheets = [Sheet(field) for field in sample(request)]
     with one_blas_thread():
-        samples = scored(request, fields, 0)
+        samples = scored(request, sheets, 0)
         seconds = [_fit_seconds(candidate, target) for candidate in samples[:8]]
         figures: dict[str, object] = {
             "step_ms": 1e3 * _step_seconds(samples[0], target),
             "step_with_corrections_ms": 1e3 * float(np.median(seconds)) / STEPS,
             "fit_s": float(np.median(seconds)),
-            "score_32_ms": 1e3 * _fastest(lambda: scored(request, fields, 0)),
+            "score_32_ms": 1e3 * _fastest(lambda: scored(request, sheets, 0)),
             "fit_24_s": _large_fit_seconds(target),
         }
     return {**figures, "polish_32_s": _run_seconds(request), "workers": worker_count()}
@@ -138,8 +139,8 @@ def polish_timings() -> dict[str, object]:
 
 def _step_seconds(candidate: Candidate, target: Outline) -> float:
     """One step without corrections: derivative, normal equations, solution and the decoding of the trial."""
-    rows, columns = candidate.field.rows, candidate.field.columns
-    model, z = OutlineModel(rows, columns, 0.0), candidate.field.log10.ravel()
+    rows, columns = candidate.sheet.grid
+    model, z = OutlineModel(rows, columns, 0.0), candidate.sheet.field.log10.ravel()
     objective = Objective(model, BoundaryTarget.of(target, SAMPLES), PreferenceTerms(Preference(), z, rows, columns))
     pose = candidate.score.transform
     look = objective.look(np.concatenate([z, [math.log(pose.scale), pose.angle, *pose.shift]]))
@@ -153,7 +154,7 @@ def _step_seconds(candidate: Candidate, target: Outline) -> float:
 
 
 def _fit_seconds(candidate: Candidate, target: Outline) -> float:
-    return _seconds(lambda: polish(candidate.field, target, 0.0, STEPS, pose=candidate.score.transform))
+    return _seconds(lambda: polish(candidate.sheet.field, target, 0.0, STEPS, pose=candidate.score.transform))
 
 
 def _large_fit_seconds(target: Outline) -> float:

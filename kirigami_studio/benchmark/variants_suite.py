@@ -19,6 +19,7 @@ from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.generator.sampler import one_pose, pose_angle, sample_fields
 from kirigami_studio.generator.weights import load_model
 from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.pipeline.rank import ranked
 from kirigami_studio.pipeline.request import Request
@@ -179,7 +180,7 @@ def measure_spread(
             request = Request(target, grid, k=k, seed=seed, variant=name, steps=steps)
             for poses, angle in POSES.items():
                 fields = sample_fields(load_model(name), target, grid, k, seed, steps, poses=angle)
-                found[name][poses].append(spread_of(scored(request, fields, 0)))
+                found[name][poses].append(spread_of(scored(request, [Sheet(field) for field in fields], 0)))
                 report(done := done + 1, total)
     settings = {"targets": len(targets), "seed": seed, "k": k, "steps": steps, "grid": list(grid), "alike": ALIKE}
     compared = {
@@ -201,10 +202,10 @@ def spread_of(candidates: Sequence[Candidate]) -> dict[str, float]:
         :func:`clusters_of`; ``siou_first``: of candidate 0; ``siou_mean``; ``siou_best``: of the best by the program's
         own ranking; ``gap``: the best's lead over the mean.
     """
-    z = np.array([candidate.field.log10.ravel() for candidate in candidates])
+    z = np.array([candidate.sheet.field.log10.ravel() for candidate in candidates])
     deviation = z.std(axis=0, ddof=1)
     first, second = np.triu_indices(len(z), 1)
-    fields = [candidate.field for candidate in candidates]
+    fields = [candidate.sheet.field for candidate in candidates]
     sheets = np.concatenate([distances(field, fields[place + 1 :]) for place, field in enumerate(fields[:-1])])
     order = ranked(candidates)
     siou = np.array([candidate.score.siou for candidate in candidates])
@@ -213,7 +214,7 @@ def spread_of(candidates: Sequence[Candidate]) -> dict[str, float]:
         "std_mean": float(deviation.mean()),
         "distance": float(np.sqrt(np.square(z[first] - z[second]).mean(axis=1)).mean()),
         "sheet_distance": float(sheets.mean()),
-        "clusters": float(clusters_of([candidate.field for candidate in order])),
+        "clusters": float(clusters_of([candidate.sheet.field for candidate in order])),
         "siou_first": float(siou[0]),
         "siou_mean": float(siou.mean()),
         "siou_best": order[0].score.siou,

@@ -97,14 +97,14 @@ def summary(result: Result) -> dict[str, object]:
 def candidate_json(candidate: Candidate) -> dict[str, object]:
     """One entry of ``candidates``: the ratios, the score and the provenance; a trimmed one's other ratios and IoU."""
     entry: dict[str, object] = {
-        "ratio": candidate.field.ratio,
+        "ratio": candidate.sheet.field.ratio,
         **candidate.score.to_json(),
         "seed": candidate.seed,
         "index": candidate.index,
         "polished": candidate.polished,
     }
     if candidate.trim is not None:
-        entry |= {"trimmed_iou": candidate.trim.iou, "trimmed_ratio": candidate.trim.field.ratio}
+        entry |= {"trimmed_iou": candidate.trim.iou, "trimmed_ratio": candidate.trim.sheet.field.ratio}
     return entry
 
 

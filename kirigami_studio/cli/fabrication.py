@@ -243,7 +243,7 @@ def _with_hinges(saved: CutOptions, given: dict[str, Any]) -> CutOptions:
 
 def _check_hinges(candidate: Candidate, options: CutOptions) -> None:
     """Refuse numbers of connectors that the design does not have."""
-    count = cut_table(candidate.field.rows, candidate.field.columns).hinge_count
+    count = cut_table(*candidate.sheet.grid).hinge_count
     beyond = [hinge for hinge in (*(hinge for hinge, _ in options.hinge_mm), *options.removed) if hinge >= count]
     if beyond:
         raise UsageError("export.no_such_connector", number=beyond[0], last=count - 1)

@@ -249,7 +249,7 @@ class StateSheet(BoardStates):
     def before_and_after(self) -> None:
         """The first design that polishing has changed, as it was drawn."""
         controller, stage = self.window.controller, self.window.stage
-        drawn = [candidate for candidate in controller.document.candidates if candidate.sampled_field is not None]
+        drawn = [candidate for candidate in controller.document.candidates if candidate.sampled_sheet is not None]
         if not drawn:
             raise SessionError("Polishing changed no design.")
         controller.choose(drawn[0])

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from dataclasses import field as dataclass_field
+from dataclasses import field as attribute
 from enum import Enum
 
 from kirigami_studio.evaluate.score import Score
 from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.evaluate.trimming import Trim
-from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.lattice.sheet import Sheet
 
 
 class Origin(Enum):
@@ -23,11 +23,11 @@ class Origin(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Candidate:
-    """A ratio field, its score and where it came from.
+    """A sheet, its score and where it came from.
 
     Attributes
     ----------
-    field : RatioField
+    sheet : Sheet
     score : Score
         Against the request's target at the request's angle.
     seed : int
@@ -36,8 +36,8 @@ class Candidate:
         Its place in that run's sampling order.
     polished : bool
         Whether a fit on the exact geometry has improved it after sampling.
-    sampled_field : RatioField or None
-        The field as it was sampled, where a fit has improved it.
+    sampled_sheet : Sheet or None
+        The sheet as it was sampled, where a fit has improved it.
     trim : Trim or None
         The same design fitted to cover the target and trimmed, where that was asked for; its score is its own.
     variant : str
@@ -48,28 +48,28 @@ class Candidate:
         design is the same whatever is known of its run: this takes no part in comparisons.
     """
 
-    field: RatioField
+    sheet: Sheet
     score: Score
     seed: int
     index: int
     polished: bool = False
-    sampled_field: RatioField | None = None
+    sampled_sheet: Sheet | None = None
     trim: Trim | None = None
     variant: str = ""
     origin: Origin = Origin.SAMPLED
-    made_with: tuple[tuple[str, str], ...] = dataclass_field(default=(), compare=False)
+    made_with: tuple[tuple[str, str], ...] = attribute(default=(), compare=False)
 
     @property
-    def final_field(self) -> RatioField:
-        """The ratios that are shown and cut: those that were fitted for trimming, if the candidate is trimmed."""
-        return self.field if self.trim is None else self.trim.field
+    def final_sheet(self) -> Sheet:
+        """The sheet that is shown and cut: the one that was fitted for trimming, if the candidate is trimmed."""
+        return self.sheet if self.trim is None else self.trim.sheet
 
     @property
     def final_pose(self) -> Similarity:
-        """Where the final field's layout lies on the target."""
+        """Where the final sheet's layout lies on the target."""
         return self.score.transform if self.trim is None else self.trim.pose
 
     @property
     def final_phi(self) -> float:
-        """Angle (radians) at which the final field shows the target."""
+        """Angle (radians) at which the final sheet shows the target."""
         return self.score.phi if self.trim is None else self.trim.phi

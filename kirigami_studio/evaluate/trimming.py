@@ -30,7 +30,8 @@ from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.foundation.arrays import BoolArray, ComplexArray, FloatArray
 from kirigami_studio.foundation.errors import KirigamiError, UsageError
 from kirigami_studio.lattice.deployment import Deployment, check_phi
-from kirigami_studio.lattice.ratio_field import RatioField, frozen
+from kirigami_studio.lattice.ratio_field import frozen
+from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.outlines.outline import Outline
 
 #: Depth (unit cells) of the material that stays at every hinge unless something else is asked for.
@@ -41,11 +42,11 @@ SMALLEST_KEEP, LARGEST_KEEP = 0.02, 0.4
 
 @dataclass(frozen=True, slots=True)
 class Trim:
-    """A trimmed design; two are equal when field, angle, pose and depth are, because the rest follows from them.
+    """A trimmed design; two are equal when sheet, angle, pose and depth are, because the rest follows from them.
 
     Attributes
     ----------
-    field : RatioField
+    sheet : Sheet
     phi : float, radians
         The angle at which the panels were cut.
     pose : Similarity
@@ -62,7 +63,7 @@ class Trim:
         Removed part of the sheet's area.
     """
 
-    field: RatioField
+    sheet: Sheet
     phi: float
     pose: Similarity
     keep: float
@@ -99,8 +100,8 @@ def trim(
         The outline crosses itself at ``phi``, so that it has no outside.
     """
     phi, keep = check_phi(phi), check_keep(keep)
-    sheet = Polygon(deployment.outline(phi))
-    if not sheet.is_valid:
+    silhouette = Polygon(deployment.outline(phi))
+    if not silhouette.is_valid:
         raise KirigamiError("trim.crosses_itself")
     place = Polygon(pose.inverse().apply(target.points))
     panels = edge_panels(deployment.field.rows, deployment.field.columns)
@@ -108,18 +109,18 @@ def trim(
     targets = polygons(as_points(_brought_back(deployment, panels, phi, shapely.get_coordinates(place)[:-1])))
     kept = kept_panels(corners, panels.hinged, targets, keep)
     kept = with_pockets(kept, corners, targets, _inside(deployment, panels))
-    shared = sheet.intersection(place).area
+    shared = silhouette.intersection(place).area
     parts: list[FloatArray | None] = [None] * deployment.topology.panel_nodes[..., 0].size
     for index, shape in zip(panels.index, kept.shapes, strict=True):
         parts[index] = None if shape is None else frozen(_ring(shape))
     return Trim(
-        field=deployment.field,
+        sheet=deployment.sheet,
         phi=phi,
         pose=pose,
         keep=keep,
         kept=tuple(parts),
-        iou=_iou(shared, sheet.area, place.area, kept),
-        untrimmed_iou=float(shared / (sheet.area + place.area - shared)),
+        iou=_iou(shared, silhouette.area, place.area, kept),
+        untrimmed_iou=float(shared / (silhouette.area + place.area - shared)),
         removed_share=float(kept.removed.sum() / np.prod(np.ptp(deployment.compact, axis=0))),
     )
 

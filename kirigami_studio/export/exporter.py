@@ -60,8 +60,8 @@ class ExportJob:
 
     @classmethod
     def of(cls, candidate: Candidate, target: FloatArray | None, plan: CutPlan | None = None) -> ExportJob:
-        """The job of a candidate with its final field, pose and angle, trimmed if it is."""
-        motion = deploy(candidate.final_field)
+        """The job of a candidate with its final sheet, pose and angle, trimmed if it is."""
+        motion = deploy(candidate.final_sheet)
         return cls(motion, candidate.final_phi, plan, target, candidate.final_pose, trim=candidate.trim)
 
     @property

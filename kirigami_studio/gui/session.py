@@ -86,7 +86,7 @@ class DesignCache:
         """The card of a candidate, posed for the angle it was scored or trimmed at; decodes it when it must."""
         if candidate not in self._entries:
             if candidate not in self._motions:
-                self.put(candidate, deploy(candidate.final_field))
+                self.put(candidate, deploy(candidate.final_sheet))
             motion = self._motions[candidate]
             design = PosedDesign(motion, candidate.final_pose, candidate.final_phi, candidate.trim)
             self._entries[candidate] = Entry(candidate, design)

@@ -21,6 +21,7 @@ from kirigami_studio.foundation.arrays import BoolArray, FloatArray
 from kirigami_studio.foundation.errors import Cancelled, FabricationError, KirigamiError
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.pipeline.rank import improves
 from kirigami_studio.pipeline.threads import one_blas_thread
@@ -43,7 +44,7 @@ class Trimmed:
     Attributes
     ----------
     candidate : Candidate
-        With its trim: another field in another pose, beside its own.
+        With its trim: another sheet in another pose, beside its own.
     evaluations : int
         Layouts decoded on the way.
     """
@@ -54,7 +55,7 @@ class Trimmed:
 
 @dataclass(frozen=True, slots=True)
 class Refit:
-    """What a fit from a design's present field has found.
+    """What a fit from a design's present sheet has found.
 
     Attributes
     ----------
@@ -73,19 +74,19 @@ class Refit:
 
 def sampled(candidate: Candidate, target: Outline) -> Candidate | None:
     """The candidate as the generator sampled it, in the pose that suits it best; None where no fit has changed it."""
-    field = candidate.sampled_field
-    if field is None:
+    sheet = candidate.sampled_sheet
+    if sheet is None:
         return None
     with one_blas_thread():
-        score = evaluate(deploy(field), target, candidate.score.phi)
-    return replace(candidate, field=field, score=score, polished=False, sampled_field=None, trim=None)
+        score = evaluate(deploy(sheet), target, candidate.score.phi)
+    return replace(candidate, sheet=sheet, score=score, polished=False, sampled_sheet=None, trim=None)
 
 
-def rescored(candidate: Candidate, field: RatioField, target: Outline) -> Candidate:
-    """The candidate with another field, changed by hand, near its present pose; a trim belonged to the old field."""
+def rescored(candidate: Candidate, sheet: Sheet, target: Outline) -> Candidate:
+    """The candidate with another sheet, changed by hand, near its present pose; a trim belonged to the old sheet."""
     with one_blas_thread():
-        score = evaluate_near(deploy(field), target, candidate.score.phi, candidate.final_pose)
-    return replace(candidate, field=field, score=score, polished=False, trim=None, origin=Origin.EDITED)
+        score = evaluate_near(deploy(sheet), target, candidate.score.phi, candidate.final_pose)
+    return replace(candidate, sheet=sheet, score=score, polished=False, trim=None, origin=Origin.EDITED)
 
 
 def keep_for_connectors(
@@ -151,7 +152,7 @@ def trimmed(
     """
     score = candidate.score
     with one_blas_thread():
-        cover = fit_cover(candidate.field, target, score.phi, COVER_STEPS, score.transform, keep, cancel, locked)
+        cover = fit_cover(candidate.sheet.field, target, score.phi, COVER_STEPS, score.transform, keep, cancel, locked)
     return Trimmed(replace(candidate, trim=cover.trim), cover.fit.evaluations + 1)
 
 
@@ -163,7 +164,7 @@ def refitted(
     keep: Callable[[], float],
     cancel: Callable[[], bool],
 ) -> Refit:
-    """Fit a candidate on the exact geometry from its present field, and trim it again if it is trimmed.
+    """Fit a candidate on the exact geometry from its present sheet, and trim it again if it is trimmed.
 
     Parameters
     ----------
@@ -184,17 +185,18 @@ def refitted(
     Cancelled
         ``cancel`` returned true.
     """
-    table = np.zeros(candidate.field.ratio.shape, dtype=np.bool_)
+    table = np.zeros(candidate.sheet.grid, dtype=np.bool_)
     for void in locked:
         table[void] = True
-    start = RatioField(np.where(table, candidate.final_field.ratio, candidate.field.ratio))
+    start = RatioField(np.where(table, candidate.final_sheet.field.ratio, candidate.sheet.field.ratio))
     score, preference = candidate.score, PREFERENCES[prefer]
     with one_blas_thread():
         fit = polish(start, target, score.phi, REFIT_STEPS, preference, score.transform, cancel, locked=table)
         _stop_if(cancel)
-        found = evaluate_near(deploy(fit.field), target, score.phi, fit.pose)
-    first = candidate.sampled_field or candidate.field
-    fitted = replace(candidate, field=fit.field, score=found, polished=True, sampled_field=first, trim=None)
+        sheet = candidate.sheet.with_field(fit.field)
+        found = evaluate_near(deploy(sheet), target, score.phi, fit.pose)
+    first = candidate.sampled_sheet or candidate.sheet
+    fitted = replace(candidate, sheet=sheet, score=found, polished=True, sampled_sheet=first, trim=None)
     better = improves(fitted, candidate, prefer)
     if candidate.trim is None:
         return Refit(fitted, better)

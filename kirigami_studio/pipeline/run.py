@@ -13,6 +13,7 @@ from kirigami_studio.foundation.errors import Cancelled
 from kirigami_studio.foundation.words import mark, tr
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.pipeline.events import (
     CandidateFound,
@@ -100,7 +101,7 @@ def run(request: Request, cancel: Callable[[], bool] = never, pool: Pool | None 
     yield Progress(0, request.k, tr("Loading the generator"))
     fields = sample(request)
     work.evaluations += request.k * decodings(request)
-    yield from work.score(fields)
+    yield from work.score([Sheet(field) for field in fields])
     if request.polish:
         yield from work.polish()
     if request.search:
@@ -170,15 +171,15 @@ class _Work:
         self.evaluations = 0
         self.cut_short = False
 
-    def score(self, fields: Sequence[RatioField]) -> Iterator[Event]:
+    def score(self, sheets: Sequence[Sheet]) -> Iterator[Event]:
         """Score all samples, the first batch even when the budget is used up."""
-        total = len(fields)
+        total = len(sheets)
         for start in range(0, total, SCORED_TOGETHER):
             self.watch.check("run.stopped_scoring", start, total)
             if start and self.watch.expired():
                 self.cut_short = True
                 return
-            for candidate in scored(self.request, fields[start : start + SCORED_TOGETHER], start):
+            for candidate in scored(self.request, sheets[start : start + SCORED_TOGETHER], start):
                 self.found.append(candidate)
                 self.evaluations += 1
                 yield CandidateFound(candidate.index, candidate)
@@ -214,7 +215,7 @@ class _Work:
 
     def search(self) -> Iterator[Event]:
         """Look for a better design from the best that differ and from scratch."""
-        starts = tuple(candidate.field for candidate in worth_a_fit(self.found)[:SEARCH_STARTS])
+        starts = tuple(candidate.sheet.field for candidate in worth_a_fit(self.found)[:SEARCH_STARTS])
         for report in self._carried_out([SearchTask(self.request.k, starts)], SEARCHING, 0, 1):
             if isinstance(report, Progress):
                 yield report

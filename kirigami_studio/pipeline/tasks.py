@@ -11,6 +11,7 @@ from kirigami_studio.evaluate.score import evaluate_many
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.pipeline.rank import MILDER, improves
 from kirigami_studio.pipeline.redesign import trimmed
 from kirigami_studio.pipeline.request import Request
@@ -58,7 +59,7 @@ class PolishTask:
         while prefer is not None:
             with one_blas_thread():
                 fit = polish(
-                    candidate.field,
+                    candidate.sheet.field,
                     request.target,
                     request.phi,
                     self.steps,
@@ -67,10 +68,12 @@ class PolishTask:
                     stopped,
                     least_panel=request.least_panel,
                 )
-            (better,) = scored(request, [fit.field], candidate.index, candidate.origin, fitted=True)
+            (better,) = scored(
+                request, [candidate.sheet.with_field(fit.field)], candidate.index, candidate.origin, fitted=True
+            )
             evaluations += fit.evaluations + 1
             if improves(better, candidate, request.prefer):
-                return Answer(replace(better, sampled_field=candidate.sampled_field or candidate.field), evaluations)
+                return Answer(replace(better, sampled_sheet=candidate.sampled_sheet or candidate.sheet), evaluations)
             prefer = MILDER.get(prefer)
         return Answer(None, evaluations)
 
@@ -95,7 +98,7 @@ class SearchTask:
                 PREFERENCES[request.prefer],
                 request.least_panel,
             )
-        (found,) = scored(request, [fits[0].field], self.index, Origin.SEARCHED, fitted=True)
+        (found,) = scored(request, [Sheet(fits[0].field)], self.index, Origin.SEARCHED, fitted=True)
         return Answer(found, fits[0].evaluations + 1)
 
 
@@ -116,21 +119,21 @@ class TrimTask:
 
 def scored(
     request: Request,
-    fields: Sequence[RatioField],
+    sheets: Sequence[Sheet],
     first: int,
     origin: Origin | None = None,
     *,
     fitted: bool = False,
 ) -> list[Candidate]:
-    """Decode fields exactly and score them against the request's target; their numbers count up from ``first``.
+    """Decode sheets exactly and score them against the request's target; their numbers count up from ``first``.
 
     By default they are samples, near another design where the request names one.
     """
     if origin is None:
         origin = Origin.SAMPLED if request.near is None else Origin.RESAMPLED
     with one_blas_thread():
-        scores = evaluate_many([deploy(field) for field in fields], request.target, request.phi)
+        scores = evaluate_many([deploy(sheet) for sheet in sheets], request.target, request.phi)
     return [
-        Candidate(field, score, request.seed, first + place, polished=fitted, variant=request.variant, origin=origin)
-        for place, (field, score) in enumerate(zip(fields, scores, strict=True))
+        Candidate(sheet, score, request.seed, first + place, polished=fitted, variant=request.variant, origin=origin)
+        for place, (sheet, score) in enumerate(zip(sheets, scores, strict=True))
     ]

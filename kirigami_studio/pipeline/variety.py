@@ -52,8 +52,8 @@ def worth_a_fit(candidates: Sequence[Candidate]) -> tuple[Candidate, ...]:
     first: list[Candidate] = []
     later: list[Candidate] = []
     for candidate in ranked(candidates):
-        chosen = [other.field for other in (*first, *later)]
-        nearest = distances(candidate.field, chosen).min() if chosen else np.inf
+        chosen = [other.sheet.field for other in (*first, *later)]
+        nearest = distances(candidate.sheet.field, chosen).min() if chosen else np.inf
         if nearest >= DUPLICATE:
             (first if nearest >= ALIKE else later).append(candidate)
     return (*first, *later)
@@ -67,11 +67,11 @@ def distinct(candidates: Sequence[Candidate], others: Sequence[Candidate]) -> tu
     """
     if not candidates:
         return ()
-    known = np.array([one.field.log10.ravel() for one in (*others, *candidates)])
+    known = np.array([one.sheet.field.log10.ravel() for one in (*others, *candidates)])
     size = np.square(known).sum(axis=1)
     own = size[len(others) :]
     nearest = np.full((len(candidates), len(known)), np.inf)
-    ways = [turns(one.field) for one in candidates]
+    ways = [turns(one.sheet.field) for one in candidates]
     for number in range(len(ways[0])):
         turned = np.array([way[number].ravel() for way in ways])
         np.minimum(nearest, own[:, None] + size - 2.0 * (turned @ known.T), out=nearest)

@@ -9,6 +9,7 @@ from typing import Any
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.errors import ProjectError
 from kirigami_studio.foundation.words import tr, tr_n
+from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.design_facts import joined_provenance, with_run
 from kirigami_studio.project.document import Document, Mark
@@ -69,13 +70,13 @@ class NewDesigns:
 def add_candidates(document: Document, new: NewDesigns, rank: RankKey, limit: int = LARGEST_COLLECTION) -> Edit:
     """Join the designs of another run for the same target, grid and angle to those there are.
 
-    All are ranked together; marks stay with their designs, and the same design stays chosen.  A field that is there
+    All are ranked together; marks stay with their designs, and the same design stays chosen.  A sheet that is there
     already is not added.  Where more than ``limit`` would come together, the worst rejected designs go first, then the
     worst unmarked ones; pinned designs and the chosen one stay.
     """
     marked = dict(zip(document.candidates, document.marks, strict=True))
-    fields = {candidate.field for candidate in document.candidates}
-    added = with_run(_without_repeats(new.candidates, fields), new.provenance)
+    sheets = {candidate.sheet for candidate in document.candidates}
+    added = with_run(_without_repeats(new.candidates, sheets), new.provenance)
     present = with_run(document.candidates, document.provenance)
     kept = _within([*present, *added], marked, document.candidate, rank, limit)
     changed = _collected(document, kept, marked, document.candidate)
@@ -94,8 +95,8 @@ def renew_candidates(document: Document, new: NewDesigns, rank: RankKey, chosen:
     """
     known = with_run(document.candidates, document.provenance)
     pinned = [one for one, mark in zip(known, document.marks, strict=True) if mark is Mark.PINNED]
-    fields = {candidate.field for candidate in pinned}
-    fresh = with_run(_without_repeats(new.candidates, fields), new.provenance)
+    sheets = {candidate.sheet for candidate in pinned}
+    fresh = with_run(_without_repeats(new.candidates, sheets), new.provenance)
     found = sorted([*pinned, *fresh], key=rank)
     joined = joined_provenance(document.provenance, new.provenance) if pinned else new.provenance
     edit = set_candidates(document, found, joined, new.target)
@@ -106,12 +107,12 @@ def renew_candidates(document: Document, new: NewDesigns, rank: RankKey, chosen:
     return Edit(label, changed)
 
 
-def _without_repeats(found: Iterable[Candidate], fields: Iterable[object]) -> list[Candidate]:
-    """Those whose field is neither among ``fields`` nor that of an earlier one."""
-    seen, fresh = set(fields), []
+def _without_repeats(found: Iterable[Candidate], sheets: Iterable[Sheet]) -> list[Candidate]:
+    """Those whose sheet is neither among ``sheets`` nor that of an earlier one."""
+    seen, fresh = set(sheets), []
     for candidate in found:
-        if candidate.field not in seen:
-            seen.add(candidate.field)
+        if candidate.sheet not in seen:
+            seen.add(candidate.sheet)
             fresh.append(candidate)
     return fresh
 

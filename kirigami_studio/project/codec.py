@@ -20,6 +20,7 @@ from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import ProjectError
 from kirigami_studio.lattice.deployment import check_phi, deploy
 from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.outlines.nodes import Kind, Nodes
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.document import Document, Mark, Void
@@ -48,11 +49,11 @@ def encode(document: Document) -> dict[str, bytes]:
         "locked": [list(void) for void in sorted(document.locked)],
     }
     members = {DESIGN: json.dumps(design, indent=1, allow_nan=False).encode()}
-    sampled = [entry.sampled_field for entry in document.candidates if entry.sampled_field is not None]
-    for name, tables in ((RATIOS, [entry.field for entry in document.candidates]), (SAMPLED, sampled)):
-        if tables:
+    sampled = [entry.sampled_sheet for entry in document.candidates if entry.sampled_sheet is not None]
+    for name, sheets in ((RATIOS, [entry.sheet for entry in document.candidates]), (SAMPLED, sampled)):
+        if sheets:
             stream = io.BytesIO()
-            stacked = np.stack([field.ratio for field in tables]).astype("<f8")
+            stacked = np.stack([sheet.field.ratio for sheet in sheets]).astype("<f8")
             np.lib.format.write_array(stream, stacked, version=(1, 0), allow_pickle=False)
             members[name] = stream.getvalue()
     return members
@@ -215,23 +216,23 @@ def _candidate_json(entry: Candidate, runs: list[tuple[tuple[str, str], ...]]) -
         "variant": entry.variant,
         "origin": entry.origin.value,
         "run": runs.index(entry.made_with) if entry.made_with else None,
-        "sampled": entry.sampled_field is not None,
+        "sampled": entry.sampled_sheet is not None,
         "score": entry.score.to_json(),
         # What was cut off follows from these; it is cut again on reading.
         "trim": None
         if cut is None
-        else {"ratio": cut.field.ratio.tolist(), "pose": cut.pose.to_json(), "phi": cut.phi, "keep": cut.keep},
+        else {"ratio": cut.sheet.field.ratio.tolist(), "pose": cut.pose.to_json(), "phi": cut.phi, "keep": cut.keep},
     }
 
 
 def _candidate(record: Record, field: RatioField, sampled: RatioField | None, target: Outline | None) -> Candidate:
     return Candidate(
-        field=field,
+        sheet=Sheet(field),
         score=_score(record.record("score")),
         seed=record.whole("seed"),
         index=record.whole("index"),
         polished=record.flag("polished"),
-        sampled_field=sampled,
+        sampled_sheet=None if sampled is None else Sheet(sampled),
         trim=_trim(record.record("trim"), target) if record.holds("trim") and target is not None else None,
         variant=record.text("variant"),
         origin=one_of(Origin, record.text("origin")),

@@ -23,7 +23,7 @@ def plan_of(candidate: Candidate, settings: FabricationSettings, deployment: Dep
     candidate : Candidate
     settings : FabricationSettings
     deployment : Deployment, optional
-        Of the candidate's final field, if it is known already.
+        Of the candidate's final sheet, if it is known already.
 
     Raises
     ------
@@ -32,7 +32,7 @@ def plan_of(candidate: Candidate, settings: FabricationSettings, deployment: Dep
     """
     trim = candidate.trim
     return plan_cuts(
-        deployment or deploy(candidate.final_field),
+        deployment or deploy(candidate.final_sheet),
         width_mm=settings.width_mm,
         connector_mm=settings.connector_mm,
         kerf_mm=settings.kerf_mm,

@@ -50,7 +50,7 @@ def design_facts(document: Document, candidate: Candidate) -> dict[str, str]:
         facts["model"] = variant
     if variant in by_model:
         facts["model_sha256"] = by_model[variant]
-    rows, columns = candidate.field.rows, candidate.field.columns
+    rows, columns = candidate.sheet.grid
     trim = candidate.trim
     return facts | {
         "seed": str(candidate.seed),

@@ -70,7 +70,7 @@ class Document:
         object.__setattr__(self, "provenance", MappingProxyType(dict(self.provenance)))
         if self.candidates and self.target is None:
             raise ProjectError("project.designs_without_target")
-        grids = sorted({candidate.field.ratio.shape for candidate in self.candidates})
+        grids = sorted({candidate.sheet.grid for candidate in self.candidates})
         if len(grids) > 1:
             (rows, columns), (other_rows, other_columns) = grids[:2]
             raise ProjectError(
@@ -91,7 +91,7 @@ class Document:
             raise ProjectError("project.marks_do_not_match", marks=len(marks), designs=count)
         object.__setattr__(self, "marks", marks)
         object.__setattr__(self, "locked", frozenset(self.locked))
-        rows, columns = self.candidates[0].field.ratio.shape if self.candidates else (0, 0)
+        rows, columns = self.candidates[0].sheet.grid if self.candidates else (0, 0)
         outside = sorted(void for void in self.locked if not (0 <= void[0] < rows and 0 <= void[1] < columns))
         if outside:
             row, column = outside[0]

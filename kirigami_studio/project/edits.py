@@ -186,8 +186,8 @@ def set_candidates(
 def _fabrication_for(document: Document, found: tuple[Candidate, ...]) -> FabricationSettings:
     """The fabrication settings for new designs; on another grid without choices for single connectors."""
     settings, options = document.fabrication, document.fabrication.options
-    before = {candidate.field.ratio.shape for candidate in document.candidates}
-    after = {candidate.field.ratio.shape for candidate in found}
+    before = {candidate.sheet.grid for candidate in document.candidates}
+    after = {candidate.sheet.grid for candidate in found}
     if before == after or not (options.hinge_mm or options.removed):
         return settings
     return replace(settings, options=replace(options, hinge_mm=(), removed=()))
@@ -233,8 +233,8 @@ def with_candidate(document: Document, index: int, candidate: Candidate) -> tupl
 
 def moves_locked(document: Document, before: Candidate, after: Candidate) -> bool:
     """Whether a change gives another ratio to a void that is locked now, by the ratios that are shown and cut."""
-    shown = [one.final_field for one in (before, after)]
-    return any(shown[0].ratio[void] != shown[1].ratio[void] for void in document.locked)
+    shown = [one.final_sheet for one in (before, after)]
+    return any(shown[0].field.ratio[void] != shown[1].field.ratio[void] for void in document.locked)
 
 
 def lock_voids(document: Document, voids: Iterable[Void], on: bool) -> Edit:
@@ -252,7 +252,7 @@ def lock_voids(document: Document, voids: Iterable[Void], on: bool) -> Edit:
 
 def lock_all(document: Document, on: bool) -> Edit:
     """Lock every void of the grid, or none."""
-    rows, columns = document.candidates[0].field.ratio.shape if document.candidates else (0, 0)
+    rows, columns = document.candidates[0].sheet.grid if document.candidates else (0, 0)
     every = frozenset((row, column) for row in range(rows) for column in range(columns))
     label = tr("Lock all voids") if on else tr("Unlock all voids")
     return Edit(label, replace(document, locked=every if on else frozenset()))

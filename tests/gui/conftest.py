@@ -20,6 +20,7 @@ from kirigami_studio.gui.look.theme import LIGHT
 from kirigami_studio.gui.main_window import MainWindow
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.outlines import silhouettes
 from kirigami_studio.pipeline.rank import ranked
 from kirigami_studio.project import edits, store
@@ -119,7 +120,7 @@ def designs() -> Document:
     found = []
     for index in range(3):
         field = RatioField.from_log10(0.08 * (index + 1) * draw.normal(size=(4, 5)))
-        found.append(Candidate(field, evaluate(deploy(field), target, 0.0), seed=7, index=index))
+        found.append(Candidate(Sheet(field), evaluate(deploy(field), target, 0.0), seed=7, index=index))
     start = edits.set_target(Document(), target).document
     return edits.set_candidates(start, ranked(found), {}).document
 

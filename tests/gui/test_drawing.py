@@ -42,7 +42,7 @@ def contrast(one: str, other: str) -> float:
 @pytest.fixture
 def posed(designs: Document) -> PosedDesign:
     candidate = designs.candidates[0]
-    return PosedDesign(deploy(candidate.field), candidate.score.transform, 0.0)
+    return PosedDesign(deploy(candidate.sheet.field), candidate.score.transform, 0.0)
 
 
 def test_that_a_frame_maps_there_and_back_with_y_up() -> None:

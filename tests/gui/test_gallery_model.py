@@ -16,7 +16,7 @@ from kirigami_studio.project.document import Document
 
 def entries(designs: Document) -> list[Entry]:
     return [
-        Entry(candidate, PosedDesign(deploy(candidate.field), candidate.score.transform, 0.0))
+        Entry(candidate, PosedDesign(deploy(candidate.sheet.field), candidate.score.transform, 0.0))
         for candidate in designs.candidates
     ]
 

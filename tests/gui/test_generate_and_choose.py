@@ -31,7 +31,7 @@ def test_that_generating_fills_the_gallery_best_first_and_is_one_undo_step(
     assert heart.controller.running and heart.run.stop.isVisible() and not heart.run.generate.isEnabled()
     until(lambda: not heart.controller.running)
     found = heart.controller.document.candidates
-    assert found == ranked(found) and len(found) == 3 and found[0].field.ratio.shape == (6, 6)
+    assert found == ranked(found) and len(found) == 3 and found[0].sheet.grid == (6, 6)
     assert [entry.candidate for entry in heart.gallery.view.model_.entries] == list(found)
     assert heart.controller.stage is not None and heart.controller.stage.candidate == found[0]
     assert heart.stage.view.phi == pytest.approx(0.0)

@@ -128,7 +128,7 @@ def test_that_again_draws_on_the_designs_own_grid_with_the_chosen_model(drawn: M
     until(lambda: not drawn.controller.running)
     after = drawn.controller.document
     assert len(after.candidates) == 6 and {one.variant for one in after.candidates} == {"balanced", "prior"}
-    assert {one.field.ratio.shape for one in after.candidates} == {(6, 6)}
+    assert {one.sheet.grid for one in after.candidates} == {(6, 6)}
     assert after.provenance["model"] == "balanced; prior"
     tips = [str(drawn.gallery.view.model_.index(row, 0).data(Qt.ItemDataRole.ToolTipRole)) for row in range(6)]
     assert sum("Model: prior" in tip for tip in tips) == 3
@@ -192,8 +192,11 @@ def test_that_more_like_this_adds_designs_near_the_chosen_one(drawn: MainWindow,
     until(lambda: not controller.running)
     near = [one for one in controller.document.candidates if one.origin is Origin.RESAMPLED]
     assert controller.document.candidate == chosen and 1 <= len(near) <= 3
-    others = [one.field for one in controller.document.candidates if one.origin is Origin.SAMPLED and one != chosen]
-    assert distances(chosen.field, [one.field for one in near]).max() < distances(chosen.field, others).min()
+    others = [one.sheet for one in controller.document.candidates if one.origin is Origin.SAMPLED and one != chosen]
+    far, close = (
+        distances(chosen.sheet.field, [sheet.field for sheet in some]) for some in (others, [one.sheet for one in near])
+    )
+    assert close.max() < far.min()
     assert controller.document.provenance["nearness"] == "0.9"
     assert {one.seed for one in near} == {1}
     tips = [str(drawn.gallery.view.model_.index(row, 0).data(Qt.ItemDataRole.ToolTipRole)) for row in range(4)]

@@ -22,6 +22,7 @@ from kirigami_studio.gui.jobs.vertex_drag import DragStart, Follower
 from kirigami_studio.gui.main_window import MainWindow
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.outlines import silhouettes
 from kirigami_studio.project import edits, store
 from kirigami_studio.project.document import Document
@@ -37,7 +38,7 @@ def large_document() -> Document:
     target, draw = silhouettes.load("heart"), np.random.default_rng(3)
     fields = [RatioField.from_log10(0.03 * draw.normal(size=(LARGE, LARGE))) for _ in range(2)]
     score = evaluate(deploy(fields[0]), target, 0.0)
-    found = [Candidate(field, score, seed=1, index=index) for index, field in enumerate(fields)]
+    found = [Candidate(Sheet(field), score, seed=1, index=index) for index, field in enumerate(fields)]
     return edits.set_candidates(edits.set_target(Document(), target).document, found, {}).document
 
 
@@ -93,13 +94,13 @@ def test_that_the_last_place_is_reached_after_letting_go_and_all_of_it_is_one_st
     large.controller.hand.drafted.connect(drafts.append)
     place = take(large, vertex, *UP)
     let_go(large, place)  # before anything could be shown
-    assert seen(large) == before.field and large.controller.hand.busy
+    assert seen(large) == before.sheet.field and large.controller.hand.busy
     settle(large, until)
     vertices = [design.outline(design.nodes(OPEN), OPEN)[vertex] for design in drafts]
     transform = view.transform()
     assert transform is not None
     assert np.hypot(*(transform.to_pixels(np.array(vertices[-1])) - (place.x(), place.y()))) <= 2.0
-    assert large.controller.history.undo_label == LABEL and chosen(large).field == drafts[-1].deployment.field
+    assert large.controller.history.undo_label == LABEL and chosen(large).sheet.field == drafts[-1].deployment.field
     large.commands["undo"].trigger()
     assert chosen(large) == before and large.controller.history.undo_label is None
 
@@ -133,14 +134,14 @@ def test_that_what_the_hand_does_meanwhile_comes_after_in_its_order(large: MainW
     down = int(shapes_of(view).vertices[:, 1].argmax())
     place = take(large, down, QPoint(0, 6), QPoint(0, 9))
     let_go(large, place)
-    assert seen(large) == before.field
+    assert seen(large) == before.sheet.field
     settle(large, until)
     assert history.steps == (LABEL, f"Change ratio of void {void}", LABEL)
-    assert chosen(large).field == seen(large)
+    assert chosen(large).sheet.field == seen(large)
     history.go_to(1)
-    first = chosen(large).field.ratio
+    first = chosen(large).sheet.field.ratio
     history.go_to(2)
-    assert chosen(large).field.ratio[void] == pytest.approx(1.05**2 * first[void], rel=2e-3)
+    assert chosen(large).sheet.field.ratio[void] == pytest.approx(1.05**2 * first[void], rel=2e-3)
 
 
 def test_that_undo_right_after_letting_go_takes_the_whole_drag_back(large: MainWindow, until: Until) -> None:
@@ -151,7 +152,7 @@ def test_that_undo_right_after_letting_go_takes_the_whole_drag_back(large: MainW
     settle(large, until)
     assert chosen(large) == before and large.controller.history.redo_label == LABEL
     until(lambda: gestures_done(large))
-    assert seen(large) == before.field
+    assert seen(large) == before.sheet.field
 
 
 def test_that_escape_in_the_middle_of_a_step_leaves_the_design_as_it_was(large: MainWindow, until: Until) -> None:
@@ -159,13 +160,13 @@ def test_that_escape_in_the_middle_of_a_step_leaves_the_design_as_it_was(large: 
     for shown in (False, True):
         place = take(large, top_of(large), *UP)
         if shown:
-            until(lambda: seen(large) != before.field)
+            until(lambda: seen(large) != before.sheet.field)
             QTest.mouseMove(view, place + QPoint(0, -9))
         QTest.keyClick(view, Qt.Key.Key_Escape)
-        assert seen(large) == before.field and not large.controller.hand.busy
+        assert seen(large) == before.sheet.field and not large.controller.hand.busy
         let_go(large, place)
         until(lambda: gestures_done(large))
-        assert seen(large) == before.field and chosen(large) == before
+        assert seen(large) == before.sheet.field and chosen(large) == before
         assert not large.controller.hand.busy and large.controller.history.undo_label is None
 
 
@@ -178,7 +179,7 @@ def test_that_another_design_never_gets_a_result_that_comes_late(large: MainWind
     until(lambda: gestures_done(large))
     let_go(large, place)
     assert controller.document.candidates == document.candidates
-    assert seen(large) == document.candidates[1].field and not controller.hand.busy
+    assert seen(large) == document.candidates[1].sheet.field and not controller.hand.busy
 
 
 def test_that_choosing_another_design_keeps_what_was_seen_of_a_drag_as_one_step(
@@ -186,14 +187,14 @@ def test_that_choosing_another_design_keeps_what_was_seen_of_a_drag_as_one_step(
 ) -> None:
     controller, document = by_hand.controller, by_hand.controller.document
     place = take(by_hand, top_of(by_hand), *UP)
-    until(lambda: seen(by_hand) != document.candidates[0].field)
+    until(lambda: seen(by_hand) != document.candidates[0].sheet.field)
     controller.choose(document.candidates[1])
     QTest.mouseMove(by_hand.stage.view, place + QPoint(0, -4))
     settle(by_hand, until)
     let_go(by_hand, place)
     until(lambda: gestures_done(by_hand))
     assert controller.history.steps == (LABEL, "Choose design 2")
-    assert controller.document.chosen == 1 and seen(by_hand) == document.candidates[1].field
+    assert controller.document.chosen == 1 and seen(by_hand) == document.candidates[1].sheet.field
     assert controller.document.candidates[1:] == document.candidates[1:]
 
 
@@ -209,7 +210,7 @@ def test_that_a_project_that_is_opened_during_a_drag_gets_nothing_of_it(
     let_go(large, place)
     until(lambda: controller.stage is not None and not controller.queue.busy)
     assert controller.document == designs and not controller.history.unsaved and not controller.hand.busy
-    assert designs.candidate is not None and seen(large) == designs.candidate.field
+    assert designs.candidate is not None and seen(large) == designs.candidate.sheet.field
 
 
 def test_that_undo_during_a_drag_of_which_nothing_was_seen_undoes_the_step_before(
@@ -224,7 +225,7 @@ def test_that_undo_during_a_drag_of_which_nothing_was_seen_undoes_the_step_befor
     assert chosen(large) == before and not large.controller.hand.busy
     until(lambda: gestures_done(large))
     let_go(large, place)
-    assert seen(large) == before.field and large.controller.history.undo_label is None
+    assert seen(large) == before.sheet.field and large.controller.history.undo_label is None
 
 
 def test_that_the_window_closes_in_the_middle_of_a_step(large: MainWindow) -> None:

@@ -35,7 +35,7 @@ LEFT = Qt.MouseButton.LeftButton
 @pytest.fixture
 def posed(designs: Document) -> PosedDesign:
     candidate = designs.candidates[0]
-    return PosedDesign(deploy(candidate.field), candidate.score.transform, 0.0)
+    return PosedDesign(deploy(candidate.sheet.field), candidate.score.transform, 0.0)
 
 
 def test_that_each_overlay_has_a_key_and_changes_the_picture(designed: MainWindow, qtbot: QtBot) -> None:

@@ -73,7 +73,7 @@ def candidate(request: pytest.FixtureRequest, designs: Document) -> Candidate:
         return first
     assert target is not None
     score = first.score
-    return replace(first, trim=trim(deploy(first.field), target, score.phi, score.transform))
+    return replace(first, trim=trim(deploy(first.sheet.field), target, score.phi, score.transform))
 
 
 def test_that_screen_picture_and_animation_show_the_same_panels_at_every_angle(

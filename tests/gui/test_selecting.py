@@ -42,15 +42,15 @@ def test_that_cards_are_sorted_by_what_was_asked(designed: MainWindow, designs: 
 def check_order(designed: MainWindow, designs: Document, order: SortOrder) -> None:
     before = designed.controller.document
     sort_by(designed, order)
-    chosen = designs.candidates[0].field
+    chosen = designs.candidates[0].sheet.field
     values = {
         SortOrder.RANK: lambda one: designs.candidates.index(one),
         SortOrder.SIOU: lambda one: -one.score.siou,
         SortOrder.GAIN: lambda one: -one.score.siou_gain,
         SortOrder.TV: lambda one: one.score.tv,
-        SortOrder.PANEL: lambda one: -least_panel_share(deploy(one.field)),
+        SortOrder.PANEL: lambda one: -least_panel_share(deploy(one.sheet.field)),
         SortOrder.NEWEST: lambda one: designs.candidates.index(one),
-        SortOrder.UNLIKE: lambda one: -float(distances(chosen, [one.field])[0]),
+        SortOrder.UNLIKE: lambda one: -float(distances(chosen, [one.sheet.field])[0]),
     }[order]
     assert shown(designed) == sorted(designs.candidates, key=values)
     assert designed.controller.document is before and not designed.controller.history.unsaved
@@ -62,7 +62,7 @@ def check_order(designed: MainWindow, designs: Document, order: SortOrder) -> No
 
 def test_that_the_smallest_panel_is_the_shortest_edge_or_neck_found_one_by_one(designs: Document) -> None:
     for candidate in designs.candidates:
-        sheet = deploy(candidate.field)
+        sheet = deploy(candidate.sheet.field)
         corners = sheet.compact[sheet.topology.panel_nodes.reshape(-1, 4)]
         sizes = []
         for panel in corners:
@@ -84,7 +84,7 @@ def test_that_cards_tell_the_number_they_are_sorted_by_at_the_sheets_width(
     assert model.data(model.index(0, 0), VALUE_ROLE) == f"TV {designs.candidates[0].score.tv:.2f}"
     sort_by(designed, SortOrder.PANEL)
     designed.controller.fabrication.change(width_mm=250.0)
-    sizes = [250.0 * least_panel_share(deploy(one.field)) for one in shown(designed)]
+    sizes = [250.0 * least_panel_share(deploy(one.sheet.field)) for one in shown(designed)]
     told = [model.data(model.index(row, 0), VALUE_ROLE) for row in range(3)]
     assert told == [f"panel {size:.1f} mm" for size in sizes]
     tip = str(model.data(model.index(0, 0), Qt.ItemDataRole.ToolTipRole))
@@ -151,7 +151,7 @@ def test_that_designs_that_arrive_one_by_one_lie_as_if_sorted_at_once(
 ) -> None:
     grown, whole = GalleryModel(), GalleryModel()
     qtmodeltester.check(grown)
-    selection = Selection(order=order, unlike=designs.candidates[1].field, pinned_first=True)
+    selection = Selection(order=order, unlike=designs.candidates[1].sheet.field, pinned_first=True)
     marks = {designs.candidates[2]: Mark.PINNED}
     for model in (grown, whole):
         model.set_marks(marks)
@@ -168,7 +168,7 @@ def test_that_a_design_of_an_earlier_run_is_no_state_of_a_new_sample(qtbot: QtBo
     before = [replace(decoded(one), kept=True) for one in designs.candidates]
     model.replace(before)
     twin = designs.candidates[2]  # the same seed and number, another field
-    found = Entry(replace(twin, field=designs.candidates[0].field), before[0].design)
+    found = Entry(replace(twin, sheet=designs.candidates[0].sheet), before[0].design)
     model.insert(found)
     assert model.rowCount() == 4
     model.insert(Entry(replace(found.candidate, polished=True), before[0].design))

@@ -54,7 +54,7 @@ def test_that_the_numbers_below_are_those_of_the_designs_and_their_differences(
     page = designed.stage.compare
     width = designed.controller.document.fabrication.width_mm
     for side, mine, theirs in ((page.left, one, other), (page.right, other, one)):
-        sizes = [width * least_panel_share(deploy(each.field)) for each in (mine, theirs)]
+        sizes = [width * least_panel_share(deploy(each.sheet.field)) for each in (mine, theirs)]
         values = [label.text() for label in side.values]
         assert values[:4] == [
             f"{100 * mine.score.siou:.1f} %", f"{100 * mine.score.siou_gain:+.1f}", f"{mine.score.tv:.2f}",
@@ -64,7 +64,7 @@ def test_that_the_numbers_below_are_those_of_the_designs_and_their_differences(
         assert side.gaps[2].text() == f"{mine.score.tv - theirs.score.tv:+.2f}"
         assert side.gaps[3].text() == f"{sizes[0] - sizes[1]:+.2f}"
     designed.controller.fabrication.change(width_mm=2 * width)
-    assert page.left.values[3].text() == f"{2 * width * least_panel_share(deploy(one.field)):.2f}"
+    assert page.left.values[3].text() == f"{2 * width * least_panel_share(deploy(one.sheet.field)):.2f}"
 
 
 def test_that_zoom_and_place_of_one_view_are_those_of_the_other(designed: MainWindow, qtbot: QtBot) -> None:

@@ -104,7 +104,7 @@ class Sitting:
             view.repaint()
         self.bot.mouseRelease(slider, LEFT, pos=QPoint((left + right) // 2, y))
         assert view.phi == pytest.approx(math.pi / 2, abs=0.05) and paints.count >= 12
-        exact = stage.design.pose.apply(deploy(stage.candidate.field).nodes(view.phi))
+        exact = stage.design.pose.apply(deploy(stage.candidate.sheet.field).nodes(view.phi))
         assert np.ptp(stage.design.nodes(view.phi) - exact, axis=0) == pytest.approx(0.0, abs=1e-9)
         assert self.document is before
 
@@ -119,9 +119,9 @@ class Sitting:
         self.until(lambda: self.document.candidate is not None and self.document.candidate.origin is Origin.EDITED)
         after = self.document.candidate
         assert after is not None and self.document.chosen == 1
-        changed = np.argwhere(after.field.ratio != before.field.ratio).tolist()
-        assert changed == [list(void)] and after.field.ratio[void] > before.field.ratio[void]
-        exact = after.score.transform.apply(deploy(after.field).nodes(after.score.phi))
+        changed = np.argwhere(after.sheet.field.ratio != before.sheet.field.ratio).tolist()
+        assert changed == [list(void)] and after.sheet.field.ratio[void] > before.sheet.field.ratio[void]
+        exact = after.score.transform.apply(deploy(after.sheet.field).nodes(after.score.phi))
         shown = view.design
         assert shown is not None and np.ptp(shown.nodes(after.score.phi) - exact, axis=0) == pytest.approx(
             0.0, abs=1e-9

@@ -34,10 +34,10 @@ def polished(designs: Document) -> Document:
     """The same designs, the first one fitted to the heart from what was drawn."""
     target, first = designs.target, designs.candidates[0]
     assert target is not None
-    fit = polish(first.field, target, 0.0, 8, pose=first.score.transform)
-    better = replace(
-        first, field=fit.field, score=evaluate(deploy(fit.field), target, 0.0), polished=True, sampled_field=first.field
-    )
+    fit = polish(first.sheet.field, target, 0.0, 8, pose=first.score.transform)
+    sheet = first.sheet.with_field(fit.field)
+    score = evaluate(deploy(sheet), target, 0.0)
+    better = replace(first, sheet=sheet, score=score, polished=True, sampled_sheet=first.sheet)
     assert better.score.siou > first.score.siou
     return replace(designs, candidates=(better, *designs.candidates[1:]))
 

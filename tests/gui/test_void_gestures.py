@@ -41,7 +41,7 @@ def test_that_pointing_at_a_void_tells_its_facts_even_outside_the_mode(designed:
     QTest.mouseMove(view, middle_of(view, (1, 2)))
     x = ratio(designed, (1, 2))
     width = designed.controller.document.fabrication.width_mm
-    corners = deploy(chosen(designed).field).voids(OPEN)[1, 2] * width / 6
+    corners = deploy(chosen(designed).sheet.field).voids(OPEN)[1, 2] * width / 6
     edge = np.hypot(*(corners[1] - corners[0]))
     assert designed.status_text.text().startswith(f"Void (1, 2): ratio x {x:.3f}, angle 80.0° at its left corner")
     assert f"{edge:.2f}" in designed.status_text.text() and "locked" not in designed.status_text.text()
@@ -68,17 +68,17 @@ def test_that_the_wheel_over_a_void_changes_its_ratio_in_one_undo_step(by_hand: 
     turn(view, place, 2)
     assert view.design is not None
     seen = float(view.design.deployment.field.ratio[1, 2])
-    assert seen == pytest.approx(1.05**3 * before.field.ratio[1, 2], rel=2e-3)
+    assert seen == pytest.approx(1.05**3 * before.sheet.field.ratio[1, 2], rel=2e-3)
     assert chosen(by_hand) == before  # the document waits for the score
     settle(by_hand, until)
     after = chosen(by_hand)
     assert history.undo_label == "Change ratio of void (1, 2)"
-    assert after.field.ratio[1, 2] == seen and after.origin is Origin.EDITED and not after.polished
+    assert after.sheet.field.ratio[1, 2] == seen and after.origin is Origin.EDITED and not after.polished
     others = np.ones((4, 5), dtype=bool)
     others[1, 2] = False
-    assert np.array_equal(after.field.ratio[others], before.field.ratio[others])
+    assert np.array_equal(after.sheet.field.ratio[others], before.sheet.field.ratio[others])
     target = by_hand.controller.document.target
-    assert target is not None and after.score == evaluate(deploy(after.field), target, 0.0)
+    assert target is not None and after.score == evaluate(deploy(after.sheet.field), target, 0.0)
     by_hand.commands["undo"].trigger()
     assert chosen(by_hand) == before
     by_hand.commands["redo"].trigger()
@@ -95,7 +95,7 @@ def test_that_notches_on_one_void_that_follow_soon_are_one_step_though_each_is_s
         turn(view, middle_of(view, (1, 2)), notches)
         settle(by_hand, until)
         assert history.steps == ("Change ratio of void (1, 2)",)
-    assert ratio(by_hand, (1, 2)) == pytest.approx(before.field.ratio[1, 2] / 1.05, rel=2e-3)
+    assert ratio(by_hand, (1, 2)) == pytest.approx(before.sheet.field.ratio[1, 2] / 1.05, rel=2e-3)
     turn(view, middle_of(view, (2, 2)), 1)
     settle(by_hand, until)
     turn(view, middle_of(view, (1, 2)), 1)
@@ -186,7 +186,7 @@ def test_that_one_drag_is_one_undo_step_and_the_picture_keeps_its_place(by_hand:
     transform, start = view.transform(), middle_of(view, (1, 2))
     drag(view, start, start + QPoint(6, 6), let_go=False)
     assert view.transform() == transform and view.design is not None
-    assert view.design.deployment.field != before.field
+    assert view.design.deployment.field != before.sheet.field
     QTest.mouseRelease(view, LEFT, NONE, start + QPoint(6, 6))
     settle(by_hand, until)
     assert view.transform() == transform
@@ -203,7 +203,7 @@ def test_that_a_pulled_vertex_of_the_outline_arrives_at_the_mouse(by_hand: MainW
     QTest.mouseRelease(view, LEFT, NONE, start + QPoint(0, -10))
     settle(by_hand, until)
     assert by_hand.controller.history.undo_label == "Move outline"
-    assert chosen(by_hand).field != before.field
+    assert chosen(by_hand).sheet.field != before.sheet.field
     by_hand.commands["undo"].trigger()
     assert chosen(by_hand) == before
 
@@ -216,7 +216,7 @@ def test_that_gestures_in_quick_succession_all_arrive_in_order(by_hand: MainWind
         labels.append(f"Change ratio of void {void}")
     settle(by_hand, until)
     for void in [(0, 1), (1, 2), (3, 3)]:
-        assert ratio(by_hand, void) > first.field.ratio[void]
+        assert ratio(by_hand, void) > first.sheet.field.ratio[void]
     for label in reversed(labels):
         assert history.undo_label == label
         by_hand.commands["undo"].trigger()
@@ -232,18 +232,18 @@ def test_that_undo_during_a_gesture_takes_back_that_gesture_and_redo_brings_it(
     settle(by_hand, until)
     assert chosen(by_hand) == before and by_hand.controller.history.redo_label == "Change ratio of void (1, 2)"
     by_hand.controller.redo()
-    assert ratio(by_hand, (1, 2)) > before.field.ratio[1, 2]
-    assert view.design is not None and view.design.deployment.field == chosen(by_hand).field
+    assert ratio(by_hand, (1, 2)) > before.sheet.field.ratio[1, 2]
+    assert view.design is not None and view.design.deployment.field == chosen(by_hand).sheet.field
 
 
 def test_that_a_draft_that_returns_to_its_beginning_is_no_step(by_hand: MainWindow, until: Until) -> None:
     bar, before = by_hand.stage.voids, chosen(by_hand)
     by_hand.stage.view.voids.select(frozenset({(1, 1)}))
     by_hand.controller.hand.set_ratio(frozenset({(1, 1)}), 3.0)
-    by_hand.controller.hand.set_ratio(frozenset({(1, 1)}), float(before.field.ratio[1, 1]))
+    by_hand.controller.hand.set_ratio(frozenset({(1, 1)}), float(before.sheet.field.ratio[1, 1]))
     settle(by_hand, until)
     assert by_hand.controller.history.undo_label is None and chosen(by_hand) == before
-    assert bar.ratio.value() == pytest.approx(before.field.ratio[1, 1], abs=1e-4)
+    assert bar.ratio.value() == pytest.approx(before.sheet.field.ratio[1, 1], abs=1e-4)
 
 
 def test_that_the_other_designs_and_the_choice_stay_when_the_second_design_is_changed(
@@ -271,30 +271,30 @@ def test_that_undo_in_the_middle_of_a_drag_ends_it_and_takes_it_back(by_hand: Ma
     QTest.mouseRelease(view, LEFT, NONE, start + QPoint(9, 9))
     settle(by_hand, until)
     assert chosen(by_hand) == before
-    assert view.design is not None and view.design.deployment.field == before.field
+    assert view.design is not None and view.design.deployment.field == before.sheet.field
 
 
 def test_that_escape_takes_a_drag_back_without_a_step(by_hand: MainWindow, until: Until) -> None:
     view, before = by_hand.stage.view, chosen(by_hand)
     for start in (middle_of(view, (1, 2)), vertex_at(view, 4)):
         drag(view, start, start + QPoint(6, 6), let_go=False)
-        until(lambda: view.design is not None and view.design.deployment.field != before.field)
+        until(lambda: view.design is not None and view.design.deployment.field != before.sheet.field)
         QTest.keyClick(view, Qt.Key.Key_Escape)
         QTest.mouseMove(view, start + QPoint(9, 9))
         QTest.mouseRelease(view, LEFT, NONE, start + QPoint(9, 9))
         assert not by_hand.controller.hand.busy and by_hand.controller.history.undo_label is None
-        assert view.design.deployment.field == before.field
+        assert view.design.deployment.field == before.sheet.field
 
 
 def test_that_a_trim_goes_with_the_first_change_and_comes_back_with_undo(by_hand: MainWindow, until: Until) -> None:
     by_hand.controller.trim(True)
     until(lambda: chosen(by_hand).trim is not None)
     trimmed = chosen(by_hand)
-    assert trimmed.trim is not None and by_hand.stage.view.design.deployment.field == trimmed.trim.field
+    assert trimmed.trim is not None and by_hand.stage.view.design.deployment.sheet == trimmed.trim.sheet
     turn(by_hand.stage.view, middle_of(by_hand.stage.view, (1, 2)), 1)
     settle(by_hand, until)
     assert chosen(by_hand).trim is None and "Trim removed" in by_hand.status_text.text()
-    seen, now = trimmed.trim.field.ratio, chosen(by_hand).field.ratio  # what was seen is what was changed
+    seen, now = trimmed.trim.sheet.field.ratio, chosen(by_hand).sheet.field.ratio  # what was seen is what was changed
     assert np.argwhere(now != seen).tolist() == [[1, 2]] and now[1, 2] > seen[1, 2]
     by_hand.commands["undo"].trigger()
     assert chosen(by_hand) == trimmed

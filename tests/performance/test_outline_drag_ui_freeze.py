@@ -19,6 +19,7 @@ from kirigami_studio.gui.look.theme import LIGHT
 from kirigami_studio.gui.main_window import MainWindow
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.outlines import silhouettes
 from kirigami_studio.project import edits, store
 from kirigami_studio.project.document import Document
@@ -35,7 +36,7 @@ DRAGS = 3
 def test_that_the_window_goes_on_while_a_vertex_of_a_large_sheet_is_dragged(qtbot: QtBot, tmp_path: Path) -> None:
     target, draw = silhouettes.load("heart"), np.random.default_rng(3)
     field = RatioField.from_log10(0.03 * draw.normal(size=(VOIDS, VOIDS)))
-    design = Candidate(field, evaluate(deploy(field), target, 0.0), seed=1, index=0)
+    design = Candidate(Sheet(field), evaluate(deploy(field), target, 0.0), seed=1, index=0)
     store.save(edits.set_candidates(edits.set_target(Document(), target).document, [design], {}).document,
                tmp_path / "large.kiri")  # fmt: skip
     window = create_window(LIGHT)

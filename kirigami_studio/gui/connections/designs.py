@@ -120,7 +120,9 @@ class DesignConnections(QObject):
         """Tell the bar which design is chosen."""
         model, candidate = self._window.gallery.view.model_, self.chosen
         number = model.number_of(candidate)
-        self._window.gallery.bar.set_chosen(None if candidate is None or not number else (candidate.field, number))
+        self._window.gallery.bar.set_chosen(
+            None if candidate is None or not number else (candidate.sheet.field, number)
+        )
 
     @property
     def chosen(self) -> Candidate | None:

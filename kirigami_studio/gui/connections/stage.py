@@ -95,9 +95,9 @@ class StageConnections(QObject):
 
 def _facts(entry: Entry) -> list[str]:
     """Facts about a design for the status line."""
-    field, score, trim = entry.candidate.field, entry.candidate.score, entry.candidate.trim
+    (rows, columns), score, trim = entry.candidate.sheet.grid, entry.candidate.score, entry.candidate.trim
     facts = [
-        tr("{rows} \N{MULTIPLICATION SIGN} {columns} voids", rows=field.rows, columns=field.columns),
+        tr("{rows} \N{MULTIPLICATION SIGN} {columns} voids", rows=rows, columns=columns),
         tr("exact IoU {iou_exact:.1f} %", iou_exact=100 * score.iou_exact),
     ]
     if trim is not None:
@@ -156,10 +156,10 @@ class VoidConnections(QObject):
         self._gestures.set_locked(document.locked)
         self._gestures.enable(ready and not stage.showing_before)
         stage.set_editable(ready)
-        field = self._hand.field if ready else None
+        sheet = self._hand.sheet if ready else None
         chosen = min(self._gestures.selected, default=(0, 0))
-        fits = field is not None and chosen[0] < field.rows and chosen[1] < field.columns
-        ratio = float(field.ratio[chosen]) if field is not None and fits else None
+        fits = sheet is not None and chosen[0] < sheet.rows and chosen[1] < sheet.columns
+        ratio = float(sheet.field.ratio[chosen]) if sheet is not None and fits else None
         self._bar.show_voids(self._gestures.selected, ratio, document.locked)
         if self._gestures.void is not None:
             self._describe(self._gestures.void)

@@ -176,7 +176,7 @@ class Refitter(QObject):
         if candidate is None or target is None:
             self._session.post(Message(tr("Choose a finished design first, then fit it again."), Tone.HINT))
             return
-        if len(document.locked) == candidate.field.ratio.size:
+        if len(document.locked) == candidate.sheet.field.ratio.size:
             self._session.post(Message(tr("Every void is locked. Unlock the ones to fit."), Tone.HINT))
             return
         prefer, locked, cuts = document.settings.prefer, document.locked, document.fabrication
@@ -236,7 +236,7 @@ class SampledScores(QObject):
     def look_up(self, candidate: Candidate, target: Outline | None) -> None:
         """Find out how a candidate was sampled, at once when that is known."""
         self.stop()
-        if candidate.sampled_field is None or target is None:
+        if candidate.sampled_sheet is None or target is None:
             return
         before = self._sampled.get((candidate, target))
         if before is not None:

@@ -115,10 +115,10 @@ def differences(candidates: Sequence[Candidate], origin: RatioField | None) -> l
     """How different each design is from one: root mean square of the difference of log10 x, the best turn."""
     if origin is None or not candidates:
         return [0.0] * len(candidates)
-    same = [candidate.field.ratio.shape == origin.ratio.shape for candidate in candidates]
+    same = [candidate.sheet.grid == origin.ratio.shape for candidate in candidates]
     if not all(same):
         return [0.0] * len(candidates)
-    found: list[float] = distances(origin, [candidate.field for candidate in candidates]).tolist()
+    found: list[float] = distances(origin, [candidate.sheet.field for candidate in candidates]).tolist()
     return found
 
 

@@ -191,7 +191,7 @@ class RunPlanner:
         chosen = document.candidate
         if chosen is None:
             raise UsageError("designs.none_chosen")
-        request = replace(self._joining(target), near=chosen.field, nearness=nearness, search=0)
+        request = replace(self._joining(target), near=chosen.sheet.field, nearness=nearness, search=0)
         number = (document.chosen or 0) + 1
         status = tr("Generating {count} designs like design {number} …", count=request.k, number=number)
         return self._joined(request, status)
@@ -201,7 +201,7 @@ class RunPlanner:
         if not document.candidates:
             raise UsageError("designs.none_to_add_to")
         first = document.candidates[0]
-        same = replace(document.settings, grid=first.field.ratio.shape, phi=first.score.phi, seed=next_seed(document))
+        same = replace(document.settings, grid=first.sheet.grid, phi=first.score.phi, seed=next_seed(document))
         return request_of(target, same)
 
     def _joined(self, request: Request, status: str) -> RunPlan:
@@ -301,9 +301,7 @@ def _staying(document: Document, request: Request) -> tuple[Candidate, ...]:
     return tuple(
         one
         for one, mark in zip(document.candidates, document.marks, strict=True)
-        if mark is Mark.PINNED
-        and one.field.ratio.shape == request.grid
-        and abs(one.score.phi - request.phi) < SAME_ANGLE
+        if mark is Mark.PINNED and one.sheet.grid == request.grid and abs(one.score.phi - request.phi) < SAME_ANGLE
     )
 
 

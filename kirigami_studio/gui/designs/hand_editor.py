@@ -1,6 +1,6 @@
 """Editing the chosen design by hand: the view follows the pointer at once, the document takes each gesture scored.
 
-A gesture makes a draft: another ratio field, decoded exactly and shown instead of the design.  A dragged void slides
+A gesture makes a draft: another sheet, decoded exactly and shown instead of the design.  A dragged void slides
 one of its corners along its slit (:class:`VoidDrag`).  When the gesture ends, the worker scores the draft, and the
 score makes one named edit.  Gestures that follow meanwhile start from the draft and wait for their turn, so that each
 becomes an undo step of its own.  Undo, save and the like wait for the last score.
@@ -34,6 +34,7 @@ from kirigami_studio.gui.jobs.vertex_drag import DragStart, DragStep
 from kirigami_studio.gui.session import Session
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project import edits
 from kirigami_studio.project.document import Void
@@ -156,7 +157,7 @@ def _corners(design: PosedDesign, void: Void, share: float, phi: float) -> Float
     """Corners (4, 2) of a void in the world, if its ratio were that of ``share``."""
     table = design.deployment.field.ratio.copy()
     table[void] = share / (1.0 - share)
-    changed = PosedDesign(deploy(RatioField(table)), design.pose, design.phi_target)
+    changed = PosedDesign(deploy(design.deployment.sheet.with_field(RatioField(table))), design.pose, design.phi_target)
     corners: FloatArray = changed.nodes(phi)[changed.deployment.topology.void_nodes[void]]
     return corners
 
@@ -165,17 +166,17 @@ def _corners(design: PosedDesign, void: Void, share: float, phi: float) -> Float
 class _Gesture:
     """A draft that waits for its score."""
 
-    field: RatioField
+    sheet: Sheet
     label: str
     merge_key: str | None
 
 
-def _rescored(candidate: Candidate, field: RatioField, target: Outline, cancel: Cancel) -> Decoded:
-    """Score a candidate with another field; runs in the worker, which may take its time to import."""
+def _rescored(candidate: Candidate, sheet: Sheet, target: Outline, cancel: Cancel) -> Decoded:
+    """Score a candidate with another sheet; runs in the worker, which may take its time to import."""
     from kirigami_studio.pipeline.redesign import rescored
 
-    after = rescored(candidate, field, target)
-    return Decoded(after, deploy(after.final_field))
+    after = rescored(candidate, sheet, target)
+    return Decoded(after, deploy(after.final_sheet))
 
 
 class HandEditor(QObject):
@@ -189,8 +190,8 @@ class HandEditor(QObject):
         self._session = session
         self._job = LatestJob[Decoded](session.queue)
         self._base: Candidate | None = None  # as the document holds it
-        self._field: RatioField | None = None  # as it is shown
-        self._last: RatioField | None = None  # as the last complete gesture left it
+        self._sheet: Sheet | None = None  # as it is shown
+        self._last: Sheet | None = None  # as the last complete gesture left it
         self._open: str | None = None  # label of the gesture under way
         self._last_turn: tuple[tuple[Void, ...], float] = (
             (),
@@ -219,10 +220,10 @@ class HandEditor(QObject):
         return self._base is not None or self._outline.active
 
     @property
-    def field(self) -> RatioField | None:
-        """The ratios as they are shown."""
+    def sheet(self) -> Sheet | None:
+        """The sheet as it is shown."""
         candidate = self._session.document.candidate
-        return self._field if self._field is not None else None if candidate is None else candidate.final_field
+        return self._sheet if self._sheet is not None else None if candidate is None else candidate.final_sheet
 
     def postpones(self, act: Callable[[], object]) -> bool:
         """Whether an act must wait until all gestures are in the document; it is then carried out by itself."""
@@ -257,10 +258,10 @@ class HandEditor(QObject):
     def nudge(self, voids: frozenset[Void], step: float) -> None:
         """Change the log10 of ratios by ``step``; steps that follow one another soon undo together."""
         free = self._free(voids)
-        if free and self.field is not None:
+        if free and self.sheet is not None:
             self._turns += not self._continues(tuple(free))
             key = f"turn {self._turns}"
-            self._change({void: float(self.field.ratio[void]) * math.pow(10.0, step) for void in free}, key)
+            self._change({void: float(self.sheet.field.ratio[void]) * math.pow(10.0, step) for void in free}, key)
             self._pause.start()
 
     def _continues(self, voids: tuple[Void, ...]) -> bool:
@@ -303,15 +304,15 @@ class HandEditor(QObject):
 
     def _change(self, wanted: dict[Void, float], merge_key: str | None = None) -> None:
         """Give voids new ratios within the bounds; one that lay beyond them before may stay there."""
-        field = self.field
-        if field is None:
+        sheet = self.sheet
+        if sheet is None:
             return
-        table = field.ratio.copy()
+        table = sheet.field.ratio.copy()
         for void, ratio in wanted.items():
             table[void] = min(max(ratio, min(SMALLEST, table[void])), max(LARGEST, table[void]))
         first = min(wanted)
         label = ratio_label(first, len(wanted))
-        self._draft(RatioField(table), label, merge_key)
+        self._draft(sheet.with_field(RatioField(table)), label, merge_key)
         self._session.set_status(tr("{gesture}: x {ratio:.3f}", gesture=label, ratio=float(table[first])))
 
     def lock(self, voids: frozenset[Void], on: bool) -> None:
@@ -334,7 +335,7 @@ class HandEditor(QObject):
         if design is None or phi >= math.pi:
             self._session.set_status(tr("The flat sheet is always a rectangle. Open it to move its outline."))
             return
-        locked = np.zeros(design.deployment.field.ratio.shape, dtype=np.bool_)
+        locked = np.zeros(design.deployment.sheet.grid, dtype=np.bool_)
         for void in document.locked:
             locked[void] = True
         self._dragged_from = document.candidate
@@ -353,7 +354,7 @@ class HandEditor(QObject):
             self._arrive()
             return
         self._decoded = found.design
-        self._draft(found.design.deployment.field, tr("Move outline"))
+        self._draft(found.design.deployment.sheet, tr("Move outline"))
         if found.arrived:
             self._session.set_status(tr("The outline follows the pointer."))
         elif found.stuck:
@@ -394,7 +395,7 @@ class HandEditor(QObject):
         self._drop()
         if self._open is None:
             return
-        self._field, self._open = self._last, None
+        self._sheet, self._open = self._last, None
         if not self._job.busy:
             self._discard_draft()
         else:
@@ -403,29 +404,29 @@ class HandEditor(QObject):
 
     # drafts and edits ----------------------------------------------------------------------------------------------
 
-    def _draft(self, field: RatioField, label: str, merge_key: str | None = None) -> None:
+    def _draft(self, sheet: Sheet, label: str, merge_key: str | None = None) -> None:
         candidate = self._session.document.candidate
-        if candidate is None or field == self.field:
+        if candidate is None or sheet == self.sheet:
             return
         if self._open is not None and self._open != label:
             self.commit()
         if self._base is None:
-            self._base, self._last = candidate, candidate.final_field
+            self._base, self._last = candidate, candidate.final_sheet
         if self._open is None:
             self._key = merge_key
-        self._field, self._open = field, label
+        self._sheet, self._open = sheet, label
         self._show_draft()
 
     def _design(self) -> PosedDesign | None:
         """The design as it is shown: at the pose that it was scored in, until it is scored anew."""
         candidate = self._base or self._session.document.candidate
-        if candidate is None or self.field is None:
+        if candidate is None or self.sheet is None:
             return None
-        if self._field is None and candidate.trim is None:
+        if self._sheet is None and candidate.trim is None:
             return self._session.cache.entry(candidate).design
-        if self._decoded is not None and self._decoded.deployment.field is self._field:
+        if self._decoded is not None and self._decoded.deployment.sheet is self._sheet:
             return self._decoded
-        return PosedDesign(deploy(self.field), candidate.final_pose, candidate.final_phi)
+        return PosedDesign(deploy(self.sheet), candidate.final_pose, candidate.final_phi)
 
     def _show_draft(self) -> None:
         design = self._design()
@@ -438,11 +439,11 @@ class HandEditor(QObject):
             return
         self._pause.stop()
         self._drop()
-        if self._open is None or self._field is None:
+        if self._open is None or self._sheet is None:
             return
-        gesture, self._open = _Gesture(self._field, self._open, self._key), None
-        if gesture.field != self._last:
-            self._last = gesture.field
+        gesture, self._open = _Gesture(self._sheet, self._open, self._key), None
+        if gesture.sheet != self._last:
+            self._last = gesture.sheet
             if gesture.merge_key is not None and self._waiting and self._waiting[-1].merge_key == gesture.merge_key:
                 self._waiting.pop()  # it would be one step with this one
             self._waiting.append(gesture)
@@ -455,7 +456,7 @@ class HandEditor(QObject):
         if self._job.busy or not self._waiting or self._base is None or target is None:
             return
         gesture = self._waiting.popleft()
-        steps = single(partial(_rescored, self._base, gesture.field, target))
+        steps = single(partial(_rescored, self._base, gesture.sheet, target))
         callbacks = JobCallbacks(partial(self._take, gesture), on_failed=self._fail)
         self._job.start(tr("scoring the change"), steps, callbacks)
 
@@ -496,7 +497,7 @@ class HandEditor(QObject):
     def _settle(self) -> None:
         """Nothing is under way any more; what was postponed is carried out."""
         self._pause.stop()
-        self._base = self._field = self._last = self._open = self._decoded = None
+        self._base = self._sheet = self._last = self._open = self._decoded = None
         postponed, self._postponed = self._postponed, []
         self.settled.emit()
         for act in postponed:

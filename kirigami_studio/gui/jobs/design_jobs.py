@@ -21,7 +21,7 @@ from kirigami_studio.project.settings import FabricationSettings
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Decoded:
-    """A candidate with the exact motion of its final field."""
+    """A candidate with the exact motion of its final sheet."""
 
     candidate: Candidate
     deployment: Deployment
@@ -36,7 +36,7 @@ class ModelFound:
 
 @dataclass(frozen=True, slots=True)
 class Refitted:
-    """What a fit from a design's present field has found.
+    """What a fit from a design's present sheet has found.
 
     Attributes
     ----------
@@ -87,8 +87,8 @@ def decoding(candidates: tuple[Candidate, ...], cancel: Cancel) -> Iterator[Deco
 
 
 def decoded(candidate: Candidate) -> Decoded:
-    """A candidate with the motion of its final field."""
-    return Decoded(candidate, deploy(candidate.final_field))
+    """A candidate with the motion of its final sheet."""
+    return Decoded(candidate, deploy(candidate.final_sheet))
 
 
 def scoring_sample(candidate: Candidate, target: Outline, cancel: Cancel) -> Iterator[Decoded]:
@@ -108,7 +108,7 @@ def refitting(
     settings: FabricationSettings,
     cancel: Cancel,
 ) -> Iterator[Refitted]:
-    """Fit a candidate on the exact geometry from its present field, and trim it again if it is trimmed."""
+    """Fit a candidate on the exact geometry from its present sheet, and trim it again if it is trimmed."""
     from kirigami_studio.pipeline.redesign import refitted
 
     refit = refitted(candidate, target, prefer, locked, partial(keep_for, candidate, settings), cancel)
@@ -131,5 +131,5 @@ def keep_for(candidate: Candidate, settings: FabricationSettings) -> float:
     from kirigami_studio.pipeline.redesign import keep_for_connectors
     from kirigami_studio.project.cutting import material_for
 
-    grid, material = (candidate.field.rows, candidate.field.columns), material_for(settings)
+    grid, material = candidate.sheet.grid, material_for(settings)
     return keep_for_connectors(grid, material, settings.width_mm, settings.connector_mm, settings.kerf_mm)

@@ -146,7 +146,7 @@ class ComparePage(QWidget):
         one, other = self._entries
         if one is None or other is None:
             return ()
-        apart = differences([one.candidate], other.candidate.field)[0]
+        apart = differences([one.candidate], other.candidate.sheet.field)[0]
         return tr("the designs differ by {apart:.2f}", apart=apart), tr("differ by {apart:.2f}", apart=apart)
 
     @property
@@ -186,8 +186,8 @@ class ComparePage(QWidget):
         alone = tr("Design {number}", number=number)
         side.name(*((tr("Design {number}, chosen", number=number), alone) if chosen else (alone,)))
         candidate = entry.candidate
-        # Contacts are known of the field that was scored; the one fitted for trimming is free of them.
-        scored = candidate.final_field == candidate.field
+        # Contacts are known of the sheet that was scored; the one fitted for trimming is free of them.
+        scored = candidate.final_sheet == candidate.sheet
         side.view.show_design(entry.design, candidate.score if scored else None, target)
 
     def set_phi(self, phi: float) -> None:

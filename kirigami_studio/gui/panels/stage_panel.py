@@ -250,7 +250,7 @@ class StagePanel(Card):
 
     def _set_switches(self) -> None:
         candidate = None if self._entry is None else self._entry.candidate
-        comparable = candidate is not None and candidate.sampled_field is not None
+        comparable = candidate is not None and candidate.sampled_sheet is not None
         trimmed = candidate is not None and candidate.trim is not None
         self.before.setEnabled(comparable)
         never = NEVER_SAMPLED if candidate is not None and candidate.polished else NEVER_POLISHED
@@ -270,8 +270,8 @@ class StagePanel(Card):
             self.view.show_design(None, None, None)
             return
         shown = self._sample or entry
-        # Contacts are known of the field that was scored; the one fitted for trimming is free of them.
-        score = shown.candidate.score if shown.candidate.final_field == shown.candidate.field else None
+        # Contacts are known of the sheet that was scored; the one fitted for trimming is free of them.
+        score = shown.candidate.score if shown.candidate.final_sheet == shown.candidate.sheet else None
         contact = None if score is None else score.contact
         self.view.show_design(shown.design, score, self._target)
         self.deployment.set_marks(shown.design.phi_target, None if contact is None else contact.phi)

@@ -14,6 +14,7 @@ from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.outlines.silhouettes import load
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.polish.levenberg import polish
@@ -48,7 +49,7 @@ def test_that_designs_below_the_uniform_sheet_and_the_worst_are_named() -> None:
     made = []
     for name, field in fields.items():
         target = load(name)
-        best = Candidate(field, evaluate(deploy(field), target), 0, 0)
+        best = Candidate(Sheet(field), evaluate(deploy(field), target), 0, 0)
         made.append(Made(target, Request(target, (6, 6), k=1), best, 0.1, 1))
     figures = design_figures(made)
     assert figures["below_uniform"] == figures["below_uniform_exact"] == ["square"]

@@ -26,6 +26,7 @@ from kirigami_studio.generator import weights
 from kirigami_studio.generator.network import VelocityNetwork
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.outlines.silhouettes import load
 from kirigami_studio.pipeline.variety import turns
 
@@ -46,7 +47,7 @@ def untrained(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
 
 def candidates(*fields: RatioField) -> list[Candidate]:
     target = load("heart")
-    return [Candidate(field, evaluate(deploy(field), target), 0, place) for place, field in enumerate(fields)]
+    return [Candidate(Sheet(field), evaluate(deploy(field), target), 0, place) for place, field in enumerate(fields)]
 
 
 def random_field(seed: int) -> RatioField:

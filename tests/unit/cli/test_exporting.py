@@ -16,6 +16,7 @@ from kirigami_studio.export.profile import PROFILES
 from kirigami_studio.fabricate.options import CutOptions
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.settings import DesignSettings, FabricationSettings
@@ -30,7 +31,7 @@ def project(tmp_path: Path) -> Path:
     document = Document(
         target=target,
         settings=DesignSettings((4, 5)),
-        candidates=(Candidate(field, evaluate(deploy(field), target), seed=0, index=0),),
+        candidates=(Candidate(Sheet(field), evaluate(deploy(field), target), seed=0, index=0),),
         chosen=0,
         fabrication=FabricationSettings(width_mm=120.0, options=CutOptions(hinge_mm=((1, 0.4),)), profile="k40"),
         provenance={"model": "balanced"},

@@ -28,14 +28,14 @@ def design_and_fresh(request: Request) -> tuple[Candidate, tuple[Candidate, ...]
 
 
 def mean_distance(design: Candidate, candidates: tuple[Candidate, ...]) -> float:
-    return float(distances(design.field, [one.field for one in candidates]).mean())
+    return float(distances(design.sheet.field, [one.sheet.field for one in candidates]).mean())
 
 
 @pytest.mark.parametrize(("name", "grid"), [("heart", (10, 10)), ("star", (8, 12)), ("fish", (14, 14))])
 def test_that_nearer_settings_draw_nearer_designs_that_are_as_good(name: str, grid: tuple[int, int]) -> None:
     request = Request(load(name), grid, k=8)
     design, fresh = design_and_fresh(request)
-    runs = [best_of(replace(request, seed=1, near=design.field, nearness=near)).candidates for near in NEARNESS]
+    runs = [best_of(replace(request, seed=1, near=design.sheet.field, nearness=near)).candidates for near in NEARNESS]
     far, middle, near = (mean_distance(design, candidates) for candidates in runs)
     assert near < middle < far < mean_distance(design, fresh)
     assert near < 0.5 * mean_distance(design, fresh)
@@ -44,7 +44,7 @@ def test_that_nearer_settings_draw_nearer_designs_that_are_as_good(name: str, gr
     assert all(np.mean([one.score.siou for one in candidates]) > mean - 0.005 for candidates in runs)
     for candidates in runs:
         assert {one.origin for one in candidates} == {Origin.RESAMPLED}
-        assert len({one.field for one in candidates}) == len(candidates)
+        assert len({one.sheet.field for one in candidates}) == len(candidates)
 
 
 def test_that_the_design_is_drawn_near_in_the_pose_in_which_it_shows_the_target() -> None:
@@ -53,10 +53,10 @@ def test_that_the_design_is_drawn_near_in_the_pose_in_which_it_shows_the_target(
     c, s = math.cos(2.1), math.sin(2.1)
     turned = Outline.from_points(heart.points @ np.array([[c, s], [-s, c]]), "turned heart")
     design = best_of(Request(heart, k=4)).candidates[1]
-    here, there = (rotation_of_target(design.field, target, 0.0) for target in (heart, turned))
+    here, there = (rotation_of_target(design.sheet.field, target, 0.0) for target in (heart, turned))
     assert math.cos(here - there - 2.1) == pytest.approx(1.0, abs=2e-3)
     for target in (heart, turned):
-        drawn = best_of(Request(target, k=4, near=design.field, nearness=0.9)).candidates
+        drawn = best_of(Request(target, k=4, near=design.sheet.field, nearness=0.9)).candidates
         assert mean_distance(design, drawn) < 0.15
 
 

@@ -14,6 +14,7 @@ import pytest
 from kirigami_studio import cli
 from kirigami_studio.foundation.errors import Cancelled
 from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.outlines.silhouettes import load
 from kirigami_studio.pipeline import worker
 from kirigami_studio.pipeline.pool import Pool, worker_command
@@ -42,8 +43,8 @@ def request_for_heart() -> Request:
 @pytest.fixture(scope="module")
 def tasks(request_for_heart: Request) -> list[Task]:
     draw = np.random.default_rng(0)
-    fields = [RatioField.from_log10(draw.uniform(-0.4, 0.4, request_for_heart.grid)) for _ in range(COUNT)]
-    return [PolishTask(candidate, 6) for candidate in scored(request_for_heart, fields, 0)]
+    sheets = [Sheet(RatioField.from_log10(draw.uniform(-0.4, 0.4, request_for_heart.grid))) for _ in range(COUNT)]
+    return [PolishTask(candidate, 6) for candidate in scored(request_for_heart, sheets, 0)]
 
 
 def never() -> bool:
@@ -128,8 +129,8 @@ def test_that_leaving_a_batch_stops_its_workers_within_a_step_and_keeps_the_pool
     pool.start()
     wait_until_ready(pool)
     long = Request(request_for_heart.target, grid=(24, 24), k=2, polish=200)
-    field = RatioField.from_log10(np.random.default_rng(3).uniform(-0.9, 0.9, (24, 24)))
-    slow = [PolishTask(candidate, 200) for candidate in scored(long, [field, field], 0)]
+    sheet = Sheet(RatioField.from_log10(np.random.default_rng(3).uniform(-0.9, 0.9, (24, 24))))
+    slow = [PolishTask(candidate, 200) for candidate in scored(long, [sheet, sheet], 0)]
     began = time.perf_counter()
     for report in answers(pool, long, slow, watch()):
         assert report is None, "a fit of 200 steps at 24 x 24 cannot be over by now"
@@ -149,8 +150,8 @@ def test_that_a_budget_brings_the_best_so_far_of_fits_under_way(pool: Pool, requ
     wait_until_ready(pool)
     long = Request(request_for_heart.target, grid=(24, 24), k=3, polish=200)
     draw = np.random.default_rng(3)
-    fields = [RatioField.from_log10(draw.uniform(-0.5, 0.5, (24, 24))) for _ in range(3)]
-    slow = [PolishTask(candidate, 200) for candidate in scored(long, fields, 0)]
+    sheets = [Sheet(RatioField.from_log10(draw.uniform(-0.5, 0.5, (24, 24)))) for _ in range(3)]
+    slow = [PolishTask(candidate, 200) for candidate in scored(long, sheets, 0)]
     reports = [report for report in answers(pool, long, slow, watch(0.3)) if report is not None]
     assert sorted(number for number, _ in reports) == [0, 1]
     assert all(answer.candidate is not None for _, answer in reports)

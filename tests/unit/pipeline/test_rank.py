@@ -11,6 +11,7 @@ from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.outlines import silhouettes
 from kirigami_studio.pipeline.rank import MOST_LOST, WORTH, improves, rank_key
 from kirigami_studio.pipeline.request import Request
@@ -21,7 +22,7 @@ from kirigami_studio.polish.preferences import PREFERENCES
 @pytest.fixture(scope="module")
 def design() -> Candidate:
     field = RatioField.from_log10(0.05 * np.random.default_rng(2).normal(size=(4, 4)))
-    return Candidate(field, evaluate(deploy(field), silhouettes.load("heart"), 0.0), seed=1, index=0)
+    return Candidate(Sheet(field), evaluate(deploy(field), silhouettes.load("heart"), 0.0), seed=1, index=0)
 
 
 def scored(design: Candidate, siou: float, tv: float) -> Candidate:

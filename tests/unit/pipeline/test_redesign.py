@@ -14,6 +14,7 @@ from kirigami_studio.fabricate.material import find_material
 from kirigami_studio.foundation.errors import Cancelled, FabricationError
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.silhouettes import load
 from kirigami_studio.pipeline.redesign import keep_for_connectors, refitted, rescored, sampled, trimmed
@@ -37,7 +38,7 @@ def heart() -> Outline:
 @pytest.fixture(scope="module")
 def candidate(heart: Outline) -> Candidate:
     field = RatioField.from_log10(np.random.default_rng(1).uniform(-0.3, 0.3, GRID))
-    return Candidate(field, evaluate(deploy(field), heart), seed=1, index=0)
+    return Candidate(Sheet(field), evaluate(deploy(field), heart), seed=1, index=0)
 
 
 @pytest.fixture(scope="module")
@@ -53,17 +54,17 @@ def test_that_a_trim_is_added_beside_the_designs_own_field_and_score(
 
 
 def test_that_a_change_by_hand_is_scored_and_loses_the_trim(trimmed_candidate: Candidate, heart: Outline) -> None:
-    field = RatioField(trimmed_candidate.field.ratio * 1.01)
-    changed = rescored(trimmed_candidate, field, heart)
-    assert changed.trim is None and changed.origin is Origin.EDITED and changed.field == field
-    assert changed.score.siou == pytest.approx(evaluate(deploy(field), heart).siou, abs=0.01)
+    sheet = Sheet(RatioField(trimmed_candidate.sheet.field.ratio * 1.01))
+    changed = rescored(trimmed_candidate, sheet, heart)
+    assert changed.trim is None and changed.origin is Origin.EDITED and changed.sheet == sheet
+    assert changed.score.siou == pytest.approx(evaluate(deploy(sheet), heart).siou, abs=0.01)
 
 
 def test_that_a_fit_keeps_locked_ratios_exactly_and_remembers_the_sample(candidate: Candidate, heart: Outline) -> None:
     refit = refitted(candidate, heart, "accuracy", [(0, 1), (2, 2)], shallow, never)
     for void in ((0, 1), (2, 2)):
-        assert refit.candidate.field.ratio[void] == candidate.field.ratio[void]
-    assert refit.better and refit.candidate.polished and refit.candidate.sampled_field == candidate.field
+        assert refit.candidate.sheet.field.ratio[void] == candidate.sheet.field.ratio[void]
+    assert refit.better and refit.candidate.polished and refit.candidate.sampled_sheet == candidate.sheet
     assert refit.candidate.trim is None and refit.trim_problem is None
 
 

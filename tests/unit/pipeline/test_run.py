@@ -59,7 +59,7 @@ def test_that_candidates_are_ranked_best_first(request_for_heart: Request) -> No
 
 def test_that_an_infeasible_design_ranks_behind_a_worse_feasible_one(request_for_heart: Request) -> None:
     good, other = best_of(replace(request_for_heart, k=2)).candidates
-    broken = Candidate(good.field, replace(good.score, feasible=False), good.seed, good.index)
+    broken = Candidate(good.sheet, replace(good.score, feasible=False), good.seed, good.index)
     assert ranked([broken, other]) == (other, broken)
 
 

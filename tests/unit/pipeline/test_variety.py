@@ -14,6 +14,7 @@ from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.evaluate.siou import exact_iou
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.silhouettes import load
 from kirigami_studio.pipeline.variety import ALIKE, DUPLICATE, distances, distinct, turns, worth_a_fit
@@ -29,7 +30,7 @@ def candidate() -> Callable[[RatioField, float, int], Candidate]:
 
     def made(field: RatioField, siou: float, index: int) -> Candidate:
         score = evaluate(deploy(field), target)
-        return Candidate(field, replace(score, siou=siou, feasible=True), 0, index)
+        return Candidate(Sheet(field), replace(score, siou=siou, feasible=True), 0, index)
 
     return made
 
@@ -80,7 +81,7 @@ def test_that_distinct_designs_are_those_that_one_by_one_comparison_finds(
     found = [candidate(field, 0.8, number) for number, field in enumerate([*new, *moved, *turned, *old])]
     expected: list[Candidate] = []
     for one in found:
-        if distances(one.field, [other.field for other in (*others, *expected)]).min() >= DUPLICATE:
+        if distances(one.sheet.field, [other.sheet.field for other in (*others, *expected)]).min() >= DUPLICATE:
             expected.append(one)
     assert distinct(found, others) == tuple(expected)
     assert len(expected) == 6 and distinct([], others) == ()

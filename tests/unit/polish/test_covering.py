@@ -41,8 +41,8 @@ def test_that_a_cover_trims_better_than_the_polished_field_alone(polished: Fit, 
 
 def test_that_the_cover_is_feasible_and_its_trim_can_be_computed_again(polished: Fit, drop: Outline) -> None:
     cover = fit_cover(polished.field, drop, pose=polished.pose)
-    deployment = deploy(cover.trim.field)
-    assert cover.fit.field == cover.trim.field
+    deployment = deploy(cover.trim.sheet)
+    assert cover.fit.field == cover.trim.sheet.field
     assert cover.fit.pose == cover.trim.pose
     assert path_contact(deployment, 0.0) is None
     assert trim(deployment, drop, 0.0, cover.trim.pose, cover.trim.keep).iou == cover.trim.iou

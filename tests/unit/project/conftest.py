@@ -12,6 +12,7 @@ from kirigami_studio.evaluate.feasibility import Contact
 from kirigami_studio.evaluate.score import Score
 from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.settings import DesignSettings, FabricationSettings
@@ -45,8 +46,10 @@ def _candidate(field: RatioField, index: int) -> Candidate:
         contact=contact,
         transform=Similarity(0.1234567890123, -0.7, (0.1, -0.2)),
     )
-    drawn = RatioField.uniform(4, 5) if index == 2 else None
-    return Candidate(field, score, seed=11, index=index, polished=index == 2, sampled_field=drawn, variant="prior")
+    drawn = Sheet.uniform(4, 5) if index == 2 else None
+    return Candidate(
+        Sheet(field), score, seed=11, index=index, polished=index == 2, sampled_sheet=drawn, variant="prior"
+    )
 
 
 @pytest.fixture

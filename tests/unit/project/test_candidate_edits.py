@@ -10,6 +10,7 @@ import pytest
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.errors import ProjectError
 from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.candidate_edits import (
     NewDesigns,
@@ -33,12 +34,12 @@ def document(pentagon: Outline, candidates: tuple[Candidate, ...]) -> Document:
 
 
 def other(like: Candidate, seed: int, siou: float) -> Candidate:
-    z = np.random.default_rng(seed).uniform(-1, 1, like.field.ratio.shape)
+    z = np.random.default_rng(seed).uniform(-1, 1, like.sheet.grid)
     return replace(
         like,
-        field=RatioField.from_log10(z),
+        sheet=Sheet(RatioField.from_log10(z)),
         seed=seed,
-        sampled_field=None,
+        sampled_sheet=None,
         score=replace(like.score, siou=siou),
         polished=False,
     )

@@ -6,10 +6,16 @@ from dataclasses import replace
 
 from kirigami_studio.evaluate.candidate import Candidate, Origin
 from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.project.candidate_edits import NewDesigns, add_candidates, renew_candidates
 from kirigami_studio.project.design_facts import design_facts
 from kirigami_studio.project.document import Document, Mark
 from kirigami_studio.project.edits import replace_candidate, take_changed
+
+
+def larger(candidate: Candidate, factor: float) -> Sheet:
+    """The candidate's sheet with all ratios times a factor."""
+    return candidate.sheet.with_field(RatioField(candidate.sheet.field.ratio * factor))
 
 
 def test_that_a_candidate_tells_its_own_model_seed_and_origin(document: Document) -> None:
@@ -22,7 +28,7 @@ def test_that_a_candidate_tells_its_own_model_seed_and_origin(document: Document
     )
     several = replace(document, candidates=mixed, provenance=known)
     facts = design_facts(several, mixed[0])
-    rows, columns = first.field.ratio.shape
+    rows, columns = first.sheet.grid
     assert facts["model"] == "calm" and facts["model_sha256"] == "bb" and facts["origin"] == "resampled"
     assert (facts["seed"], facts["sample"], facts["grid"]) == ("9", "3", f"{rows} x {columns}")
     assert facts["polish"] == "15" and facts["trimmed"] == "no"
@@ -54,7 +60,7 @@ def test_that_designs_of_several_runs_tell_the_settings_of_their_own(document: D
     second = {"model": "balanced", "model_sha256": "bb", "k": "8", "polish": "3", "steps": "4", "prefer": "calm"}
     start = replace(document, provenance=first, marks=())
     best = start.candidates[0]
-    new = replace(best, field=RatioField(best.field.ratio * 1.01), seed=77, variant="balanced")
+    new = replace(best, sheet=larger(best, 1.01), seed=77, variant="balanced")
     both = add_candidates(start, NewDesigns((new,), second), lambda one: -one.score.siou).document
     assert both.provenance["polish"] == "0; 3"
     for one in both.candidates:
@@ -62,7 +68,9 @@ def test_that_designs_of_several_runs_tell_the_settings_of_their_own(document: D
         assert {name: facts.get(name) for name in second} == {name: run.get(name) for name in second}
     assert design_facts(both, new)["k"] == "8", "a design that has not been told is looked up"
     third = add_candidates(
-        both, NewDesigns((replace(new, seed=78, field=RatioField(best.field.ratio * 1.02)),), first), lambda one: 0
+        both,
+        NewDesigns((replace(new, seed=78, sheet=larger(best, 1.02)),), first),
+        lambda one: 0,
     )
     assert design_facts(third.document, new)["polish"] == "3"
 
@@ -71,10 +79,10 @@ def test_that_changed_and_pinned_designs_keep_the_settings_of_their_run(document
     first, second = {"model": "prior", "polish": "0"}, {"model": "balanced", "polish": "3", "prefer": "calm"}
     best = document.candidates[0]
     start = replace(document, provenance=first, marks=(Mark.PINNED, Mark.NONE, Mark.NONE))
-    new = replace(best, field=RatioField(best.field.ratio * 1.01), seed=77)
+    new = replace(best, sheet=larger(best, 1.01), seed=77)
     renewed = renew_candidates(start, NewDesigns((new,), second), lambda one: -one.score.siou).document
     assert {design_facts(renewed, one)["polish"] for one in renewed.candidates} == {"0", "3"}
-    edited = replace(best, field=RatioField(best.field.ratio * 1.02), origin=Origin.EDITED)
+    edited = replace(best, sheet=larger(best, 1.02), origin=Origin.EDITED)
     changed = take_changed(renewed, best, edited, "Change by hand")
     assert changed is not None and design_facts(changed.document, edited)["polish"] == "0"
     place = changed.document.candidates.index(new)

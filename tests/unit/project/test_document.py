@@ -9,7 +9,7 @@ import pytest
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.errors import KirigamiError, ProjectError
-from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.settings import DesignSettings, FabricationSettings
 
@@ -39,7 +39,7 @@ def test_that_a_choice_beyond_the_candidates_is_refused(document: Document, chos
 
 
 def test_that_candidates_of_two_grids_are_refused(document: Document) -> None:
-    stranger: Candidate = replace(document.candidates[0], field=RatioField.uniform(6, 7))
+    stranger: Candidate = replace(document.candidates[0], sheet=Sheet.uniform(6, 7))
     with pytest.raises(ProjectError, match="4 x 5 and 6 x 7"):
         replace(document, candidates=(*document.candidates, stranger))
 

@@ -11,6 +11,7 @@ from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.foundation.errors import ProjectError
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.outlines.silhouettes import load
 from kirigami_studio.project import edits
 from kirigami_studio.project.document import Document, Mark
@@ -20,7 +21,7 @@ from kirigami_studio.project.document import Document, Mark
 def document() -> Document:
     target, field = load("heart"), RatioField.uniform(2, 3)
     score = evaluate(deploy(field), target)
-    found = [Candidate(field, score, seed=1, index=index) for index in range(3)]
+    found = [Candidate(Sheet(field), score, seed=1, index=index) for index in range(3)]
     made = edits.set_candidates(edits.set_target(Document(), target).document, found, {}).document
     return replace(made, marks=(Mark.NONE, Mark.PINNED, Mark.REJECTED), locked=frozenset({(0, 0)}))
 

@@ -13,6 +13,7 @@ from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions
 from kirigami_studio.foundation.errors import FabricationError
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.outlines import silhouettes
 from kirigami_studio.project import edits
 from kirigami_studio.project.document import Document
@@ -78,7 +79,7 @@ def test_that_choices_about_hinges_stay_only_while_the_grid_stays(
 
     def design(rows: int, columns: int) -> Candidate:
         field = RatioField(np.ones((rows, columns)))
-        return Candidate(field, evaluate(deploy(field), target, 0.0), seed=0, index=0)
+        return Candidate(Sheet(field), evaluate(deploy(field), target, 0.0), seed=0, index=0)
 
     before = edits.set_candidates(Document(target=target), [design(3, 4)], {}).document
     before = replace(before, fabrication=replace(before.fabrication, options=CutOptions(tabs=3, removed=(1,))))

@@ -19,6 +19,7 @@ from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions, CutOrd
 from kirigami_studio.foundation.errors import ExportError, ProjectError
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.polish.covering import fit_cover
 from kirigami_studio.polish.levenberg import polish
@@ -54,7 +55,7 @@ def test_that_a_project_comes_back_as_it_was(document: Document, tmp_path: Path)
     assert again == document
     assert again.target is not None and document.target is not None
     assert (again.target.name, again.target.size, again.target.unit) == ("pentagon", document.target.size, "mm")
-    assert not again.candidates[0].field.ratio.flags.writeable
+    assert not again.candidates[0].sheet.field.ratio.flags.writeable
 
 
 def test_that_a_trimmed_design_comes_back_with_what_was_cut_off(pentagon: Outline, tmp_path: Path) -> None:
@@ -62,7 +63,7 @@ def test_that_a_trimmed_design_comes_back_with_what_was_cut_off(pentagon: Outlin
     deployment = deploy(fit.field)
     score = evaluate(deployment, pentagon)
     cut = fit_cover(fit.field, pentagon, steps=4, pose=score.transform).trim
-    document = Document(pentagon, candidates=(Candidate(fit.field, score, 0, 0, trim=cut),), chosen=0)
+    document = Document(pentagon, candidates=(Candidate(Sheet(fit.field), score, 0, 0, trim=cut),), chosen=0)
     store.save(document, tmp_path / "trimmed.kiri")
     again = store.load(tmp_path / "trimmed.kiri")
     assert again == document
@@ -359,7 +360,7 @@ def test_that_every_design_setting_and_score_field_survives(document: Document, 
     again = store.load(tmp_path / "c.kiri")
     for before, after in zip(changed.candidates, again.candidates, strict=True):
         assert after.score == before.score
-        assert np.array_equal(after.field.ratio, before.field.ratio)
+        assert np.array_equal(after.sheet.field.ratio, before.sheet.field.ratio)
 
 
 def test_that_migrations_run_one_after_the_other(monkeypatch: pytest.MonkeyPatch) -> None:
