@@ -119,7 +119,7 @@ def shape_figures(one: Made) -> dict[str, object]:
     """The line of one target."""
     score = one.best.score
     line: dict[str, object] = {
-        "grid": f"{one.request.grid[0]}x{one.request.grid[1]}",
+        "grid": f"{one.request.chosen_grid[0]}x{one.request.chosen_grid[1]}",
         "iou_exact": score.iou_exact,
         "siou": score.siou,
         "uniform_siou": score.uniform_siou,
@@ -176,7 +176,7 @@ def write_contact_sheet(made: Sequence[Made], path: Path) -> None:
 
 
 def _tiles(one: Made) -> list[tuple[Image.Image, tuple[str, str]]]:
-    grid = f"{one.request.grid[0]} x {one.request.grid[1]}"
+    grid = f"{one.request.chosen_grid[0]} x {one.request.chosen_grid[1]}"
     plain = replace(one.best, trim=None)
     agreement = f"IoU {plain.score.iou_exact:.3f} (uniform {plain.score.uniform_iou:.3f})"
     tiles = [(_picture_of(plain, one), (f"{one.target.name}, {grid}", agreement))]

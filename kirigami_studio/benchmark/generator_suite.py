@@ -9,7 +9,7 @@ import numpy as np
 from kirigami_studio.evaluate.score import Score
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.outlines.outline import Outline
-from kirigami_studio.pipeline.request import Request
+from kirigami_studio.pipeline.request import Request, as_in_paper
 from kirigami_studio.pipeline.run import best_of
 
 #: The paper's success threshold on sIoU (Sec. 3.1).
@@ -52,7 +52,7 @@ def measure_generator(
     for number, target in enumerate(targets):
         per_seed: list[Score] = []
         for seed in seeds:
-            request = Request(target, grid, k=k, seed=seed, variant=variant, steps=steps, polish=polish)
+            request = as_in_paper(Request(target, grid, k=k, seed=seed, variant=variant, steps=steps, polish=polish))
             per_seed.append(best_of(request).best.score)
             report(number * len(seeds) + len(per_seed), total)
         scores.append(per_seed)

@@ -11,7 +11,7 @@ from kirigami_studio.benchmark.generator_suite import bootstrap_interval
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.outlines.outline import Outline
-from kirigami_studio.pipeline.request import Request
+from kirigami_studio.pipeline.request import Request, as_in_paper
 from kirigami_studio.pipeline.run import best_of
 from kirigami_studio.pipeline.variety import distances, distinct
 
@@ -62,7 +62,7 @@ def measure_nearness(
     rows: dict[str, list[dict[str, float]]] = {name: [] for name in names}
     designs = []
     for number, target in enumerate(targets):
-        request = Request(target, grid, k=k, seed=seed, variant=variant, steps=steps, polish=polish)
+        request = as_in_paper(Request(target, grid, k=k, seed=seed, variant=variant, steps=steps, polish=polish))
         before = best_of(request).candidates
         designs.append(before[0].score.siou)
         more = replace(request, seed=seed + 1)

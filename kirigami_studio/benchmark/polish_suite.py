@@ -14,7 +14,7 @@ from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.pipeline.rank import MOST_LOST
-from kirigami_studio.pipeline.request import Request
+from kirigami_studio.pipeline.request import Request, as_in_paper
 from kirigami_studio.pipeline.run import best_of
 from kirigami_studio.polish.continuation import fit_shape
 from kirigami_studio.polish.levenberg import Fit, polish
@@ -120,10 +120,12 @@ def measure_regularity(
     """
     found: dict[str, list[Score]] = {"unpolished": [], **{name: [] for name in PREFERENCES}}
     for number, target in enumerate(targets):
-        found["unpolished"].append(best_of(Request(target, grid, k=1, seed=seed, variant=variant)).best.score)
+        found["unpolished"].append(
+            best_of(as_in_paper(Request(target, grid, k=1, seed=seed, variant=variant))).best.score
+        )
         for name in PREFERENCES:
             request = Request(target, grid, k=1, seed=seed, variant=variant, polish=polish, prefer=name)
-            found[name].append(best_of(request).best.score)
+            found[name].append(best_of(as_in_paper(request)).best.score)
         report(number + 1, len(targets))
     figures: dict[str, object] = {"targets": len(targets), "polish": polish, "grid": list(grid), "seed": seed}
     for name, scores in found.items():

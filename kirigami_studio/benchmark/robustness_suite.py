@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.random import Generator
@@ -23,7 +23,7 @@ from kirigami_studio.foundation.paper import MASK_SIZE
 from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.read_image import outline_of_mask
-from kirigami_studio.pipeline.request import Request
+from kirigami_studio.pipeline.request import Request, as_in_paper
 from kirigami_studio.pipeline.run import best_of, sample
 from kirigami_studio.pipeline.tasks import scored
 
@@ -156,8 +156,9 @@ def measure_robustness(
             row = []
             for seed in seeds:
                 target = case.seen(shape, np.random.default_rng([seed, number]))
-                disturbed = Request(target, grid, k=1, seed=seed, variant=variant, steps=steps, polish=polish)
-                wanted = Request(clean, grid, k=1, seed=seed, variant=variant, steps=steps)
+                asked = Request(target, grid, k=1, seed=seed, variant=variant, steps=steps, polish=polish)
+                disturbed = as_in_paper(asked)
+                wanted = replace(disturbed, target=clean, polish=0)
                 sheets = [best_of(disturbed).best.sheet] if polish else [Sheet(field) for field in sample(disturbed)]
                 row.append(scored(wanted, sheets, 0)[0].score)
                 report(done := done + 1, total)

@@ -22,7 +22,7 @@ from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.pipeline.rank import ranked
-from kirigami_studio.pipeline.request import Request
+from kirigami_studio.pipeline.request import Request, as_in_paper
 from kirigami_studio.pipeline.run import best_of
 from kirigami_studio.pipeline.tasks import scored
 from kirigami_studio.pipeline.variety import ALIKE, distances
@@ -82,7 +82,7 @@ def measure_variants(
     total = len(targets) * len(names) * len(seeds)
     for number, target in enumerate(targets):
         for place, name in enumerate(names):
-            requests = [Request(target, grid, k=k, seed=seed, variant=name, steps=steps) for seed in seeds]
+            requests = [as_in_paper(Request(target, grid, k=k, seed=seed, variant=name, steps=steps)) for seed in seeds]
             scores[name].append([best_of(request).best.score for request in requests])
             report((number * len(names) + place + 1) * len(seeds), total)
     return {
@@ -177,7 +177,7 @@ def measure_spread(
     total, done = len(targets) * len(names) * len(POSES), 0
     for target in targets:
         for name in names:
-            request = Request(target, grid, k=k, seed=seed, variant=name, steps=steps)
+            request = as_in_paper(Request(target, grid, k=k, seed=seed, variant=name, steps=steps))
             for poses, angle in POSES.items():
                 fields = sample_fields(load_model(name), target, grid, k, seed, steps, poses=angle)
                 found[name][poses].append(spread_of(scored(request, [Sheet(field) for field in fields], 0)))

@@ -11,9 +11,8 @@ from pathlib import Path
 from kirigami_studio.cli.console import ProgressLine, plain, print_json, say
 from kirigami_studio.cli.fabrication import checked_plan, material_settings
 from kirigami_studio.cli.inputs import are_many_targets, for_each, read_targets
-from kirigami_studio.cli.option_types import parse_grid
+from kirigami_studio.cli.option_types import parse_grid_or_auto
 from kirigami_studio.evaluate.candidate import Candidate
-from kirigami_studio.evaluate.trimming import KEEP
 from kirigami_studio.export.exporter import ExportJob
 from kirigami_studio.export.picture import write_png
 from kirigami_studio.export.registry import export
@@ -24,9 +23,9 @@ from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.pipeline.events import Finished, Progress, Result
 from kirigami_studio.pipeline.redesign import keep_for_connectors
-from kirigami_studio.pipeline.request import POLISH_STEPS, Request, provenance
-from kirigami_studio.pipeline.run import run
-from kirigami_studio.project.cutting import material_for
+from kirigami_studio.pipeline.request import POLISH_STEPS, REGULAR, Request, provenance
+from kirigami_studio.pipeline.run import run, with_grid
+from kirigami_studio.project.cutting import least_feature_mm, material_for
 from kirigami_studio.project.design_facts import design_facts, with_run
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.settings import DesignSettings, FabricationSettings
@@ -35,8 +34,9 @@ from kirigami_studio.project.store import save
 
 def design(arguments: argparse.Namespace) -> int:
     """Design every target; one JSON object a line for many, files only where --out is given."""
-    grid = parse_grid(arguments.grid)
+    grid = parse_grid_or_auto(arguments.grid)
     fabrication = material_settings(arguments)
+    regular = REGULAR[arguments.prefer] if arguments.regular is None else arguments.regular
     batch = are_many_targets(arguments.targets)
     if arguments.out is not None:
         check_folder(Path(arguments.out))
@@ -44,21 +44,28 @@ def design(arguments: argparse.Namespace) -> int:
     used: set[str] = set()
 
     def one(name: str, target: Outline) -> None:
-        request = Request(
-            target=target,
-            grid=grid,
-            phi=arguments.phi,
-            k=arguments.k,
-            seed=arguments.seed,
-            variant=arguments.variant,
-            steps=arguments.steps,
-            polish=POLISH_STEPS if arguments.polish else 0,
-            prefer=arguments.prefer,
-            least_panel=_in_cells(arguments.least_panel_mm, fabrication, grid),
-            trim=arguments.trim,
-            keep=_keep(fabrication, grid) if arguments.trim else KEEP,
-            search=arguments.search,
-            budget_seconds=arguments.budget,
+        request = _on_its_grid(
+            Request(
+                target=target,
+                grid=grid,
+                phi=arguments.phi,
+                k=arguments.k,
+                seed=arguments.seed,
+                variant=arguments.variant,
+                steps=arguments.steps,
+                polish=POLISH_STEPS if arguments.polish else 0,
+                prefer=arguments.prefer,
+                trim=arguments.trim,
+                search=arguments.search,
+                budget_seconds=arguments.budget,
+                symmetry=arguments.symmetry,
+                rim=arguments.rim,
+                regular=regular,
+                width_mm=fabrication.width_mm,
+                least_feature_mm=least_feature_mm(fabrication),
+            ),
+            fabrication,
+            arguments.least_panel_mm,
         )
         result = _run(request, line)
         if request.trim and result.best.trim is None:
@@ -139,7 +146,7 @@ def document_of(result: Result, fabrication: FabricationSettings) -> Document:
 
     request = result.request
     settings = DesignSettings(
-        request.grid,
+        request.chosen_grid,
         request.phi,
         request.k,
         request.seed,
@@ -148,6 +155,10 @@ def document_of(result: Result, fabrication: FabricationSettings) -> Document:
         request.polish,
         request.prefer,
         request.search,
+        request.grid_chosen,
+        request.symmetry,
+        request.rim,
+        request.regular,
     )
     source = provenance(request, digest_of(request.variant))
     candidates = tuple(with_run(result.candidates, source))
@@ -162,6 +173,14 @@ def _run(request: Request, line: ProgressLine) -> Result:
             line.clear()
             return event.result
     raise Cancelled("run.no_result")
+
+
+def _on_its_grid(request: Request, fabrication: FabricationSettings, least_panel_mm: float) -> Request:
+    """The request with its grid chosen, and with what depends on the size of its cells."""
+    request = with_grid(request)
+    grid = request.chosen_grid
+    least = _in_cells(least_panel_mm, fabrication, grid)
+    return replace(request, least_panel=least, keep=_keep(fabrication, grid) if request.trim else request.keep)
 
 
 def _in_cells(length_mm: float, fabrication: FabricationSettings, grid: tuple[int, int]) -> float:

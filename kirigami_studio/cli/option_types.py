@@ -24,6 +24,11 @@ def parse_grid(text: str) -> tuple[int, int]:
     return int(match[1]), int(match[2])
 
 
+def parse_grid_or_auto(text: str) -> tuple[int, int] | None:
+    """Read ``10x10`` as :func:`parse_grid` does, and ``auto`` as None."""
+    return None if text.strip().lower() == "auto" else parse_grid(text)
+
+
 def parse_angle(text: str) -> float:
     """Read an angle in radians (``0.5``, ``pi/3``) or in degrees (``30deg``).
 
@@ -69,6 +74,14 @@ def number(text: str) -> float:
         raise argparse.ArgumentTypeError(tr("must be a number, got '{text}'", text=text)) from None
     if not math.isfinite(value):
         raise argparse.ArgumentTypeError(tr("must be finite, got {text}", text=text))
+    return value
+
+
+def share(text: str) -> float:
+    """A number from 0 to 1."""
+    value = number(text)
+    if not 0.0 <= value <= 1.0:
+        raise argparse.ArgumentTypeError(tr("must be from 0 to 1, got {text}", text=text))
     return value
 
 

@@ -9,8 +9,9 @@ from importlib import import_module
 from typing import Any
 
 from kirigami_studio import __version__
-from kirigami_studio.cli.option_types import amount, angle, count, number, positive, whole
+from kirigami_studio.cli.option_types import amount, angle, count, number, positive, share, whole
 from kirigami_studio.fabricate.options import ConnectorStyle, CutOrder
+from kirigami_studio.pipeline.request import RIMS, SYMMETRIES
 from kirigami_studio.polish.preferences import PREFERENCES
 
 Option = tuple[tuple[str, ...], dict[str, Any]]
@@ -81,6 +82,29 @@ CUTS = (
     ),
 )
 
+#: What sheets may be like, and which of them come first.
+SHEETS = (
+    option(
+        "--symmetry",
+        choices=SYMMETRIES,
+        default="auto",
+        help="symmetry that designs keep (default auto: the target's own)",
+    ),
+    option(
+        "--rim",
+        choices=RIMS,
+        default="free",
+        help="where cuts meet the rim: free moves them to fit, even spaces them as in the paper (default free)",
+    ),
+    option(
+        "--regular",
+        type=share,
+        default=None,
+        metavar="0..1",
+        help="what ranking prefers, from 0, the best match, to 1, even panels (default: that of --prefer, 0.5)",
+    ),
+)
+
 #: Options that suites of ``benchmark`` share; each suite takes only its own.
 GRID = option("--grid", default="10x10", help="voids, ROWSxCOLUMNS (default 10x10)")
 VARIANT = option("--variant", default="balanced", help="generator variant (default balanced)")
@@ -148,15 +172,18 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
                help="grey level that separates an image's shape from its background, 0 to 1 (default: automatic)"),
         option("--k", type=int, default=32, help="number of designs (default 32)"),
         option("--seed", type=int, default=0, help="random seed; the same seed gives the same result (default 0)"),
-        GRID,
+        option("--grid", default="auto",
+               help="voids, ROWSxCOLUMNS, or auto: as coarse as the shape allows (default auto)"),
         PHI,
+        *SHEETS,
         option("--variant", default="balanced",
                help="generator variant, see 'kirigami-studio variants' (default balanced)"),
         option("--steps", type=int, default=4, help="sampling steps: half Euler steps, half corrections (default 4)"),
         option("--polish", action=argparse.BooleanOptionalAction, default=True,
                help="fit every design on the exact geometry (default: yes)"),
         option("--prefer", choices=tuple(PREFERENCES), default="balanced",
-               help="what polishing prefers among nearly equal matches (default balanced)"),
+               help="what polishing prefers among nearly equal matches, and a preset of --regular: "
+                    "0, 0.5, 0.75, 1 (default balanced)"),
         option("--least-panel-mm", type=amount, default=0.0, metavar="MM",
                help="smallest panel edge and neck that polishing aims for, in the finished sheet (default: any)"),
         option("--trim", action="store_true",
@@ -170,6 +197,8 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
     ), (
         "kirigami-studio design heart --out out/heart",
         "kirigami-studio design drawing.svg --k 8 --grid 12x12 --json",
+        "kirigami-studio design butterfly --symmetry mirror --regular 0.8 --out out/butterfly",
+        "kirigami-studio design star --grid 10x10 --symmetry none --rim even --regular 0 --json",
         "kirigami-studio design masks.npz --k 1 --json",
     )),
     SubCommand("decode", "print the exact layouts of ratio fields", "geometry:decode", (

@@ -1,6 +1,6 @@
-"""The score of a design against a target: sIoU, total variation and feasibility, in one frozen value.
+"""The score of a design against a target: sIoU, total variation, evenness and feasibility, in one frozen value.
 
-sIoU is defined in ``siou``, total variation in ``total_variation``, feasibility in ``feasibility``.
+Each is defined in the module of its name.
 """
 
 from __future__ import annotations
@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
 from functools import lru_cache
 
+from kirigami_studio.evaluate.evenness import Evenness, evenness_of_many
 from kirigami_studio.evaluate.feasibility import Contact, Feasibility, feasibility_of_many
 from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.evaluate.siou import ShapeMatch, siou_near, siou_of_many
@@ -27,7 +28,7 @@ STAY = 0.003
 
 @dataclass(frozen=True, slots=True)
 class Score:
-    """Shape match, total variation and feasibility of one design against one target at one angle.
+    """Shape match, total variation, evenness and feasibility of one design against one target at one angle.
 
     Attributes
     ----------
@@ -55,6 +56,8 @@ class Score:
         First self-contact on the way from the compact sheet, if any.
     transform : Similarity
         Layout frame at the angle (unit cells) -> target frame (area 1).
+    evenness : Evenness
+        Of the flat sheet: how even its panels are, and how small.
     phi : float, radians
         The angle that all of this is about.
     """
@@ -71,6 +74,7 @@ class Score:
     overlap_ratio: float
     contact: Contact | None
     transform: Similarity
+    evenness: Evenness
     phi: float = 0.0
 
     def to_json(self) -> dict[str, object]:
@@ -112,9 +116,9 @@ def evaluate_many(deployments: Sequence[Deployment], outline: Outline, phi: floa
         members = [index for index, deployment in enumerate(deployments) if deployment.sheet.grid == grid]
         sheets = [deployments[index] for index in members]
         matches = siou_of_many([sheet.outline(phi) for sheet in sheets], outline)
-        checks = feasibility_of_many(sheets, phi)
-        for index, sheet, match, check in zip(members, sheets, matches, checks, strict=True):
-            found[index] = _complete(sheet, match, check, outline, phi)
+        checks, figures = feasibility_of_many(sheets, phi), evenness_of_many(sheets)
+        for index, sheet, match, check, even in zip(members, sheets, matches, checks, figures, strict=True):
+            found[index] = _complete(sheet, match, check, even, outline, phi)
     return [found[index] for index in range(len(deployments))]
 
 
@@ -144,7 +148,9 @@ def evaluate_near(deployment: Deployment, outline: Outline, phi: float, pose: Si
     return replace(best, siou=near.siou, siou_gain=gain, iou_exact=near.iou_exact, transform=near.transform)
 
 
-def _complete(deployment: Deployment, match: ShapeMatch, check: Feasibility, outline: Outline, phi: float) -> Score:
+def _complete(
+    deployment: Deployment, match: ShapeMatch, check: Feasibility, even: Evenness, outline: Outline, phi: float
+) -> Score:
     floor = _uniform_match(deployment.sheet.plain(), phi, outline)
     return Score(
         siou=match.siou,
@@ -159,6 +165,7 @@ def _complete(deployment: Deployment, match: ShapeMatch, check: Feasibility, out
         overlap_ratio=check.overlap_ratio,
         contact=check.contact,
         transform=match.transform,
+        evenness=even,
         phi=phi,
     )
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from kirigami_studio import __version__
 from kirigami_studio.evaluate.trimming import KEEP, check_keep
@@ -20,6 +20,14 @@ LARGEST_POLISH = 200
 LARGEST_SEARCH = 8
 #: The default of window and command line: nearly converged from a generator sample.
 POLISH_STEPS = 15
+#: The paper's grid.
+USUAL_GRID = (10, 10)
+#: What a design may be asked to keep: the target's symmetries as they are found, none, a mirror axis, or a turn.
+SYMMETRIES = ("auto", "none", "mirror", "turn")
+#: Where cuts meet the rim: where fits move them, or evenly spaced as in the paper.
+RIMS = ("free", "even")
+#: Where a preference stands between match (0) and regular (1).
+REGULAR = {"accuracy": 0.0, "balanced": 0.5, "regularity": 0.75, "calm": 1.0}
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,7 +37,8 @@ class Request:
     Attributes
     ----------
     target : Outline
-    grid : (rows, columns) voids, 2..64 each
+    grid : (rows, columns) voids, 2..64 each, or None
+        None leaves the choice to the run, see :meth:`resolved`.
     phi : float, radians, in [0, pi)
         Deployment angle at which the sheet should show the target; 0 is the second compact state.
     k : int, 1..1024
@@ -60,10 +69,22 @@ class Request:
     nearness : float, 0..1 without 1
         How near they are to lie: the time of the flow at which they start from that design.  0 starts from noise alone,
         in that design's pose.
+    symmetry : str
+        What designs have to keep, one of :data:`SYMMETRIES`.
+    rim : str
+        One of :data:`RIMS`.
+    regular : float, 0..1
+        What ranking prefers, from the best match (0) to even panels (1), see :mod:`kirigami_studio.pipeline.rank`.
+    width_mm : float, > 0
+        Width of the flat sheet.
+    least_feature_mm : float, >= 0
+        Least panel edge and neck, between centre lines of cuts, that the material allows; 0 where that is not known.
+    grid_chosen : bool
+        Whether the run chose the grid.
     """
 
     target: Outline
-    grid: tuple[int, int] = (10, 10)
+    grid: tuple[int, int] | None = USUAL_GRID
     phi: float = 0.0
     k: int = 32
     seed: int = 0
@@ -78,9 +99,16 @@ class Request:
     budget_seconds: float | None = None
     near: RatioField | None = None
     nearness: float = 0.0
+    symmetry: str = "auto"
+    rim: str = "free"
+    regular: float = 0.5
+    width_mm: float = 100.0
+    least_feature_mm: float = 0.0
+    grid_chosen: bool = False
 
     def __post_init__(self) -> None:
-        check_grid(*self.grid)
+        if self.grid is not None:
+            check_grid(*self.grid)
         if not 0.0 <= self.phi < math.pi:
             raise AngleError("request.angle_out_of_range", phi=self.phi)
         for code, value, least, most in (
@@ -94,27 +122,63 @@ class Request:
                 raise UsageError(code, value=value, least=least, most=most)
         if self.prefer not in PREFERENCES:
             raise UsageError("request.unknown_preference", prefer=self.prefer, choices=", ".join(PREFERENCES))
+        if self.symmetry not in SYMMETRIES:
+            raise UsageError("request.unknown_symmetry", symmetry=self.symmetry, choices=", ".join(SYMMETRIES))
+        if self.rim not in RIMS:
+            raise UsageError("request.unknown_rim", rim=self.rim, choices=", ".join(RIMS))
+        if not _is_number(self.regular) or not 0.0 <= self.regular <= 1.0:
+            raise UsageError("request.regular_out_of_range", regular=self.regular)
+        if not _is_number(self.width_mm) or not 0.0 < self.width_mm < math.inf:
+            raise UsageError("request.width_not_positive", width_mm=self.width_mm)
+        if not _is_number(self.least_feature_mm) or not 0.0 <= self.least_feature_mm < math.inf:
+            raise UsageError("request.least_feature_out_of_range", least_mm=self.least_feature_mm)
         check_least(self.least_panel)
         check_keep(self.keep)
         self._check_near()
         budget = self.budget_seconds
         if budget is None:
             return
-        if isinstance(budget, bool) or not isinstance(budget, int | float) or not 0.0 < budget < math.inf:
+        if not _is_number(budget) or not 0.0 < budget < math.inf:
             raise UsageError("request.budget_not_positive", budget=budget)
+
+    @property
+    def chosen_grid(self) -> tuple[int, int]:
+        """The grid of (rows, columns) voids.
+
+        Raises
+        ------
+        UsageError
+            It is left to the run, which has not chosen it yet.
+        """
+        if self.grid is None:
+            raise UsageError("request.grid_not_chosen")
+        return self.grid
+
+    def resolved(self, grid: tuple[int, int]) -> Request:
+        """The same request on the grid that was chosen for it; a grid that it has already stays."""
+        return replace(self, grid=grid, grid_chosen=True) if self.grid is None else self
 
     def _check_near(self) -> None:
         nearness = self.nearness
-        if isinstance(nearness, bool) or not isinstance(nearness, int | float) or not 0.0 <= nearness < 1.0:
+        if not _is_number(nearness) or not 0.0 <= nearness < 1.0:
             raise UsageError("request.nearness_out_of_range", nearness=nearness)
         if self.near is None:
             if nearness:
                 raise UsageError("request.nearness_without_design")
-        elif self.near.ratio.shape != tuple(self.grid):
+        elif self.grid is not None and self.near.ratio.shape != tuple(self.grid):
             (rows, columns), near = self.grid, self.near
             raise UsageError(
                 "request.near_other_grid", near_rows=near.rows, near_columns=near.columns, rows=rows, columns=columns
             )
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool) and not math.isnan(value)
+
+
+def as_in_paper(request: Request) -> Request:
+    """The same request in the paper's setting: an even rim, no symmetry asked for, ranked by match alone."""
+    return replace(request, symmetry="none", rim="even", regular=0.0)
 
 
 def provenance(request: Request, digest: str) -> dict[str, str]:
@@ -134,6 +198,9 @@ def provenance(request: Request, digest: str) -> dict[str, str]:
     }
     if request.polish or request.search:
         known["prefer"] = request.prefer
+    known |= {"symmetry": request.symmetry, "rim": request.rim, "regular": f"{request.regular:g}"}
+    if request.grid_chosen:
+        known["grid_choice"] = "auto"
     if request.least_panel:
         known["least_panel"] = f"{request.least_panel:g}"
     if request.trim:

@@ -26,7 +26,7 @@ from kirigami_studio.pipeline.events import (
 )
 from kirigami_studio.pipeline.pool import Pool, shared_pool
 from kirigami_studio.pipeline.rank import ranked
-from kirigami_studio.pipeline.request import Request
+from kirigami_studio.pipeline.request import USUAL_GRID, Request
 from kirigami_studio.pipeline.tasks import Answer, PolishTask, SearchTask, Task, TrimTask, scored
 from kirigami_studio.pipeline.variety import worth_a_fit
 
@@ -96,6 +96,7 @@ def run(request: Request, cancel: Callable[[], bool] = never, pool: Pool | None 
         The variant cannot be loaded or does not exist.
     """
     watch = Watch(cancel, time.perf_counter(), request.budget_seconds)
+    request = with_grid(request)
     work = _Work(request, watch, _gaining(pool or shared_pool(), request))
     yield Started(request.k)
     yield Progress(0, request.k, tr("Loading the generator"))
@@ -112,6 +113,13 @@ def run(request: Request, cancel: Callable[[], bool] = never, pool: Pool | None 
     yield Finished(Result(request, candidates, work.evaluations, watch.seconds, work.cut_short))
 
 
+def with_grid(request: Request) -> Request:
+    """The request on the grid that the run takes, where that was left to it: that of the design that samples are near,
+    else the paper's.
+    """
+    return request.resolved(USUAL_GRID if request.near is None else request.near.ratio.shape)
+
+
 def best_of(request: Request, cancel: Callable[[], bool] = never, pool: Pool | None = None) -> Result:
     """Run to the end and return the result alone."""
     for event in run(request, cancel, pool):
@@ -126,7 +134,7 @@ def sample(request: Request) -> tuple[RatioField, ...]:
     from kirigami_studio.generator.weights import load_model
 
     model = load_model(request.variant)
-    wanted = model, request.target, request.grid, request.k, request.seed, request.steps, request.phi
+    wanted = model, request.target, request.chosen_grid, request.k, request.seed, request.steps, request.phi
     if request.near is None:
         return sample_fields(*wanted)
     near = Near(request.near, rotation_of_target(request.near, request.target, request.phi), request.nearness)
@@ -334,7 +342,7 @@ def _by_workers(
 
 def work_seconds(request: Request) -> float:
     """Roughly how long polishing and search take in one process."""
-    rows, columns = request.grid
+    rows, columns = request.grid or USUAL_GRID
     steps = request.k * request.polish + request.search * SEARCH_STEPS
     growth = float((rows * columns / 100.0) ** STEP_GROWTH)
     return steps * STEP_SECONDS * growth

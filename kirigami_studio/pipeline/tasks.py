@@ -90,7 +90,7 @@ class SearchTask:
         with one_blas_thread():
             fits = fit_shape(
                 request.target,
-                request.grid,
+                request.chosen_grid,
                 request.phi,
                 self.starts,
                 request.search,

@@ -16,11 +16,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from kirigami_studio.evaluate.evenness import PanelSizes, panel_sizes
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.lattice.topology import topology
 from kirigami_studio.polish.boundary_target import BoundaryTarget
 from kirigami_studio.polish.matching import EDGE_SHARES, Matching, OneSided, check_excess, matched, outer_hinges
-from kirigami_studio.polish.panel_size import PENALTY, PanelSizes, panel_sizes, shortage
+from kirigami_studio.polish.panel_size import PENALTY, shortage
 from kirigami_studio.polish.preferences import PreferenceTerms
 from kirigami_studio.polish.sensitivity import OutlineModel
 

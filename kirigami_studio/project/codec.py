@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from kirigami_studio.evaluate.candidate import Candidate, Origin
+from kirigami_studio.evaluate.evenness import Evenness, evenness
 from kirigami_studio.evaluate.feasibility import Contact
 from kirigami_studio.evaluate.score import Score
 from kirigami_studio.evaluate.similarity import Similarity
@@ -201,7 +202,7 @@ def _hinge_width(entry: object) -> tuple[int, float]:
     return _hinge(hinge), float(width)
 
 
-def _plain_fields(record: Record, kind: type[DesignSettings | Material | Score]) -> dict[str, Any]:
+def _plain_fields(record: Record, kind: type[DesignSettings | Material | Score | Evenness]) -> dict[str, Any]:
     """What a record has for those fields of a dataclass that hold one text, number or flag."""
     read = {"str": record.text, "float": record.number, "int": record.whole, "bool": record.flag}
     return {entry.name: read[str(entry.type)](entry.name) for entry in fields(kind) if entry.type in read}
@@ -228,7 +229,7 @@ def _candidate_json(entry: Candidate, runs: list[tuple[tuple[str, str], ...]]) -
 def _candidate(record: Record, field: RatioField, sampled: RatioField | None, target: Outline | None) -> Candidate:
     return Candidate(
         sheet=Sheet(field),
-        score=_score(record.record("score")),
+        score=_score(record.record("score"), Sheet(field)),
         seed=record.whole("seed"),
         index=record.whole("index"),
         polished=record.flag("polished"),
@@ -248,8 +249,8 @@ def _pose(record: Record) -> Similarity:
     return Similarity(record.number("scale"), record.number("angle"), record.pair("shift"))
 
 
-def _score(record: Record) -> Score:
-    """Read back what :meth:`Score.to_json` wrote."""
+def _score(record: Record, sheet: Sheet) -> Score:
+    """Read back what :meth:`Score.to_json` wrote; the evenness of older files is measured."""
     contact = record.record("contact") if record.holds("contact") else None
     plain = _plain_fields(record, Score)
     check_phi(plain["phi"])
@@ -257,6 +258,9 @@ def _score(record: Record) -> Score:
         **plain,
         contact=None if contact is None else Contact(contact.number("phi"), contact.pair("where")),
         transform=_pose(record.record("transform")),
+        evenness=Evenness(**_plain_fields(record.record("evenness"), Evenness))
+        if record.holds("evenness")
+        else evenness(deploy(sheet)),
     )
 
 

@@ -56,6 +56,18 @@ def material_for(settings: FabricationSettings) -> Material:
     return find_material(settings.material)
 
 
+def least_feature_mm(settings: FabricationSettings) -> float:
+    """Least panel edge and neck, between centre lines of cuts, that the settings' material allows.
+
+    Raises
+    ------
+    FabricationError
+        No such material.
+    """
+    material = material_for(settings)
+    return material.min_ligament_mm + (material.kerf_mm if settings.kerf_mm is None else settings.kerf_mm)
+
+
 def stored_material(settings: FabricationSettings) -> Material | None:
     """The numbers of the settings' material as the project stores them; None for bundled materials."""
     return settings.own if settings.own is not None and settings.own.key == settings.material else None

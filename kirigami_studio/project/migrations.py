@@ -6,6 +6,7 @@ format raises :data:`CURRENT_VERSION` by one and adds one entry; entries that we
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from types import MappingProxyType
@@ -16,8 +17,26 @@ from kirigami_studio.foundation.errors import ProjectError
 Members = Mapping[str, bytes]
 Migration = Callable[[Members], Members]
 
-CURRENT_VERSION = 1
-MIGRATIONS: Mapping[int, Migration] = MappingProxyType({})
+#: The member that holds everything but arrays.
+DESIGN = "design.json"
+
+
+def _with_sheet_settings(members: Members) -> Members:
+    """Format 2 says whether a run chooses its grid, and how sheets may be: designs so far had a fixed grid, an even rim
+    and no symmetry asked for.
+    """
+    if DESIGN not in members:
+        return members
+    try:
+        design = json.loads(members[DESIGN])
+        design["settings"] |= {"auto_grid": False, "symmetry": "none", "rim": "even", "regular": 0.5}
+    except (ValueError, TypeError, KeyError, RecursionError):
+        return members  # reading says what is wrong with it
+    return {**members, DESIGN: json.dumps(design).encode()}
+
+
+CURRENT_VERSION = 2
+MIGRATIONS: Mapping[int, Migration] = MappingProxyType({1: _with_sheet_settings})
 
 
 def migrate(members: Members, version: int, path: Path) -> Members:

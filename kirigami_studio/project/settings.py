@@ -20,6 +20,7 @@ class DesignSettings:
     Attributes
     ----------
     grid : (rows, columns) voids, 2..64 each
+        Where ``auto_grid`` is set, the last one that was chosen.
     phi : float, radians, in [0, pi)
         Angle at which the sheet should show the target.
     k : int, >= 1
@@ -35,6 +36,14 @@ class DesignSettings:
         What the fit prefers, from "accuracy" to "calm".
     search : int, >= 0
         Effort of a search beyond the samples; 0 does without.
+    auto_grid : bool
+        Whether every run chooses its grid itself.
+    symmetry : str
+        What designs have to keep: "auto", "none", "mirror" or "turn".
+    rim : str
+        "free" or "even".
+    regular : float, 0..1
+        What ranking prefers, from the best match (0) to even panels (1).
 
     Raises
     ------
@@ -51,6 +60,10 @@ class DesignSettings:
     polish: int = 15
     prefer: str = "balanced"
     search: int = 0
+    auto_grid: bool = False
+    symmetry: str = "auto"
+    rim: str = "free"
+    regular: float = 0.5
 
     def __post_init__(self) -> None:
         grid = tuple(self.grid)
@@ -71,6 +84,10 @@ class DesignSettings:
                 raise UsageError(code, value=value, lowest=lowest)
         _check_name("settings.variant_not_a_name", self.variant)
         _check_name("settings.preference_not_a_name", self.prefer)
+        _check_name("settings.symmetry_not_a_name", self.symmetry)
+        _check_name("settings.rim_not_a_name", self.rim)
+        if not _is_number(self.regular) or not 0.0 <= self.regular <= 1.0:
+            raise UsageError("settings.regular_out_of_range", value=self.regular)
 
 
 @dataclass(frozen=True, slots=True)

@@ -117,6 +117,10 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "request.budget_not_positive": mark(
         "The time budget must be a finite number of seconds above 0, got {budget!r:.80}."
     ),
+    "request.grid_not_chosen": mark("The grid is chosen when the run starts. Give one, or start the run first."),
+    "request.least_feature_out_of_range": mark(
+        "The least panel size of the material must be a number of at least 0 mm, got {least_mm!r:.80}."
+    ),
     "request.k_out_of_range": mark(
         "The number of candidates (k) must be a whole number from {least} to {most}, got {value!r:.80}."
     ),
@@ -128,6 +132,9 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "request.polish_out_of_range": mark(
         "The number of polishing steps must be a whole number from {least} to {most}, got {value!r:.80}."
     ),
+    "request.regular_out_of_range": mark(
+        "What ranking prefers must be a number from 0 (match) to 1 (regular), got {regular!r:.80}."
+    ),
     "request.search_out_of_range": mark(
         "The search effort must be a whole number from {least} to {most}, got {value!r:.80}."
     ),
@@ -136,6 +143,9 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "The number of sampling steps must be a whole number from {least} to {most}, got {value!r:.80}."
     ),
     "request.unknown_preference": mark("A fit can prefer {choices}, not {prefer!r:.80}."),
+    "request.unknown_rim": mark("The rim can be {choices}, not {rim!r:.80}."),
+    "request.unknown_symmetry": mark("The symmetry of designs can be {choices}, not {symmetry!r:.80}."),
+    "request.width_not_positive": mark("The width of the sheet must be a number above 0 mm, got {width_mm!r:.80}."),
     "run.no_result": mark("The run ended without a result."),
     "run.stopped_polishing": mark("Stopped while polishing, with {done} of {total} done; nothing changed."),
     "run.stopped_scoring": mark("Stopped after {done} of {total} candidates; nothing changed."),

@@ -201,7 +201,8 @@ class RunPlanner:
         if not document.candidates:
             raise UsageError("designs.none_to_add_to")
         first = document.candidates[0]
-        same = replace(document.settings, grid=first.sheet.grid, phi=first.score.phi, seed=next_seed(document))
+        seed = next_seed(document)
+        same = replace(document.settings, auto_grid=False, grid=first.sheet.grid, phi=first.score.phi, seed=seed)
         return request_of(target, same)
 
     def _joined(self, request: Request, status: str) -> RunPlan:
@@ -284,7 +285,7 @@ def request_of(target: Outline, settings: DesignSettings) -> Request:
     """
     return Request(
         target,
-        settings.grid,
+        None if settings.auto_grid else settings.grid,
         settings.phi,
         settings.k,
         settings.seed,
@@ -293,6 +294,9 @@ def request_of(target: Outline, settings: DesignSettings) -> Request:
         settings.polish,
         prefer=settings.prefer,
         search=settings.search,
+        symmetry=settings.symmetry,
+        rim=settings.rim,
+        regular=settings.regular,
     )
 
 

@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 import shapely
 
+from kirigami_studio.evaluate.evenness import panel_sizes
 from kirigami_studio.evaluate.siou import exact_iou
 from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.outlines.silhouettes import load
 from kirigami_studio.polish.levenberg import polish
-from kirigami_studio.polish.panel_size import panel_sizes
 from kirigami_studio.polish.sensitivity import OutlineModel
 
 

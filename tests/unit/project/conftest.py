@@ -8,9 +8,11 @@ import numpy as np
 import pytest
 
 from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.evaluate.evenness import evenness
 from kirigami_studio.evaluate.feasibility import Contact
 from kirigami_studio.evaluate.score import Score
 from kirigami_studio.evaluate.similarity import Similarity
+from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.outlines.outline import Outline
@@ -45,6 +47,7 @@ def _candidate(field: RatioField, index: int) -> Candidate:
         overlap_ratio=1e-17,
         contact=contact,
         transform=Similarity(0.1234567890123, -0.7, (0.1, -0.2)),
+        evenness=evenness(deploy(field)),
     )
     drawn = Sheet.uniform(4, 5) if index == 2 else None
     return Candidate(

@@ -87,7 +87,7 @@ def test_that_equal_documents_give_equal_bytes(document: Document, tmp_path: Pat
 
 def test_that_the_manifest_names_format_and_versions(document: Document) -> None:
     manifest = json.loads(members_of(document)["manifest.json"])
-    assert manifest["version"] == 1
+    assert manifest["version"] == 2
     assert manifest["app_version"]
 
 
@@ -119,11 +119,25 @@ def test_that_another_kind_of_file_is_a_sentence(content: bytes, tmp_path: Path)
 
 def test_that_a_newer_project_asks_for_an_update(document: Document, tmp_path: Path) -> None:
     members = members_of(document)
-    members["manifest.json"] = members["manifest.json"].replace(b'"version": 1', b'"version": 2')
+    members["manifest.json"] = members["manifest.json"].replace(b'"version": 2', b'"version": 3')
     newer = write_members(tmp_path / "newer.kiri", members)
-    with pytest.raises(ProjectError, match=r"newer .*format 2.* up to 1.*Update Kirigami Studio\.$") as caught:
+    with pytest.raises(ProjectError, match=r"newer .*format 3.* up to 2.*Update Kirigami Studio\.$") as caught:
         store.load(newer)
     assert caught.value.code == "project.newer_format"
+
+
+def test_that_a_project_of_format_1_opens_with_its_fixed_grid_and_even_rim(document: Document, tmp_path: Path) -> None:
+    members = members_of(document)
+    members["manifest.json"] = members["manifest.json"].replace(b'"version": 2', b'"version": 1')
+    design = json.loads(members["design.json"])
+    for name in ("auto_grid", "symmetry", "rim", "regular"):
+        del design["settings"][name]
+    for candidate in design["candidates"]:
+        del candidate["score"]["evenness"]
+    members["design.json"] = json.dumps(design).encode()
+    opened = store.load(write_members(tmp_path / "old.kiri", members))
+    assert opened == replace(document, settings=replace(document.settings, symmetry="none", rim="even"))
+    assert opened.candidates[0].score.evenness == document.candidates[0].score.evenness
 
 
 def test_that_marks_locks_and_origins_come_back(document: Document, tmp_path: Path) -> None:
@@ -385,7 +399,8 @@ def test_that_migrations_run_one_after_the_other(monkeypatch: pytest.MonkeyPatch
 def test_that_a_project_of_an_older_format_is_lifted_on_opening(
     document: Document, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """In the made-up format 2, every project of format 1 prefers accuracy."""
+    """In a made-up next format, every project of the present one prefers accuracy."""
+    now = migrations.CURRENT_VERSION
     store.save(document, tmp_path / "old.kiri")
 
     def with_preference(members: Members) -> Members:
@@ -393,11 +408,11 @@ def test_that_a_project_of_an_older_format_is_lifted_on_opening(
         design["settings"]["prefer"] = "accuracy"
         return {**members, "design.json": json.dumps(design).encode()}
 
-    monkeypatch.setattr(migrations, "CURRENT_VERSION", 2)
-    monkeypatch.setattr(migrations, "MIGRATIONS", {1: with_preference})
+    monkeypatch.setattr(migrations, "CURRENT_VERSION", now + 1)
+    monkeypatch.setattr(migrations, "MIGRATIONS", {now: with_preference})
     opened = store.load(tmp_path / "old.kiri")
     assert opened == replace(document, settings=replace(document.settings, prefer="accuracy"))
-    assert json.loads(members_of(opened)["manifest.json"])["version"] == 2
+    assert json.loads(members_of(opened)["manifest.json"])["version"] == now + 1
 
 
 def test_that_every_version_before_the_current_one_has_its_migration() -> None:
