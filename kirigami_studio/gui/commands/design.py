@@ -98,6 +98,14 @@ def _changes(window: MainWindow) -> tuple[Command, ...]:
             enabled_when=_can_change,
         ),
         Command(
+            "even_rim",
+            menu,
+            tr("&Even rim"),
+            tr("Space the edge cuts evenly along the sheet's sides"),
+            window.controller.hand.even_rim,
+            enabled_when=_can_change,
+        ),
+        Command(
             "refit",
             menu,
             tr("&Fit again"),

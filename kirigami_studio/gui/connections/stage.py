@@ -12,6 +12,7 @@ from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.controller import Controller
 from kirigami_studio.gui.jobs.cut_jobs import Planned
 from kirigami_studio.gui.reshaping import OpenedSizes
+from kirigami_studio.gui.scene.rim_items import MouthFacts
 from kirigami_studio.gui.scene.void_items import VoidFacts
 from kirigami_studio.gui.session import Entry
 from kirigami_studio.project.document import Document, Void
@@ -127,6 +128,12 @@ class VoidConnections(QObject):
             begun.connect(self._pause)
         gestures.pull_begun.connect(hand.begin_drag)
         gestures.pulled.connect(hand.drag)
+        gestures.rim.hovered.connect(self._describe_mouth)
+        gestures.rim.selection_changed.connect(self._refresh)
+        gestures.rim.grasped.connect(self._pause)
+        gestures.rim.grasped.connect(hand.begin_mouth)
+        gestures.rim.pulled.connect(hand.drag_mouth)
+        gestures.rim.nudged.connect(hand.nudge_mouth)
         gestures.vertex_begun.connect(hand.begin_vertex)
         gestures.vertex_moved.connect(hand.move_vertex)
         gestures.drag_ended.connect(hand.release)
@@ -161,8 +168,14 @@ class VoidConnections(QObject):
         fits = sheet is not None and chosen[0] < sheet.rows and chosen[1] < sheet.columns
         ratio = float(sheet.field.ratio[chosen]) if sheet is not None and fits else None
         self._bar.show_voids(self._gestures.selected, ratio, document.locked)
+        mouth, meant = self._gestures.rim.selected, self._gestures.rim.meant
+        if sheet is not None and mouth is not None:
+            facts = MouthFacts.of(sheet, mouth, document.fabrication.width_mm)
+            self._bar.show_mouth(facts.name, facts.short_name)
         if self._gestures.void is not None:
             self._describe(self._gestures.void)
+        elif meant is not None:
+            self._describe_mouth(meant)
 
     def _show_draft(self, design: PosedDesign) -> None:
         self._view.show_draft(design)
@@ -182,12 +195,27 @@ class VoidConnections(QObject):
         width, locked = document.fabrication.width_mm, void in document.locked
         facts = VoidFacts.of(design.deployment, void, self._view.phi, width, locked)
         self._gestures.lines = facts.lines()
+        self._tell(facts.sentence())
+
+    def _tell(self, sentence: str) -> None:
+        """Show what is pointed at in the status line; the text before comes back when nothing is."""
         if self._controller.running:  # the line tells how far the run is
             return
         if self._window.status_text.text() != self._void_facts or not self._void_facts:
             self._status_before = self._window.status_text.text()
-        self._void_facts = facts.sentence()
-        self._window.status_text.setText(self._void_facts)
+        self._void_facts = sentence
+        self._window.status_text.setText(sentence)
+
+    def _describe_mouth(self, mouth: int | None) -> None:
+        """Tell where an edge cut is that is pointed at."""
+        design = self._view.design
+        if mouth is None or design is None:
+            self._describe(None)
+            return
+        width = self._controller.document.fabrication.width_mm
+        facts = MouthFacts.of(design.deployment.sheet, mouth, width)
+        self._gestures.lines = facts.lines()
+        self._tell(facts.sentence())
 
     # locks and fit -------------------------------------------------------------------------------------------------
 
@@ -209,7 +237,7 @@ class VoidConnections(QObject):
         even.setEnabled(not voids <= locked)
         even.triggered.connect(lambda: self._hand.set_ratio(voids, 1.0))
         self.menu.addSeparator()
-        for name in ("lock_all", "unlock_all", "refit"):
+        for name in ("lock_all", "unlock_all", "even_rim", "refit"):
             self.menu.addAction(self._window.commands[name])
         self.menu.aboutToHide.connect(self.menu.deleteLater)
         self.menu.popup(place)

@@ -1,7 +1,8 @@
 """Editing the chosen design by hand: the view follows the pointer at once, the document takes each gesture scored.
 
 A gesture makes a draft: another sheet, decoded exactly and shown instead of the design.  A dragged void slides
-one of its corners along its slit (:class:`VoidDrag`).  When the gesture ends, the worker scores the draft, and the
+one of its corners along its slit (:class:`VoidDrag`), a dragged edge cut slides along its side of the sheet
+(:class:`~kirigami_studio.gui.designs.rim_drag.MouthDrag`).  When the gesture ends, the worker scores the draft, and the
 score makes one named edit.  Gestures that follow meanwhile start from the draft and wait for their turn, so that each
 becomes an undo step of its own.  Undo, save and the like wait for the last score.
 
@@ -28,13 +29,15 @@ from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.paper import LOG_RATIO_LIMIT
 from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.gui.designs.outline_drag import OutlineDrag
+from kirigami_studio.gui.designs.rim_drag import MouthDrag, moved, with_sheet
 from kirigami_studio.gui.jobs.design_jobs import Decoded
 from kirigami_studio.gui.jobs.queue import Cancel, JobCallbacks, LatestJob, single
 from kirigami_studio.gui.jobs.vertex_drag import DragStart, DragStep
+from kirigami_studio.gui.scene.rim_items import MouthFacts
 from kirigami_studio.gui.session import Session
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
-from kirigami_studio.lattice.sheet import Sheet
+from kirigami_studio.lattice.sheet import Rim, Sheet, replace_sheet
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project import edits
 from kirigami_studio.project.document import Void
@@ -193,15 +196,13 @@ class HandEditor(QObject):
         self._sheet: Sheet | None = None  # as it is shown
         self._last: Sheet | None = None  # as the last complete gesture left it
         self._open: str | None = None  # label of the gesture under way
-        self._last_turn: tuple[tuple[Void, ...], float] = (
-            (),
-            -math.inf,
-        )  # what the wheel or a key changed last, and when
+        self._last_turn: tuple[object, float] = (None, -math.inf)  # what the wheel or a key changed last, and when
         self._turns = 0
         self._key: str | None = None  # merges the gesture under way with the one before it
         self._waiting: deque[_Gesture] = deque()
         self._postponed: list[Callable[[], object]] = []
         self._drag: VoidDrag | None = None
+        self._mouth: MouthDrag | None = None
         self._outline = OutlineDrag(self)
         self._outline.followed.connect(self._follow)
         self._outline.ended.connect(self._arrive)
@@ -264,11 +265,11 @@ class HandEditor(QObject):
             self._change({void: float(self.sheet.field.ratio[void]) * math.pow(10.0, step) for void in free}, key)
             self._pause.start()
 
-    def _continues(self, voids: tuple[Void, ...]) -> bool:
-        """Whether a notch on these voids continues the one before it."""
+    def _continues(self, what: object) -> bool:
+        """Whether a notch on these voids, or a key for this edge cut, continues the one before it."""
         (before, when), now = self._last_turn, time.monotonic()
-        self._last_turn = voids, now
-        return voids == before and now - when <= JOINS_WITHIN
+        self._last_turn = what, now
+        return what == before and now - when <= JOINS_WITHIN
 
     @_after_arrival
     def set_ratio(self, voids: frozenset[Void], ratio: float) -> None:
@@ -314,6 +315,51 @@ class HandEditor(QObject):
         label = ratio_label(first, len(wanted))
         self._draft(sheet.with_field(RatioField(table)), label, merge_key)
         self._session.set_status(tr("{gesture}: x {ratio:.3f}", gesture=label, ratio=float(table[first])))
+
+    # the rim -------------------------------------------------------------------------------------------------------
+
+    @_after_arrival
+    def begin_mouth(self, mouth: int, place: tuple[float, float], phi: float) -> None:
+        """Begin to drag an edge cut at a place in the world."""
+        self._prepare_drag()
+        design = self._design()
+        if design is not None:
+            self._mouth = MouthDrag.of(design, mouth, place, phi)
+
+    @_after_arrival
+    def drag_mouth(self, place: tuple[float, float]) -> None:
+        """The pointer has moved to a place in the world; the edge cut follows."""
+        if self._mouth is not None:
+            self._place_mouth(self._mouth.mouth, self._mouth.position_at(place))
+
+    @_after_arrival
+    def nudge_mouth(self, mouth: int, step: float) -> None:
+        """Move an edge cut by ``step`` (unit cells); steps that follow one another soon undo together."""
+        if self.sheet is not None:
+            self._turns += not self._continues(mouth)
+            self._place_mouth(mouth, float(self.sheet.rim.positions[mouth]) + step, f"turn {self._turns}")
+            self._pause.start()
+
+    def _place_mouth(self, mouth: int, position: float, merge_key: str | None = None) -> None:
+        sheet = self.sheet
+        if sheet is not None:
+            placed = moved(sheet, mouth, position)
+            self._draft(placed, tr("Move edge cut"), merge_key)
+            facts = MouthFacts.of(placed, mouth, self._session.document.fabrication.width_mm)
+            self._session.set_status(facts.sentence())
+
+    @_after_arrival
+    def even_rim(self) -> None:
+        """Put all edge cuts where they are on an even rim."""
+        sheet = self.sheet
+        if sheet is None or sheet.has_even_rim:
+            self._session.set_status(tr("The edge cuts are evenly spaced already."))
+            return
+        self._prepare_drag()
+        self._draft(replace_sheet(sheet, rim=Rim.even(*sheet.grid)), tr("Even rim"))
+        self.commit()
+
+    # locks ---------------------------------------------------------------------------------------------------------
 
     def lock(self, voids: frozenset[Void], on: bool) -> None:
         """Lock voids against changes by hand, or unlock them."""
@@ -377,7 +423,7 @@ class HandEditor(QObject):
 
     def _drop(self) -> None:
         """Nothing is being dragged."""
-        self._drag = None
+        self._drag = self._mouth = None
         self._outline.stop()
 
     @_after_arrival
@@ -426,6 +472,8 @@ class HandEditor(QObject):
             return self._session.cache.entry(candidate).design
         if self._decoded is not None and self._decoded.deployment.sheet is self._sheet:
             return self._decoded
+        if self.sheet.rim != candidate.final_sheet.rim:
+            return with_sheet(self._session.cache.entry(candidate).design, self.sheet)
         return PosedDesign(deploy(self.sheet), candidate.final_pose, candidate.final_phi)
 
     def _show_draft(self) -> None:

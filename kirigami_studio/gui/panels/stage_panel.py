@@ -76,8 +76,8 @@ class StagePanel(Card):
         self.trim = ToolButton("trim", "trim", TRIM, checkable=True)
         self.trim.clicked.connect(self.trim_wanted)
         tip = tr(
-            "Edit by hand (H). Scroll over a void to change its ratio (Shift: fine). Drag a void "
-            "or an outline corner. Alt+click or L: lock. Arrows: next void; + and -: ratio."
+            "Edit by hand (H). Scroll over a void to change its ratio (Shift: fine). Drag a void, an outline corner "
+            "or an edge cut. Alt+click or L: lock. Arrows: next void; + and -: ratio."
         )
         self.hand = ToolButton("hand", "hand", tip, checkable=True)
         self.hand.toggled.connect(self._toggle_hand)

@@ -98,6 +98,11 @@ class VoidBar(QWidget):
         self.selection_text.set_texts(*_selection_texts(voids, locked))
         self._fit()
 
+    def show_mouth(self, name: str, short: str) -> None:
+        """An edge cut is selected instead of voids."""
+        self.selection_text.set_texts(tr("{name}: drag it, or press the arrow keys", name=name), name, short)
+        self._fit()
+
     def show_fitting(self, busy: bool) -> None:
         """A fit is at work, or no longer."""
         self.refit.setChecked(busy)
@@ -130,7 +135,7 @@ def _selection_texts(voids: frozenset[Void], locked: frozenset[Void]) -> tuple[s
         return long, short, f"({row}, {column})"
     if voids:
         return (tr_n("{count} void", "{count} voids", len(voids)),)
-    hint = tr("Drag a void or an outline corner; scroll to change a ratio")
+    hint = tr("Drag a void, an outline corner or an edge cut; scroll to change a ratio")
     if locked:
         count = tr_n("{count} void locked", "{count} voids locked", len(locked))
         return tr("{hint}  ·  {count}", hint=hint, count=count), count

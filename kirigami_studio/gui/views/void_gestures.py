@@ -1,4 +1,4 @@
-"""Mouse and keyboard gestures on the voids of a layout view: point, drag, wheel, lock, move the outline.
+"""Mouse and keyboard gestures on the voids of a layout view: point, drag, wheel, lock, move outline or edge cuts.
 
 Pointing always works.  The rest belongs to the mode "edit by hand"; events that it does not use pan and zoom.
 """
@@ -22,6 +22,7 @@ from kirigami_studio.gui.scene.void_items import (
     paint_marked,
 )
 from kirigami_studio.gui.views.canvas import Canvas
+from kirigami_studio.gui.views.rim_gestures import ARROWS, RimHandles
 from kirigami_studio.project.document import Void
 
 #: log10 of the factor by which one notch of the wheel, or a press of + or -, changes a ratio: 5 %, or 0.5 % with Shift.
@@ -57,14 +58,15 @@ class VoidGestures(QObject):
     pulled = Signal(tuple)  #: place in the world
     vertex_begun = Signal(int, float)  #: vertex of the outline; angle (radians)
     vertex_moved = Signal(tuple)  #: place in the world
-    drag_ended = Signal()  #: of a void or a vertex
-    drag_cancelled = Signal()  #: Esc while a void or a vertex is held
+    drag_ended = Signal()  #: of a void, a vertex or an edge cut
+    drag_cancelled = Signal()  #: Esc while a void, a vertex or an edge cut is held
     lock_wanted = Signal(frozenset, bool)  #: of Void; whether they are to be locked
     menu_wanted = Signal(tuple, QPoint)  #: Void; place on the screen
 
     def __init__(self, canvas: Canvas, shapes: Callable[[], VoidShapes | None]) -> None:
         super().__init__(canvas)
         self._canvas, self._shapes = canvas, shapes
+        self.rim = RimHandles(self)
         self.on, self.enabled = False, True
         self.locked: frozenset[Void] = frozenset()
         self.lines: tuple[str, ...] = ()  # of the label at the pointer
@@ -97,7 +99,7 @@ class VoidGestures(QObject):
 
     @property
     def dragging(self) -> bool:
-        """Whether a void or a vertex is being held."""
+        """Whether a void, a vertex or an edge cut is being held."""
         return self._dragging
 
     def switch(self, on: bool) -> None:
@@ -107,6 +109,8 @@ class VoidGestures(QObject):
         self._vertex = None
         if not on:
             self.select(frozenset())
+            self.rim.select(None)
+            self.rim.point(None, self._pointer)
         self._canvas.unsetCursor()
         self._canvas.update()
 
@@ -130,6 +134,8 @@ class VoidGestures(QObject):
 
     def select(self, voids: frozenset[Void]) -> None:
         """Select these and no others."""
+        if voids:
+            self.rim.select(None)
         if voids != self._selected:
             self._selected = voids
             self.selection_changed.emit(voids)
@@ -146,6 +152,7 @@ class VoidGestures(QObject):
         shapes = self._shapes()
         rows, columns = (0, 0) if shapes is None else shapes.corners.shape[:2]
         self.select(frozenset(void for void in self._selected if void[0] < rows and void[1] < columns))
+        self.rim.follow(shapes)
         if shapes is None:
             self.drop()
         if not self.dragging and self._canvas.underMouse():
@@ -173,6 +180,8 @@ class VoidGestures(QObject):
         if self.active and shapes.movable:
             paint_handles(painter, shapes, self._vertex, palette)
         if self.active:
+            self.rim.paint(painter, shapes, palette)
+        if self.active:
             paint_marked(painter, shapes, sorted(self._selected), palette, 3.0)
         if self._hovered is not None and self._hovered not in self._selected:
             paint_marked(painter, shapes, [self._hovered], palette, 2.0 if self.active else 1.4)
@@ -181,7 +190,7 @@ class VoidGestures(QObject):
 
     def paint_label(self, painter: QPainter, palette: Palette) -> None:
         """Draw the label at the pointer."""
-        if self.lines and (self._hovered is not None or self.dragging):
+        if self.lines and (self._hovered is not None or self.rim.meant is not None or self.dragging):
             paint_label(painter, self.lines, self._pointer, QRectF(self._canvas.rect()), palette)
 
     # events --------------------------------------------------------------------------------------------------------
@@ -195,7 +204,7 @@ class VoidGestures(QObject):
         if isinstance(event, QContextMenuEvent):
             return self._request_menu(event)
         if kind == QEvent.Type.ToolTip:
-            return self._hovered is not None  # the label at the pointer has the word
+            return self._hovered is not None or self.rim.meant is not None  # the label at the pointer tells
         if kind == QEvent.Type.Leave:
             self._leave()
         elif isinstance(event, QMouseEvent):
@@ -216,14 +225,19 @@ class VoidGestures(QObject):
             return False
         self._canvas.setFocus(Qt.FocusReason.MouseFocusReason)
         adding = bool(event.modifiers() & (Qt.KeyboardModifier.ShiftModifier | Qt.KeyboardModifier.ControlModifier))
-        void, vertex = self._hovered, self._vertex
+        void, vertex, mouth = self._hovered, self._vertex, self.rim.meant
         if event.modifiers() & Qt.KeyboardModifier.AltModifier and void is not None:
             self.lock_wanted.emit(frozenset({void}), void not in self.locked)
             return True
         if adding:
             self._pressed = place
             return True
-        if vertex is not None:
+        if mouth is not None:
+            self.select(frozenset())
+            self.rim.select(mouth)
+            self._grasp = partial(self.rim.grasped.emit, mouth, shapes.transform.to_world(place))
+            self._moves = self.rim.pulled
+        elif vertex is not None:
             self._grasp, self._moves = partial(self.vertex_begun.emit, vertex), self.vertex_moved
         elif void is not None:
             self.select(frozenset({void}))
@@ -282,12 +296,15 @@ class VoidGestures(QObject):
         return True
 
     def _take_key(self, event: QKeyEvent) -> bool:
-        """Arrows walk from void to void, + and - change the ratio; these keys are then not the window's."""
+        """Arrows walk from void to void or move an edge cut, + and - change the ratio; the window has other keys."""
         if self._dragging and event.key() == Qt.Key.Key_Escape:
             self._cancel_drag(event)
             return True
-        step = step_of(event) if self.active else None
         shapes = self._shapes()
+        if self.active and shapes is not None and self.rim.selected is not None and _moves_mouth(event):
+            self._move_mouth(event, shapes)
+            return True
+        step = step_of(event) if self.active else None
         if step is None or shapes is None:
             return False
         if event.type() == QEvent.Type.ShortcutOverride:
@@ -310,9 +327,19 @@ class VoidGestures(QObject):
             self._canvas.unsetCursor()
             self.drag_cancelled.emit()
 
+    def _move_mouth(self, event: QKeyEvent, shapes: VoidShapes) -> None:
+        event.accept()
+        if event.type() == QEvent.Type.KeyPress:
+            void = self.rim.take_key(event, shapes)
+            if void is not None:
+                self.select(frozenset({void}))
+
     def _walk(self, step: Step, shapes: VoidShapes) -> None:
         rows, columns = shapes.corners.shape[:2]
         start = min(self._selected) if self._selected else self._hovered
+        if start is not None and self.rim.enter(shapes, start, step.down, step.right):
+            self.select(frozenset())
+            return
         row, column = (0, 0) if start is None else (start[0] + step.down, start[1] + step.right)
         self.select(frozenset({(min(max(row, 0), rows - 1), min(max(column, 0), columns - 1))}))
 
@@ -329,16 +356,17 @@ class VoidGestures(QObject):
 
     def _hits(self, place: QPointF) -> bool:
         self._point(place)
-        return self._hovered is not None or self._vertex is not None
+        return self._hovered is not None or self._vertex is not None or self.rim.meant is not None
 
     def _point(self, place: QPointF) -> None:
         """Find what is under the pointer."""
         shapes = self._shapes()
         self._pointer = place
-        vertex = shapes.vertex_at(place.x(), place.y()) if shapes is not None and self.active else None
-        void = None if shapes is None or vertex is not None else shapes.void_at(place.x(), place.y())
+        on_rim = self.rim.point(shapes if self.active else None, place)
+        vertex = shapes.vertex_at(place.x(), place.y()) if shapes is not None and self.active and not on_rim else None
+        void = None if shapes is None or vertex is not None or on_rim else shapes.void_at(place.x(), place.y())
         if self.active and self._grasp is None:
-            draggable = void is not None or vertex is not None
+            draggable = void is not None or vertex is not None or on_rim
             self._canvas.setCursor(Qt.CursorShape.OpenHandCursor if draggable else Qt.CursorShape.ArrowCursor)
         if vertex != self._vertex or void != self._hovered or void is not None:
             self._vertex, self._hovered = vertex, void
@@ -346,11 +374,19 @@ class VoidGestures(QObject):
             self._canvas.update()
 
     def _leave(self) -> None:
+        if not self.dragging:
+            self.rim.point(None, self._pointer)
         self._vertex = None if not self.dragging else self._vertex
         if self._hovered is not None:
             self._hovered = None
             self.hovered.emit(None)
         self._canvas.update()
+
+
+def _moves_mouth(event: QKeyEvent) -> bool:
+    """Whether a key is for the selected edge cut; Ctrl and Shift stay with the window."""
+    mine = Qt.KeyboardModifier.AltModifier | Qt.KeyboardModifier.KeypadModifier
+    return Qt.Key(event.key()) in ARROWS and not event.modifiers() & ~mine
 
 
 @dataclass(frozen=True, slots=True)
