@@ -3,11 +3,14 @@
 A network draws on its own grid at phi = 0; a sheet may have any grid and angle.  Fields go from one to the other by
 the lattice's parity-wise interpolation, which is linear, and outlines are read at as many stations, side by side, as
 the network's own has vertices.  On the network's own grid at phi = 0 both are the identity.
+
+Within a symmetry of the sheet's grid the flow goes on on that grid, as the network's own may not have the symmetry:
+the network sees its state carried over, and its velocity is carried back and made symmetric.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
@@ -17,6 +20,7 @@ from torch import Tensor
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.lattice.deployment import ZIPPED_BELOW
 from kirigami_studio.lattice.resize import resize_fields
+from kirigami_studio.lattice.symmetry import GridSymmetry, Symmetry
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,11 +31,14 @@ class DeployedGrid:
     ----------
     rows, columns : int
     phi : float, radians, in [0, pi)
+    symmetry : Symmetry, optional
+        What all fields keep.
     """
 
     rows: int
     columns: int
     phi: float = 0.0
+    symmetry: Symmetry | None = None
 
     @property
     def zipped(self) -> bool:
@@ -79,21 +86,76 @@ class GridTransfer:
         """Fields of the sheet (B, m * n) on the network's grid: (B, own cells)."""
         return z if self.same_grid else z @ self._down
 
+    def state(self, z: Tensor) -> Tensor:
+        """Where a flow from fields (B, own cells) starts: its states are fields of the network's own grid."""
+        return z
+
+    def seen(self, state: Tensor) -> Tensor:
+        """A state of the flow as the network sees it: (B, own cells)."""
+        return state
+
+    def on_grid(self, state: Tensor) -> Tensor:
+        """A state of the flow as fields of the sheet: (B, m * n)."""
+        return self.up(state)
+
+    def state_change(self, velocity: Tensor) -> Tensor:
+        """What a velocity (B, own cells) does to the state."""
+        return velocity
+
+    def symmetric(self, z: Tensor) -> Tensor:
+        """The nearest fields of the sheet (B, m * n) that keep its symmetry."""
+        return z
+
     def stations(self, outline: Tensor) -> Tensor:
         """The sheet's outline (B, L, 2) read at as many places as the network's own has vertices: (B, L_own, 2)."""
         return outline if self.same_outline else self._stations @ outline
 
 
+class SymmetricTransfer(GridTransfer):
+    """The same within a symmetry: states of the flow are symmetric fields of the sheet's grid."""
+
+    def __init__(
+        self, own: tuple[int, int], deployed: DeployedGrid, symmetry: GridSymmetry, device: torch.device
+    ) -> None:
+        super().__init__(own, deployed, device)
+        cells = np.eye(deployed.rows * deployed.columns).reshape(-1, deployed.rows, deployed.columns)
+        projection = symmetry.symmetric(cells).reshape(len(cells), -1)
+        self._projection = torch.tensor(projection, dtype=torch.float32, device=device)
+
+    def state(self, z: Tensor) -> Tensor:
+        return self.symmetric(self.up(z))
+
+    def seen(self, state: Tensor) -> Tensor:
+        return self.down(state)
+
+    def on_grid(self, state: Tensor) -> Tensor:
+        return state
+
+    def state_change(self, velocity: Tensor) -> Tensor:
+        return self.symmetric(self.up(velocity))
+
+    def symmetric(self, z: Tensor) -> Tensor:
+        return z @ self._projection
+
+
 def grid_transfer(own: tuple[int, int], deployed: DeployedGrid, device: torch.device) -> GridTransfer:
-    """The transfer to another grid; it depends on the angle only by whether the edge hinges have zipped."""
-    return _transfer(own, deployed.rows, deployed.columns, deployed.zipped, device)
+    """The transfer to another grid; it depends on the angle only by whether the edge hinges have zipped.
+
+    Raises
+    ------
+    UsageError
+        The grid does not have the symmetry that its fields are to keep.
+    """
+    return _transfer(own, replace(deployed, phi=0.0 if deployed.zipped else 1.0), device)
 
 
 @lru_cache(maxsize=256)
-def _transfer(own: tuple[int, int], rows: int, columns: int, zipped: bool, device: torch.device) -> GridTransfer:
+def _transfer(own: tuple[int, int], deployed: DeployedGrid, device: torch.device) -> GridTransfer:
     # Kept for later: a table made while sampling, without gradients, must serve training too.
     with torch.inference_mode(False):
-        return GridTransfer(own, DeployedGrid(rows, columns, 0.0 if zipped else 1.0), device)
+        if deployed.symmetry is None:
+            return GridTransfer(own, deployed, device)
+        return SymmetricTransfer(own, deployed, deployed.symmetry.on(deployed.rows, deployed.columns), device)
 
 
 def _resizing(old: tuple[int, int], new: tuple[int, int]) -> FloatArray:

@@ -11,6 +11,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import lru_cache
 
+import numpy as np
 import torch
 from torch import Tensor
 
@@ -18,6 +19,7 @@ from kirigami_studio.generator.conditioning import normalised
 from kirigami_studio.generator.deployed_grid import DeployedGrid, grid_transfer
 from kirigami_studio.generator.gauss_newton import Residuals, gauss_newton_direction, variation_terms
 from kirigami_studio.lattice.batched import BatchedLattice, BatchedSlopes
+from kirigami_studio.lattice.symmetry import Symmetry
 
 #: z is decoded within these bounds: early in the flow it still is noise.
 Z_BOUND = 1.5
@@ -63,6 +65,9 @@ class Feedback:
         self.grid, self.device = grid, device
         self.lattice, self.slopes = _geometry(grid.rows, grid.columns, grid.zipped, device)
         self.transfer = grid_transfer(own, grid, device)
+        self._basis = (
+            None if grid.symmetry is None else _symmetric_fields(grid.rows, grid.columns, grid.symmetry, device)
+        )
 
     @staticmethod
     def width(rows: int, columns: int, loop_points: int, direction: bool) -> int:
@@ -104,10 +109,20 @@ class Feedback:
             if variation_cost is not None and bool(variation_cost.any())
             else None
         )
-        direction = gauss_newton_direction(Residuals.of(outline, loop, out, back, 0.5 * place), slopes, variation)
+        residuals = Residuals.of(outline, loop, out, back, 0.5 * place)
+        direction = self._direction(residuals, slopes, variation)
         direction = direction.clamp(-DIRECTION_BOUND, DIRECTION_BOUND)
         seen.append(self.transfer.down(direction) / DIRECTION_SCALE)
         return Observation(torch.cat(seen, dim=1), direction)
+
+    def _direction(self, residuals: Residuals, slopes: Tensor, variation: tuple[Tensor, Tensor] | None) -> Tensor:
+        """Gauss-Newton change of the fields, within their symmetry: (B, m * n)."""
+        if self._basis is None:
+            return gauss_newton_direction(residuals, slopes, variation)
+        basis = self._basis
+        if variation is not None:
+            variation = variation[0] @ basis, basis.mT @ variation[1] @ basis
+        return gauss_newton_direction(residuals, slopes @ basis, variation) @ basis.mT
 
     def _outline(self, field: Tensor, wanted: bool) -> tuple[Tensor, Tensor | None]:
         """Outlines of fields (B, m, n), unit area about the centroid; if wanted their derivatives (B, L, 2, m * n)."""
@@ -123,6 +138,13 @@ def _geometry(rows: int, columns: int, zipped: bool, device: torch.device) -> tu
     """The tables of a grid, which take longer to build than to use: the same for every angle."""
     lattice = BatchedLattice(rows, columns, device)
     return lattice, BatchedSlopes(lattice, zipped)
+
+
+@lru_cache(maxsize=256)
+def _symmetric_fields(rows: int, columns: int, symmetry: Symmetry, device: torch.device) -> Tensor:
+    """Basis of the symmetric fields of a grid: (m * n, reduced)."""
+    fields = symmetry.on(rows, columns).basis[: rows * columns].toarray()
+    return torch.tensor(fields[:, np.any(fields != 0.0, axis=0)], dtype=torch.float32, device=device)
 
 
 def _normalised_slopes(outline: Tensor, slopes: Tensor) -> Tensor:

@@ -37,8 +37,8 @@ def integrate(network: Velocity, start: Tensor, code: Code, steps: int, late: La
     Parameters
     ----------
     network : Velocity
-    start : (B, m * n) tensor
-        z at t = 0, or at the time of ``late``.
+    start : (B, cells) tensor
+        Fields of the network's own grid at t = 0, or at the time of ``late``.
     code : Code of B targets, the network's own
     steps : int
         Evaluations of the network.  Where it has a corrector, half of them, rounded down, are corrections; the others
@@ -59,13 +59,13 @@ def trail(network: Velocity, start: Tensor, code: Code, steps: int, late: LateSt
     corrections = steps // 2 if network.corrects else 0
     euler = steps - corrections
     begin = 0.0 if late is None else late.time
-    z = start
+    z = code.state(start)
     for step in range(euler):
         t = full((z.shape[0],), begin + (1.0 - begin) * step / euler, dtype=z.dtype, device=z.device)
         z = z + (1.0 - begin) * network(z, t, code) / euler
     z = code.on_grid(z)
     if late is not None:
-        z = z + late.remainder
+        z = code.symmetric(z + late.remainder)
     designs = [z]
     for _ in range(corrections):
         z = z.clamp(-LOG_RATIO_LIMIT, LOG_RATIO_LIMIT)

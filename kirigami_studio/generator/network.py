@@ -113,9 +113,17 @@ class TargetCode:
             variation_cost=self.variation_cost.repeat_interleave(count),
         )
 
-    def on_grid(self, z: Tensor) -> Tensor:
-        """Fields (B, cells) of the network's grid as fields of the sheet's: (B, m * n)."""
-        return self.transfer.up(z)
+    def state(self, z: Tensor) -> Tensor:
+        """Where a flow from fields (B, cells) of the network's grid starts."""
+        return self.transfer.state(z)
+
+    def on_grid(self, state: Tensor) -> Tensor:
+        """A state of the flow as fields of the sheet's grid: (B, m * n)."""
+        return self.transfer.on_grid(state)
+
+    def symmetric(self, z: Tensor) -> Tensor:
+        """The nearest fields of the sheet (B, m * n) that keep its symmetry, if it is to keep any."""
+        return self.transfer.symmetric(z)
 
 
 class _Block(nn.Module):
@@ -213,19 +221,20 @@ class VelocityNetwork(nn.Module):
 
         Parameters
         ----------
-        z : (B, m * n) tensor
+        z : (B, cells) tensor
+            State of the flow, see ``code.state``.
         t : (B,) tensor in [0, 1]
         code : TargetCode of B targets
 
         Returns
         -------
-        (B, m * n) tensor, dz / dt
+        (B, cells) tensor, dz / dt
         """
         features = z[:, :0]
         if code.feedback is not None:
             features = code.feedback(code.on_grid(z), code.loop, self.shape.direction).features
-        velocity: Tensor = self.leave(self._hidden(z, t, code, features))
-        return velocity
+        transfer = code.transfer
+        return transfer.state_change(self.leave(self._hidden(transfer.seen(z), t, code, features)))
 
     @property
     def corrects(self) -> bool:
@@ -246,7 +255,7 @@ class VelocityNetwork(nn.Module):
         transfer = code.transfer
         x = self._hidden(transfer.down(z), torch.ones_like(z[:, 0]), code, observed.features)
         change: Tensor = (1.0 + transfer.up(self.follow(x))) * observed.direction + transfer.up(self.amend(x))
-        return change
+        return transfer.symmetric(change)
 
     def _hidden(self, z: Tensor, t: Tensor, code: TargetCode, features: Tensor) -> Tensor:
         """What the last block makes of a state: (B, width)."""

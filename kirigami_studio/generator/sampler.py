@@ -20,6 +20,7 @@ from kirigami_studio.generator.velocity import Code
 from kirigami_studio.generator.weights import Model
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.resize import resize_fields
+from kirigami_studio.lattice.symmetry import Symmetry
 from kirigami_studio.outlines.outline import Outline
 
 
@@ -81,6 +82,8 @@ def sample_fields(
     phi: float = 0.0,
     poses: Callable[[int], float] = pose_angle,
     near: Near | None = None,
+    symmetry: Symmetry | None = None,
+    upward: float | None = None,
 ) -> tuple[RatioField, ...]:
     """Sample ``k`` ratio fields for ``target``.
 
@@ -101,24 +104,43 @@ def sample_fields(
         Candidate's number -> rotation of the target, radians; ``one_pose`` shows it to all of them in one pose.
     near : Near, optional
         Draws designs like this one, in its pose.
+    symmetry : Symmetry, optional
+        What all samples keep: the state of the flow is made symmetric at every step and correction.
+    upward : float, optional, radians
+        Direction in the target's frame that the sheet's upward direction has in the first sample of a mirror
+        symmetry, every second one sees the target the other way up; the target's own upward direction if missing.
+        Turns need no direction: their samples see the target in ``poses``.
+
+    Raises
+    ------
+    UsageError
+        The lattice of the grid does not have the symmetry.
     """
     shape = model.network.shape
     whole = -(-k // BATCH) * BATCH
     noise = np.random.default_rng(seed).standard_normal((whole, shape.rows * shape.columns)) * shape.z_scale
-    deployed = DeployedGrid(*grid, phi)
+    deployed = DeployedGrid(*grid, phi, symmetry)
     sampled: list[Tensor] = []
     with torch.inference_mode(), one_torch_thread():
         for start in range(0, whole, BATCH):
             batch = range(start, start + BATCH)
-            seen = posed(target, batch, poses) if near is None else turned_target(target, len(batch), near.angle)
+            if near is not None:
+                seen = turned_target(target, torch.full((BATCH,), near.angle))
+            elif symmetry is not None and symmetry.mirrors:
+                seen = turned_target(target, mirror_angles(batch, symmetry, upward))
+            else:
+                seen = posed(target, batch, poses)
             code = model.code(seen, deployed)
             rows = torch.tensor(noise[start : start + BATCH], dtype=torch.float32)
             late = None
             if near is not None:
                 rows, late = _late_start(near, rows, (shape.rows, shape.columns), code)
             sampled.append(integrate(model.network, rows, code, steps, late))
-    z = torch.cat(sampled)[:k].double().numpy()
-    fields: FloatArray = np.clip(z.reshape(k, *grid), -LOG_RATIO_LIMIT, LOG_RATIO_LIMIT)
+    z = torch.cat(sampled)[:k].double().numpy().reshape(k, *grid)
+    if symmetry is not None:
+        # Away with what single precision has added.
+        z = symmetry.symmetric(z)
+    fields: FloatArray = np.clip(z, -LOG_RATIO_LIMIT, LOG_RATIO_LIMIT)
     return tuple(RatioField.from_log10(np.round(field, 6)) for field in fields)
 
 
@@ -127,14 +149,21 @@ def _late_start(near: Near, noise: Tensor, own: tuple[int, int], code: Code) -> 
     z = near.field.log10[np.newaxis]
     design = torch.tensor(resize_fields(z, *own).reshape(1, -1), dtype=torch.float32)
     on_sheet = torch.tensor(z.reshape(1, -1), dtype=torch.float32)
-    remainder = near.nearness * (on_sheet - code.on_grid(design))
+    remainder = near.nearness * (on_sheet - code.on_grid(code.state(design)))
     return (1.0 - near.nearness) * noise + near.nearness * design, LateStart(near.nearness, remainder)
 
 
-def turned_target(target: Outline, count: int, angle: float) -> Tensor:
-    """The target's polygon turned by one angle (radians) for every candidate: (count, L, 2)."""
+def mirror_angles(candidates: range, symmetry: Symmetry, upward: float | None) -> Tensor:
+    """Rotations of the target, radians, that lay its axis along the sheet's: both ways up, or either axis, in turn."""
+    first = 0.0 if upward is None else 0.5 * math.pi - upward
+    other = 0.5 * math.pi if symmetry is Symmetry.TWO_MIRRORS else math.pi
+    return torch.tensor([first + other * (i % 2) for i in candidates], dtype=torch.float32)
+
+
+def turned_target(target: Outline, angles: Tensor) -> Tensor:
+    """The target's polygon turned by an angle (radians) for every candidate: (count, L, 2)."""
     polygon = normalised(torch.tensor(target.points, dtype=torch.float32)[None])
-    return turned(polygon.expand(count, -1, -1), torch.full((count,), angle))
+    return turned(polygon.expand(len(angles), -1, -1), angles)
 
 
 def posed(target: Outline, candidates: range, poses: Callable[[int], float] = pose_angle) -> Tensor:

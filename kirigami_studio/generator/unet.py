@@ -263,9 +263,17 @@ class MaskCode:
         """Some of the targets."""
         return MaskCode(self.hint[rows], self.transfer)
 
-    def on_grid(self, z: Tensor) -> Tensor:
-        """Fields (B, cells) of the network's grid as fields of the sheet's: (B, m * n)."""
-        return self.transfer.up(z)
+    def state(self, z: Tensor) -> Tensor:
+        """Where a flow from fields (B, cells) of the network's grid starts."""
+        return self.transfer.state(z)
+
+    def on_grid(self, state: Tensor) -> Tensor:
+        """A state of the flow as fields of the sheet's grid: (B, m * n)."""
+        return self.transfer.on_grid(state)
+
+    def symmetric(self, z: Tensor) -> Tensor:
+        """The nearest fields of the sheet (B, m * n) that keep its symmetry, if it is to keep any."""
+        return self.transfer.symmetric(z)
 
 
 def _attention(shape: UNetShape, level: int) -> SelfAttention | None:
@@ -392,16 +400,17 @@ class UNetVelocity(nn.Module):
 
         Parameters
         ----------
-        z : (B, m * n) tensor
+        z : (B, cells) tensor
+            State of the flow, see ``code.state``.
         t : (B,) tensor in [0, 1]
         code : MaskCode of B targets
 
         Returns
         -------
-        (B, m * n) tensor, dz / dt
+        (B, cells) tensor, dz / dt
         """
         shape = self.shape
-        field = (z / shape.z_scale).view(-1, 1, shape.rows, shape.columns)
+        field = (code.transfer.seen(z) / shape.z_scale).view(-1, 1, shape.rows, shape.columns)
         image = functional.interpolate(field, size=(shape.latent, shape.latent), mode="bilinear", align_corners=False)
         features, middle, time = self.down(image, t)
         controls, control, _ = self.control(image, t, code.hint)
@@ -411,4 +420,4 @@ class UNetVelocity(nn.Module):
         cells = functional.interpolate(
             velocity, size=(shape.rows, shape.columns), mode="bilinear", align_corners=False, antialias=True
         )
-        return cells.flatten(1)
+        return code.transfer.state_change(cells.flatten(1))

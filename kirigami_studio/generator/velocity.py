@@ -63,8 +63,19 @@ class Code(Protocol):
         """Some of the targets."""
         ...
 
-    def on_grid(self, z: Tensor) -> Tensor:
-        """Fields (B, cells) of the network's grid as fields of the sheet's: (B, m * n)."""
+    def state(self, z: Tensor) -> Tensor:
+        """Where a flow from fields (B, cells) of the network's grid starts.
+
+        The states of a flow are fields of the network's own grid, within a symmetry those of the sheet's.
+        """
+        ...
+
+    def on_grid(self, state: Tensor) -> Tensor:
+        """A state of the flow as fields of the sheet's grid: (B, m * n)."""
+        ...
+
+    def symmetric(self, z: Tensor) -> Tensor:
+        """The nearest fields of the sheet (B, m * n) that keep its symmetry, if it is to keep any."""
         ...
 
 
@@ -97,7 +108,7 @@ class Velocity(Protocol):
         ...
 
     def __call__(self, z: Tensor, t: Tensor, code: Any) -> Tensor:
-        """dz / dt (B, m * n) of fields z (B, m * n) at times t (B,), for the B targets of its own ``code``."""
+        """dz / dt of states z of the flow (B, cells) at times t (B,), for the B targets of its own ``code``."""
         ...
 
 

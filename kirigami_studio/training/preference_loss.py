@@ -49,7 +49,7 @@ class PreferenceTerms:
 
 
 def preference_terms(lattice: BatchedLattice, grid: DeployedGrid, z: Tensor, loop: Tensor) -> PreferenceTerms:
-    """Measure fields z (B, m * n) of a sheet against target boundaries (B, S, 2); differentiable.
+    """Measure fields z (B, m * n) of a grid against target boundaries (B, S, 2); differentiable.
 
     Both have unit area about the centroid and lie in the same pose.
     """

@@ -258,7 +258,7 @@ class AlignRun:
         return (terms.match + smooth + terms.excess).mean() + settings.anchor_weight * anchor
 
     def _grid(self) -> DeployedGrid:
-        """The sheet of this step: the network's own, or any of 6 to 16 voids each way and any useful angle."""
+        """The grid and angle of this step: the network's own, or any of 6 to 16 voids each way and any useful angle."""
         settings, own = self.settings, DeployedGrid(self.settings.shape.rows, self.settings.shape.columns)
         rng = np.random.default_rng((settings.seed, self.step))
         if rng.random() >= settings.other_sheets:

@@ -10,14 +10,24 @@ import pytest
 import torch
 
 from kirigami_studio.evaluate.score import evaluate
+from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.foundation.paper import LOG_RATIO_LIMIT
 from kirigami_studio.generator.deployed_grid import DeployedGrid
 from kirigami_studio.generator.network import VelocityNetwork
-from kirigami_studio.generator.sampler import one_pose, pose_angle, posed, sample_fields
+from kirigami_studio.generator.sampler import (
+    Near,
+    mirror_angles,
+    one_pose,
+    pose_angle,
+    posed,
+    sample_fields,
+    turned_target,
+)
 from kirigami_studio.generator.weights import Model, load_model
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.resize import resize_fields
+from kirigami_studio.lattice.symmetry import Symmetry
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.silhouettes import load
 from kirigami_studio.training.learner import grown_state
@@ -135,3 +145,75 @@ def test_that_a_correction_improves_what_the_euler_step_drew(corrector: Model) -
     half = sample_fields(corrector, target, (12, 12), 8, 0, 1)
     whole = sample_fields(corrector, target, (12, 12), 8, 0, 2)  # the same Euler step and one correction
     assert mean_match(whole, target) > mean_match(half, target)
+
+
+SYMMETRIES = [
+    (Symmetry.LEFT_RIGHT, (6, 7)),
+    (Symmetry.TOP_BOTTOM, (9, 10)),
+    (Symmetry.TWO_MIRRORS, (7, 9)),
+    (Symmetry.HALF_TURN, (10, 10)),
+    (Symmetry.HALF_TURN, (7, 5)),
+    (Symmetry.QUARTER_TURN, (8, 8)),
+]
+
+
+@pytest.mark.parametrize(("symmetry", "grid"), SYMMETRIES)
+@pytest.mark.parametrize("phi", [0.0, 0.6])
+def test_that_samples_keep_a_symmetry_exactly(
+    corrector: Model, symmetry: Symmetry, grid: tuple[int, int], phi: float
+) -> None:
+    few, many = (sample_fields(corrector, load("plus"), grid, k, 0, 4, phi, symmetry=symmetry) for k in (2, 9))
+    assert many[:2] == few
+    assert len(set(many)) == 9
+    for field in many:
+        assert symmetry.symmetric(field.log10) == pytest.approx(field.log10, abs=1e-12)
+        assert np.ptp(field.log10) > 0.1
+
+
+def test_that_symmetry_costs_no_match_when_the_whole_flow_stays_inside_it(corrector: Model) -> None:
+    heart, grid = load("heart"), (10, 11)
+    free = sample_fields(corrector, heart, grid, 8, 0, 4)
+    projected = [RatioField.from_log10(Symmetry.LEFT_RIGHT.symmetric(field.log10)) for field in free]
+    symmetric = sample_fields(corrector, heart, grid, 8, 0, 4, symmetry=Symmetry.LEFT_RIGHT)
+    assert mean_match(symmetric, heart) > mean_match(tuple(projected), heart) + 0.03
+    assert mean_match(symmetric, heart) > mean_match(free, heart) - 0.005
+
+
+def test_that_the_axis_of_a_tilted_target_is_laid_on_that_of_the_sheet(corrector: Model) -> None:
+    heart = load("heart")
+    c, s = math.cos(1.0), math.sin(1.0)
+    tilted = Outline.from_points(heart.points @ np.array([[c, s], [-s, c]]))
+    upright, laid, askew = (
+        mean_match(sample_fields(corrector, target, (10, 11), 8, 0, 4, symmetry=Symmetry.LEFT_RIGHT, upward=up), target)
+        for target, up in ((heart, None), (tilted, 0.5 * math.pi + 1.0), (tilted, None))
+    )
+    assert laid == pytest.approx(upright, abs=2e-3)
+    assert askew < upright - 0.05
+
+
+def test_that_samples_of_a_mirror_see_the_target_both_ways_up_and_those_of_two_mirrors_along_both_axes() -> None:
+    one = mirror_angles(range(8, 12), Symmetry.TOP_BOTTOM, 0.2)
+    assert torch.allclose(one, 0.5 * math.pi - 0.2 + torch.tensor([0.0, math.pi, 0.0, math.pi]))
+    two = mirror_angles(range(2), Symmetry.TWO_MIRRORS, None)
+    assert torch.allclose(two, torch.tensor([0.0, 0.5 * math.pi]))
+    drop = turned_target(load("drop"), mirror_angles(range(2), Symmetry.LEFT_RIGHT, None))
+    assert torch.allclose(drop[0], -drop[1], atol=1e-5)
+
+
+def test_that_symmetric_samples_near_a_symmetric_design_are_like_it(corrector: Model) -> None:
+    heart, grid, symmetry = load("heart"), (10, 11), Symmetry.LEFT_RIGHT
+    (design,) = sample_fields(corrector, heart, grid, 1, 5, 4, symmetry=symmetry)
+
+    def distance(nearness: float) -> float:
+        near = Near(design, 0.0, nearness)
+        drawn = sample_fields(corrector, heart, grid, 8, 0, 4, near=near, symmetry=symmetry)
+        assert all(symmetry.symmetric(field.log10) == pytest.approx(field.log10, abs=1e-12) for field in drawn)
+        return float(np.mean([np.abs(field.log10 - design.log10).mean() for field in drawn]))
+
+    assert distance(0.9) < 0.8 * distance(0.3)
+
+
+def test_that_a_grid_without_the_symmetry_is_refused(model: Model) -> None:
+    with pytest.raises(UsageError) as caught:
+        sample_fields(model, load("heart"), (10, 10), 1, 0, 4, symmetry=Symmetry.LEFT_RIGHT)
+    assert caught.value.code == "symmetry.not_on_grid"
