@@ -20,6 +20,7 @@ from kirigami_studio.export.svg import write_layout_svg
 from kirigami_studio.foundation.errors import Cancelled, FabricationError
 from kirigami_studio.foundation.files import check_folder, write_atomically
 from kirigami_studio.foundation.words import tr, tr_n
+from kirigami_studio.lattice.sheet_files import sheet_json
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.pipeline.events import Finished, Progress, Result
 from kirigami_studio.pipeline.redesign import keep_for_connectors
@@ -102,16 +103,18 @@ def summary(result: Result) -> dict[str, object]:
 
 
 def candidate_json(candidate: Candidate) -> dict[str, object]:
-    """One entry of ``candidates``: the ratios, the score and the provenance; a trimmed one's other ratios and IoU."""
+    """One entry of ``candidates``: a sheet file with score and provenance; a trimmed one's other sheet and IoU."""
     entry: dict[str, object] = {
-        "ratio": candidate.sheet.field.ratio,
+        **sheet_json(candidate.sheet),
+        "grid": list(candidate.sheet.grid),
         **candidate.score.to_json(),
         "seed": candidate.seed,
         "index": candidate.index,
         "polished": candidate.polished,
     }
     if candidate.trim is not None:
-        entry |= {"trimmed_iou": candidate.trim.iou, "trimmed_ratio": candidate.trim.sheet.field.ratio}
+        cut = sheet_json(candidate.trim.sheet)
+        entry |= {"trimmed_iou": candidate.trim.iou, "trimmed_ratio": cut["ratio"], "trimmed_rim": cut["rim"]}
     return entry
 
 

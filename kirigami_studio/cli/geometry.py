@@ -13,8 +13,8 @@ from kirigami_studio.cli.inputs import (
     are_many_targets,
     for_each,
     is_batch,
-    read_fields,
     read_mask,
+    read_sheets,
     read_targets,
 )
 from kirigami_studio.cli.option_types import parse_grid
@@ -25,26 +25,26 @@ from kirigami_studio.foundation.errors import AngleError, RatioError, UsageError
 from kirigami_studio.foundation.files import write_atomically
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.lattice.deployment import check_phi, deploy
-from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.outlines.outline import Outline
 
 
 def decode(arguments: argparse.Namespace) -> int:
-    """Print the exact layout of each ratio field."""
+    """Print the exact layout of each sheet."""
     phi = check_phi(arguments.phi)
-    batch = is_batch(arguments.ratios)
+    batch = is_batch(arguments.sheets)
 
-    def one(name: str, field: RatioField) -> None:
-        _check_grid(arguments.grid, field, name)
-        answer = decoded(field, phi)
+    def one(name: str, sheet: Sheet) -> None:
+        _check_grid(arguments.grid, sheet, name)
+        answer = decoded(sheet, phi)
         _deliver(arguments, {"source": name} | answer if batch else answer, name, batch, "layout")
         if not arguments.json and not batch:
             say(
                 tr(
                     "{rows} x {columns} voids at {angle:.1f} degrees: area {area:.4f} unit cells, {invalid} invalid, "
                     "overlap {overlap:.4f}",
-                    rows=field.rows,
-                    columns=field.columns,
+                    rows=sheet.rows,
+                    columns=sheet.columns,
                     angle=math.degrees(phi),
                     area=answer["area"],
                     invalid=answer["n_invalid"],
@@ -52,18 +52,19 @@ def decode(arguments: argparse.Namespace) -> int:
                 )
             )
 
-    return for_each(read_fields(arguments.ratios), batch, one)
+    return for_each(read_sheets(arguments.sheets), batch, one)
 
 
-def decoded(field: RatioField, phi: float) -> dict[str, object]:
-    """The JSON answer of ``decode`` for one field at ``phi`` radians, in unit cells."""
-    deployment = deploy(field)
+def decoded(sheet: Sheet, phi: float) -> dict[str, object]:
+    """The JSON answer of ``decode`` for one sheet at ``phi`` radians, in unit cells."""
+    deployment = deploy(sheet)
     contact = path_contact(deployment, phi)
     return {
         "phi": phi,
-        "grid": [field.rows, field.columns],
+        "grid": list(sheet.grid),
         "void_corners": deployment.voids(phi),
         "panels": deployment.panels(phi).reshape(-1, 4, 2),
+        "panels_flat": deployment.panels(math.pi).reshape(-1, 4, 2),
         "outline": deployment.outline(phi),
         "area": deployment.area(phi),
         "n_invalid": invalid_quads(deployment, phi),
@@ -73,23 +74,23 @@ def decoded(field: RatioField, phi: float) -> dict[str, object]:
 
 
 def score(arguments: argparse.Namespace) -> int:
-    """Print how well each field shows its target."""
-    *ratio_sources, target_source = arguments.inputs
-    if not ratio_sources:
+    """Print how well each sheet shows its target."""
+    *sheet_sources, target_source = arguments.inputs
+    if not sheet_sources:
         raise UsageError("score.nothing_to_score")
     phi = target_angle(arguments.phi)
-    fields = list(read_fields(ratio_sources))
+    sheets = list(read_sheets(sheet_sources))
     targets = list(read_targets([target_source]))
-    if 1 not in (len(fields), len(targets)) and len(fields) != len(targets):
-        raise UsageError("score.numbers_differ", fields=len(fields), targets=len(targets))
-    pairs = max(len(fields), len(targets))
-    fields = fields * (pairs if len(fields) == 1 else 1)
+    if 1 not in (len(sheets), len(targets)) and len(sheets) != len(targets):
+        raise UsageError("score.numbers_differ", sheets=len(sheets), targets=len(targets))
+    pairs = max(len(sheets), len(targets))
+    sheets = sheets * (pairs if len(sheets) == 1 else 1)
     targets = targets * (pairs if len(targets) == 1 else 1)
-    batch = is_batch(ratio_sources) or are_many_targets([target_source])
+    batch = is_batch(sheet_sources) or are_many_targets([target_source])
 
-    def one(name: str, pair: tuple[RatioField, Named[Outline]]) -> None:
-        field, target = pair
-        result = evaluate(deploy(field), target.read(), phi)
+    def one(name: str, pair: tuple[Sheet, Named[Outline]]) -> None:
+        sheet, target = pair
+        result = evaluate(deploy(sheet), target.read(), phi)
         if batch:
             print_json({"source": name, "target": target.name} | result.to_json())
         elif arguments.json:
@@ -104,12 +105,12 @@ def score(arguments: argparse.Namespace) -> int:
             )
             say(f"{figures} {tr('Feasible.') if result.feasible else tr('Not feasible.')}")
 
-    return for_each((_paired(*pair) for pair in zip(fields, targets, strict=True)), batch, one)
+    return for_each((_paired(*pair) for pair in zip(sheets, targets, strict=True)), batch, one)
 
 
-def _paired(field: Named[RatioField], target: Named[Outline]) -> Named[tuple[RatioField, Named[Outline]]]:
-    """A field with the target that it is scored against, under the field's name."""
-    return Named(field.name, lambda: (field.read(), target))
+def _paired(sheet: Named[Sheet], target: Named[Outline]) -> Named[tuple[Sheet, Named[Outline]]]:
+    """A sheet with the target that it is scored against, under the sheet's name."""
+    return Named(sheet.name, lambda: (sheet.read(), target))
 
 
 def siou(arguments: argparse.Namespace) -> int:
@@ -131,9 +132,9 @@ def target_angle(phi: float) -> float:
     return phi
 
 
-def _check_grid(grid: str | None, field: RatioField, name: str) -> None:
-    if grid is not None and parse_grid(grid) != (field.rows, field.columns):
-        raise RatioError("decode.other_grid", name=name, rows=field.rows, columns=field.columns, grid=grid)
+def _check_grid(grid: str | None, sheet: Sheet, name: str) -> None:
+    if grid is not None and parse_grid(grid) != sheet.grid:
+        raise RatioError("decode.other_grid", name=name, rows=sheet.rows, columns=sheet.columns, grid=grid)
 
 
 def _deliver(arguments: argparse.Namespace, answer: dict[str, object], name: str, batch: bool, kind: str) -> None:

@@ -1,4 +1,4 @@
-"""Targets and ratio fields from whatever the command line names: files, folders, archives, library names.
+"""Targets and sheets from whatever the command line names: files, folders, archives, library names.
 
 Sub-commands take one input or a batch: in a batch, an input that fails is reported in its place and the others still
 get their answer.
@@ -6,7 +6,6 @@ get their answer.
 
 from __future__ import annotations
 
-import json
 import os
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
@@ -19,16 +18,18 @@ import numpy.typing as npt
 
 from kirigami_studio.cli.console import print_json
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray
-from kirigami_studio.foundation.errors import GridError, KirigamiError, RatioError, TargetError, UsageError
-from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.foundation.errors import KirigamiError, ProjectError, RatioError, TargetError, UsageError
+from kirigami_studio.lattice.sheet import Sheet
+from kirigami_studio.lattice.sheet_files import LARGEST_FILE, SUFFIXES, named_sheet, read_sheet
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.read import read_target, target_files
 from kirigami_studio.outlines.read_image import outline_of_mask, read_image
 from kirigami_studio.outlines.silhouettes import names
+from kirigami_studio.project.store import SUFFIX as PROJECT
+from kirigami_studio.project.store import load
 
-LARGEST_FILE = 512 * 1024 * 1024
 IMAGE_SUFFIXES = (".png", ".jpg", ".jpeg", ".bmp")
-RATIO_SUFFIXES = (".json", ".npy", ".npz")
+SHEET_SUFFIXES = (*SUFFIXES, ".npz", PROJECT)
 
 Value = TypeVar("Value")
 
@@ -112,58 +113,37 @@ def read_targets(sources: Sequence[str], threshold: float | None = None) -> Iter
             yield Named(source, partial(read_target, source))
 
 
-def read_fields(sources: Sequence[str]) -> Iterator[Named[RatioField]]:
-    """Yield every ratio field that the sources name, in order."""
+def read_sheets(sources: Sequence[str]) -> Iterator[Named[Sheet]]:
+    """Yield every sheet that the sources name, in order."""
     for source in sources:
         path = Path(source)
         if path.suffix.lower() == ".npz":
             for index, ratio in enumerate(_archive(path, "ratios", 3)):
                 name = f"{path.name}[{index}]"
-                yield Named(name, partial(_field_of, ratio, name))
+                yield Named(name, partial(named_sheet, {"ratio": ratio}, name))
         elif _is_folder(source):
-            files = sorted(file for file in path.iterdir() if file.suffix.lower() in RATIO_SUFFIXES)
+            files = sorted(file for file in path.iterdir() if file.suffix.lower() in SHEET_SUFFIXES)
             if not files:
                 raise RatioError("ratios.none_in_folder", folder=path)
-            yield from read_fields([str(file) for file in files])
+            yield from read_sheets([str(file) for file in files])
+        elif path.suffix.lower() == PROJECT:
+            yield Named(source, partial(read_chosen_sheet, path))
         else:
-            yield Named(source, partial(read_field, path))
+            yield Named(source, partial(read_sheet, path))
 
 
-def read_field(path: Path) -> RatioField:
-    """Read one ratio field: .json ``{"ratio": [[...], ...]}`` or .npy, row 0 on top.
+def read_chosen_sheet(path: Path) -> Sheet:
+    """Read the sheet of a project's chosen design, as it is shown and cut.
 
     Raises
     ------
-    RatioError
-        Missing, damaged, of another kind, or with impossible values.
+    ProjectError
+        No project can be read, or none of its designs is chosen.
     """
-    suffix = path.suffix.lower()
-    if suffix not in RATIO_SUFFIXES:
-        raise RatioError("ratios.unknown_extension", name=path.name)
-    try:
-        if path.stat().st_size > LARGEST_FILE:
-            raise RatioError("ratios.file_too_large", path=path, limit=LARGEST_FILE >> 20)
-        if suffix == ".npy":
-            content: object = np.load(path, allow_pickle=False)
-        else:
-            content = json.loads(path.read_text(encoding="utf-8-sig"))
-    except (OSError, ValueError, EOFError, RecursionError) as error:
-        if isinstance(error, OSError) and error.strerror:
-            raise RatioError("ratios.not_readable", path=path, reason=error.strerror) from error
-        raise RatioError("ratios.damaged", path=path) from error
-    if isinstance(content, dict):
-        content = content.get("ratio")
-    if not isinstance(content, (list, np.ndarray)):
-        raise RatioError("ratios.not_a_table", name=path.name)
-    return _field_of(content, path.name)
-
-
-def _field_of(values: object, name: str) -> RatioField:
-    """Validate ratios; a refusal names the input."""
-    try:
-        return RatioField(values)  # type: ignore[arg-type]  # checked by the constructor
-    except (RatioError, GridError) as error:
-        raise RatioError("input.not_valid", name=name, reason=error) from error
+    candidate = load(path).candidate
+    if candidate is None:
+        raise ProjectError("project.no_design_chosen", path=path)
+    return candidate.final_sheet
 
 
 def read_mask(path: Path) -> BoolArray:

@@ -201,16 +201,17 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
         "kirigami-studio design star --grid 10x10 --symmetry none --rim even --regular 0 --json",
         "kirigami-studio design masks.npz --k 1 --json",
     )),
-    SubCommand("decode", "print the exact layouts of ratio fields", "geometry:decode", (
-        option("ratios", nargs="+", metavar="RATIOS", help=".json, .npy, folder or .npz with 'ratios'"),
+    SubCommand("decode", "print the exact layouts of sheets", "geometry:decode", (
+        option("sheets", nargs="+", metavar="SHEET",
+               help=".json or .npy, .kiri (its chosen design), folder, or .npz with 'ratios'"),
         PHI,
         option("--grid", default=None, help="expected grid, ROWSxCOLUMNS (default: the file's)"),
         option("--out", default=None, help="also write the JSON to this file (a folder for many inputs)"),
         JSON,
     ), ("kirigami-studio decode ratios.json --phi pi/2 --json",)),
-    SubCommand("score", "score how well ratio fields match a target", "geometry:score", (
-        option("inputs", nargs="+", metavar="RATIOS... TARGET",
-               help="ratio fields, then one target, or one for each field"),
+    SubCommand("score", "score how well sheets match a target", "geometry:score", (
+        option("inputs", nargs="+", metavar="SHEET... TARGET",
+               help="sheets as for decode, then one target, or one for each sheet"),
         PHI,
         JSON,
     ), ("kirigami-studio score ratios.json heart --json", "kirigami-studio score fields.npz masks.npz")),

@@ -21,6 +21,7 @@ from kirigami_studio.fabricate.cut_plan import CutPlan
 from kirigami_studio.fabricate.joints import joint_count
 from kirigami_studio.foundation.errors import ExportError
 from kirigami_studio.foundation.files import write_atomically
+from kirigami_studio.lattice.sheet_files import rim_json
 
 #: What some kind of file cannot have in a name.
 NOT_IN_NAMES = re.compile(r"[^A-Z0-9_]")
@@ -101,9 +102,12 @@ def write_sidecar(job: ExportJob, path: str | Path, cut_files: Sequence[Path] = 
 
 
 def sidecar_record(job: ExportJob, cut_files: Sequence[Path] = ()) -> dict[str, Any]:
-    """Return the record: names, numbers, lists and nothing that depends on time or place."""
+    """Return the record: names, numbers, lists and nothing that depends on time or place.
+
+    Rim, start outline and cell are there, as in a sheet file, where they are not the paper's.
+    """
     plan = job.required_plan
-    field = job.deployment.field
+    sheet = job.deployment.sheet
     kept = None
     if job.trim is not None:
         kept = [None if part is None else part.tolist() for part in job.trim.kept]
@@ -112,9 +116,10 @@ def sidecar_record(job: ExportJob, cut_files: Sequence[Path] = ()) -> dict[str, 
         "application": f"kirigami-studio {__version__}",
         "design": {
             "hash": plan.design_hash,
-            "rows": field.rows,
-            "columns": field.columns,
-            "ratio": field.ratio.tolist(),
+            "rows": sheet.rows,
+            "columns": sheet.columns,
+            "ratio": sheet.field.ratio.tolist(),
+            **({} if sheet.is_default else rim_json(sheet)),
             "phi": float(job.phi),
             "kept": kept,
         },

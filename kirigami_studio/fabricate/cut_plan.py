@@ -63,7 +63,7 @@ class CutPlan:
     hinges : Hinges
     material : Material
     design_hash : str
-        Identifies the ratios that the plan was made from.
+        Identifies the sheet that the plan was made from, and what was trimmed off it.
     options : CutOptions
     notes : tuple of Note
         What a person should read before cutting.
@@ -272,8 +272,11 @@ def _on_grid(points: FloatArray) -> FloatArray:
 
 
 def _design_hash(deployment: Deployment, kept: Sequence[FloatArray | None]) -> str:
-    ratio = deployment.field.ratio
+    sheet, ratio = deployment.sheet, deployment.field.ratio
     content = f"{ratio.shape}".encode() + np.ascontiguousarray(ratio, dtype="<f8").tobytes()
+    if not sheet.is_default:
+        others = [sheet.rim.positions, np.array(sheet.cell), np.zeros(0) if sheet.start is None else sheet.start]
+        content += b"".join(np.ascontiguousarray(part, dtype="<f8").tobytes() for part in others)
     for index, part in enumerate(kept):
         if part is not None:
             content += f"{index}".encode() + np.ascontiguousarray(part, dtype="<f8").tobytes()

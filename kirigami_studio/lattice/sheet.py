@@ -31,6 +31,10 @@ SIDES: tuple[Side, ...] = ("top", "right", "bottom", "left")
 
 #: Mouths, corners and hinges may not come nearer to each other than this (unit cells): what is exact needs room.
 LEAST_GAP = 1e-3
+#: Sides of a cell, and width and height of a start outline (unit cells): tolerances in cells mean something there.
+CELL_SIDES = (0.05, 20.0)
+START_SIDES = (0.5, 1000.0)
+MOST_START_POINTS = 10_000
 #: A start outline is convex when its hull is larger by no more than this share of it.
 CONVEX = 1e-6
 
@@ -129,7 +133,7 @@ class Rim:
     def __post_init__(self) -> None:
         for name, given in zip(SIDES, self.sides, strict=True):
             try:
-                values = frozen(given)
+                values = _numbers(given)
             except (TypeError, ValueError, OverflowError):
                 values = frozen([np.nan])
             if values.ndim != 1 or not np.all(np.isfinite(values)):
@@ -260,6 +264,11 @@ class Sheet:
         """Whether the mouths are where the paper has them."""
         return self.rim == Rim.even(*self.grid)
 
+    @property
+    def is_default(self) -> bool:
+        """Whether rim, start outline and cell are the paper's, so that the ratios alone tell the sheet."""
+        return self == Sheet(self.field)
+
     def with_field(self, field: RatioField) -> Sheet:
         """The same sheet with other ratios of the same grid."""
         return replace_sheet(self, field=field)
@@ -338,24 +347,40 @@ def _on_rim(sheet: Sheet, place: FloatArray) -> FloatArray:
     return np.stack([np.interp(place, corner_place, corners[:, axis]) for axis in (0, 1)], axis=1)
 
 
+def _numbers(values: npt.ArrayLike) -> FloatArray:
+    """Read-only float64 copy of real numbers; text and truth values are none."""
+    table = np.asarray(values)
+    if table.dtype.kind not in "iuf" and table.size:
+        raise TypeError("not real numbers")
+    return frozen(table)
+
+
 def _checked_cell(cell: tuple[float, float]) -> tuple[float, float]:
     try:
-        size = frozen(cell)
+        size = _numbers(cell)
     except (TypeError, ValueError, OverflowError):
         size = frozen([])
     if size.shape != (2,) or not np.all(np.isfinite(size) & (size > 0)):
         raise UsageError("cell.not_positive", cell=cell)
+    least, most = CELL_SIDES
+    if size.min() < least or size.max() > most:
+        raise UsageError("cell.out_of_range", width=size[0], height=size[1], least=least, most=most)
     return float(size[0]), float(size[1])
 
 
 def _checked_start(start: npt.ArrayLike) -> FloatArray:
     """A convex polygon, clockwise; its first vertex stays the first."""
     try:
-        points = np.array(start, dtype=np.float64)
+        points = _numbers(start)
     except (TypeError, ValueError, OverflowError):
         raise SheetError("start.not_points") from None
     if points.ndim != 2 or points.shape[1:] != (2,) or len(points) < 3 or not np.all(np.isfinite(points)):
         raise SheetError("start.not_points")
+    if len(points) > MOST_START_POINTS:
+        raise SheetError("start.too_many_points", most=MOST_START_POINTS, count=len(points))
+    (width, height), (least, most) = np.ptp(points, axis=0).tolist(), START_SIDES
+    if max(width, height) < least or max(width, height) > most:
+        raise SheetError("start.size_out_of_range", width=width, height=height, least=least, most=most)
     polygon = shapely.Polygon(points)
     if not polygon.is_valid or polygon.area <= 0.0:
         raise SheetError("start.crosses_itself")

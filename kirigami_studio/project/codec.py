@@ -22,6 +22,7 @@ from kirigami_studio.foundation.errors import ProjectError
 from kirigami_studio.lattice.deployment import check_phi, deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.sheet import Sheet
+from kirigami_studio.lattice.sheet_files import rim_json, sheet_json, sheet_of_json
 from kirigami_studio.outlines.nodes import Kind, Nodes
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.document import Document, Mark, Void
@@ -31,7 +32,7 @@ from kirigami_studio.project.settings import DesignSettings, FabricationSettings
 
 DESIGN = "design.json"
 RATIOS = "ratios.npy"
-#: The fields as they were sampled, of those candidates that a fit has improved, in the candidates' order.
+#: Ratios as they were sampled, of those candidates that a fit has improved, in the candidates' order.
 SAMPLED = "sampled.npy"
 
 
@@ -217,23 +218,36 @@ def _candidate_json(entry: Candidate, runs: list[tuple[tuple[str, str], ...]]) -
         "variant": entry.variant,
         "origin": entry.origin.value,
         "run": runs.index(entry.made_with) if entry.made_with else None,
+        "sheet": _rim_json(entry.sheet),
         "sampled": entry.sampled_sheet is not None,
+        "sampled_sheet": None if entry.sampled_sheet is None else _rim_json(entry.sampled_sheet),
         "score": entry.score.to_json(),
         # What was cut off follows from these; it is cut again on reading.
         "trim": None
         if cut is None
-        else {"ratio": cut.sheet.field.ratio.tolist(), "pose": cut.pose.to_json(), "phi": cut.phi, "keep": cut.keep},
+        else {**sheet_json(cut.sheet), "pose": cut.pose.to_json(), "phi": cut.phi, "keep": cut.keep},
     }
 
 
+def _rim_json(sheet: Sheet) -> dict[str, object] | None:
+    """Rim, start outline and cell; None where they are the paper's."""
+    return None if sheet.is_default else rim_json(sheet)
+
+
+def _sheet(record: Record, name: str, field: RatioField) -> Sheet:
+    """Ratios with the rim, start outline and cell that a record has for them."""
+    return sheet_of_json(record.record(name).entries, field) if record.holds(name) else Sheet(field)
+
+
 def _candidate(record: Record, field: RatioField, sampled: RatioField | None, target: Outline | None) -> Candidate:
+    sheet = _sheet(record, "sheet", field)
     return Candidate(
-        sheet=Sheet(field),
-        score=_score(record.record("score"), Sheet(field)),
+        sheet=sheet,
+        score=_score(record.record("score"), sheet),
         seed=record.whole("seed"),
         index=record.whole("index"),
         polished=record.flag("polished"),
-        sampled_sheet=None if sampled is None else Sheet(sampled),
+        sampled_sheet=None if sampled is None else _sheet(record, "sampled_sheet", sampled),
         trim=_trim(record.record("trim"), target) if record.holds("trim") and target is not None else None,
         variant=record.text("variant"),
         origin=one_of(Origin, record.text("origin")),
@@ -241,8 +255,8 @@ def _candidate(record: Record, field: RatioField, sampled: RatioField | None, ta
 
 
 def _trim(record: Record, target: Outline) -> Trim:
-    field = RatioField(_table(record.list("ratio"), "trim.ratio"))
-    return trim(deploy(field), target, record.number("phi"), _pose(record.record("pose")), record.number("keep"))
+    sheet = sheet_of_json(record.entries, RatioField(_table(record.list("ratio"), "trim.ratio")))
+    return trim(deploy(sheet), target, record.number("phi"), _pose(record.record("pose")), record.number("keep"))
 
 
 def _pose(record: Record) -> Similarity:

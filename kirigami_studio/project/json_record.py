@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import json
 import math
+from collections.abc import Mapping
 from enum import Enum
+from types import MappingProxyType
 from typing import Any, NoReturn, TypeVar
 
 from kirigami_studio.foundation.errors import ProjectError
@@ -55,6 +57,11 @@ class Record:
             raise ProjectError("json.not_an_object", place=place)
         self._value: dict[str, Any] = value
         self._place = place
+
+    @property
+    def entries(self) -> Mapping[str, Any]:
+        """All fields, for a reader of its own."""
+        return MappingProxyType(self._value)
 
     def number(self, name: str) -> float:
         value = self._get(name)

@@ -23,7 +23,7 @@ DESIGN = "design.json"
 
 def _with_sheet_settings(members: Members) -> Members:
     """Format 2 says whether a run chooses its grid, and how sheets may be: designs so far had a fixed grid, an even rim
-    and no symmetry asked for.
+    and no symmetry asked for.  That every sheet had an even rim is what designs without an entry for it mean.
     """
     if DESIGN not in members:
         return members

@@ -23,6 +23,7 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "angle.not_a_number": mark("The deployment angle must be a number in radians, got {phi!r:.80}."),
     "angle.out_of_range": mark("The deployment angle must be 0 to pi radians (pi is the compact sheet), got {phi:g}."),
     "rim.not_numbers": mark("The rim's {side} side must be a list of finite numbers: the mouths' positions in cells."),
+    "rim.not_four_sides": mark('A rim must be {{"top": [...], "right": [...], "bottom": [...], "left": [...]}}.'),
     "rim.wrong_count": mark(
         "The rim's {side} side has {got} mouths, but a grid of {rows} x {columns} voids has {wanted} there."
     ),
@@ -32,7 +33,14 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "start.not_points": mark("A start outline must be a list of at least three points [x, y] with finite numbers."),
     "start.crosses_itself": mark("The start outline crosses itself or has no area. Use one simple closed shape."),
     "start.not_convex": mark("The start outline is not convex. Use a shape without hollows."),
+    "start.too_many_points": mark("A start outline has at most {most} points, got {count}. Simplify it."),
+    "start.size_out_of_range": mark(
+        "A start outline must be {least:g} to {most:g} cells across, got {width:g} x {height:g}. Scale it."
+    ),
     "cell.not_positive": mark("A cell needs a width and a height above 0, got {cell!r:.80}."),
+    "cell.out_of_range": mark(
+        "A cell's width and height must be {least:g} to {most:g} times the unit cell's, got {width:g} x {height:g}."
+    ),
     # evaluate
     "silhouette.not_a_table": mark("A silhouette must be a table of numbers, one x, y pair per row."),
     "silhouette.too_few_points": mark(

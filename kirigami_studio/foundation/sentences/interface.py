@@ -18,11 +18,11 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     # Inputs
     "input.not_valid": mark("{name}: {reason}"),
     "batch.some_inputs_failed": mark("{failed} of {total} inputs failed. The entry 'error' on their lines says why."),
-    "ratios.none_in_folder": mark("The folder {folder} has no ratio fields (.json, .npy or .npz)."),
-    "ratios.unknown_extension": mark("Ratio fields are read from .json or .npy files, got {name}."),
-    "ratios.file_too_large": mark("{path} is larger than {limit} MB; ratio fields are smaller."),
-    "ratios.not_readable": mark("Cannot read ratios from {path}: {reason}."),
-    "ratios.damaged": mark("Cannot read ratios from {path}: the file is damaged or of another kind."),
+    "ratios.none_in_folder": mark("The folder {folder} has no sheets (.json, .npy, .npz or .kiri)."),
+    "ratios.unknown_extension": mark("Sheets are read from .json, .npy or .kiri files, got {name}."),
+    "ratios.file_too_large": mark("{path} is larger than {limit} MB; sheets are smaller."),
+    "ratios.not_readable": mark("Cannot read a sheet from {path}: {reason}."),
+    "ratios.damaged": mark("Cannot read a sheet from {path}: the file is damaged or of another kind."),
     "ratios.not_a_table": mark('{name} must contain {{"ratio": [[...], ...]}}, the top row first.'),
     "mask.not_readable": mark("Cannot read the mask image {path}: it is missing, damaged or not an image."),
     "input.mask_not_finite": mark("The mask is not finite in row {row}, column {column}. Every pixel must be finite."),
@@ -42,10 +42,10 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "No design could be trimmed: all of them cross themselves. Try another seed, or leave --trim out to get "
         "untrimmed designs."
     ),
-    "decode.other_grid": mark("{name} is a {rows} x {columns} field, not {grid}."),
-    "score.nothing_to_score": mark("Name ratio fields and then a target: score RATIOS [RATIOS ...] TARGET."),
+    "decode.other_grid": mark("{name} has {rows} x {columns} voids, not {grid}."),
+    "score.nothing_to_score": mark("Name sheets and then a target: score SHEET [SHEET ...] TARGET."),
     "score.numbers_differ": mark(
-        "Give as many ratio fields as targets, or one of either; got {fields} ratio fields and {targets} targets."
+        "Give as many sheets as targets, or one of either; got {sheets} sheets and {targets} targets."
     ),
     "export.cannot_be_cut": mark("{reason}"),
     "export.no_chosen_design": mark("This project has no chosen design. Generate designs and choose one first."),

@@ -13,6 +13,7 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "project.grids_differ": mark(
         "All designs of a project must have the same grid, got {rows} x {columns} and {other_rows} x {other_columns}."
     ),
+    "project.no_design_chosen": mark("No design is chosen in {path}. Open the project and choose one."),
     "project.no_such_design": mark(
         "There is no design with index {index!s:.40}; the project has {designs}, from 0 on."
     ),
