@@ -7,11 +7,13 @@ import math
 import numpy as np
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
+from uneven_sheets import random_rim, random_start
 
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.lattice.deployment import rotate, signed_area
 from kirigami_studio.lattice.marching import void_angle
 from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.lattice.sheet import Sheet
 
 
 def grids(largest: int = 9) -> st.SearchStrategy[tuple[int, int]]:
@@ -30,6 +32,17 @@ def ratio_fields(
     else:
         z = np.random.default_rng(draw(st.integers(0, 2**32 - 1))).uniform(-decades, decades, shape)
     return RatioField.from_log10(z)
+
+
+@st.composite
+def sheets(draw: st.DrawFn, largest: int = 8, decades: float = 1.0, starts: bool = True) -> Sheet:
+    """Random ratios, mouths anywhere that keeps their order, a rectangle or a random convex start, any cell."""
+    rows, columns = draw(grids(largest))
+    random = np.random.default_rng(draw(st.integers(0, 2**32 - 1)))
+    field = RatioField.from_log10(random.uniform(-decades, decades, (rows, columns)))
+    rim = random_rim(rows, columns, random)
+    start = random_start(random) if starts and draw(st.booleans()) else None
+    return Sheet(field, rim, start, (1.0, draw(st.floats(0.5, 2.0))))
 
 
 #: Any angle, the two compact states included.
@@ -86,6 +99,7 @@ __all__ = [
     "open_angles",
     "polygon_areas",
     "ratio_fields",
+    "sheets",
     "signed_area",
 ]
 

@@ -218,9 +218,9 @@ def _candidate_json(entry: Candidate, runs: list[tuple[tuple[str, str], ...]]) -
         "variant": entry.variant,
         "origin": entry.origin.value,
         "run": runs.index(entry.made_with) if entry.made_with else None,
-        "sheet": _rim_json(entry.sheet),
+        "sheet": _unless_default(entry.sheet),
         "sampled": entry.sampled_sheet is not None,
-        "sampled_sheet": None if entry.sampled_sheet is None else _rim_json(entry.sampled_sheet),
+        "sampled_sheet": None if entry.sampled_sheet is None else _unless_default(entry.sampled_sheet),
         "score": entry.score.to_json(),
         # What was cut off follows from these; it is cut again on reading.
         "trim": None
@@ -229,7 +229,7 @@ def _candidate_json(entry: Candidate, runs: list[tuple[tuple[str, str], ...]]) -
     }
 
 
-def _rim_json(sheet: Sheet) -> dict[str, object] | None:
+def _unless_default(sheet: Sheet) -> dict[str, object] | None:
     """Rim, start outline and cell; None where they are the paper's."""
     return None if sheet.is_default else rim_json(sheet)
 

@@ -8,6 +8,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import replace
 
 from kirigami_studio.evaluate.candidate import Candidate, Origin
+from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.project.document import Document
 
 #: What joins the values of several runs in one provenance.
@@ -50,7 +51,7 @@ def design_facts(document: Document, candidate: Candidate) -> dict[str, str]:
         facts["model"] = variant
     if variant in by_model:
         facts["model_sha256"] = by_model[variant]
-    rows, columns = candidate.sheet.grid
+    (rows, columns), cut = candidate.sheet.grid, candidate.final_sheet
     trim = candidate.trim
     return facts | {
         "seed": str(candidate.seed),
@@ -59,9 +60,21 @@ def design_facts(document: Document, candidate: Candidate) -> dict[str, str]:
         "polished": "yes" if candidate.polished else "no",
         "trimmed": "no" if trim is None else "yes",
         "grid": f"{rows} x {columns}",
+        **({} if cut.is_default else {"sheet": _differences(cut)}),
         "phi_degrees": f"{math.degrees(candidate.score.phi):g}",
         **({} if document.target is None else {"target": document.target.name}),
     }
+
+
+def _differences(sheet: Sheet) -> str:
+    """What a sheet has that the paper's has not; the numbers are in the project and in the record beside a cut file."""
+    found = [] if sheet.has_even_rim else ["uneven rim"]
+    if sheet.start is not None:
+        found.append(f"start outline of {len(sheet.start)} points")
+    width, height = sheet.cell
+    if (width, height) != (1.0, 1.0):
+        found.append(f"cell {width:g} x {height:g}")
+    return ", ".join(found)
 
 
 def _run_of(document: Document, candidate: Candidate) -> dict[str, str]:

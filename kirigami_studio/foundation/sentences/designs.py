@@ -25,7 +25,7 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "rim.not_numbers": mark("The rim's {side} side must be a list of finite numbers: the mouths' positions in cells."),
     "rim.not_four_sides": mark('A rim must be {{"top": [...], "right": [...], "bottom": [...], "left": [...]}}.'),
     "rim.wrong_count": mark(
-        "The rim's {side} side has {got} mouths, but a grid of {rows} x {columns} voids has {wanted} there."
+        "Mouths on the rim's {side} side: {got}; a sheet of {rows} x {columns} voids needs {wanted} there."
     ),
     "rim.not_in_order": mark(
         "The mouths of the rim's {side} side must grow from 0 to {length:g} cells and stay {least:g} cells apart."

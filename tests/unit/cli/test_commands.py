@@ -15,11 +15,19 @@ import numpy as np
 import pytest
 from command_line import answer, refusal
 from PIL import Image
+from uneven_sheets import uneven_sheet
 
 from kirigami_studio.cli import main
 from kirigami_studio.cli.parser import SUB_COMMANDS, SubCommand
+from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.lattice.sheet import Sheet
+from kirigami_studio.lattice.sheet_files import sheet_json
+from kirigami_studio.outlines.silhouettes import load
+from kirigami_studio.project.document import Document
+from kirigami_studio.project.store import save
 
 FIELD = np.array([[1.0, 2.0, 0.5], [0.8, 1.5, 1.0]])
 
@@ -51,6 +59,32 @@ def test_that_the_compact_sheet_starts_at_the_origin(capsys: pytest.CaptureFixtu
     corners = np.array(answer(capsys, "decode", ratios, "--phi", "pi", "--json")["outline"])
     assert np.allclose(corners.min(axis=0), (0, -3))
     assert np.allclose(corners.max(axis=0), (4, 0))
+
+
+def test_that_decode_tells_the_flat_panels_in_the_order_of_the_open_ones(
+    capsys: pytest.CaptureFixture[str], ratios: Path
+) -> None:
+    layout = answer(capsys, "decode", ratios, "--phi", "1", "--json")
+    deployment = deploy(RatioField(FIELD))
+    assert np.allclose(layout["panels_flat"], deployment.panels(math.pi).reshape(-1, 4, 2))
+    assert np.allclose(layout["panels"], deployment.panels(1.0).reshape(-1, 4, 2))
+
+
+def test_that_decode_and_score_take_sheets_and_the_chosen_design_of_a_project(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    sheet, heart = uneven_sheet(3, 4, seed=5), load("heart")
+    (tmp_path / "sheet.json").write_text(json.dumps(sheet_json(sheet)))
+    score = evaluate(deploy(sheet), heart)
+    candidates = (Candidate(Sheet(sheet.field), score, 0, 0), Candidate(sheet, score, 0, 1))
+    save(Document(heart, candidates=candidates, chosen=1), tmp_path / "design.kiri")
+    save(Document(heart, candidates=candidates), tmp_path / "none.kiri")
+    for name in ("sheet.json", "design.kiri"):
+        layout = answer(capsys, "decode", tmp_path / name, "--phi", "0.5", "--json")
+        assert np.allclose(layout["outline"], deploy(sheet).outline(0.5))
+        assert answer(capsys, "score", tmp_path / name, "heart", "--json")["siou"] == score.siou
+    assert main(["decode", str(tmp_path / "none.kiri")]) == 1
+    assert "No design is chosen in" in capsys.readouterr().err
 
 
 def test_that_score_answers_with_all_promised_keys(capsys: pytest.CaptureFixture[str], ratios: Path) -> None:

@@ -16,8 +16,8 @@ from kirigami_studio.cli.inputs import (
     Named,
     are_many_targets,
     is_batch,
-    read_fields,
     read_mask,
+    read_sheets,
     read_targets,
 )
 from kirigami_studio.cli.option_types import parse_angle, parse_grid
@@ -56,7 +56,7 @@ def test_that_fields_come_from_json_npy_archives_and_folders(tmp_path: Path) -> 
     (tmp_path / "a.json").write_text(json.dumps({"ratio": ratio.tolist()}))
     np.save(tmp_path / "b.npy", ratio)
     np.savez(tmp_path / "c.npz", ratios=np.stack([ratio, 2 * ratio]))
-    values = [named.read().ratio for named in read_fields([str(tmp_path)])]
+    values = [named.read().field.ratio for named in read_sheets([str(tmp_path)])]
     assert len(values) == 4
     assert all(np.array_equal(value, ratio) for value in values[:3])
     assert np.array_equal(values[3], 2 * ratio)
@@ -85,18 +85,18 @@ def test_that_bad_ratio_files_are_refused_with_their_name(tmp_path: Path, name: 
     path = tmp_path / name
     path.write_bytes(content)
     with pytest.raises(KirigamiError, match=path.stem):
-        every(read_fields([str(path)]))
+        every(read_sheets([str(path)]))
 
 
 def test_that_pickled_arrays_are_not_loaded(tmp_path: Path) -> None:
     np.save(tmp_path / "object.npy", np.array([{"a": 1}], dtype=object), allow_pickle=True)
     with pytest.raises(RatioError):
-        every(read_fields([str(tmp_path / "object.npy")]))
+        every(read_sheets([str(tmp_path / "object.npy")]))
 
 
 def test_that_a_missing_file_is_named(tmp_path: Path) -> None:
     with pytest.raises(RatioError, match=r"nowhere\.json"):
-        every(read_fields([str(tmp_path / "nowhere.json")]))
+        every(read_sheets([str(tmp_path / "nowhere.json")]))
 
 
 def test_that_masks_in_an_archive_become_targets(tmp_path: Path) -> None:
@@ -162,7 +162,7 @@ def test_that_a_threshold_decides_what_a_grey_image_shows(tmp_path: Path) -> Non
 
 def test_that_a_json_file_may_begin_with_a_byte_order_mark(tmp_path: Path) -> None:
     (tmp_path / "a.json").write_text(json.dumps({"ratio": [[1, 2], [3, 4]]}), encoding="utf-8-sig")
-    (named,) = read_fields([str(tmp_path / "a.json")])
+    (named,) = read_sheets([str(tmp_path / "a.json")])
     assert named.read().ratio.tolist() == [[1, 2], [3, 4]]
 
 
@@ -187,7 +187,7 @@ def test_that_a_mask_with_a_hole_in_its_numbers_is_refused(tmp_path: Path) -> No
 def test_that_an_archive_without_entries_is_refused_like_an_empty_folder(tmp_path: Path) -> None:
     np.savez(tmp_path / "a.npz", ratios=np.ones((0, 4, 4)))
     with pytest.raises(UsageError, match="no entries"):
-        every(read_fields([str(tmp_path / "a.npz")]))
+        every(read_sheets([str(tmp_path / "a.npz")]))
 
 
 def test_that_a_library_name_means_the_silhouette_even_beside_a_folder_of_that_name(
@@ -208,7 +208,7 @@ def test_that_an_empty_name_is_no_folder() -> None:
 
 
 def test_that_an_endless_name_is_refused_in_a_sentence() -> None:
-    for read in (read_fields, read_targets):
+    for read in (read_sheets, read_targets):
         with pytest.raises(KirigamiError):
             every(read(["x" * 5000]))
 

@@ -12,15 +12,18 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from uneven_sheets import uneven_sheet
 
 from kirigami_studio.evaluate.candidate import Candidate, Origin
 from kirigami_studio.evaluate.score import evaluate
+from kirigami_studio.evaluate.trimming import trim
 from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions, CutOrder
 from kirigami_studio.foundation.errors import ExportError, ProjectError
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.outlines.silhouettes import load
 from kirigami_studio.polish.covering import fit_cover
 from kirigami_studio.polish.levenberg import polish
 from kirigami_studio.project import migrations, store
@@ -28,6 +31,7 @@ from kirigami_studio.project.document import Document, Mark
 from kirigami_studio.project.migrations import Members, migrate
 from kirigami_studio.project.settings import FabricationSettings
 
+PROJECTS = Path(__file__).parents[2] / "data" / "projects"
 Change = Callable[[dict[str, bytes]], None]
 
 
@@ -72,6 +76,56 @@ def test_that_a_trimmed_design_comes_back_with_what_was_cut_off(pentagon: Outlin
     pairs = zip(read.kept, cut.kept, strict=True)
     assert all((a is None) == (b is None) and (a is None or np.array_equal(a, b)) for a, b in pairs)
     assert any(part is not None for part in cut.kept)
+
+
+@pytest.mark.parametrize("start", [False, True])
+def test_that_rim_start_outline_and_cell_come_back(pentagon: Outline, tmp_path: Path, start: bool) -> None:
+    sheet = uneven_sheet(4, 5, seed=2, start=start)
+    sheet = Sheet(sheet.field, sheet.rim, sheet.start, (1.0, 1.25))
+    deployment = deploy(sheet)
+    score = evaluate(deployment, pentagon)
+    cut = trim(deployment, pentagon, 0.0, score.transform)
+    sampled = uneven_sheet(4, 5, seed=9)
+    first = Candidate(sheet, score, 0, 0, sampled_sheet=sampled, trim=cut)
+    second = Candidate(Sheet(sheet.field), score, 0, 1, sampled_sheet=Sheet.uniform(4, 5))
+    document = Document(pentagon, candidates=(first, second), chosen=0)
+    store.save(document, tmp_path / "uneven.kiri")
+    again = store.load(tmp_path / "uneven.kiri")
+    assert again == document
+    assert again.candidates[0].sheet == sheet != again.candidates[1].sheet
+    assert again.candidates[0].sampled_sheet == sampled and again.candidates[0].final_sheet == sheet
+
+
+@pytest.mark.parametrize(
+    ("entry", "words"),
+    [
+        ([1.0], "must be an object"),
+        ({"rim": {"top": [1.0]}}, "top side has 1 mouths"),
+        ({"rim": {"top": [0.5, 1e300]}}, "top side must grow"),
+        ({"rim": {"top": "even"}}, "top side must be a list"),
+        ({"start": [[0, 0]]}, "at least three points"),
+        ({"cell": [1]}, "above 0"),
+    ],
+)
+def test_that_a_damaged_rim_is_a_sentence(document: Document, tmp_path: Path, entry: object, words: str) -> None:
+    members = members_of(document)
+    design = json.loads(members["design.json"])
+    design["candidates"][0]["sheet"] = entry
+    members["design.json"] = json.dumps(design).encode()
+    with pytest.raises(ProjectError, match=words) as caught:
+        store.load(write_members(tmp_path / "bad.kiri", members))
+    assert caught.value.code == "project.damaged"
+
+
+def test_that_a_project_of_format_1_opens_with_even_rims() -> None:
+    """Written by the program when format 1 was current."""
+    opened = store.load(PROJECTS / "format_1.kiri")
+    first, second = opened.candidates
+    assert all(one.sheet.is_default and one.final_sheet.is_default for one in opened.candidates)
+    assert first.sampled_sheet == second.sheet == Sheet.uniform(4, 5)
+    assert first.trim is not None and first.trim.iou > first.score.iou_exact
+    assert first.score.iou_exact == pytest.approx(evaluate(deploy(first.sheet), load("heart")).iou_exact, abs=1e-6)
+    assert (opened.chosen, opened.locked, opened.marks) == (0, frozenset({(1, 2)}), (Mark.PINNED, Mark.NONE))
 
 
 def test_that_an_empty_project_comes_back_as_it_was(tmp_path: Path) -> None:
