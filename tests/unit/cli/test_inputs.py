@@ -163,7 +163,7 @@ def test_that_a_threshold_decides_what_a_grey_image_shows(tmp_path: Path) -> Non
 def test_that_a_json_file_may_begin_with_a_byte_order_mark(tmp_path: Path) -> None:
     (tmp_path / "a.json").write_text(json.dumps({"ratio": [[1, 2], [3, 4]]}), encoding="utf-8-sig")
     (named,) = read_sheets([str(tmp_path / "a.json")])
-    assert named.read().ratio.tolist() == [[1, 2], [3, 4]]
+    assert named.read().field.ratio.tolist() == [[1, 2], [3, 4]]
 
 
 def test_that_a_soft_mask_is_bounded_halfway_and_not_where_it_begins(tmp_path: Path) -> None:
