@@ -11,6 +11,7 @@ import numpy as np
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.errors import UsageError
+from kirigami_studio.foundation.threads import one_blas_thread
 from kirigami_studio.generator.weights import load_model
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.sheet import Sheet
@@ -20,7 +21,6 @@ from kirigami_studio.pipeline.pool import Pool, worker_count
 from kirigami_studio.pipeline.request import Request, as_in_paper
 from kirigami_studio.pipeline.run import best_of, run, sample
 from kirigami_studio.pipeline.tasks import scored
-from kirigami_studio.pipeline.threads import one_blas_thread
 from kirigami_studio.polish.boundary_target import BoundaryTarget
 from kirigami_studio.polish.levenberg import SAMPLES, polish
 from kirigami_studio.polish.objective import Objective

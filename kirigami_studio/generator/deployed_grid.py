@@ -19,6 +19,7 @@ from torch import Tensor
 
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.lattice.deployment import ZIPPED_BELOW
+from kirigami_studio.lattice.ratio_field import frozen
 from kirigami_studio.lattice.resize import resize_fields
 from kirigami_studio.lattice.symmetry import GridSymmetry, Symmetry
 
@@ -158,10 +159,11 @@ def _transfer(own: tuple[int, int], deployed: DeployedGrid, device: torch.device
         return SymmetricTransfer(own, deployed, deployed.symmetry.on(deployed.rows, deployed.columns), device)
 
 
+@lru_cache(maxsize=256)
 def _resizing(old: tuple[int, int], new: tuple[int, int]) -> FloatArray:
-    """Matrix (old cells, new cells) of the parity-wise interpolation."""
+    """Matrix (old cells, new cells) of the parity-wise interpolation, read-only."""
     cells = old[0] * old[1]
-    return resize_fields(np.eye(cells).reshape(cells, *old), *new).reshape(cells, -1)
+    return frozen(resize_fields(np.eye(cells).reshape(cells, *old), *new).reshape(cells, -1))
 
 
 def _reading(own: tuple[int, ...], sides: tuple[int, ...]) -> FloatArray:

@@ -13,6 +13,7 @@ from torch import Tensor
 
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.paper import LOG_RATIO_LIMIT
+from kirigami_studio.foundation.threads import one_blas_thread
 from kirigami_studio.generator.conditioning import normalised, square_pose, turned
 from kirigami_studio.generator.deployed_grid import DeployedGrid
 from kirigami_studio.generator.flow import LateStart, integrate
@@ -121,7 +122,7 @@ def sample_fields(
     noise = np.random.default_rng(seed).standard_normal((whole, shape.rows * shape.columns)) * shape.z_scale
     deployed = DeployedGrid(*grid, phi, symmetry)
     sampled: list[Tensor] = []
-    with torch.inference_mode(), one_torch_thread():
+    with torch.inference_mode(), one_torch_thread(), one_blas_thread():
         for start in range(0, whole, BATCH):
             batch = range(start, start + BATCH)
             if near is not None:

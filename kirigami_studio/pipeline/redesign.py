@@ -19,12 +19,12 @@ from kirigami_studio.fabricate.material import Material
 from kirigami_studio.fabricate.trimmed_sheet import needed_keep
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray
 from kirigami_studio.foundation.errors import Cancelled, FabricationError, KirigamiError
+from kirigami_studio.foundation.threads import one_blas_thread
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.pipeline.rank import improves
-from kirigami_studio.pipeline.threads import one_blas_thread
 from kirigami_studio.polish.covering import fit_cover
 from kirigami_studio.polish.levenberg import polish
 from kirigami_studio.polish.preferences import PREFERENCES

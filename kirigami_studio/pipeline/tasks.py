@@ -9,13 +9,13 @@ from typing import Protocol
 from kirigami_studio.evaluate.candidate import Candidate, Origin
 from kirigami_studio.evaluate.score import evaluate_many
 from kirigami_studio.foundation.errors import KirigamiError
+from kirigami_studio.foundation.threads import one_blas_thread
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.pipeline.rank import MILDER, improves
 from kirigami_studio.pipeline.redesign import trimmed
 from kirigami_studio.pipeline.request import Request
-from kirigami_studio.pipeline.threads import one_blas_thread
 from kirigami_studio.polish.continuation import fit_shape
 from kirigami_studio.polish.levenberg import polish
 from kirigami_studio.polish.preferences import PREFERENCES

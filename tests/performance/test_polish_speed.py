@@ -7,9 +7,9 @@ import time
 import numpy as np
 from stopwatch import fastest
 
+from kirigami_studio.foundation.threads import one_blas_thread
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.outlines.silhouettes import load
-from kirigami_studio.pipeline.threads import one_blas_thread
 from kirigami_studio.polish.levenberg import polish
 from kirigami_studio.polish.sensitivity import OutlineModel
 

@@ -1,7 +1,8 @@
 """Small matrices want one thread: with two, the BLAS workers wait for each other longer than they compute.
 
 Measured in one run on two cores, a heart with 8 polished candidates, three times in turn: 4.4 - 5.3 s of processor time
-with the default two threads and 0.84 s with one, 2.3 - 2.7 s against 0.8 s on the clock.
+with the default two threads and 0.84 s with one, 2.3 - 2.7 s against 0.8 s on the clock.  The interpolation tables
+between 10 x 10 and 14 x 15 voids: 0.4 - 0.6 s with two, 0.01 s with one.
 """
 
 from __future__ import annotations
