@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -45,7 +46,8 @@ def check_order(designed: MainWindow, designs: Document, order: SortOrder) -> No
     chosen = designs.candidates[0].sheet.field
     values = {
         SortOrder.RANK: lambda one: designs.candidates.index(one),
-        SortOrder.SIOU: lambda one: -one.score.siou,
+        SortOrder.MATCH: lambda one: -one.score.iou_exact,
+        SortOrder.EVENNESS: lambda one: one.score.evenness.area_cv,
         SortOrder.GAIN: lambda one: -one.score.siou_gain,
         SortOrder.TV: lambda one: one.score.tv,
         SortOrder.PANEL: lambda one: -least_panel_share(deploy(one.sheet.field)),
@@ -81,12 +83,16 @@ def test_that_cards_tell_the_number_they_are_sorted_by_at_the_sheets_width(
     designed: MainWindow, designs: Document
 ) -> None:
     model = designed.gallery.view.model_
-    assert model.data(model.index(0, 0), VALUE_ROLE) == f"TV {designs.candidates[0].score.tv:.2f}"
+    first = designs.candidates[0].score
+    assert model.data(model.index(0, 0), VALUE_ROLE) == f"panels ±{100 * first.evenness.area_cv:.0f} %"
+    sort_by(designed, SortOrder.TV)
+    told = [str(model.data(model.index(row, 0), VALUE_ROLE)) for row in range(3)]
+    assert told == [f"TV {one.score.tv:.2f}" for one in shown(designed)]
     sort_by(designed, SortOrder.PANEL)
     designed.controller.fabrication.change(width_mm=250.0)
     sizes = [250.0 * least_panel_share(deploy(one.sheet.field)) for one in shown(designed)]
     told = [model.data(model.index(row, 0), VALUE_ROLE) for row in range(3)]
-    assert told == [f"panel {size:.1f} mm" for size in sizes]
+    assert told == [f"smallest {size:.1f} mm" for size in sizes]
     tip = str(model.data(model.index(0, 0), Qt.ItemDataRole.ToolTipRole))
     assert f"{sizes[0]:.2f} mm on a sheet 250 mm wide" in tip
 
@@ -108,15 +114,29 @@ def test_that_filters_leave_designs_out_and_the_head_counts_them(
     assert not bar.least.isVisible()
     qtbot.mouseClick(bar.filter, LEFT)
     assert bar.least.isVisible()
-    bar.least.setValue(100 * designs.candidates[1].score.siou - 0.05)
-    assert shown(designed) == list(designs.candidates[:2])
-    feasible = sum(one.score.feasible for one in designs.candidates[:2])
+    matches = [one.score.iou_exact for one in designs.candidates]
+    bar.least.setValue(100 * sorted(matches)[1] - 0.05)
+    taken = [one for one in designs.candidates if one.score.iou_exact >= 0.01 * bar.least.value()]
+    assert shown(designed) == taken and len(taken) == 2
+    feasible = sum(one.score.feasible for one in taken)
     assert designed.gallery.count.text() == f"2 of 3 shown · {feasible} feasible"
     designed.controller.marks.pin(best)
     bar.pinned.setChecked(True)
     assert shown(designed) == [best]
     qtbot.mouseClick(bar.filter, LEFT)
     assert shown(designed) == [best] and not bar.least.isVisible()
+
+
+def test_that_designs_with_uneven_panels_can_be_left_out(designed: MainWindow, designs: Document) -> None:
+    bar = designed.gallery.bar
+    variations = sorted(100 * one.score.evenness.area_cv for one in designs.candidates)
+    bar.variation.setValue(math.ceil(variations[0]))
+    assert shown(designed) == [
+        one for one in designs.candidates if 100 * one.score.evenness.area_cv <= bar.variation.value()
+    ]
+    assert 1 <= len(shown(designed)) < 3
+    bar.show_all()
+    assert len(shown(designed)) == 3 and bar.variation.text() == "any"
 
 
 def test_that_an_empty_gallery_offers_to_take_the_filter_off(designed: MainWindow, qtbot: QtBot) -> None:

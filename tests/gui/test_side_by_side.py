@@ -56,15 +56,17 @@ def test_that_the_numbers_below_are_those_of_the_designs_and_their_differences(
     for side, mine, theirs in ((page.left, one, other), (page.right, other, one)):
         sizes = [width * least_panel_share(deploy(each.sheet.field)) for each in (mine, theirs)]
         values = [label.text() for label in side.values]
-        assert values[:4] == [
-            f"{100 * mine.score.siou:.1f} %", f"{100 * mine.score.siou_gain:+.1f}", f"{mine.score.tv:.2f}",
-            f"{sizes[0]:.2f}",
+        assert values[:5] == [
+            f"{100 * mine.score.iou_exact:.1f} %", f"±{100 * mine.score.evenness.area_cv:.0f} %",
+            f"{sizes[0]:.2f} mm", f"{100 * mine.score.siou_gain:+.1f}", f"{mine.score.tv:.2f}",
         ]  # fmt: skip
-        assert side.gaps[0].text() == f"{100 * (mine.score.siou - theirs.score.siou):+.1f}"
-        assert side.gaps[2].text() == f"{mine.score.tv - theirs.score.tv:+.2f}"
-        assert side.gaps[3].text() == f"{sizes[0] - sizes[1]:+.2f}"
+        assert side.gaps[0].text() == f"{100 * (mine.score.iou_exact - theirs.score.iou_exact):+.1f}"
+        apart = 100 * (mine.score.evenness.area_cv - theirs.score.evenness.area_cv)
+        assert side.gaps[1].text() == f"{apart:+.0f}"
+        assert side.gaps[2].text() == f"{sizes[0] - sizes[1]:+.2f}"
+        assert side.gaps[4].text() == f"{mine.score.tv - theirs.score.tv:+.2f}"
     designed.controller.fabrication.change(width_mm=2 * width)
-    assert page.left.values[3].text() == f"{2 * width * least_panel_share(deploy(one.sheet.field)):.2f}"
+    assert page.left.values[2].text() == f"{2 * width * least_panel_share(deploy(one.sheet.field)):.2f} mm"
 
 
 def test_that_zoom_and_place_of_one_view_are_those_of_the_other(designed: MainWindow, qtbot: QtBot) -> None:

@@ -99,6 +99,7 @@ def _facts(entry: Entry) -> list[str]:
     (rows, columns), score, trim = entry.candidate.sheet.grid, entry.candidate.score, entry.candidate.trim
     facts = [
         tr("{rows} \N{MULTIPLICATION SIGN} {columns} voids", rows=rows, columns=columns),
+        tr("even rim") if entry.candidate.final_sheet.has_even_rim else tr("free rim"),
         tr("exact IoU {iou_exact:.1f} %", iou_exact=100 * score.iou_exact),
     ]
     if trim is not None:

@@ -19,7 +19,8 @@ class SortOrder(Enum):
     """What the gallery is sorted by; always from the best, the largest or the most regular on."""
 
     RANK = "rank"
-    SIOU = "siou"
+    MATCH = "match"
+    EVENNESS = "evenness"
     GAIN = "gain"
     TV = "tv"
     PANEL = "panel"
@@ -37,7 +38,10 @@ class Selection:
     pinned_first : bool
     feasible_only, pinned_only : bool
     show_rejected : bool
-    least_siou : float, 0..1
+    least_match : float, 0..1
+        Exact IoU that a design has at least.
+    most_variation : float
+        Coefficient of variation of panel areas that a design has at most; 0 for any.
     unlike : RatioField or None
         Design that :attr:`SortOrder.UNLIKE` measures from; it stays while the user looks from card to card, so that the
         cards stay in their places.
@@ -48,17 +52,20 @@ class Selection:
     feasible_only: bool = False
     pinned_only: bool = False
     show_rejected: bool = False
-    least_siou: float = 0.0
+    least_match: float = 0.0
+    most_variation: float = 0.0
     unlike: RatioField | None = None
 
     @property
     def filters(self) -> bool:
         """Whether more is left out than rejected designs."""
-        return self.feasible_only or self.pinned_only or self.least_siou > 0.0
+        return self.feasible_only or self.pinned_only or self.least_match > 0.0 or self.most_variation > 0.0
 
     def unfiltered(self) -> Selection:
         """The same order, everything shown."""
-        return replace(self, feasible_only=False, pinned_only=False, show_rejected=True, least_siou=0.0)
+        return replace(
+            self, feasible_only=False, pinned_only=False, show_rejected=True, least_match=0.0, most_variation=0.0
+        )
 
     def takes(self, candidate: Candidate, mark: Mark) -> bool:
         """Whether a design is shown."""
@@ -67,7 +74,8 @@ class Selection:
             (score.feasible or not self.feasible_only)
             and (mark is Mark.PINNED or not self.pinned_only)
             and (mark is not Mark.REJECTED or self.show_rejected)
-            and score.siou >= self.least_siou
+            and score.iou_exact >= self.least_match
+            and (not self.most_variation or score.evenness.area_cv <= self.most_variation)
         )
 
 
@@ -96,8 +104,10 @@ def places_in_order(designs: Sequence[GalleryItem], selection: Selection) -> lis
 def sorting_values(designs: Sequence[GalleryItem], selection: Selection) -> list[float]:
     """By what each design is sorted; smaller comes first."""
     order = selection.order
-    if order is SortOrder.SIOU:
-        return [-one.candidate.score.siou for one in designs]
+    if order is SortOrder.MATCH:
+        return [-one.candidate.score.iou_exact for one in designs]
+    if order is SortOrder.EVENNESS:
+        return [one.candidate.score.evenness.area_cv for one in designs]
     if order is SortOrder.GAIN:
         return [-one.candidate.score.siou_gain for one in designs]
     if order is SortOrder.TV:
@@ -125,10 +135,14 @@ def differences(candidates: Sequence[Candidate], origin: RatioField | None) -> l
 def format_value(item: GalleryItem, selection: Selection, width_mm: float) -> str:
     """What a card says of the number that it is sorted by."""
     if selection.order is SortOrder.PANEL:
-        return tr("panel {size:.1f} mm", size=width_mm * least_panel_share(item.deployment))
+        return tr("smallest {size:.1f} mm", size=width_mm * least_panel_share(item.deployment))
     if selection.order is SortOrder.UNLIKE and selection.unlike is not None:
         return tr("differs {value:.2f}", value=differences([item.candidate], selection.unlike)[0])
-    return tr("TV {value:.2f}", value=item.candidate.score.tv)
+    if selection.order is SortOrder.TV:
+        return tr("TV {value:.2f}", value=item.candidate.score.tv)
+    if selection.order is SortOrder.GAIN:
+        return tr("gain {value:+.1f}", value=100.0 * item.candidate.score.siou_gain)
+    return tr("panels ±{percent:.0f} %", percent=100.0 * item.candidate.score.evenness.area_cv)
 
 
 def count_texts(shown: Sequence[Candidate], total: int) -> tuple[str, ...]:

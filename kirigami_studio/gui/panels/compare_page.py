@@ -19,7 +19,7 @@ from kirigami_studio.gui.views.layout_view import LayoutView, Overlay
 from kirigami_studio.outlines.outline import Outline
 
 #: Figures after the point of the numbers that can be subtracted, row by row.
-DIGITS = (1, 1, 2, 2)
+DIGITS = (1, 0, 2, 1, 2)
 
 
 class ComparedView(LayoutView):
@@ -211,10 +211,14 @@ class ComparePage(QWidget):
 
 def _rows() -> tuple[tuple[str, str], ...]:
     return (
-        (tr("sIoU"), tr("Match with the target, %; then the difference from the other design, points.")),
-        (tr("Gain"), tr("Gain over the uniform sheet, points; then the difference from the other design.")),
-        (tr("TV"), tr("Total variation of the ratios, lower is more even; then the difference from the other design.")),
-        (tr("Panel, mm"), tr("Smallest panel edge or neck, mm; then the difference from the other design.")),
+        (tr("Match"), tr("Exact IoU with the target, %; then the difference from the other design, points.")),
+        (
+            tr("Panels"),
+            tr("Evenness: how much panel sizes vary, % (coefficient of variation); then the difference, points."),
+        ),
+        (tr("Smallest"), tr("Smallest panel edge or neck, mm; then the difference from the other design.")),
+        (tr("Gain"), tr("Gain in sIoU over the uniform sheet, points; then the difference from the other design.")),
+        (tr("TV"), tr("Total variation of the ratios, lower is smoother; then the difference from the other design.")),
         (tr("Feasible"), tr("Whether the sheet can be built and opens without touching itself.")),
     )
 
@@ -226,10 +230,11 @@ def number_texts(one: Entry | None, other: Entry | None, width_mm: float) -> tup
         return [""] * rows, [""] * rows
     mine = _numbers(one, width_mm)
     values = [
-        tr("{siou:.1f} %", siou=mine[0]),
-        tr("{gain:+.1f}", gain=mine[1]),
-        tr("{tv:.2f}", tv=mine[2]),
-        tr("{size:.2f}", size=mine[3]),
+        tr("{match:.1f} %", match=mine[0]),
+        tr("±{variation:.0f} %", variation=mine[1]),
+        tr("{size:.2f} mm", size=mine[2]),
+        tr("{gain:+.1f}", gain=mine[3]),
+        tr("{tv:.2f}", tv=mine[4]),
         tr("yes") if one.candidate.score.feasible else tr("no"),
     ]
     if other is None:
@@ -241,6 +246,7 @@ def number_texts(one: Entry | None, other: Entry | None, width_mm: float) -> tup
     return values, [*gap_texts, ""]
 
 
-def _numbers(entry: Entry, width_mm: float) -> tuple[float, float, float, float]:
+def _numbers(entry: Entry, width_mm: float) -> tuple[float, float, float, float, float]:
     score = entry.candidate.score
-    return 100.0 * score.siou, 100.0 * score.siou_gain, score.tv, width_mm * least_panel_share(entry.design.deployment)
+    smallest_mm = width_mm * least_panel_share(entry.design.deployment)
+    return 100.0 * score.iou_exact, 100.0 * score.evenness.area_cv, smallest_mm, 100.0 * score.siou_gain, score.tv

@@ -125,35 +125,56 @@ class GalleryBar(QWidget):
         self.rejected = _check("showRejected", tr("Rejected"), tr("Also show rejected designs (dimmed)."))
         self.pinned_first = _check("pinnedFirst", tr("Pinned first"), tr("Show pinned designs before all others."))
         self.least = DecimalField()
-        self.least.setObjectName("leastSiou")
+        self.least.setObjectName("leastMatch")
         self.least.setRange(0.0, 100.0)
         self.least.setDecimals(1)
         self.least.setSuffix(" %")
         self.least.setSpecialValueText(tr("any"))
         self.least.setKeyboardTracking(False)
         self.least.setFixedWidth(84)
-        self.least.setAccessibleName(tr("Minimum sIoU in percent"))
-        self.least.setToolTip(tr("Show only designs with at least this sIoU, in percent."))
-        number_field(self.least)
-        self.least.valueChanged.connect(lambda _: self._emit_selection())
+        self.least.setAccessibleName(tr("Minimum match in percent"))
+        self.least.setToolTip(tr("Show only designs with at least this match (exact IoU), in percent."))
+        self.variation = DecimalField()
+        self.variation.setObjectName("mostVariation")
+        self.variation.setRange(0.0, 300.0)
+        self.variation.setDecimals(0)
+        self.variation.setSingleStep(5.0)
+        self.variation.setPrefix("±")
+        self.variation.setSuffix(" %")
+        self.variation.setSpecialValueText(tr("any"))
+        self.variation.setKeyboardTracking(False)
+        self.variation.setFixedWidth(84)
+        self.variation.setAccessibleName(tr("Maximum variation of panel sizes in percent"))
+        self.variation.setToolTip(
+            tr("Evenness: show only designs whose panel sizes vary by at most this, in percent (CV).")
+        )
+        for box in (self.least, self.variation):
+            number_field(box)
+            box.valueChanged.connect(lambda _: self._emit_selection())
         pane = QWidget()
         column = QVBoxLayout(pane)
         column.setContentsMargins(0, 0, 0, 2)
         column.setSpacing(6)
-        first, second = QHBoxLayout(), QHBoxLayout()
+        first, second, third = QHBoxLayout(), QHBoxLayout(), QHBoxLayout()
         for box in (self.feasible, self.pinned, self.rejected):
             first.addWidget(box)
         first.addStretch(1)
-        caption = QLabel(tr("sIoU from"))
+        caption = QLabel(tr("match from"))
         caption.setBuddy(self.least)
+        evenness = QLabel(tr("panels up to"))
+        evenness.setBuddy(self.variation)
         second.addWidget(self.pinned_first)
         second.addStretch(1)
         second.addWidget(caption)
         second.addWidget(self.least)
+        third.addStretch(1)
+        third.addWidget(evenness)
+        third.addWidget(self.variation)
         for box in (self.feasible, self.pinned, self.rejected, self.pinned_first):
             box.toggled.connect(lambda _: self._emit_selection())
         column.addLayout(first)
         column.addLayout(second)
+        column.addLayout(third)
         return pane
 
     def _alike_pane(self) -> QWidget:
@@ -202,8 +223,9 @@ class GalleryBar(QWidget):
         for box, on in boxes:
             with QSignalBlocker(box):
                 box.setChecked(on)
-        with QSignalBlocker(self.least):
-            self.least.setValue(0.0)
+        for number in (self.least, self.variation):
+            with QSignalBlocker(number):
+                number.setValue(0.0)
         self._emit_selection()
 
     def set_chosen(self, chosen: tuple[RatioField, int] | None) -> None:
@@ -244,7 +266,8 @@ class GalleryBar(QWidget):
             feasible_only=self.feasible.isChecked(),
             pinned_only=self.pinned.isChecked(),
             show_rejected=self.rejected.isChecked(),
-            least_siou=0.01 * self.least.value(),
+            least_match=0.01 * self.least.value(),
+            most_variation=0.01 * self.variation.value(),
         )
         self.selection_changed.emit(self._selection)
 
@@ -262,12 +285,17 @@ class GalleryBar(QWidget):
 def _orders() -> tuple[tuple[SortOrder, str, str], ...]:
     return (
         (SortOrder.RANK, tr("By rank"), tr("Feasible designs first, then the highest sIoU.")),
-        (SortOrder.SIOU, tr("By sIoU"), tr("The closest match first, feasible or not.")),
-        (SortOrder.GAIN, tr("By gain"), tr("The largest gain over the uniform sheet first.")),
-        (SortOrder.TV, tr("By evenness"), tr("The lowest total variation (TV) of the ratios first.")),
+        (SortOrder.MATCH, tr("By match"), tr("The closest match (exact IoU) first, feasible or not.")),
+        (
+            SortOrder.EVENNESS,
+            tr("By evenness"),
+            tr("The most even panels first: the smallest coefficient of variation of their areas."),
+        ),
+        (SortOrder.GAIN, tr("By gain"), tr("The largest gain in sIoU over the uniform sheet first.")),
+        (SortOrder.TV, tr("By smoothness"), tr("The lowest total variation (TV) of the ratios first.")),
         (
             SortOrder.PANEL,
-            tr("By panel size"),
+            tr("By smallest feature"),
             tr("The largest minimum panel edge or neck first, in mm at the sheet's width."),
         ),
         (SortOrder.NEWEST, tr("Newest first"), tr("Designs added by the last run first, marked with a dot.")),

@@ -16,7 +16,7 @@ from kirigami_studio.gui.panels.plots_panel import PlotsPanel
 from kirigami_studio.gui.panels.void_bar import VoidBar
 from kirigami_studio.gui.session import Entry
 from kirigami_studio.gui.views.gallery_model import described
-from kirigami_studio.gui.views.layout_view import USUAL, FaultTour, LayoutView, Overlay
+from kirigami_studio.gui.views.layout_view import USUAL, USUAL_WIDTH_MM, FaultTour, LayoutView, Overlay
 from kirigami_studio.outlines.outline import Outline
 
 #: A stage at least this wide (pixels) has its plots at the side, a narrower one below.
@@ -59,6 +59,7 @@ class StagePanel(Card):
         self._sample: Entry | None = None
         self._target: Outline | None = None
         self._rank = 0
+        self._width_mm = USUAL_WIDTH_MM
         self._trimmable, self._trimming = True, False
         self.view = LayoutView()
         self.tour = FaultTour(self.view)
@@ -292,7 +293,7 @@ class StagePanel(Card):
         if self.comparing:
             return self.compare.summary
         sample = None if self._sample is None else self._sample.candidate
-        return () if self._entry is None else score_texts(self._entry.candidate, sample)
+        return () if self._entry is None else score_texts(self._entry.candidate, sample, self._width_mm)
 
     def _fit_numbers(self) -> None:
         """Put the longest text that fits into the header; none fits beside many buttons in a narrow stage."""
@@ -316,8 +317,10 @@ class StagePanel(Card):
 
     def set_sheet_width(self, width_mm: float) -> None:
         """Set the width of the flat sheet, mm."""
+        self._width_mm = width_mm
         self.view.set_sheet_width(width_mm)
         self.plots.set_sheet_width(width_mm)
+        self.show_title()
 
     def _toggle_plots(self, on: bool) -> None:
         self.plots.setVisible(on)
@@ -368,8 +371,8 @@ class StagePanel(Card):
         self.overlays_changed.emit(chosen)
 
 
-def score_texts(candidate: Candidate, sample: Candidate | None) -> tuple[str, ...]:
-    """Scores of a design, beside those of its sample if that is shown, longest text first."""
+def score_texts(candidate: Candidate, sample: Candidate | None, width_mm: float) -> tuple[str, ...]:
+    """Figures of a design on a sheet of a width, beside those of its sample if that is shown, longest text first."""
     score, trim = candidate.score, candidate.trim
     siou = f"{100 * score.siou:.1f} %"
     if sample is not None:
@@ -380,6 +383,15 @@ def score_texts(candidate: Candidate, sample: Candidate | None) -> tuple[str, ..
         trimmed = f"{100 * trim.iou:.1f} %"
         long = tr("sIoU {siou}  ·  trimmed IoU {trimmed}", siou=siou, trimmed=trimmed)
         return long, tr("{siou}  ·  trimmed {trimmed}", siou=siou, trimmed=trimmed)
-    gain, variation = 100 * score.siou_gain, score.tv
-    long = tr("sIoU {siou}   gain {gain:+.1f}   TV {variation:.2f}", siou=siou, gain=gain, variation=variation)
-    return long, tr("sIoU {siou}", siou=siou)
+    match, variation = 100 * score.iou_exact, 100 * score.evenness.area_cv
+    smallest_mm = score.evenness.least_feature_mm(width_mm)
+    return (
+        tr(
+            "match {match:.1f} %   panels ±{variation:.0f} %   smallest {smallest_mm:.1f} mm",
+            match=match,
+            variation=variation,
+            smallest_mm=smallest_mm,
+        ),
+        tr("match {match:.1f} %   panels ±{variation:.0f} %", match=match, variation=variation),
+        tr("match {match:.1f} %", match=match),
+    )

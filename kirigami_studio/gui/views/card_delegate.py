@@ -21,6 +21,7 @@ from kirigami_studio.gui.views.gallery_model import (
     CANDIDATE_ROLE,
     DESIGN_ROLE,
     FRESH_ROLE,
+    GRID_ROLE,
     MARK_ROLE,
     NUMBER_ROLE,
     RISE_ROLE,
@@ -54,7 +55,7 @@ class CardButton(Enum):
 
 
 class CardDelegate(QStyledItemDelegate):
-    """Paints one candidate: picture, number, sIoU, gain, what it is sorted by, whether it is feasible, its mark."""
+    """Paints one candidate: pictures, number, match, what it is sorted by, whether it is feasible, its mark."""
 
     def __init__(self, parent: QWidget) -> None:
         super().__init__(parent)
@@ -116,7 +117,7 @@ class CardDelegate(QStyledItemDelegate):
             self._paint_chip(painter, card, f"{100 * candidate.trim.iou:.1f} %", "trim")
         elif rise >= SMALLEST_RISE:
             self._paint_chip(painter, card, f"{100 * rise:+.1f}")
-        self._paint_numbers(painter, card, candidate, index.data(VALUE_ROLE))
+        self._paint_numbers(painter, card, candidate, index.data(VALUE_ROLE), index.data(GRID_ROLE))
         if candidate is self.under_mouse:
             self._paint_buttons(painter, rect, mark)
         painter.restore()
@@ -192,7 +193,7 @@ class CardDelegate(QStyledItemDelegate):
             chip.adjusted(0, 0, -5, 0), int(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter), text
         )
 
-    def _paint_numbers(self, painter: QPainter, card: QRect, candidate: Candidate, value: str) -> None:
+    def _paint_numbers(self, painter: QPainter, card: QRect, candidate: Candidate, value: str, grid: str) -> None:
         score = candidate.score
         text = card.adjusted(11, card.height() - TEXT_HEIGHT + 2, -11, -7)
         left, right = int(Qt.AlignmentFlag.AlignLeft), int(Qt.AlignmentFlag.AlignRight)
@@ -203,12 +204,10 @@ class CardDelegate(QStyledItemDelegate):
         bold.setWeight(QFont.Weight.DemiBold)
         painter.setFont(bold)
         painter.setPen(QColor(self.palette_.text))
-        painter.drawText(text, left | top, f"{100 * score.siou:.1f} %")
+        painter.drawText(text, left | top, f"{100 * score.iou_exact:.1f} %")
         painter.setFont(plain)
-        gain = self.palette_.accent if score.siou_gain >= 0 else self.palette_.warning
-        painter.setPen(QColor(gain))
-        painter.drawText(text.adjusted(0, 2, 0, 0), right | top, f"{100 * score.siou_gain:+.1f}")
         painter.setPen(QColor(self.palette_.muted))
+        painter.drawText(text.adjusted(0, 2, 0, 0), right | top, grid)
         painter.drawText(text, left | bottom, value)
         self._paint_badge(painter, text, score.feasible)
 

@@ -23,6 +23,7 @@ NUMBER_ROLE = Qt.ItemDataRole.UserRole + 4
 MARK_ROLE = Qt.ItemDataRole.UserRole + 5
 FRESH_ROLE = Qt.ItemDataRole.UserRole + 7  #: whether the last further run has added it
 VALUE_ROLE = Qt.ItemDataRole.UserRole + 6  #: words for the number that is sorted by
+GRID_ROLE = Qt.ItemDataRole.UserRole + 8  #: words for the grid where designs of several grids are there, else ""
 
 Index = QModelIndex | QPersistentModelIndex
 
@@ -79,9 +80,15 @@ class GalleryModel(QAbstractListModel):
             return self.number_of(entry.candidate)
         if role == MARK_ROLE:
             return self.mark_of(entry.candidate)
+        if role == GRID_ROLE:
+            sheet = entry.candidate.sheet
+            return f"{sheet.rows} \N{MULTIPLICATION SIGN} {sheet.columns}" if self._several_grids() else ""
         if role == FRESH_ROLE:
             return entry.candidate in self._fresh
         return simple.get(role)
+
+    def _several_grids(self) -> bool:
+        return any(entry.candidate.sheet.grid != self._all[0].candidate.sheet.grid for entry in self._all)
 
     def _described(self, entry: Entry) -> str:
         lines = [described(entry.candidate, self.number_of(entry.candidate))]
@@ -96,7 +103,7 @@ class GalleryModel(QAbstractListModel):
 
     def _size(self, entry: Entry) -> str:
         size = self._width_mm * least_panel_share(entry.design.deployment)
-        return tr("Smallest panel: {size:.2f} mm on a sheet {width:g} mm wide", size=size, width=self._width_mm)
+        return tr("Smallest feature: {size:.2f} mm on a sheet {width:g} mm wide", size=size, width=self._width_mm)
 
     def replace(self, entries: list[Entry]) -> None:
         """Show other candidates, best first; those that are the same samples as before keep their cards."""
@@ -228,11 +235,16 @@ def described(candidate: Candidate, rank: int) -> str:
     score = candidate.score
     lines = [
         tr(
-            "Design {rank}: sIoU {siou:.2f} % (exact IoU {iou_exact:.2f} %)",
+            "Design {rank}: match {iou_exact:.2f} % (exact IoU; sIoU {siou:.2f} %)",
             rank=rank,
             siou=100 * score.siou,
             iou_exact=100 * score.iou_exact,
         ),
+        tr(
+            "Evenness: panel sizes vary by {percent:.0f} % (coefficient of variation of their areas)",
+            percent=100 * score.evenness.area_cv,
+        ),
+        rim_text(candidate),
         tr(
             "Gain over the uniform sheet: {siou_gain:+.2f} points (uniform {uniform_siou:.2f} %)",
             siou_gain=100 * score.siou_gain,
@@ -244,6 +256,14 @@ def described(candidate: Candidate, rank: int) -> str:
         *came_from(candidate),
     ]
     return "\n".join([*lines, *problems(candidate)])
+
+
+def rim_text(candidate: Candidate) -> str:
+    """Where the cuts meet the rim, and how large the grid is."""
+    sheet = candidate.final_sheet
+    if sheet.has_even_rim:
+        return tr("{rows} \N{MULTIPLICATION SIGN} {columns} voids, even rim", rows=sheet.rows, columns=sheet.columns)
+    return tr("{rows} \N{MULTIPLICATION SIGN} {columns} voids, free rim", rows=sheet.rows, columns=sheet.columns)
 
 
 def came_from(candidate: Candidate) -> list[str]:
