@@ -148,9 +148,9 @@ class GalleryBar(QWidget):
         self.variation.setToolTip(
             tr("Evenness: show only designs whose panel sizes vary by at most this, in percent (CV).")
         )
-        for box in (self.least, self.variation):
-            number_field(box)
-            box.valueChanged.connect(lambda _: self._emit_selection())
+        for number in (self.least, self.variation):
+            number_field(number)
+            number.valueChanged.connect(lambda _: self._emit_selection())
         pane = QWidget()
         column = QVBoxLayout(pane)
         column.setContentsMargins(0, 0, 0, 2)
