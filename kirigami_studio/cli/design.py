@@ -22,6 +22,7 @@ from kirigami_studio.foundation.files import check_folder, write_atomically
 from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.lattice.sheet_files import sheet_json
 from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.pipeline.auto_grid import chosen_for
 from kirigami_studio.pipeline.events import Finished, Progress, Result
 from kirigami_studio.pipeline.redesign import keep_for_connectors
 from kirigami_studio.pipeline.request import POLISH_STEPS, REGULAR, Request, provenance
@@ -63,7 +64,7 @@ def design(arguments: argparse.Namespace) -> int:
                 rim=arguments.rim,
                 regular=regular,
                 width_mm=fabrication.width_mm,
-                least_feature_mm=least_feature_mm(fabrication),
+                least_feature_mm=max(least_feature_mm(fabrication), arguments.least_panel_mm),
             ),
             fabrication,
             arguments.least_panel_mm,
@@ -88,13 +89,16 @@ def design(arguments: argparse.Namespace) -> int:
 
 
 def summary(result: Result) -> dict[str, object]:
-    """The JSON answer of ``design`` without the files; only runs with a budget say whether it ended them."""
+    """The JSON answer of ``design`` without the files; runs with a budget say whether it ended them, and those
+    that chose their grid say why."""
     answer: dict[str, object] = {
         "candidates": [candidate_json(candidate) for candidate in result.candidates],
         "best": candidate_json(result.best),
         "seconds": result.seconds,
         "forward_evaluations": result.forward_evaluations,
     }
+    if result.request.grid_chosen:
+        answer["grid"], answer["grid_reason"] = list(result.request.chosen_grid), chosen_for(result.request).reason
     if result.best.trim is not None:
         answer["trimmed_iou"] = result.best.trim.iou
     if result.request.budget_seconds is not None:
@@ -212,6 +216,8 @@ def _say_result(target: Outline, result: Result, files: dict[str, str]) -> None:
     score, trim, angle = result.best.score, result.best.trim, math.degrees(result.request.phi)
     for note in target.notes:
         say(f"{target.name}: {note}")
+    if result.request.grid_chosen:
+        say(f"{target.name}: {chosen_for(result.request).reason}")
     best = tr_n(
         "{name}: the design has sIoU {siou:.4f} ({gain:+.4f} over the uniform layout) and TV {tv:.3f}; "
         "{seconds:.1f} s.",

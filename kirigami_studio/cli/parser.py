@@ -11,8 +11,9 @@ from typing import Any
 from kirigami_studio import __version__
 from kirigami_studio.cli.option_types import amount, angle, count, number, positive, share, whole
 from kirigami_studio.fabricate.options import ConnectorStyle, CutOrder
-from kirigami_studio.pipeline.request import RIMS, SYMMETRIES
+from kirigami_studio.pipeline.request import RIMS
 from kirigami_studio.polish.preferences import PREFERENCES
+from kirigami_studio.polish.symmetry import SYMMETRIES
 
 Option = tuple[tuple[str, ...], dict[str, Any]]
 

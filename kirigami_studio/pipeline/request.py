@@ -13,6 +13,7 @@ from kirigami_studio.lattice.ratio_field import RatioField, check_grid
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.polish.panel_size import check_least
 from kirigami_studio.polish.preferences import PREFERENCES
+from kirigami_studio.polish.symmetry import SYMMETRIES
 
 LARGEST_K = 1024
 LARGEST_STEPS = 64
@@ -22,8 +23,6 @@ LARGEST_SEARCH = 8
 POLISH_STEPS = 15
 #: The paper's grid.
 USUAL_GRID = (10, 10)
-#: What a design may be asked to keep: the target's symmetries as they are found, none, a mirror axis, or a turn.
-SYMMETRIES = ("auto", "none", "mirror", "turn")
 #: Where cuts meet the rim: where fits move them, or evenly spaced as in the paper.
 RIMS = ("free", "even")
 #: Where a preference stands between match (0) and regular (1).
@@ -70,7 +69,7 @@ class Request:
         How near they are to lie: the time of the flow at which they start from that design.  0 starts from noise alone,
         in that design's pose.
     symmetry : str
-        What designs have to keep, one of :data:`SYMMETRIES`.
+        What designs have to keep, one of :data:`kirigami_studio.polish.symmetry.SYMMETRIES`.
     rim : str
         One of :data:`RIMS`.
     regular : float, 0..1

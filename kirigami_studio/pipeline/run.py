@@ -15,6 +15,7 @@ from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.pipeline.auto_grid import chosen_for
 from kirigami_studio.pipeline.events import (
     CandidateFound,
     CandidateImproved,
@@ -115,9 +116,16 @@ def run(request: Request, cancel: Callable[[], bool] = never, pool: Pool | None 
 
 def with_grid(request: Request) -> Request:
     """The request on the grid that the run takes, where that was left to it: that of the design that samples are near,
-    else the paper's.
+    else the one that suits the target.
+
+    Raises
+    ------
+    TargetError
+        A symmetry is asked for that the target does not have.
     """
-    return request.resolved(USUAL_GRID if request.near is None else request.near.ratio.shape)
+    if request.grid is not None:
+        return request
+    return request.resolved(chosen_for(request).grid if request.near is None else request.near.ratio.shape)
 
 
 def best_of(request: Request, cancel: Callable[[], bool] = never, pool: Pool | None = None) -> Result:

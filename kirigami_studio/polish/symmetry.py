@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Literal, get_args
 
 from kirigami_studio.foundation.errors import TargetError, UsageError
 from kirigami_studio.lattice.deployment import ZIPPED_BELOW
@@ -21,9 +20,9 @@ from kirigami_studio.outlines.symmetry import (
     turned_mean,
 )
 
-#: "auto": what the target shows within a tolerance; "mirror" and "turn": also what a rough sketch may have meant.
-SymmetrySetting = Literal["auto", "none", "mirror", "turn"]
-SETTINGS: tuple[SymmetrySetting, ...] = get_args(SymmetrySetting)
+#: What designs may have to keep: the symmetries that a target shows within a tolerance, none, or the mirror axis or
+#: the turn that a rough sketch may have meant.
+SYMMETRIES = ("auto", "none", "mirror", "turn")
 
 #: A sketch has a second axis when both overlap this much.
 BOTH_MEANT = 0.95
@@ -56,7 +55,7 @@ class SymmetricPose:
 
 
 def shared_symmetries(
-    target: Outline, grid: tuple[int, int], phi: float = 0.0, setting: SymmetrySetting = "auto"
+    target: Outline, grid: tuple[int, int], phi: float = 0.0, setting: str = "auto"
 ) -> list[SymmetricPose]:
     """Symmetries of ``target`` that the lattice of ``grid`` has at ``phi`` too, the most specific first.
 
@@ -75,7 +74,7 @@ def shared_symmetries(
     return found
 
 
-def symmetric_poses(target: Outline, setting: SymmetrySetting = "auto") -> tuple[SymmetricPose, ...]:
+def symmetric_poses(target: Outline, setting: str = "auto") -> tuple[SymmetricPose, ...]:
     """All symmetric set-ups that are worth trying for a target, the most specific first, whatever the grid.
 
     Axes that a turn of the target onto itself carries to each other count once: a star has one axis, a hexagon two
@@ -95,8 +94,8 @@ def symmetric_poses(target: Outline, setting: SymmetrySetting = "auto") -> tuple
     UsageError
         There is no such setting.
     """
-    if setting not in SETTINGS:
-        raise UsageError("symmetry.unknown_setting", setting=setting, choices=", ".join(SETTINGS))
+    if setting not in SYMMETRIES:
+        raise UsageError("request.unknown_symmetry", symmetry=setting, choices=", ".join(SYMMETRIES))
     poses: list[SymmetricPose] = []
     if setting in ("auto", "mirror"):
         poses += _mirror_poses(target, forced=setting == "mirror")

@@ -72,6 +72,26 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     ),
     "fit.excess_out_of_range": mark("The weight of what sticks out must be a number from 0 to 1, got {excess!r:.80}."),
     "fit.least_panel_out_of_range": mark("The least panel size must be 0 to {most:g} cells, got {least!r:.80}."),
+    "grid.coarsest_expected": mark("{rows} x {columns}: the coarsest grid that is expected to match {percent:.1f} %."),
+    "grid.coarsest_with_mirror_axis": mark(
+        "{rows} x {columns}: the coarsest grid that is expected to match {percent:.1f} %, with odd columns for the "
+        "mirror axis."
+    ),
+    "grid.coarsest_with_two_mirror_axes": mark(
+        "{rows} x {columns}: the coarsest grid that is expected to match {percent:.1f} %, odd both ways for the two "
+        "mirror axes."
+    ),
+    "grid.coarsest_with_turn": mark(
+        "{rows} x {columns}: the coarsest grid that is expected to match {percent:.1f} %, with rows and columns that "
+        "keep the shape's turn."
+    ),
+    "grid.best_expected": mark(
+        "{rows} x {columns}: the best of the grids tried for this shape, expected to match {percent:.1f} %."
+    ),
+    "grid.panels_would_be_too_small": mark(
+        "{rows} x {columns}: on a finer grid, panels of a sheet {width_mm:.0f} mm wide would be smaller than "
+        "{least_mm:.2g} mm."
+    ),
     "fit.locks_and_symmetry": mark(
         "A fit cannot keep locked voids and a symmetry at the same time. Choose one of them."
     ),

@@ -201,7 +201,6 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "The target cannot be turned onto itself: it covers {percent:.0f} % of itself after a turn, {least:.0f} % are "
         "needed. Choose another symmetry."
     ),
-    "symmetry.unknown_setting": mark("Unknown symmetry {setting!r:.40}. Choose one of: {choices}."),
     "symmetry.nothing_in_common": mark("The target and its image have too little in common for a symmetric shape."),
     "reach.no_voids": mark("A grid has at least one void in each direction, got {rows} x {columns}."),
 }

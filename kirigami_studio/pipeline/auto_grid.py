@@ -1,0 +1,275 @@
+"""The grid for a target: as coarse as the shape allows, with the parities that its symmetry needs.
+
+How well a grid will match is predicted from the shape alone, with a formula that was fitted to fits, see
+:func:`predicted_match`.  Long outlines, deep hollows and many bends need many panels, and a sheet of the shape's own
+proportions does with fewer.  Of all grids with the right parities the one with the fewest voids is taken that is
+expected to match well enough, or, where none is, the one that is expected to match best.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+import shapely
+
+from kirigami_studio.foundation.arrays import FloatArray
+from kirigami_studio.foundation.sentences import sentence
+from kirigami_studio.lattice.symmetry import Symmetry
+from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.pipeline.request import Request
+from kirigami_studio.polish.symmetry import SymmetricPose, shared_symmetries, symmetric_poses
+
+#: Fewest rows and columns, and most unless another limit is asked for.
+COARSEST, FINEST = 6, 16
+#: Fewest voids; coarser grids match simple shapes, but hardly show how a sheet opens.
+FEWEST_VOIDS = 72
+#: The coarsest grid with at least this predicted match is taken.
+GOAL = 0.988
+#: A finer grid must be expected to miss less than this share of what a coarser one misses.
+WORTHWHILE = 0.97
+#: Panels of a fitted sheet have hardly any edge or neck below this share of a cell.
+SMALLEST_SHARE = 0.25
+#: Proportions of sheets (logarithm of height over width) lie between the square and the shape's own, give or take this.
+PROPORTION_ROOM = 0.12
+#: Details below this (unit-area lengths) do not count as bends.
+COARSENESS = 0.01
+
+#: Logarithm of the share that a fit misses: constant, then factors of the shape's and the grid's figures.
+CONSTANT, PANELS, LENGTH, BOX, BENDS, DEPTH, PROPORTIONS = -4.2, -0.58, 0.55, 0.46, 0.25, 1.4, 0.53
+#: Panels of the sheet that the constant belongs to, and the part of the box below which no shape is easier.
+USUAL_PANELS, EASIEST_BOX = 140.0, 0.02
+
+#: Codes of the reason where the coarsest grid that matches is taken, by the symmetry that its parities are for.
+COARSEST_CODES: dict[Symmetry | None, str] = {
+    None: "grid.coarsest_expected",
+    Symmetry.LEFT_RIGHT: "grid.coarsest_with_mirror_axis",
+    Symmetry.TOP_BOTTOM: "grid.coarsest_with_mirror_axis",
+    Symmetry.TWO_MIRRORS: "grid.coarsest_with_two_mirror_axes",
+    Symmetry.HALF_TURN: "grid.coarsest_with_turn",
+    Symmetry.QUARTER_TURN: "grid.coarsest_with_turn",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class GridChoice:
+    """A grid and why it was taken.
+
+    Attributes
+    ----------
+    grid : (rows, columns) voids
+    poses : tuple of SymmetricPose
+        Symmetric set-ups that are worth trying on it, the most promising first; empty for a shape without symmetry.
+    predicted_match : float
+        Expected exact IoU of the best design without a search.
+    code : str
+    fields : tuple of (str, object)
+        The reason, as a sentence's code and what it names.
+    """
+
+    grid: tuple[int, int]
+    poses: tuple[SymmetricPose, ...]
+    predicted_match: float
+    code: str
+    fields: tuple[tuple[str, object], ...]
+
+    @property
+    def reason(self) -> str:
+        """One sentence for the user."""
+        return sentence(self.code, dict(self.fields))
+
+
+@dataclass(frozen=True, slots=True)
+class ShapeFigures:
+    """What makes a target hard.
+
+    Attributes
+    ----------
+    length : float
+        Logarithm of its perimeter over that of a square of the same area.
+    box : float
+        Logarithm of what it leaves of its smallest rectangle, as a share of its own area: rectangles are easiest.
+    bends : float
+        Sum of its turns to the right, in half turns: 0 for a convex shape.
+    depth : float, unit-area lengths
+        Of its deepest hollow.
+    """
+
+    length: float
+    box: float
+    bends: float
+    depth: float
+
+    @classmethod
+    def of(cls, target: Outline) -> ShapeFigures:
+        """Measure a target."""
+        points = shapely.get_coordinates(target.polygon.simplify(COARSENESS))[:-1]
+        shape = shapely.Polygon(points)
+        after = np.roll(points, -1, axis=0) - points
+        before = np.roll(after, 1, axis=0)
+        turns = np.arctan2(
+            before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0], np.einsum("ij,ij->i", before, after)
+        )
+        left_over = shapely.minimum_rotated_rectangle(shape).area / shape.area - 1.0
+        return cls(
+            math.log(shape.length / (4.0 * math.sqrt(shape.area))),
+            math.log(max(left_over, 0.0) + EASIEST_BOX),
+            -float(turns[turns < 0.0].sum()) / math.pi,
+            float(shapely.hausdorff_distance(shape.exterior, shape.convex_hull.boundary)),
+        )
+
+
+def predicted_match(figures: ShapeFigures, grid: tuple[int, int], proportion: float) -> float:
+    """Expected exact IoU of the best design on a grid.
+
+    Parameters
+    ----------
+    figures : ShapeFigures
+    grid : (rows, columns) voids
+    proportion : float
+        Logarithm of the shape's height over its width, as it will lie on the sheet.
+    """
+    rows, columns = grid
+    panels = (rows + 1) * (columns + 1)
+    missing = (
+        CONSTANT
+        + PANELS * math.log(panels / USUAL_PANELS)
+        + LENGTH * figures.length
+        + BOX * figures.box
+        + BENDS * figures.bends
+        + DEPTH * figures.depth
+        + PROPORTIONS * (math.log((rows + 1) / (columns + 1)) - proportion) ** 2
+    )
+    return 1.0 - min(math.exp(missing), 0.5)
+
+
+@lru_cache(maxsize=64)
+def choose_grid(
+    target: Outline,
+    phi: float = 0.0,
+    symmetry: str = "auto",
+    width_mm: float = 100.0,
+    least_feature_mm: float = 0.0,
+    limit: int = FINEST,
+) -> GridChoice:
+    """The coarsest grid that is expected to match a target, or the one that is expected to match it best.
+
+    Parameters
+    ----------
+    target : Outline
+    phi : float, radians
+        Deployment angle of the match; quarter turns are symmetries at 0 alone.
+    symmetry : {"auto", "none", "mirror", "turn"}
+        As for :func:`kirigami_studio.polish.symmetry.symmetric_poses`.
+    width_mm : float
+        Width of the flat sheet.
+    least_feature_mm : float
+        Least panel edge and neck that the material allows; 0 where that is not known.
+    limit : int
+        Most rows and columns.
+
+    Raises
+    ------
+    TargetError
+        A symmetry is asked for and the target is far from any.
+    UsageError
+        There is no such symmetry setting.
+    """
+    poses = symmetric_poses(target, symmetry)
+    figures = ShapeFigures.of(target)
+    smallest = SMALLEST_SHARE * width_mm / least_feature_mm if least_feature_mm > 0.0 else math.inf
+    found = list(_candidates(target, figures, poses, phi, limit))
+    cuttable = [one for one in found if one.grid[1] + 1 <= smallest] or [min(found, key=lambda one: one.grid[1])]
+    best = _coarsest(cuttable)
+    finer = [one for one in found if one.panels > best.panels and one.match > best.match]
+    held_back = best.match < GOAL and len(cuttable) < len(found) and bool(finer)
+    rows, columns = best.grid
+    fields: dict[str, object] = {"rows": rows, "columns": columns, "percent": 100.0 * best.match}
+    if held_back:
+        code = "grid.panels_would_be_too_small"
+        fields |= {"width_mm": width_mm, "least_mm": least_feature_mm}
+    elif best.match < GOAL:
+        code = "grid.best_expected"
+    else:
+        code = COARSEST_CODES[best.pose.symmetry if best.pose else None]
+    kept = shared_symmetries(target, best.grid, phi, symmetry)
+    kept.sort(key=lambda pose: pose != best.pose)
+    return GridChoice(best.grid, tuple(kept), best.match, code, tuple(fields.items()))
+
+
+def chosen_for(request: Request) -> GridChoice:
+    """What :func:`choose_grid` says for a request, whether or not the request has that grid."""
+    return choose_grid(request.target, request.phi, request.symmetry, request.width_mm, request.least_feature_mm)
+
+
+@dataclass(frozen=True, slots=True)
+class _Candidate:
+    grid: tuple[int, int]
+    pose: SymmetricPose | None
+    match: float
+
+    @property
+    def panels(self) -> int:
+        return (self.grid[0] + 1) * (self.grid[1] + 1)
+
+
+def _coarsest(candidates: list[_Candidate]) -> _Candidate:
+    """The fewest panels that reach the goal; where none do, few of those that match nearly as well as the best."""
+    good = [one for one in candidates if one.match >= GOAL]
+    if not good:
+        least_missing = min(1.0 - one.match for one in candidates)
+        good = [one for one in candidates if (1.0 - one.match) * WORTHWHILE <= least_missing]
+    return min(good, key=lambda one: (one.panels, -one.match))
+
+
+def _candidates(
+    target: Outline, figures: ShapeFigures, poses: tuple[SymmetricPose, ...], phi: float, limit: int
+) -> Iterator[_Candidate]:
+    """Grids with the parities of the most specific symmetries, of proportions between the square and the shape's."""
+    coarsest = min(COARSEST, limit)
+    sizes = range(coarsest, limit + 1)
+    most = max((len(pose.symmetry.moves) for pose in poses), default=0)
+    # A sheet on its side is the same for the eye: a single axis is laid upright.
+    settings: list[SymmetricPose | None] = [
+        pose for pose in poses if len(pose.symmetry.moves) == most and pose.symmetry is not Symmetry.TOP_BOTTOM
+    ]
+    moments = second_moments(target.points)
+    for pose in settings or [None]:
+        # Without an axis the sheet may lie anyhow: across, like the shape's own longer direction.
+        along = 0.5 * math.pi if pose is None else pose.angle
+        proportion = -_own_proportion(moments) if along is None or pose is None else _proportion(moments, along)
+        low, high = min(0.0, proportion) - PROPORTION_ROOM, max(0.0, proportion) + PROPORTION_ROOM
+        for rows in sizes:
+            for columns in sizes:
+                grid = rows, columns
+                if rows * columns < min(FEWEST_VOIDS, limit**2 - 2 * limit):
+                    continue
+                if pose is None and (rows % 2 or columns % 2):
+                    continue
+                if (pose is None or pose.fits(grid, phi)) and low <= math.log((rows + 1) / (columns + 1)) <= high:
+                    yield _Candidate(grid, pose, predicted_match(figures, grid, proportion))
+
+
+def second_moments(points: FloatArray) -> FloatArray:
+    """Second moments of area of a unit-area polygon about its centroid at the origin: (2, 2)."""
+    after = np.roll(points, -1, axis=0)
+    part = points[:, 0] * after[:, 1] - points[:, 1] * after[:, 0]
+    xx, yy = (np.square(points) + points * after + np.square(after)).T @ part / 12.0
+    mixed = 2.0 * points[:, 0] * points[:, 1] + points[:, 0] * after[:, 1] + after[:, 0] * points[:, 1]
+    xy = (mixed + 2.0 * after[:, 0] * after[:, 1]) @ part / 24.0
+    return np.array([[xx, xy], [xy, yy]])
+
+
+def _proportion(moments: FloatArray, along: float) -> float:
+    """Logarithm of the extent along a direction over that across it."""
+    up, across = np.array([math.cos(along), math.sin(along)]), np.array([-math.sin(along), math.cos(along)])
+    return 0.5 * math.log(float(up @ moments @ up) / float(across @ moments @ across))
+
+
+def _own_proportion(moments: FloatArray) -> float:
+    """The same for a shape's longest direction."""
+    least, most = np.linalg.eigvalsh(moments)
+    return 0.5 * math.log(float(most / least))

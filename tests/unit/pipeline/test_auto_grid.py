@@ -1,0 +1,122 @@
+"""The grid that is chosen for a target: its parities, its proportions, its size, and the reason."""
+
+from __future__ import annotations
+
+import math
+import time
+
+import pytest
+
+from kirigami_studio.foundation.errors import TargetError
+from kirigami_studio.lattice.symmetry import Symmetry
+from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.outlines.silhouettes import load, names
+from kirigami_studio.outlines.symmetry import turned
+from kirigami_studio.pipeline.auto_grid import GOAL, ShapeFigures, choose_grid, chosen_for, predicted_match
+from kirigami_studio.pipeline.request import Request
+from kirigami_studio.pipeline.run import with_grid
+
+
+@pytest.mark.parametrize("name", names())
+def test_that_the_grid_has_what_the_shape_asks_for(name: str) -> None:
+    choice = choose_grid(load(name))
+    rows, columns = choice.grid
+    assert min(rows, columns) >= 6 and max(rows, columns) <= 16
+    assert choice.reason.startswith(f"{rows} x {columns}: ")
+    symmetries = [pose.symmetry for pose in choice.poses]
+    if not symmetries:
+        assert rows % 2 == columns % 2 == 0
+    assert all(pose.fits(choice.grid) for pose in choice.poses)
+    if Symmetry.LEFT_RIGHT in symmetries:
+        assert columns % 2 == 1
+
+
+@pytest.mark.parametrize(
+    ("name", "symmetry", "code"),
+    [
+        ("circle", Symmetry.TWO_MIRRORS, "grid.coarsest_with_two_mirror_axes"),
+        ("hexagon", Symmetry.TWO_MIRRORS, "grid.coarsest_with_two_mirror_axes"),
+        ("drop", Symmetry.LEFT_RIGHT, "grid.coarsest_with_mirror_axis"),
+        ("egg", Symmetry.LEFT_RIGHT, "grid.coarsest_with_mirror_axis"),
+        ("puzzle", Symmetry.LEFT_RIGHT, "grid.best_expected"),
+        ("clover", None, "grid.best_expected"),
+    ],
+)
+def test_that_the_first_symmetry_and_the_reason_are_those_of_the_shape(
+    name: str, symmetry: Symmetry | None, code: str
+) -> None:
+    choice = choose_grid(load(name))
+    assert (choice.poses[0].symmetry if choice.poses else None) is symmetry
+    assert choice.code == code
+    assert (choice.predicted_match >= GOAL) == ("coarsest" in code)
+
+
+def test_that_easy_shapes_get_coarse_grids_and_hard_ones_fine_grids() -> None:
+    def panels(name: str) -> int:
+        rows, columns = choose_grid(load(name)).grid
+        return (rows + 1) * (columns + 1)
+
+    assert max(panels(name) for name in ("circle", "hexagon", "square", "egg")) <= 140
+    assert min(panels(name) for name in ("puzzle", "butterfly", "star")) >= 200
+
+
+def test_that_a_sheet_is_long_where_the_shape_is_long() -> None:
+    rows, columns = choose_grid(load("leaf")).grid
+    assert rows > columns
+    rows, columns = choose_grid(load("wave")).grid
+    assert columns > rows
+    lying = Outline.from_points(turned(load("leaf").points, 1.0))
+    assert choose_grid(lying).grid == choose_grid(load("leaf")).grid
+
+
+def test_that_a_setting_decides_which_symmetry_counts() -> None:
+    heart, cloud = load("heart"), load("cloud")
+    free = choose_grid(heart, symmetry="none")
+    assert free.poses == () and free.code in ("grid.coarsest_expected", "grid.best_expected")
+    assert choose_grid(cloud).poses == ()
+    forced = choose_grid(cloud, symmetry="mirror")
+    assert forced.poses[0].symmetry is Symmetry.LEFT_RIGHT and forced.grid[1] % 2 == 1
+    with pytest.raises(TargetError) as refused:
+        choose_grid(load("letter-l"), symmetry="mirror")
+    assert refused.value.code == "symmetry.no_mirror_axis"
+
+
+def test_that_panels_are_kept_from_becoming_too_small_to_cut() -> None:
+    star = load("star")
+    wide, narrow = choose_grid(star), choose_grid(star, width_mm=40.0, least_feature_mm=1.0)
+    assert narrow.grid[1] < wide.grid[1] and narrow.predicted_match < wide.predicted_match
+    assert narrow.code == "grid.panels_would_be_too_small"
+    assert "40 mm wide would be smaller than 1 mm" in narrow.reason
+    circle = choose_grid(load("circle"), width_mm=60.0, least_feature_mm=1.0)
+    assert circle.code == "grid.coarsest_with_two_mirror_axes"
+    assert choose_grid(star, width_mm=1.0, least_feature_mm=5.0).grid[1] <= 9
+
+
+def test_that_a_limit_is_kept() -> None:
+    assert max(choose_grid(load("puzzle"), limit=10).grid) <= 10
+    assert max(choose_grid(load("puzzle"), limit=24).grid) > 16
+
+
+def test_that_more_panels_and_simpler_shapes_are_expected_to_match_better() -> None:
+    star, egg = ShapeFigures.of(load("star")), ShapeFigures.of(load("egg"))
+    assert predicted_match(star, (10, 11), 0.0) < predicted_match(star, (14, 15), 0.0)
+    assert predicted_match(star, (10, 11), 0.0) < predicted_match(egg, (10, 11), 0.0)
+    assert predicted_match(egg, (10, 11), 1.0) < predicted_match(egg, (16, 7), 1.0)
+
+
+def test_that_the_choice_does_not_delay_the_first_design() -> None:
+    shapes = [Outline.from_points(turned(load(name).points, 0.1)) for name in ("gear", "clover", "butterfly", "heart")]
+    choose_grid(load("circle"))
+    began = time.process_time()
+    for shape in shapes:
+        choose_grid(shape)
+    assert time.process_time() - began < 0.15 * len(shapes)
+
+
+def test_that_a_run_takes_the_chosen_grid_unless_one_is_given() -> None:
+    heart = load("heart")
+    chosen = with_grid(Request(heart, None))
+    assert chosen.grid == choose_grid(heart).grid and chosen_for(chosen).reason == choose_grid(heart).reason
+    assert with_grid(Request(heart, (7, 8))).grid == (7, 8)
+    assert with_grid(Request(heart, None, width_mm=40.0, least_feature_mm=1.0)).chosen_grid[1] <= 9
+    assert math.isclose(chosen_for(chosen).predicted_match, choose_grid(heart).predicted_match)
