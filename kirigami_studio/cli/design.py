@@ -24,9 +24,11 @@ from kirigami_studio.lattice.sheet_files import sheet_json
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.pipeline.auto_grid import chosen_for
 from kirigami_studio.pipeline.events import Finished, Progress, Result
+from kirigami_studio.pipeline.rank import Ranking
 from kirigami_studio.pipeline.redesign import keep_for_connectors
 from kirigami_studio.pipeline.request import POLISH_STEPS, REGULAR, Request, provenance
 from kirigami_studio.pipeline.run import run, with_grid
+from kirigami_studio.pipeline.variety import look_alikes
 from kirigami_studio.project.cutting import least_feature_mm, material_for
 from kirigami_studio.project.design_facts import design_facts, with_run
 from kirigami_studio.project.document import Document
@@ -91,9 +93,10 @@ def design(arguments: argparse.Namespace) -> int:
 def summary(result: Result) -> dict[str, object]:
     """The JSON answer of ``design`` without the files; runs with a budget say whether it ended them, and those
     that chose their grid say why."""
+    entries = candidates_json(result)
     answer: dict[str, object] = {
-        "candidates": [candidate_json(candidate) for candidate in result.candidates],
-        "best": candidate_json(result.best),
+        "candidates": entries,
+        "best": entries[0],
         "seconds": result.seconds,
         "forward_evaluations": result.forward_evaluations,
     }
@@ -106,8 +109,19 @@ def summary(result: Result) -> dict[str, object]:
     return answer
 
 
-def candidate_json(candidate: Candidate) -> dict[str, object]:
+def candidates_json(result: Result) -> list[dict[str, object]]:
+    """The entries of ``candidates``, best first, each with its rank's reason and the group that it looks like."""
+    ranking, candidates = Ranking.of(result.request), result.candidates
+    reasons, groups = ranking.reasons(candidates), look_alikes(candidates, ranking)
+    return [
+        candidate_json(candidate, ranking) | {"rank_reason": reason.text, "group": group}
+        for candidate, reason, group in zip(candidates, reasons, groups, strict=True)
+    ]
+
+
+def candidate_json(candidate: Candidate, ranking: Ranking) -> dict[str, object]:
     """One entry of ``candidates``: a sheet file with score and provenance; a trimmed one's other sheet and IoU."""
+    even = candidate.score.evenness
     entry: dict[str, object] = {
         **sheet_json(candidate.sheet),
         "grid": list(candidate.sheet.grid),
@@ -115,6 +129,11 @@ def candidate_json(candidate: Candidate) -> dict[str, object]:
         "seed": candidate.seed,
         "index": candidate.index,
         "polished": candidate.polished,
+        "symmetry": None if candidate.symmetry is None else candidate.symmetry.label,
+        "panel_area_cv": even.area_cv,
+        "least_feature_mm": even.least_feature_mm(ranking.width_mm),
+        "at_limit": even.at_limit,
+        "cuttable": ranking.cuttable(candidate),
     }
     if candidate.trim is not None:
         cut = sheet_json(candidate.trim.sheet)
@@ -142,7 +161,7 @@ def write_files(result: Result, fabrication: FabricationSettings, folder: Path) 
     export(job, paths["cut"])
     write_layout_svg(job, paths["layout"])
     write_png(job, paths["preview"])
-    listing = {"candidates": [candidate_json(candidate) for candidate in result.candidates]}
+    listing = {"candidates": candidates_json(result)}
     write_atomically(paths["candidates"], (json.dumps(plain(listing)) + "\n").encode())
     return {role: str(path) for role, path in paths.items()}
 

@@ -10,6 +10,7 @@ from kirigami_studio.evaluate.score import Score
 from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.evaluate.trimming import Trim
 from kirigami_studio.lattice.sheet import Sheet
+from kirigami_studio.lattice.symmetry import Symmetry, symmetry_of
 
 
 class Origin(Enum):
@@ -58,6 +59,11 @@ class Candidate:
     variant: str = ""
     origin: Origin = Origin.SAMPLED
     made_with: tuple[tuple[str, str], ...] = attribute(default=(), compare=False)
+
+    @property
+    def symmetry(self) -> Symmetry | None:
+        """The largest symmetry that the sheet has."""
+        return symmetry_of(self.sheet)
 
     @property
     def final_sheet(self) -> Sheet:

@@ -17,7 +17,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import Enum
-from functools import cache, cached_property
+from functools import cache, cached_property, lru_cache
 
 import numpy as np
 from scipy.sparse import csc_matrix
@@ -175,6 +175,38 @@ class GridSymmetry:
         kept = np.flatnonzero(~fixed_zero)
         heads, column = np.unique(first[kept], return_inverse=True)
         return csc_matrix((value[kept], (kept, column)), shape=(count, heads.size))
+
+
+#: Tried in this order: the first that holds has the others among its moves.
+MOST_FIRST = (
+    Symmetry.TWO_MIRRORS,
+    Symmetry.QUARTER_TURN,
+    Symmetry.LEFT_RIGHT,
+    Symmetry.TOP_BOTTOM,
+    Symmetry.HALF_TURN,
+)
+#: Differences of z and of places on the rim (unit cells) below this are rounding.
+SAME = 1e-6
+
+
+@lru_cache(maxsize=4096)
+def symmetry_of(sheet: Sheet) -> Symmetry | None:
+    """The largest symmetry that a sheet has, with its rim and start outline; None without any."""
+    z = sheet.field.log10
+    points = anchor_points(sheet)
+    points = points - 0.5 * (points.min(axis=0) + points.max(axis=0))
+    for symmetry in MOST_FIRST:
+        if (
+            symmetry.fits(*sheet.grid)
+            and all(np.abs(image - z).max() < SAME for image in symmetry.images(z))
+            and all(_same_points(points @ move.matrix, points) for move in symmetry.moves)
+        ):
+            return symmetry
+    return None
+
+
+def _same_points(some: FloatArray, others: FloatArray) -> bool:
+    return bool(np.abs(some[:, None] - others).sum(axis=2).min(axis=1).max() < SAME)
 
 
 @cache

@@ -1,45 +1,191 @@
-"""Best first: feasible before infeasible, then higher sIoU, then lower total variation; ties keep sampling order.
+"""Which design comes first: what can be cut before what cannot, then the best balance of match and regularity.
 
-Where a run trims its best designs these come first, by their trimmed IoU.
+The *worth* of a design is its exact IoU less a price for what eyes and cutters mind:
+
+    worth = IoU - s * (EVENNESS * CV of panel areas + THIN * thinness + AT_LIMIT * share of ratios at a limit
+                       - SYMMETRY if the sheet is symmetric),        s = (2 * regular) ** 2
+
+``regular`` runs from 0 (s = 0: match alone) over 0.5 (s = 1) to 1 (s = 4).  Thinness is 0 for panels whose edges and
+necks all measure :data:`SLENDER` cells or more, and 1 for a panel without any width.  All figures are those that a
+score has, so that ranking again needs no geometry.  Where a run trims its best designs these come first, by their
+trimmed IoU.  Ties keep the lower total variation, then the sampling order.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 
 from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.fabricate.findings import Note
+from kirigami_studio.pipeline.request import Request
 
-#: The sIoU (0..1) that this preference gives away for a total variation (per void) that is lower by 1.
+#: IoU (0..1) that a coefficient of variation of panel areas lower by 1 is worth: 0.5 rather than 0.8 is worth 0.9 %.
+EVENNESS = 0.03
+#: IoU that a sheet without thin panels is worth over one with a panel of no width.
+THIN = 0.005
+#: Edges and necks (unit cells) below this count as thin.
+SLENDER = 0.2
+#: IoU that a sheet without ratios at a limit is worth over one with nothing else.
+AT_LIMIT = 0.01
+#: IoU that a symmetric sheet may lack and still comes first.
+SYMMETRY = 0.005
+
+#: The IoU that this preference gives away for a total variation (per void) that is lower by 1.
 WORTH = {"accuracy": 0.0, "balanced": 0.0, "regularity": 0.005, "calm": 0.03}
-#: The sIoU that a fit may lose at most, whatever it gains: less still counts as equal.
+#: The worth that a fit may lose at most for a lower total variation: less still counts as equal.
 MOST_LOST = 0.003
 #: What is tried where a fit has lost more than it may.
 MILDER = {"calm": "regularity"}
 
-
-def rank_key(candidate: Candidate) -> tuple[bool, float, float, float, int]:
-    """Sorting key of one candidate; smaller is better."""
-    score, trim = candidate.score, candidate.trim
-    return (not score.feasible, 0.0 if trim is None else -trim.iou, -score.siou, score.tv, candidate.index)
+#: Sorting key of a candidate; smaller is better.
+Key = tuple[bool, float, bool, float, bool, float, int]
 
 
-def improves(after: Candidate, before: Candidate, prefer: str) -> bool:
-    """Whether a fitted design may take the place of the one it came from.
+@dataclass(frozen=True, slots=True)
+class Ranking:
+    """What a person wants first.
 
-    A fit that prefers low total variation gives away some match; it is worth its place if that is no more than
-    ``MOST_LOST`` and what was gained in total variation outweighs it.  ``prefer`` is a key of
-    :data:`kirigami_studio.polish.preferences.PREFERENCES`.
+    Attributes
+    ----------
+    regular : float, 0..1
+        From match alone (0) to even panels (1).
+    width_mm : float
+        Width of the flat sheet.
+    least_feature_mm : float
+        Least panel edge and neck that the material allows, 0 where that is not known.
     """
-    worth = WORTH[prefer]
 
-    def key(candidate: Candidate) -> tuple[bool, float, float]:
-        score = candidate.score
-        return not score.feasible, worth * score.tv - score.siou, score.tv
+    regular: float = 0.5
+    width_mm: float = 100.0
+    least_feature_mm: float = 0.0
 
-    kept = after.score.siou >= before.score.siou - MOST_LOST or not before.score.feasible
-    return kept and key(after) < key(before)
+    @classmethod
+    def of(cls, request: Request) -> Ranking:
+        """As a request asks for it."""
+        return cls(request.regular, request.width_mm, request.least_feature_mm)
+
+    def wide_enough(self, candidate: Candidate) -> bool:
+        """Whether all panels are as wide as the material needs them."""
+        return candidate.score.evenness.least_feature_mm(self.width_mm) >= self.least_feature_mm
+
+    def cuttable(self, candidate: Candidate) -> bool:
+        """Whether the design is feasible and all its panels are as wide as the material needs them."""
+        return candidate.score.feasible and self.wide_enough(candidate)
+
+    def prices(self, candidate: Candidate) -> dict[str, float]:
+        """What is taken off the IoU, by the code of the reason that names it; a symmetric sheet has the price 0."""
+        scale, figures = (2.0 * self.regular) ** 2, candidate.score.evenness
+        thinness = max(0.0, 1.0 - min(figures.least_edge, figures.least_neck) / SLENDER)
+        return {
+            "rank.less_even": scale * EVENNESS * figures.area_cv,
+            "rank.thinner": scale * THIN * thinness,
+            "rank.more_at_limit": scale * AT_LIMIT * figures.at_limit,
+            "rank.not_symmetric": scale * SYMMETRY * (candidate.symmetry is None),
+        }
+
+    def worth(self, candidate: Candidate) -> float:
+        """IoU less all prices."""
+        return candidate.score.iou_exact - sum(self.prices(candidate).values())
+
+    def key(self, candidate: Candidate) -> Key:
+        """Sorting key; smaller is better."""
+        score, trim = candidate.score, candidate.trim
+        return (
+            not score.feasible,
+            0.0 if trim is None else -trim.iou,
+            not self.wide_enough(candidate),
+            -self.worth(candidate),
+            candidate.symmetry is None,
+            score.tv,
+            candidate.index,
+        )
+
+    def ranked(self, candidates: Iterable[Candidate]) -> tuple[Candidate, ...]:
+        """Candidates sorted best first."""
+        return tuple(sorted(candidates, key=self.key))
+
+    def improves(self, after: Candidate, before: Candidate, prefer: str) -> bool:
+        """Whether a fitted design may take the place of the one it came from.
+
+        It has to be worth more.  A fit that prefers low total variation may give away some worth for it; that is no
+        more than :data:`MOST_LOST`, and what was gained in total variation outweighs it.  ``prefer`` is a key of
+        :data:`kirigami_studio.polish.preferences.PREFERENCES`.
+        """
+        price = WORTH[prefer]
+
+        def key(candidate: Candidate) -> tuple[bool, float, float]:
+            score = candidate.score
+            return not score.feasible, price * score.tv - self.worth(candidate), score.tv
+
+        kept = self.worth(after) >= self.worth(before) - MOST_LOST or not before.score.feasible
+        return kept and key(after) < key(before)
+
+    def reasons(self, candidates: Sequence[Candidate]) -> list[Note]:
+        """Why each of these candidates, sorted best first, has its place: in one short sentence each."""
+        if not candidates:
+            return []
+        first = candidates[0]
+        most = max(one.score.iou_exact for one in candidates)
+        return [self._why_first(first, most), *(self._why_later(one, first) for one in candidates[1:])]
+
+    def _why_first(self, first: Candidate, most: float) -> Note:
+        score, even = first.score, first.score.evenness
+        if not self.cuttable(first):
+            return self._why_not(first)
+        if first.trim is not None:
+            return Note.of("rank.best_trimmed", match=100 * first.trim.iou)
+        plain, symmetric = "rank.best_balance", "rank.best_balance_symmetric"
+        if score.iou_exact >= most:
+            plain, symmetric = "rank.best_match", "rank.best_match_symmetric"
+        code = plain if first.symmetry is None else symmetric
+        return Note.of(code, match=100 * score.iou_exact, variation=100 * even.area_cv)
+
+    def _why_later(self, one: Candidate, first: Candidate) -> Note:
+        if not self.cuttable(one):
+            return self._why_not(one)
+        if first.trim is not None:
+            if one.trim is None:
+                return Note.of("rank.not_trimmed")
+            return Note.of("rank.less_trimmed_match", match=100 * one.trim.iou, first=100 * first.trim.iou)
+        own, others = self.prices(one), self.prices(first)
+        behind = {code: own[code] - others[code] for code in own}
+        behind["rank.less_match"] = first.score.iou_exact - one.score.iou_exact
+        code = max(behind, key=behind.__getitem__)
+        if behind[code] < 5e-5:
+            return Note.of("rank.equal")
+        even, best = one.score.evenness, first.score.evenness
+        mine, theirs = {
+            "rank.less_match": (100 * one.score.iou_exact, 100 * first.score.iou_exact),
+            "rank.less_even": (100 * even.area_cv, 100 * best.area_cv),
+            "rank.thinner": (even.least_feature_mm(self.width_mm), best.least_feature_mm(self.width_mm)),
+            "rank.more_at_limit": (100 * even.at_limit, 100 * best.at_limit),
+            "rank.not_symmetric": (0.0, 0.0),
+        }[code]
+        return Note.of(code, own=mine, first=theirs)
+
+    def _why_not(self, one: Candidate) -> Note:
+        """Why a design cannot be cut."""
+        if not one.score.feasible:
+            return Note.of("rank.not_feasible")
+        smallest_mm = one.score.evenness.least_feature_mm(self.width_mm)
+        return Note.of("rank.too_thin", smallest_mm=smallest_mm, least_mm=self.least_feature_mm)
+
+
+#: What a run wants first unless it is asked for something else.
+USUAL = Ranking()
+
+
+def rank_key(candidate: Candidate) -> Key:
+    """Sorting key of one candidate in the usual ranking; smaller is better."""
+    return USUAL.key(candidate)
 
 
 def ranked(candidates: Iterable[Candidate]) -> tuple[Candidate, ...]:
-    """Candidates sorted best first."""
-    return tuple(sorted(candidates, key=rank_key))
+    """Candidates sorted best first in the usual ranking."""
+    return USUAL.ranked(candidates)
+
+
+def improves(after: Candidate, before: Candidate, prefer: str) -> bool:
+    """Whether a fitted design may take the place of the one it came from, see :meth:`Ranking.improves`."""
+    return USUAL.improves(after, before, prefer)

@@ -26,7 +26,7 @@ from kirigami_studio.pipeline.events import (
     Started,
 )
 from kirigami_studio.pipeline.pool import Pool, shared_pool
-from kirigami_studio.pipeline.rank import ranked
+from kirigami_studio.pipeline.rank import Ranking
 from kirigami_studio.pipeline.request import USUAL_GRID, Request
 from kirigami_studio.pipeline.tasks import Answer, PolishTask, SearchTask, Task, TrimTask, scored
 from kirigami_studio.pipeline.variety import worth_a_fit
@@ -110,7 +110,7 @@ def run(request: Request, cancel: Callable[[], bool] = never, pool: Pool | None 
         yield from work.search()
     if request.trim:
         yield from work.trim()
-    candidates = ranked(work.found)
+    candidates = work.ranking.ranked(work.found)
     yield Finished(Result(request, candidates, work.evaluations, watch.seconds, work.cut_short))
 
 
@@ -183,6 +183,7 @@ class _Work:
 
     def __init__(self, request: Request, watch: Watch, pool: Pool | None) -> None:
         self.request, self.watch, self.pool = request, watch, pool
+        self.ranking = Ranking.of(request)
         self.found: list[Candidate] = []
         self.evaluations = 0
         self.cut_short = False
@@ -204,7 +205,7 @@ class _Work:
 
     def polish(self) -> Iterator[Event]:
         """Fit the candidates that differ, best first: a few steps for all of them, then the rest for all."""
-        chosen = worth_a_fit(self.found)
+        chosen = worth_a_fit(self.found, self.ranking)
         rounds = 2 if self.request.polish >= 2 * FIRST_ROUND else 1
         for number in range(rounds):
             steps = self.request.polish if rounds == 1 else FIRST_ROUND
@@ -213,7 +214,7 @@ class _Work:
 
     def _rest(self, chosen: Sequence[Candidate]) -> list[PolishTask]:
         """The second round: what the first has improved gets the steps that are left, the others all of them."""
-        now = ranked(self.found[candidate.index] for candidate in chosen)
+        now = self.ranking.ranked(self.found[candidate.index] for candidate in chosen)
         left = self.request.polish - FIRST_ROUND
         return [PolishTask(candidate, left if candidate.polished else self.request.polish) for candidate in now]
 
@@ -231,7 +232,7 @@ class _Work:
 
     def search(self) -> Iterator[Event]:
         """Look for a better design from the best that differ and from scratch."""
-        starts = tuple(candidate.sheet.field for candidate in worth_a_fit(self.found)[:SEARCH_STARTS])
+        starts = tuple(candidate.sheet.field for candidate in worth_a_fit(self.found, self.ranking)[:SEARCH_STARTS])
         for report in self._carried_out([SearchTask(self.request.k, starts)], SEARCHING, 0, 1):
             if isinstance(report, Progress):
                 yield report
@@ -241,7 +242,7 @@ class _Work:
 
     def trim(self) -> Iterator[Event]:
         """Trim the best that differ."""
-        chosen = worth_a_fit(self.found)[:TRIMMED]
+        chosen = worth_a_fit(self.found, self.ranking)[:TRIMMED]
         for report in self._carried_out([TrimTask(candidate) for candidate in chosen], TRIMMING, 0, len(chosen)):
             if isinstance(report, Progress):
                 yield report

@@ -13,7 +13,7 @@ from kirigami_studio.foundation.threads import one_blas_thread
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.sheet import Sheet
-from kirigami_studio.pipeline.rank import MILDER, improves
+from kirigami_studio.pipeline.rank import MILDER, Ranking
 from kirigami_studio.pipeline.redesign import trimmed
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.polish.continuation import fit_shape
@@ -72,7 +72,7 @@ class PolishTask:
                 request, [candidate.sheet.with_field(fit.field)], candidate.index, candidate.origin, fitted=True
             )
             evaluations += fit.evaluations + 1
-            if improves(better, candidate, request.prefer):
+            if Ranking.of(request).improves(better, candidate, request.prefer):
                 return Answer(replace(better, sampled_sheet=candidate.sampled_sheet or candidate.sheet), evaluations)
             prefer = MILDER.get(prefer)
         return Answer(None, evaluations)

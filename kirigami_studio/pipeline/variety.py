@@ -1,4 +1,4 @@
-"""Which candidates are one design, and which are worth a fit first.
+"""Which candidates are one design, which look alike, and which are worth a fit first.
 
 Two fields make the same sheet when one is the other turned: by half a turn where rows + columns is even (z stays), and
 on even square grids by a quarter turn (z changes its sign), at every angle of deployment.  *Distance* is the root mean
@@ -7,14 +7,16 @@ square difference of z = log10 x over the voids, the smallest over these turns.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Hashable, Sequence
 
 import numpy as np
 
 from kirigami_studio.evaluate.candidate import Candidate
-from kirigami_studio.foundation.arrays import FloatArray
+from kirigami_studio.foundation.arrays import BoolArray, FloatArray
 from kirigami_studio.lattice.ratio_field import RatioField
-from kirigami_studio.pipeline.rank import ranked
+from kirigami_studio.lattice.sheet import Sheet
+from kirigami_studio.lattice.symmetry import Symmetry
+from kirigami_studio.pipeline.rank import USUAL, Ranking
 
 #: Nearer than this two candidates are one design: ratios that differ by under 5 % look the same on a cut sheet.
 #: 32 samples for one target are 0.2 to 0.7 apart.
@@ -23,6 +25,9 @@ DUPLICATE = 0.02
 #: Nearer than this to a better candidate, a design waits until the others have had their fit: the nearest twentieth of
 #: all pairs among 32 samples for a star.
 ALIKE = 0.3
+
+#: Root mean square difference of :func:`_look` below which two sheets look the same: nodes are then 0.3 cells apart.
+SAME_LOOK = 0.15
 
 
 def distances(field: RatioField, others: Sequence[RatioField]) -> FloatArray:
@@ -43,7 +48,56 @@ def turns(field: RatioField) -> list[FloatArray]:
     return [np.rot90(z, quarter) * (-1.0) ** quarter for quarter in range(4)]
 
 
-def worth_a_fit(candidates: Sequence[Candidate]) -> tuple[Candidate, ...]:
+def look_alikes(candidates: Sequence[Candidate], ranking: Ranking = USUAL) -> tuple[int, ...]:
+    """The group of each candidate: designs of one group look the same, also turned or mirrored.
+
+    Best first, a candidate joins the first group whose best it looks like, else it begins the next: group 0 is that of
+    the best of all, and the best of a group represents it.
+    """
+    groups = [0] * len(candidates)
+    heads: list[int] = []
+    alike = _alike([candidate.sheet for candidate in candidates])
+    for place in sorted(range(len(candidates)), key=lambda place: ranking.key(candidates[place])):
+        joined = np.flatnonzero(alike[place, heads])
+        if not joined.size:
+            heads.append(place)
+        groups[place] = int(joined[0]) if joined.size else len(heads) - 1
+    return tuple(groups)
+
+
+def _alike(sheets: Sequence[Sheet]) -> BoolArray:
+    """Which sheets look the same, (N, N)."""
+    table = np.zeros((len(sheets), len(sheets)), dtype=np.bool_)
+    kinds: dict[Hashable, list[int]] = {}
+    for place, sheet in enumerate(sheets):
+        start = None if sheet.start is None else sheet.start.tobytes()
+        kinds.setdefault((sheet.grid, sheet.cell, start), []).append(place)
+    for members in kinds.values():
+        table[np.ix_(members, members)] = _alike_of_a_kind([sheets[place] for place in members])
+    return table
+
+
+def _alike_of_a_kind(sheets: Sequence[Sheet]) -> BoolArray:
+    """The same for sheets of one grid and outline, in all positions that the lattice has."""
+    grid = sheets[0].grid
+    looks = np.array([_look(sheet) for sheet in sheets])
+    size = np.square(looks).sum(axis=1)
+    products = looks @ looks.T
+    for symmetry in Symmetry:
+        if symmetry.fits(*grid):
+            tables = symmetry.on(*grid)
+            for source, sign in zip(tables.source, tables.sign, strict=True):
+                np.maximum(products, (sign * looks[:, source]) @ looks.T, out=products)
+    alike: BoolArray = size[:, None] + size - 2.0 * products < SAME_LOOK**2 * looks.shape[1]
+    return alike
+
+
+def _look(sheet: Sheet) -> FloatArray:
+    """Where nodes rest in their slits, from -1 at one end to 1, and mouths on the rim, in cells: (m n + R,)."""
+    return np.concatenate([np.tanh(0.5 * np.log(sheet.field.ratio.ravel())), sheet.rim.offsets(*sheet.grid)])
+
+
+def worth_a_fit(candidates: Sequence[Candidate], ranking: Ranking = USUAL) -> tuple[Candidate, ...]:
     """The order in which candidates are fitted, duplicates left out.
 
     Best first, but a candidate that is alike a better one waits until all others have had their turn: when the time is
@@ -51,7 +105,7 @@ def worth_a_fit(candidates: Sequence[Candidate]) -> tuple[Candidate, ...]:
     """
     first: list[Candidate] = []
     later: list[Candidate] = []
-    for candidate in ranked(candidates):
+    for candidate in ranking.ranked(candidates):
         chosen = [other.sheet.field for other in (*first, *later)]
         nearest = distances(candidate.sheet.field, chosen).min() if chosen else np.inf
         if nearest >= DUPLICATE:

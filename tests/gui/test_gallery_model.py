@@ -36,7 +36,7 @@ def test_that_an_improved_candidate_takes_the_place_of_its_sample(qtbot: QtBot, 
     model = GalleryModel()
     model.replace(entries(designs))
     last = model.entries[-1]
-    score = replace(last.candidate.score, siou=0.999, feasible=True, contact=None, n_invalid=0)
+    score = replace(last.candidate.score, siou=0.999, iou_exact=0.999, feasible=True, contact=None, n_invalid=0)
     better = Entry(replace(last.candidate, score=score, polished=True), last.design)
     assert model.insert(better) == 0
     assert model.rowCount() == len(designs.candidates)

@@ -139,6 +139,23 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "model.unknown_variant": mark("There is no generator variant '{variant:.40}'. Choose one of {choices}."),
     # pipeline
     "fit.stopped": mark("Fitting stopped; nothing changed."),
+    "rank.best_balance": mark("Best balance: match {match:.1f} %, panel sizes vary by {variation:.0f} %."),
+    "rank.best_balance_symmetric": mark(
+        "Best balance: match {match:.1f} %, panel sizes vary by {variation:.0f} %, symmetric."
+    ),
+    "rank.best_match": mark("Best match: {match:.1f} %, panel sizes vary by {variation:.0f} %."),
+    "rank.best_match_symmetric": mark("Best match: {match:.1f} %, panel sizes vary by {variation:.0f} %, symmetric."),
+    "rank.best_trimmed": mark("Best once trimmed: match {match:.1f} %."),
+    "rank.equal": mark("As good as the first design."),
+    "rank.less_even": mark("Panel sizes vary by {own:.0f} %, in the first design by {first:.0f} %."),
+    "rank.less_match": mark("Match {own:.1f} %, of the first design {first:.1f} %."),
+    "rank.less_trimmed_match": mark("Match {match:.1f} % once trimmed, of the first design {first:.1f} %."),
+    "rank.more_at_limit": mark("{own:.0f} % of its ratios are at a limit, in the first design {first:.0f} %."),
+    "rank.not_feasible": mark("Panels meet or overlap before the sheet has its shape."),
+    "rank.not_symmetric": mark("The first design is symmetric, this one is not."),
+    "rank.not_trimmed": mark("It is not trimmed."),
+    "rank.thinner": mark("Its narrowest panel measures {own:.2f} mm, in the first design {first:.2f} mm."),
+    "rank.too_thin": mark("Its narrowest panel measures {smallest_mm:.2f} mm; the material needs {least_mm:.2f} mm."),
     "request.angle_out_of_range": mark(
         "The target angle must be at least 0 and below pi radians, got {phi:g}. The usual choice is 0."
     ),

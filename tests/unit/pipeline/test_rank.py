@@ -12,8 +12,18 @@ from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.sheet import Sheet
+from kirigami_studio.lattice.symmetry import Symmetry
 from kirigami_studio.outlines import silhouettes
-from kirigami_studio.pipeline.rank import MOST_LOST, WORTH, improves, rank_key
+from kirigami_studio.pipeline.rank import (
+    EVENNESS,
+    MOST_LOST,
+    SYMMETRY,
+    USUAL,
+    WORTH,
+    Ranking,
+    improves,
+    rank_key,
+)
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.pipeline.run import best_of
 from kirigami_studio.polish.preferences import PREFERENCES
@@ -26,7 +36,7 @@ def design() -> Candidate:
 
 
 def scored(design: Candidate, siou: float, tv: float) -> Candidate:
-    return replace(design, score=replace(design.score, siou=siou, tv=tv))
+    return replace(design, score=replace(design.score, siou=siou, iou_exact=siou, tv=tv))
 
 
 def test_that_every_preference_has_a_worth_and_stricter_ones_give_more_away() -> None:
@@ -59,9 +69,75 @@ def test_that_no_more_is_lost_than_counts_as_equal(design: Candidate) -> None:
 
 
 def test_that_an_infeasible_fit_never_replaces_a_feasible_design(design: Candidate) -> None:
-    crossed = replace(design, score=replace(design.score, siou=1.0, tv=0.0, feasible=False))
+    crossed = replace(design, score=replace(design.score, siou=1.0, iou_exact=1.0, tv=0.0, feasible=False))
     assert design.score.feasible and not crossed.score.feasible
     assert not improves(crossed, design, "calm") and improves(design, crossed, "calm")
+
+
+def with_figures(design: Candidate, iou: float, index: int = 0, **figures: float) -> Candidate:
+    even = replace(design.score.evenness, **{"area_cv": 0.5, "least_edge": 0.5, "least_neck": 0.5, **figures})
+    return replace(design, score=replace(design.score, iou_exact=iou, evenness=even), index=index)
+
+
+def test_that_zero_ranks_by_match_alone_and_more_gives_match_away_for_evenness(design: Candidate) -> None:
+    chaotic, calm = with_figures(design, 0.990, area_cv=0.9), with_figures(design, 0.980, area_cv=0.4, index=1)
+    assert Ranking(0.0).ranked([calm, chaotic]) == (chaotic, calm)
+    assert Ranking(0.5).ranked([chaotic, calm]) == (calm, chaotic)
+    better = with_figures(design, 0.980 + 0.5 * EVENNESS + 0.001, area_cv=0.9)
+    assert Ranking(0.5).ranked([better, calm]) == (better, calm)
+    assert Ranking(1.0).ranked([better, calm]) == (calm, better)
+
+
+@pytest.mark.parametrize("worse", [{"least_neck": 0.05}, {"at_limit": 0.3}])
+def test_that_thin_panels_and_ratios_at_limits_cost_match(design: Candidate, worse: dict[str, float]) -> None:
+    good, bad = with_figures(design, 0.98), with_figures(design, 0.981, index=1, **worse)
+    assert Ranking(0.5).ranked([bad, good]) == (good, bad) and Ranking(0.0).ranked([bad, good]) == (bad, good)
+
+
+def test_that_a_symmetric_sheet_wins_up_to_its_price(design: Candidate) -> None:
+    z = RatioField.from_log10(Symmetry.HALF_TURN.symmetric(design.sheet.field.log10))
+    symmetric = replace(with_figures(design, 0.98), sheet=Sheet(z))
+    assert symmetric.symmetry is Symmetry.HALF_TURN and design.symmetry is None
+    for lead, first in ((0.9, symmetric), (1.1, None)):
+        free = with_figures(design, 0.98 + lead * SYMMETRY, index=1)
+        assert USUAL.ranked([free, symmetric])[0] == (first or free)
+    equal = with_figures(design, 0.98, index=-1)
+    assert Ranking(0.0).ranked([equal, symmetric])[0] == symmetric
+
+
+def test_that_what_can_be_cut_comes_first(design: Candidate) -> None:
+    ranking = Ranking(width_mm=50.0, least_feature_mm=1.0)
+    thin, wide = with_figures(design, 0.99, least_neck=0.09), with_figures(design, 0.90, least_neck=0.11, index=1)
+    assert thin.score.evenness.width == 5.0
+    assert not ranking.cuttable(thin) and ranking.cuttable(wide) and USUAL.cuttable(thin)
+    assert ranking.ranked([thin, wide]) == (wide, thin) and Ranking(0.0).ranked([wide, thin]) == (thin, wide)
+    crossed = replace(wide, score=replace(wide.score, feasible=False))
+    assert ranking.ranked([crossed, thin]) == (thin, crossed) and not ranking.cuttable(crossed)
+
+
+def test_that_every_rank_has_its_reason(design: Candidate) -> None:
+    ranking = Ranking(width_mm=50.0, least_feature_mm=0.2)
+    first = with_figures(design, 0.98)
+    later = {
+        "rank.less_match": with_figures(design, 0.97),
+        "rank.less_even": with_figures(design, 0.981, area_cv=0.9),
+        "rank.thinner": with_figures(design, 0.9801, least_edge=0.05),
+        "rank.more_at_limit": with_figures(design, 0.9801, at_limit=0.3),
+        "rank.equal": with_figures(design, 0.98),
+        "rank.too_thin": with_figures(design, 0.99, least_edge=0.01),
+        "rank.not_feasible": replace(first, score=replace(first.score, feasible=False)),
+    }
+    reasons = ranking.reasons([first, *later.values()])
+    assert [reason.code for reason in reasons] == ["rank.best_balance", *later]
+    assert reasons[0].text == "Best balance: match 98.0 %, panel sizes vary by 50 %."
+    assert reasons[6].text == "Its narrowest panel measures 0.10 mm; the material needs 0.20 mm."
+    assert [reason.code for reason in ranking.reasons([first])] == ["rank.best_match"] and not ranking.reasons([])
+
+
+def test_that_a_fit_may_give_match_away_for_evenness(design: Candidate) -> None:
+    before, after = with_figures(design, 0.985, area_cv=0.9), with_figures(design, 0.980, area_cv=0.5)
+    assert USUAL.improves(after, before, "balanced") and not Ranking(0.0).improves(after, before, "balanced")
+    assert Ranking(0.0).improves(before, after, "balanced")
 
 
 @pytest.mark.torch

@@ -15,7 +15,7 @@ from kirigami_studio.generator.weights import load_model
 from kirigami_studio.outlines.silhouettes import load
 from kirigami_studio.pipeline.events import CandidateFound, CandidateImproved, Finished, Progress, Started
 from kirigami_studio.pipeline.pool import Pool
-from kirigami_studio.pipeline.rank import ranked
+from kirigami_studio.pipeline.rank import Ranking, ranked
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.pipeline.run import best_of, decodings, run
 
@@ -50,9 +50,12 @@ def test_that_the_same_request_gives_the_same_candidates(request_for_heart: Requ
 
 
 def test_that_candidates_are_ranked_best_first(request_for_heart: Request) -> None:
-    candidates = best_of(replace(request_for_heart, k=8)).candidates
-    siou = [candidate.score.siou for candidate in candidates if candidate.score.feasible]
-    assert siou == sorted(siou, reverse=True)
+    for regular in (0.0, 0.5):
+        candidates = best_of(replace(request_for_heart, k=8, regular=regular)).candidates
+        worth = [Ranking(regular).worth(candidate) for candidate in candidates if candidate.score.feasible]
+        assert worth == sorted(worth, reverse=True)
+        match = [candidate.score.iou_exact for candidate in candidates if candidate.score.feasible]
+        assert (match == sorted(match, reverse=True)) == (regular == 0.0)
     feasible = [candidate.score.feasible for candidate in candidates]
     assert feasible == sorted(feasible, reverse=True)
 

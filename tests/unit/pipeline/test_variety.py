@@ -14,10 +14,20 @@ from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.evaluate.siou import exact_iou
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
-from kirigami_studio.lattice.sheet import Sheet
+from kirigami_studio.lattice.sheet import Rim, Sheet, rim_table
+from kirigami_studio.lattice.symmetry import Symmetry
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.silhouettes import load
-from kirigami_studio.pipeline.variety import ALIKE, DUPLICATE, distances, distinct, turns, worth_a_fit
+from kirigami_studio.pipeline.variety import (
+    ALIKE,
+    DUPLICATE,
+    SAME_LOOK,
+    distances,
+    distinct,
+    look_alikes,
+    turns,
+    worth_a_fit,
+)
 
 
 def random_field(seed: int, rows: int = 6, columns: int = 6) -> RatioField:
@@ -30,7 +40,7 @@ def candidate() -> Callable[[RatioField, float, int], Candidate]:
 
     def made(field: RatioField, siou: float, index: int) -> Candidate:
         score = evaluate(deploy(field), target)
-        return Candidate(Sheet(field), replace(score, siou=siou, feasible=True), 0, index)
+        return Candidate(Sheet(field), replace(score, siou=siou, iou_exact=siou, feasible=True), 0, index)
 
     return made
 
@@ -86,3 +96,30 @@ def test_that_distinct_designs_are_those_that_one_by_one_comparison_finds(
     assert distinct(found, others) == tuple(expected)
     assert len(expected) == 6 and distinct([], others) == ()
     assert distinct(found[:4], []) == tuple(found[:4])
+
+
+@pytest.mark.parametrize("grid", [(6, 6), (5, 6), (5, 7)])
+def test_that_turned_mirrored_and_near_sheets_are_one_group(
+    candidate: Callable[[RatioField, float, int], Candidate], grid: tuple[int, int]
+) -> None:
+    field = random_field(1, *grid)
+    near = RatioField.from_log10(field.log10 + 0.5 * SAME_LOOK)
+    images = [
+        RatioField.from_log10(image)
+        for symmetry in Symmetry
+        if symmetry.fits(*grid)
+        for image in symmetry.images(field.log10)
+    ]
+    alike = [candidate(one, 0.8 + 0.01 * number, number) for number, one in enumerate([field, near, *images])]
+    other = candidate(random_field(2, *grid), 0.95, 50)
+    groups = look_alikes([*alike, other])
+    assert groups == (*[1] * len(alike), 0)
+    assert look_alikes([]) == ()
+
+
+def test_that_another_rim_or_grid_is_another_look(candidate: Callable[[RatioField, float, int], Candidate]) -> None:
+    plain = candidate(RatioField.uniform(6, 6), 0.9, 0)
+    rim = Rim.moved(6, 6, np.full(rim_table(6, 6).even.size, 0.5))
+    moved = replace(plain, sheet=Sheet(RatioField.uniform(6, 6), rim), index=1)
+    larger = candidate(RatioField.uniform(6, 8), 0.9, 2)
+    assert len(set(look_alikes([plain, moved, larger]))) == 3
