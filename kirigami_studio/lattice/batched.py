@@ -8,7 +8,8 @@ an M-matrix: the block Thomas algorithm needs no pivoting between blocks and cos
 of at most 65 x 65 stay clear of the batched dense solve that stalls in torch 2.13 for n > 150 with two MKL threads.
 
 :class:`BatchedLattice` decodes and lets gradients through; :class:`BatchedSlopes` gives the whole derivative of the
-outline by an adjoint sweep, as ``polish.sensitivity`` does for one design.
+outline by an adjoint sweep, as ``polish.sensitivity`` does for one design.  Both take rim offsets: the given nodes are
+linear in them.  The flat sheet is the rectangle of unit cells.
 """
 
 from __future__ import annotations
@@ -20,16 +21,17 @@ import torch
 from torch import Tensor
 
 from kirigami_studio.foundation.arrays import FloatArray, IntArray
-from kirigami_studio.foundation.errors import RatioError
+from kirigami_studio.foundation.errors import RatioError, SheetError
 from kirigami_studio.lattice.compact import barycentric_stencil
 from kirigami_studio.lattice.deployment import even_part_of_outline
+from kirigami_studio.lattice.sheet import Sheet, anchor_slopes, rim_table
 from kirigami_studio.lattice.topology import topology
 
 LN10 = math.log(10.0)
 
 
 class BatchedLattice:
-    """Decoder of one grid size for batches of ratio fields.
+    """Decoder of one grid size for batches of ratio fields and, where they are given, rims.
 
     Parameters
     ----------
@@ -47,14 +49,17 @@ class BatchedLattice:
         self.rows, self.columns = rows, columns
         self.device, self.dtype = torch.device(device), dtype
         self._build_stencil()
+        self._build_rim()
         self._build_outline()
 
-    def compact(self, ratio: Tensor) -> Tensor:
+    def compact(self, ratio: Tensor, offsets: Tensor | None = None) -> Tensor:
         """Compact node positions.
 
         Parameters
         ----------
         ratio : (B, m, n) tensor, > 0
+        offsets : (B, R) tensor, optional, unit cells
+            How far the mouths are from their even places, in the order of ``sheet.rim_table``; none for an even rim.
 
         Returns
         -------
@@ -62,8 +67,8 @@ class BatchedLattice:
             Numbered as in :class:`kirigami_studio.lattice.topology.Topology`.
         """
         weight = self._weights(ratio)
-        h = self._sweep(weight)
-        return self._complete(h, weight)
+        given = self._given(offsets)
+        return self._complete(self._sweep(weight, given), weight, given)
 
     def outline_parts(self, nodes: Tensor) -> tuple[Tensor, Tensor]:
         """U and V of the outline loop, (B, L, 2) each, L = 4 (m + n) + 4: one solve serves every angle.
@@ -74,18 +79,28 @@ class BatchedLattice:
         whole = nodes[:, self._loop] - nodes[:, :1]
         return even, whole - even
 
-    def outline(self, ratio: Tensor, phi: float | Tensor = 0.0) -> Tensor:
+    def outline(self, ratio: Tensor, phi: float | Tensor = 0.0, offsets: Tensor | None = None) -> Tensor:
         """Outline loop at ``phi`` (a number or one per design, radians): (B, L, 2), counter-clockwise, unit cells.
 
         Select ``[:, self.unzipped]`` at phi = 0, where the edge hinges have zipped shut.
         """
-        return deployed(*self.outline_parts(self.compact(ratio)), phi)
+        return deployed(*self.outline_parts(self.compact(ratio, offsets)), phi)
 
-    def _sweep(self, weight: Tensor) -> Tensor:
+    def _given(self, offsets: Tensor | None) -> Tensor:
+        """All nodes (1 or B, N, 2), of which those on the rim are where the offsets put them."""
+        if offsets is None:
+            return self._uniform[None]
+        if offsets.ndim != 2 or offsets.shape[1] != self.mouths:
+            raise SheetError("rim.wrong_batch_shape", mouths=self.mouths, shape=tuple(offsets.shape))
+        moved = offsets.to(self.device, self.dtype) @ self._by_offset.flatten(1)
+        return self._uniform + moved.view(len(offsets), -1, 2)
+
+    def _sweep(self, weight: Tensor, given: Tensor) -> Tensor:
         """Positions of the h rows: (B, m, n + 1, 2)."""
         coupling = self._coupling(weight)
-        known = weight[:, self._known_weight, None] * self._known_position
-        constant = self._constant.expand(weight.shape[0], -1, -1).index_add(1, self._known_slot, known)
+        known = weight[:, self._known_weight, None] * given[:, self._known_node]
+        constant = (given[:, self._inner_h] * self._inner_h_given).expand(weight.shape[0], -1, -1)
+        constant = constant.index_add(1, self._known_slot, known)
         return block_sweep(coupling[:, 0], coupling[:, 1], constant.view(-1, self.rows, self.columns + 1, 2))
 
     def _coupling(self, weight: Tensor) -> Tensor:
@@ -102,10 +117,10 @@ class BatchedLattice:
         x = ratio.to(self.device, self.dtype).flatten(1).index_select(1, self._void)
         return torch.stack([x / (1 + x), 1 / (1 + x)], dim=-1).flatten(1)
 
-    def _complete(self, h: Tensor, weight: Tensor) -> Tensor:
+    def _complete(self, h: Tensor, weight: Tensor, given: Tensor) -> Tensor:
         """Add the edge nodes and the v family, which rests on the h family."""
         batch = h.shape[0]
-        base = self._uniform.expand(batch, -1, -1)
+        base = given.expand(batch, -1, -1)
         nodes = base.index_copy(1, self._inner_h, h.flatten(1, 2))
         ends = nodes[:, self._v_ends]
         weights = weight.view(batch, -1, 2)[:, self._v_entry]
@@ -133,22 +148,29 @@ class BatchedLattice:
                     slot = ((below * self.rows + row) * width + column) * width + target_column
                     pairs.append((2 * k + side, 2 * inner + other, slot))
         free_v = [k for number, k in entry_of.items() if number not in row_of]
-        constant = np.where(
-            tables.fixed[tables.h[1:-1].ravel()][:, None], tables.uniform_nodes[tables.h[1:-1].ravel()], 0
-        )
         pair, known_table = np.array(pairs), np.array(known)
         self._void = self._index(void)
         self._pair = self._index(pair[:, :2].T)
         self._pair_slot = self._index(pair[:, 2])
         self._known_weight = self._index(known_table[:, 0])
         self._known_slot = self._index(known_table[:, 1])
-        self._known_position = self._float(tables.uniform_nodes[known_table[:, 2]])
-        self._constant = self._float(constant)
+        self._known_node = self._index(known_table[:, 2])
         self._uniform = self._float(tables.uniform_nodes)
-        self._inner_h = self._index(tables.h[1:-1].ravel())
+        inner_h = tables.h[1:-1].ravel()
+        self._inner_h = self._index(inner_h)
+        self._inner_h_given = self._float(tables.fixed[inner_h][:, None].astype(np.float64))
         self._v_node = self._index(node[free_v])
         self._v_ends = self._index(ends[free_v])
         self._v_entry = self._index(np.array(free_v))
+
+    def _build_rim(self) -> None:
+        """How the given nodes follow each mouth: (R, N, 2)."""
+        table = rim_table(self.rows, self.columns)
+        along = anchor_slopes(Sheet.uniform(self.rows, self.columns))
+        self.mouths = table.mouths.size
+        by_offset = np.zeros((self.mouths, self.tables.node_count, 2))
+        by_offset[:, table.node] = table.share[:, table.mouths].T[..., None] * along[:, None]
+        self._by_offset = self._float(by_offset)
 
     def _build_outline(self) -> None:
         """The constant matrix that maps compact nodes to U on the outline loop."""
@@ -166,7 +188,7 @@ class BatchedLattice:
 
 
 class BatchedSlopes:
-    """Outline and derivative of batches of fields on one grid.
+    """Outline and derivative of batches of fields, and rims if given, on one grid.
 
     Parameters
     ----------
@@ -185,24 +207,27 @@ class BatchedSlopes:
         self._reach = torch.cat([lattice._even[loop], whole])
         self._build_tables()
 
-    def __call__(self, z: Tensor, phi: float | Tensor = 0.0) -> tuple[Tensor, Tensor]:
+    def __call__(self, z: Tensor, phi: float | Tensor = 0.0, offsets: Tensor | None = None) -> tuple[Tensor, Tensor]:
         """Decode and differentiate.
 
         Parameters
         ----------
         z : (B, m, n) tensor, log10 of ratios
         phi : float or (B,) tensor, radians
+        offsets : (B, R) tensor, optional, unit cells
+            How far the mouths are from their even places.
 
         Returns
         -------
         outline : (B, L, 2) tensor, unit cells
-        slopes : (B, L, 2, m * n) tensor
-            Derivative of the outline by z.
+        slopes : (B, L, 2, m * n) or (B, L, 2, m * n + R) tensor
+            Derivative of the outline by z, then by the offsets where they are given.
         """
         lattice = self.lattice
         ratio = torch.pow(10.0, z)
         weight = lattice._weights(ratio)
-        nodes = lattice._complete(lattice._sweep(weight), weight)
+        given = lattice._given(offsets)
+        nodes = lattice._complete(lattice._sweep(weight, given), weight, given)
         even, whole = torch.split(self._reach @ nodes, self.count, dim=1)
         x = ratio.flatten(1).repeat(1, 2)
         pull = (x * LN10 / (1 + x).square())[..., None] * (nodes[:, self._first] - nodes[:, self._second])
@@ -218,8 +243,25 @@ class BatchedSlopes:
             ],
             dim=1,
         )
-        slopes = moved.view(len(z), 2, 2, -1, self.count).sum(dim=2)
-        return deployed(even, whole - even, phi), slopes.permute(0, 3, 1, 2)
+        slopes = moved.view(len(z), 2, 2, -1, self.count).sum(dim=2).permute(0, 3, 1, 2)
+        if offsets is not None:
+            slopes = torch.cat([slopes, self._by_offsets(x, through_even, through_whole, phi)], dim=-1)
+        return deployed(even, whole - even, phi), slopes
+
+    def _by_offsets(self, x: Tensor, through_even: Tensor, through_whole: Tensor, phi: float | Tensor) -> Tensor:
+        """Derivative of the outline by rim offsets: (B, L, 2, R).
+
+        A mouth takes given nodes along, and the free nodes that rest on them.
+        """
+        batch, moved = len(x), self.lattice._by_offset.permute(1, 0, 2)
+        share = (x / (1 + x))[..., None, None]
+        pull = share * moved[self._first] + (1 - share) * moved[self._second]
+        still = (self._reach @ moved.flatten(1)).view(2, self.count, -1)
+        even, whole = (
+            (through.mT @ pull.flatten(2) + own).view(batch, -1, 2)
+            for through, own in ((through_even, still[0]), (through_whole, still[1]))
+        )
+        return deployed(even, whole - even, phi).view(batch, self.count, -1, 2).mT
 
     def _adjoint(self, weight: Tensor) -> Tensor:
         """Outline rows times A^-1, on the free nodes void by void: (B, K, 2 L)."""

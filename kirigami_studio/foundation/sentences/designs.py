@@ -27,6 +27,7 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "rim.wrong_count": mark(
         "Mouths on the rim's {side} side: {got}; a sheet of {rows} x {columns} voids needs {wanted} there."
     ),
+    "rim.wrong_batch_shape": mark("Rim offsets must have shape (B, {mouths}), got {shape}."),
     "rim.not_in_order": mark(
         "The mouths of the rim's {side} side must grow from 0 to {length:g} cells and stay {least:g} cells apart."
     ),

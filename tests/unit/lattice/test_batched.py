@@ -11,6 +11,7 @@ import pytest
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.lattice.sheet import Rim, Sheet, rim_table
 from kirigami_studio.lattice.topology import topology
 
 pytestmark = pytest.mark.torch
@@ -41,6 +42,43 @@ def test_that_double_precision_gives_the_exact_sheet(grid: tuple[int, int]) -> N
     nodes = batched.BatchedLattice(*grid, dtype=torch.float64).compact(torch.tensor(ratios)).numpy()
     for ratio, ours in zip(ratios, nodes, strict=True):
         assert np.abs(ours - deploy(RatioField(ratio)).compact).max() < 1e-10
+
+
+def random_offsets(grid: tuple[int, int], count: int) -> np.ndarray:
+    """Mouths moved by up to 0.45 cells: their order stays."""
+    return np.random.default_rng(grid[0]).uniform(-0.45, 0.45, (count, rim_table(*grid).even.size))
+
+
+@pytest.mark.parametrize("grid", GRIDS, ids=lambda grid: f"{grid[0]}x{grid[1]}")
+def test_that_free_rims_give_the_exact_sheet_and_outline(grid: tuple[int, int]) -> None:
+    ratios, offsets = random_ratios(grid, 5), random_offsets(grid, 5)
+    lattice = batched.BatchedLattice(*grid, dtype=torch.float64)
+    given = torch.tensor(ratios), torch.tensor(offsets)
+    nodes, outlines = lattice.compact(*given).numpy(), lattice.outline(given[0], 0.4, given[1]).numpy()
+    for ratio, moved, ours, outline in zip(ratios, offsets, nodes, outlines, strict=True):
+        design = deploy(Sheet(RatioField(ratio), Rim.moved(*grid, moved)))
+        assert np.abs(ours - design.compact).max() < 1e-9
+        assert np.abs(outline - design.outline(0.4)).max() < 1e-9
+
+
+def test_that_offsets_of_nothing_are_the_even_rim() -> None:
+    ratios = torch.tensor(random_ratios((5, 6), 3))
+    lattice = batched.BatchedLattice(5, 6, dtype=torch.float64)
+    assert torch.equal(lattice.compact(ratios, torch.zeros(3, lattice.mouths)), lattice.compact(ratios))
+
+
+def test_that_gradients_reach_the_offsets() -> None:
+    lattice = batched.BatchedLattice(3, 4, dtype=torch.float64)
+    ratios, offsets = torch.tensor(random_ratios((3, 4), 2)), torch.tensor(random_offsets((3, 4), 2))
+    given = ratios.requires_grad_(True), offsets.requires_grad_(True)
+    assert torch.autograd.gradcheck(lambda x, moved: lattice.outline(x, 0.3, moved), given, eps=1e-6, atol=1e-6)
+
+
+@pytest.mark.parametrize("shape", [(9,), (2, 9), (1, 10, 1)])
+def test_that_offsets_of_another_shape_are_refused(shape: tuple[int, ...]) -> None:
+    with pytest.raises(KirigamiError) as caught:
+        batched.BatchedLattice(5, 5).compact(torch.ones(2, 5, 5), torch.zeros(shape))
+    assert caught.value.code == "rim.wrong_batch_shape"
 
 
 @pytest.mark.parametrize("grid", [(6, 6), (10, 10), (7, 12)], ids=lambda grid: f"{grid[0]}x{grid[1]}")

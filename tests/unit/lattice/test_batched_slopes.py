@@ -7,6 +7,9 @@ import pytest
 import torch
 
 from kirigami_studio.lattice.batched import BatchedLattice, BatchedSlopes
+from kirigami_studio.lattice.deployment import deploy
+from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.lattice.sheet import Rim, Sheet
 from kirigami_studio.polish.sensitivity import OutlineModel
 
 pytestmark = pytest.mark.torch
@@ -64,3 +67,25 @@ def test_that_extreme_ratios_have_finite_slopes() -> None:
     outlines, slopes = BatchedSlopes(BatchedLattice(8, 8), zipped=True)(z)
     assert torch.isfinite(outlines).all()
     assert torch.isfinite(slopes).all()
+
+
+@pytest.mark.parametrize("phi", ANGLES)
+@pytest.mark.parametrize("grid", [(2, 2), (2, 5), (6, 7)], ids=lambda grid: f"{grid[0]}x{grid[1]}")
+def test_that_slopes_at_free_rims_are_those_of_finite_differences(grid: tuple[int, int], phi: float) -> None:
+    lattice = BatchedLattice(*grid, dtype=torch.float64)
+    z = fields(grid)
+    offsets = np.random.default_rng(4).uniform(-0.4, 0.4, (len(z), lattice.mouths))
+    slopes_of = BatchedSlopes(lattice, zipped=phi == 0.0)
+    outlines, slopes = slopes_of(torch.tensor(z), phi, torch.tensor(offsets))
+
+    def outline_of(state: np.ndarray) -> np.ndarray:
+        field, moved = state[: z[0].size].reshape(grid), state[z[0].size :]
+        return deploy(Sheet(RatioField.from_log10(field), Rim.moved(*grid, moved))).outline(phi)
+
+    for field, moved, outline, slope in zip(z, offsets, outlines.numpy(), slopes.numpy(), strict=True):
+        state, step = np.concatenate([field.ravel(), moved]), 1e-6
+        assert slope.shape == (*outline.shape, state.size)
+        assert np.abs(outline - outline_of(state)).max() < 1e-9
+        for k in range(state.size):
+            ahead, behind = (outline_of(state + sign * step * np.eye(state.size)[k]) for sign in (1, -1))
+            assert np.abs(slope[..., k] - (ahead - behind) / (2 * step)).max() < 1e-7
