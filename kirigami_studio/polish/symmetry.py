@@ -63,14 +63,20 @@ def shared_symmetries(
 
     Raises
     ------
-    TargetError, UsageError
-        As :func:`symmetric_poses`.
+    TargetError
+        A symmetry is asked for and the target is far from any.
+    UsageError
+        A symmetry is asked for that the grid does not have, or there is no such setting.
     """
     found: list[SymmetricPose] = []
     for pose in symmetric_poses(target, setting):
         moves = set(pose.symmetry.moves)
         if pose.fits(grid, phi) and not any(moves < set(other.symmetry.moves) for other in found):
             found.append(pose)
+    if not found and setting in ("mirror", "turn"):
+        rows, columns = grid
+        code = "symmetry.no_mirror_on_grid" if setting == "mirror" else "symmetry.no_turn_on_grid"
+        raise UsageError(code, rows=rows, columns=columns, more=columns + 1)
     return found
 
 

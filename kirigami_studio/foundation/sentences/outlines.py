@@ -201,6 +201,14 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "The target cannot be turned onto itself: it covers {percent:.0f} % of itself after a turn, {least:.0f} % are "
         "needed. Choose another symmetry."
     ),
+    "symmetry.no_mirror_on_grid": mark(
+        "No sheet of {rows} x {columns} voids is its own mirror image: rows or columns must be odd. Choose "
+        "{rows} x {more}, or leave the grid to auto."
+    ),
+    "symmetry.no_turn_on_grid": mark(
+        "No sheet of {rows} x {columns} voids can be turned onto itself: rows and columns must be both even or both "
+        "odd. Choose {rows} x {more}, or leave the grid to auto."
+    ),
     "symmetry.nothing_in_common": mark("The target and its image have too little in common for a symmetric shape."),
     "reach.no_voids": mark("A grid has at least one void in each direction, got {rows} x {columns}."),
 }

@@ -11,7 +11,7 @@ import shapely
 from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.evaluate.siou import exact_iou
 from kirigami_studio.foundation.arrays import FloatArray
-from kirigami_studio.foundation.errors import TargetError
+from kirigami_studio.foundation.errors import TargetError, UsageError
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.symmetry import Symmetry
@@ -106,6 +106,10 @@ def test_that_a_symmetry_can_be_switched_off_or_forced_on_a_sketch() -> None:
     with pytest.raises(TargetError) as refused:
         symmetric_poses(load("heart"), "turn")
     assert refused.value.code == "symmetry.no_turn"
+    for setting, grid in (("mirror", (10, 10)), ("turn", (10, 11))):
+        with pytest.raises(UsageError, match="leave the grid to auto") as wrong:
+            shared_symmetries(load("hexagon"), grid, setting=setting)
+        assert wrong.value.code == f"symmetry.no_{setting}_on_grid"
 
 
 def test_that_a_sketch_is_fitted_by_the_shape_that_it_is_meant_to_be() -> None:
