@@ -12,7 +12,7 @@ export PIP_DISABLE_PIP_VERSION_CHECK := 1
 QUICK_TESTS := tests/architecture tests/property $(wildcard $(addprefix tests/unit/,foundation lattice evaluate fabricate project)) \
   --ignore=tests/unit/evaluate/test_siou.py
 
-.PHONY: help setup run test quick lint bench consumers demo states pictures messages clean
+.PHONY: help setup run test quick lint bench consumers demo states pictures shapes messages clean
 .DEFAULT_GOAL := help
 
 help:
@@ -26,6 +26,7 @@ help:
 	@echo "make demo    design a heart on the command line into out/heart"
 	@echo "make states  save pictures of every state of the window to out/states, at 200 % to out/states-200"
 	@echo "make pictures  make the README's pictures with the program"
+	@echo "make shapes  make docs/pictures/shapes.png: three states of the first design for every library silhouette"
 	@echo "make messages  collect all sentences for translators in resources/locale"
 	@echo "make clean   remove what the other targets made, except .venv"
 
@@ -84,6 +85,12 @@ pictures: setup
 	QT_QPA_PLATFORM=offscreen $(BIN)/python -m kirigami_studio.demonstrations.offscreen_session --out out/pictures
 	cp out/pictures/4-designs.png docs/pictures/window.png
 	$(BIN)/kirigami-studio animate resources/examples/heart.kiri --out docs/pictures/heart.gif
+
+shapes: setup
+	@mkdir -p out
+	$(BIN)/kirigami-studio benchmark designs --targets library --grid auto --k 32 --polish 15 --states \
+	  --picture out/shapes.png --out out/shapes.json
+	cp out/shapes.png docs/pictures/shapes.png
 
 # The translators' template: every sentence of the program, without line numbers, so that only new words change it.
 messages: setup

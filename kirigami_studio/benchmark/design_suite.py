@@ -17,7 +17,7 @@ from kirigami_studio.export.exporter import ExportJob
 from kirigami_studio.export.picture import PAPER, PictureFrame, draw_polygons
 from kirigami_studio.foundation.files import write_atomically
 from kirigami_studio.outlines.outline import Outline
-from kirigami_studio.pipeline.rank import rank_key
+from kirigami_studio.pipeline.rank import Ranking
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.pipeline.run import best_of
 
@@ -38,6 +38,8 @@ class Made:
     seconds : float
         Wall time of all grids together.
     evaluations : int
+    candidates : tuple of Candidate
+        All of that request, best first; empty where only the best is known.
     """
 
     target: Outline
@@ -45,6 +47,12 @@ class Made:
     best: Candidate
     seconds: float
     evaluations: int
+    candidates: tuple[Candidate, ...] = ()
+
+    @property
+    def best_match(self) -> Candidate:
+        """The feasible candidate of the highest exact IoU, whatever its sheet looks like."""
+        return min(self.candidates or (self.best,), key=lambda one: (not one.score.feasible, -one.score.iou_exact))
 
 
 def make_designs(
@@ -57,7 +65,7 @@ def make_designs(
     made = []
     for number, choices in enumerate(requests):
         results = [best_of(request) for request in choices]
-        best = min(results, key=lambda result: rank_key(result.best)[:-1])
+        best = min(results, key=lambda result: Ranking.of(result.request).key(result.best)[:-1])
         made.append(
             Made(
                 best.request.target,
@@ -65,6 +73,7 @@ def make_designs(
                 best.best,
                 sum(result.seconds for result in results),
                 sum(result.forward_evaluations for result in results),
+                best.candidates,
             )
         )
         report(number + 1, len(requests))
@@ -81,8 +90,10 @@ def design_figures(made: Sequence[Made]) -> dict[str, object]:
         targets, the worst and its name; ``siou``, ``uniform_siou``, ``uniform_iou``, ``siou_gain`` over the uniform
         layout with its interval, ``below_uniform`` and ``below_uniform_exact`` (names of targets that the uniform
         layout of the same grid shows better, by sIoU and by exact IoU), ``worst`` (names by sIoU, lowest first),
-        ``success`` (sIoU >= 0.85 and feasible), ``tv``, ``seconds`` a target, and ``shapes``: the same for each by
-        name.
+        ``success`` (sIoU >= 0.85 and feasible), ``tv``, ``seconds`` a target, ``panel_area_cv`` with its interval, the
+        worst and its name, ``at_limit`` (share of ratios), ``symmetric`` and ``cuttable`` (shares of targets),
+        ``best_match``: the same of the candidate of the highest exact IoU in the place of the first, and ``shapes``:
+        the figures of each target by name.
     """
     scores = [one.best.score for one in made]
     figures: dict[str, object] = {
@@ -100,6 +111,12 @@ def design_figures(made: Sequence[Made]) -> dict[str, object]:
         "worst": [one.target.name for one in worst_of(made, WORST_LISTED)],
         "success": float(np.mean([score.siou >= SUCCESS_SIOU and score.feasible for score in scores])),
         "tv": float(np.mean([score.tv for score in scores])),
+        **_sheet_figures([one.best for one in made], made),
+        "best_match": {
+            **_summary("iou_exact", [one.best_match.score.iou_exact for one in made], made),
+            "tv": float(np.mean([one.best_match.score.tv for one in made])),
+            **_sheet_figures([one.best_match for one in made], made),
+        },
         "seconds": float(np.mean([one.seconds for one in made])),
         "evaluations": float(np.mean([one.evaluations for one in made])),
     }
@@ -118,6 +135,7 @@ def worst_of(made: Sequence[Made], count: int) -> list[Made]:
 def shape_figures(one: Made) -> dict[str, object]:
     """The line of one target."""
     score = one.best.score
+    symmetry, even, most = one.best.symmetry, score.evenness, one.best_match.score
     line: dict[str, object] = {
         "grid": f"{one.request.chosen_grid[0]}x{one.request.chosen_grid[1]}",
         "iou_exact": score.iou_exact,
@@ -127,6 +145,11 @@ def shape_figures(one: Made) -> dict[str, object]:
         "siou_gain": score.siou_gain,
         "tv": score.tv,
         "feasible": score.feasible,
+        "panel_area_cv": even.area_cv,
+        "least_feature_mm": even.least_feature_mm(one.request.width_mm),
+        "at_limit": even.at_limit,
+        "symmetry": None if symmetry is None else symmetry.label,
+        "best_match": {"iou_exact": most.iou_exact, "panel_area_cv": most.evenness.area_cv},
         "seconds": one.seconds,
     }
     if one.best.trim is not None:
@@ -134,9 +157,25 @@ def shape_figures(one: Made) -> dict[str, object]:
     return line
 
 
-def _summary(name: str, values: Sequence[float], made: Sequence[Made]) -> dict[str, object]:
+def _sheet_figures(designs: Sequence[Candidate], made: Sequence[Made]) -> dict[str, object]:
+    """What the sheets look like, whatever they open into."""
+    figures = [design.score.evenness for design in designs]
+    rankings = [Ranking.of(one.request) for one in made]
+    return {
+        **_summary("panel_area_cv", [even.area_cv for even in figures], made, worst_is_highest=True),
+        "at_limit": float(np.mean([even.at_limit for even in figures])),
+        "symmetric": float(np.mean([design.symmetry is not None for design in designs])),
+        "cuttable": float(
+            np.mean([ranking.cuttable(design) for ranking, design in zip(rankings, designs, strict=True)])
+        ),
+    }
+
+
+def _summary(
+    name: str, values: Sequence[float], made: Sequence[Made], worst_is_highest: bool = False
+) -> dict[str, object]:
     exact = np.array(values)
-    worst = int(exact.argmin())
+    worst = int(exact.argmax() if worst_is_highest else exact.argmin())
     return {
         name: float(exact.mean()),
         f"{name}_interval": bootstrap_interval(exact),
@@ -148,28 +187,33 @@ def _summary(name: str, values: Sequence[float], made: Sequence[Made]) -> dict[s
 #: Size of one picture and of its lines of text, pixels.
 TILE, LINE, GAP = 260, 22, 14
 COLUMNS = 6
+#: The same for pictures of three states each.
+STATE_TILE, STATE_COLUMNS = 150, 12
 INK = (40, 44, 52)
 
 
-def write_contact_sheet(made: Sequence[Made], path: Path) -> None:
-    """Write a PNG with a tile for every design, two where it was trimmed.
+def write_contact_sheet(made: Sequence[Made], path: Path, states: bool = False) -> None:
+    """Write a PNG with a tile for every design, two where it was trimmed; with ``states`` three tiles each.
+
+    The three states are the flat sheet, half way, and the sheet over its target, all to one scale.
 
     Raises
     ------
     ExportError
         The place cannot be written.
     """
-    tiles = [tile for one in made for tile in _tiles(one)]
-    rows = math.ceil(len(tiles) / COLUMNS)
-    width, height = TILE + GAP, TILE + 2 * LINE + GAP
-    sheet = Image.new("RGB", (COLUMNS * width + GAP, rows * height + GAP), PAPER)
+    side, columns = (STATE_TILE, STATE_COLUMNS) if states else (TILE, COLUMNS)
+    tiles = [tile for one in made for tile in (_state_tiles(one) if states else _tiles(one))]
+    rows = math.ceil(len(tiles) / columns)
+    width, height = side + GAP, side + 2 * LINE + GAP
+    sheet = Image.new("RGB", (columns * width + GAP, rows * height + GAP), PAPER)
     draw = ImageDraw.Draw(sheet)
     font = ImageFont.load_default(16)
     for number, (picture, lines) in enumerate(tiles):
-        x, y = GAP + number % COLUMNS * width, GAP + number // COLUMNS * height
-        sheet.paste(picture, (x + (TILE - picture.width) // 2, y + (TILE - picture.height) // 2))
+        x, y = GAP + number % columns * width, GAP + number // columns * height
+        sheet.paste(picture, (x + (side - picture.width) // 2, y + (side - picture.height) // 2))
         for place, text in enumerate(lines):
-            draw.text((x + TILE // 2, y + TILE + place * LINE), text, fill=INK, font=font, anchor="ma")
+            draw.text((x + side // 2, y + side + place * LINE), text, fill=INK, font=font, anchor="ma")
     stream = BytesIO()
     sheet.save(stream, format="PNG", optimize=True)
     write_atomically(path, stream.getvalue())
@@ -183,6 +227,24 @@ def _tiles(one: Made) -> list[tuple[Image.Image, tuple[str, str]]]:
     if one.best.trim is not None:
         tiles.append((_picture_of(one.best, one), ("trimmed", f"IoU {one.best.trim.iou:.3f}")))
     return tiles
+
+
+def _state_tiles(one: Made) -> list[tuple[Image.Image, tuple[str, str]]]:
+    """The flat sheet, half way, and the sheet over its target."""
+    score, job = one.best.score, ExportJob.of(one.best, one.target.points)
+    states = [job.posed.parts(phi) for phi in (math.pi, 0.5 * (math.pi + job.phi), job.phi)]
+    frame = PictureFrame.around([*states[0], *states[1], *states[2], one.target.points], STATE_TILE)
+    symmetry = one.best.symmetry
+    lines = (
+        (one.target.name, f"{one.request.chosen_grid[0]} x {one.request.chosen_grid[1]}"),
+        (f"IoU {score.iou_exact:.3f}", f"uniform {score.uniform_iou:.3f}"),
+        (f"CV {score.evenness.area_cv:.2f}", "" if symmetry is None else symmetry.label.replace("_", " ")),
+    )
+    targets = (None, None, one.target.points)
+    return [
+        (draw_polygons(panels, frame, target), text)
+        for panels, target, text in zip(states, targets, lines, strict=True)
+    ]
 
 
 def _picture_of(candidate: Candidate, one: Made) -> Image.Image:

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from kirigami_studio.cli.console import ProgressLine, plain, print_json, say
 from kirigami_studio.cli.inputs import read_targets
-from kirigami_studio.cli.option_types import parse_grid
+from kirigami_studio.cli.option_types import parse_grid, parse_grid_or_auto
 from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.foundation.files import write_atomically
 from kirigami_studio.lattice.deployment import deploy
@@ -160,14 +160,16 @@ def regularity(arguments: argparse.Namespace) -> int:
 def designs(arguments: argparse.Namespace) -> int:
     """The whole program on targets, shape by shape, with pictures where asked for."""
     from kirigami_studio.benchmark.design_suite import design_figures, make_designs, worst_of, write_contact_sheet
-    from kirigami_studio.pipeline.request import Request
+    from kirigami_studio.pipeline.request import REGULAR, Request
+
+    regular = REGULAR[arguments.prefer] if arguments.regular is None else arguments.regular
 
     def measure(outlines: Sequence[Outline], report: Report) -> dict[str, object]:
         requests = [
             [
                 Request(
                     outline,
-                    parse_grid(grid),
+                    parse_grid_or_auto(grid),
                     k=arguments.k,
                     seed=arguments.seed,
                     variant=arguments.variant,
@@ -176,6 +178,9 @@ def designs(arguments: argparse.Namespace) -> int:
                     prefer=arguments.prefer,
                     search=arguments.effort,
                     trim=arguments.trim,
+                    symmetry=arguments.symmetry,
+                    rim=arguments.rim,
+                    regular=regular,
                 )
                 for grid in arguments.grid.split(",")
             ]
@@ -184,7 +189,7 @@ def designs(arguments: argparse.Namespace) -> int:
         made = make_designs(requests, report)
         if arguments.picture is not None:
             shown = made if arguments.worst is None else worst_of(made, arguments.worst)
-            write_contact_sheet(shown, Path(arguments.picture))
+            write_contact_sheet(shown, Path(arguments.picture), arguments.states)
         return design_figures(made)
 
     return _on_targets(arguments, measure)

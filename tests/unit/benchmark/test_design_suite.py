@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -41,6 +42,22 @@ def test_that_every_target_gets_its_best_grid_its_line_and_its_pictures(tmp_path
     with Image.open(path) as picture:
         assert picture.width > 1000
         assert len(picture.convert("RGB").getcolors(1 << 24) or []) > 50
+    write_contact_sheet(made, path, states=True)
+    with Image.open(path) as picture:
+        assert picture.width > 1500
+        assert len(picture.convert("RGB").getcolors(1 << 24) or []) > 50
+
+
+def test_that_the_best_match_stands_beside_the_first_design() -> None:
+    (made,) = make_designs([[Request(load("heart"), (6, 6), k=6)]])
+    assert len(made.candidates) == 6 and made.best == made.candidates[0]
+    one = replace(made, best=made.candidates[-1])
+    most = max(candidate.score.iou_exact for candidate in one.candidates)
+    assert one.best_match.score.iou_exact == most > one.best.score.iou_exact
+    figures = design_figures([one])
+    assert figures["panel_area_cv"] == one.best.score.evenness.area_cv
+    assert figures["best_match"]["iou_exact"] == most  # type: ignore[index]
+    assert figures["best_match"]["panel_area_cv"] == one.best_match.score.evenness.area_cv  # type: ignore[index]
 
 
 def test_that_designs_below_the_uniform_sheet_and_the_worst_are_named() -> None:
