@@ -20,6 +20,7 @@ from kirigami_studio.export.svg import write_layout_svg
 from kirigami_studio.foundation.errors import Cancelled, FabricationError
 from kirigami_studio.foundation.files import check_folder, write_atomically
 from kirigami_studio.foundation.words import tr, tr_n
+from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.lattice.sheet_files import sheet_json
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.pipeline.auto_grid import chosen_for
@@ -217,7 +218,7 @@ def _in_cells(length_mm: float, fabrication: FabricationSettings, grid: tuple[in
 def _keep(fabrication: FabricationSettings, grid: tuple[int, int]) -> float:
     """How deep (unit cells) material has to stay at the hinges of a trimmed sheet so that its connectors hold."""
     material, numbers = material_for(fabrication), (fabrication.connector_mm, fabrication.kerf_mm)
-    return keep_for_connectors(grid, material, fabrication.width_mm, *numbers)
+    return keep_for_connectors(Sheet.uniform(*grid), material, fabrication.width_mm, *numbers)
 
 
 def _folder_name(name: str, used: set[str]) -> str:

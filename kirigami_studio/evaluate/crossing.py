@@ -19,9 +19,9 @@ TOUCH = 1e-9
 #: Less deep than this (unit cells) is certainly a touch: rounding is far smaller.
 CERTAIN = 0.5 * TOUCH
 
-#: Squared distance (unit cells) that single precision may be wrong by when it picks the pairs that come near: 130 cells
-#: across, the largest grid, squared, times 1e-6.
-ROUNDING = 0.02
+#: Squared distance that single precision may be wrong by when it picks the pairs that come near, as a share of the
+#: squared reach of the motion.
+ROUNDING = 1.2e-6
 
 #: Pairs of edges looked at together: few enough for the processor's cache.
 PAIRS_AT_ONCE = 30_000
@@ -116,8 +116,13 @@ class _Way:
         least += np.where(wave.imag > 0.0, -2.0 * np.sqrt(still_square * moving_square), ends)
         half = (0.5 * self.length).astype(np.float32)
         reach = half[..., np.newaxis] + _following(half)
-        sheet, one, ahead = np.nonzero(least <= reach * reach + ROUNDING)
+        rounding = np.float32(ROUNDING * self._span() ** 2)
+        sheet, one, ahead = np.nonzero(least <= reach * reach + rounding)
         return sheet, one, (one + 2 + ahead) % count
+
+    def _span(self) -> float:
+        """Upper bound of the distance between two nodes anywhere on the way."""
+        return sum(float(np.abs(part - part[:, :1]).max()) for part in (self.even, self.odd)) * 2.0
 
     def _distances(self, sheet: IndexArray, edge: IndexArray, other: IndexArray) -> _Distances:
         """How far both ends of ``other`` lie to the left of the line through ``edge``, for K pairs."""

@@ -121,7 +121,7 @@ def trim(
         kept=tuple(parts),
         iou=_iou(shared, silhouette.area, place.area, kept),
         untrimmed_iou=float(shared / (silhouette.area + place.area - shared)),
-        removed_share=float(kept.removed.sum() / np.prod(np.ptp(deployment.compact, axis=0))),
+        removed_share=float(kept.removed.sum()) / deployment.area(math.pi),
     )
 
 

@@ -93,9 +93,7 @@ def hinge_widths(
     return widths
 
 
-def shorten(
-    lines: FloatArray, table: CutTable, size: tuple[float, float], widths: FloatArray, kerf_mm: float
-) -> FloatArray:
+def shorten(lines: FloatArray, table: CutTable, sides: FloatArray, widths: FloatArray, kerf_mm: float) -> FloatArray:
     """Pull every cut end back from its T-junction.
 
     Parameters
@@ -103,8 +101,8 @@ def shorten(
     lines : (C, 2, 2) float, mm
         Cuts from junction to junction, as :func:`sheet_lines` returns them.
     table : CutTable
-    size : (width, height), mm
-        Nominal sheet.
+    sides : (H, 2, 2) float, mm
+        Sides of the sheet beside the hinges on its edge, as :func:`edge_sides` returns them.
     widths : (H,) float, mm
         Finished width of each hinge.
     kerf_mm : float
@@ -120,9 +118,9 @@ def shorten(
     """
     length = np.linalg.norm(lines[:, 1] - lines[:, 0], axis=1)
     along = (lines[:, 1] - lines[:, 0]) / length[:, None]
-    tip = lines[table.hinge_cut, table.hinge_end]
     on_edge = table.hinge_through == SHEET_EDGE
-    through = np.where(on_edge[:, None], edge_directions(tip, size), along[table.hinge_through])
+    through = along[table.hinge_through]
+    through[on_edge] = directions(sides[on_edge])
     own = along[table.hinge_cut]
     sine = np.abs(own[:, 0] * through[:, 1] - own[:, 1] * through[:, 0])
     gap = widths + np.where(on_edge, 0.5 * kerf_mm, kerf_mm)
@@ -165,7 +163,7 @@ def outline_path(size: tuple[float, float], kerf_mm: float) -> FloatArray:
 def edge_cut_paths(
     lines: FloatArray, table: CutTable, size: tuple[float, float], kerf_mm: float, overcut_mm: float
 ) -> list[FloatArray]:
-    """Lengthen the edge cuts over the outline.
+    """Lengthen the edge cuts over the outline of a rectangle.
 
     Parameters
     ----------
@@ -193,6 +191,13 @@ def edge_cut_paths(
         else:
             paths.append(np.stack([mouth + outwards * reach, mouth, tip]))
     return paths
+
+
+def directions(lines: FloatArray) -> FloatArray:
+    """Unit vectors (L, 2) along lines (L, 2, 2)."""
+    run = lines[:, 1] - lines[:, 0]
+    unit: FloatArray = run / np.linalg.norm(run, axis=1)[:, None]
+    return unit
 
 
 def edge_directions(points: FloatArray, size: tuple[float, float]) -> FloatArray:

@@ -26,7 +26,7 @@ from kirigami_studio.fabricate.material import Material, default_material
 from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions
 from kirigami_studio.fabricate.ordering import in_cutting_order
 from kirigami_studio.fabricate.panel_sizes import panels_in_mm
-from kirigami_studio.fabricate.slits import SHEET_EDGE, CutTable, cut_table, sheet_lines
+from kirigami_studio.fabricate.slits import SHEET_EDGE, CutTable, cut_table, edge_sides, sheet_lines
 from kirigami_studio.fabricate.tabs import joined_ring, tabbed
 from kirigami_studio.fabricate.trimmed_sheet import CutPiece, kept_area, trimmed_cuts
 from kirigami_studio.foundation.arrays import FloatArray
@@ -150,7 +150,7 @@ def plan_cuts(
     ----------
     deployment : Deployment
     width_mm : float
-        Width of the finished sheet, 5 to 3000 mm; the height follows from the grid.
+        Width of the finished sheet, 5 to 3000 mm; the height follows from its shape.
     connector_mm, kerf_mm : float, optional
         Finished connector width and full cut width; the material's values unless given.
     material : Material, optional
@@ -175,21 +175,23 @@ def plan_cuts(
     connector = check_length("connector.width_not_positive", asked)
     kerf = check_length("kerf.negative", material.kerf_mm if kerf_mm is None else kerf_mm, zero_allowed=True)
     overcut = check_length("overcut.not_positive", overcut_mm)
-    table = cut_table(deployment.field.rows, deployment.field.columns)
+    table = cut_table(*deployment.sheet.grid)
     lines, size = sheet_lines(deployment, width)
     _check_size(size)
     relief_radius(options.style, material)
     widths = hinge_widths(table.hinge_count, connector, dict(options.hinge_mm), options.removed)
-    shortened = shorten(lines, table, size, widths, kerf)
+    sides = edge_sides(deployment, width)
+    shortened = shorten(lines, table, sides, widths, kerf)
     parts = () if kept is None or all(part is None for part in kept) else tuple(kept)
-    if parts:
-        outline, pieces = trimmed_cuts(kept_area(deployment, parts, width), shortened, table, kerf, overcut)
+    if parts or deployment.sheet.start is not None:
+        area = kept_area(deployment, parts or (None,) * len(deployment.topology.panel_nodes.reshape(-1, 4)), width)
+        outline, pieces = trimmed_cuts(area, shortened, table, kerf, overcut)
     else:
         outline, pieces = _plain_cuts(shortened, table, size, kerf, overcut)
     cuts = hinged_cuts(
         pieces,
         shortened[table.hinge_cut, table.hinge_end],
-        seats(lines, shortened, table, size, widths, kerf),
+        seats(lines, shortened, table, sides, widths, kerf),
         table,
         outline,
         options,
@@ -234,7 +236,7 @@ def _check_size(size: tuple[float, float]) -> None:
 def _plain_cuts(
     shortened: FloatArray, table: CutTable, size: tuple[float, float], kerf: float, overcut: float
 ) -> tuple[Polygon, list[CutPiece]]:
-    """Outline and cuts of an untrimmed sheet."""
+    """Outline and cuts of a rectangle that is not trimmed."""
     lines = [*shortened[: table.slit_count], *edge_cut_paths(shortened, table, size, kerf, overcut)]
     pieces = [CutPiece(cut, points, cut >= table.slit_count) for cut, points in enumerate(lines)]
     return Polygon(outline_path(size, kerf)), pieces

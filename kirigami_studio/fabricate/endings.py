@@ -20,7 +20,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from kirigami_studio.fabricate.connectors import edge_directions
+from kirigami_studio.fabricate.connectors import directions
 from kirigami_studio.fabricate.options import ConnectorStyle
 from kirigami_studio.fabricate.slits import SHEET_EDGE, CutTable
 from kirigami_studio.foundation.arrays import FloatArray
@@ -87,7 +87,7 @@ def seats(
     lines: FloatArray,
     shortened: FloatArray,
     table: CutTable,
-    size: tuple[float, float],
+    sides: FloatArray,
     widths: FloatArray,
     kerf_mm: float,
 ) -> list[Seat]:
@@ -98,8 +98,8 @@ def seats(
     lines, shortened : (C, 2, 2) float, mm
         Cuts from junction to junction, and pulled back.
     table : CutTable
-    size : (width, height), mm
-        Nominal sheet.
+    sides : (H, 2, 2) float, mm
+        Sides of the sheet beside the hinges on its edge.
     widths : (H,) float, mm
         Finished widths.
     kerf_mm : float
@@ -108,15 +108,12 @@ def seats(
     own = lines[table.hinge_cut, 1 - table.hinge_end] - junction
     own /= np.linalg.norm(own, axis=1)[:, None]
     on_edge = table.hinge_through == SHEET_EDGE
-    run = lines[:, 1] - lines[:, 0]
-    through = np.where(on_edge[:, None], edge_directions(junction, size), run[table.hinge_through])
-    through = through / np.linalg.norm(through, axis=1)[:, None]
+    through = directions(np.where(on_edge[:, None, None], sides, lines[table.hinge_through]))
     normal = np.stack([-through[:, 1], through[:, 0]], axis=1)
     normal *= np.sign(np.sum(normal * own, axis=1))[:, None]
     side = np.stack([-normal[:, 1], normal[:, 0]], axis=1)
     slant = np.arctan2(np.sum(own * side, axis=1), np.sum(own * normal, axis=1))
-    corners = np.stack([np.zeros(2), np.array(size)])
-    ends = np.where(on_edge[:, None, None], corners[None], shortened[table.hinge_through])
+    ends = np.where(on_edge[:, None, None], sides, shortened[table.hinge_through])
     reach = np.sort(np.einsum("hec,hc->he", ends - junction[:, None], side), axis=1) * [-1.0, 1.0]
     gap = widths + np.where(on_edge, 0.5 * kerf_mm, kerf_mm)
     return [

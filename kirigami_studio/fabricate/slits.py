@@ -114,6 +114,45 @@ def _edge_cuts(tables: Topology) -> IntArray:
     return chosen
 
 
+def edge_sides(deployment: Deployment, width_mm: float) -> FloatArray:
+    """The straight side of the flat sheet beside every hinge that rests on its edge.
+
+    Parameters
+    ----------
+    deployment : Deployment
+    width_mm : float
+        As for :func:`sheet_lines`.
+
+    Returns
+    -------
+    sides : (H, 2, 2) float, mm
+        Both ends: of the rectangle's side, and where the sheet has another start outline, of the chord between the two
+        mouths that the hinge lies halfway between.  Zeros for hinges that rest on cuts.
+    """
+    table = cut_table(*deployment.sheet.grid)
+    low, scale = deployment.compact.min(axis=0), _mm_per_cell(deployment, width_mm)
+    placed = (deployment.compact - low) * scale
+    hinges = np.flatnonzero(table.hinge_through == SHEET_EDGE)
+    nodes = table.hinge_node[hinges]
+    sides = np.zeros((table.hinge_count, 2, 2))
+    if deployment.sheet.start is not None:
+        loop = deployment.topology.outline_nodes
+        place = np.argsort(loop)[np.searchsorted(np.sort(loop), nodes)]
+        sides[hinges] = placed[np.stack([loop[place - 1], loop[(place + 1) % loop.size]], axis=1)]
+        return sides
+    (width, height), (x, y) = placed.max(axis=0), placed[nodes].T
+    upright = np.minimum(x, width - x) < np.minimum(y, height - y)
+    zero = np.zeros_like(x)
+    first = np.where(upright, [x, zero], [zero, y])
+    last = np.where(upright, [x, zero + height], [zero + width, y])
+    sides[hinges] = np.stack([first.T, last.T], axis=1)
+    return sides
+
+
+def _mm_per_cell(deployment: Deployment, width_mm: float) -> float:
+    return width_mm / float(np.ptp(deployment.compact[:, 0]))
+
+
 def sheet_lines(deployment: Deployment, width_mm: float) -> tuple[FloatArray, tuple[float, float]]:
     """Place the uncut-short cuts on the compact sheet in mm.
 
@@ -121,16 +160,16 @@ def sheet_lines(deployment: Deployment, width_mm: float) -> tuple[FloatArray, tu
     ----------
     deployment : Deployment
     width_mm : float
-        Finished width of the sheet; the height follows from the grid.
+        Finished width of the sheet; the height follows from its shape.
 
     Returns
     -------
     lines : (C, 2, 2) float, mm
-        Start and end of every cut, from T-junction to T-junction; sheet's bottom left corner at (0, 0), y up.
+        Start and end of every cut, from T-junction to T-junction; the sheet's smallest coordinates are 0, y up.
     size : (width, height), mm
     """
-    table = cut_table(deployment.field.rows, deployment.field.columns)
+    table = cut_table(*deployment.sheet.grid)
     low, high = deployment.compact.min(axis=0), deployment.compact.max(axis=0)
-    scale = width_mm / (high[0] - low[0])
+    scale = _mm_per_cell(deployment, width_mm)
     lines = (deployment.compact[table.ends] - low) * scale
     return lines, (width_mm, float((high[1] - low[1]) * scale))

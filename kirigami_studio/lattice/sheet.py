@@ -31,9 +31,11 @@ SIDES: tuple[Side, ...] = ("top", "right", "bottom", "left")
 
 #: Mouths, corners and hinges may not come nearer to each other than this (unit cells): what is exact needs room.
 LEAST_GAP = 1e-3
-#: Sides of a cell, and width and height of a start outline (unit cells): tolerances in cells mean something there.
+#: Sides of a cell, width and height of a start outline and its distance from the origin (unit cells): within these
+#: bounds tolerances in cells mean something.
 CELL_SIDES = (0.05, 20.0)
 START_SIDES = (0.5, 1000.0)
+FARTHEST_START = 1e4
 MOST_START_POINTS = 10_000
 #: A start outline is convex when its hull is larger by no more than this share of it.
 CONVEX = 1e-6
@@ -381,6 +383,8 @@ def _checked_start(start: npt.ArrayLike) -> FloatArray:
     (width, height), (least, most) = np.ptp(points, axis=0).tolist(), START_SIDES
     if max(width, height) < least or max(width, height) > most:
         raise SheetError("start.size_out_of_range", width=width, height=height, least=least, most=most)
+    if np.abs(points).max() > FARTHEST_START:
+        raise SheetError("start.too_far_away", most=FARTHEST_START)
     polygon = shapely.Polygon(points)
     if not polygon.is_valid or polygon.area <= 0.0:
         raise SheetError("start.crosses_itself")

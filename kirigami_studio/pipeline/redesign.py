@@ -90,13 +90,14 @@ def rescored(candidate: Candidate, sheet: Sheet, target: Outline) -> Candidate:
 
 
 def keep_for_connectors(
-    grid: tuple[int, int], material: Material, width_mm: float, connector_mm: float | None, kerf_mm: float | None
+    sheet: Sheet, material: Material, width_mm: float, connector_mm: float | None, kerf_mm: float | None
 ) -> float:
     """How deep material has to stay at the hinges of a trimmed sheet so that its connectors hold.
 
     Parameters
     ----------
-    grid : (rows, columns)
+    sheet : Sheet
+        Its grid, start outline and cell decide; ratios and rim do not.
     material : Material
     width_mm : float
         Width of the flat sheet.
@@ -114,7 +115,7 @@ def keep_for_connectors(
     """
     connector = material.connector_mm if connector_mm is None else connector_mm
     kerf = material.kerf_mm if kerf_mm is None else kerf_mm
-    needed = needed_keep(deploy(RatioField.uniform(*grid)), width_mm, connector, kerf)
+    needed = needed_keep(deploy(sheet.plain()), width_mm, connector, kerf)
     if needed > LARGEST_KEEP:
         raise FabricationError(
             "trim.connectors_too_wide",

@@ -8,7 +8,7 @@ import numpy as np
 from cut_sheets import bitten, connector_distances, covered_hinges, drawn_line, finished_pieces, mouths
 from hypothesis import assume, given
 from hypothesis import strategies as st
-from lattice_strategies import grids, ratio_fields
+from lattice_strategies import grids, ratio_fields, sheets
 from shapely.geometry import Polygon
 
 from kirigami_studio.fabricate.checks import check_plan
@@ -18,14 +18,14 @@ from kirigami_studio.fabricate.material import default_material
 from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions
 from kirigami_studio.foundation.errors import FabricationError
 from kirigami_studio.lattice.deployment import deploy
-from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.lattice.sheet import Sheet
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Wish:
     """What a plan is made from."""
 
-    field: RatioField
+    sheet: Sheet
     width_mm: float
     connector_mm: float
     kerf_mm: float
@@ -35,7 +35,7 @@ class Wish:
 
     def plan(self) -> CutPlan:
         """The plan; an impossible wish is no example."""
-        design = deploy(self.field)
+        design = deploy(self.sheet)
         material = replace(default_material(), relief_radius_mm=self.radius_mm, min_ligament_mm=1e-3)
         kept = bitten(design, mouths(design), self.bite) if self.bite else None
         try:
@@ -50,7 +50,8 @@ class Wish:
 @st.composite
 def wishes(draw: st.DrawFn, trimmed: bool = False) -> Wish:
     """Sheets of 8 to 30 mm a cell; connectors up to a seventh of that."""
-    field = draw(ratio_fields(grids(5), decades=0.5 if trimmed else 0.75))
+    decades = 0.5 if trimmed else 0.75
+    sheet = draw(st.one_of(ratio_fields(grids(5), decades).map(Sheet), sheets(5, decades)))
     cell = draw(st.floats(8.0, 30.0))
     connector = draw(st.floats(0.05, 0.07 * cell))
     kerf = draw(st.sampled_from([0.0, 0.02, 0.15, 0.4]))
@@ -60,7 +61,7 @@ def wishes(draw: st.DrawFn, trimmed: bool = False) -> Wish:
         hinge_mm=tuple((hinge, draw(st.floats(0.05, 0.07 * cell))) for hinge in (0, 5)),
     )
     bite = draw(st.floats(0.05, 0.2)) if trimmed else 0.0
-    return Wish(field, cell * (field.columns + 1), connector, kerf, draw(st.floats(0.03, 0.5)), options, bite)
+    return Wish(sheet, cell * (sheet.columns + 1), connector, kerf, draw(st.floats(0.03, 0.5)), options, bite)
 
 
 @given(wish=wishes())

@@ -38,6 +38,7 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "start.size_out_of_range": mark(
         "A start outline must be {least:g} to {most:g} cells across, got {width:g} x {height:g}. Scale it."
     ),
+    "start.too_far_away": mark("A start outline must lie within {most:g} cells of the origin. Move it there."),
     "cell.not_positive": mark("A cell needs a width and a height above 0, got {cell!r:.80}."),
     "cell.out_of_range": mark(
         "A cell's width and height must be {least:g} to {most:g} times the unit cell's, got {width:g} x {height:g}."

@@ -131,5 +131,5 @@ def keep_for(candidate: Candidate, settings: FabricationSettings) -> float:
     from kirigami_studio.pipeline.redesign import keep_for_connectors
     from kirigami_studio.project.cutting import material_for
 
-    grid, material = candidate.sheet.grid, material_for(settings)
-    return keep_for_connectors(grid, material, settings.width_mm, settings.connector_mm, settings.kerf_mm)
+    sheet, material = candidate.sheet, material_for(settings)
+    return keep_for_connectors(sheet, material, settings.width_mm, settings.connector_mm, settings.kerf_mm)

@@ -81,6 +81,7 @@ SQUARE = [[0, 0], [3, 0], [3, -3], [0, -3]]
         ({"start": [[0, 0], [3, 0], [3, float("inf")]]}, "start.not_points", "at least three points"),
         ({"start": [[0, 0], [1e300, 0], [0, -1e300]]}, "start.size_out_of_range", "0.5 to 1000 cells"),
         ({"start": [[0, 0], [1e-9, 0], [0, -1e-9]]}, "start.size_out_of_range", "0.5 to 1000 cells"),
+        ({"start": [[1e5, 0], [1e5 + 4, 0], [1e5, -4]]}, "start.too_far_away", "within 10000 cells"),
         ({"start": SQUARE * 3000}, "start.too_many_points", "at most 10000 points"),
         ({"cell": [1.0, 0.0]}, "cell.not_positive", "above 0"),
         ({"cell": [1.0]}, "cell.not_positive", "above 0"),

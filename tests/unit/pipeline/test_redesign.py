@@ -75,7 +75,7 @@ def test_that_a_trimmed_design_is_trimmed_again_after_a_fit(trimmed_candidate: C
 
 def test_that_a_fit_whose_trim_is_refused_says_why(trimmed_candidate: Candidate, heart: Outline) -> None:
     def refuse() -> float:
-        return keep_for_connectors(GRID, find_material("card-co2"), 20.0, 5.0, None)
+        return keep_for_connectors(Sheet.uniform(*GRID), find_material("card-co2"), 20.0, 5.0, None)
 
     refit = refitted(trimmed_candidate, heart, "accuracy", [], refuse, never)
     assert refit.candidate.trim is None and refit.candidate.polished
@@ -96,7 +96,7 @@ def test_that_the_sample_of_a_fitted_design_is_scored_again(candidate: Candidate
 
 def test_that_wider_connectors_need_deeper_material_and_too_wide_ones_are_refused() -> None:
     card = find_material("card-co2")
-    assert keep_for_connectors(GRID, card, 1000.0, 0.5, None) == KEEP
-    assert keep_for_connectors(GRID, card, 100.0, 3.0, None) > KEEP
+    assert keep_for_connectors(Sheet.uniform(*GRID), card, 1000.0, 0.5, None) == KEEP
+    assert keep_for_connectors(Sheet.uniform(*GRID), card, 100.0, 3.0, None) > KEEP
     with pytest.raises(FabricationError, match=r"Make the sheet at least \d+ mm wide"):
-        keep_for_connectors(GRID, card, 20.0, 5.0, None)
+        keep_for_connectors(Sheet.uniform(*GRID), card, 20.0, 5.0, None)
