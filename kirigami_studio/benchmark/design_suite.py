@@ -188,8 +188,10 @@ def _summary(
 TILE, LINE, GAP = 260, 22, 14
 COLUMNS = 6
 #: The same for pictures of three states each.
-STATE_TILE, STATE_COLUMNS = 150, 12
+STATE_TILE, STATE_COLUMNS = 180, 12
 INK = (40, 44, 52)
+#: Colours of the palette: few are needed, and the file is a third as large.
+COLOURS = 64
 
 
 def write_contact_sheet(made: Sequence[Made], path: Path, states: bool = False) -> None:
@@ -215,7 +217,7 @@ def write_contact_sheet(made: Sequence[Made], path: Path, states: bool = False) 
         for place, text in enumerate(lines):
             draw.text((x + side // 2, y + side + place * LINE), text, fill=INK, font=font, anchor="ma")
     stream = BytesIO()
-    sheet.save(stream, format="PNG", optimize=True)
+    sheet.quantize(COLOURS).save(stream, format="PNG", optimize=True)
     write_atomically(path, stream.getvalue())
 
 

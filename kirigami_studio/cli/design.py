@@ -255,6 +255,8 @@ def _say_result(target: Outline, result: Result, files: dict[str, str]) -> None:
         feasible = tr("It is not feasible at {angle:.0f} degrees.", angle=angle)
     ended = [tr("The budget ended the run.")] if result.budget_ended else []
     say(" ".join((best, feasible, *ended)))
+    (reason, *_) = Ranking.of(result.request).reasons(result.candidates)
+    say(f"{target.name}: {reason.text}")
     if trim is not None:
         say(
             tr(

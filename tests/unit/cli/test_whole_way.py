@@ -19,7 +19,8 @@ pytestmark = pytest.mark.torch
 def test_that_a_silhouette_becomes_a_cut_file_that_passes_its_check(
     capsys: pytest.CaptureFixture[str], tmp_path: Path, name: str
 ) -> None:
-    assert main(["design", name, "--k", "4", "--width-mm", "100", "--out", str(tmp_path), "--json"]) == 0
+    wish = ["design", name, "--grid", "10x10", "--k", "4", "--width-mm", "100", "--out", str(tmp_path), "--json"]
+    assert main(wish) == 0
     design = json.loads(capsys.readouterr().out)
     best = design["best"]
     assert best["feasible"]
@@ -46,7 +47,8 @@ def test_that_a_silhouette_becomes_a_cut_file_that_passes_its_check(
 
 
 def test_that_connectors_too_wide_for_trimming_name_the_width_that_serves(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["design", "heart", "--k", "1", "--no-polish", "--trim", "--connector-mm", "9"]) == 1
+    wish = ["design", "heart", "--grid", "10x10", "--k", "1", "--no-polish", "--trim", "--connector-mm", "9"]
+    assert main(wish) == 1
     assert "at least 251 mm wide" in capsys.readouterr().err
 
 
@@ -64,3 +66,33 @@ def test_that_a_trimmed_design_tells_both_scores_and_writes_a_trimmed_cut_file(
     outline = next(iter(ezdxf.readfile(tmp_path / "cut.dxf").modelspace().query('LWPOLYLINE[layer=="OUTLINE"]')))
     assert outline.closed
     assert len(outline) > 4
+
+
+def test_that_a_design_tells_what_its_sheet_is_like_and_why_it_comes_first(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    wish = ["design", "hexagon", "--grid", "8x8", "--k", "4", "--width-mm", "50", "--out", str(tmp_path), "--json"]
+    assert main([*wish, "--regular", "0"]) == 0
+    by_match = json.loads(capsys.readouterr().out)["candidates"]
+    assert main([*wish, "--prefer", "calm"]) == 0
+    answer = json.loads(capsys.readouterr().out)
+    calm = answer["candidates"]
+    match = [one["iou_exact"] for one in by_match if one["cuttable"]]
+    assert match == sorted(match, reverse=True) and by_match[0]["rank_reason"].startswith("Best match: ")
+    assert calm[0]["panel_area_cv"] <= by_match[0]["panel_area_cv"]
+    for one in (*by_match, *calm):
+        assert one["grid"] == [8, 8] and one["symmetry"] in (None, "half_turn", "quarter_turn")
+        assert one["rank_reason"].endswith(".") and 0 <= one["group"] < 4
+        assert 0.0 <= one["at_limit"] <= 1.0 and 0.0 < one["least_feature_mm"] < 50 / 9
+    assert answer["best"] == calm[0] and calm[0]["group"] == 0
+    project = load(tmp_path / "design.kiri")
+    assert (project.settings.regular, project.settings.auto_grid) == (1.0, False)
+    assert project.provenance["regular"] == "1"
+
+
+def test_that_a_grid_left_to_the_program_is_stored_as_such(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["design", "hexagon", "--k", "1", "--no-polish", "--out", str(tmp_path), "--json"]) == 0
+    best = json.loads(capsys.readouterr().out)["best"]
+    project = load(tmp_path / "design.kiri")
+    assert project.settings.auto_grid and list(project.settings.grid) == best["grid"]
+    assert project.provenance["grid_choice"] == "auto"
