@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+from uneven_sheets import uneven_sheet
 
 from kirigami_studio.evaluate.crossing import deepest_crossing, stays_clear
 from kirigami_studio.evaluate.feasibility import (
@@ -18,6 +19,7 @@ from kirigami_studio.evaluate.feasibility import (
 from kirigami_studio.foundation.arrays import ComplexArray
 from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.lattice.sheet import Sheet
 
 SAMPLES = 32
 
@@ -62,6 +64,15 @@ def test_that_a_batch_is_checked_as_its_members_are(grid: tuple[int, int], phi: 
     draw = np.random.default_rng(3)
     sheets = [deploy(RatioField.from_log10(draw.uniform(-3, 3, grid))) for _ in range(6)]
     assert feasibility_of_many(sheets, phi) == [one_by_one(sheet, phi) for sheet in sheets]
+
+
+@pytest.mark.parametrize("phi", [0.0, 0.4, 1.7, math.pi])
+@pytest.mark.parametrize("start", [False, True])
+def test_that_sheets_with_uneven_rims_are_checked_alike_in_a_batch_whatever_their_size(start: bool, phi: float) -> None:
+    sheets = [uneven_sheet(6, 7, seed, decades=2.0, start=start) for seed in range(4)]
+    large = [Sheet(sheet.field, sheet.rim, sheet.start, (0.1, 15.0)) for sheet in sheets]
+    designs = [deploy(sheet) for sheet in (*sheets, *large)]
+    assert feasibility_of_many(designs, phi) == [one_by_one(design, phi) for design in designs]
 
 
 @pytest.mark.parametrize("part", [1.5, 1.01, 0.99, 0.3])

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 import pytest
 import shapely
 from shapely.geometry import Point, Polygon
 from trimmed_panels import compact_parts, deployed_parts
+from uneven_sheets import uneven_sheet
 
 from kirigami_studio.evaluate.alignment import align
 from kirigami_studio.evaluate.kept_panels import edge_panels
@@ -19,15 +21,25 @@ from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import AngleError, UsageError
 from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.outlines.outline import Outline
 
 GRID = 1e-9
+
+#: Makes a design from rows, columns and a seed.
+Made = Callable[[int, int, int], Deployment]
 
 
 def design(rows: int, columns: int, seed: int) -> Deployment:
     """A random feasible sheet."""
     z = np.random.default_rng(seed).uniform(-0.4, 0.4, (rows, columns))
     return deploy(RatioField.from_log10(z))
+
+
+def uneven(rows: int, columns: int, seed: int) -> Deployment:
+    """A random feasible sheet with an uneven rim; for odd seeds it starts round, for every third with other cells."""
+    sheet = uneven_sheet(rows, columns, seed, start=seed % 2 == 1)
+    return deploy(Sheet(sheet.field, sheet.rim, sheet.start, (1.0, 1.2) if seed % 3 == 0 else (1.0, 1.0)))
 
 
 def circle() -> Outline:
@@ -55,15 +67,21 @@ def kept_silhouette(cut: Trim, deployment: Deployment) -> shapely.Geometry:
     return Polygon(deployment.outline(cut.phi)).difference(shapely.union_all(removed), grid_size=GRID)
 
 
+@pytest.mark.parametrize("made", [design, uneven])
 @pytest.mark.parametrize(("phi", "seed"), [(0.0, 1), (0.0, 2), (0.6, 3), (1.4, 4)])
-def test_that_the_trimmed_iou_is_that_of_the_silhouette_less_what_was_cut_off(phi: float, seed: int) -> None:
-    deployment, target = design(6, 7, seed), circle()
+def test_that_the_trimmed_iou_is_that_of_the_silhouette_less_what_was_cut_off(
+    made: Made, phi: float, seed: int
+) -> None:
+    deployment, target = made(6, 7, seed), circle()
     pose = laid(deployment, target, phi)
     cut = trim(deployment, target, phi, pose)
     silhouette = shapely.transform(kept_silhouette(cut, deployment), pose.apply)
     common = silhouette.intersection(target.polygon).area
     assert cut.iou == pytest.approx(common / (silhouette.area + 1.0 - common), abs=1e-6)
     assert cut.iou > cut.untrimmed_iou
+    kept = sum(Polygon(part).area for part in compact_parts(cut, deployment))
+    flat = Polygon(deployment.outline(math.pi)).area
+    assert cut.removed_share == pytest.approx(1.0 - kept / flat, abs=1e-6)
 
 
 def test_that_parts_move_with_their_panels(letter_l: FloatArray) -> None:
@@ -81,11 +99,14 @@ def test_that_parts_move_with_their_panels(letter_l: FloatArray) -> None:
         np.testing.assert_allclose(after, deployed_parts(cut, deployment, 0.8)[row], atol=1e-12)
 
 
+@pytest.mark.parametrize("made", [design, uneven])
 @pytest.mark.parametrize("keep", [0.05, 0.15, 0.3])
 @pytest.mark.parametrize("seed", range(6))
-def test_that_every_hinge_keeps_its_material_and_every_panel_stays_one_piece(seed: int, keep: float) -> None:
+def test_that_every_hinge_keeps_its_material_and_every_panel_stays_one_piece(
+    made: Made, seed: int, keep: float
+) -> None:
     rows, columns = 4 + seed, 9 - seed
-    deployment, target = design(rows, columns, seed), circle()
+    deployment, target = made(rows, columns, seed), circle()
     cut = trim(deployment, target, 0.0, laid(deployment, target, 0.0, 1.35), keep)
     edge = edge_panels(rows, columns)
     assert sum(part is not None for part in cut.kept) > len(edge.index) // 2
@@ -110,9 +131,10 @@ def test_that_panels_inside_the_sheet_are_never_cut() -> None:
     assert all(cut.kept[index] is None for index in inside)
 
 
+@pytest.mark.parametrize("made", [design, uneven])
 @pytest.mark.parametrize("seed", range(4))
-def test_that_the_trimmed_compact_sheet_is_one_area_without_holes(seed: int) -> None:
-    deployment, target = design(7, 6, seed), circle()
+def test_that_the_trimmed_compact_sheet_is_one_area_without_holes(made: Made, seed: int) -> None:
+    deployment, target = made(7, 6, seed), circle()
     cut = trim(deployment, target, 0.0, laid(deployment, target, 0.0, 1.2))
     sheet = shapely.union_all([Polygon(part) for part in compact_parts(cut, deployment)], grid_size=1e-8)
     assert sheet.geom_type == "Polygon"

@@ -13,6 +13,7 @@ from pathlib import Path
 import ezdxf
 import numpy as np
 import pytest
+from uneven_sheets import uneven_sheet
 
 from kirigami_studio.export.dxf import write_dxf, write_reference
 from kirigami_studio.export.dxf_check import check_file
@@ -29,7 +30,8 @@ from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions, CutOrd
 from kirigami_studio.foundation import files
 from kirigami_studio.foundation.errors import ExportError
 from kirigami_studio.lattice.deployment import Deployment, deploy
-from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.lattice.sheet import Sheet
+from kirigami_studio.lattice.sheet_files import sheet_of_json
 
 MakeDesign = Callable[..., Deployment]
 
@@ -82,15 +84,20 @@ def test_that_the_same_job_gives_the_same_set(job: ExportJob, tmp_path: Path) ->
         assert path.read_bytes() == (tmp_path / "two" / path.name).read_bytes(), path.name
 
 
-def test_that_the_record_alone_gives_the_same_cut_file_again(make_design: MakeDesign, tmp_path: Path) -> None:
-    design = make_design(4, 5, seed=3)
+@pytest.mark.parametrize(
+    "sheet",
+    [Sheet(uneven_sheet(4, 5, 3).field), uneven_sheet(4, 5, 3), uneven_sheet(4, 5, 3, start=True)],
+    ids=["ratios alone", "uneven rim", "round start"],
+)
+def test_that_the_record_alone_gives_the_same_cut_file_again(sheet: Sheet, tmp_path: Path) -> None:
+    design = deploy(sheet)
     options = CutOptions(hinge_mm=((2, 0.6), (7, 0.9)))
     plan = plan_cuts(design, 120.0, connector_mm=0.4, kerf_mm=0.05, options=options)
     path = export(ExportJob(design, plan=plan), tmp_path / "sheet.dxf")
     record = json.loads(write_sidecar(ExportJob(design, plan=plan), tmp_path / "sheet.json", [path]).read_text())
     made = record["fabrication"]
     again = plan_cuts(
-        deploy(RatioField(np.array(record["design"]["ratio"]))),
+        deploy(sheet_of_json(record["design"])),
         made["width_mm"],
         made["connector_mm"],
         made["kerf_mm"],
@@ -106,6 +113,7 @@ def test_that_the_record_alone_gives_the_same_cut_file_again(make_design: MakeDe
         made["overcut_mm"],
     )
     write_dxf(again, tmp_path / "again.dxf", made["dxf_version"], made["profile"])
+    assert ("rim" in record["design"]) == (not sheet.is_default)
     assert again.design_hash == record["design"]["hash"]
     assert (tmp_path / "again.dxf").read_bytes() == path.read_bytes()
     assert record["files"] == {"sheet.dxf": hashlib.sha256(path.read_bytes()).hexdigest()}
