@@ -79,7 +79,7 @@ def measure_nearness(
 def _figures(before: Sequence[Candidate], found: Sequence[Candidate]) -> dict[str, float]:
     siou = [one.score.siou for one in found]
     return {
-        "distance": float(distances(before[0].sheet.field, [one.sheet.field for one in found]).mean()),
+        "distance": float(distances(before[0].sheet, [one.sheet for one in found]).mean()),
         "siou_mean": float(np.mean(siou)),
         "siou_best": float(max(siou)),
         "feasible": float(np.mean([one.score.feasible for one in found])),

@@ -1,8 +1,9 @@
 """Which candidates are one design, which look alike, and which are worth a fit first.
 
-Two fields make the same sheet when one is the other turned: by half a turn where rows + columns is even (z stays), and
-on even square grids by a quarter turn (z changes its sign), at every angle of deployment.  *Distance* is the root mean
-square difference of z = log10 x over the voids, the smallest over these turns.
+Two sheets are the same when one is the other turned: by half a turn where rows + columns is even (z stays), and on even
+square grids by a quarter turn (z changes its sign), at every angle of deployment; the mouths of the rim turn with them.
+*Distance* is the root mean square difference of z = log10 x over the voids, the smallest over these turns; a mouth that
+is apart by a cell counts as much as a void whose z is apart by 1.
 """
 
 from __future__ import annotations
@@ -30,22 +31,42 @@ ALIKE = 0.3
 SAME_LOOK = 0.15
 
 
-def distances(field: RatioField, others: Sequence[RatioField]) -> FloatArray:
-    """Difference between a field and each of several on the same grid, (len(others),); 0 for the same sheet turned."""
-    ways = np.stack([turn.ravel() for turn in turns(field)])
-    table = np.array([other.log10.ravel() for other in others]).reshape(len(others), 1, ways.shape[1])
-    nearest: FloatArray = np.sqrt(np.square(table - ways).mean(axis=2)).min(axis=1)
-    return nearest
+def distances(design: Sheet | RatioField, others: Sequence[Sheet | RatioField]) -> FloatArray:
+    """Difference between a sheet and each of several on the same grid, (len(others),); 0 for the same sheet turned.
+
+    Infinite where the start outline or the cell is another.
+    """
+    sheet, rest = Sheet.of(design), [Sheet.of(other) for other in others]
+    ways, voids = np.stack(turns(sheet)), sheet.rows * sheet.columns
+    table = np.array([_state(other) for other in rest]).reshape(len(rest), 1, ways.shape[1])
+    nearest = np.sqrt(np.square(table - ways).sum(axis=2) / voids).min(axis=1)
+    nearest[[_kind(other) != _kind(sheet) for other in rest]] = np.inf
+    return np.asarray(nearest)
 
 
-def turns(field: RatioField) -> list[FloatArray]:
-    """z of the same sheet in all its turned positions: one, two or four arrays (rows, columns)."""
-    z, rows, columns = field.log10, field.rows, field.columns
-    if (rows + columns) % 2:
-        return [z]
-    if rows != columns or rows % 2:
-        return [z, np.rot90(z, 2)]
-    return [np.rot90(z, quarter) * (-1.0) ** quarter for quarter in range(4)]
+def turns(design: Sheet | RatioField) -> list[FloatArray]:
+    """z, then the offsets of the mouths, of the same sheet in all its turned positions: one, two or four (m n + R,).
+
+    A sheet with a start outline of its own has one position; with cells that are not square it has no quarter turns.
+    """
+    sheet = Sheet.of(design)
+    state, symmetry = _state(sheet), Symmetry.QUARTER_TURN
+    if sheet.cell[0] != sheet.cell[1] or not symmetry.fits(*sheet.grid):
+        symmetry = Symmetry.HALF_TURN
+    if sheet.start is not None or not symmetry.fits(*sheet.grid):
+        return [state]
+    tables = symmetry.on(*sheet.grid)
+    return [state, *(sign * state[source] for source, sign in zip(tables.source, tables.sign, strict=True))]
+
+
+def _state(sheet: Sheet) -> FloatArray:
+    """z row by row, then how far the mouths are from their even places, unit cells: (m n + R,)."""
+    return np.concatenate([sheet.field.log10.ravel(), sheet.rim.offsets(*sheet.grid)])
+
+
+def _kind(sheet: Sheet) -> Hashable:
+    """What sheets that can be compared have in common."""
+    return sheet.grid, sheet.cell, None if sheet.start is None else sheet.start.tobytes()
 
 
 def look_alikes(candidates: Sequence[Candidate], ranking: Ranking = USUAL) -> tuple[int, ...]:
@@ -70,8 +91,7 @@ def _alike(sheets: Sequence[Sheet]) -> BoolArray:
     table = np.zeros((len(sheets), len(sheets)), dtype=np.bool_)
     kinds: dict[Hashable, list[int]] = {}
     for place, sheet in enumerate(sheets):
-        start = None if sheet.start is None else sheet.start.tobytes()
-        kinds.setdefault((sheet.grid, sheet.cell, start), []).append(place)
+        kinds.setdefault(_kind(sheet), []).append(place)
     for members in kinds.values():
         table[np.ix_(members, members)] = _alike_of_a_kind([sheets[place] for place in members])
     return table
@@ -106,8 +126,8 @@ def worth_a_fit(candidates: Sequence[Candidate], ranking: Ranking = USUAL) -> tu
     first: list[Candidate] = []
     later: list[Candidate] = []
     for candidate in ranking.ranked(candidates):
-        chosen = [other.sheet.field for other in (*first, *later)]
-        nearest = distances(candidate.sheet.field, chosen).min() if chosen else np.inf
+        chosen = [other.sheet for other in (*first, *later)]
+        nearest = distances(candidate.sheet, chosen).min() if chosen else np.inf
         if nearest >= DUPLICATE:
             (first if nearest >= ALIKE else later).append(candidate)
     return (*first, *later)
@@ -121,15 +141,19 @@ def distinct(candidates: Sequence[Candidate], others: Sequence[Candidate]) -> tu
     """
     if not candidates:
         return ()
-    known = np.array([one.sheet.field.log10.ravel() for one in (*others, *candidates)])
+    everything = [one.sheet for one in (*others, *candidates)]
+    known, kinds = np.array([_state(sheet) for sheet in everything]), [_kind(sheet) for sheet in everything]
     size = np.square(known).sum(axis=1)
     own = size[len(others) :]
     nearest = np.full((len(candidates), len(known)), np.inf)
-    ways = [turns(one.sheet.field) for one in candidates]
-    for number in range(len(ways[0])):
-        turned = np.array([way[number].ravel() for way in ways])
+    ways = [turns(one.sheet) for one in candidates]
+    for number in range(max(len(way) for way in ways)):
+        turned = np.array([way[number % len(way)] for way in ways])
         np.minimum(nearest, own[:, None] + size - 2.0 * (turned @ known.T), out=nearest)
-    alike = nearest < DUPLICATE**2 * known.shape[1]
+    rows, columns = candidates[0].sheet.grid
+    alike = nearest < DUPLICATE**2 * rows * columns
+    if len(set(kinds)) > 1:
+        alike &= np.array([[one == other for other in kinds] for one in kinds[len(others) :]])
     kept: list[int] = []
     for number, row in enumerate(alike):
         earlier = [len(others) + place for place in kept]

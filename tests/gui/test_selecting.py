@@ -171,7 +171,7 @@ def test_that_designs_that_arrive_one_by_one_lie_as_if_sorted_at_once(
 ) -> None:
     grown, whole = GalleryModel(), GalleryModel()
     qtmodeltester.check(grown)
-    selection = Selection(order=order, unlike=designs.candidates[1].sheet.field, pinned_first=True)
+    selection = Selection(order=order, unlike=designs.candidates[1].sheet, pinned_first=True)
     marks = {designs.candidates[2]: Mark.PINNED}
     for model in (grown, whole):
         model.set_marks(marks)

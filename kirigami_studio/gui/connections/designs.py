@@ -120,9 +120,7 @@ class DesignConnections(QObject):
         """Tell the bar which design is chosen."""
         model, candidate = self._window.gallery.view.model_, self.chosen
         number = model.number_of(candidate)
-        self._window.gallery.bar.set_chosen(
-            None if candidate is None or not number else (candidate.sheet.field, number)
-        )
+        self._window.gallery.bar.set_chosen(None if candidate is None or not number else (candidate.sheet, number))
 
     @property
     def chosen(self) -> Candidate | None:

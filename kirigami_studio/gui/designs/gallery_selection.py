@@ -10,7 +10,7 @@ from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.fabricate.panel_sizes import least_panel_share
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.lattice.deployment import Deployment
-from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.pipeline.variety import distances
 from kirigami_studio.project.document import Mark
 
@@ -42,7 +42,7 @@ class Selection:
         Exact IoU that a design has at least.
     most_variation : float
         Coefficient of variation of panel areas that a design has at most; 0 for any.
-    unlike : RatioField or None
+    unlike : Sheet or None
         Design that :attr:`SortOrder.UNLIKE` measures from; it stays while the user looks from card to card, so that the
         cards stay in their places.
     """
@@ -54,7 +54,7 @@ class Selection:
     show_rejected: bool = False
     least_match: float = 0.0
     most_variation: float = 0.0
-    unlike: RatioField | None = None
+    unlike: Sheet | None = None
 
     @property
     def filters(self) -> bool:
@@ -121,14 +121,14 @@ def sorting_values(designs: Sequence[GalleryItem], selection: Selection) -> list
     return [0.0] * len(designs)
 
 
-def differences(candidates: Sequence[Candidate], origin: RatioField | None) -> list[float]:
-    """How different each design is from one: root mean square of the difference of log10 x, the best turn."""
+def differences(candidates: Sequence[Candidate], origin: Sheet | None) -> list[float]:
+    """How different each design is from one: of log10 x and of the mouths, in the best turn."""
     if origin is None or not candidates:
         return [0.0] * len(candidates)
-    same = [candidate.sheet.grid == origin.ratio.shape for candidate in candidates]
+    same = [candidate.sheet.grid == origin.grid for candidate in candidates]
     if not all(same):
         return [0.0] * len(candidates)
-    found: list[float] = distances(origin, [candidate.sheet.field for candidate in candidates]).tolist()
+    found: list[float] = distances(origin, [candidate.sheet for candidate in candidates]).tolist()
     return found
 
 

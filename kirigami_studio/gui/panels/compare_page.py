@@ -146,7 +146,7 @@ class ComparePage(QWidget):
         one, other = self._entries
         if one is None or other is None:
             return ()
-        apart = differences([one.candidate], other.candidate.sheet.field)[0]
+        apart = differences([one.candidate], other.candidate.sheet)[0]
         return tr("the designs differ by {apart:.2f}", apart=apart), tr("differ by {apart:.2f}", apart=apart)
 
     @property

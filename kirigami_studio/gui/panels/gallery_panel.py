@@ -24,7 +24,7 @@ from kirigami_studio.gui.designs.gallery_selection import Selection, SortOrder, 
 from kirigami_studio.gui.panels.card import INSET, Card, FittingLabel, ToolButton
 from kirigami_studio.gui.panels.number_field import DecimalField, number_field
 from kirigami_studio.gui.views.gallery_view import GalleryView
-from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.lattice.sheet import Sheet
 
 #: Nearness at the two ends of the slider, and where it starts.
 NEAREST, FARTHEST, USUAL = 0.9, 0.1, 0.6
@@ -79,7 +79,7 @@ class GalleryBar(QWidget):
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self._selection = Selection()
-        self._chosen: tuple[RatioField, int] | None = None
+        self._chosen: tuple[Sheet, int] | None = None
         self.order = self._order_box()
         self.filter = ToolButton("filterGallery", "filter", tr("Filter designs."), checkable=True)
         self.again = ToolButton("again", "again", tr("More designs (Ctrl+R)."))
@@ -228,7 +228,7 @@ class GalleryBar(QWidget):
                 number.setValue(0.0)
         self._emit_selection()
 
-    def set_chosen(self, chosen: tuple[RatioField, int] | None) -> None:
+    def set_chosen(self, chosen: tuple[Sheet, int] | None) -> None:
         """The design on the stage and its number: what others can be unlike, or drawn alike."""
         self._chosen = chosen
 

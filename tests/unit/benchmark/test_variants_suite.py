@@ -93,7 +93,7 @@ def test_that_spreads_of_two_samples_follow_from_their_distance() -> None:
 
 def test_that_a_turned_sheet_adds_no_cluster_and_no_sheet_distance() -> None:
     first, other = random_field(0), random_field(1)
-    same = RatioField.from_log10(turns(first)[1])
+    same = RatioField.from_log10(turns(first)[1][: first.ratio.size].reshape(first.ratio.shape))
     assert clusters_of([first, same, first]) == 1
     assert clusters_of([first, same, other]) == 2
     figures = spread_of(candidates(first, same))
