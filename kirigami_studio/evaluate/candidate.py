@@ -17,6 +17,7 @@ class Origin(Enum):
     """How a design came to be."""
 
     SAMPLED = "sampled"  #: by the generator for the target
+    GUIDED = "guided"  #: fitted from the uniform sheet, led by the target itself
     SEARCHED = "searched"  #: found by the search that follows the samples
     RESAMPLED = "resampled"  #: by the generator near another design
     EDITED = "edited"  #: changed by hand

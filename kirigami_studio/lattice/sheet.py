@@ -303,50 +303,67 @@ def replace_sheet(sheet: Sheet, field: RatioField | None = None, rim: Rim | None
 
 def rim_nodes(sheet: Sheet) -> FloatArray:
     """The given nodes of a sheet: (G, 2) float, unit cells, in the order of ``rim_table(...).node``."""
-    table = rim_table(*sheet.grid)
-    return np.asarray(table.share @ anchor_points(sheet))
+    return np.asarray(rim_table(*sheet.grid).share @ anchor_points(sheet))
 
 
 def anchor_points(sheet: Sheet) -> FloatArray:
     """Corners and mouths of a sheet, clockwise from the top left corner: (A, 2) float, unit cells."""
-    table = rim_table(*sheet.grid)
-    place = table.anchor_place.copy()
-    width, height = sheet.columns + 1, sheet.rows + 1
-    position = sheet.rim.positions
-    first = np.array([0, width, 2 * width + height, 2 * (width + height)])[table.side]
-    place[table.mouths] = np.where(table.side < 2, first + position, first - position)
-    return _on_rim(sheet, place) * sheet.cell
+    return RimPath(*sheet.grid, sheet.start, sheet.cell).anchors(sheet.rim.positions)
 
 
-def anchor_slopes(sheet: Sheet) -> FloatArray:
-    """Derivative of each mouth's own point by its position along the side: (R, 2) float."""
-    table = rim_table(*sheet.grid)
-    if sheet.start is None:
-        along = np.array([[1.0, 0.0], [0.0, -1.0], [1.0, 0.0], [0.0, -1.0]])[table.side]
-        return np.asarray(along * sheet.cell)
-    width, height = sheet.columns + 1, sheet.rows + 1
-    position = sheet.rim.positions
-    first = np.array([0, width, 2 * width + height, 2 * (width + height)])[table.side]
-    sign = np.where(table.side < 2, 1.0, -1.0)
-    step = 1e-6
-    ahead = _on_rim(sheet, first + sign * (position + step))
-    behind = _on_rim(sheet, first + sign * (position - step))
-    return np.asarray((ahead - behind) / (2 * step) * sheet.cell)
+@dataclass(frozen=True, slots=True, eq=False)
+class RimPath:
+    """The flat sheet's outline as a path that mouths move along.
 
+    Attributes
+    ----------
+    rows, columns : int
+    start : (P, 2) float or None
+    cell : (width, height), unit cells
+    """
 
-def _on_rim(sheet: Sheet, place: FloatArray) -> FloatArray:
-    """Points of the flat sheet's outline at places along it, clockwise from the top left corner: (K, 2)."""
-    width, height = float(sheet.columns + 1), float(sheet.rows + 1)
-    around = 2.0 * (width + height)
-    if sheet.start is None:
-        corner_place = np.array([0.0, width, width + height, 2 * width + height, around])
-        corners = np.array([[0.0, 0.0], [width, 0.0], [width, -height], [0.0, -height], [0.0, 0.0]])
-    else:
-        corners = np.concatenate([sheet.start, sheet.start[:1]])
-        steps = np.hypot(*np.diff(corners, axis=0).T)
-        corner_place = np.concatenate([[0.0], np.cumsum(steps)])
-        corner_place *= around / corner_place[-1]
-    return np.stack([np.interp(place, corner_place, corners[:, axis]) for axis in (0, 1)], axis=1)
+    rows: int
+    columns: int
+    start: FloatArray | None = None
+    cell: tuple[float, float] = (1.0, 1.0)
+
+    def anchors(self, positions: FloatArray) -> FloatArray:
+        """Corners and mouths (A, 2), unit cells, from the mouths' ``positions`` (R,) along their sides."""
+        table = rim_table(self.rows, self.columns)
+        place = table.anchor_place.copy()
+        place[table.mouths] = self._around(positions)
+        return self._points(place)
+
+    def slopes(self, positions: FloatArray) -> FloatArray:
+        """Derivative of each mouth's own point by its position: (R, 2) float; one-sided at vertices of the start."""
+        table = rim_table(self.rows, self.columns)
+        if self.start is None:
+            along = np.array([[1.0, 0.0], [0.0, -1.0], [1.0, 0.0], [0.0, -1.0]])[table.side]
+            return np.asarray(along * self.cell)
+        step = 1e-6
+        ahead, behind = self._points(self._around(positions + step)), self._points(self._around(positions - step))
+        return np.asarray((ahead - behind) / (2.0 * step))
+
+    def _around(self, positions: FloatArray) -> FloatArray:
+        """Places of the mouths along the whole rim, clockwise from the top left corner: (R,) unit cells."""
+        side = rim_table(self.rows, self.columns).side
+        width, height = self.columns + 1, self.rows + 1
+        first = np.array([0, width, 2 * width + height, 2 * (width + height)])[side]
+        return np.where(side < 2, first + positions, first - positions)
+
+    def _points(self, place: FloatArray) -> FloatArray:
+        """Points of the outline at places along it, clockwise from the top left corner: (K, 2)."""
+        width, height = float(self.columns + 1), float(self.rows + 1)
+        around = 2.0 * (width + height)
+        if self.start is None:
+            corner_place = np.array([0.0, width, width + height, 2 * width + height, around])
+            corners = np.array([[0.0, 0.0], [width, 0.0], [width, -height], [0.0, -height], [0.0, 0.0]])
+        else:
+            corners = np.concatenate([self.start, self.start[:1]])
+            corner_place = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(corners, axis=0).T))])
+            corner_place *= around / corner_place[-1]
+        points = np.stack([np.interp(place, corner_place, corners[:, axis]) for axis in (0, 1)], axis=1)
+        return np.asarray(points * self.cell)
 
 
 def _numbers(values: npt.ArrayLike) -> FloatArray:

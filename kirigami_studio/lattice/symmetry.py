@@ -24,7 +24,7 @@ from scipy.sparse import csc_matrix
 
 from kirigami_studio.foundation.arrays import FloatArray, IntArray
 from kirigami_studio.foundation.errors import UsageError
-from kirigami_studio.lattice.sheet import Sheet, anchor_points, anchor_slopes, rim_table
+from kirigami_studio.lattice.sheet import RimPath, Sheet, rim_table
 
 
 @dataclass(frozen=True, slots=True)
@@ -214,10 +214,10 @@ def _on(symmetry: Symmetry, rows: int, columns: int) -> GridSymmetry:
     if not symmetry.fits(rows, columns):
         raise UsageError("symmetry.not_on_grid", symmetry=symmetry.label, rows=rows, columns=columns)
     number = np.arange(rows * columns).reshape(rows, columns)
-    uniform = Sheet.uniform(rows, columns)
+    path, table = RimPath(rows, columns), rim_table(rows, columns)
     middle = np.array([columns + 1, -rows - 1]) / 2
-    place = anchor_points(uniform)[rim_table(rows, columns).mouths] - middle
-    along = anchor_slopes(uniform)
+    place = path.anchors(table.even)[table.mouths] - middle
+    along = path.slopes(table.even)
     source, sign = [], []
     for move in symmetry.moves:
         field = np.rot90(np.fliplr(number) if move.flipped else number, move.turns).ravel()

@@ -23,9 +23,12 @@ from kirigami_studio.foundation.threads import one_blas_thread
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.sheet import Sheet
+from kirigami_studio.lattice.sheet import Sheet
+from kirigami_studio.lattice.symmetry import Symmetry, symmetry_of
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.pipeline.rank import improves
 from kirigami_studio.polish.covering import fit_cover
+from kirigami_studio.polish.even_panels import even_weight
 from kirigami_studio.polish.levenberg import polish
 from kirigami_studio.polish.preferences import PREFERENCES
 from kirigami_studio.polish.vertex_drag import VertexDrag
@@ -126,6 +129,11 @@ def keep_for_connectors(
     return max(KEEP, needed)
 
 
+def kept_symmetry(sheet: Sheet) -> Symmetry | None:
+    """The symmetry that a fit from a sheet keeps: its own, unless it is the uniform one, which nobody made symmetric."""
+    return None if np.ptp(sheet.field.ratio) == 0.0 else symmetry_of(sheet)
+
+
 def trimmed(
     candidate: Candidate,
     target: Outline,
@@ -153,7 +161,19 @@ def trimmed(
     """
     score = candidate.score
     with one_blas_thread():
-        cover = fit_cover(candidate.sheet.field, target, score.phi, COVER_STEPS, score.transform, keep, cancel, locked)
+        sheet = candidate.sheet
+        cover = fit_cover(
+            sheet,
+            target,
+            score.phi,
+            COVER_STEPS,
+            score.transform,
+            keep,
+            cancel,
+            locked,
+            free_rim=not sheet.has_even_rim,
+            symmetry=None if locked is not None and locked.any() else kept_symmetry(sheet),
+        )
     return Trimmed(replace(candidate, trim=cover.trim), cover.fit.evaluations + 1)
 
 
@@ -164,6 +184,9 @@ def refitted(
     locked: Collection[tuple[int, int]],
     keep: Callable[[], float],
     cancel: Callable[[], bool],
+    *,
+    regular: float = 0.0,
+    free_rim: bool = False,
 ) -> Refit:
     """Fit a candidate on the exact geometry from its present sheet, and trim it again if it is trimmed.
 
@@ -180,6 +203,10 @@ def refitted(
         it raises is the result's ``trim_problem``.
     cancel : callable
         Asked before every step.
+    regular : float, 0..1
+        How much even panels count, see :func:`kirigami_studio.polish.even_panels.even_weight`.
+    free_rim : bool
+        Whether the mouths may move.
 
     Raises
     ------
@@ -189,15 +216,27 @@ def refitted(
     table = np.zeros(candidate.sheet.grid, dtype=np.bool_)
     for void in locked:
         table[void] = True
-    start = RatioField(np.where(table, candidate.final_sheet.field.ratio, candidate.sheet.field.ratio))
+    ratios = np.where(table, candidate.final_sheet.field.ratio, candidate.sheet.field.ratio)
+    start = candidate.sheet.with_field(RatioField(ratios))
     score, preference = candidate.score, PREFERENCES[prefer]
     with one_blas_thread():
-        fit = polish(start, target, score.phi, REFIT_STEPS, preference, score.transform, cancel, locked=table)
+        fit = polish(
+            start,
+            target,
+            score.phi,
+            REFIT_STEPS,
+            preference,
+            score.transform,
+            cancel,
+            even=even_weight(regular),
+            free_rim=free_rim,
+            symmetry=None if table.any() else kept_symmetry(start),
+            locked=table,
+        )
         _stop_if(cancel)
-        sheet = candidate.sheet.with_field(fit.field)
-        found = evaluate_near(deploy(sheet), target, score.phi, fit.pose)
+        found = evaluate_near(deploy(fit.sheet), target, score.phi, fit.pose)
     first = candidate.sampled_sheet or candidate.sheet
-    fitted = replace(candidate, sheet=sheet, score=found, polished=True, sampled_sheet=first, trim=None)
+    fitted = replace(candidate, sheet=fit.sheet, score=found, polished=True, sampled_sheet=first, trim=None)
     better = improves(fitted, candidate, prefer)
     if candidate.trim is None:
         return Refit(fitted, better)

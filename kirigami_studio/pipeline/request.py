@@ -5,20 +5,26 @@ from __future__ import annotations
 import hashlib
 import math
 from dataclasses import dataclass, replace
+from typing import cast
 
 from kirigami_studio import __version__
 from kirigami_studio.evaluate.trimming import KEEP, check_keep
 from kirigami_studio.foundation.errors import AngleError, UsageError
 from kirigami_studio.lattice.ratio_field import RatioField, check_grid
 from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.polish.continuation import Wishes
+from kirigami_studio.polish.even_panels import even_weight
 from kirigami_studio.polish.panel_size import check_least
 from kirigami_studio.polish.preferences import PREFERENCES
-from kirigami_studio.polish.symmetry import SYMMETRIES
+from kirigami_studio.polish.symmetry import SYMMETRIES, SymmetrySetting
 
 LARGEST_K = 1024
 LARGEST_STEPS = 64
 LARGEST_POLISH = 200
 LARGEST_SEARCH = 8
+LARGEST_GUIDED = 64
+#: The default of window and command line: two ways from a few poses.
+GUIDED_STARTS = 8
 #: The default of window and command line: nearly converged from a generator sample.
 POLISH_STEPS = 15
 #: The paper's grid.
@@ -80,6 +86,8 @@ class Request:
         Least panel edge and neck, between centre lines of cuts, that the material allows; 0 where that is not known.
     grid_chosen : bool
         Whether the run chose the grid.
+    guided : int, 0..64
+        Designs beyond the samples that are fitted from the uniform sheet, in several poses; needs ``polish``.
     """
 
     target: Outline
@@ -104,6 +112,7 @@ class Request:
     width_mm: float = 100.0
     least_feature_mm: float = 0.0
     grid_chosen: bool = False
+    guided: int = 0
 
     def __post_init__(self) -> None:
         if self.grid is not None:
@@ -116,6 +125,7 @@ class Request:
             ("request.seed_out_of_range", self.seed, 0, 2**63 - 1),
             ("request.polish_out_of_range", self.polish, 0, LARGEST_POLISH),
             ("request.search_out_of_range", self.search, 0, LARGEST_SEARCH),
+            ("request.guided_out_of_range", self.guided, 0, LARGEST_GUIDED),
         ):
             if isinstance(value, bool) or not isinstance(value, int) or not least <= value <= most:
                 raise UsageError(code, value=value, least=least, most=most)
@@ -152,6 +162,17 @@ class Request:
         if self.grid is None:
             raise UsageError("request.grid_not_chosen")
         return self.grid
+
+    @property
+    def even(self) -> float:
+        """Weight of even panels in fits, see :func:`kirigami_studio.polish.even_panels.even_weight`."""
+        return even_weight(self.regular)
+
+    @property
+    def wishes(self) -> Wishes:
+        """What fits ask for beside the match."""
+        setting = cast(SymmetrySetting, self.symmetry)
+        return Wishes(PREFERENCES[self.prefer], self.least_panel, self.rim == "free", self.even, setting)
 
     def resolved(self, grid: tuple[int, int]) -> Request:
         """The same request on the grid that was chosen for it; a grid that it has already stays."""

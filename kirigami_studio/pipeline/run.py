@@ -28,8 +28,19 @@ from kirigami_studio.pipeline.events import (
 from kirigami_studio.pipeline.pool import Pool, shared_pool
 from kirigami_studio.pipeline.rank import Ranking
 from kirigami_studio.pipeline.request import USUAL_GRID, Request
-from kirigami_studio.pipeline.tasks import Answer, PolishTask, SearchTask, Task, TrimTask, scored
+from kirigami_studio.pipeline.tasks import (
+    Answer,
+    GuidedTask,
+    PolishTask,
+    SearchTask,
+    Task,
+    TrimTask,
+    fit_target,
+    scored,
+)
 from kirigami_studio.pipeline.variety import worth_a_fit
+from kirigami_studio.polish.continuation import first_angles
+from kirigami_studio.polish.symmetry import SymmetricPose, shared_symmetries
 
 #: Candidates scored in one batch.
 SCORED_TOGETHER = 32
@@ -49,6 +60,9 @@ HEARTBEAT = 0.25
 
 #: Seconds of one step of a fit at 10 x 10, which grow with the number of voids to this power.
 STEP_SECONDS, STEP_GROWTH = 3e-3, 1.5
+
+#: Symmetries of one target that samples are divided among.
+MOST_SYMMETRIES = 2
 
 #: Steps that a search takes for one unit of effort.
 SEARCH_STEPS = 600
@@ -106,6 +120,8 @@ def run(request: Request, cancel: Callable[[], bool] = never, pool: Pool | None 
     yield from work.score([Sheet(field) for field in fields])
     if request.polish:
         yield from work.polish()
+        if request.guided:
+            yield from work.guide()
     if request.search:
         yield from work.search()
     if request.trim:
@@ -137,16 +153,35 @@ def best_of(request: Request, cancel: Callable[[], bool] = never, pool: Pool | N
 
 
 def sample(request: Request) -> tuple[RatioField, ...]:
-    """Sample the request's fields; torch is imported here, on the first run, and not when the program starts."""
+    """Sample the request's fields; torch is imported here, on the first run, and not when the program starts.
+
+    Where the target has symmetries that the grid can keep, samples that keep them come first: half of all, or all where
+    a symmetry is asked for.
+    """
     from kirigami_studio.generator.sampler import Near, sample_fields
     from kirigami_studio.generator.weights import load_model
 
     model = load_model(request.variant)
-    wanted = model, request.target, request.chosen_grid, request.k, request.seed, request.steps, request.phi
-    if request.near is None:
-        return sample_fields(*wanted)
-    near = Near(request.near, rotation_of_target(request.near, request.target, request.phi), request.nearness)
-    return sample_fields(*wanted, near=near)
+    grid, seed, steps, phi = request.chosen_grid, request.seed, request.steps, request.phi
+    if request.near is not None:
+        near = Near(request.near, rotation_of_target(request.near, request.target, phi), request.nearness)
+        return sample_fields(model, request.target, grid, request.k, seed, steps, phi, near=near)
+    fields: list[RatioField] = []
+    for pose, count in symmetric_shares(request):
+        target = fit_target(request, pose.symmetry)
+        fields += sample_fields(model, target, grid, count, seed, steps, phi, symmetry=pose.symmetry, upward=pose.angle)
+    if len(fields) < request.k:
+        fields += sample_fields(model, request.target, grid, request.k - len(fields), seed, steps, phi)
+    return tuple(fields)
+
+
+def symmetric_shares(request: Request) -> list[tuple[SymmetricPose, int]]:
+    """Symmetries that samples keep, and how many samples keep each."""
+    poses = shared_symmetries(request.target, request.chosen_grid, request.phi, request.wishes.symmetry)
+    poses = poses[:MOST_SYMMETRIES]
+    together = request.k if request.symmetry in ("mirror", "turn") and poses else request.k // 2
+    each = [together // len(poses) + (place < together % len(poses)) for place in range(len(poses))]
+    return [(pose, count) for pose, count in zip(poses, each, strict=True) if count]
 
 
 def rotation_of_target(field: RatioField, target: Outline, phi: float) -> float:
@@ -173,6 +208,7 @@ class Stage:
         return Progress(done, total, tr(self.words, done=done, total=total))
 
 
+GUIDING = Stage(mark("Fitting from the uniform sheet: {done} of {total} done"), "run.stopped_polishing")
 POLISHING = Stage(mark("Polishing: {done} of {total} done"), "run.stopped_polishing")
 SEARCHING = Stage(mark("Searching: {done} of {total} done"), "run.stopped_searching")
 TRIMMING = Stage(mark("Trimming: {done} of {total} done"), "run.stopped_trimming")
@@ -209,7 +245,8 @@ class _Work:
         rounds = 2 if self.request.polish >= 2 * FIRST_ROUND else 1
         for number in range(rounds):
             steps = self.request.polish if rounds == 1 else FIRST_ROUND
-            tasks = [PolishTask(candidate, steps) for candidate in chosen] if number == 0 else self._rest(chosen)
+            last = number == rounds - 1
+            tasks = [PolishTask(candidate, steps, last) for candidate in chosen] if number == 0 else self._rest(chosen)
             yield from self._polished(tasks, number * len(chosen), rounds * len(chosen))
 
     def _rest(self, chosen: Sequence[Candidate]) -> list[PolishTask]:
@@ -230,15 +267,33 @@ class _Work:
                 yield CandidateImproved(answer.candidate.index, answer.candidate)
             yield POLISHING.progress(done, total)
 
-    def search(self) -> Iterator[Event]:
-        """Look for a better design from the best that differ and from scratch."""
-        starts = tuple(candidate.sheet.field for candidate in worth_a_fit(self.found, self.ranking)[:SEARCH_STARTS])
-        for report in self._carried_out([SearchTask(self.request.k, starts)], SEARCHING, 0, 1):
+    def guide(self) -> Iterator[Event]:
+        """Fit from the uniform sheet in several poses, by two ways each; symmetric ones first."""
+        request, first = self.request, self.request.k
+        angles = first_angles(request.target, request.chosen_grid, request.phi, 1, request.wishes.symmetry)
+        if request.symmetry in ("mirror", "turn"):
+            angles = [one for one in angles if one[1] is not None] or angles
+        ways = [(angle, symmetry, led) for angle, symmetry in angles for led in (False, True)][: request.guided]
+        tasks = [GuidedTask(first + place, *way) for place, way in enumerate(ways)]
+        for report in self._carried_out(tasks, GUIDING, 0, len(tasks)):
             if isinstance(report, Progress):
                 yield report
             elif report[1].candidate is not None:
                 self.found.append(report[1].candidate)
-                yield CandidateFound(self.request.k, report[1].candidate)
+                yield CandidateFound(report[1].candidate.index, report[1].candidate)
+
+    def search(self) -> Iterator[Event]:
+        """Look for a better design from the best that differ and from scratch."""
+        starts = tuple(candidate.sheet for candidate in worth_a_fit(self.found, self.ranking)[:SEARCH_STARTS])
+        for report in self._carried_out([SearchTask(self._next_index(), starts)], SEARCHING, 0, 1):
+            if isinstance(report, Progress):
+                yield report
+            elif report[1].candidate is not None:
+                self.found.append(report[1].candidate)
+                yield CandidateFound(report[1].candidate.index, report[1].candidate)
+
+    def _next_index(self) -> int:
+        return max(self.request.k, len(self.found))
 
     def trim(self) -> Iterator[Event]:
         """Trim the best that differ."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import Protocol
 
 from kirigami_studio.evaluate.candidate import Candidate, Origin
@@ -11,14 +12,17 @@ from kirigami_studio.evaluate.score import evaluate_many
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.foundation.threads import one_blas_thread
 from kirigami_studio.lattice.deployment import deploy
-from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.sheet import Sheet
+from kirigami_studio.lattice.symmetry import Symmetry
+from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.pipeline.rank import MILDER, Ranking
-from kirigami_studio.pipeline.redesign import trimmed
+from kirigami_studio.pipeline.redesign import kept_symmetry, trimmed
 from kirigami_studio.pipeline.request import Request
-from kirigami_studio.polish.continuation import fit_shape
+from kirigami_studio.polish.continuation import cooled, fit_shape, guided, guided_start
 from kirigami_studio.polish.levenberg import polish
+from kirigami_studio.polish.objective import Stage
 from kirigami_studio.polish.preferences import PREFERENCES
+from kirigami_studio.polish.symmetry import SymmetrySetting, shared_symmetries, symmetric_target
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,37 +49,77 @@ class Task(Protocol):
         ...
 
 
+#: Trusted distances (unit-area lengths) of a candidate's first and last steps, and the share of the even panels'
+#: weight: stiffer first.  On 48 samples for 6 shapes the CV of panel areas ends 0.03 lower at the same exact IoU than
+#: with one distance and weight.
+FIRST_TRUST, LAST_TRUST = 0.01, 0.003
+FIRST_SHARE, LAST_SHARE = 3.0, 0.7
+
+
 @dataclass(frozen=True, slots=True)
 class PolishTask:
-    """Fit a candidate on the exact geometry, from where it is, by at most ``steps`` steps."""
+    """Fit a candidate on the exact geometry, from where it is, by at most ``steps`` steps.
+
+    ``last`` says that no others follow.
+    """
 
     candidate: Candidate
     steps: int
+    last: bool = True
 
     def carry_out(self, request: Request, stopped: Callable[[], bool]) -> Answer:
         """Fit as preferred, and more mildly where that gives away too much match."""
         candidate, evaluations = self.candidate, 0
+        symmetry = kept_symmetry(candidate.sheet)
         prefer: str | None = request.prefer
         while prefer is not None:
             with one_blas_thread():
                 fit = polish(
-                    candidate.sheet.field,
-                    request.target,
+                    candidate.sheet,
+                    fit_target(request, symmetry),
                     request.phi,
                     self.steps,
                     PREFERENCES[prefer],
                     candidate.score.transform,
                     stopped,
+                    stages=self._stages(request.even),
                     least_panel=request.least_panel,
+                    free_rim=request.rim == "free",
+                    symmetry=symmetry,
                 )
-            (better,) = scored(
-                request, [candidate.sheet.with_field(fit.field)], candidate.index, candidate.origin, fitted=True
-            )
+            (better,) = scored(request, [fit.sheet], candidate.index, candidate.origin, fitted=True)
             evaluations += fit.evaluations + 1
             if Ranking.of(request).improves(better, candidate, request.prefer):
                 return Answer(replace(better, sampled_sheet=candidate.sampled_sheet or candidate.sheet), evaluations)
             prefer = MILDER.get(prefer)
         return Answer(None, evaluations)
+
+    def _stages(self, even: float) -> tuple[Stage, ...]:
+        if not even:
+            return (Stage(self.steps),)
+        if self.last:
+            return (Stage(self.steps, LAST_TRUST, LAST_SHARE * even),)
+        return (Stage(self.steps, FIRST_TRUST, FIRST_SHARE * even),)
+
+
+@dataclass(frozen=True, slots=True)
+class GuidedTask:
+    """Fit the uniform sheet to the target from one pose; the design gets the number ``index``."""
+
+    index: int
+    angle: float
+    symmetry: Symmetry | None
+    led: bool
+
+    def carry_out(self, request: Request, stopped: Callable[[], bool]) -> Answer:
+        """Fit with even panels that soften, led by the transport map of the inside if asked for."""
+        stages = guided(request.even) if self.led else cooled(request.even)
+        grid, wishes = request.chosen_grid, request.wishes
+        with one_blas_thread():
+            target = fit_target(request, self.symmetry)
+            fit = guided_start(target, grid, request.phi, self.angle, stages, wishes, self.symmetry, stopped)
+        (found,) = scored(request, [fit.sheet], self.index, Origin.GUIDED, fitted=True)
+        return Answer(found, fit.evaluations + 1)
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,7 +127,7 @@ class SearchTask:
     """Look for a better design than all samples; the one found gets the number ``index``."""
 
     index: int
-    starts: tuple[RatioField, ...]
+    starts: tuple[Sheet, ...]
 
     def carry_out(self, request: Request, stopped: Callable[[], bool]) -> Answer:
         """Search from scratch and from the starts."""
@@ -95,10 +139,9 @@ class SearchTask:
                 self.starts,
                 request.search,
                 stopped,
-                PREFERENCES[request.prefer],
-                request.least_panel,
+                request.wishes,
             )
-        (found,) = scored(request, [Sheet(fits[0].field)], self.index, Origin.SEARCHED, fitted=True)
+        (found,) = scored(request, [fits[0].sheet], self.index, Origin.SEARCHED, fitted=True)
         return Answer(found, fits[0].evaluations + 1)
 
 
@@ -115,6 +158,21 @@ class TrimTask:
         except KirigamiError:
             return Answer(None, 1)
         return Answer(made.candidate, made.evaluations)
+
+
+def fit_target(request: Request, symmetry: Symmetry | None) -> Outline:
+    """What a fit is to match: the target, or the symmetric shape that it is meant to be, where that is asked for."""
+    if symmetry is None or request.symmetry not in ("mirror", "turn"):
+        return request.target
+    return _meant(request.target, request.chosen_grid, request.phi, request.wishes.symmetry, symmetry)
+
+
+@lru_cache(maxsize=16)
+def _meant(target: Outline, grid: tuple[int, int], phi: float, setting: SymmetrySetting, symmetry: Symmetry) -> Outline:
+    for pose in shared_symmetries(target, grid, phi, setting):
+        if pose.symmetry is symmetry:
+            return symmetric_target(target, pose)
+    return target
 
 
 def scored(

@@ -1,9 +1,10 @@
-"""The best match from no guess at all: several poses and easier shapes first, coarse grids before fine ones.
+"""The best match from no guess at all: several poses and several ways to the target, coarse grids before fine ones.
 
 A plain fit follows nearest boundary points and gets stuck where the target turns away from the sheet: thin arms, deep
-hollows, unlucky rotations.  The search fits from several rotations of the target, directly and by way of thickened
-shapes, for a few steps each; the best go on, and on larger grids they are first found on a coarse one and lifted.
-Where target and lattice share a symmetry, fits that keep it join in, and win when they match as well.
+hollows, unlucky rotations.  The search fits from several rotations of the target, each by several ways: with stiff,
+even panels that soften; led by the transport map of the inside; and by thickened shapes.  The best go on, and on larger
+grids they are first found on a coarse one and carried over.  Where target and lattice share a symmetry, fits that keep
+it join in, and win when they match as well.
 
 Every choice is fixed: the same request gives the same fits.
 """
@@ -12,7 +13,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import shapely
@@ -22,24 +23,26 @@ from kirigami_studio.evaluate.feasibility import path_contact
 from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.evaluate.siou import exact_iou
 from kirigami_studio.foundation.errors import UsageError
+from kirigami_studio.foundation.paper import LOG_RATIO_LIMIT
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField, check_grid
-from kirigami_studio.lattice.resize import resize_fields
-from kirigami_studio.lattice.symmetry import Symmetry
+from kirigami_studio.lattice.sheet import Rim, Sheet, resized_sheet
+from kirigami_studio.lattice.symmetry import Symmetry, symmetry_of
 from kirigami_studio.outlines.outline import Outline
-from kirigami_studio.polish.levenberg import Fit, check_fit, polish
+from kirigami_studio.polish.guide import TransportMap
+from kirigami_studio.polish.levenberg import RIM_REACH, Fit, check_fit, polish
+from kirigami_studio.polish.objective import Stage
 from kirigami_studio.polish.panel_size import check_least
 from kirigami_studio.polish.preferences import Preference
-from kirigami_studio.polish.symmetry import shared_symmetries
+from kirigami_studio.polish.symmetry import SymmetricPose, SymmetrySetting, shared_symmetries
 
 #: Largest grid that is searched directly; finer ones start from a search on about this many voids each way.
 COARSE = 10
 
-#: Margins (unit-area lengths) by which the target is thickened on the two ways to it: at once, and in steps.
-ROUTES: tuple[tuple[float, ...], ...] = ((), (0.2, 0.14, 0.09, 0.05, 0.02))
-
-#: The same after a coarse fit was lifted: a slightly thickened target gives arms the room that the finer grid allows.
-LIFTED_ROUTES: tuple[tuple[float, ...], ...] = ((), (0.09, 0.05, 0.02))
+#: Margins (unit-area lengths) by which the target is thickened on the way to it.
+MARGINS = (0.2, 0.14, 0.09, 0.05, 0.02)
+#: The same after a coarse fit was carried over: slightly thickened, arms get the room that the finer grid allows.
+LIFTED_MARGINS = (0.09, 0.05, 0.02)
 
 #: Steps on each easier shape, of a first look at the target, and of the last fit.
 EASY_STEPS, LOOK_STEPS, LAST_STEPS = 4, 8, 20
@@ -64,31 +67,75 @@ FAIR_LOSS = 0.002
 ACCURACY = 0.002
 
 
+def cooled(even: float) -> tuple[Stage, ...]:
+    """Stages that begin with stiff, even panels and far parts that pull, and end with the weight ``even``.
+
+    Found on 12 drawn shapes at 10 x 10: the mean CV of panel areas falls from 0.70 to 0.49 at the same exact IoU.
+    """
+    return (
+        Stage(8, 0.1, max(3e-2, even)),
+        Stage(8, 0.05, max(1e-2, even)),
+        Stage(8, 0.02, max(1e-3, even)),
+        Stage(16, FINE, even),
+    )
+
+
+def guided(even: float) -> tuple[Stage, ...]:
+    """The same with a guide for the inside that fades: for arms and hollows that trap the others."""
+    return (
+        Stage(7, 0.1, max(1e-2, even), 0.1),
+        Stage(7, 0.06, max(3e-3, even), 0.03),
+        Stage(7, 0.03, max(1e-3, even), 0.01),
+        Stage(7, 0.015, max(5e-4, even), 0.003),
+        Stage(14, FINE, even),
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class Wishes:
+    """What all fits of one request ask for beside the match.
+
+    Attributes
+    ----------
+    preference : Preference
+    least_panel : float, unit cells
+    free_rim : bool
+    even : float
+        Weight of even panels in the end.
+    symmetry : {"auto", "none", "mirror", "turn"}
+        Which symmetries of the target sheets may keep.
+    """
+
+    preference: Preference = field(default_factory=Preference)
+    least_panel: float = 0.0
+    free_rim: bool = False
+    even: float = 0.0
+    symmetry: SymmetrySetting = "auto"
+
+
 def fit_shape(
     target: Outline,
     grid: tuple[int, int],
     phi: float = 0.0,
-    starts: Sequence[RatioField] = (),
+    starts: Sequence[Sheet | RatioField] = (),
     effort: int = 1,
     cancel: Callable[[], bool] = lambda: False,
-    preference: Preference | None = None,
-    least_panel: float = 0.0,
+    wishes: Wishes | None = None,
 ) -> list[Fit]:
-    """Search for the fields whose outline at ``phi`` matches ``target`` best.
+    """Search for the sheets whose outline at ``phi`` matches ``target`` best.
 
     Parameters
     ----------
     target : Outline
     grid : (rows, columns)
     phi : float, radians, in [0, pi)
-    starts : sequence of RatioField
+    starts : sequence of Sheet or RatioField
         Guesses of any grid, fitted beside the search's own starts.
     effort : int, 1..8
         Multiplies the number of rotations and of fits that are carried to the end.
     cancel : callable
         Asked before every step; the best so far are returned.
-    preference, least_panel
-        As for :func:`polish`.
+    wishes : Wishes, optional
 
     Returns
     -------
@@ -99,29 +146,82 @@ def fit_shape(
     ------
     AngleError, GridError, UsageError
         An angle, a grid or an effort that is out of range.
+    TargetError
+        A symmetry is asked for that the target is far from.
     """
     check_grid(*grid)
     phi = check_fit(phi, LAST_STEPS, NEAR)
     if not isinstance(effort, int) or isinstance(effort, bool) or not 1 <= effort <= LARGEST_EFFORT:
         raise UsageError("search.effort_out_of_range", most=LARGEST_EFFORT, effort=effort)
-    search = _Search(target, phi, cancel, preference or Preference(), check_least(least_panel))
+    wishes = wishes or Wishes()
+    check_least(wishes.least_panel)
+    search = _Search(target, phi, cancel, wishes)
+    guesses = [Sheet.of(start) for start in starts]
     coarse = _coarser(grid)
     found = search.first_looks(coarse, effort)
-    found += [search.from_guess(lifted(start, coarse)) for start in starts]
+    if coarse == grid:
+        found += [search.from_guess(lifted(start, grid)) for start in guesses]
     best = search.completed(_best(found, KEPT * effort))
     if coarse != grid:
         raised = [look for one in best for look in search.lifted(one, grid)]
-        raised += [search.from_guess(lifted(start, grid)) for start in starts]
+        raised += [search.from_guess(lifted(start, grid)) for start in guesses]
         best = search.completed(_best(raised, KEPT * effort))
     best = search.completed(best, FINE)
     best = _best([search.aligned(one) for one in (*best, search.plain(grid))], len(best))
     return [replace(one.fit, evaluations=search.evaluations) for one in best]
 
 
-def lifted(field: RatioField, grid: tuple[int, int]) -> RatioField:
-    """The field carried to another grid, within the bounds of a fit."""
-    z = resize_fields(field.log10[np.newaxis], *grid)[0]
-    return RatioField.from_log10(np.clip(z, -1.0, 1.0))
+def guided_start(
+    target: Outline,
+    grid: tuple[int, int],
+    phi: float,
+    angle: float,
+    stages: Sequence[Stage],
+    wishes: Wishes,
+    symmetry: Symmetry | None = None,
+    cancel: Callable[[], bool] = lambda: False,
+) -> Fit:
+    """One fit from the uniform sheet, turned by ``angle`` (radians), through ``stages``."""
+    sheet = Sheet.uniform(*grid)
+    needs_guide = any(stage.guide for stage in stages)
+    return polish(
+        sheet,
+        target,
+        phi,
+        0,
+        wishes.preference,
+        _centred(sheet, phi, angle),
+        cancel,
+        stages=stages,
+        guide=TransportMap.of(sheet, target, angle) if needs_guide else None,
+        least_panel=wishes.least_panel,
+        free_rim=wishes.free_rim,
+        symmetry=symmetry,
+    )
+
+
+def first_angles(
+    target: Outline, grid: tuple[int, int], phi: float, effort: int = 1, setting: SymmetrySetting = "auto"
+) -> list[tuple[float, Symmetry | None]]:
+    """Rotations to begin with, those that keep a symmetry first: both ways up for a mirror axis."""
+    angles = _rotations(grid, phi, effort)
+    looks: list[tuple[float, Symmetry | None]] = []
+    for pose in shared_symmetries(target, grid, phi, setting):
+        looks += [(angle, pose.symmetry) for angle in _own_angles(pose, angles)]
+    return looks + [(angle, None) for angle in angles]
+
+
+def _own_angles(pose: SymmetricPose, angles: list[float]) -> list[float]:
+    """Rotations of the sheet that lay its axis on the target's; any for a turn."""
+    return angles if pose.angle is None else [pose.angle - 0.5 * math.pi, pose.angle + 0.5 * math.pi]
+
+
+def lifted(sheet: Sheet, grid: tuple[int, int]) -> Sheet:
+    """The sheet carried to another grid, within the bounds of a fit."""
+    carried = resized_sheet(sheet, *grid)
+    z = np.clip(carried.field.log10, -LOG_RATIO_LIMIT, LOG_RATIO_LIMIT)
+    offsets = np.clip(carried.rim.offsets(*grid), -RIM_REACH, RIM_REACH)
+    return Sheet(RatioField.from_log10(z), Rim.moved(*grid, offsets), sheet.start, sheet.cell)
 
 
 @dataclass(frozen=True, slots=True)
@@ -137,99 +237,95 @@ class _Found:
 class _Search:
     """What all fits of one request share."""
 
-    def __init__(
-        self,
-        target: Outline,
-        phi: float,
-        cancel: Callable[[], bool],
-        preference: Preference,
-        least_panel: float,
-    ) -> None:
-        self.target, self.phi, self.cancel = target, phi, cancel
-        self.preference, self.least_panel = preference, least_panel
+    def __init__(self, target: Outline, phi: float, cancel: Callable[[], bool], wishes: Wishes) -> None:
+        self.target, self.phi, self.cancel, self.wishes = target, phi, cancel, wishes
         self.evaluations = 0
 
     def first_looks(self, grid: tuple[int, int], effort: int) -> list[_Found]:
-        """Fits from the uniform sheet: every rotation on every route, then those that keep a symmetry."""
-        routes = [thickened(self.target, margins) for margins in ROUTES]
-        angles = _rotations(grid, self.phi, effort)
-        looks: list[tuple[float, Symmetry | None]] = [(angle, None) for angle in angles]
-        for shared in shared_symmetries(self.target, grid, self.phi):
-            own = angles if shared.angle is None else [shared.angle - 0.5 * math.pi, shared.angle + 0.5 * math.pi]
-            looks += [(angle, shared.symmetry) for angle in own]
-        field = RatioField.uniform(*grid)
+        """Fits from the uniform sheet: every rotation on every way, those that keep a symmetry first."""
+        thick = thickened(self.target, MARGINS)
+        even = self.wishes.even
         found: list[_Found] = []
-        for angle, symmetry in looks:
-            pose = _centred(field, self.phi, angle)
-            for route in routes:
+        for angle, symmetry in first_angles(self.target, grid, self.phi, effort, self.wishes.symmetry):
+            for stages in (cooled(even), guided(even)):
                 if found and self.cancel():
                     return found
-                first = route[0].frame if route else Similarity()
-                found.append(self._along(route, field, first.compose(pose), symmetry))
+                found.append(self._from_uniform(grid, angle, stages, symmetry))
+            sheet = Sheet.uniform(*grid)
+            first = thick[0].frame.compose(_centred(sheet, self.phi, angle))
+            if found and self.cancel():
+                return found
+            found.append(self._along(thick, sheet, first, symmetry))
         return found
 
-    def _along(self, route: list[EasyShape], field: RatioField, pose: Similarity, symmetry: Symmetry | None) -> _Found:
+    def _from_uniform(
+        self, grid: tuple[int, int], angle: float, stages: Sequence[Stage], symmetry: Symmetry | None
+    ) -> _Found:
+        fit = guided_start(self.target, grid, self.phi, angle, stages, self.wishes, symmetry, self.cancel)
+        self.evaluations += fit.evaluations
+        return self._found(fit, symmetry)
+
+    def _along(self, route: list[EasyShape], sheet: Sheet, pose: Similarity, symmetry: Symmetry | None) -> _Found:
         for easy in route:
             own = easy.frame.inverse().compose(pose)
-            fit = self._polish(field, easy.outline, EASY_STEPS, own, FAR, symmetry)
-            field, pose = fit.field, easy.frame.compose(fit.pose)
-        return self._fit(field, pose, LOOK_STEPS, FAR, symmetry)
+            fit = self._polish(sheet, easy.outline, EASY_STEPS, own, FAR, symmetry)
+            sheet, pose = fit.sheet, easy.frame.compose(fit.pose)
+        return self._fit(sheet, pose, LOOK_STEPS, FAR, symmetry)
 
-    def from_guess(self, field: RatioField) -> _Found:
-        """A look from a given field, aligned by IoU."""
-        pose = align(deploy(field).outline(self.phi), self.target.points)
-        return self._fit(field, pose, LOOK_STEPS, FAR, None)
+    def from_guess(self, sheet: Sheet) -> _Found:
+        """A look from a given sheet, aligned by IoU; it keeps its symmetry."""
+        pose = align(deploy(sheet).outline(self.phi), self.target.points)
+        return self._fit(sheet, pose, LOOK_STEPS, FAR, symmetry_of(sheet))
 
     def plain(self, grid: tuple[int, int]) -> _Found:
         """The fit without a search, so that a search never ends with less."""
-        field = RatioField.uniform(*grid)
-        pose = align(deploy(field).outline(self.phi), self.target.points)
-        return self._fit(field, pose, PLAIN_STEPS, FINE, None)
+        sheet = Sheet.uniform(*grid)
+        pose = align(deploy(sheet).outline(self.phi), self.target.points)
+        return self._fit(sheet, pose, PLAIN_STEPS, FINE, None)
 
     def aligned(self, found: _Found) -> _Found:
-        """The same field in the pose of largest IoU, which is what a score compares."""
-        outline = deploy(found.fit.field).outline(self.phi)
+        """The same sheet in the pose of largest IoU, which is what a score compares."""
+        outline = deploy(found.fit.sheet).outline(self.phi)
         pose = align(outline, self.target.points)
         iou = exact_iou(pose.apply(outline), self.target)
         return found if iou <= found.iou else replace(found, fit=replace(found.fit, pose=pose), iou=iou)
 
     def lifted(self, coarse: _Found, grid: tuple[int, int]) -> list[_Found]:
         """Looks on a finer grid from a fit on a coarse one; grids of equal parities have the same symmetries."""
-        field = lifted(coarse.fit.field, grid)
-        pose = align(deploy(field).outline(self.phi), self.target.points)
-        routes = [thickened(self.target, margins) for margins in LIFTED_ROUTES]
-        return [self._along(route, field, pose, coarse.symmetry) for route in routes]
+        sheet = lifted(coarse.fit.sheet, grid)
+        pose = align(deploy(sheet).outline(self.phi), self.target.points)
+        routes = [[], thickened(self.target, LIFTED_MARGINS)]
+        return [self._along(route, sheet, pose, coarse.symmetry) for route in routes]
 
     def completed(self, found: list[_Found], trust: float = NEAR) -> list[_Found]:
         """The fits carried to the end, best first."""
-        ends = [self._fit(one.fit.field, one.fit.pose, LAST_STEPS, trust, one.symmetry) for one in found]
+        ends = [self._fit(one.fit.sheet, one.fit.pose, LAST_STEPS, trust, one.symmetry) for one in found]
         return _best([_best([end, one], 1)[0] for end, one in zip(ends, found, strict=True)], len(ends))
 
-    def _fit(self, field: RatioField, pose: Similarity, steps: int, trust: float, symmetry: Symmetry | None) -> _Found:
-        fit = self._polish(field, self.target, steps, pose, trust, symmetry)
-        deployment = deploy(fit.field)
+    def _fit(self, sheet: Sheet, pose: Similarity, steps: int, trust: float, symmetry: Symmetry | None) -> _Found:
+        return self._found(self._polish(sheet, self.target, steps, pose, trust, symmetry), symmetry)
+
+    def _found(self, fit: Fit, symmetry: Symmetry | None) -> _Found:
+        deployment = deploy(fit.sheet)
         laid = fit.pose.apply(deployment.outline(self.phi))
         return _Found(fit, exact_iou(laid, self.target), path_contact(deployment, self.phi) is None, symmetry)
 
     def _polish(
-        self,
-        field: RatioField,
-        target: Outline,
-        steps: int,
-        pose: Similarity,
-        trust: float,
-        symmetry: Symmetry | None,
+        self, sheet: Sheet, target: Outline, steps: int, pose: Similarity, trust: float, symmetry: Symmetry | None
     ) -> Fit:
+        wishes = self.wishes
         fit = polish(
-            field,
+            sheet,
             target,
             self.phi,
             steps,
-            self.preference,
+            wishes.preference,
             pose,
             self.cancel,
             trust=trust,
-            least_panel=self.least_panel,
+            even=wishes.even,
+            least_panel=wishes.least_panel,
+            free_rim=wishes.free_rim,
             symmetry=symmetry,
         )
         self.evaluations += fit.evaluations
@@ -270,9 +366,9 @@ def _coarser(grid: tuple[int, int]) -> tuple[int, int]:
     return fewer(grid[0]), fewer(grid[1])
 
 
-def _centred(field: RatioField, phi: float, angle: float) -> Similarity:
+def _centred(design: Sheet | RatioField, phi: float, angle: float) -> Similarity:
     """Pose that turns the layout by ``angle`` and gives it area 1 around the origin."""
-    sheet = shapely.Polygon(deploy(field).outline(phi))
+    sheet = shapely.Polygon(deploy(design).outline(phi))
     turned = Similarity(1.0 / math.sqrt(sheet.area), angle)
     x, y = turned.apply(np.array([sheet.centroid.x, sheet.centroid.y]))
     return Similarity(turned.scale, angle, (-x, -y))

@@ -23,6 +23,8 @@ from kirigami_studio.foundation.arrays import BoolArray, FloatArray
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.lattice.sheet import Sheet
+from kirigami_studio.lattice.symmetry import Symmetry
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.polish.levenberg import Fit, check_fit, polish
 
@@ -46,7 +48,7 @@ class Cover:
     Attributes
     ----------
     fit : Fit
-        ``field`` and ``pose`` are those of ``trim``; ``steps`` is 0 where no other field trims better than the first.
+        ``sheet`` and ``pose`` are those of ``trim``; ``steps`` is 0 where no other sheet trims better than the first.
     trim : Trim
     """
 
@@ -55,7 +57,7 @@ class Cover:
 
 
 def fit_cover(
-    field: RatioField,
+    design: Sheet | RatioField,
     target: Outline,
     phi: float = 0.0,
     steps: int = 12,
@@ -63,13 +65,17 @@ def fit_cover(
     keep: float = KEEP,
     cancel: Callable[[], bool] = lambda: False,
     locked: BoolArray | None = None,
+    *,
+    free_rim: bool = False,
+    symmetry: Symmetry | None = None,
+    even: float = 0.0,
 ) -> Cover:
-    """Fit a polished field so that its trimmed silhouette matches best.
+    """Fit a polished sheet so that its trimmed silhouette matches best.
 
     Parameters
     ----------
-    field : RatioField
-        A field already polished; it is trimmed as it is, too, and the better trim counts.
+    design : Sheet or RatioField
+        A sheet already polished; it is trimmed as it is, too, and the better trim counts.
     target : Outline
     phi : float, radians, in [0, pi)
     steps : int
@@ -81,22 +87,35 @@ def fit_cover(
         Asked before every step; the best so far is returned.
     locked : (m, n) bool, optional
         Voids whose ratio stays exactly as it is.
+    free_rim, symmetry, even
+        As for :func:`polish`.
 
     Raises
     ------
     AngleError, UsageError
         An angle, a number of steps, a depth or a table of locked voids that is out of range.
     KirigamiError
-        The field's outline crosses itself.
+        The sheet's outline crosses itself.
     """
     phi, keep = check_fit(phi, steps, TRUST), check_keep(keep)
-    deployment = deploy(field)
-    pose = pose or align(deployment.outline(phi), target.points)
-    best = _trimmed(Fit(field, pose, 0.0, 0, 0), target, phi, keep, cancel)
+    sheet = Sheet.of(design)
+    pose = pose or align(deploy(sheet).outline(phi), target.points)
+    best = _trimmed(Fit(sheet, pose, 0.0, 0, 0), target, phi, keep, cancel)
     fit = polish(
-        field, target, phi, steps, pose=_grown(pose, GROWN), cancel=cancel, trust=TRUST, excess=EXCESS, locked=locked
+        sheet,
+        target,
+        phi,
+        steps,
+        pose=_grown(pose, GROWN),
+        cancel=cancel,
+        trust=TRUST,
+        even=even,
+        free_rim=free_rim,
+        symmetry=symmetry,
+        excess=EXCESS,
+        locked=locked,
     )
-    if fit.steps and path_contact(deploy(fit.field), phi) is None and not cancel():
+    if fit.steps and path_contact(deploy(fit.sheet), phi) is None and not cancel():
         other = _trimmed(fit, target, phi, keep, cancel)
         if other.trim.iou > best.trim.iou:
             best = other
@@ -105,7 +124,7 @@ def fit_cover(
 
 def _trimmed(fit: Fit, target: Outline, phi: float, keep: float, cancel: Callable[[], bool]) -> Cover:
     """Trim a layout in the pose that promises most; in its own if that one holds less."""
-    deployment = deploy(fit.field)
+    deployment = deploy(fit.sheet)
     plain = Cover(fit, trim(deployment, target, phi, fit.pose, keep))
     if cancel():
         return plain

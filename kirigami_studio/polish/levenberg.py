@@ -8,12 +8,12 @@ one correction to the next is which places match.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import scipy.linalg
 import shapely
+from scipy.linalg.lapack import dposv
 
 from kirigami_studio.evaluate.alignment import align
 from kirigami_studio.evaluate.feasibility import path_contact
@@ -23,10 +23,15 @@ from kirigami_studio.foundation.errors import AngleError, UsageError
 from kirigami_studio.foundation.paper import LOG_RATIO_LIMIT
 from kirigami_studio.lattice.deployment import check_phi, deploy
 from kirigami_studio.lattice.ratio_field import RatioField
-from kirigami_studio.lattice.symmetry import Symmetry
+from kirigami_studio.lattice.sheet import Rim, Sheet
+from kirigami_studio.lattice.symmetry import GridSymmetry, Symmetry
 from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.polish.basis import Basis
 from kirigami_studio.polish.boundary_target import BoundaryTarget
-from kirigami_studio.polish.objective import POSE, TRUST, Look, Objective, Quadratic
+from kirigami_studio.polish.even_panels import EvenPanels
+from kirigami_studio.polish.guide import Guide, TransportMap
+from kirigami_studio.polish.matching import check_excess
+from kirigami_studio.polish.objective import POSE, TRUST, Look, Objective, Quadratic, Slopes, Stage
 from kirigami_studio.polish.panel_size import check_least
 from kirigami_studio.polish.preferences import Preference, PreferenceTerms
 from kirigami_studio.polish.sensitivity import OutlineModel
@@ -43,15 +48,17 @@ HARDEN = 2.0
 #: Corrections that follow a step with the same derivative, as long as each lowers the cost by this share.  On 80
 #: outlines of random fields this saves a tenth to a fifth of the decodings of ten steps at the same match.
 CORRECTIONS, WORTHWHILE_GAIN = 5, 0.01
+#: How far (unit cells) a fit may move a mouth from its even place: rim edges stay longer than 0.3 cells.
+RIM_REACH = 0.7
 
 
 @dataclass(frozen=True, slots=True)
 class Fit:
-    """A polished field.
+    """A polished sheet.
 
     Attributes
     ----------
-    field : RatioField
+    sheet : Sheet
     pose : Similarity
         Carries the layout at the target angle to the target's frame.
     cost : float
@@ -61,15 +68,20 @@ class Fit:
         Decodings of a layout, each with or without derivative: comparable with the paper's #F.
     """
 
-    field: RatioField
+    sheet: Sheet
     pose: Similarity
     cost: float
     steps: int
     evaluations: int
 
+    @property
+    def field(self) -> RatioField:
+        """The ratios of the sheet."""
+        return self.sheet.field
+
 
 def polish(
-    field: RatioField,
+    design: Sheet | RatioField,
     target: Outline,
     phi: float = 0.0,
     steps: int = 10,
@@ -78,17 +90,21 @@ def polish(
     cancel: Callable[[], bool] = lambda: False,
     *,
     trust: float = TRUST,
+    even: float = 0.0,
+    stages: Sequence[Stage] = (),
+    guide: TransportMap | None = None,
     least_panel: float = 0.0,
+    free_rim: bool = False,
     symmetry: Symmetry | None = None,
     excess: float = 1.0,
     locked: BoolArray | None = None,
 ) -> Fit:
-    """Fit ``field`` to ``target`` by at most ``steps`` accepted steps.
+    """Fit a sheet to ``target`` by at most ``steps`` accepted steps.
 
     Parameters
     ----------
-    field : RatioField
-        Where to begin; ratios outside [0.1, 10] are moved to the bounds.
+    design : Sheet or RatioField
+        Where to begin; ratios outside [0.1, 10] are moved to the bounds, and so are mouths if the rim is free.
     target : Outline
     phi : float, radians, in [0, pi)
     steps : int
@@ -97,12 +113,18 @@ def polish(
         Layout frame at ``phi`` to target frame; aligned by IoU when missing.
     cancel : callable
         Asked before every step; the best so far is returned.
-    trust : float, unit-area lengths
-        Distance beyond which a residual counts linearly: large ones let far parts pull, small ones serve the area.
+    trust, even
+        See :class:`Stage`: the fit's only stage, unless ``stages`` are given.
+    stages : sequence of Stage
+        What counts one after the other, instead of ``steps``, ``trust`` and ``even``.
+    guide : TransportMap, optional
+        Needed by stages with a guide.
     least_panel : float, unit cells
         Panel edges and necks are kept from falling below this where the shape allows it; 0 for any size.
+    free_rim : bool
+        Whether the mouths move too, by at most :data:`RIM_REACH` from their even places.
     symmetry : Symmetry, optional
-        The field keeps this symmetry of the lattice; the pose should lay the target's own upon it.
+        The sheet keeps this symmetry of the lattice; the pose should lay the target's own upon it.
     excess : float, 0..1
         Weight of what sticks out of the target, relative to what is missed; below 1 for a layout that will be trimmed.
     locked : (m, n) bool, optional
@@ -116,23 +138,32 @@ def polish(
         ``steps``, ``trust``, ``least_panel`` or ``excess`` is not a number that a fit can have, ``locked`` is not a
         table of the field's shape, or voids are locked and a symmetry is asked for.
     """
+    sheet = Sheet.of(design)
     phi = check_fit(phi, steps, trust)
-    locked = check_locked(locked, field)
+    locked = check_locked(locked, sheet.field)
     if symmetry is not None and locked.any():
         raise UsageError("fit.locks_and_symmetry")
-    model = OutlineModel(field.rows, field.columns, phi)
-    allowed = _allowed(symmetry, field, locked)
-    start = allowed(field.log10.ravel())
+    model = OutlineModel.of(sheet, phi, free_rim)
+    bounds = _Bounds.of(sheet, model, symmetry.on(*sheet.grid) if symmetry else None, locked)
+    start = bounds.allowed(bounds.start)
     pose = pose or align(model.outline(start), target.points)
-    terms = PreferenceTerms(preference or Preference(), start, field.rows, field.columns)
-    objective = Objective(model, BoundaryTarget.of(target, SAMPLES), terms, trust, check_least(least_panel), excess)
+    terms = PreferenceTerms(preference or Preference(), start[: model.voids], sheet.rows, sheet.columns)
+    stages = tuple(stages) or (Stage(steps, trust, even),)
+    even_panels = EvenPanels.of(sheet) if any(stage.even for stage in stages) else None
+    term = Guide(sheet, phi, guide) if guide is not None else None
+    boundary, least, excess = BoundaryTarget.of(target, SAMPLES), check_least(least_panel), check_excess(excess)
     state = np.concatenate([start, [math.log(pose.scale), pose.angle, *pose.shift]])
-    descent = _Descent(objective, state, allowed, locked.ravel())
-    while descent.steps < steps and not cancel() and descent.advance():
-        pass
+    descent: _Descent | None = None
+    for stage in stages:
+        objective = Objective(model, boundary, terms, stage, least, excess, even_panels, term)
+        descent = _Descent(objective, state, bounds) if descent is None else descent.turned_to(objective)
+        until = descent.steps + stage.steps
+        while descent.steps < until and not cancel() and descent.advance():
+            pass
+    assert descent is not None
     last = descent.here.state[-POSE:]
     return Fit(
-        _with_locked(_field_of(descent.here.state, model), field, locked),
+        bounds.sheet_of(descent.here.state[:-POSE]),
         Similarity(math.exp(last[0]), last[1], (last[2], last[3])),
         descent.here.cost,
         descent.steps,
@@ -140,25 +171,53 @@ def polish(
     )
 
 
-def _field_of(state: FloatArray, model: OutlineModel) -> RatioField:
-    """The ratios of a state, rounded so that files repeat them exactly."""
-    return RatioField.from_log10(np.round(state[:-POSE], 9).reshape(model.rows, model.columns))
+@dataclass(frozen=True, slots=True, eq=False)
+class _Bounds:
+    """Which shapes a fit may reach.
 
+    Attributes
+    ----------
+    sheet : Sheet
+        Where the fit begins.
+    start : (S,) float
+        Its shape.
+    low, high : (S,) float
+        The limits; both are the start's own value for what is locked.
+    basis : Basis
+        The variables that move it.
+    """
 
-def _with_locked(found: RatioField, field: RatioField, locked: BoolArray) -> RatioField:
-    """The ratios found, and every digit of those that were locked."""
-    return RatioField(np.where(locked, field.ratio, found.ratio)) if locked.any() else found
+    sheet: Sheet
+    start: FloatArray
+    low: FloatArray
+    high: FloatArray
+    basis: Basis
+    _locked: BoolArray
 
+    @classmethod
+    def of(cls, sheet: Sheet, model: OutlineModel, symmetry: GridSymmetry | None, locked: BoolArray) -> _Bounds:
+        """The bounds of one fit."""
+        z, fixed = sheet.field.log10.ravel(), locked.ravel()
+        start, reach = z, np.full(z.size, LOG_RATIO_LIMIT)
+        if model.free_rim:
+            start = np.concatenate([z, sheet.rim.offsets(*sheet.grid)])
+            reach = np.concatenate([reach, np.full(start.size - z.size, RIM_REACH)])
+            fixed = np.concatenate([fixed, np.zeros(start.size - z.size, dtype=np.bool_)])
+        low, high = np.where(fixed, start, -reach), np.where(fixed, start, reach)
+        return cls(sheet, start, low, high, Basis.of(start.size, symmetry), locked)
 
-def _allowed(symmetry: Symmetry | None, field: RatioField, locked: BoolArray) -> Callable[[FloatArray], FloatArray]:
-    """The map from any z (m * n,) to one within the bounds and of the symmetry; locked voids stay where they are."""
-    start, fixed = field.log10.ravel(), locked.ravel()
+    def allowed(self, shape: FloatArray) -> FloatArray:
+        """The nearest shape within the bounds and of the symmetry."""
+        return np.clip(self.basis.nearest(shape), self.low, self.high)
 
-    def allowed(z: FloatArray) -> FloatArray:
-        balanced = z if symmetry is None else symmetry.symmetric(z.reshape(field.rows, field.columns)).ravel()
-        return np.where(fixed, start, np.clip(balanced, -LOG_RATIO_LIMIT, LOG_RATIO_LIMIT))
-
-    return allowed
+    def sheet_of(self, shape: FloatArray) -> Sheet:
+        """The sheet of a shape, rounded so that files repeat it exactly; locked ratios keep every digit."""
+        sheet, voids = self.sheet, self.sheet.rows * self.sheet.columns
+        found = RatioField.from_log10(np.round(shape[:voids], 9).reshape(sheet.grid))
+        if self._locked.any():
+            found = RatioField(np.where(self._locked, sheet.field.ratio, found.ratio))
+        rim = Rim.moved(*sheet.grid, np.round(shape[voids:], 9)) if shape.size > voids else sheet.rim
+        return Sheet(found, rim, sheet.start, sheet.cell)
 
 
 def check_locked(locked: BoolArray | None, field: RatioField) -> BoolArray:
@@ -192,28 +251,33 @@ def check_fit(phi: float, steps: int, trust: float) -> float:
 class _Descent:
     """The moving state of one fit."""
 
-    def __init__(
-        self, objective: Objective, state: FloatArray, allowed: Callable[[FloatArray], FloatArray], locked: BoolArray
-    ) -> None:
-        self.objective, self._allowed = objective, allowed
-        self._locked = np.concatenate([locked, np.zeros(POSE, dtype=np.bool_)])
+    def __init__(self, objective: Objective, state: FloatArray, bounds: _Bounds) -> None:
+        self.objective, self._bounds = objective, bounds
         self.here = objective.look(state)
         # A start that touches itself is free to move until it no longer does.
         self._guarded = self._is_clear(self.here)
         self.damping = FIRST_DAMPING
         self.steps, self.evaluations = 0, 1
 
+    def turned_to(self, objective: Objective) -> _Descent:
+        """Go on from here with another objective."""
+        self.objective = objective
+        self.here = objective.look(self.here.state)
+        self.damping = min(self.damping, FIRST_DAMPING)
+        self.evaluations += 1
+        return self
+
     def advance(self) -> bool:
         """Take one step that lowers the cost and stays clear of itself; False when there is none worth taking."""
-        slopes = self.objective.slopes(self.here.state)
+        slopes = self.objective.slopes(self.here.state, self._bounds.basis)
         model = self.objective.quadratic(self.here, slopes)
         self.evaluations += 1
         harden = HARDEN
         while self.damping <= LARGEST_DAMPING:
-            trial = self._trial(self.here, model)
+            trial, step = self._trial(self.here, model)
             gain = self.here.cost - trial.cost
             if gain > 0.0 and self._may_be(trial):
-                agreement = gain / max(model.promised(trial.state - self.here.state), 1e-30)
+                agreement = gain / max(model.promised(step), 1e-30)
                 there = self._corrected(trial, slopes)
                 clear = self._is_clear(there)
                 if clear or not self._guarded:
@@ -227,10 +291,10 @@ class _Descent:
             harden *= 2.0
         return False
 
-    def _corrected(self, look: Look, slopes: FloatArray) -> Look:
+    def _corrected(self, look: Look, slopes: Slopes) -> Look:
         """Go on with the same derivative for as long as it pays."""
         for _ in range(CORRECTIONS):
-            trial = self._trial(look, self.objective.quadratic(look, slopes))
+            trial, _step = self._trial(look, self.objective.quadratic(look, slopes))
             if look.cost - trial.cost <= WORTHWHILE_GAIN * look.cost or not self._may_be(trial):
                 break
             look = trial
@@ -242,22 +306,32 @@ class _Descent:
 
     def _is_clear(self, look: Look) -> bool:
         """The full look: is the outline clear of itself all the way from the compact sheet?"""
-        model = self.objective.model
-        field = _field_of(look.state, model)
-        return path_contact(deploy(field), model.phi) is None
+        sheet = self._bounds.sheet_of(look.state[:-POSE])
+        return path_contact(deploy(sheet), self.objective.model.phi) is None
 
-    def _trial(self, look: Look, model: Quadratic) -> Look:
-        """Damped Gauss-Newton step with the ratios at their bounds held where the gradient pushes outwards."""
-        bounds = np.full(look.state.size, np.inf)
-        bounds[:-POSE] = LOG_RATIO_LIMIT
-        outward = ((look.state >= bounds) & (model.gradient < 0)) | ((look.state <= -bounds) & (model.gradient > 0))
-        free = np.flatnonzero(~(outward | self._locked))
+    def _trial(self, look: Look, model: Quadratic) -> tuple[Look, FloatArray]:
+        """Damped Gauss-Newton step, and its variables; those at a bound stay where the gradient pushes outwards."""
+        free = np.flatnonzero(~self._held(look.state[:-POSE], model.gradient))
         matrix = model.hessian[np.ix_(free, free)]
         diagonal = np.diagonal(matrix).copy()
         matrix[np.diag_indices_from(matrix)] += self.damping * (diagonal + 1e-3 * diagonal.mean())
-        step = scipy.linalg.solve(matrix, -model.gradient[free], assume_a="pos", check_finite=False)
-        state = look.state.copy()
-        state[free] += step
-        state[:-POSE] = self._allowed(state[:-POSE])
+        step = np.zeros(model.gradient.size)
+        # LAPACK itself: at small grids SciPy's own checks take longer than the work.
+        step[free] = dposv(matrix, -model.gradient[free], overwrite_a=True)[1]
+        basis, state = self._bounds.basis, look.state.copy()
+        state[:-POSE] += basis.moved(step[:-POSE])
+        state[-POSE:] += step[-POSE:]
+        state[:-POSE] = self._bounds.allowed(state[:-POSE])
+        if basis.is_whole:
+            step[:-POSE] = state[:-POSE] - look.state[:-POSE]
         self.evaluations += 1
-        return self.objective.look(state)
+        return self.objective.look(state), step
+
+    def _held(self, shape: FloatArray, gradient: FloatArray) -> BoolArray:
+        """Which variables are at a bound that the gradient pushes them beyond: (V + 4,)."""
+        bounds, basis = self._bounds, self._bounds.basis
+        way = -basis.moved(gradient[:-POSE])
+        stuck = ((shape >= bounds.high) & (way > 0.0)) | ((shape <= bounds.low) & (way < 0.0))
+        held = np.zeros(gradient.size + 1, dtype=np.bool_)
+        held[np.where(basis.variable[stuck] < basis.size, basis.variable[stuck], -1)] = True
+        return np.append(held[: basis.size], np.zeros(POSE, dtype=np.bool_))

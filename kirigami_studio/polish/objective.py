@@ -17,9 +17,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from kirigami_studio.evaluate.evenness import PanelSizes, panel_sizes
+from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.lattice.topology import topology
+from kirigami_studio.polish.basis import Basis
 from kirigami_studio.polish.boundary_target import BoundaryTarget
+from kirigami_studio.polish.even_panels import EvenPanels
+from kirigami_studio.polish.guide import Guide
 from kirigami_studio.polish.matching import EDGE_SHARES, Matching, OneSided, check_excess, matched, outer_hinges
 from kirigami_studio.polish.panel_size import PENALTY, shortage
 from kirigami_studio.polish.preferences import PreferenceTerms
@@ -34,23 +38,53 @@ POSE = 4
 NO_SIZES = panel_sizes(topology(2, 2).uniform_nodes, 2, 2).below(0.0)
 
 
-class Objective:
-    """Cost of states (z, pose) for one target.
+@dataclass(frozen=True, slots=True)
+class Stage:
+    """What counts for some steps of a fit.
 
-    A state is a vector: z of all voids row by row, then log scale, angle, shift x, shift y of the pose that carries the
-    layout to the target's unit-area frame.
+    Attributes
+    ----------
+    steps : int
+        Accepted steps at most.
+    trust : float, unit-area lengths
+        Distance beyond which a boundary residual counts linearly: large ones let far parts pull, small ones serve the
+        area.
+    even : float
+        Weight of even panels, see ``even_panels``.
+    guide : float
+        Weight of the guide for the inside, see ``guide``.
+    """
+
+    steps: int
+    trust: float = TRUST
+    even: float = 0.0
+    guide: float = 0.0
+
+
+#: Nothing but the match and what the ratios prefer.
+MATCH_ALONE = Stage(0)
+
+
+class Objective:
+    """Cost of states (shape, pose) for one target.
+
+    A state is a vector: the shape (z of all voids row by row, then offsets of the mouths where the rim is free), then
+    log scale, angle, shift x, shift y of the pose that carries the layout to the target's unit-area frame.
 
     Parameters
     ----------
     model : OutlineModel
     target : BoundaryTarget
     terms : PreferenceTerms
-    trust : float
-        Distance (unit-area lengths) beyond which a residual counts linearly.
+    stage : Stage
     least : float, unit cells
         Panel edges and necks should not be smaller; 0 for any size.
     excess : float, 0..1
         Weight of what sticks out of the target: 1 unless it will be trimmed.
+    even : EvenPanels, optional
+        Needed where the stage asks for even panels.
+    guide : Guide, optional
+        Needed where the stage asks for a guide.
     """
 
     def __init__(
@@ -58,53 +92,122 @@ class Objective:
         model: OutlineModel,
         target: BoundaryTarget,
         terms: PreferenceTerms,
-        trust: float = TRUST,
+        stage: Stage = MATCH_ALONE,
         least: float = 0.0,
         excess: float = 1.0,
+        even: EvenPanels | None = None,
+        guide: Guide | None = None,
     ) -> None:
-        self.model, self.target, self.terms, self.trust, self.least = model, target, terms, trust, least
+        self.model, self.target, self.terms, self.stage, self.least = model, target, terms, stage, least
+        self.even = even if stage.even else None
+        self.guide = guide if stage.guide else None
         self.one_sided = None
         if check_excess(excess) < 1.0:
             self.one_sided = OneSided(excess, outer_hinges(model.rows, model.columns, model.phi))
 
     def look(self, state: FloatArray) -> Look:
         """Decode a state, match it with the target and count the cost."""
-        z = state[:-POSE]
-        nodes = self.model.nodes(z)
+        shape = state[:-POSE]
+        nodes = self.model.nodes(shape)
         outline = _posed(self.model.outline_of(nodes), state[-POSE:])
         matching = matched(outline, self.target)
         if self.one_sided is not None:
             matching = self.one_sided.weighed(matching, outline, self.target)
-        cost = float((matching.weight * _robust(matching.distance, self.trust)).sum()) + self.terms.value(z)
+        cost = float((matching.weight * _robust(matching.distance, self.stage.trust)).sum())
+        cost += self.terms.value(shape[: self.model.voids])
+        if self.even is not None:
+            cost += self.stage.even * self.even.value(nodes)
+        gaps = None
+        if self.guide is not None:
+            gaps = self.guide.gaps(nodes, _similarity(state[-POSE:]))
+            cost += self.stage.guide * float(np.square(gaps).sum()) / len(gaps)
         small = NO_SIZES
         if self.least:
             small = panel_sizes(nodes, self.model.rows, self.model.columns).below(self.least)
             cost += shortage(small, self.least)
-        return Look(state, outline, matching, small, cost)
+        return Look(state, nodes, outline, matching, small, gaps, cost)
 
-    def slopes(self, state: FloatArray) -> FloatArray:
-        """Derivative (L, 2, m n + 4) of the outline in the target's frame."""
-        own, derivative = self.model.linearised(state[:-POSE])
-        return _state_derivative(_posed(own, state[-POSE:]), derivative, state[-POSE:])
+    def slopes(self, state: FloatArray, basis: Basis | None = None) -> Slopes:
+        """Derivatives at a state, by the variables of ``basis``; by the shape's own numbers if missing."""
+        basis = basis or Basis.of(state.size - POSE, None)
+        shape, pose = state[:-POSE], state[-POSE:]
+        own, derivative = self.model.linearised(shape)
+        derivative = basis.reduced(derivative)
+        nodes = None
+        if self.even is not None or self.guide is not None:
+            nodes = basis.reduced(self.model.node_derivative(shape))
+        curvature = None
+        if self.even is not None and nodes is not None:
+            curvature = self.stage.even * self.even.curvature(nodes)
+        centroids = None
+        if self.guide is not None and nodes is not None:
+            flat = self.model.nodes(shape)
+            centroids = _state_derivative(
+                _posed(self.guide.centroids(flat), pose), self.guide.slopes(nodes), pose
+            ).reshape(-1, derivative.shape[2] + POSE)
+        outline = _state_derivative(_posed(own, pose), derivative, pose)
+        return Slopes(basis, outline.reshape(-1, outline.shape[2]), nodes, curvature, centroids)
 
-    def quadratic(self, look: Look, slopes: FloatArray) -> Quadratic:
-        """Gradient and Gauss-Newton matrix at a state, from the outline's derivative there or nearby."""
-        matching = look.matching
-        vertices = slopes.reshape(-1, look.state.size)
+    def quadratic(self, look: Look, slopes: Slopes) -> Quadratic:
+        """Gradient and Gauss-Newton matrix at a state, from the derivatives there or nearby."""
+        matching, trust, vertices = look.matching, self.stage.trust, slopes.outline
         reader = matching.reader(len(look.outline))
-        share = matching.weight / np.sqrt(1.0 + np.square(matching.distance / self.trust))
+        share = matching.weight / np.sqrt(1.0 + np.square(matching.distance / trust))
         scaled = reader * share[:, None]
-        pull = 2.0 * (matching.distance @ scaled) + _stretching(look.outline, matching, self.trust)
+        pull = 2.0 * (matching.distance @ scaled) + _stretching(look.outline, matching, trust)
         gradient = pull @ vertices
         hessian = vertices.T @ ((2.0 * (scaled.T @ reader)) @ vertices)
-        z = look.state[:-POSE]
-        gradient[:-POSE] += self.terms.gradient(z)
-        hessian[:-POSE, :-POSE] += self.terms.curvature(z)
-        if len(look.small.size):
-            grown = self.model.node_slopes(z, *look.small.reach(self.model.node_count))
-            gradient[:-POSE] += 2.0 * PENALTY * ((look.small.size - self.least) @ grown)
-            hessian[:-POSE, :-POSE] += 2.0 * PENALTY * (grown.T @ grown)
+        if look.gaps is not None and slopes.centroids is not None:
+            weight = 2.0 * self.stage.guide / len(look.gaps)
+            gradient += weight * (look.gaps.ravel() @ slopes.centroids)
+            hessian += weight * (slopes.centroids.T @ slopes.centroids)
+        self._add_shape_terms(look, slopes, gradient[:-POSE], hessian[:-POSE, :-POSE])
         return Quadratic(gradient, hessian)
+
+    def _add_shape_terms(self, look: Look, slopes: Slopes, gradient: FloatArray, hessian: FloatArray) -> None:
+        """What depends on the shape alone, added in place."""
+        shape, basis, voids = look.state[:-POSE], slopes.basis, self.model.voids
+        pull = np.zeros(shape.size)
+        pull[:voids] = self.terms.gradient(shape[:voids])
+        gradient += basis.reduced(pull)
+        hessian += basis.matrix(*self.terms.curvature(shape[:voids]))
+        if self.even is not None and slopes.nodes is not None and slopes.curvature is not None:
+            force = self.stage.even * self.even.pull(look.nodes)
+            gradient += force[:, 0] @ slopes.nodes[0] + force[:, 1] @ slopes.nodes[1]
+            hessian += slopes.curvature
+        if len(look.small.size):
+            along = look.small.reach(self.model.node_count)
+            if slopes.nodes is not None:
+                grown = along[0] @ slopes.nodes[0] + along[1] @ slopes.nodes[1]
+            else:
+                grown = basis.reduced(self.model.node_slopes(shape, *along))
+            gradient += 2.0 * PENALTY * ((look.small.size - self.least) @ grown)
+            hessian += 2.0 * PENALTY * (grown.T @ grown)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Slopes:
+    """Derivatives at one state by the V variables that move, the pose's last where it takes part.
+
+    Attributes
+    ----------
+    basis : Basis
+        How the variables move the shape.
+    outline : (2 L, V + 4) float
+        Of the outline in the target's frame.
+    nodes : (2, N, V) float or None
+        Of the compact nodes, where a term needs them.
+    curvature : (V, V) float or None
+        Of the term for even panels.
+    centroids : (2 P, V + 4) float or None
+        Of the panel centroids in the target's frame, where there is a guide.
+    """
+
+    basis: Basis
+    outline: FloatArray
+    nodes: FloatArray | None
+    curvature: FloatArray | None
+    centroids: FloatArray | None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -113,19 +216,25 @@ class Look:
 
     Attributes
     ----------
-    state : (m n + 4,) float
+    state : (S + 4,) float
+    nodes : (N, 2) float, unit cells
+        Compact nodes.
     outline : (L, 2) float
         The layout's outline in the target's frame.
     matching : Matching
     small : PanelSizes
         Edges and necks below the least size.
+    gaps : (P, 2) float or None
+        From each panel centroid's image to the centroid, where there is a guide.
     cost : float
     """
 
     state: FloatArray
+    nodes: FloatArray
     outline: FloatArray
     matching: Matching
     small: PanelSizes
+    gaps: FloatArray | None
     cost: float
 
 
@@ -135,8 +244,8 @@ class Quadratic:
 
     Attributes
     ----------
-    gradient : (m n + 4,) float
-    hessian : (m n + 4, m n + 4) float
+    gradient : (V + 4,) float
+    hessian : (V + 4, V + 4) float
         Gauss-Newton approximation.
     """
 
@@ -144,7 +253,7 @@ class Quadratic:
     hessian: FloatArray
 
     def promised(self, step: FloatArray) -> float:
-        """Gain that the quadratic model foresees for a step (m n + 4,)."""
+        """Gain that the quadratic model foresees for a step (V + 4,)."""
         return -float(step @ (self.gradient + 0.5 * (self.hessian @ step)))
 
 
@@ -161,8 +270,12 @@ def _posed(points: FloatArray, pose: FloatArray) -> FloatArray:
     return posed
 
 
+def _similarity(pose: FloatArray) -> Similarity:
+    return Similarity(math.exp(pose[0]), pose[1], (pose[2], pose[3]))
+
+
 def _state_derivative(outline: FloatArray, derivative: FloatArray, pose: FloatArray) -> FloatArray:
-    """Derivative (L, 2, m n + 4) of the posed outline with respect to the whole state."""
+    """Derivative (L, 2, V + 4) of posed points (L, 2) by variables and pose, from theirs in the layout's own frame."""
     c, s = math.exp(pose[0]) * math.cos(pose[1]), math.exp(pose[0]) * math.sin(pose[1])
     full = np.zeros((*outline.shape, derivative.shape[2] + POSE))
     full[:, 0, :-POSE] = c * derivative[:, 0] - s * derivative[:, 1]

@@ -8,7 +8,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from kirigami_studio.foundation.arrays import FloatArray
+from kirigami_studio.foundation.arrays import FloatArray, IntArray
 from kirigami_studio.foundation.errors import UsageError
 
 #: Differences of ratios below this count quadratically in the total variation, so that it has a curvature everywhere.
@@ -65,58 +65,93 @@ class PreferenceTerms:
 
     def __init__(self, weights: Preference, start: FloatArray, rows: int, columns: int) -> None:
         self.weights, self.start = weights, start
-        second = differences(rows, columns, 2)
-        self._quadratic = 2.0 * (weights.start * np.eye(start.size) + weights.smooth * (second.T @ second))
-        self._smooth = 2.0 * weights.smooth * (second.T @ second)
-        self._first = differences(rows, columns, 1)
+        self._smooth = neighbours(rows, columns, 2)
+        self._varied = neighbours(rows, columns, 1)
 
     def value(self, z: FloatArray) -> float:
         """Weighted sum of all terms at z (m * n,)."""
-        pull = z - self.start
-        total = self.weights.start * float(pull @ pull) + 0.5 * float(z @ self._smooth @ z)
+        pull, step = z - self.start, self._smooth.differences(z)
+        total = self.weights.start * float(pull @ pull) + self.weights.smooth * float(step @ step)
         if self.weights.total_variation:
-            total += self.weights.total_variation * float(self._rounded(self._first @ 10.0**z).sum()) / z.size
+            varied = _rounded(self._varied.differences(10.0**z))
+            total += self.weights.total_variation * float(varied.sum()) / z.size
         return total
 
     def gradient(self, z: FloatArray) -> FloatArray:
         """Derivative of the value: (m * n,)."""
-        gradient = self._smooth @ z + 2.0 * self.weights.start * (z - self.start)
+        gradient = 2.0 * self.weights.smooth * self._smooth.gathered(self._smooth.differences(z))
+        gradient += 2.0 * self.weights.start * (z - self.start)
         if self.weights.total_variation:
             x = 10.0**z
-            step = self._first @ x
-            pull = self._first.T @ (step / self._rounded(step))
-            gradient = gradient + self.weights.total_variation / z.size * LN10 * x * pull
+            step = self._varied.differences(x)
+            pull = self._varied.gathered(step / _rounded(step))
+            gradient += self.weights.total_variation / z.size * LN10 * x * pull
         varied: FloatArray = gradient
         return varied
 
-    def curvature(self, z: FloatArray) -> FloatArray:
-        """Positive semi-definite approximation (m * n, m * n) of the second derivative.
+    def curvature(self, z: FloatArray) -> tuple[IntArray, IntArray, FloatArray]:
+        """Entries (row, column, value) whose sum is a positive semi-definite approximation of the second derivative.
 
         The total variation gets the curvature of the quadratic that touches it from above (reweighted least squares).
         """
-        if not self.weights.total_variation:
-            return self._quadratic
-        x = 10.0**z
-        slopes = self._first * (LN10 * x)
-        share = self.weights.total_variation / z.size / self._rounded(self._first @ x)
-        curved: FloatArray = self._quadratic + slopes.T @ (share[:, None] * slopes)
-        return curved
-
-    @staticmethod
-    def _rounded(step: FloatArray) -> FloatArray:
-        rounded: FloatArray = np.sqrt(np.square(step) + ROUNDED**2)
-        return rounded
+        own = np.arange(z.size)
+        parts = [(own, own, np.full(z.size, 2.0 * self.weights.start))]
+        parts += self._smooth.curvature(np.full(len(self._smooth.first), 2.0 * self.weights.smooth), np.ones(z.size))
+        if self.weights.total_variation:
+            x = 10.0**z
+            share = self.weights.total_variation / z.size / _rounded(self._varied.differences(x))
+            parts += self._varied.curvature(share, LN10 * x)
+        row, column, value = (np.concatenate(part) for part in zip(*parts, strict=True))
+        return row, column, value
 
 
-@lru_cache(maxsize=32)
-def differences(rows: int, columns: int, apart: int) -> FloatArray:
-    """Matrix (pairs, m * n) that maps z to its differences ``apart`` voids apart, along columns and rows; read-only."""
+def _rounded(step: FloatArray) -> FloatArray:
+    rounded: FloatArray = np.sqrt(np.square(step) + ROUNDED**2)
+    return rounded
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Neighbours:
+    """Pairs of voids that lie a certain number apart, along columns and rows.
+
+    Attributes
+    ----------
+    first, second : (pairs,) int
+        Flat numbers of the voids.
+    count : int
+        Number of voids.
+    """
+
+    first: IntArray
+    second: IntArray
+    count: int
+
+    def differences(self, values: FloatArray) -> FloatArray:
+        """Second less first of each pair, (pairs,), of ``values`` (m * n,)."""
+        step: FloatArray = values[self.second] - values[self.first]
+        return step
+
+    def gathered(self, pull: FloatArray) -> FloatArray:
+        """The transpose of :meth:`differences`: (m * n,) from (pairs,)."""
+        gathered = np.bincount(self.second, pull, self.count) - np.bincount(self.first, pull, self.count)
+        return np.asarray(gathered, dtype=np.float64)
+
+    def curvature(self, share: FloatArray, slopes: FloatArray) -> list[tuple[IntArray, IntArray, FloatArray]]:
+        """Entries of the second derivative of ``share`` (pairs,) times squared differences of variables' ``slopes``."""
+        first, second = self.first, self.second
+        mixed = -share * slopes[first] * slopes[second]
+        return [
+            (first, first, share * np.square(slopes[first])),
+            (second, second, share * np.square(slopes[second])),
+            (first, second, mixed),
+            (second, first, mixed),
+        ]
+
+
+@lru_cache(maxsize=64)
+def neighbours(rows: int, columns: int, apart: int) -> Neighbours:
+    """All pairs of voids ``apart`` rows or columns from each other (cached)."""
     index = np.arange(rows * columns).reshape(rows, columns)
-    down = np.stack([index[:-apart].ravel(), index[apart:].ravel()], axis=1)
-    right = np.stack([index[:, :-apart].ravel(), index[:, apart:].ravel()], axis=1)
-    pairs = np.concatenate([down, right])
-    matrix = np.zeros((len(pairs), rows * columns))
-    matrix[np.arange(len(pairs)), pairs[:, 0]] = -1.0
-    matrix[np.arange(len(pairs)), pairs[:, 1]] = 1.0
-    matrix.setflags(write=False)
-    return matrix
+    first = np.concatenate([index[:-apart].ravel(), index[:, :-apart].ravel()])
+    second = np.concatenate([index[apart:].ravel(), index[:, apart:].ravel()])
+    return Neighbours(first, second, index.size)

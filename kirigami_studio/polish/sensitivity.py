@@ -1,8 +1,9 @@
-"""How the outline moves when a ratio changes: the exact derivative of the barycentric solve.
+"""How the sheet moves when a ratio or a mouth changes: the exact derivative of the barycentric solve.
 
 With A P = b, changing the ratio of one void touches the two rows of the nodes that rest on its slit, so
-dP = A^-1 g with g_f = x ln 10 / (1 + x)^2 (P[first end] - P[second end]) per unit of z = log10 x.  The outline is a
-constant matrix times P, hence one adjoint solve with the outline's rows gives all derivatives at once.
+dP = A^-1 g with g_f = x ln 10 / (1 + x)^2 (P[first end] - P[second end]) per unit of z = log10 x.  Moving a mouth
+moves b, so dP = A^-1 S c with the coupling S of free nodes to given ones and c the given nodes that follow the mouth.
+The outline is a constant matrix times P, hence one adjoint solve with the outline's rows gives all its derivatives.
 """
 
 from __future__ import annotations
@@ -13,12 +14,12 @@ from functools import lru_cache
 
 import numpy as np
 import numpy.typing as npt
-import scipy.linalg
-from scipy.sparse import csr_matrix
+from scipy.linalg.lapack import dgetrf, dgetri, dgetrs
 
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray, IntArray
 from kirigami_studio.lattice.compact import barycentric_stencil
 from kirigami_studio.lattice.deployment import ZIPPED_BELOW, even_part_of_outline, rotate
+from kirigami_studio.lattice.sheet import Rim, RimPath, Sheet, rim_table
 from kirigami_studio.lattice.topology import topology
 
 LN10 = math.log(10.0)
@@ -36,17 +37,19 @@ class _Plan:
         The two free nodes that rest on each void's slit.
     h_count : int
         Free nodes of the h family; they alone are solved for.
-    h_to_v, v_to_h : (entry, row, column) int arrays
-        Which stencil weights couple free h rows to free v columns, and free v rows to free h columns.
+    h_on_v, v_on_h : _Rests
+        How free h nodes rest on free v nodes, and v on h.
+    v_under_h, h_under_v : _Rests
+        The same from below: which free h nodes rest on each free v node, and which v on each h.
     around : (first, second, place) int arrays
         Paths from a free h node over a v node to an h node: the stencil weights of both legs, and where their product
         stands in the flat (h, h) matrix.
     given : (K, 2) bool
         Stencil ends that are given nodes.
+    to_given : (entry, row, column) int arrays
+        Stencil weights that couple free rows to given columns, in the order of ``rim_table(...).node``.
     even, whole : (L, N) float
         Rows that read U, and U + V, off the compact nodes.
-    start : (N, 2) float
-        Given nodes in place.
     """
 
     free: IntArray
@@ -54,13 +57,48 @@ class _Plan:
     void: IntArray
     pair: IntArray
     h_count: int
-    h_to_v: tuple[IntArray, IntArray, IntArray]
-    v_to_h: tuple[IntArray, IntArray, IntArray]
+    h_on_v: _Rests
+    v_on_h: _Rests
+    v_under_h: _Rests
+    h_under_v: _Rests
     around: tuple[IntArray, IntArray, IntArray]
     given: BoolArray
+    to_given: tuple[IntArray, IntArray, IntArray]
     even: FloatArray
     whole: FloatArray
-    start: FloatArray
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Rests:
+    """A sparse matrix with at most two entries a row, as gathers: entries that are missing have weight 0.
+
+    Attributes
+    ----------
+    entry : (rows, 2) int
+        Stencil weights; one past the last where there is none.
+    column : (rows, 2) int
+    """
+
+    entry: IntArray
+    column: IntArray
+
+    @classmethod
+    def of(cls, entry: IntArray, row: IntArray, column: IntArray, rows: int) -> _Rests:
+        """The table of a matrix given entry by entry."""
+        order = np.argsort(row, kind="stable")
+        entry, row, column = entry[order], row[order], column[order]
+        second = np.zeros(row.size, dtype=np.intp)
+        second[1:] = row[1:] == row[:-1]
+        entries, columns = np.full((rows, 2), -1), np.zeros((rows, 2), dtype=np.intp)
+        entries[row, second], columns[row, second] = entry, column
+        return cls(entries, columns)
+
+    def times(self, weights: FloatArray, values: FloatArray) -> FloatArray:
+        """The matrix times ``values`` (C, D), with the stencil ``weights`` (2 K + 1,), the last of them 0."""
+        first, second = weights[self.entry].T
+        product: FloatArray = first[:, None] * values[self.column[:, 0]]
+        product += second[:, None] * values[self.column[:, 1]]
+        return product
 
 
 @lru_cache(maxsize=16)
@@ -72,6 +110,9 @@ def _plan(rows: int, columns: int, zipped: bool) -> _Plan:
     node, ends, void = node[order], ends[order], void[order]
     position = np.full(tables.node_count, -1)
     position[node] = np.arange(node.size)
+    rim = rim_table(rows, columns).node
+    rim_position = np.full(tables.node_count, -1)
+    rim_position[rim] = np.arange(rim.size)
     keep = np.isin(tables.outline_nodes, tables.outline_at_zero) if zipped else np.ones(tables.outline_nodes.size, bool)
     loop = tables.outline_nodes[keep]
     whole = np.zeros((loop.size, tables.node_count))
@@ -85,77 +126,167 @@ def _plan(rows: int, columns: int, zipped: bool) -> _Plan:
     h_to_v = entry[from_h], row[from_h], column[from_h] - h
     v_to_h = entry[from_v], row[from_v] - h, column[from_v]
     first, second = np.nonzero(h_to_v[2][:, None] == v_to_h[1])
+    known = column < 0
     return _Plan(
         free=node,
         ends=ends,
         void=void,
         pair=np.argsort(void, kind="stable").reshape(-1, 2).T,
         h_count=h,
-        h_to_v=h_to_v,
-        v_to_h=v_to_h,
+        h_on_v=_Rests.of(*h_to_v, h),
+        v_on_h=_Rests.of(*v_to_h, node.size - h),
+        v_under_h=_Rests.of(h_to_v[0], h_to_v[2], h_to_v[1], node.size - h),
+        h_under_v=_Rests.of(v_to_h[0], v_to_h[2], v_to_h[1], h),
         around=(h_to_v[0][first], v_to_h[0][second], h_to_v[1][first] * h + v_to_h[2][second]),
-        given=(column < 0).reshape(-1, 2),
+        given=known.reshape(-1, 2),
+        to_given=(entry[known], row[known], rim_position[ends].ravel()[known]),
         even=even,
         whole=whole,
-        start=tables.uniform_nodes,
     )
 
 
 class OutlineModel:
-    """Outline and its derivative for one grid, angle and cell size.
+    """Outline, compact nodes and their derivatives for one grid, angle and start outline.
+
+    The *shape* of a sheet is a vector: z = log10 of the ratios row by row, and where the rim is free, the offsets of
+    the mouths from their even places, in the order of :class:`~kirigami_studio.lattice.sheet.RimTable`.
 
     Parameters
     ----------
     rows, columns : int
     phi : float, radians, in [0, pi)
+    rim : Rim, optional
+        Where the mouths stay if the rim is not free; even by default.
+    start, cell
+        As for :class:`~kirigami_studio.lattice.sheet.Sheet`.
+    free_rim : bool
+        Whether the mouths belong to the shape.
     """
 
-    def __init__(self, rows: int, columns: int, phi: float) -> None:
-        self.rows, self.columns, self.phi = rows, columns, phi
+    def __init__(
+        self,
+        rows: int,
+        columns: int,
+        phi: float,
+        rim: Rim | None = None,
+        start: FloatArray | None = None,
+        cell: tuple[float, float] = (1.0, 1.0),
+        free_rim: bool = False,
+    ) -> None:
+        self.rows, self.columns, self.phi, self.free_rim = rows, columns, phi, free_rim
+        self._start, self._cell = start, cell
+        self._path, self._table = RimPath(rows, columns, start, cell), rim_table(rows, columns)
+        self._rim = rim or Rim.even(rows, columns)
         self._plan = _plan(rows, columns, phi < ZIPPED_BELOW)
         self._half = 0.5 * (math.pi - phi)
+        self.voids = rows * columns
+        self.size = self.voids + (self._table.even.size if free_rim else 0)
+        self._given = self._given_nodes(self._rim.positions)
+
+    @classmethod
+    def of(cls, sheet: Sheet, phi: float, free_rim: bool = False) -> OutlineModel:
+        """The model in which a sheet moves."""
+        return cls(sheet.rows, sheet.columns, phi, sheet.rim, sheet.start, sheet.cell, free_rim)
 
     @property
     def node_count(self) -> int:
-        return len(self._plan.start)
+        return topology(self.rows, self.columns).node_count
 
-    def nodes(self, z: FloatArray) -> FloatArray:
-        """Compact nodes (N, 2) of the field ``z`` (m * n,), unit cells; equal to ``Deployment.compact``."""
-        return self._solve(z)[0]
+    def positions(self, shape: FloatArray) -> FloatArray:
+        """The mouths' positions (R,) of a shape, unit cells."""
+        return self._table.even + shape[self.voids :] if self.free_rim else self._rim.positions
 
-    def outline(self, z: FloatArray) -> FloatArray:
-        """Boundary polygon (L, 2) of the field ``z`` (m * n,), unit cells; equal to ``Deployment.outline(phi)``."""
-        return self.outline_of(self.nodes(z))
+    def nodes(self, shape: FloatArray) -> FloatArray:
+        """Compact nodes (N, 2) of a shape (S,), unit cells; equal to ``Deployment.compact``."""
+        return self._solve(shape)[0]
+
+    def outline(self, shape: FloatArray) -> FloatArray:
+        """Boundary polygon (L, 2) of a shape (S,), unit cells; equal to ``Deployment.outline(phi)``."""
+        return self.outline_of(self.nodes(shape))
 
     def outline_of(self, nodes: FloatArray) -> FloatArray:
         """Boundary polygon (L, 2) of the sheet with compact ``nodes`` (N, 2), unit cells."""
         return self._deployed(self._plan.even @ nodes, self._plan.whole @ nodes)
 
-    def linearised(self, z: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Outline (L, 2) and its derivative (L, 2, m * n) with respect to z = log10 x."""
+    def linearised(self, shape: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Outline (L, 2) and its derivative (L, 2, S) by the shape."""
         plan = self._plan
-        nodes, system = self._solve(z)
-        through = self._adjoint(np.concatenate([plan.even, plan.whole]), system)
-        pull = self._pull(z, nodes)
+        nodes, system = self._solve(shape)
+        reach = np.concatenate([plan.even, plan.whole])
+        through = self._adjoint(reach, system)
         even, whole = np.split(through, 2)
-        turned = rotate(pull, -self._half), rotate(pull, self._half)
-        odd = whole - even
-        derivative = np.empty((even.shape[0], 2, self.rows * self.columns))
-        for axis in (0, 1):
-            derivative[:, axis] = self._per_void(even * turned[0][:, axis] + odd * turned[1][:, axis])
+        derivative = np.empty((even.shape[0], 2, self.size))
+        self._fill(derivative[..., : self.voids], even, whole - even, self._pull(shape, nodes), per_void=True)
+        if self.free_rim:
+            share = self._table.share[:, self._table.mouths]
+            followed = reach[:, self._table.node] @ share + through @ self._known(system.weights, share)
+            even, whole = np.split(followed, 2)
+            along = self._path.slopes(self.positions(shape))
+            self._fill(derivative[..., self.voids :], even, whole - even, along, per_void=False)
         return self.outline_of(nodes), derivative
 
-    def node_slopes(self, z: FloatArray, along_x: FloatArray, along_y: FloatArray) -> FloatArray:
-        """Derivative (F, m * n) of ``along_x @ x + along_y @ y`` of the compact nodes, both matrices (F, N)."""
-        nodes, system = self._solve(z)
-        pull = self._pull(z, nodes)
-        moved = self._adjoint(along_x, system) * pull[:, 0] + self._adjoint(along_y, system) * pull[:, 1]
-        return self._per_void(moved)
+    def node_derivative(self, shape: FloatArray) -> FloatArray:
+        """Derivative (2, N, S) of all compact nodes, x then y, by the shape."""
+        nodes, system = self._solve(shape)
+        plan, h, weights = self._plan, self._plan.h_count, system.weights
+        count = plan.free.size
+        inverse = np.empty((count, count))
+        at_h = np.asarray(dgetri(*system.factor)[0])
+        inverse[:h, :h] = at_h
+        inverse[:h, h:] = plan.v_under_h.times(weights, np.ascontiguousarray(at_h.T)).T
+        inverse[h:] = plan.v_on_h.times(weights, inverse[:h])
+        inverse[np.arange(h, count), np.arange(h, count)] += 1.0
+        derivative = np.zeros((2, len(nodes), self.size))
+        pull = self._pull(shape, nodes)
+        first, second = plan.pair
+        for axis in (0, 1):
+            own = inverse[:, first] * pull[first, axis]
+            own += inverse[:, second] * pull[second, axis]
+            derivative[axis, plan.free, : self.voids] = own
+        if self.free_rim:
+            share = self._table.share[:, self._table.mouths]
+            moved = np.zeros((len(nodes), share.shape[1]))
+            moved[self._table.node] = share
+            moved[plan.free] = inverse @ self._known(weights, share)
+            along = self._path.slopes(self.positions(shape))
+            for axis in (0, 1):
+                derivative[axis, :, self.voids :] = moved * along[:, axis]
+        return derivative
 
-    def _pull(self, z: FloatArray, nodes: FloatArray) -> FloatArray:
+    def node_slopes(self, shape: FloatArray, along_x: FloatArray, along_y: FloatArray) -> FloatArray:
+        """Derivative (F, S) of ``along_x @ x + along_y @ y`` of the compact nodes, both matrices (F, N)."""
+        nodes, system = self._solve(shape)
+        pull = self._pull(shape, nodes)
+        through_x, through_y = self._adjoint(along_x, system), self._adjoint(along_y, system)
+        slopes = np.empty((len(along_x), self.size))
+        slopes[:, : self.voids] = self._per_void(through_x * pull[:, 0] + through_y * pull[:, 1])
+        if self.free_rim:
+            share = self._table.share[:, self._table.mouths]
+            known, along = self._known(system.weights, share), self._path.slopes(self.positions(shape))
+            slopes[:, self.voids :] = sum(
+                (reach[:, self._table.node] @ share + through @ known) * along[:, axis]
+                for axis, (reach, through) in enumerate(((along_x, through_x), (along_y, through_y)))
+            )
+        return slopes
+
+    def _fill(
+        self, derivative: FloatArray, even: FloatArray, odd: FloatArray, motion: FloatArray, *, per_void: bool
+    ) -> None:
+        """Derivative of the deployed outline from those of U and V (L, K) and the motion (K, 2) in the flat sheet."""
+        by_even, by_odd = rotate(motion, -self._half), rotate(motion, self._half)
+        for axis in (0, 1):
+            moved = even * by_even[:, axis] + odd * by_odd[:, axis]
+            derivative[:, axis] = self._per_void(moved) if per_void else moved
+
+    def _given_nodes(self, positions: FloatArray) -> FloatArray:
+        nodes = np.zeros((self.node_count, 2))
+        nodes[self._table.node] = self._table.share @ self._path.anchors(positions)
+        return nodes
+
+    def _pull(self, shape: FloatArray, nodes: FloatArray) -> FloatArray:
         """How each free node's own equation moves it per unit of its void's z: (K, 2)."""
         ends = self._plan.ends
-        x = np.power(10.0, z)[self._plan.void]
+        x = np.power(10.0, shape[: self.voids])[self._plan.void]
         pull: FloatArray = (x * LN10 / (1.0 + x) ** 2)[:, None] * (nodes[ends[:, 0]] - nodes[ends[:, 1]])
         return pull
 
@@ -167,52 +298,44 @@ class OutlineModel:
     def _deployed(self, even: FloatArray, whole: FloatArray) -> FloatArray:
         return rotate(even, -self._half) + rotate(whole - even, self._half)
 
-    def _solve(self, z: FloatArray) -> tuple[FloatArray, _System]:
+    def _solve(self, shape: FloatArray) -> tuple[FloatArray, _System]:
         """Compact nodes, and the factored system they come from."""
         plan, h = self._plan, self._plan.h_count
-        x = np.power(10.0, z)[plan.void]
+        given = self._given_nodes(self.positions(shape)) if self.free_rim else self._given
+        x = np.power(10.0, shape[: self.voids])[plan.void]
         weights = np.stack([x / (1.0 + x), 1.0 / (1.0 + x)], axis=1)
-        known = ((weights * plan.given)[..., None] * plan.start[plan.ends]).sum(axis=1)
-        flat = weights.ravel()
+        known = ((weights * plan.given)[..., None] * given[plan.ends]).sum(axis=1)
+        flat = np.append(weights.ravel(), 0.0)
         first, second, place = plan.around
-        reduced = np.eye(h) - np.bincount(place, flat[first] * flat[second], h * h).reshape(h, h)
-        factor = scipy.linalg.lu_factor(reduced, check_finite=False, overwrite_a=True)
-        at_h = scipy.linalg.lu_solve(factor, known[:h] + _carried(flat, plan.h_to_v, known[h:], h), check_finite=False)
-        nodes = plan.start.copy()
+        reduced = np.asarray(-np.bincount(place, flat[first] * flat[second], h * h), dtype=np.float64).reshape(h, h)
+        reduced[np.diag_indices(h)] += 1.0
+        # LAPACK itself: at small grids SciPy's own checks take longer than the work.
+        lu, pivots, _ = dgetrf(reduced, overwrite_a=True)
+        at_h = dgetrs(lu, pivots, known[:h] + plan.h_on_v.times(flat, known[h:]))[0]
+        nodes = given.copy()
         nodes[plan.free[:h]] = at_h
-        nodes[plan.free[h:]] = _carried(flat, plan.v_to_h, at_h, plan.free.size - h) + known[h:]
-        return nodes, _System(flat, factor)
+        nodes[plan.free[h:]] = plan.v_on_h.times(flat, at_h) + known[h:]
+        return nodes, _System(flat, (lu, pivots))
+
+    def _known(self, weights: FloatArray, values: FloatArray) -> FloatArray:
+        """What free nodes get from given ones that have ``values`` (G, D): (K, D)."""
+        entry, row, column = self._plan.to_given
+        known = np.zeros((self._plan.free.size, values.shape[1]))
+        np.add.at(known, row, weights[entry, None] * values[column])
+        return known
 
     def _adjoint(self, reach: FloatArray, system: _System) -> FloatArray:
-        """``reach`` A^-1 over the free nodes: (2 L, K)."""
+        """``reach`` (F, N) times A^-1 over the free nodes: (F, K)."""
         plan, h = self._plan, self._plan.h_count
-        shape = h, plan.free.size - h
-        h_to_v, v_to_h = _matrix(system.weights, plan.h_to_v, shape), _matrix(system.weights, plan.v_to_h, shape[::-1])
-        on_h, on_v = reach[:, plan.free[:h]], reach[:, plan.free[h:]]
-        seen = on_h + (v_to_h.T @ on_v.T).T
-        through_h = scipy.linalg.lu_solve(system.factor, seen.T, trans=1, check_finite=False).T
-        return np.concatenate([through_h, on_v + (h_to_v.T @ through_h.T).T], axis=1)
+        on_h, on_v = reach[:, plan.free[:h]].T, reach[:, plan.free[h:]].T
+        seen = on_h + plan.h_under_v.times(system.weights, on_v)
+        through_h = dgetrs(*system.factor, seen, trans=1)[0]
+        return np.concatenate([through_h, on_v + plan.v_under_h.times(system.weights, through_h)]).T
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _System:
-    """One field's stencil weights (2 K,), and the factors of I - S_hv S_vh."""
+    """One field's stencil weights (2 K + 1,), the last of them 0, and the factors of I - S_hv S_vh."""
 
     weights: FloatArray
     factor: tuple[FloatArray, npt.NDArray[np.signedinteger]]
-
-
-def _carried(
-    weights: FloatArray, entries: tuple[IntArray, IntArray, IntArray], values: FloatArray, count: int
-) -> FloatArray:
-    """The sparse matrix of ``entries`` with ``count`` rows, times ``values`` (C, 2)."""
-    entry, row, column = entries
-    carried: FloatArray = np.stack(
-        [np.bincount(row, weights[entry] * values[column, axis], count) for axis in (0, 1)], axis=1
-    )
-    return carried
-
-
-def _matrix(weights: FloatArray, entries: tuple[IntArray, IntArray, IntArray], shape: tuple[int, int]) -> csr_matrix:
-    entry, row, column = entries
-    return csr_matrix((weights[entry], (row, column)), shape=shape)

@@ -14,7 +14,7 @@ from kirigami_studio.evaluate.feasibility import path_contact
 from kirigami_studio.foundation.arrays import IntArray
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
-from kirigami_studio.lattice.sheet import Rim, Sheet, anchor_points, anchor_slopes, rim_table
+from kirigami_studio.lattice.sheet import Rim, RimPath, Sheet, anchor_points, rim_table
 
 
 def rim_polygon(sheet: Sheet) -> shapely.Polygon:
@@ -98,7 +98,7 @@ def test_that_the_slopes_of_the_rim_are_differences(sheet: Sheet) -> None:
     step = 1e-4
     table = rim_table(*sheet.grid)
     offsets = sheet.rim.offsets(*sheet.grid)
-    slopes = anchor_slopes(sheet)
+    slopes = RimPath(*sheet.grid, sheet.start, sheet.cell).slopes(sheet.rim.positions)
     for mouth in range(0, offsets.size, 3):
         there = offsets.copy()
         there[mouth] += step

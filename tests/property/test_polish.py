@@ -10,10 +10,12 @@ from lattice_strategies import grids, ratio_fields
 
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.outlines.silhouettes import load
 from kirigami_studio.polish.boundary_target import BoundaryTarget
+from kirigami_studio.polish.even_panels import EvenPanels
 from kirigami_studio.polish.levenberg import SAMPLES, polish
-from kirigami_studio.polish.objective import Objective
+from kirigami_studio.polish.objective import Objective, Stage
 from kirigami_studio.polish.preferences import Preference, PreferenceTerms
 from kirigami_studio.polish.sensitivity import OutlineModel
 
@@ -23,12 +25,14 @@ STEP = 1e-6
 @settings(max_examples=15)
 @given(ratio_fields(grids(6)), st.sampled_from([0.0, 0.7, 2.2]), st.integers(0, 999))
 def test_that_the_gradient_is_the_slope_of_the_cost(field: RatioField, phi: float, seed: int) -> None:
-    model = OutlineModel(field.rows, field.columns, phi)
+    model = OutlineModel(field.rows, field.columns, phi, free_rim=True)
     z = field.log10.ravel()
     terms = PreferenceTerms(Preference(1e-3, 1e-3, 1e-3), np.zeros_like(z), field.rows, field.columns)
-    objective = Objective(model, BoundaryTarget.of(load("heart"), SAMPLES), terms)
+    stage, even = Stage(0, even=1e-2), EvenPanels.of(Sheet(field))
+    objective = Objective(model, BoundaryTarget.of(load("heart"), SAMPLES), terms, stage, 0.1, even=even)
     rng = np.random.default_rng(seed)
-    state = np.concatenate([z, [-np.log(field.rows + field.columns), *rng.uniform(-0.5, 0.5, 3)]])
+    offsets = rng.uniform(-0.4, 0.4, field.rows + field.columns)
+    state = np.concatenate([z, offsets, [-np.log(field.rows + field.columns), *rng.uniform(-0.5, 0.5, 3)]])
     gradient = objective.quadratic(objective.look(state), objective.slopes(state)).gradient
     direction = rng.normal(size=state.size)
     direction /= np.linalg.norm(direction)

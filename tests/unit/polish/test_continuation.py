@@ -9,6 +9,7 @@ from kirigami_studio.evaluate.siou import exact_iou
 from kirigami_studio.foundation.errors import AngleError, GridError, UsageError
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.silhouettes import load
 from kirigami_studio.polish import continuation
@@ -73,7 +74,7 @@ def test_that_a_good_guess_of_another_grid_is_used() -> None:
 def test_that_a_lifted_field_stays_within_the_bounds_from_any_grid() -> None:
     for grid in [(2, 2), (3, 2), (7, 4)]:
         field = RatioField.from_log10(np.random.default_rng(1).uniform(-1, 1, grid))
-        assert np.abs(lifted(field, (9, 9)).log10).max() <= 1.0 + 1e-12
+        assert np.abs(lifted(Sheet(field), (9, 9)).field.log10).max() <= 1.0 + 1e-12
 
 
 def test_that_a_cancelled_search_still_returns_a_fit() -> None:

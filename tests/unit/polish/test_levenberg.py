@@ -24,7 +24,7 @@ from kirigami_studio.polish.preferences import Preference
 
 
 def iou(fit: Fit, target: Outline, phi: float = 0.0) -> float:
-    return exact_iou(fit.pose.apply(deploy(fit.field).outline(phi)), target)
+    return exact_iou(fit.pose.apply(deploy(fit.sheet.field).outline(phi)), target)
 
 
 def smooth_field(rows: int, columns: int, seed: int = 0) -> RatioField:
@@ -65,23 +65,23 @@ def test_that_every_further_step_lowers_the_cost(grid: tuple[int, int]) -> None:
 
 def test_that_ratios_stay_within_a_tenth_and_ten() -> None:
     fit = polish(RatioField.uniform(4, 4), load("star"), steps=30, preference=Preference(0.0, 0.0))
-    assert fit.field.ratio.min() >= 0.1 - 1e-9
-    assert fit.field.ratio.max() <= 10.0 + 1e-9
-    assert np.abs(np.abs(fit.field.log10) - 1.0).min() < 1e-6, "a bound was reached, so this test can fail"
+    assert fit.sheet.field.ratio.min() >= 0.1 - 1e-9
+    assert fit.sheet.field.ratio.max() <= 10.0 + 1e-9
+    assert np.abs(np.abs(fit.sheet.field.log10) - 1.0).min() < 1e-6, "a bound was reached, so this test can fail"
 
 
 def test_that_starts_outside_the_bounds_are_moved_inside() -> None:
     wild = RatioField.from_log10(np.random.default_rng(0).uniform(-2, 2, (4, 4)))
     fit = polish(wild, load("circle"), steps=1)
-    assert np.abs(fit.field.log10).max() <= 1.0 + 1e-9
+    assert np.abs(fit.sheet.field.log10).max() <= 1.0 + 1e-9
 
 
 @pytest.mark.parametrize("name", ["star", "letter-l", "heart", "crescent"])
 def test_that_the_result_is_simple_and_free_of_contact_on_the_way(name: str) -> None:
     target = load(name)
     fit = polish(RatioField.uniform(6, 6), target, steps=20)
-    assert shapely.is_simple(shapely.linearrings(deploy(fit.field).outline(0.0)))
-    assert path_contact(deploy(fit.field), 0.0) is None
+    assert shapely.is_simple(shapely.linearrings(deploy(fit.sheet.field).outline(0.0)))
+    assert path_contact(deploy(fit.sheet.field), 0.0) is None
 
 
 def test_that_the_same_request_gives_the_same_field() -> None:
@@ -100,7 +100,7 @@ def test_that_a_cancelled_fit_returns_the_best_so_far() -> None:
     assert fit.steps == 3
     unmoved = polish(RatioField.uniform(6, 6), load("heart"), steps=50, cancel=lambda: True)
     assert unmoved.steps == 0
-    assert unmoved.field == RatioField.uniform(6, 6)
+    assert unmoved.sheet.field == RatioField.uniform(6, 6)
     assert math.isfinite(unmoved.cost)
 
 
@@ -108,14 +108,14 @@ def test_that_stronger_smoothing_gives_a_smoother_field() -> None:
     target = load("star")
     rough = polish(RatioField.uniform(8, 8), target, steps=10, preference=Preference(1e-6, 1e-7))
     smooth = polish(RatioField.uniform(8, 8), target, steps=10, preference=Preference(1e-6, 1e-3))
-    second = [np.square(np.diff(fit.field.log10[::2], axis=0)).sum() for fit in (rough, smooth)]
+    second = [np.square(np.diff(fit.sheet.field.log10[::2], axis=0)).sum() for fit in (rough, smooth)]
     assert second[1] < 0.5 * second[0]
 
 
 def test_that_a_pull_to_the_start_keeps_the_field_near_it() -> None:
     start = smooth_field(6, 6)
     fit = polish(start, load("circle"), steps=10, preference=Preference(start=1.0, smooth=0.0))
-    assert np.abs(fit.field.log10 - start.log10).max() < 0.05
+    assert np.abs(fit.sheet.field.log10 - start.log10).max() < 0.05
 
 
 def test_that_a_weight_on_total_variation_lowers_it_at_little_cost_of_shape() -> None:
@@ -158,8 +158,8 @@ def test_that_held_voids_keep_every_digit_while_the_others_improve_the_match() -
     locked = np.zeros((6, 6), dtype=bool)
     locked[1, 1] = locked[4, 2] = locked[0, 0] = True
     fit = polish(field, target, steps=8, locked=locked)
-    assert np.array_equal(fit.field.ratio[locked], field.ratio[locked])
-    assert not np.any(fit.field.ratio[~locked] == field.ratio[~locked])
+    assert np.array_equal(fit.sheet.field.ratio[locked], field.ratio[locked])
+    assert not np.any(fit.sheet.field.ratio[~locked] == field.ratio[~locked])
     assert iou(fit, target) > iou(polish(field, target, steps=0, locked=locked), target) + 0.02
 
 
@@ -172,7 +172,7 @@ def test_that_holding_nothing_is_the_same_fit_bit_for_bit() -> None:
 def test_that_holding_everything_leaves_the_pose_alone_to_be_fitted() -> None:
     target, field = load("heart"), smooth_field(4, 4, 3)
     fit = polish(field, target, steps=5, locked=np.ones((4, 4), dtype=bool))
-    assert fit.field == field
+    assert fit.sheet.field == field
     assert fit.cost <= polish(field, target, steps=0).cost
 
 

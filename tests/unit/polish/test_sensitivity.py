@@ -9,6 +9,7 @@ import pytest
 
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.lattice.sheet import Rim, Sheet
 from kirigami_studio.polish.sensitivity import OutlineModel
 
 GRIDS = [(2, 2), (3, 4), (5, 5), (6, 3), (10, 10)]
@@ -60,3 +61,44 @@ def test_that_extreme_ratios_still_have_a_finite_derivative() -> None:
     outline, derivative = OutlineModel(8, 8, math.pi / 7).linearised(z)
     assert np.isfinite(outline).all()
     assert np.isfinite(derivative).all()
+
+
+def random_shape(grid: tuple[int, int], seed: int = 5) -> np.ndarray:
+    draw = np.random.default_rng(seed)
+    return np.concatenate([draw.uniform(-1.0, 1.0, grid[0] * grid[1]), draw.uniform(-0.4, 0.4, sum(grid))])
+
+
+STARTS = [None, [[0, 0], [5, 1], [7, -2], [4, -7], [-1, -4]]]
+
+
+@pytest.mark.parametrize("grid", [(3, 4), (5, 5), (6, 3)])
+@pytest.mark.parametrize("phi", ANGLES)
+@pytest.mark.parametrize("start", STARTS, ids=["rectangle", "pentagon"])
+def test_that_the_outline_of_a_free_rim_is_the_deployments(
+    grid: tuple[int, int], phi: float, start: list[list[float]] | None
+) -> None:
+    shape, voids = random_shape(grid), grid[0] * grid[1]
+    field = RatioField.from_log10(shape[:voids].reshape(grid))
+    sheet = Sheet(field, Rim.moved(*grid, shape[voids:]), start, (1.0, 0.8))
+    model = OutlineModel.of(sheet, phi, free_rim=True)
+    assert np.abs(model.outline(shape) - deploy(sheet).outline(phi)).max() < 1e-10
+    assert np.abs(OutlineModel.of(sheet, phi).outline(shape[:voids]) - deploy(sheet).outline(phi)).max() < 1e-10
+
+
+@pytest.mark.parametrize("grid", [(3, 4), (5, 5), (6, 3)])
+@pytest.mark.parametrize("phi", ANGLES)
+@pytest.mark.parametrize("start", STARTS, ids=["rectangle", "pentagon"])
+def test_that_derivatives_by_ratios_and_mouths_are_central_differences(
+    grid: tuple[int, int], phi: float, start: list[list[float]] | None
+) -> None:
+    model = OutlineModel(*grid, phi, start=None if start is None else np.array(start), cell=(1.0, 0.8), free_rim=True)
+    shape, step = random_shape(grid), 1e-6
+    steps = step * np.eye(shape.size)
+    outline = np.stack([(model.outline(shape + one) - model.outline(shape - one)) / (2 * step) for one in steps], -1)
+    nodes = np.stack([(model.nodes(shape + one) - model.nodes(shape - one)) / (2 * step) for one in steps], -1)
+    assert np.abs(model.linearised(shape)[1] - outline).max() < 1e-6
+    assert np.abs(model.node_derivative(shape) - np.moveaxis(nodes, 1, 0)).max() < 1e-6
+    draw = np.random.default_rng(2)
+    along = draw.normal(size=(2, 3, model.node_count))
+    expected = along[0] @ nodes[:, 0] + along[1] @ nodes[:, 1]
+    assert np.abs(model.node_slopes(shape, *along) - expected).max() < 1e-5

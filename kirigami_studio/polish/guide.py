@@ -1,0 +1,142 @@
+"""A guide for the inside: where the flat sheet's places belong in the target, by optimal transport.
+
+The same panels tile both compact states, so seen from afar a design is a map from the flat sheet to the target that
+keeps areas.  The canonical one is the optimal transport (Monge) map between the two uniform densities: it needs no
+nearest boundary point, which is where fits get stuck.  Each panel's centroid in the target state is pulled to the
+image of its centroid in the flat sheet.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+import shapely
+from scipy.optimize import linear_sum_assignment
+from scipy.spatial import KDTree
+from scipy.spatial.distance import cdist
+
+from kirigami_studio.evaluate.similarity import Similarity
+from kirigami_studio.foundation.arrays import FloatArray
+from kirigami_studio.lattice.deployment import even_panel_part, rotate
+from kirigami_studio.lattice.sheet import Sheet, anchor_points
+from kirigami_studio.lattice.topology import topology
+from kirigami_studio.outlines.outline import Outline
+
+#: Points that stand for each of the two densities.
+POINTS = 600
+#: Neighbours over which the map is smoothed, by an affine fit.
+NEIGHBOURS = 16
+#: The plastic number's powers spread points evenly over the square (R2 sequence).
+SPREAD = np.array([0.7548776662466927, 0.5698402909980532])
+
+
+def even_points(polygon: shapely.Polygon, count: int = POINTS) -> FloatArray:
+    """Points (count, 2) spread evenly over a polygon."""
+    low, high = np.array(polygon.bounds).reshape(2, 2)
+    box = float(np.prod(high - low))
+    tried = 0
+    found = np.zeros((0, 2))
+    shapely.prepare(polygon)
+    while len(found) < count:
+        wanted = max(64, math.ceil(1.2 * (count - len(found)) * box / polygon.area))
+        places = np.modf(0.5 + np.arange(tried, tried + wanted)[:, None] * SPREAD)[0]
+        points = low + places * (high - low)
+        found = np.concatenate([found, points[shapely.contains_xy(polygon, points)]])
+        tried += wanted
+    return found[:count]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class TransportMap:
+    """Where places of the flat sheet belong in the target.
+
+    Attributes
+    ----------
+    source : (Q, 2) float, unit cells
+        Points of the flat sheet.
+    image : (Q, 2) float, unit-area lengths
+        Their images in the target's frame.
+    """
+
+    source: FloatArray
+    image: FloatArray
+    _tree: KDTree
+
+    @classmethod
+    def of(cls, sheet: Sheet, target: Outline, angle: float) -> TransportMap:
+        """The map of a sheet's flat outline, turned by ``angle`` (radians) into the target's frame."""
+        flat = shapely.Polygon(anchor_points(sheet))
+        source = even_points(flat)
+        middle = shapely.get_coordinates(flat.centroid)[0]
+        turned = rotate((source - middle) / math.sqrt(flat.area), angle)
+        points = _target_points(target)
+        _, order = linear_sum_assignment(cdist(turned, points, "sqeuclidean"))
+        return cls(source, points[order], KDTree(source))
+
+    def at(self, places: FloatArray) -> FloatArray:
+        """Images (P, 2) of places (P, 2) of the flat sheet, by an affine fit to the nearest points."""
+        found = self._tree.query(places, NEIGHBOURS)
+        distance, near = np.asarray(found[0]), np.asarray(found[1])
+        weight = np.exp(-2.0 * np.square(distance / distance[:, -1:]))[..., None]
+        total = weight.sum(axis=1)
+        source, image = self.source[near], self.image[near]
+        here, there = (weight * source).sum(axis=1) / total, (weight * image).sum(axis=1) / total
+        source, image = source - here[:, None], image - there[:, None]
+        spread = np.einsum("pki,pkj->pij", weight * source, source) + 1e-9 * np.eye(2)
+        together = np.einsum("pki,pkj->pij", weight * source, image)
+        slope = np.linalg.solve(spread, together)
+        images: FloatArray = there + np.einsum("pi,pij->pj", places - here, slope)
+        return images
+
+
+@lru_cache(maxsize=32)
+def _target_points(target: Outline) -> FloatArray:
+    return even_points(shapely.Polygon(target.points))
+
+
+@lru_cache(maxsize=8)
+def centroid_matrices(rows: int, columns: int) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Matrices (P, N) that read panel centroids off the compact nodes: in the flat sheet, in U and in V."""
+    tables = topology(rows, columns)
+    panels = tables.panel_nodes.reshape(-1, 4)
+    flat = np.zeros((len(panels), tables.node_count))
+    flat[np.arange(len(panels))[:, None], panels] = 0.25
+    even = flat @ even_panel_part(np.eye(tables.node_count), tables)
+    whole = flat.copy()
+    whole[:, 0] -= 1.0
+    return flat, even, whole - even
+
+
+class Guide:
+    """The term of one fit: mean squared distance between panel centroids and their images.
+
+    Parameters
+    ----------
+    sheet : Sheet
+    phi : float, radians
+    transport : TransportMap
+    """
+
+    def __init__(self, sheet: Sheet, phi: float, transport: TransportMap) -> None:
+        self._flat, self._even, self._odd = centroid_matrices(*sheet.grid)
+        self._half = 0.5 * (math.pi - phi)
+        self._transport = transport
+
+    def gaps(self, nodes: FloatArray, pose: Similarity) -> FloatArray:
+        """From each image to its centroid: (P, 2), unit-area lengths."""
+        return pose.apply(self.centroids(nodes)) - self._transport.at(self._flat @ nodes)
+
+    def centroids(self, nodes: FloatArray) -> FloatArray:
+        """Panel centroids (P, 2) of the deployed layout with compact ``nodes`` (N, 2), unit cells."""
+        return rotate(self._even @ nodes, -self._half) + rotate(self._odd @ nodes, self._half)
+
+    def slopes(self, slopes: FloatArray) -> FloatArray:
+        """Derivative (P, 2, S) of the centroids by variables that move the nodes by ``slopes`` (2, N, S)."""
+        (even_x, even_y), (odd_x, odd_y) = self._even @ slopes, self._odd @ slopes
+        c, s = math.cos(self._half), math.sin(self._half)
+        return np.stack(
+            [c * (even_x + odd_x) + s * (even_y - odd_y), c * (even_y + odd_y) - s * (even_x - odd_x)], axis=1
+        )
