@@ -24,7 +24,7 @@ from kirigami_studio.foundation.arrays import FloatArray, IntArray
 from kirigami_studio.foundation.errors import RatioError, SheetError
 from kirigami_studio.lattice.compact import barycentric_stencil
 from kirigami_studio.lattice.deployment import even_part_of_outline
-from kirigami_studio.lattice.sheet import Sheet, anchor_slopes, rim_table
+from kirigami_studio.lattice.sheet import RimPath, rim_table
 from kirigami_studio.lattice.topology import topology
 
 LN10 = math.log(10.0)
@@ -166,7 +166,7 @@ class BatchedLattice:
     def _build_rim(self) -> None:
         """How the given nodes follow each mouth: (R, N, 2)."""
         table = rim_table(self.rows, self.columns)
-        along = anchor_slopes(Sheet.uniform(self.rows, self.columns))
+        along = RimPath(self.rows, self.columns).slopes(rim_table(self.rows, self.columns).even)
         self.mouths = table.mouths.size
         by_offset = np.zeros((self.mouths, self.tables.node_count, 2))
         by_offset[:, table.node] = table.share[:, table.mouths].T[..., None] * along[:, None]

@@ -24,7 +24,7 @@ from scipy.sparse import csc_matrix
 
 from kirigami_studio.foundation.arrays import FloatArray, IntArray
 from kirigami_studio.foundation.errors import UsageError
-from kirigami_studio.lattice.sheet import RimPath, Sheet, rim_table
+from kirigami_studio.lattice.sheet import RimPath, Sheet, anchor_points, rim_table
 
 
 @dataclass(frozen=True, slots=True)

@@ -73,9 +73,14 @@ class Ranking:
         """Whether the design is feasible and all its panels are as wide as the material needs them."""
         return candidate.score.feasible and self.wide_enough(candidate)
 
+    @property
+    def scale(self) -> float:
+        """What all prices are multiplied with: 0 for match alone, 1 half way, 4 for regular sheets."""
+        return (2.0 * self.regular) ** 2
+
     def prices(self, candidate: Candidate) -> dict[str, float]:
         """What is taken off the IoU, by the code of the reason that names it; a symmetric sheet has the price 0."""
-        scale, figures = (2.0 * self.regular) ** 2, candidate.score.evenness
+        scale, figures = self.scale, candidate.score.evenness
         thinness = max(0.0, 1.0 - min(figures.least_edge, figures.least_neck) / SLENDER)
         return {
             "rank.less_even": scale * EVENNESS * figures.area_cv,

@@ -23,7 +23,6 @@ from kirigami_studio.foundation.threads import one_blas_thread
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.sheet import Sheet
-from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.lattice.symmetry import Symmetry, symmetry_of
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.pipeline.rank import improves
@@ -130,7 +129,7 @@ def keep_for_connectors(
 
 
 def kept_symmetry(sheet: Sheet) -> Symmetry | None:
-    """The symmetry that a fit from a sheet keeps: its own, unless it is the uniform one, which nobody made symmetric."""
+    """The symmetry that a fit from a sheet keeps: its own; none from the uniform sheet, which has them by chance."""
     return None if np.ptp(sheet.field.ratio) == 0.0 else symmetry_of(sheet)
 
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import hashlib
 import math
 from dataclasses import dataclass, replace
-from typing import cast
 
 from kirigami_studio import __version__
 from kirigami_studio.evaluate.trimming import KEEP, check_keep
@@ -16,7 +15,7 @@ from kirigami_studio.polish.continuation import Wishes
 from kirigami_studio.polish.even_panels import even_weight
 from kirigami_studio.polish.panel_size import check_least
 from kirigami_studio.polish.preferences import PREFERENCES
-from kirigami_studio.polish.symmetry import SYMMETRIES, SymmetrySetting
+from kirigami_studio.polish.symmetry import SYMMETRIES
 
 LARGEST_K = 1024
 LARGEST_STEPS = 64
@@ -171,8 +170,7 @@ class Request:
     @property
     def wishes(self) -> Wishes:
         """What fits ask for beside the match."""
-        setting = cast(SymmetrySetting, self.symmetry)
-        return Wishes(PREFERENCES[self.prefer], self.least_panel, self.rim == "free", self.even, setting)
+        return Wishes(PREFERENCES[self.prefer], self.least_panel, self.rim == "free", self.even, self.symmetry)
 
     def resolved(self, grid: tuple[int, int]) -> Request:
         """The same request on the grid that was chosen for it; a grid that it has already stays."""

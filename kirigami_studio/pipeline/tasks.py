@@ -15,14 +15,14 @@ from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.lattice.symmetry import Symmetry
 from kirigami_studio.outlines.outline import Outline
-from kirigami_studio.pipeline.rank import MILDER, Ranking
+from kirigami_studio.pipeline.rank import EVENNESS, MILDER, SYMMETRY, Ranking
 from kirigami_studio.pipeline.redesign import kept_symmetry, trimmed
 from kirigami_studio.pipeline.request import Request
-from kirigami_studio.polish.continuation import cooled, fit_shape, guided, guided_start
+from kirigami_studio.polish.continuation import FAIR_LOSS, cooled, fit_shape, guided, guided_start
 from kirigami_studio.polish.levenberg import polish
 from kirigami_studio.polish.objective import Stage
 from kirigami_studio.polish.preferences import PREFERENCES
-from kirigami_studio.polish.symmetry import SymmetrySetting, shared_symmetries, symmetric_target
+from kirigami_studio.polish.symmetry import shared_symmetries, symmetric_target
 
 
 @dataclass(frozen=True, slots=True)
@@ -131,6 +131,7 @@ class SearchTask:
 
     def carry_out(self, request: Request, stopped: Callable[[], bool]) -> Answer:
         """Search from scratch and from the starts."""
+        ranking = Ranking.of(request)
         with one_blas_thread():
             fits = fit_shape(
                 request.target,
@@ -139,7 +140,11 @@ class SearchTask:
                 self.starts,
                 request.search,
                 stopped,
-                request.wishes,
+                replace(
+                    request.wishes,
+                    evenness_price=ranking.scale * EVENNESS,
+                    symmetry_price=max(FAIR_LOSS, ranking.scale * SYMMETRY),
+                ),
             )
         (found,) = scored(request, [fits[0].sheet], self.index, Origin.SEARCHED, fitted=True)
         return Answer(found, fits[0].evaluations + 1)
@@ -168,7 +173,7 @@ def fit_target(request: Request, symmetry: Symmetry | None) -> Outline:
 
 
 @lru_cache(maxsize=16)
-def _meant(target: Outline, grid: tuple[int, int], phi: float, setting: SymmetrySetting, symmetry: Symmetry) -> Outline:
+def _meant(target: Outline, grid: tuple[int, int], phi: float, setting: str, symmetry: Symmetry) -> Outline:
     for pose in shared_symmetries(target, grid, phi, setting):
         if pose.symmetry is symmetry:
             return symmetric_target(target, pose)

@@ -19,6 +19,7 @@ import numpy as np
 import shapely
 
 from kirigami_studio.evaluate.alignment import align
+from kirigami_studio.evaluate.evenness import evenness
 from kirigami_studio.evaluate.feasibility import path_contact
 from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.evaluate.siou import exact_iou
@@ -34,7 +35,7 @@ from kirigami_studio.polish.levenberg import RIM_REACH, Fit, check_fit, polish
 from kirigami_studio.polish.objective import Stage
 from kirigami_studio.polish.panel_size import check_least
 from kirigami_studio.polish.preferences import Preference
-from kirigami_studio.polish.symmetry import SymmetricPose, SymmetrySetting, shared_symmetries
+from kirigami_studio.polish.symmetry import SymmetricPose, shared_symmetries
 
 #: Largest grid that is searched directly; finer ones start from a search on about this many voids each way.
 COARSE = 10
@@ -104,13 +105,19 @@ class Wishes:
         Weight of even panels in the end.
     symmetry : {"auto", "none", "mirror", "turn"}
         Which symmetries of the target sheets may keep.
+    evenness_price : float
+        IoU that a coefficient of variation of panel areas lower by 1 is worth.
+    symmetry_price : float
+        IoU that a symmetric sheet may lack and still wins.
     """
 
     preference: Preference = field(default_factory=Preference)
     least_panel: float = 0.0
     free_rim: bool = False
     even: float = 0.0
-    symmetry: SymmetrySetting = "auto"
+    symmetry: str = "auto"
+    evenness_price: float = 0.0
+    symmetry_price: float = FAIR_LOSS
 
 
 def fit_shape(
@@ -201,7 +208,7 @@ def guided_start(
 
 
 def first_angles(
-    target: Outline, grid: tuple[int, int], phi: float, effort: int = 1, setting: SymmetrySetting = "auto"
+    target: Outline, grid: tuple[int, int], phi: float, effort: int = 1, setting: str = "auto"
 ) -> list[tuple[float, Symmetry | None]]:
     """Rotations to begin with, those that keep a symmetry first: both ways up for a mirror axis."""
     angles = _rotations(grid, phi, effort)
@@ -226,11 +233,15 @@ def lifted(sheet: Sheet, grid: tuple[int, int]) -> Sheet:
 
 @dataclass(frozen=True, slots=True)
 class _Found:
-    """A fit, its exact IoU in its own pose, whether the sheet gets there untouched, and what symmetry it has."""
+    """A fit, its exact IoU in its own pose, whether the sheet gets there untouched, and what symmetry it has.
+
+    ``worth`` is the IoU less the price of uneven panels, plus what a symmetry is worth.
+    """
 
     fit: Fit
     iou: float
     clear: bool
+    worth: float
     symmetry: Symmetry | None = None
 
 
@@ -288,7 +299,9 @@ class _Search:
         outline = deploy(found.fit.sheet).outline(self.phi)
         pose = align(outline, self.target.points)
         iou = exact_iou(pose.apply(outline), self.target)
-        return found if iou <= found.iou else replace(found, fit=replace(found.fit, pose=pose), iou=iou)
+        if iou <= found.iou:
+            return found
+        return replace(found, fit=replace(found.fit, pose=pose), iou=iou, worth=found.worth + iou - found.iou)
 
     def lifted(self, coarse: _Found, grid: tuple[int, int]) -> list[_Found]:
         """Looks on a finer grid from a fit on a coarse one; grids of equal parities have the same symmetries."""
@@ -308,7 +321,11 @@ class _Search:
     def _found(self, fit: Fit, symmetry: Symmetry | None) -> _Found:
         deployment = deploy(fit.sheet)
         laid = fit.pose.apply(deployment.outline(self.phi))
-        return _Found(fit, exact_iou(laid, self.target), path_contact(deployment, self.phi) is None, symmetry)
+        iou, wishes = exact_iou(laid, self.target), self.wishes
+        worth = iou - wishes.evenness_price * evenness(deployment).area_cv
+        if symmetry is not None:
+            worth += wishes.symmetry_price
+        return _Found(fit, iou, path_contact(deployment, self.phi) is None, worth, symmetry)
 
     def _polish(
         self, sheet: Sheet, target: Outline, steps: int, pose: Similarity, trust: float, symmetry: Symmetry | None
@@ -333,10 +350,10 @@ class _Search:
 
 
 def _best(found: list[_Found], count: int) -> list[_Found]:
-    """The ``count`` best by IoU, those that touch themselves last; equal ones keep their order."""
+    """The ``count`` that are worth most, those that touch themselves last; equal ones keep their order."""
 
     def key(one: _Found) -> tuple[bool, float]:
-        return not one.clear, -one.iou - (FAIR_LOSS if one.symmetry else 0.0)
+        return not one.clear, -one.worth
 
     return sorted(found, key=key)[:count]
 
