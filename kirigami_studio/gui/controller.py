@@ -21,6 +21,8 @@ from kirigami_studio.gui.designs.collection import DesignMarks
 from kirigami_studio.gui.designs.curves import CurveReader
 from kirigami_studio.gui.designs.generation import Generation
 from kirigami_studio.gui.designs.hand_editor import HandEditor
+from kirigami_studio.gui.designs.regularity import Regularity
+from kirigami_studio.gui.designs.target_reader import TargetReader
 from kirigami_studio.gui.file_kinds import kind_of
 from kirigami_studio.gui.files.filing import Filing
 from kirigami_studio.gui.files.user_preferences import UserPreferences
@@ -46,6 +48,10 @@ class Controller(QObject):
         What is done to the chosen design, or found out about it.
     generation, run
         Making designs, and the run that makes them.
+    reader
+        What the target's shape says before a run.
+    regularity
+        The balance of match and regularity over the designs.
     fabrication, cutting
         The numbers a design is cut with, and its cut plan and files.
     targeting, filing, preferences
@@ -67,6 +73,8 @@ class Controller(QObject):
         self.curves = CurveReader(session, self)
         self.generation = Generation(session, self.hand, self)
         self.run = self.generation.run
+        self.reader = TargetReader(session, self)
+        self.regularity = Regularity(session, self)
         self.fabrication = FabricationEditor(session)
         self.cutting = CutPlanner(session, self)
         self.targeting = Targeting(session, self)
@@ -117,6 +125,7 @@ class Controller(QObject):
 
     def close(self) -> None:
         """Stop all work; the window is going away."""
+        self.reader.close()
         self.cutting.close()
         self.hand.close()
         self.queue.close()
@@ -167,6 +176,8 @@ class Controller(QObject):
             self.trimming.cancel()
         elif self.refitting.busy:
             self.refitting.cancel()
+        elif self.regularity.busy:
+            self.regularity.cancel()
 
     def choose(self, candidate: Candidate) -> None:
         """Put a candidate on the stage; during a run it is only looked at."""
@@ -209,6 +220,7 @@ class Controller(QObject):
 
     def _stop_work_on_design(self) -> None:
         """The design is about to change: what is being made of it belongs to the old one."""
+        self.regularity.stop()
         self.trimming.job.stop()
         self.refitting.job.stop()
 

@@ -150,7 +150,8 @@ class MainWindow(QMainWindow):
             document_signal.connect(refresh)
         for job_signal in (controller.run.started, controller.run.ended):
             job_signal.connect(refresh)
-        for busy_signal in (controller.trimming.busy_changed, controller.refitting.busy_changed):
+        working = (controller.trimming, controller.refitting, controller.regularity)
+        for busy_signal in (part.busy_changed for part in working):
             busy_signal.connect(refresh)
         self.stage.switches_changed.connect(refresh)
         self.stage.overlays_changed.connect(refresh)
@@ -168,7 +169,7 @@ class MainWindow(QMainWindow):
             undo_label=controller.history.undo_label,
             redo_label=controller.history.redo_label,
             running=controller.running,
-            busy=controller.trimming.busy or controller.refitting.busy,
+            busy=controller.trimming.busy or controller.refitting.busy or controller.regularity.busy,
             editing_target=self.target.editing,
             comparing=stage.comparing,
             before=_switch(stage.before),
@@ -269,6 +270,7 @@ class MainWindow(QMainWindow):
                 self._laid_out = True
         self.stage.restore(settings)
         self.fabrication.restore(settings)
+        self.settings.restore(settings)
 
     def remember(self, settings: QSettings) -> None:
         """Save size and columns for the next session."""
@@ -277,6 +279,7 @@ class MainWindow(QMainWindow):
             settings.setValue("columns", self.columns.saveState())
         self.stage.remember(settings)
         self.fabrication.remember(settings)
+        self.settings.remember(settings)
 
     def dragEnterEvent(self, event: QDragEnterEvent) -> None:  # noqa: N802 - Qt's name
         if any(url.isLocalFile() for url in event.mimeData().urls()):

@@ -23,7 +23,8 @@ from kirigami_studio.gui.jobs.design_jobs import Decoded, decoding
 from kirigami_studio.gui.jobs.queue import JobCallbacks, JobQueue
 from kirigami_studio.gui.messages import Message, Tone
 from kirigami_studio.lattice.deployment import Deployment, deploy
-from kirigami_studio.pipeline.rank import rank_key
+from kirigami_studio.lattice.symmetry import symmetry_of
+from kirigami_studio.pipeline.rank import Ranking
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.edits import Edit
 from kirigami_studio.project.history import History
@@ -73,7 +74,8 @@ class DesignCache:
         """Keep a motion that was decoded."""
         self._motions[candidate] = deployment
         self._motions.move_to_end(candidate)
-        least_panel_share(deployment)  # measured now, one by one, so that sorting by it does not wait
+        least_panel_share(deployment)  # measured now, one by one, so that sorting does not wait for it
+        symmetry_of(candidate.sheet)
         while len(self._motions) > CAPACITY:
             dropped, _ = self._motions.popitem(last=False)
             self._entries.pop(dropped, None)
@@ -107,6 +109,7 @@ class DesignDisplay(QObject):
         self._stage: Entry | None = None
         self._preview: Candidate | None = None
         self._best_of_run: Entry | None = None
+        self.ranking = Ranking()  #: of the run that goes on
         self._decoding = 0  # number of the job
 
     @property
@@ -121,8 +124,12 @@ class DesignDisplay(QObject):
 
     # during a run --------------------------------------------------------------------------------------------------
 
-    def begin_run(self, kept: tuple[Candidate, ...] = (), stays: bool = False) -> None:
-        """Make room for new designs beside those that are kept; ``stays`` leaves the chosen one on the stage."""
+    def begin_run(self, kept: tuple[Candidate, ...] = (), stays: bool = False, ranking: Ranking | None = None) -> None:
+        """Make room for new designs beside those that are kept, which are ranked as ``ranking`` says.
+
+        ``stays`` leaves the chosen one on the stage.
+        """
+        self.ranking = ranking or Ranking()
         self._session.queue.abandon(self._decoding)  # the document is shown again when the run is over
         self._preview, self._best_of_run = self._session.document.candidate if stays else None, None
         self.gallery_reset.emit(tuple(replace(self._session.cache.entry(candidate), kept=True) for candidate in kept))
@@ -140,7 +147,8 @@ class DesignDisplay(QObject):
             self._preview = entry.candidate
             self._put_on_stage(entry)
         best = self._best_of_run
-        if best is None or rank_key(entry.candidate) < rank_key(best.candidate):
+        key = self.ranking.key
+        if best is None or key(entry.candidate) < key(best.candidate):
             self._best_of_run = entry
             if self._preview is None:
                 self._put_on_stage(entry)

@@ -14,6 +14,7 @@ from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.design_facts import joined_provenance, with_run
 from kirigami_studio.project.document import Document, Mark
 from kirigami_studio.project.edits import Edit, set_candidates
+from kirigami_studio.project.settings import DesignSettings
 
 #: Designs that a project collects at most; one run may bring as many.
 LARGEST_COLLECTION = 1024
@@ -59,12 +60,15 @@ class NewDesigns:
         Seed that the settings show from now on; None leaves them as they are.
     target : Outline or None
         What the run was made for, if the document should return to it.
+    grid : (rows, columns) or None
+        What the settings show from now on where the run has chosen it.
     """
 
     candidates: tuple[Candidate, ...]
     provenance: Mapping[str, str]
     seed: int | None = None
     target: Outline | None = None
+    grid: tuple[int, int] | None = None
 
 
 def add_candidates(document: Document, new: NewDesigns, rank: RankKey, limit: int = LARGEST_COLLECTION) -> Edit:
@@ -81,8 +85,7 @@ def add_candidates(document: Document, new: NewDesigns, rank: RankKey, limit: in
     kept = _within([*present, *added], marked, document.candidate, rank, limit)
     changed = _collected(document, kept, marked, document.candidate)
     changed = replace(changed, provenance=joined_provenance(document.provenance, new.provenance))
-    if new.seed is not None:
-        changed = replace(changed, settings=replace(document.settings, seed=new.seed))
+    changed = replace(changed, settings=_settings(document, new))
     if not added:
         return Edit(tr("Change the seed"), replace(document, settings=changed.settings))
     return Edit(tr_n("Add {count} design", "Add {count} designs", len(added)), changed)
@@ -102,9 +105,45 @@ def renew_candidates(document: Document, new: NewDesigns, rank: RankKey, chosen:
     edit = set_candidates(document, found, joined, new.target)
     label = tr_n("Generate {count} design", "Generate {count} designs", len(new.candidates))
     changed = _collected(edit.document, found, dict.fromkeys(pinned, Mark.PINNED), chosen or found[0])
-    if new.seed is not None:
-        changed = replace(changed, settings=replace(document.settings, seed=new.seed))
-    return Edit(label, changed)
+    return Edit(label, replace(changed, settings=_settings(document, new)))
+
+
+def _settings(document: Document, new: NewDesigns) -> DesignSettings:
+    """The settings with the seed and the grid that the run has found."""
+    settings = document.settings
+    seed = settings.seed if new.seed is None else new.seed
+    return replace(settings, seed=seed, grid=settings.grid if new.grid is None else new.grid)
+
+
+def rank_again(document: Document, regular: float, rank: RankKey, merge_key: str) -> Edit:
+    """Put the designs into another order, with the balance (0 match, 1 regular) that it follows from.
+
+    The design that is chosen stays chosen, unless it was the first: then the new first one is.
+    """
+    settings = replace(document.settings, regular=regular)
+    ordered = sorted(document.candidates, key=rank)
+    chosen = ordered[0] if document.chosen == 0 else document.candidate
+    changed = _collected(document, ordered, _marked(document), chosen)
+    return Edit(tr("Change match or regular"), replace(changed, settings=settings), merge_key)
+
+
+def replace_candidates(
+    document: Document, better: Mapping[Candidate, Candidate], rank: RankKey, merge_key: str
+) -> Edit:
+    """Put better designs in the places of those that they were made from, and all into their order.
+
+    Marks and the choice pass over to them; where the first one was chosen, the new first one is.
+    """
+    changed = [better.get(one, one) for one in document.candidates]
+    marked = dict(zip(changed, document.marks, strict=True))
+    ordered = sorted(changed, key=rank)
+    chosen = None if document.chosen is None else changed[document.chosen]
+    after = _collected(document, ordered, marked, ordered[0] if document.chosen == 0 else chosen)
+    return Edit(tr("Change match or regular"), after, merge_key)
+
+
+def _marked(document: Document) -> dict[Candidate, Mark]:
+    return dict(zip(document.candidates, document.marks, strict=True))
 
 
 def _without_repeats(found: Iterable[Candidate], sheets: Iterable[Sheet]) -> list[Candidate]:

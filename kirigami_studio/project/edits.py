@@ -36,6 +36,10 @@ class SettingsChange(TypedDict, total=False):
     """Fields of :class:`DesignSettings` that an edit may replace."""
 
     grid: tuple[int, int]
+    auto_grid: bool
+    symmetry: str
+    rim: str
+    regular: float
     phi: float
     k: int
     seed: int
@@ -73,6 +77,10 @@ DECIMALS = 4
 #: What the Undo menu says of a change to one field; of several at once it names the first.
 _LABELS = {
     "grid": tr("Change the grid"),
+    "auto_grid": tr("Change the grid"),
+    "symmetry": tr("Change the symmetry"),
+    "rim": tr("Change the rim"),
+    "regular": tr("Change match or regular"),
     "phi": tr("Change the target angle"),
     "k": tr("Change the number of designs"),
     "seed": tr("Change the seed"),
@@ -113,14 +121,17 @@ def without_designs(document: Document, target: Outline | None) -> Document:
 
 
 def set_settings(document: Document, **changes: Unpack[SettingsChange]) -> Edit:
-    """Change how the next run searches.
+    """Change how the next run searches; a grid that is given is no longer chosen by the run.
 
     Raises
     ------
     GridError, AngleError, UsageError
         The number does not fit; see :class:`DesignSettings`.
     """
-    changed = replace(document, settings=replace(document.settings, **changes))
+    settings = replace(document.settings, **changes)
+    if "grid" in changes and "auto_grid" not in changes:
+        settings = replace(settings, auto_grid=False)
+    changed = replace(document, settings=settings)
     return Edit(_label(changes), changed, merge_key=_merge_key("settings", changes))
 
 

@@ -60,7 +60,7 @@ class DesignSettings:
     polish: int = 15
     prefer: str = "balanced"
     search: int = 0
-    auto_grid: bool = False
+    auto_grid: bool = True
     symmetry: str = "auto"
     rim: str = "free"
     regular: float = 0.5

@@ -143,6 +143,7 @@ def test_that_painted_controls_say_their_value(designed: MainWindow) -> None:
 
 def test_that_tab_visits_every_column_from_left_to_right_and_comes_back(designed: MainWindow, qtbot: QtBot) -> None:
     designed.activateWindow()
+    designed.settings.more.click()
     designed.settings.rows.setFocus()
     visited: list[QWidget] = []
     while (focused := QApplication.focusWidget()) is not None and focused not in visited and len(visited) < 120:

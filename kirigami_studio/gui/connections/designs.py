@@ -15,6 +15,7 @@ from kirigami_studio.gui.controller import Controller
 from kirigami_studio.gui.look import icons
 from kirigami_studio.gui.messages import Tone
 from kirigami_studio.gui.session import Entry
+from kirigami_studio.pipeline.rank import Ranking
 from kirigami_studio.project.document import Document, Mark
 
 if TYPE_CHECKING:
@@ -44,6 +45,12 @@ class DesignConnections(QObject):
         run.started.connect(self._show_run)
         run.progressed.connect(window.run.show_progress)
         run.ended.connect(self._show_idle)
+        regularity, settings = self._controller.regularity, window.settings
+        settings.regular_moved.connect(regularity.preview)
+        settings.regular_chosen.connect(self._choose_balance)
+        regularity.ranked.connect(self._rank)
+        regularity.busy_changed.connect(self._show_fitting)
+        regularity.progressed.connect(window.run.show_progress)
 
     def _connect_gallery(self) -> None:
         controller, view, bar = self._controller, self._window.gallery.view, self._window.gallery.bar
@@ -91,6 +98,26 @@ class DesignConnections(QObject):
             hint = tr("Open a file (Ctrl+O), choose from the library (Ctrl+L), or draw a silhouette on the left.")
             window.stage.view.set_hint("target", tr("Start with a target"), hint)
 
+    def _rank(self, ranking: Ranking) -> None:
+        """The balance of match and regularity is being moved."""
+        if not self._controller.running:
+            self._window.gallery.view.rank_by(ranking)
+
+    def _choose_balance(self, regular: float) -> None:
+        """The balance was let go."""
+        controller, model = self._controller, self._window.gallery.view.model_
+        if controller.running:
+            controller.change_settings(regular=regular)
+        elif not controller.hand.postpones(lambda: self._choose_balance(regular)):
+            controller.regularity.choose(regular, tuple(entry.candidate for entry in model.entries))
+
+    def _show_fitting(self, busy: bool) -> None:
+        """Designs are being fitted again, or no longer."""
+        if busy:
+            self._window.run.show_fitting()
+        elif not self._controller.running:
+            self._show_idle()
+
     # the gallery ---------------------------------------------------------------------------------------------------
 
     def _show_document(self, document: Document) -> None:
@@ -106,6 +133,7 @@ class DesignConnections(QObject):
 
     def _show_gallery(self, entries: tuple[Entry, ...]) -> None:
         view, document = self._window.gallery.view, self._controller.document
+        view.model_.ranking = self._controller.session.display.ranking
         view.show_entries(list(entries), document.target)
         view.mark(document.candidate)
         self._show_chosen()

@@ -12,6 +12,7 @@ from kirigami_studio.gui.connections.side_by_side import SideBySide
 from kirigami_studio.gui.connections.stage import StageConnections, VoidConnections
 from kirigami_studio.gui.connections.target import TargetConnections
 from kirigami_studio.gui.controller import Controller
+from kirigami_studio.gui.jobs.target_jobs import TargetReading
 from kirigami_studio.project.document import Document
 
 if TYPE_CHECKING:
@@ -41,6 +42,7 @@ class Connections(QObject):
         window.settings.edited.connect(controller.end_drag)
         window.settings.keep_changed.connect(self._keep_seed)
         controller.variants_known.connect(window.settings.set_variants)
+        controller.reader.known.connect(self._show_reading)
         controller.session.document_changed.connect(self._show_settings)
         self._show_settings(controller.document)
 
@@ -56,6 +58,16 @@ class Connections(QObject):
 
     def _show_settings(self, document: Document) -> None:
         self._window.settings.show_settings(document.settings)
+
+    def _show_reading(self, reading: TargetReading | None) -> None:
+        """Show what the target's shape says of symmetry and grid."""
+        window, settings = self._window, self._controller.document.settings
+        window.settings.show_symmetry("" if reading is None else reading.symmetry)
+        window.settings.show_grid_choice(
+            None if reading is None else reading.grid, "" if reading is None else reading.reason
+        )
+        if reading is not None and reading.grid is not None and settings.auto_grid:
+            window.target.show_reach(reading.grid)
 
     def _keep_seed(self, keeps: bool) -> None:
         self._controller.generation.planner.keeps_seed = keeps

@@ -16,20 +16,21 @@ from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.errors import KirigamiError, UsageError
 from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.gui.designs.hand_editor import HandEditor
-from kirigami_studio.gui.jobs.design_jobs import Decoded, ModelFound, RunReport, generating
+from kirigami_studio.gui.jobs.design_jobs import Decoded, GridChosen, ModelFound, RunReport, generating
 from kirigami_studio.gui.jobs.queue import JobCallbacks, LatestJob
 from kirigami_studio.gui.messages import Message, Tone
 from kirigami_studio.gui.session import Entry, Session
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.pipeline.events import CandidateFound, CandidateImproved, Finished, Progress, Result, Started
-from kirigami_studio.pipeline.rank import rank_key, ranked
+from kirigami_studio.pipeline.rank import Ranking
 from kirigami_studio.pipeline.request import Request, provenance
 from kirigami_studio.pipeline.variety import distinct
 from kirigami_studio.project import candidate_edits
 from kirigami_studio.project.candidate_edits import NewDesigns
+from kirigami_studio.project.cutting import least_feature_mm
 from kirigami_studio.project.document import Document, Mark
 from kirigami_studio.project.edits import Edit
-from kirigami_studio.project.settings import DesignSettings
+from kirigami_studio.project.settings import DesignSettings, FabricationSettings
 
 #: Angles closer than this (radians) are one.
 SAME_ANGLE = 1e-9
@@ -86,7 +87,7 @@ class Generation(QObject):
             session.refuse(error)
             return
         self.begun.emit()
-        session.display.begin_run(plan.kept, plan.joins)
+        session.display.begin_run(plan.kept, plan.joins, Ranking.of(plan.request))
         self.run.start(plan.request, plan.kept if plan.joins else None)
         session.set_status(plan.status)
 
@@ -96,7 +97,7 @@ class Generation(QObject):
         session.apply(self.planner.edit_for(result, facts, session.display.preview))
         if session.document is before:  # all of it was there already
             session.display.show()
-        session.set_status(self.planner.summary(result, before))
+        session.set_status(self.planner.summary(result, before, self.run.grid_reason))
 
     def _offer_found(self) -> None:
         self._session.display.show()
@@ -162,9 +163,10 @@ class RunPlanner:
         document = self._session.document
         settings = document.settings
         seed = settings.seed if self.keeps_seed else next_seed(document)
-        request = request_of(target, replace(settings, seed=seed))
+        request = request_of(target, replace(settings, seed=seed), document.fabrication)
         status = tr("Generating {k} designs for {name} …", k=request.k, name=target.name)
-        self.plan = RunPlan(request, ranked(_staying(document, request)), False, seed, status)
+        kept = Ranking.of(request).ranked(_staying(document, request))
+        self.plan = RunPlan(request, kept, False, seed, status)
         return self.plan
 
     def more(self, target: Outline) -> RunPlan:
@@ -203,11 +205,12 @@ class RunPlanner:
         first = document.candidates[0]
         seed = next_seed(document)
         same = replace(document.settings, auto_grid=False, grid=first.sheet.grid, phi=first.score.phi, seed=seed)
-        return request_of(target, same)
+        return request_of(target, same, document.fabrication)
 
     def _joined(self, request: Request, status: str) -> RunPlan:
         seed = None if self.keeps_seed else request.seed
-        self.plan = RunPlan(request, ranked(self._session.document.candidates), True, seed, status)
+        kept = Ranking.of(request).ranked(self._session.document.candidates)
+        self.plan = RunPlan(request, kept, True, seed, status)
         return self.plan
 
     def edit_for(self, result: Result, facts: dict[str, str], preview: Candidate | None) -> Edit:
@@ -220,7 +223,7 @@ class RunPlanner:
         if plan is not None and plan.joins:
             self.added = frozenset(result.candidates)
             new = NewDesigns(result.candidates, facts, seed)
-            edit = candidate_edits.add_candidates(document, new, rank_key)
+            edit = candidate_edits.add_candidates(document, new, Ranking.of(result.request).key)
             return _choosing(edit, preview)
         self.added = frozenset()
         staying = _staying(document, result.request)
@@ -228,25 +231,25 @@ class RunPlanner:
             sentence = tr("Pinned designs for another grid or angle were removed. Undo restores them.")
             self._session.post(Message(sentence, Tone.HINT))
             document = replace(document, marks=())
-        new = NewDesigns(result.candidates, facts, seed, result.request.target)
+        grid = result.request.grid if result.request.grid_chosen else None
+        new = NewDesigns(result.candidates, facts, seed, result.request.target, grid)
         chosen = preview if preview is not None and preview in (*staying, *result.candidates) else None
-        return candidate_edits.renew_candidates(document, new, rank_key, chosen)
+        return candidate_edits.renew_candidates(document, new, Ranking.of(result.request).key, chosen)
 
-    def summary(self, result: Result, before: Document) -> str:
-        """What the status line says of a completed run."""
+    def summary(self, result: Result, before: Document, grid_reason: str = "") -> str:
+        """What the status line says of a completed run, with the reason for its grid where it chose that."""
         plan, document = self.plan, self._session.document
         if plan is None or not plan.joins:
             score = result.best.score
-            return tr_n(
-                "Generated {count} design in {seconds:.1f} s: "
-                "sIoU {siou:.1f} %, {siou_gain:+.1f} over the uniform sheet.",
-                "Generated {count} designs in {seconds:.1f} s. "
-                "Best: sIoU {siou:.1f} %, {siou_gain:+.1f} over the uniform sheet.",
+            told = tr_n(
+                "Generated {count} design in {seconds:.1f} s: match {match:.1f} %, panels ±{variation:.0f} %.",
+                "Generated {count} designs in {seconds:.1f} s. Best: match {match:.1f} %, panels ±{variation:.0f} %.",
                 len(result.candidates),
                 seconds=result.seconds,
-                siou=100 * score.siou,
-                siou_gain=100 * score.siou_gain,
+                match=100 * score.iou_exact,
+                variation=100 * score.evenness.area_cv,
             )
+            return f"{told} {grid_reason}".strip()
         added = len(set(document.candidates) - set(before.candidates))
         if not added:
             return tr("No new designs; {count} already in the gallery.", count=result.repeats)
@@ -275,8 +278,8 @@ def next_seed(document: Document) -> int:
     return seed
 
 
-def request_of(target: Outline, settings: DesignSettings) -> Request:
-    """The run that these settings ask for.
+def request_of(target: Outline, settings: DesignSettings, cut: FabricationSettings) -> Request:
+    """The run that these settings ask for, on the sheet that is cut.
 
     Raises
     ------
@@ -297,6 +300,8 @@ def request_of(target: Outline, settings: DesignSettings) -> Request:
         symmetry=settings.symmetry,
         rim=settings.rim,
         regular=settings.regular,
+        width_mm=cut.width_mm,
+        least_feature_mm=least_feature_mm(cut),
     )
 
 
@@ -305,7 +310,9 @@ def _staying(document: Document, request: Request) -> tuple[Candidate, ...]:
     return tuple(
         one
         for one, mark in zip(document.candidates, document.marks, strict=True)
-        if mark is Mark.PINNED and one.sheet.grid == request.grid and abs(one.score.phi - request.phi) < SAME_ANGLE
+        if mark is Mark.PINNED
+        and request.grid in (None, one.sheet.grid)
+        and abs(one.score.phi - request.phi) < SAME_ANGLE
     )
 
 
@@ -333,9 +340,11 @@ class DesignRun(QObject):
         self._session = session
         self._job = LatestJob[RunReport](session.queue)
         self._digest = ""
+        self.grid_reason = ""  #: why the last run has its grid, where it chose that
         self._asked = 0
         self._request: Request | None = None
         self._others: tuple[Candidate, ...] = ()
+        self._ranking = Ranking()
         self._reports = 0
         self._clock = QElapsedTimer()
         self._sampled: dict[int, float] = {}  # sIoU of each candidate when it was found
@@ -352,6 +361,7 @@ class DesignRun(QObject):
         With ``others`` the result holds only designs that are not among them, perhaps none.
         """
         self._asked, self._request, self._others, self._reports = request.k, request, others or (), 0
+        self._ranking, self.grid_reason = Ranking.of(request), ""
         self._clock.start()
         self._sampled.clear()
         self._latest.clear()
@@ -376,7 +386,7 @@ class DesignRun(QObject):
         """
         if self._request is None:
             return None
-        candidates = distinct(ranked(tuple(self._latest.values())), self._others) if self._latest else ()
+        candidates = distinct(self._ranking.ranked(self._latest.values()), self._others) if self._latest else ()
         if not candidates:
             return None
         result = Result(self._request, candidates, self._reports, 1e-3 * self._clock.elapsed(), budget_ended=True)
@@ -386,6 +396,11 @@ class DesignRun(QObject):
         match report:
             case ModelFound(digest):
                 self._digest = digest
+            case GridChosen(grid, reason):
+                self.grid_reason = reason
+                if self._request is not None:
+                    self._request = self._request.resolved(grid)
+                self._session.set_status(reason)
             case Started():
                 self.progressed.emit(0, report.total, tr("Starting (0 of {total})", total=report.total))
             case Progress():
@@ -408,7 +423,7 @@ class DesignRun(QObject):
         self._sampled.setdefault(candidate.index, siou)
         self._latest[candidate.index] = candidate
         self._reports += 1
-        best = min(self._latest.values(), key=rank_key).score.siou
+        best = min(self._latest.values(), key=self._ranking.key).score.siou
         if candidate.index >= self._asked:
             self._session.set_status(
                 tr(

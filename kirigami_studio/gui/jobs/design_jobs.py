@@ -53,8 +53,26 @@ class Refitted:
     untrimmed: str = ""
 
 
+@dataclass(frozen=True, slots=True)
+class GridChosen:
+    """The grid that a run has chosen, and why in one sentence."""
+
+    grid: tuple[int, int]
+    reason: str
+
+
+@dataclass(frozen=True, slots=True)
+class FittedAgain:
+    """How many designs of all were fitted again; one of them before and after, where it became better."""
+
+    done: int
+    total: int
+    before: Candidate | None
+    after: Candidate | None
+
+
 #: What a run of the generator reports.
-RunReport = Event | ModelFound | Decoded
+RunReport = Event | ModelFound | GridChosen | Decoded
 
 
 def generating(request: Request, others: tuple[Candidate, ...] | None, cancel: Cancel) -> Iterator[RunReport]:
@@ -65,9 +83,13 @@ def generating(request: Request, others: tuple[Candidate, ...] | None, cancel: C
     """
     importing.import_generator()
     from kirigami_studio.generator.weights import digest_of
+    from kirigami_studio.pipeline.auto_grid import chosen_for
     from kirigami_studio.pipeline.run import run
 
     yield ModelFound(digest_of(request.variant))
+    if request.grid is None and request.near is None:
+        choice = chosen_for(request)
+        yield GridChosen(choice.grid, choice.reason)
     for event in run(request, cancel):
         match event:
             case CandidateFound() | CandidateImproved():
@@ -114,6 +136,18 @@ def refitting(
     refit = refitted(candidate, target, prefer, locked, partial(keep_for, candidate, settings), cancel)
     untrimmed = "" if refit.trim_problem is None else str(refit.trim_problem)
     yield Refitted(decoded(refit.candidate), refit.better, untrimmed)
+
+
+def fitting_again(
+    request: Request, candidates: tuple[Candidate, ...], cancel: Cancel
+) -> Iterator[Decoded | FittedAgain]:
+    """Fit designs again by what the request prefers; a better one comes decoded before its report."""
+    from kirigami_studio.pipeline.fit_again import fit_again
+
+    for report in fit_again(request, candidates, cancel):
+        if report.after is not None:
+            yield decoded(report.after)
+        yield FittedAgain(report.done, report.total, report.before, report.after)
 
 
 def trimming(candidate: Candidate, target: Outline, settings: FabricationSettings, cancel: Cancel) -> Iterator[Decoded]:

@@ -1,4 +1,4 @@
-"""Jobs on targets: read a file or a library silhouette, trace a picture at a threshold."""
+"""Jobs on targets: read a file or a library silhouette, trace a picture at a threshold, measure a shape."""
 
 from __future__ import annotations
 
@@ -10,11 +10,15 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QSize, Qt
 from PySide6.QtGui import QImage, QImageReader
 
+from kirigami_studio.foundation.errors import KirigamiError
+from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.jobs.queue import Cancel
 from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.pipeline.request import Request
 
 if TYPE_CHECKING:
     from kirigami_studio.outlines.read_image import Traced
+    from kirigami_studio.outlines.symmetry import TargetSymmetry
 
 #: Extensions of targets that are traced at a threshold.
 PICTURES = (".png", ".jpg", ".jpeg", ".bmp")
@@ -86,3 +90,57 @@ def reduced_picture(path: Path) -> QImage | None:
         reader.setScaledSize(size.scaled(QSize(LARGEST_SIDE, LARGEST_SIDE), Qt.AspectRatioMode.KeepAspectRatio))
     image = reader.read()
     return None if image.isNull() else image
+
+
+@dataclass(frozen=True, slots=True)
+class TargetReading:
+    """What a target's shape says.
+
+    Attributes
+    ----------
+    symmetry : str
+        How symmetric it is, in one or two sentences.
+    grid : (rows, columns) or None
+        What a run would choose; None where the settings ask for a symmetry that the target is far from.
+    reason : str
+        Why, in one sentence.
+    """
+
+    symmetry: str
+    grid: tuple[int, int] | None
+    reason: str
+
+
+def reading_shape(request: Request, cancel: Cancel) -> Iterator[TargetReading]:
+    """Measure how symmetric a request's target is, and choose a grid for it."""
+    from kirigami_studio.outlines.symmetry import symmetry_of
+    from kirigami_studio.pipeline.auto_grid import chosen_for
+
+    found = _symmetry_sentence(symmetry_of(request.target))
+    try:
+        choice = chosen_for(request)
+    except KirigamiError as error:
+        yield TargetReading(found, None, str(error))
+    else:
+        yield TargetReading(found, choice.grid, choice.reason)
+
+
+def _symmetry_sentence(found: TargetSymmetry) -> str:
+    """The best axis and turn of a target, with what counts as symmetric."""
+    from kirigami_studio.outlines.symmetry import TOLERANCE
+
+    mirror, turn = found.axes[0].overlap, max(found.half_turn, found.quarter_turn)
+    numbers = {"mirror": 100.0 * mirror, "turn": 100.0 * turn, "least": 100.0 * TOLERANCE}
+    if mirror >= TOLERANCE and turn >= TOLERANCE:
+        return tr(
+            "This target is symmetric: it covers {mirror:.1f} % of itself mirrored, {turn:.1f} % turned.", **numbers
+        )
+    if mirror >= TOLERANCE:
+        return tr("This target has a mirror axis: mirrored it covers {mirror:.1f} % of itself.", **numbers)
+    if turn >= TOLERANCE:
+        return tr("This target looks the same turned: it covers {turn:.1f} % of itself.", **numbers)
+    return tr(
+        "This target is not symmetric: it covers {mirror:.1f} % of itself mirrored and {turn:.1f} % turned; "
+        "{least:.1f} % would count.",
+        **numbers,
+    )

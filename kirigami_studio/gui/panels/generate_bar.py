@@ -60,6 +60,13 @@ class GenerateBar(QWidget):
         for part in (self.stop, self.progress, self.progress_text):
             part.show()
 
+    def show_fitting(self) -> None:
+        """Designs are being fitted again."""
+        self.progress.setRange(0, 0)
+        self.progress_text.setText(tr("Fitting the designs again …"))
+        for part in (self.stop, self.progress, self.progress_text):
+            part.show()
+
     def show_progress(self, done: int, total: int, message: str) -> None:
         """A run moves on; the bar is indefinite until the first design is there."""
         # A progress bar paints at once, and all that waits for paint in the window with it; so it only asks for it.

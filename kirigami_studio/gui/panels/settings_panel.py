@@ -1,23 +1,27 @@
-"""How the next run searches: grid, angle, number of candidates, seed, generator, polish, search."""
+"""What the next run designs: grid, symmetry, match or regular, angle, number; under More how it searches."""
 
 from __future__ import annotations
 
 import math
 import secrets
+from collections.abc import Sequence
 
-from PySide6.QtCore import QSignalBlocker, Qt, Signal
+from PySide6.QtCore import QEvent, QObject, QSettings, QSignalBlocker, Qt, QTimer, Signal
 from PySide6.QtWidgets import (
     QCheckBox,
     QComboBox,
     QHBoxLayout,
     QLabel,
     QSizePolicy,
+    QSlider,
     QSpinBox,
+    QToolButton,
+    QVBoxLayout,
     QWidget,
 )
 
 from kirigami_studio.foundation.words import tr, tr_n
-from kirigami_studio.gui.panels.card import Card, ToolButton, captioned, compact
+from kirigami_studio.gui.panels.card import Card, ScrolledWhenShort, ToolButton, captioned, compact
 from kirigami_studio.gui.panels.number_field import DecimalField
 from kirigami_studio.lattice.ratio_field import LARGEST_GRID, SMALLEST_GRID
 from kirigami_studio.pipeline.request import LARGEST_K
@@ -50,6 +54,29 @@ PREFER = (
     ("regularity", tr("Regularity"), tr("A third less TV than Balanced, at 0.1 to 0.2 % less match.")),
     ("calm", tr("Calm"), tr("About half the TV of Balanced, at 0.2 to 0.9 % less match.")),
 )
+#: What designs have to keep: value of the setting, label, what it means.
+SYMMETRIES = (
+    ("auto", tr("Auto"), tr("Symmetric designs for symmetric targets, beside free ones.")),
+    ("none", tr("Off"), tr("Ignore the target's symmetry.")),
+    ("mirror", tr("Mirror"), tr("Every design is its own mirror image, as a sketched heart is meant to be.")),
+    ("turn", tr("Turn"), tr("Every design looks the same after a half or quarter turn.")),
+)
+#: Where cuts meet the rim: value of the setting, label, what it means.
+RIMS = (
+    ("free", tr("Free"), tr("Cuts meet the sheet's sides where that helps the match.")),
+    ("even", tr("Even"), tr("Cuts meet the sheet's sides at even distances.")),
+)
+AUTO_GRID = tr("Choose the grid for each target: as coarse as its shape allows, in mm and in match.")
+REGULAR = tr(
+    "What comes first. Left: the closest match. Right: even panels. Moving it ranks the designs again at once; "
+    "letting go fits them again."
+)
+#: Pixels that the rows get at least, where a small window scrolls them.
+LEAST_HEIGHT = 148
+#: Positions of the slider.
+POSITIONS = 100
+#: Milliseconds after the last key or notch that mean the slider has been let go.
+LET_GO_MS = 600
 SEARCH = tr(
     "Search for one more design by way of easier shapes. Takes a few seconds; helps with thin arms and notches."
 )
@@ -62,9 +89,21 @@ class SettingsPanel(Card):
     changed = Signal(dict)  #: field of DesignSettings -> value
     edited = Signal()  #: a field was left
     keep_changed = Signal(bool)  #: whether Generate draws from the seed that is shown
+    regular_moved = Signal(float)  #: 0 match .. 1 regular, while the slider is dragged
+    regular_chosen = Signal(float)  #: the slider was let go
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(tr("Design"), parent)
+        self._symmetry_found = ""
+        self._chosen_grid: tuple[int, int] | None = None
+        self.auto = QToolButton()
+        self.auto.setObjectName("autoGrid")
+        self.auto.setText(tr("Auto"))
+        self.auto.setCheckable(True)
+        self.auto.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+        self.auto.setFixedHeight(29)
+        self.auto.setAccessibleName(tr("Choose the grid automatically"))
+        self.auto.setToolTip(AUTO_GRID)
         self.rows = _whole(
             "rows",
             tr("Rows"),
@@ -118,15 +157,29 @@ class SettingsPanel(Card):
         self.keep.setChecked(True)
         self.keep.setFixedSize(29, 29)
         self.keep.toggled.connect(self.keep_changed)
+        self.symmetry = _choice("symmetry", tr("Symmetry of the designs"))
+        _fill(self.symmetry, SYMMETRIES)
+        self.rim = _choice("rim", tr("Rim: where cuts meet the sheet's sides"))
+        _fill(self.rim, RIMS)
+        self.regular = QSlider(Qt.Orientation.Horizontal)
+        self.regular.setObjectName("regular")
+        self.regular.setRange(0, POSITIONS)
+        self.regular.setSingleStep(POSITIONS // 20)
+        self.regular.setPageStep(POSITIONS // 4)
+        self.regular.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+        self.regular.setAccessibleName(tr("Match or regular"))
+        self.regular.setToolTip(REGULAR)
+        self._let_go = QTimer(self, singleShot=True, interval=LET_GO_MS)
+        self.more = ToolButton(
+            "moreSettings", "down", tr("More settings: seed, model, polish, preference, rim, search."), checkable=True
+        )
+        self.more.setText(tr("More"))
+        self.more.setToolButtonStyle(Qt.ToolButtonStyle.ToolButtonTextBesideIcon)
         self.variant = _choice("variant", tr("Generator variant"))
         self.polish = _choice("polish", tr("Polish"))
-        for title, steps, about in POLISH:
-            self.polish.addItem(title, steps)
-            self.polish.setItemData(self.polish.count() - 1, about, TOOLTIP)
+        _fill(self.polish, tuple((steps, title, about) for title, steps, about in POLISH))
         self.prefer = _choice("prefer", tr("What polishing prefers"))
-        for name, title, about in PREFER:
-            self.prefer.addItem(title, name)
-            self.prefer.setItemData(self.prefer.count() - 1, about, TOOLTIP)
+        _fill(self.prefer, PREFER)
         self.search = QCheckBox(tr("Se&arch"))
         self.search.setObjectName("search")
         self.search.setFocusPolicy(Qt.FocusPolicy.TabFocus)
@@ -138,27 +191,67 @@ class SettingsPanel(Card):
         self._connect()
 
     def _lay_out(self) -> None:
-        grid = _side_by_side(self.rows, QLabel("\N{MULTIPLICATION SIGN}"), self.columns)
+        grid = _side_by_side(self.auto, self.rows, QLabel("\N{MULTIPLICATION SIGN}"), self.columns)
         seed = _side_by_side(self.seed, self.dice, self.keep)
-        first, second, third = QHBoxLayout(), QHBoxLayout(), QHBoxLayout()
-        for row in (first, second, third):
-            row.setSpacing(10)
-            self.body.addLayout(row)
-        first.addLayout(captioned(tr("&Grid (voids)"), self.rows, grid), 5)
-        first.addLayout(captioned(tr("Ang&le"), self.angle, self.angle), 3)
-        first.addLayout(captioned(tr("Desig&ns"), self.candidates, self.candidates), 3)
-        second.addLayout(captioned(tr("&Seed"), self.seed, seed), 4)
-        second.addLayout(captioned(tr("&Model"), self.variant, self.variant), 3)
-        third.addLayout(captioned(tr("Pol&ish"), self.polish, self.polish), 7)
-        third.addLayout(captioned(tr("&Prefer"), self.prefer, self.prefer), 10)
-        third.addLayout(captioned("", self.search, self.search))
-        third.setSpacing(8)
+        match, even = QLabel(tr("Mat&ch")), QLabel(tr("Regular"))
+        match.setBuddy(self.regular)
+        for label in (match, even):
+            label.setObjectName("muted")
+        content = QWidget()
+        content.setObjectName("plain")
+        rows = QVBoxLayout(content)
+        rows.setContentsMargins(0, 0, 0, 0)
+        rows.setSpacing(8)
+        self.body.addWidget(ScrolledWhenShort(content, LEAST_HEIGHT))
+        self.header.addWidget(self.more)
+        self.hidden = QWidget()
+        self.hidden.setObjectName("plain")
+        below = QVBoxLayout(self.hidden)
+        below.setContentsMargins(0, 0, 0, 0)
+        below.setSpacing(8)
+        first, second, third, fourth, fifth, slider = (QHBoxLayout() for _ in range(6))
+        for row, place in (
+            (first, rows),
+            (slider, rows),
+            (second, rows),
+            (third, below),
+            (fourth, below),
+            (fifth, below),
+        ):
+            row.setSpacing(8)
+            place.addLayout(row)
+        rows.addWidget(self.hidden)
+        self.hidden.hide()
+        first.addLayout(captioned(tr("&Grid (voids)"), self.rows, grid), 12)
+        first.addLayout(captioned(tr("S&ymmetric"), self.symmetry, self.symmetry), 5)
+        slider.addWidget(match)
+        slider.addWidget(self.regular, 1)
+        slider.addWidget(even)
+        second.addLayout(captioned(tr("Ang&le"), self.angle, self.angle), 1)
+        second.addLayout(captioned(tr("Desig&ns"), self.candidates, self.candidates), 1)
+        third.addLayout(captioned(tr("&Seed"), self.seed, seed), 4)
+        third.addLayout(captioned(tr("&Model"), self.variant, self.variant), 3)
+        fourth.addLayout(captioned(tr("Pol&ish"), self.polish, self.polish), 1)
+        fourth.addLayout(captioned(tr("&Prefer"), self.prefer, self.prefer), 1)
+        fifth.addLayout(captioned(tr("Rim"), self.rim, self.rim), 1)
+        fifth.addLayout(captioned("", self.search, self.search), 1)
 
     def _connect(self) -> None:
         self.rows.valueChanged.connect(lambda: self.changed.emit({"grid": (self.rows.value(), self.columns.value())}))
         self.columns.valueChanged.connect(
             lambda: self.changed.emit({"grid": (self.rows.value(), self.columns.value())})
         )
+        self.auto.clicked.connect(self._switch_auto)
+        for name, choice in (("symmetry", self.symmetry), ("rim", self.rim)):
+            choice.activated.connect(
+                lambda _, name=name, choice=choice: self.changed.emit({name: choice.currentData()})
+            )
+        self.regular.valueChanged.connect(self._move_regular)
+        self.regular.sliderReleased.connect(self._choose_regular)
+        self._let_go.timeout.connect(self._choose_regular)
+        self.more.toggled.connect(self._fold)
+        for widget in (self.regular, self.symmetry, self.rim):
+            widget.installEventFilter(_WheelStays(widget))
         self.angle.valueChanged.connect(lambda value: self.changed.emit({"phi": math.radians(value)}))
         self.candidates.valueChanged.connect(lambda value: self.changed.emit({"k": value}))
         self.seed.valueChanged.connect(lambda value: self.changed.emit({"seed": value}))
@@ -169,8 +262,59 @@ class SettingsPanel(Card):
         self.dice.clicked.connect(lambda: self.seed.setValue(secrets.randbelow(1_000_000)))
         for box in (self.rows, self.columns, self.angle, self.candidates, self.seed):
             box.setKeyboardTracking(False)
-            compact(box, 54)
+            compact(box, 50)
             box.editingFinished.connect(self.edited)
+
+    def _switch_auto(self, on: bool) -> None:
+        """Leave the grid to the run, or keep the one that is shown."""
+        shown = (self.rows.value(), self.columns.value())
+        self.changed.emit({"auto_grid": True} if on else {"auto_grid": False, "grid": shown})
+
+    def _move_regular(self) -> None:
+        self.regular_moved.emit(self.regular.value() / POSITIONS)
+        if self.regular.isSliderDown():
+            self._let_go.stop()
+        else:
+            self._let_go.start()
+
+    def _choose_regular(self) -> None:
+        self._let_go.stop()
+        self.regular_chosen.emit(self.regular.value() / POSITIONS)
+
+    def _fold(self, shown: bool) -> None:
+        self.hidden.setVisible(shown)
+        self.more.show_icon("up" if shown else "down")
+
+    def restore(self, settings: QSettings) -> None:
+        """Show more settings, or not, as the last time."""
+        self.more.setChecked(settings.value("moreSettings") == "yes")
+
+    def remember(self, settings: QSettings) -> None:
+        """Keep for the next time whether more settings are shown."""
+        settings.setValue("moreSettings", "yes" if self.more.isChecked() else "no")
+
+    def show_symmetry(self, sentence: str) -> None:
+        """Tell in the tooltip how symmetric the target is; an empty sentence while that is not known."""
+        self._symmetry_found = sentence
+        self._show_symmetry_tip()
+
+    def show_grid_choice(self, grid: tuple[int, int] | None, reason: str) -> None:
+        """Show the grid that the next run will choose, and why in the tooltip; None while that is not known."""
+        self._chosen_grid = grid
+        self.auto.setToolTip(f"{AUTO_GRID}\n{reason}" if reason else AUTO_GRID)
+        self.auto.setAccessibleDescription(reason)
+        if grid is not None and self.auto.isChecked():
+            self._show_grid(grid)
+
+    def _show_grid(self, grid: tuple[int, int]) -> None:
+        for box, count in zip((self.rows, self.columns), grid, strict=True):
+            with QSignalBlocker(box):
+                box.setValue(count)
+
+    def _show_symmetry_tip(self) -> None:
+        about = self.symmetry.itemData(self.symmetry.currentIndex(), TOOLTIP) or ""
+        self.symmetry.setToolTip("\n".join(part for part in (about, self._symmetry_found) if part))
+        self.symmetry.setAccessibleDescription(self._symmetry_found)
 
     def set_variants(self, names: tuple[str, ...]) -> None:
         """Offer these generators; the chosen one stays."""
@@ -187,8 +331,6 @@ class SettingsPanel(Card):
     def show_settings(self, settings: DesignSettings) -> None:
         """Show the document's settings without reporting them as gestures."""
         values = (
-            (self.rows, settings.grid[0]),
-            (self.columns, settings.grid[1]),
             (self.candidates, settings.k),
             (self.seed, settings.seed),
         )
@@ -197,6 +339,16 @@ class SettingsPanel(Card):
                 box.setValue(value)
         with QSignalBlocker(self.angle):
             self.angle.setValue(math.degrees(settings.phi))
+        self.auto.setChecked(settings.auto_grid)
+        self._show_grid(self._chosen_grid if settings.auto_grid and self._chosen_grid else settings.grid)
+        if not self.regular.isSliderDown() and not self._let_go.isActive():
+            with QSignalBlocker(self.regular):
+                self.regular.setValue(round(POSITIONS * settings.regular))
+        for choice, name in ((self.symmetry, settings.symmetry), (self.rim, settings.rim)):
+            with QSignalBlocker(choice):
+                _choose(choice, name)
+        self._show_symmetry_tip()
+        self.rim.setToolTip(self.rim.itemData(self.rim.currentIndex(), TOOLTIP))
         with QSignalBlocker(self.variant):
             self._choose_variant(settings.variant)
         with QSignalBlocker(self.polish):
@@ -215,13 +367,9 @@ class SettingsPanel(Card):
         self.polish.setToolTip(tr("How thoroughly designs are fitted to the target: up to {steps} steps.", steps=steps))
 
     def _choose_preference(self, name: str, fitted: bool) -> None:
-        index = self.prefer.findData(name)
-        if index < 0:
-            self.prefer.addItem(name, name)
-            index = self.prefer.count() - 1
-        self.prefer.setCurrentIndex(index)
+        _choose(self.prefer, name)
         self.prefer.setEnabled(fitted)
-        about = self.prefer.itemData(index, TOOLTIP) or ""
+        about = self.prefer.itemData(self.prefer.currentIndex(), TOOLTIP) or ""
         tip = tr("What polishing prefers among nearly equal matches. {about}", about=about).strip()
         self.prefer.setToolTip(tip if fitted else tr("What polishing prefers. Turn on Polish to use it."))
 
@@ -234,6 +382,32 @@ class SettingsPanel(Card):
         self.variant.setToolTip(
             tr("Model that generates the designs. {about}", about=VARIANTS.get(name, ("", ""))[1]).strip()
         )
+
+
+class _WheelStays(QObject):
+    """Leaves the wheel to the page that scrolls unless the control has the focus."""
+
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802 - Qt's name
+        if event.type() == QEvent.Type.Wheel and isinstance(watched, QWidget) and not watched.hasFocus():
+            event.ignore()
+            return True
+        return super().eventFilter(watched, event)
+
+
+def _fill(box: QComboBox, rows: Sequence[tuple[object, str, str]]) -> None:
+    """Offer values, each with its label and what it means."""
+    for value, label, about in rows:
+        box.addItem(label, value)
+        box.setItemData(box.count() - 1, about, TOOLTIP)
+
+
+def _choose(box: QComboBox, name: str) -> None:
+    """Choose a value; one that is not on offer, as from a newer project, is added under its own name."""
+    index = box.findData(name)
+    if index < 0:
+        box.addItem(name, name)
+        index = box.count() - 1
+    box.setCurrentIndex(index)
 
 
 def _choice(name: str, accessible: str) -> QComboBox:

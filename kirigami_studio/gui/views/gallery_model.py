@@ -13,7 +13,7 @@ from kirigami_studio.fabricate.panel_sizes import least_panel_share
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.designs.gallery_selection import GalleryItem, Selection, format_value, places_in_order
 from kirigami_studio.gui.session import Entry, same_sample
-from kirigami_studio.pipeline.rank import rank_key
+from kirigami_studio.pipeline.rank import Ranking
 from kirigami_studio.project.document import Mark
 
 CANDIDATE_ROLE = Qt.ItemDataRole.UserRole + 1
@@ -44,6 +44,7 @@ class GalleryModel(QAbstractListModel):
         self._marks: dict[Candidate, Mark] = {}
         self._fresh: frozenset[Candidate] = frozenset()
         self._selection = Selection()
+        self.ranking = Ranking()  #: puts designs that are inserted into their places
         self._width_mm = 100.0
 
     @property
@@ -105,6 +106,14 @@ class GalleryModel(QAbstractListModel):
         size = self._width_mm * least_panel_share(entry.design.deployment)
         return tr("Smallest feature: {size:.2f} mm on a sheet {width:g} mm wide", size=size, width=self._width_mm)
 
+    def rank_by(self, ranking: Ranking) -> None:
+        """Put all designs into the order of a ranking, and later ones that are inserted."""
+        self.ranking = ranking
+        after = sorted(self._all, key=lambda entry: ranking.key(entry.candidate))
+        if [id(one) for one in after] != [id(one) for one in self._all]:
+            self._all = after
+            self._rearrange()
+
     def replace(self, entries: list[Entry]) -> None:
         """Show other candidates, best first; those that are the same samples as before keep their cards."""
         before = self._shown
@@ -130,7 +139,8 @@ class GalleryModel(QAbstractListModel):
             if not known.kept and same_sample(known.candidate, entry.candidate):
                 self._remove(old)
                 break
-        place = bisect.bisect_right(self._all, rank_key(entry.candidate), key=lambda one: rank_key(one.candidate))
+        key = self.ranking.key
+        place = bisect.bisect_right(self._all, key(entry.candidate), key=lambda one: key(one.candidate))
         self._all.insert(place, entry)
         after = self._arranged()
         row = next((row for row, one in enumerate(after) if one is entry), -1)

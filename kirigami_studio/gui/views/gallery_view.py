@@ -16,6 +16,7 @@ from kirigami_studio.gui.session import Entry
 from kirigami_studio.gui.views.card_delegate import GAP, SMALLEST_CARD, CardButton, CardDelegate, button_at, card_size
 from kirigami_studio.gui.views.gallery_model import CANDIDATE_ROLE, GalleryModel
 from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.pipeline.rank import Ranking
 from kirigami_studio.project.document import Mark
 
 #: Pixels always reserved for the scroll bar, so that cards do not jump when it appears.
@@ -101,6 +102,13 @@ class GalleryView(QListView):
         self.mark(self._marked)
         if sorted_anew:
             self.scrollToTop()
+
+    def rank_by(self, ranking: Ranking) -> None:
+        """Put the cards into the order of another ranking."""
+        self._reporting = False
+        self.model_.rank_by(ranking)
+        self._reporting = True
+        self.mark(self._marked)
 
     def show_marks(self, marks: Mapping[Candidate, Mark], fresh: frozenset[Candidate]) -> None:
         """Show which candidates are pinned or rejected, and which the last further run has added."""
