@@ -1,4 +1,4 @@
-"""Ratio field -> exact geometry of compact reconfigurable parallelogram quad kirigami.
+"""Sheet -> exact geometry of compact reconfigurable parallelogram quad kirigami.
 
 Vocabulary
 ----------
@@ -16,9 +16,13 @@ hinge node
     A corner that neighbouring panels share.  *Edge node*: a panel corner on the sheet's edge.
 ratio
     ``x = |p1 - p0| / |p3 - p0|`` of a void (paper, Sec. 2.1).
+sheet
+    All that decides where the cuts are: ratios, rim, start outline, cell.
+mouth, edge hinge
+    Where a cut leaves the sheet; the shared node halfway between two mouths.  The *rim* says where the mouths are.
 compact sheet
     The state phi = pi: every void a closed slit, the sheet a plain rectangle with its top left
-    corner at (0, 0), x to the right, y up.
+    corner at (0, 0), x to the right, y up, unless it has another start outline.
 phi
     Deployment angle in radians: pi compact, 0 the second compact state.
 

@@ -9,7 +9,7 @@ edit
 history
     The documents before and after the present one; a *drag* is a run of edits that undoes as one.
 project file
-    A zip with a manifest, the document as JSON and the ratios as one array; a *migration* lifts an older version.
+    A zip with a manifest, the document as JSON and all ratios as one array; a *migration* lifts an older version.
 
 May import ``evaluate``, ``fabricate``, ``lattice``, ``outlines`` and ``foundation``, not ``pipeline``.
 """
