@@ -1,4 +1,4 @@
-"""Move one vertex of the outline to a place by the least change of the ratios.
+"""Move one vertex of the outline to a place by the least change of the ratios; the rim stays as it is.
 
 Damped Gauss-Newton steps on z = log10 x, on the exact outline o(z) with its exact derivative, for
 
@@ -27,6 +27,7 @@ from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.foundation.paper import LOG_RATIO_LIMIT
 from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.polish.levenberg import check_fit, check_locked
 from kirigami_studio.polish.sensitivity import OutlineModel
 
@@ -49,8 +50,8 @@ class VertexDrag:
 
     Parameters
     ----------
-    field : RatioField
-        Where the drag begins.
+    design : Sheet or RatioField
+        Where the drag begins; ratios alone stand for the paper's sheet.
     phi : float, radians, in [0, pi)
         Angle at which the outline is seen.
     vertex : int
@@ -61,22 +62,22 @@ class VertexDrag:
     Raises
     ------
     UsageError
-        There is no such vertex, or ``locked`` is not a table of the field's shape.
+        There is no such vertex, or ``locked`` is not a table of the sheet's grid.
     AngleError
-        ``phi`` is not in [0, pi): the closed sheet is a rectangle whatever the ratios.
+        ``phi`` is not in [0, pi): the flat sheet has its outline whatever the ratios.
     """
 
-    def __init__(self, field: RatioField, phi: float, vertex: int, locked: BoolArray | None = None) -> None:
-        phi = check_fit(phi, 0, 1.0)
-        self._model = OutlineModel(field.rows, field.columns, phi)
-        self._given = field.ratio
-        self._start: FloatArray = field.log10.ravel()
-        self._deployment = deploy(field)
+    def __init__(self, design: Sheet | RatioField, phi: float, vertex: int, locked: BoolArray | None = None) -> None:
+        phi, sheet = check_fit(phi, 0, 1.0), Sheet.of(design)
+        self._model = OutlineModel.of(sheet, phi)
+        self._given = sheet
+        self._start: FloatArray = sheet.field.log10.ravel()
+        self._deployment = deploy(sheet)
         self._outline = self._deployment.outline(phi)
         if not 0 <= vertex < len(self._outline):
             raise UsageError("drag.no_such_vertex", last=len(self._outline) - 1, vertex=vertex)
         self._vertex = vertex
-        self._free = np.flatnonzero(~check_locked(locked, field).ravel())
+        self._free = np.flatnonzero(~check_locked(locked, sheet.field).ravel())
         self._low, self._high = np.minimum(self._start, -LOG_RATIO_LIMIT), np.maximum(self._start, LOG_RATIO_LIMIT)
         self._weight = np.full(len(self._outline), HOLD / len(self._outline))
         self._weight[vertex] = 1.0
@@ -113,7 +114,7 @@ class VertexDrag:
         gradient: FloatArray = 2.0 * (np.tensordot(weighted, slopes, axes=2) + self._change * (z - self._start))
         return gradient
 
-    def move(self, place: FloatArray, steps: int = 3) -> RatioField:
+    def move(self, place: FloatArray, steps: int = 3) -> Sheet:
         """Bring the vertex to ``place`` (2,), unit cells, or as far as ratio limits, locked voids and collisions allow.
 
         Parameters
@@ -136,14 +137,14 @@ class VertexDrag:
                 if fresh and not moved:
                     break
                 self._slopes, fresh = None, False
-        return self._deployment.field
+        return self._deployment.sheet
 
     def _advance(self, place: FloatArray, slopes: FloatArray) -> bool:
         """Take one step, if a physical one is found that lowers the cost; whether it was."""
         before, step = self.cost(self._z, self._here, place), self._step(place, slopes)
         for _ in range(HALVINGS):
             z = self._moved(step)
-            deployment = deploy(self._field_of(z))
+            deployment = deploy(self._sheet_of(z))
             outline = deployment.outline(self._model.phi)
             if self.cost(z, outline, place) < before:
                 physical = self._is_physical(deployment)
@@ -182,10 +183,11 @@ class VertexDrag:
         gaps[self._vertex] = outline[self._vertex] - place
         return gaps
 
-    def _field_of(self, z: FloatArray) -> RatioField:
-        """The ratios of a state; those that were not touched keep every digit."""
-        table, start = z.reshape(self._given.shape), self._start.reshape(self._given.shape)
-        return RatioField(np.where(table == start, self._given, np.power(10.0, table)))
+    def _sheet_of(self, z: FloatArray) -> Sheet:
+        """The sheet of a state; ratios that were not touched keep every digit."""
+        given = self._given.field.ratio
+        table, start = z.reshape(given.shape), self._start.reshape(given.shape)
+        return self._given.with_field(RatioField(np.where(table == start, given, np.power(10.0, table))))
 
     def _is_physical(self, deployment: Deployment) -> bool:
         """Whether no quad is invalid at the angle, and the sheet opens that far without touching itself."""

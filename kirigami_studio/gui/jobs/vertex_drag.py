@@ -124,7 +124,7 @@ class Follower:
         start = self._start
         before = start.design if self.newest is None else self.newest.design
         if self._drag is None:
-            self._drag = VertexDrag(start.design.deployment.field, start.phi, start.vertex, start.locked)
+            self._drag = VertexDrag(start.design.deployment.sheet, start.phi, start.vertex, start.locked)
         drag = self._drag
         wanted = before.to_layout(place, start.phi)
         gap = drag.gap(wanted)

@@ -8,20 +8,34 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from uneven_sheets import uneven_sheet
 
 from kirigami_studio.evaluate.feasibility import invalid_quads, path_contact
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import AngleError, UsageError
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.polish.sensitivity import OutlineModel
 from kirigami_studio.polish.vertex_drag import ARRIVED, CHANGE, HOLD, VertexDrag
 
 GRIDS = st.tuples(st.integers(2, 7), st.integers(2, 7))
 
 
+#: Of the sheets that are dragged: the paper's, one with an uneven rim, one that starts round and has higher cells.
+KINDS = ("even", "uneven", "round")
+
+
 def gentle_field(rows: int, columns: int, seed: int, spread: float = 0.08) -> RatioField:
     return RatioField.from_log10(spread * np.random.default_rng(seed).normal(size=(rows, columns)))
+
+
+def gentle_sheet(grid: tuple[int, int], seed: int, kind: str) -> Sheet:
+    field = gentle_field(*grid, seed)
+    if kind == "even":
+        return Sheet(field)
+    other = uneven_sheet(*grid, seed, start=kind == "round")
+    return Sheet(field, other.rim, other.start, (1.0, 1.2) if kind == "round" else (1.0, 1.0))
 
 
 def outward(outline: np.ndarray, vertex: int) -> np.ndarray:
@@ -29,17 +43,21 @@ def outward(outline: np.ndarray, vertex: int) -> np.ndarray:
     return way / np.hypot(*way)
 
 
+@pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("phi", [0.0, 0.7])
-def test_that_the_gradient_is_the_one_of_finite_differences(phi: float) -> None:
-    field = gentle_field(4, 5, 3)
-    drag = VertexDrag(field, phi, 6)
-    z = field.log10.ravel() + 0.05 * np.random.default_rng(1).normal(size=20)
-    place = deploy(field).outline(phi)[6] + (0.2, -0.1)
-    outline, slopes = OutlineModel(4, 5, phi).linearised(z)
+def test_that_the_gradient_is_the_one_of_finite_differences(phi: float, kind: str) -> None:
+    sheet = gentle_sheet((4, 5), 3, kind)
+    drag = VertexDrag(sheet, phi, 6)
+    z = sheet.field.log10.ravel() + 0.05 * np.random.default_rng(1).normal(size=20)
+    place = deploy(sheet).outline(phi)[6] + (0.2, -0.1)
+    model = OutlineModel.of(sheet, phi)
+    outline, slopes = model.linearised(z)
+    moved = sheet.with_field(RatioField.from_log10(z.reshape(4, 5)))
+    np.testing.assert_allclose(outline, deploy(moved).outline(phi), atol=1e-12)
     step = 1e-6
 
     def cost(z: FloatArray) -> float:
-        return drag.cost(z, OutlineModel(4, 5, phi).outline(z), place)
+        return drag.cost(z, model.outline(z), place)
 
     numeric = [(cost(z + step * unit) - cost(z - step * unit)) / (2 * step) for unit in np.eye(20)]
     assert drag.gradient(z, outline, place, slopes) == pytest.approx(np.array(numeric), rel=1e-5, abs=1e-9)
@@ -67,25 +85,30 @@ def test_that_the_step_is_the_one_of_the_normal_equations(grid: tuple[int, int],
         assert drag.deployment.field.log10.ravel() == pytest.approx(wanted, abs=2e-9)
 
 
-def test_that_the_motion_at_hand_is_the_one_of_the_field() -> None:
-    field = gentle_field(5, 4, 8)
-    drag = VertexDrag(field, 0.4, 3)
-    assert np.array_equal(drag.deployment.outline(0.4), deploy(field).outline(0.4))
+@pytest.mark.parametrize("kind", KINDS)
+def test_that_the_motion_at_hand_is_the_one_of_the_sheet(kind: str) -> None:
+    sheet = gentle_sheet((5, 4), 8, kind)
+    drag = VertexDrag(sheet, 0.4, 3)
+    assert np.array_equal(drag.deployment.outline(0.4), deploy(sheet).outline(0.4))
     found = drag.move(drag.place + 0.1)
-    assert found != field and np.array_equal(drag.deployment.outline(0.4), deploy(found).outline(0.4))
+    assert found != sheet and np.array_equal(drag.deployment.outline(0.4), deploy(found).outline(0.4))
+    assert found == sheet.with_field(found.field), "the rim, the start outline and the cell stay"
 
 
 @settings(max_examples=25, deadline=None)
-@given(GRIDS, st.integers(0, 1000), st.sampled_from([0.0, 0.5, 1.5]), st.floats(-0.1, 0.1))
-def test_that_a_vertex_arrives_where_it_can_be(grid: tuple[int, int], seed: int, phi: float, far: float) -> None:
+@given(GRIDS, st.integers(0, 1000), st.sampled_from([0.0, 0.5, 1.5]), st.floats(-0.1, 0.1), st.sampled_from(KINDS))
+def test_that_a_vertex_arrives_where_it_can_be(
+    grid: tuple[int, int], seed: int, phi: float, far: float, kind: str
+) -> None:
     # Where another field of the neighbourhood has the vertex, it can be brought to.
-    field = gentle_field(*grid, seed)
-    there = RatioField.from_log10(field.log10 + far * np.random.default_rng(seed + 1).normal(size=grid))
-    vertex = seed % len(deploy(field).outline(phi))
+    sheet = gentle_sheet(grid, seed, kind)
+    change = far * np.random.default_rng(seed + 1).normal(size=grid)
+    there = sheet.with_field(RatioField.from_log10(sheet.field.log10 + change))
+    vertex = seed % len(deploy(sheet).outline(phi))
     place = deploy(there).outline(phi)[vertex]
-    drag = VertexDrag(field, phi, vertex)
+    drag = VertexDrag(sheet, phi, vertex)
     for share in np.linspace(0.1, 1.0, 10):
-        drag.move((1.0 - share) * deploy(field).outline(phi)[vertex] + share * place)
+        drag.move((1.0 - share) * deploy(sheet).outline(phi)[vertex] + share * place)
     for _ in range(5):
         drag.move(place)
     assert drag.gap(place) <= 2 * ARRIVED
@@ -93,18 +116,18 @@ def test_that_a_vertex_arrives_where_it_can_be(grid: tuple[int, int], seed: int,
 
 
 @settings(max_examples=25, deadline=None)
-@given(GRIDS, st.integers(0, 1000), st.sampled_from([0.0, 0.6]), st.floats(-4.0, 4.0))
+@given(GRIDS, st.integers(0, 1000), st.sampled_from([0.0, 0.6]), st.floats(-4.0, 4.0), st.sampled_from(KINDS))
 def test_that_no_drag_however_wild_leaves_the_physical(
-    grid: tuple[int, int], seed: int, phi: float, far: float
+    grid: tuple[int, int], seed: int, phi: float, far: float, kind: str
 ) -> None:
-    field = gentle_field(*grid, seed)
-    sound = not invalid_quads(deploy(field), phi) and path_contact(deploy(field), phi) is None
-    outline = deploy(field).outline(phi)
+    sheet = gentle_sheet(grid, seed, kind)
+    sound = not invalid_quads(deploy(sheet), phi) and path_contact(deploy(sheet), phi) is None
+    outline = deploy(sheet).outline(phi)
     vertex = seed % len(outline)
-    drag = VertexDrag(field, phi, vertex)
+    drag = VertexDrag(sheet, phi, vertex)
     for share in (0.25, 0.5, 1.0):
         found = drag.move(outline[vertex] + share * far * outward(outline, vertex))
-    assert np.all((found.ratio >= 0.1 - 1e-9) & (found.ratio <= 10.0 + 1e-9))
+    assert np.all((found.field.ratio >= 0.1 - 1e-9) & (found.field.ratio <= 10.0 + 1e-9))
     if sound:
         assert not invalid_quads(deploy(found), phi) and path_contact(deploy(found), phi) is None
 
@@ -117,13 +140,13 @@ def test_that_held_voids_keep_every_digit(grid: tuple[int, int], seed: int) -> N
     outline = deploy(field).outline(0.0)
     vertex = int(draw.integers(len(outline)))
     found = VertexDrag(field, 0.0, vertex, locked).move(outline[vertex] + 0.3 * outward(outline, vertex))
-    assert np.array_equal(found.ratio[locked], field.ratio[locked])
+    assert np.array_equal(found.field.ratio[locked], field.ratio[locked])
 
 
 def test_that_nothing_moves_when_everything_is_held() -> None:
     field = gentle_field(4, 4, 1)
     place = deploy(field).outline(0.0)[3] + (0.5, 0.5)
-    assert VertexDrag(field, 0.0, 3, np.ones((4, 4), dtype=bool)).move(place) == field
+    assert VertexDrag(field, 0.0, 3, np.ones((4, 4), dtype=bool)).move(place) == Sheet(field)
 
 
 def test_that_the_outline_far_from_the_vertex_hardly_moves() -> None:
