@@ -231,11 +231,8 @@ def _candidates(
     """Grids with the parities of the most specific symmetries, of proportions between the square and the shape's."""
     coarsest = min(COARSEST, limit)
     sizes = range(coarsest, limit + 1)
-    most = max((len(pose.symmetry.moves) for pose in poses), default=0)
     # A sheet on its side is the same for the eye: a single axis is laid upright.
-    settings: list[SymmetricPose | None] = [
-        pose for pose in poses if len(pose.symmetry.moves) == most and pose.symmetry is not Symmetry.TOP_BOTTOM
-    ]
+    settings: list[SymmetricPose | None] = [pose for pose in poses if pose.symmetry is poses[0].symmetry]
     moments = second_moments(target.points)
     for pose in settings or [None]:
         # Without an axis the sheet may lie anyhow: across, like the shape's own longer direction.
