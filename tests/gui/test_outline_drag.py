@@ -11,6 +11,7 @@ import pytest
 from hand_gestures import LEFT, NONE, OPEN, Until, chosen, middle_of, settle, shapes_of, turn, vertex_at
 from PySide6.QtCore import QPoint, Qt, QThread
 from PySide6.QtTest import QTest
+from uneven_sheets import uneven_sheet
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.posed_design import PosedDesign
@@ -273,6 +274,19 @@ def test_that_places_that_were_replaced_are_never_looked_at_and_a_new_one_comes_
     follower.move_to((float(start[0]), float(start[1] + 0.05)))
     last = list(steps)[-1]
     assert last.arrived and where(last.design, 5) == pytest.approx(start + np.array((0.0, 0.05)), abs=4e-3)
+
+
+@pytest.mark.parametrize("start", [False, True])
+def test_that_a_dragged_vertex_leaves_the_rim_as_it_is(start: bool) -> None:
+    sheet = uneven_sheet(6, 6, seed=2, decades=0.1, start=start)
+    begun = DragStart(PosedDesign(deploy(sheet), Similarity(), 0.0), OPEN, 5, np.zeros((6, 6), dtype=np.bool_))
+    place = where(begun.design, 5)
+    follower = Follower(begun)
+    follower.move_to((float(place[0] + 0.05), float(place[1])))
+    found = list(follower.steps(lambda: False))[-1]
+    after = found.design.deployment.sheet
+    assert found.arrived and after != sheet and after == sheet.with_field(after.field)
+    assert where(found.design, 5) == pytest.approx(place + np.array((0.05, 0.0)), abs=4e-3)
 
 
 def test_that_a_follower_stops_when_asked_and_after_letting_go_when_its_time_is_over(

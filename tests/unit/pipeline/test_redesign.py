@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from uneven_sheets import uneven_sheet
 
 from kirigami_studio.evaluate.candidate import Candidate, Origin
 from kirigami_studio.evaluate.score import evaluate
@@ -80,6 +81,21 @@ def test_that_a_fit_whose_trim_is_refused_says_why(trimmed_candidate: Candidate,
     refit = refitted(trimmed_candidate, heart, "accuracy", [], refuse, never)
     assert refit.candidate.trim is None and refit.candidate.polished
     assert refit.trim_problem is not None and refit.trim_problem.code == "trim.connectors_too_wide"
+
+
+@pytest.mark.parametrize("start", [False, True])
+def test_that_changes_fits_and_trims_keep_rim_start_outline_and_cell(heart: Outline, start: bool) -> None:
+    given = uneven_sheet(*GRID, seed=4, decades=0.2, start=start)
+    sheet = Sheet(given.field, given.rim, given.start, (1.0, 1.1))
+    design = Candidate(sheet, evaluate(deploy(sheet), heart), seed=1, index=0)
+    changed = rescored(design, sheet.with_field(RatioField(1.01 * sheet.field.ratio)), heart).sheet
+    fitted = refitted(design, heart, "accuracy", [], shallow, never).candidate
+    covered = trimmed(fitted, heart, KEEP, never).candidate
+    assert covered.trim is not None and fitted.score.iou_exact > design.score.iou_exact
+    assert changed == sheet.with_field(changed.field) and fitted.sheet == sheet.with_field(fitted.sheet.field)
+    cut = covered.final_sheet
+    assert cut.cell == sheet.cell and (cut.start is None) == (sheet.start is None) and not cut.has_even_rim
+    assert sampled(fitted, heart) == design
 
 
 def test_that_a_cancelled_fit_ends_without_a_result(candidate: Candidate, heart: Outline) -> None:
