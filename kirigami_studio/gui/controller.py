@@ -21,6 +21,7 @@ from kirigami_studio.gui.designs.collection import DesignMarks
 from kirigami_studio.gui.designs.curves import CurveReader
 from kirigami_studio.gui.designs.generation import Generation
 from kirigami_studio.gui.designs.hand_editor import HandEditor
+from kirigami_studio.gui.designs.look_alikes import LookAlikes
 from kirigami_studio.gui.designs.regularity import Regularity
 from kirigami_studio.gui.designs.target_reader import TargetReader
 from kirigami_studio.gui.file_kinds import kind_of
@@ -50,8 +51,8 @@ class Controller(QObject):
         Making designs, and the run that makes them.
     reader
         What the target's shape says before a run.
-    regularity
-        The balance of match and regularity over the designs.
+    regularity, alikes
+        The balance of match and regularity over the designs, and which of them look the same.
     fabrication, cutting
         The numbers a design is cut with, and its cut plan and files.
     targeting, filing, preferences
@@ -75,6 +76,7 @@ class Controller(QObject):
         self.run = self.generation.run
         self.reader = TargetReader(session, self)
         self.regularity = Regularity(session, self)
+        self.alikes = LookAlikes(session, self)
         self.fabrication = FabricationEditor(session)
         self.cutting = CutPlanner(session, self)
         self.targeting = Targeting(session, self)

@@ -15,6 +15,7 @@ from kirigami_studio.gui.controller import Controller
 from kirigami_studio.gui.look import icons
 from kirigami_studio.gui.messages import Tone
 from kirigami_studio.gui.session import Entry
+from kirigami_studio.gui.views.gallery_model import ALIKE_ROLE, OPEN_ROLE
 from kirigami_studio.pipeline.rank import Ranking
 from kirigami_studio.project.document import Document, Mark
 
@@ -62,6 +63,7 @@ class DesignConnections(QObject):
         bar.alike_wanted.connect(controller.generation.more_like)
         controller.session.display.gallery_reset.connect(self._show_gallery)
         controller.session.display.candidate_found.connect(self._add_card)
+        controller.alikes.known.connect(view.set_groups)
 
     # the run -------------------------------------------------------------------------------------------------------
 
@@ -109,7 +111,7 @@ class DesignConnections(QObject):
         if controller.running:
             controller.change_settings(regular=regular)
         elif not controller.hand.postpones(lambda: self._choose_balance(regular)):
-            controller.regularity.choose(regular, tuple(entry.candidate for entry in model.entries))
+            controller.regularity.choose(regular, tuple(entry.candidate for entry in model.taken))
 
     def _show_fitting(self, busy: bool) -> None:
         """Designs are being fitted again, or no longer."""
@@ -135,6 +137,7 @@ class DesignConnections(QObject):
         view, document = self._window.gallery.view, self._controller.document
         view.model_.ranking = self._controller.session.display.ranking
         view.show_entries(list(entries), document.target)
+        self._controller.alikes.look_at(tuple(entry.candidate for entry in entries), view.model_.ranking)
         view.mark(document.candidate)
         self._show_chosen()
 
@@ -170,7 +173,10 @@ class DesignConnections(QObject):
         menu.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         menu.setToolTipsVisible(True)
         controller = self._controller
-        mark = self._window.gallery.view.model_.mark_of(candidate)
+        view = self._window.gallery.view
+        row = view.model_.index(max(view.model_.row_of(candidate), 0), 0)
+        alike: int = row.data(ALIKE_ROLE) if row.isValid() else 0
+        mark = view.model_.mark_of(candidate)
         ready = not controller.running and candidate in controller.document.candidates
         for name, text, run in (
             ("pin", tr("Unpin") if mark is Mark.PINNED else tr("Pin"), lambda: controller.marks.pin(candidate)),
@@ -184,6 +190,13 @@ class DesignConnections(QObject):
             action.setEnabled(ready)
             action.triggered.connect(lambda _=False, run=run: run())
             menu.addAction(action)
+        if alike:
+            text = (
+                tr("Hide designs that look the same") if row.data(OPEN_ROLE) else tr("Show designs that look the same")
+            )
+            stack = menu.addAction(text)
+            stack.setObjectName("stack")
+            stack.triggered.connect(lambda: view.toggle_alike(candidate))
         self.menu = menu
         menu.destroyed.connect(self._forget_menu)
         menu.popup(place)

@@ -42,6 +42,8 @@ class Selection:
         Exact IoU that a design has at least.
     most_variation : float
         Coefficient of variation of panel areas that a design has at most; 0 for any.
+    grouped : bool
+        Whether designs that look the same are one card.
     unlike : Sheet or None
         Design that :attr:`SortOrder.UNLIKE` measures from; it stays while the user looks from card to card, so that the
         cards stay in their places.
@@ -54,6 +56,7 @@ class Selection:
     show_rejected: bool = False
     least_match: float = 0.0
     most_variation: float = 0.0
+    grouped: bool = True
     unlike: Sheet | None = None
 
     @property

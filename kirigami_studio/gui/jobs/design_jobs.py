@@ -13,8 +13,9 @@ from kirigami_studio.gui.jobs.queue import Cancel
 from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.pipeline.events import CandidateFound, CandidateImproved, Event, Finished
+from kirigami_studio.pipeline.rank import Ranking
 from kirigami_studio.pipeline.request import Request
-from kirigami_studio.pipeline.variety import distinct
+from kirigami_studio.pipeline.variety import distinct, look_alikes
 from kirigami_studio.project.document import Void
 from kirigami_studio.project.settings import FabricationSettings
 
@@ -111,6 +112,11 @@ def decoding(candidates: tuple[Candidate, ...], cancel: Cancel) -> Iterator[Deco
 def decoded(candidate: Candidate) -> Decoded:
     """A candidate with the motion of its final sheet."""
     return Decoded(candidate, deploy(candidate.final_sheet))
+
+
+def grouping(candidates: tuple[Candidate, ...], ranking: Ranking, cancel: Cancel) -> Iterator[tuple[int, ...]]:
+    """Find which designs look alike."""
+    yield look_alikes(candidates, ranking)
 
 
 def scoring_sample(candidate: Candidate, target: Outline, cancel: Cancel) -> Iterator[Decoded]:

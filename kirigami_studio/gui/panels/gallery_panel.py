@@ -54,7 +54,7 @@ class GalleryPanel(Card):
 
     def _count(self) -> None:
         model = self.view.model_
-        self.count.set_texts(*count_texts([entry.candidate for entry in model.entries], len(model.all_entries)))
+        self.count.set_texts(*count_texts([entry.candidate for entry in model.taken], len(model.all_entries)))
         self._fit_count()
         self.view.viewport().update()
 
@@ -124,14 +124,18 @@ class GalleryBar(QWidget):
         self.pinned = _check("pinnedOnly", tr("Pinned"), tr("Show only pinned designs."))
         self.rejected = _check("showRejected", tr("Rejected"), tr("Also show rejected designs (dimmed)."))
         self.pinned_first = _check("pinnedFirst", tr("Pinned first"), tr("Show pinned designs before all others."))
+        tip = tr("Show designs that look the same, also turned or mirrored, as one card.")
+        self.grouped = _check("groupAlike", tr("Group alike"), tip)
+        self.grouped.setChecked(True)
         self.least = DecimalField()
         self.least.setObjectName("leastMatch")
         self.least.setRange(0.0, 100.0)
         self.least.setDecimals(1)
+        self.least.setPrefix("\N{GREATER-THAN OR EQUAL TO} ")
         self.least.setSuffix(" %")
         self.least.setSpecialValueText(tr("any"))
         self.least.setKeyboardTracking(False)
-        self.least.setFixedWidth(84)
+        self.least.setFixedWidth(92)
         self.least.setAccessibleName(tr("Minimum match in percent"))
         self.least.setToolTip(tr("Show only designs with at least this match (exact IoU), in percent."))
         self.variation = DecimalField()
@@ -139,11 +143,11 @@ class GalleryBar(QWidget):
         self.variation.setRange(0.0, 300.0)
         self.variation.setDecimals(0)
         self.variation.setSingleStep(5.0)
-        self.variation.setPrefix("±")
+        self.variation.setPrefix("\N{LESS-THAN OR EQUAL TO} ±")
         self.variation.setSuffix(" %")
         self.variation.setSpecialValueText(tr("any"))
         self.variation.setKeyboardTracking(False)
-        self.variation.setFixedWidth(84)
+        self.variation.setFixedWidth(92)
         self.variation.setAccessibleName(tr("Maximum variation of panel sizes in percent"))
         self.variation.setToolTip(
             tr("Evenness: show only designs whose panel sizes vary by at most this, in percent (CV).")
@@ -159,18 +163,19 @@ class GalleryBar(QWidget):
         for box in (self.feasible, self.pinned, self.rejected):
             first.addWidget(box)
         first.addStretch(1)
-        caption = QLabel(tr("match from"))
+        caption = QLabel(tr("match"))
         caption.setBuddy(self.least)
-        evenness = QLabel(tr("panels up to"))
+        evenness = QLabel(tr("panels"))
         evenness.setBuddy(self.variation)
         second.addWidget(self.pinned_first)
+        second.addWidget(self.grouped)
         second.addStretch(1)
-        second.addWidget(caption)
-        second.addWidget(self.least)
+        third.addWidget(caption)
+        third.addWidget(self.least)
         third.addStretch(1)
         third.addWidget(evenness)
         third.addWidget(self.variation)
-        for box in (self.feasible, self.pinned, self.rejected, self.pinned_first):
+        for box in (self.feasible, self.pinned, self.rejected, self.pinned_first, self.grouped):
             box.toggled.connect(lambda _: self._emit_selection())
         column.addLayout(first)
         column.addLayout(second)
@@ -263,6 +268,7 @@ class GalleryBar(QWidget):
         self._selection = replace(
             self._selection,
             pinned_first=self.pinned_first.isChecked(),
+            grouped=self.grouped.isChecked(),
             feasible_only=self.feasible.isChecked(),
             pinned_only=self.pinned.isChecked(),
             show_rejected=self.rejected.isChecked(),

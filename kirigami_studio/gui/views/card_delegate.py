@@ -18,15 +18,19 @@ from kirigami_studio.gui.look import icons
 from kirigami_studio.gui.look.theme import LIGHT, Palette
 from kirigami_studio.gui.scene.layout_items import TARGET_SHARE, candidate_pixmap
 from kirigami_studio.gui.views.gallery_model import (
+    ALIKE_ROLE,
     CANDIDATE_ROLE,
     DESIGN_ROLE,
     FRESH_ROLE,
     GRID_ROLE,
     MARK_ROLE,
     NUMBER_ROLE,
+    OPEN_ROLE,
     RISE_ROLE,
     VALUE_ROLE,
+    alike_tip,
 )
+from kirigami_studio.lattice.symmetry import Symmetry
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.document import Mark
 
@@ -44,6 +48,14 @@ DOT = 7
 DIMMED = 0.3
 #: Seconds for new pictures in one paint event; a large window shows dozens of cards, a large design takes 7 ms.
 PAINT_SECONDS = 0.015
+#: Icons of symmetric designs.
+SIGNS = {
+    Symmetry.LEFT_RIGHT: "mirror",
+    Symmetry.TOP_BOTTOM: "mirror",
+    Symmetry.TWO_MIRRORS: "axis-both",
+    Symmetry.HALF_TURN: "turn",
+    Symmetry.QUARTER_TURN: "turn",
+}
 Index = QModelIndex | QPersistentModelIndex
 
 
@@ -84,6 +96,9 @@ class CardDelegate(QStyledItemDelegate):
     ) -> bool:
         """Over a button its own tooltip, elsewhere the design's numbers."""
         button = button_at(view.visualRect(index), event.pos()) if index.isValid() else None
+        if index.isValid() and index.data(ALIKE_ROLE) and alike_box(view.visualRect(index)).contains(event.pos()):
+            QToolTip.showText(event.globalPos(), alike_tip(index.data(ALIKE_ROLE), index.data(OPEN_ROLE)), view)
+            return True
         if button is None:
             return super().helpEvent(event, view, option, index)
         mark: Mark = index.data(MARK_ROLE)
@@ -102,6 +117,9 @@ class CardDelegate(QStyledItemDelegate):
         card = card_of(rect)
         painter.save()
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        alike: int = index.data(ALIKE_ROLE)
+        if alike and not index.data(OPEN_ROLE):
+            self._paint_stack(painter, card)
         self._paint_back(painter, card, state)
         picture = picture_of(card)
         painter.setOpacity(DIMMED if mark is Mark.REJECTED else 1.0)
@@ -109,7 +127,8 @@ class CardDelegate(QStyledItemDelegate):
         if drawn is not None:
             painter.drawPixmap(picture.topLeft(), drawn)
         painter.setOpacity(1.0)
-        self._paint_number(painter, card, index.data(NUMBER_ROLE), mark, index.data(FRESH_ROLE))
+        left = self._paint_number(painter, card, index.data(NUMBER_ROLE), mark, index.data(FRESH_ROLE))
+        self._paint_symmetry(painter, card, left, candidate.symmetry)
         rise: float = index.data(RISE_ROLE)
         if candidate == self.compared:
             self._paint_chip(painter, card, "", "compare")
@@ -118,6 +137,8 @@ class CardDelegate(QStyledItemDelegate):
         elif rise >= SMALLEST_RISE:
             self._paint_chip(painter, card, f"{100 * rise:+.1f}")
         self._paint_numbers(painter, card, candidate, index.data(VALUE_ROLE), index.data(GRID_ROLE))
+        if alike:
+            self._paint_alike(painter, alike_box(rect), alike, index.data(OPEN_ROLE))
         if candidate is self.under_mouse:
             self._paint_buttons(painter, rect, mark)
         painter.restore()
@@ -131,6 +152,34 @@ class CardDelegate(QStyledItemDelegate):
         painter.setPen(QPen(QColor(edge), 2.0 if chosen else 1.0))
         painter.drawRoundedRect(QRectF(card).adjusted(1, 1, -1, -1), 8, 8)
 
+    def _paint_stack(self, painter: QPainter, card: QRect) -> None:
+        """The edge of another card under this one."""
+        painter.setBrush(QColor(self.palette_.raised))
+        painter.setPen(QPen(QColor(self.palette_.strong_border), 1.0))
+        painter.drawRoundedRect(QRectF(card).adjusted(4, 4, 2.5, 2.5), 8, 8)
+
+    def _paint_symmetry(self, painter: QPainter, card: QRect, left: int, symmetry: Symmetry | None) -> None:
+        """The sign of a symmetric design, right of its number and marks."""
+        if symmetry is None:
+            return
+        edge = painter.fontMetrics().height()
+        icon = icons.pixmap(SIGNS[symmetry], self.palette_.accent, edge, painter.device().devicePixelRatio())
+        painter.drawPixmap(left, card.top() + 6, icon)
+
+    def _paint_alike(self, painter: QPainter, box: QRect, count: int, opened: bool) -> None:
+        """How many more designs look the same, as a button."""
+        text = tr("hide alike") if opened else tr("+{count} alike", count=count)
+        metrics = painter.fontMetrics()
+        width = min(metrics.horizontalAdvance(text) + 12, box.width())
+        chip = QRectF(box.right() - width + 1, box.top() + 0.5, width, box.height() - 1)
+        painter.setPen(QPen(QColor(self.palette_.strong_border), 1.0))
+        painter.setBrush(QColor(self.palette_.raised))
+        painter.drawRoundedRect(chip, 5, 5)
+        painter.setPen(QColor(self.palette_.text))
+        painter.drawText(
+            chip, int(Qt.AlignmentFlag.AlignCenter), metrics.elidedText(text, Qt.TextElideMode.ElideRight, width - 6)
+        )
+
     def _picture(self, design: PosedDesign, size: QSize, ratio: float) -> QPixmap | None:
         """The design's picture, None where it has to wait for the next paint event."""
         key = (design, size.width(), ratio, self.palette_.name)
@@ -143,8 +192,11 @@ class CardDelegate(QStyledItemDelegate):
             self._pictures[key] = candidate_pixmap(design, self.target, size, ratio, self.palette_)
         return self._pictures[key]
 
-    def _paint_number(self, painter: QPainter, card: QRect, number: int, mark: Mark, fresh: bool) -> None:
-        """The design's number, a dot where it is new, and a pin, or a sign where it is rejected."""
+    def _paint_number(self, painter: QPainter, card: QRect, number: int, mark: Mark, fresh: bool) -> int:
+        """The design's number, a dot where it is new, a pin or a sign where it is rejected.
+
+        Returns where there is room left, pixels from the left.
+        """
         painter.setPen(QColor(self.palette_.muted))
         text, place = f"{number}", card.adjusted(10, 6, -10, 0)
         painter.drawText(place, int(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignTop), text)
@@ -156,7 +208,7 @@ class CardDelegate(QStyledItemDelegate):
             painter.drawEllipse(QRectF(left, place.top() + 0.5 * metrics.height() - 0.5 * DOT, DOT, DOT))
             left += DOT + 5
         if mark is Mark.NONE:
-            return
+            return left
         name, colour = ("pinned", self.palette_.accent) if mark is Mark.PINNED else ("reject", self.palette_.muted)
         box = QRectF(left, place.top() - 2, metrics.height() + 4, metrics.height() + 4)
         painter.setPen(QPen(QColor(colour), 1.0))
@@ -164,6 +216,7 @@ class CardDelegate(QStyledItemDelegate):
         painter.drawRoundedRect(box, 5, 5)
         icon = icons.pixmap(name, colour, metrics.height() - 2, painter.device().devicePixelRatio())
         painter.drawPixmap(box.topLeft() + QPointF(3, 3), icon)
+        return round(box.right()) + 5
 
     def _paint_buttons(self, painter: QPainter, rect: QRect, mark: Mark) -> None:
         ratio = painter.device().devicePixelRatio()
@@ -207,7 +260,7 @@ class CardDelegate(QStyledItemDelegate):
         painter.drawText(text, left | top, f"{100 * score.iou_exact:.1f} %")
         painter.setFont(plain)
         painter.setPen(QColor(self.palette_.muted))
-        painter.drawText(text.adjusted(0, 2, 0, 0), right | top, grid)
+        painter.drawText(text.adjusted(0, 0, -22, 0), right | bottom, grid)
         painter.drawText(text, left | bottom, value)
         self._paint_badge(painter, text, score.feasible)
 
@@ -239,6 +292,12 @@ def picture_of(card: QRect) -> QRect:
     """The part of a card that shows the design."""
     height = card.height() - HEAD_HEIGHT - TEXT_HEIGHT
     return QRect(card.left() + 4, card.top() + HEAD_HEIGHT, card.width() - 8, height)
+
+
+def alike_box(rect: QRect) -> QRect:
+    """Place of the mark of look-alikes in a cell of the list: at the right of the first line of text."""
+    card = card_of(rect)
+    return QRect(card.right() - 11 - 76, card.bottom() - TEXT_HEIGHT + 2, 78, 20)
 
 
 def button_boxes(rect: QRect) -> dict[CardButton, QRect]:

@@ -4,15 +4,18 @@ from __future__ import annotations
 
 import bisect
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 from PySide6.QtCore import QAbstractListModel, QModelIndex, QObject, QPersistentModelIndex, Qt, Signal
 
 from kirigami_studio.evaluate.candidate import Candidate, Origin
+from kirigami_studio.fabricate.findings import Note
 from kirigami_studio.fabricate.panel_sizes import least_panel_share
-from kirigami_studio.foundation.words import tr
+from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.gui.designs.gallery_selection import GalleryItem, Selection, format_value, places_in_order
+from kirigami_studio.gui.designs.look_alikes import Stacks
 from kirigami_studio.gui.session import Entry, same_sample
+from kirigami_studio.lattice.symmetry import Symmetry
 from kirigami_studio.pipeline.rank import Ranking
 from kirigami_studio.project.document import Mark
 
@@ -23,6 +26,8 @@ NUMBER_ROLE = Qt.ItemDataRole.UserRole + 4
 MARK_ROLE = Qt.ItemDataRole.UserRole + 5
 FRESH_ROLE = Qt.ItemDataRole.UserRole + 7  #: whether the last further run has added it
 VALUE_ROLE = Qt.ItemDataRole.UserRole + 6  #: words for the number that is sorted by
+ALIKE_ROLE = Qt.ItemDataRole.UserRole + 9  #: how many designs look like this card and belong to it
+OPEN_ROLE = Qt.ItemDataRole.UserRole + 10  #: whether those are shown
 GRID_ROLE = Qt.ItemDataRole.UserRole + 8  #: words for the grid where designs of several grids are there, else ""
 
 Index = QModelIndex | QPersistentModelIndex
@@ -43,6 +48,9 @@ class GalleryModel(QAbstractListModel):
         self._shown: list[Entry] = []
         self._marks: dict[Candidate, Mark] = {}
         self._fresh: frozenset[Candidate] = frozenset()
+        self._taken: list[Entry] = []
+        self._stacks = Stacks()
+        self._reasons: dict[int, Note] | None = None  # of the ranking, once they are asked for
         self._selection = Selection()
         self.ranking = Ranking()  #: puts designs that are inserted into their places
         self._width_mm = 100.0
@@ -51,6 +59,11 @@ class GalleryModel(QAbstractListModel):
     def entries(self) -> tuple[Entry, ...]:
         """Those that are shown, row by row."""
         return tuple(self._shown)
+
+    @property
+    def taken(self) -> tuple[Entry, ...]:
+        """Those that the selection takes, in their order; some may lie under others that look the same."""
+        return tuple(self._taken)
 
     @property
     def all_entries(self) -> tuple[Entry, ...]:
@@ -81,6 +94,10 @@ class GalleryModel(QAbstractListModel):
             return self.number_of(entry.candidate)
         if role == MARK_ROLE:
             return self.mark_of(entry.candidate)
+        if role == ALIKE_ROLE:
+            return self._stacks.under(entry.candidate)
+        if role == OPEN_ROLE:
+            return self._stacks.is_open(entry.candidate)
         if role == GRID_ROLE:
             sheet = entry.candidate.sheet
             return f"{sheet.rows} \N{MULTIPLICATION SIGN} {sheet.columns}" if self._several_grids() else ""
@@ -100,7 +117,22 @@ class GalleryModel(QAbstractListModel):
             lines.append(tr("Pinned") if mark is Mark.PINNED else tr("Rejected"))
         if entry.candidate in self._fresh:
             lines.append(tr("Added by the last run"))
+        reason = self._rank_reason(entry)
+        if reason:
+            lines.append(tr("Rank: {reason}", reason=reason))
+        alike = self._stacks.under(entry.candidate)
+        if alike:
+            lines.append(alike_tip(alike, self._stacks.is_open(entry.candidate)))
         return "\n".join(lines)
+
+    def _rank_reason(self, entry: Entry) -> str:
+        """Why a design has its place in the ranking, in one sentence."""
+        if self._reasons is None:
+            ranked = self.ranking.ranked(one.candidate for one in self._all)
+            notes = self.ranking.reasons(ranked)
+            self._reasons = {id(one): note for one, note in zip(ranked, notes, strict=True)}
+        note = self._reasons.get(id(entry.candidate))
+        return "" if note is None else note.text
 
     def _size(self, entry: Entry) -> str:
         size = self._width_mm * least_panel_share(entry.design.deployment)
@@ -112,12 +144,35 @@ class GalleryModel(QAbstractListModel):
         after = sorted(self._all, key=lambda entry: ranking.key(entry.candidate))
         if [id(one) for one in after] != [id(one) for one in self._all]:
             self._all = after
+            self._stacks.regroup(after, ranking)
             self._rearrange()
+
+    def set_groups(self, candidates: Sequence[Candidate], groups: Sequence[int]) -> None:
+        """Stack designs by groups that were found in the worker."""
+        self._stacks.set_groups(candidates, groups)
+        self._rearrange()
+
+    def toggle_alike(self, head: Candidate) -> None:
+        """Show the designs under a card, or hide them again."""
+        self._stacks.toggle(head)
+        self._rearrange()
+
+    def reveal(self, candidate: Candidate) -> bool:
+        """Show a design that lies under another; whether it did."""
+        found = self._stacks.reveal(candidate)
+        if found:
+            self._rearrange()
+        return found
+
+    def head_of(self, candidate: Candidate) -> Candidate | None:
+        """The card that a design lies under, None where it lies under none."""
+        return self._stacks.head_of(candidate, self._shown)
 
     def replace(self, entries: list[Entry]) -> None:
         """Show other candidates, best first; those that are the same samples as before keep their cards."""
         before = self._shown
         self._all = list(entries)
+        self._stacks.regroup(self._all, self.ranking)
         after = self._arranged()
         same = len(before) == len(after) and all(
             same_sample(old.candidate, new.candidate) for old, new in zip(before, after, strict=True)
@@ -137,29 +192,14 @@ class GalleryModel(QAbstractListModel):
         """
         for old, known in enumerate(self._all):
             if not known.kept and same_sample(known.candidate, entry.candidate):
-                self._remove(old)
+                del self._all[old]
                 break
         key = self.ranking.key
         place = bisect.bisect_right(self._all, key(entry.candidate), key=lambda one: key(one.candidate))
         self._all.insert(place, entry)
-        after = self._arranged()
-        row = next((row for row, one in enumerate(after) if one is entry), -1)
-        if row >= 0:
-            self.beginInsertRows(QModelIndex(), row, row)
-            self._shown = after
-            self.endInsertRows()
-        self.arranged.emit()
-        return row
-
-    def _remove(self, place: int) -> None:
-        entry = self._all[place]
-        row = next((row for row, one in enumerate(self._shown) if one is entry), -1)
-        if row >= 0:
-            self.beginRemoveRows(QModelIndex(), row, row)
-            del self._shown[row]
-        del self._all[place]
-        if row >= 0:
-            self.endRemoveRows()
+        self._stacks.regroup(self._all, self.ranking)
+        self._rearrange()
+        return next((row for row, one in enumerate(self._shown) if one is entry), -1)
 
     def select(self, selection: Selection) -> None:
         """Show another part, or in another order."""
@@ -199,8 +239,13 @@ class GalleryModel(QAbstractListModel):
         return _place_of(self._shown, candidate)
 
     def _arranged(self) -> list[Entry]:
+        self._reasons = None
         designs = [self._as_item(entry, place) for place, entry in enumerate(self._all)]
-        return [self._all[place] for place in places_in_order(designs, self._selection)]
+        self._taken = [self._all[place] for place in places_in_order(designs, self._selection)]
+        if self._selection.grouped:
+            return self._stacks.stacked(self._taken)
+        self._stacks.flat()
+        return list(self._taken)
 
     def _as_item(self, entry: Entry, place: int) -> GalleryItem:
         mark, fresh = self.mark_of(entry.candidate), bool(self._fresh) and entry.candidate in self._fresh
@@ -208,9 +253,11 @@ class GalleryModel(QAbstractListModel):
 
     def _rearrange(self) -> None:
         after = self._arranged()
-        stay = {id(one) for one in after}
-        if [id(one) for one in self._shown if id(one) in stay] == [id(one) for one in after]:
+        stay, known = {id(one) for one in after}, {id(one) for one in self._shown}
+        staying = [id(one) for one in after if id(one) in known]
+        if [id(one) for one in self._shown if id(one) in stay] == staying and (staying or not known):
             self._leave_out(stay)
+            self._put_in(after)
         else:
             self._reset(after)
         self.arranged.emit()
@@ -224,6 +271,14 @@ class GalleryModel(QAbstractListModel):
                 self.endRemoveRows()
         if self._shown:
             self.dataChanged.emit(self.index(0, 0), self.index(len(self._shown) - 1, 0))
+
+    def _put_in(self, after: list[Entry]) -> None:
+        """Insert the rows that are missing, one by one."""
+        for row, entry in enumerate(after):
+            if row >= len(self._shown) or self._shown[row] is not entry:
+                self.beginInsertRows(QModelIndex(), row, row)
+                self._shown.insert(row, entry)
+                self.endInsertRows()
 
     def _reset(self, entries: list[Entry]) -> None:
         self.beginResetModel()
@@ -255,6 +310,7 @@ def described(candidate: Candidate, rank: int) -> str:
             percent=100 * score.evenness.area_cv,
         ),
         rim_text(candidate),
+        *symmetry_text(candidate),
         tr(
             "Gain over the uniform sheet: {siou_gain:+.2f} points (uniform {uniform_siou:.2f} %)",
             siou_gain=100 * score.siou_gain,
@@ -274,6 +330,37 @@ def rim_text(candidate: Candidate) -> str:
     if sheet.has_even_rim:
         return tr("{rows} \N{MULTIPLICATION SIGN} {columns} voids, even rim", rows=sheet.rows, columns=sheet.columns)
     return tr("{rows} \N{MULTIPLICATION SIGN} {columns} voids, free rim", rows=sheet.rows, columns=sheet.columns)
+
+
+def alike_tip(count: int, opened: bool) -> str:
+    """What lies under a card, and what a click on its mark does."""
+    if opened:
+        return tr_n(
+            "{count} design that looks the same is shown after it. Click the mark or press Enter to hide it.",
+            "{count} designs that look the same are shown after it. Click the mark or press Enter to hide them.",
+            count,
+        )
+    return tr_n(
+        "{count} more design looks the same. Click the mark or press Enter to show it.",
+        "{count} more designs look the same. Click the mark or press Enter to show them.",
+        count,
+    )
+
+
+def symmetry_text(candidate: Candidate) -> list[str]:
+    """Which symmetry a design keeps, if any."""
+    symmetry = candidate.symmetry
+    return [] if symmetry is None else [SYMMETRY_TEXTS[symmetry]]
+
+
+#: What each symmetry means for the eye.
+SYMMETRY_TEXTS = {
+    Symmetry.LEFT_RIGHT: tr("Symmetric: its own mirror image at every angle"),
+    Symmetry.TOP_BOTTOM: tr("Symmetric: its own mirror image at every angle"),
+    Symmetry.TWO_MIRRORS: tr("Symmetric: its own mirror image both ways at every angle"),
+    Symmetry.HALF_TURN: tr("Symmetric: the same after half a turn"),
+    Symmetry.QUARTER_TURN: tr("Symmetric: the same after a quarter turn"),
+}
 
 
 def came_from(candidate: Candidate) -> list[str]:

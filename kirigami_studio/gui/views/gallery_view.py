@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
 from PySide6.QtCore import QEvent, QModelIndex, QPoint, Qt, QTimer, Signal
 from PySide6.QtGui import QColor, QContextMenuEvent, QKeyEvent, QMouseEvent, QPainter, QPaintEvent, QResizeEvent
@@ -13,8 +13,16 @@ from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.designs.gallery_selection import Selection
 from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.session import Entry
-from kirigami_studio.gui.views.card_delegate import GAP, SMALLEST_CARD, CardButton, CardDelegate, button_at, card_size
-from kirigami_studio.gui.views.gallery_model import CANDIDATE_ROLE, GalleryModel
+from kirigami_studio.gui.views.card_delegate import (
+    GAP,
+    SMALLEST_CARD,
+    CardButton,
+    CardDelegate,
+    alike_box,
+    button_at,
+    card_size,
+)
+from kirigami_studio.gui.views.gallery_model import ALIKE_ROLE, CANDIDATE_ROLE, GalleryModel
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.pipeline.rank import Ranking
 from kirigami_studio.project.document import Mark
@@ -121,11 +129,15 @@ class GalleryView(QListView):
     def show_compared(self, candidate: Candidate | None) -> None:
         """Show on its card which design is compared with the chosen one."""
         self.cards.compared = candidate
+        if candidate is not None:
+            self._quietly(lambda: self.model_.reveal(candidate))
         self.viewport().update()
 
     def mark(self, candidate: Candidate | None) -> None:
         """Highlight the chosen candidate without reporting it as a gesture."""
         self._marked = candidate
+        if candidate is not None:
+            self._quietly(lambda: self.model_.reveal(candidate))
         row = self.model_.row_of(candidate) if candidate is not None else -1
         self._reporting = False
         if row < 0:
@@ -133,6 +145,27 @@ class GalleryView(QListView):
         elif self.currentIndex().row() != row or not self.selectionModel().hasSelection():
             self.setCurrentIndex(self.model_.index(row, 0))
         self._reporting = True
+
+    def _quietly(self, act: Callable[[], object]) -> None:
+        """Do something that may move the current card, without reporting that as a gesture."""
+        before, self._reporting = self._reporting, False
+        act()
+        self._reporting = before
+
+    def toggle_alike(self, head: Candidate) -> None:
+        """Show the designs that look like a card's, or hide them; a chosen one that gets hidden gives way to it."""
+        marked = self._marked
+        self._quietly(lambda: self.model_.toggle_alike(head))
+        hidden = marked is not None and self.model_.row_of(marked) < 0 and self.model_.head_of(marked) is head
+        if hidden:
+            self._marked = head
+            self.chosen.emit(head)
+        self.mark(self._marked)
+
+    def set_groups(self, candidates: tuple[Candidate, ...], groups: tuple[int, ...]) -> None:
+        """Stack designs by groups that were found in the worker."""
+        self._quietly(lambda: self.model_.set_groups(candidates, groups))
+        self.mark(self._marked)
 
     def beside(self, candidate: Candidate | None) -> Candidate | None:
         """The shown design after ``candidate``, or before it where it is the last; None when there is no other."""
@@ -151,6 +184,11 @@ class GalleryView(QListView):
         candidate: Candidate = index.data(CANDIDATE_ROLE)
         return candidate, button_at(self.visualRect(index), place)
 
+    def _on_alike(self, place: QPoint) -> bool:
+        """Whether a place is on the mark of look-alikes."""
+        index = self.indexAt(place)
+        return bool(index.data(ALIKE_ROLE)) and alike_box(self.visualRect(index)).contains(place)
+
     # events --------------------------------------------------------------------------------------------------------
 
     def mousePressEvent(self, event: QMouseEvent) -> None:  # noqa: N802 - Qt's name
@@ -159,6 +197,8 @@ class GalleryView(QListView):
             event.accept()  # the menu comes with its own event and leaves the choice alone
         elif candidate is None and self.model_.rowCount() == 0 and self.model_.all_entries:
             self.clear_wanted.emit()
+        elif candidate is not None and button is None and self._on_alike(event.position().toPoint()):
+            self.toggle_alike(candidate)
         elif candidate is not None and button is not None:
             (self.pin_wanted if button is CardButton.PIN else self.reject_wanted).emit(candidate)
         elif candidate is not None and event.modifiers() & Qt.KeyboardModifier.ControlModifier:
@@ -185,6 +225,8 @@ class GalleryView(QListView):
         candidate = self.currentIndex().data(CANDIDATE_ROLE) if self.currentIndex().isValid() else None
         if event.key() in (Qt.Key.Key_Delete, Qt.Key.Key_Backspace) and candidate is not None:
             self.reject_wanted.emit(candidate)
+        elif event.key() in (Qt.Key.Key_Return, Qt.Key.Key_Enter) and self.currentIndex().data(ALIKE_ROLE):
+            self.toggle_alike(self.currentIndex().data(CANDIDATE_ROLE))
         else:
             super().keyPressEvent(event)
 
