@@ -21,7 +21,7 @@ from kirigami_studio.generator.weights import load_model
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.outlines.outline import Outline
-from kirigami_studio.pipeline.rank import ranked
+from kirigami_studio.pipeline.rank import Ranking
 from kirigami_studio.pipeline.request import Request, as_in_paper
 from kirigami_studio.pipeline.run import best_of
 from kirigami_studio.pipeline.tasks import scored
@@ -207,7 +207,7 @@ def spread_of(candidates: Sequence[Candidate]) -> dict[str, float]:
     first, second = np.triu_indices(len(z), 1)
     fields = [candidate.sheet.field for candidate in candidates]
     sheets = np.concatenate([distances(field, fields[place + 1 :]) for place, field in enumerate(fields[:-1])])
-    order = ranked(candidates)
+    order = Ranking(regular=0.0).ranked(candidates)
     siou = np.array([candidate.score.siou for candidate in candidates])
     return {
         "std_rms": float(np.sqrt(np.square(deviation).mean())),

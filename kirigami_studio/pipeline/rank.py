@@ -179,18 +179,3 @@ class Ranking:
 
 #: What a run wants first unless it is asked for something else.
 USUAL = Ranking()
-
-
-def rank_key(candidate: Candidate) -> Key:
-    """Sorting key of one candidate in the usual ranking; smaller is better."""
-    return USUAL.key(candidate)
-
-
-def ranked(candidates: Iterable[Candidate]) -> tuple[Candidate, ...]:
-    """Candidates sorted best first in the usual ranking."""
-    return USUAL.ranked(candidates)
-
-
-def improves(after: Candidate, before: Candidate, prefer: str) -> bool:
-    """Whether a fitted design may take the place of the one it came from, see :meth:`Ranking.improves`."""
-    return USUAL.improves(after, before, prefer)

@@ -25,7 +25,7 @@ from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.lattice.symmetry import Symmetry, symmetry_of
 from kirigami_studio.outlines.outline import Outline
-from kirigami_studio.pipeline.rank import improves
+from kirigami_studio.pipeline.rank import Ranking
 from kirigami_studio.polish.covering import fit_cover
 from kirigami_studio.polish.even_panels import even_weight
 from kirigami_studio.polish.levenberg import polish
@@ -203,7 +203,8 @@ def refitted(
     cancel : callable
         Asked before every step.
     regular : float, 0..1
-        How much even panels count, see :func:`kirigami_studio.polish.even_panels.even_weight`.
+        How much even panels count, in the fit (:func:`kirigami_studio.polish.even_panels.even_weight`) and for
+        ``better``.
     free_rim : bool
         Whether the mouths may move.
 
@@ -236,7 +237,7 @@ def refitted(
         found = evaluate_near(deploy(fit.sheet), target, score.phi, fit.pose)
     first = candidate.sampled_sheet or candidate.sheet
     fitted = replace(candidate, sheet=fit.sheet, score=found, polished=True, sampled_sheet=first, trim=None)
-    better = improves(fitted, candidate, prefer)
+    better = Ranking(regular).improves(fitted, candidate, prefer)
     if candidate.trim is None:
         return Refit(fitted, better)
     try:

@@ -22,7 +22,7 @@ from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.outlines import silhouettes
-from kirigami_studio.pipeline.rank import ranked
+from kirigami_studio.pipeline.rank import USUAL
 from kirigami_studio.project import edits, store
 from kirigami_studio.project.document import Document
 
@@ -122,7 +122,7 @@ def designs() -> Document:
         field = RatioField.from_log10(0.12 * (index + 1) * draw.normal(size=(4, 5)))
         found.append(Candidate(Sheet(field), evaluate(deploy(field), target, 0.0), seed=7, index=index))
     start = edits.set_target(Document(), target).document
-    return edits.set_candidates(start, ranked(found), {}).document
+    return edits.set_candidates(start, USUAL.ranked(found), {}).document
 
 
 @pytest.fixture

@@ -12,7 +12,7 @@ from pytestqt.qtbot import QtBot
 from kirigami_studio.gui.main_window import MainWindow
 from kirigami_studio.gui.messages import Tone
 from kirigami_studio.gui.views.gallery_model import described
-from kirigami_studio.pipeline.rank import ranked
+from kirigami_studio.pipeline.rank import USUAL
 from kirigami_studio.project.document import Document
 
 Until = Callable[[Callable[[], bool]], None]
@@ -31,7 +31,7 @@ def test_that_generating_fills_the_gallery_best_first_and_is_one_undo_step(
     assert heart.controller.running and heart.run.stop.isVisible() and not heart.run.generate.isEnabled()
     until(lambda: not heart.controller.running)
     found = heart.controller.document.candidates
-    assert found == ranked(found) and len(found) == 3 and found[0].sheet.grid == (6, 6)
+    assert found == USUAL.ranked(found) and len(found) == 3 and found[0].sheet.grid == (6, 6)
     assert [entry.candidate for entry in heart.gallery.view.model_.entries] == list(found)
     assert heart.controller.stage is not None and heart.controller.stage.candidate == found[0]
     assert heart.stage.view.phi == pytest.approx(0.0)
@@ -110,7 +110,7 @@ def test_that_designs_of_a_stopped_run_can_be_kept_as_one_undo_step(heart: MainW
     assert message.tone is Tone.HINT and label == "Keep these designs"
     keep()
     kept = heart.controller.document
-    assert kept.candidates == ranked(kept.candidates) and 2 < len(kept.candidates) < 400
+    assert kept.candidates == USUAL.ranked(kept.candidates) and 2 < len(kept.candidates) < 400
     assert f"after {len(kept.candidates)} designs" in message.sentence
     assert kept.provenance["model"] == "balanced" and heart.messages.messages == ()
     until(lambda: heart.fabrication.export.isEnabled())

@@ -21,7 +21,7 @@ from kirigami_studio.gui.messages import Tone
 from kirigami_studio.gui.views.gallery_model import FRESH_ROLE
 from kirigami_studio.outlines import silhouettes
 from kirigami_studio.pipeline.events import Finished
-from kirigami_studio.pipeline.rank import ranked
+from kirigami_studio.pipeline.rank import USUAL
 from kirigami_studio.pipeline.variety import distances
 from kirigami_studio.project.document import Document, Mark
 from kirigami_studio.project.edits import Edit
@@ -64,7 +64,7 @@ def test_that_again_adds_designs_of_the_next_seed_and_keeps_choice_and_marks(
     assert controller.stage is not None and controller.stage.candidate == before.candidate
     until(lambda: not controller.running)
     after = controller.document
-    assert len(after.candidates) == 6 and after.candidates == ranked(after.candidates) == tuple(shown(drawn))
+    assert len(after.candidates) == 6 and after.candidates == USUAL.ranked(after.candidates) == tuple(shown(drawn))
     assert {one.seed for one in after.candidates} == {0, 1} and set(before.candidates) < set(after.candidates)
     assert after.candidate == before.candidate and controller.stage.candidate == before.candidate
     assert dict(zip(after.candidates, after.marks, strict=True))[before.candidates[1]] is Mark.PINNED

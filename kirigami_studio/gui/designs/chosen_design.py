@@ -179,8 +179,7 @@ class Refitter(QObject):
         if len(document.locked) == candidate.sheet.field.ratio.size:
             self._session.post(Message(tr("Every void is locked. Unlock the ones to fit."), Tone.HINT))
             return
-        prefer, locked, cuts = document.settings.prefer, document.locked, document.fabrication
-        steps = partial(refitting, candidate, target, prefer, locked, cuts)
+        steps = partial(refitting, candidate, target, document.settings, document.locked, document.fabrication)
         self.job.start(tr("fitting the design"), candidate, steps)
         self._session.set_status(tr("Fitting {design} … Press Esc to stop.", design=chosen_name(document)))
 

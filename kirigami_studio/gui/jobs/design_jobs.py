@@ -17,7 +17,7 @@ from kirigami_studio.pipeline.rank import Ranking
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.pipeline.variety import distinct, look_alikes
 from kirigami_studio.project.document import Void
-from kirigami_studio.project.settings import FabricationSettings
+from kirigami_studio.project.settings import DesignSettings, FabricationSettings
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -131,7 +131,7 @@ def scoring_sample(candidate: Candidate, target: Outline, cancel: Cancel) -> Ite
 def refitting(
     candidate: Candidate,
     target: Outline,
-    prefer: str,
+    wanted: DesignSettings,
     locked: frozenset[Void],
     settings: FabricationSettings,
     cancel: Cancel,
@@ -139,7 +139,16 @@ def refitting(
     """Fit a candidate on the exact geometry from its present sheet, and trim it again if it is trimmed."""
     from kirigami_studio.pipeline.redesign import refitted
 
-    refit = refitted(candidate, target, prefer, locked, partial(keep_for, candidate, settings), cancel)
+    refit = refitted(
+        candidate,
+        target,
+        wanted.prefer,
+        locked,
+        partial(keep_for, candidate, settings),
+        cancel,
+        regular=wanted.regular,
+        free_rim=wanted.rim == "free",
+    )
     untrimmed = "" if refit.trim_problem is None else str(refit.trim_problem)
     yield Refitted(decoded(refit.candidate), refit.better, untrimmed)
 

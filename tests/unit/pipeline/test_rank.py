@@ -21,8 +21,6 @@ from kirigami_studio.pipeline.rank import (
     USUAL,
     WORTH,
     Ranking,
-    improves,
-    rank_key,
 )
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.pipeline.run import best_of
@@ -48,30 +46,30 @@ def test_that_every_preference_has_a_worth_and_stricter_ones_give_more_away() ->
 def test_that_no_match_is_given_away_unless_calm_is_preferred(design: Candidate, prefer: str) -> None:
     before = scored(design, 0.99, 1.0)
     after = scored(design, 0.9899, 0.1)
-    assert not improves(after, before, prefer) and improves(before, after, prefer)
-    assert improves(scored(design, 0.99, 0.9), before, prefer)
-    assert (rank_key(after) < rank_key(before)) == improves(after, before, prefer)
+    assert not USUAL.improves(after, before, prefer) and USUAL.improves(before, after, prefer)
+    assert USUAL.improves(scored(design, 0.99, 0.9), before, prefer)
+    assert (USUAL.key(after) < USUAL.key(before)) == USUAL.improves(after, before, prefer)
 
 
 @pytest.mark.parametrize("prefer", ["regularity", "calm"])
 def test_that_match_is_given_away_for_what_it_is_worth(design: Candidate, prefer: str) -> None:
     before, fall = scored(design, 0.99, 1.0), 0.09 * WORTH[prefer]
     assert fall < MOST_LOST
-    assert improves(scored(design, 0.99 - 0.9 * fall, 0.91), before, prefer)
-    assert not improves(scored(design, 0.99 - 1.1 * fall, 0.91), before, prefer)
-    assert not improves(before, before, prefer)
+    assert USUAL.improves(scored(design, 0.99 - 0.9 * fall, 0.91), before, prefer)
+    assert not USUAL.improves(scored(design, 0.99 - 1.1 * fall, 0.91), before, prefer)
+    assert not USUAL.improves(before, before, prefer)
 
 
 def test_that_no_more_is_lost_than_counts_as_equal(design: Candidate) -> None:
     before = scored(design, 0.99, 2.0)
-    assert improves(scored(design, 0.99 - 0.99 * MOST_LOST, 0.1), before, "calm")
-    assert not improves(scored(design, 0.99 - 1.01 * MOST_LOST, 0.1), before, "calm")
+    assert USUAL.improves(scored(design, 0.99 - 0.99 * MOST_LOST, 0.1), before, "calm")
+    assert not USUAL.improves(scored(design, 0.99 - 1.01 * MOST_LOST, 0.1), before, "calm")
 
 
 def test_that_an_infeasible_fit_never_replaces_a_feasible_design(design: Candidate) -> None:
     crossed = replace(design, score=replace(design.score, siou=1.0, iou_exact=1.0, tv=0.0, feasible=False))
     assert design.score.feasible and not crossed.score.feasible
-    assert not improves(crossed, design, "calm") and improves(design, crossed, "calm")
+    assert not USUAL.improves(crossed, design, "calm") and USUAL.improves(design, crossed, "calm")
 
 
 def with_figures(design: Candidate, iou: float, index: int = 0, **figures: float) -> Candidate:

@@ -15,7 +15,7 @@ from kirigami_studio.generator.weights import load_model
 from kirigami_studio.outlines.silhouettes import load
 from kirigami_studio.pipeline.events import CandidateFound, CandidateImproved, Finished, Progress, Started
 from kirigami_studio.pipeline.pool import Pool
-from kirigami_studio.pipeline.rank import Ranking, ranked
+from kirigami_studio.pipeline.rank import USUAL, Ranking
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.pipeline.run import best_of, decodings, run
 
@@ -63,7 +63,7 @@ def test_that_candidates_are_ranked_best_first(request_for_heart: Request) -> No
 def test_that_an_infeasible_design_ranks_behind_a_worse_feasible_one(request_for_heart: Request) -> None:
     good, other = best_of(replace(request_for_heart, k=2)).candidates
     broken = Candidate(good.sheet, replace(good.score, feasible=False), good.seed, good.index)
-    assert ranked([broken, other]) == (other, broken)
+    assert USUAL.ranked([broken, other]) == (other, broken)
 
 
 def test_that_a_cancelled_run_stops_between_candidates(request_for_heart: Request) -> None:
