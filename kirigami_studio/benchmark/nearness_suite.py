@@ -66,7 +66,7 @@ def measure_nearness(
         before = best_of(request).candidates
         designs.append(before[0].score.siou)
         more = replace(request, seed=seed + 1)
-        asked = [more, *(replace(more, near=before[0].sheet.field, nearness=near) for near in NEARNESS)]
+        asked = [more, *(replace(more, near=before[0].sheet, nearness=near) for near in NEARNESS)]
         for name, one in zip(names, asked, strict=True):
             rows[name].append(_figures(before, best_of(one).candidates))
         report(number + 1, len(targets))

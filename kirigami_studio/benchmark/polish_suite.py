@@ -64,7 +64,7 @@ def measure_polish(
         fit = _fitted(outline, grid, steps, effort)
         seconds.append(time.process_time() - began)
         evaluations.append(fit.evaluations)
-        scores.append(evaluate(deploy(fit.field), outline))
+        scores.append(evaluate(deploy(fit.sheet), outline))
         report(number + 1, len(outlines))
     settings = {"grid": list(grid), "phi": 0.0, "steps": steps if effort is None else None, "effort": effort}
     return {**settings, **_figures(outlines, scores), "seconds": _spread(seconds), "evaluations": _spread(evaluations)}

@@ -9,7 +9,8 @@ from dataclasses import dataclass, replace
 from kirigami_studio import __version__
 from kirigami_studio.evaluate.trimming import KEEP, check_keep
 from kirigami_studio.foundation.errors import AngleError, UsageError
-from kirigami_studio.lattice.ratio_field import RatioField, check_grid
+from kirigami_studio.lattice.ratio_field import check_grid
+from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.polish.continuation import Wishes
 from kirigami_studio.polish.even_panels import even_weight
@@ -68,8 +69,8 @@ class Request:
         Depth of the material that trimming leaves at every hinge.
     budget_seconds : float, > 0, optional
         Wall time after which the best so far are returned; the first batch is always scored.
-    near : RatioField, optional
-        A design of the same grid that the samples are to be like.
+    near : Sheet, optional
+        A design of the same grid that the samples are to be like; they have its rim unless an even one is asked for.
     nearness : float, 0..1 without 1
         How near they are to lie: the time of the flow at which they start from that design.  0 starts from noise alone,
         in that design's pose.
@@ -103,7 +104,7 @@ class Request:
     trim: bool = False
     keep: float = KEEP
     budget_seconds: float | None = None
-    near: RatioField | None = None
+    near: Sheet | None = None
     nearness: float = 0.0
     symmetry: str = "auto"
     rim: str = "free"
@@ -183,7 +184,7 @@ class Request:
         if self.near is None:
             if nearness:
                 raise UsageError("request.nearness_without_design")
-        elif self.grid is not None and self.near.ratio.shape != tuple(self.grid):
+        elif self.grid is not None and self.near.grid != tuple(self.grid):
             (rows, columns), near = self.grid, self.near
             raise UsageError(
                 "request.near_other_grid", near_rows=near.rows, near_columns=near.columns, rows=rows, columns=columns
@@ -204,7 +205,8 @@ def provenance(request: Request, digest: str) -> dict[str, str]:
 
     The generator's weights have the SHA-256 ``digest``.
 
-    A design that the samples are near is named by the start of the SHA-256 of its ratios, row by row, as doubles.
+    A design that the samples are near is named by the start of the SHA-256 of its ratios, row by row, as doubles, and
+    of the places of its mouths where its rim is not even.
     """
     known = {
         "application": f"kirigami-studio {__version__}",
@@ -226,7 +228,8 @@ def provenance(request: Request, digest: str) -> dict[str, str]:
     if request.search:
         known["search"] = str(request.search)
     if request.near is not None:
-        known["near"] = hashlib.sha256(request.near.ratio.tobytes()).hexdigest()[:16]
+        mouths = b"" if request.near.has_even_rim else request.near.rim.positions.tobytes()
+        known["near"] = hashlib.sha256(request.near.field.ratio.tobytes() + mouths).hexdigest()[:16]
         known["nearness"] = f"{request.nearness:g}"
     if request.budget_seconds is not None:
         known["budget_seconds"] = f"{request.budget_seconds:g}"

@@ -117,7 +117,7 @@ def run(request: Request, cancel: Callable[[], bool] = never, pool: Pool | None 
     yield Progress(0, request.k, tr("Loading the generator"))
     fields = sample(request)
     work.evaluations += request.k * decodings(request)
-    yield from work.score([Sheet(field) for field in fields])
+    yield from work.score([on_sheet(request, field) for field in fields])
     if request.polish:
         yield from work.polish()
         if request.guided:
@@ -141,7 +141,7 @@ def with_grid(request: Request) -> Request:
     """
     if request.grid is not None:
         return request
-    return request.resolved(chosen_for(request).grid if request.near is None else request.near.ratio.shape)
+    return request.resolved(chosen_for(request).grid if request.near is None else request.near.grid)
 
 
 def best_of(request: Request, cancel: Callable[[], bool] = never, pool: Pool | None = None) -> Result:
@@ -164,7 +164,7 @@ def sample(request: Request) -> tuple[RatioField, ...]:
     model = load_model(request.variant)
     grid, seed, steps, phi = request.chosen_grid, request.seed, request.steps, request.phi
     if request.near is not None:
-        near = Near(request.near, rotation_of_target(request.near, request.target, phi), request.nearness)
+        near = Near(request.near.field, rotation_of_target(request.near, request.target, phi), request.nearness)
         return sample_fields(model, request.target, grid, request.k, seed, steps, phi, near=near)
     fields: list[RatioField] = []
     for pose, count in symmetric_shares(request):
@@ -184,9 +184,14 @@ def symmetric_shares(request: Request) -> list[tuple[SymmetricPose, int]]:
     return [(pose, count) for pose, count in zip(poses, each, strict=True) if count]
 
 
-def rotation_of_target(field: RatioField, target: Outline, phi: float) -> float:
+def on_sheet(request: Request, field: RatioField) -> Sheet:
+    """The sheet of a sample: that of the design that samples are near, with other ratios, else the paper's."""
+    return Sheet(field) if request.near is None or request.rim == "even" else request.near.with_field(field)
+
+
+def rotation_of_target(sheet: Sheet, target: Outline, phi: float) -> float:
     """Rotation, radians, that brings the target into the pose in which a design shows it."""
-    return -evaluate(deploy(field), target, phi).transform.angle
+    return -evaluate(deploy(sheet), target, phi).transform.angle
 
 
 def decodings(request: Request) -> int:

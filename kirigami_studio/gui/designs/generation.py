@@ -193,7 +193,7 @@ class RunPlanner:
         chosen = document.candidate
         if chosen is None:
             raise UsageError("designs.none_chosen")
-        request = replace(self._joining(target), near=chosen.sheet.field, nearness=nearness, search=0)
+        request = replace(self._joining(target), near=chosen.sheet, nearness=nearness, search=0)
         number = (document.chosen or 0) + 1
         status = tr("Generating {count} designs like design {number} …", count=request.k, number=number)
         return self._joined(request, status)

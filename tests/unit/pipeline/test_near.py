@@ -8,10 +8,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from uneven_sheets import uneven_sheet
 
 from kirigami_studio.evaluate.candidate import Candidate, Origin
 from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.silhouettes import load
 from kirigami_studio.pipeline.request import Request, provenance
@@ -35,7 +37,7 @@ def mean_distance(design: Candidate, candidates: tuple[Candidate, ...]) -> float
 def test_that_nearer_settings_draw_nearer_designs_that_are_as_good(name: str, grid: tuple[int, int]) -> None:
     request = Request(load(name), grid, k=8)
     design, fresh = design_and_fresh(request)
-    runs = [best_of(replace(request, seed=1, near=design.sheet.field, nearness=near)).candidates for near in NEARNESS]
+    runs = [best_of(replace(request, seed=1, near=design.sheet, nearness=near)).candidates for near in NEARNESS]
     far, middle, near = (mean_distance(design, candidates) for candidates in runs)
     assert near < middle < far < mean_distance(design, fresh)
     assert near < 0.5 * mean_distance(design, fresh)
@@ -53,44 +55,56 @@ def test_that_the_design_is_drawn_near_in_the_pose_in_which_it_shows_the_target(
     c, s = math.cos(2.1), math.sin(2.1)
     turned = Outline.from_points(heart.points @ np.array([[c, s], [-s, c]]), "turned heart")
     design = best_of(Request(heart, k=4)).candidates[1]
-    here, there = (rotation_of_target(design.sheet.field, target, 0.0) for target in (heart, turned))
+    here, there = (rotation_of_target(design.sheet, target, 0.0) for target in (heart, turned))
     assert math.cos(here - there - 2.1) == pytest.approx(1.0, abs=2e-3)
     for target in (heart, turned):
-        drawn = best_of(Request(target, k=4, near=design.sheet.field, nearness=0.9)).candidates
+        drawn = best_of(Request(target, k=4, near=design.sheet, nearness=0.9)).candidates
         assert mean_distance(design, drawn) < 0.15
 
 
 def test_that_equal_requests_draw_equal_designs_and_other_seeds_others() -> None:
-    request = Request(load("heart"), (6, 6), k=3, near=RatioField.uniform(6, 6), nearness=0.5)
+    request = Request(load("heart"), (6, 6), k=3, near=Sheet.uniform(6, 6), nearness=0.5)
     assert best_of(request).candidates == best_of(request).candidates
     assert best_of(request).candidates != best_of(replace(request, seed=9)).candidates
     assert pickle.loads(pickle.dumps(request)) == request
 
 
 def test_that_polishing_keeps_the_origin_and_provenance_names_the_design() -> None:
-    near = RatioField.uniform(5, 5)
+    near = Sheet.uniform(5, 5)
     request = Request(load("heart"), (5, 5), k=2, polish=5, near=near, nearness=0.25)
     result = best_of(request)
     assert any(one.polished for one in result.candidates)
     assert {one.origin for one in result.candidates} == {Origin.RESAMPLED}
     known = provenance(request, "0" * 64)
     assert known["nearness"] == "0.25" and len(known["near"]) == 16
-    assert provenance(replace(request, near=RatioField.from_log10(np.full((5, 5), 0.1))), "")["near"] != known["near"]
+    assert (
+        provenance(replace(request, near=Sheet(RatioField.from_log10(np.full((5, 5), 0.1)))), "")["near"]
+        != known["near"]
+    )
+    assert provenance(replace(request, near=Sheet(near.field, uneven_sheet(5, 5).rim)), "")["near"] != known["near"]
     assert "near" not in provenance(replace(request, near=None, nearness=0.0), "")
+
+
+@pytest.mark.parametrize("rim", ["free", "even"])
+def test_that_samples_have_the_rim_of_the_design_unless_an_even_one_is_asked_for(rim: str) -> None:
+    design = uneven_sheet(6, 7, seed=1)
+    request = Request(load("heart"), (6, 7), k=3, near=design, nearness=0.5, rim=rim)
+    for one in best_of(request).candidates:
+        assert one.sheet.has_even_rim if rim == "even" else one.sheet == design.with_field(one.sheet.field)
 
 
 @pytest.mark.parametrize(
     ("near", "nearness", "code"),
     [
-        (RatioField.uniform(4, 5), 0.5, "request.near_other_grid"),
-        (RatioField.uniform(6, 6), 1.0, "request.nearness_out_of_range"),
-        (RatioField.uniform(6, 6), -0.1, "request.nearness_out_of_range"),
-        (RatioField.uniform(6, 6), math.nan, "request.nearness_out_of_range"),
-        (RatioField.uniform(6, 6), True, "request.nearness_out_of_range"),
+        (Sheet.uniform(4, 5), 0.5, "request.near_other_grid"),
+        (Sheet.uniform(6, 6), 1.0, "request.nearness_out_of_range"),
+        (Sheet.uniform(6, 6), -0.1, "request.nearness_out_of_range"),
+        (Sheet.uniform(6, 6), math.nan, "request.nearness_out_of_range"),
+        (Sheet.uniform(6, 6), True, "request.nearness_out_of_range"),
         (None, 0.5, "request.nearness_without_design"),
     ],
 )
-def test_that_a_request_that_makes_no_sense_is_refused(near: RatioField | None, nearness: float, code: str) -> None:
+def test_that_a_request_that_makes_no_sense_is_refused(near: Sheet | None, nearness: float, code: str) -> None:
     with pytest.raises(UsageError) as caught:
         Request(load("heart"), (6, 6), near=near, nearness=nearness)
     assert caught.value.code == code
@@ -98,4 +112,4 @@ def test_that_a_request_that_makes_no_sense_is_refused(near: RatioField | None, 
 
 def test_that_a_design_of_another_grid_is_refused_with_both_grids() -> None:
     with pytest.raises(UsageError, match="grid of 4 x 5 voids, not 6 x 6"):
-        Request(load("heart"), (6, 6), near=RatioField.uniform(4, 5), nearness=0.5)
+        Request(load("heart"), (6, 6), near=Sheet.uniform(4, 5), nearness=0.5)
