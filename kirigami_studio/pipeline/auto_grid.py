@@ -16,10 +16,10 @@ from functools import lru_cache
 import numpy as np
 import shapely
 
-from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.sentences import sentence
 from kirigami_studio.lattice.symmetry import Symmetry
 from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.outlines.proportions import Proportions
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.polish.symmetry import SymmetricPose, shared_symmetries, symmetric_poses
 
@@ -233,11 +233,11 @@ def _candidates(
     sizes = range(coarsest, limit + 1)
     # A sheet on its side is the same for the eye: a single axis is laid upright.
     settings: list[SymmetricPose | None] = [pose for pose in poses if pose.symmetry is poses[0].symmetry]
-    moments = second_moments(target.points)
+    proportions = Proportions.of(target)
     for pose in settings or [None]:
-        # Without an axis the sheet may lie anyhow: across, like the shape's own longer direction.
-        along = 0.5 * math.pi if pose is None else pose.angle
-        proportion = -_own_proportion(moments) if along is None or pose is None else _proportion(moments, along)
+        # Without an axis the sheet may lie anyhow: wide rather than high.
+        along = proportions.direction + 0.5 * math.pi if pose is None or pose.angle is None else pose.angle
+        proportion = proportions.along(along)
         low, high = min(0.0, proportion) - PROPORTION_ROOM, max(0.0, proportion) + PROPORTION_ROOM
         for rows in sizes:
             for columns in sizes:
@@ -248,25 +248,3 @@ def _candidates(
                     continue
                 if (pose is None or pose.fits(grid, phi)) and low <= math.log((rows + 1) / (columns + 1)) <= high:
                     yield _Candidate(grid, pose, predicted_match(figures, grid, proportion))
-
-
-def second_moments(points: FloatArray) -> FloatArray:
-    """Second moments of area of a unit-area polygon about its centroid at the origin: (2, 2)."""
-    after = np.roll(points, -1, axis=0)
-    part = points[:, 0] * after[:, 1] - points[:, 1] * after[:, 0]
-    xx, yy = (np.square(points) + points * after + np.square(after)).T @ part / 12.0
-    mixed = 2.0 * points[:, 0] * points[:, 1] + points[:, 0] * after[:, 1] + after[:, 0] * points[:, 1]
-    xy = (mixed + 2.0 * after[:, 0] * after[:, 1]) @ part / 24.0
-    return np.array([[xx, xy], [xy, yy]])
-
-
-def _proportion(moments: FloatArray, along: float) -> float:
-    """Logarithm of the extent along a direction over that across it."""
-    up, across = np.array([math.cos(along), math.sin(along)]), np.array([-math.sin(along), math.cos(along)])
-    return 0.5 * math.log(float(up @ moments @ up) / float(across @ moments @ across))
-
-
-def _own_proportion(moments: FloatArray) -> float:
-    """The same for a shape's longest direction."""
-    least, most = np.linalg.eigvalsh(moments)
-    return 0.5 * math.log(float(most / least))

@@ -30,6 +30,7 @@ from kirigami_studio.lattice.ratio_field import RatioField, check_grid
 from kirigami_studio.lattice.sheet import Rim, Sheet, resized_sheet
 from kirigami_studio.lattice.symmetry import Symmetry, symmetry_of
 from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.outlines.proportions import Proportions
 from kirigami_studio.polish.guide import TransportMap
 from kirigami_studio.polish.levenberg import RIM_REACH, Fit, check_fit, polish
 from kirigami_studio.polish.objective import Stage
@@ -56,6 +57,9 @@ FAR, NEAR, FINE = 0.03, 0.01, 0.005
 
 #: Rotations tried per effort when quarter turns, half turns, or no turns carry reachable shapes to reachable shapes.
 QUARTER, HALF, WHOLE = 4, 6, 8
+
+#: A target is long when the logarithm of its length over its width is above this.
+LONG = 0.15
 
 #: Fits that are carried to the end, per effort.
 KEPT = 3
@@ -210,8 +214,17 @@ def guided_start(
 def first_angles(
     target: Outline, grid: tuple[int, int], phi: float, effort: int = 1, setting: str = "auto"
 ) -> list[tuple[float, Symmetry | None]]:
-    """Rotations to begin with, those that keep a symmetry first: both ways up for a mirror axis."""
+    """Rotations to begin with, those that keep a symmetry first: both ways up for a mirror axis.
+
+    On a long grid they count from the one that lays the sheet along a long target, and those near it come first.
+    """
     angles = _rotations(grid, phi, effort)
+    rows, columns = grid
+    proportions = Proportions.of(target)
+    along = proportions.direction
+    if rows != columns and proportions.along(along) > LONG:
+        first = along if columns > rows else along - 0.5 * math.pi
+        angles = sorted((first + angle for angle in angles), key=lambda angle: abs(math.sin(angle - first)))
     looks: list[tuple[float, Symmetry | None]] = []
     for pose in shared_symmetries(target, grid, phi, setting):
         looks += [(angle, pose.symmetry) for angle in _own_angles(pose, angles)]

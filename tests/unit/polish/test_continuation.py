@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pytest
 
@@ -11,9 +13,11 @@ from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.outlines.proportions import Proportions
 from kirigami_studio.outlines.silhouettes import load
+from kirigami_studio.outlines.symmetry import turned
 from kirigami_studio.polish import continuation
-from kirigami_studio.polish.continuation import KEPT, fit_shape, lifted
+from kirigami_studio.polish.continuation import KEPT, first_angles, fit_shape, lifted
 from kirigami_studio.polish.levenberg import Fit, polish
 
 
@@ -75,6 +79,16 @@ def test_that_a_lifted_field_stays_within_the_bounds_from_any_grid() -> None:
     for grid in [(2, 2), (3, 2), (7, 4)]:
         field = RatioField.from_log10(np.random.default_rng(1).uniform(-1, 1, grid))
         assert np.abs(lifted(Sheet(field), (9, 9)).field.log10).max() <= 1.0 + 1e-12
+
+
+def test_that_a_long_sheet_is_first_laid_along_a_long_target() -> None:
+    lying = Outline.from_points(turned(load("wave").points, 0.7))
+    along = Proportions.of(lying).direction
+    for grid, quarter in (((6, 16), 0.0), ((16, 6), 0.5 * math.pi)):
+        angles = [angle for angle, symmetry in first_angles(lying, grid, 0.0) if symmetry is None]
+        assert len(angles) == 6 and math.remainder(angles[0] + quarter - along, math.pi) == pytest.approx(0.0, abs=1e-9)
+        off = [abs(math.remainder(angle + quarter - along, math.pi)) for angle in angles]
+        assert off == pytest.approx(sorted(off))
 
 
 def test_that_a_cancelled_search_still_returns_a_fit() -> None:
