@@ -35,14 +35,19 @@ def ratio_fields(
 
 
 @st.composite
-def sheets(draw: st.DrawFn, largest: int = 8, decades: float = 1.0, starts: bool = True) -> Sheet:
-    """Random ratios, mouths anywhere that keeps their order, a rectangle or a random convex start, any cell."""
+def sheets(
+    draw: st.DrawFn, largest: int = 8, decades: float = 1.0, narrowest: float = 0.2, flattest: float = 0.5
+) -> Sheet:
+    """Random ratios, mouths anywhere that keeps their order, a rectangle or a random convex start, any cell.
+
+    The gaps between mouths are at least ``narrowest`` of the mean, cells at least ``flattest`` as high as wide.
+    """
     rows, columns = draw(grids(largest))
     random = np.random.default_rng(draw(st.integers(0, 2**32 - 1)))
     field = RatioField.from_log10(random.uniform(-decades, decades, (rows, columns)))
-    rim = random_rim(rows, columns, random)
-    start = random_start(random) if starts and draw(st.booleans()) else None
-    return Sheet(field, rim, start, (1.0, draw(st.floats(0.5, 2.0))))
+    rim = random_rim(rows, columns, random, narrowest)
+    start = random_start(random) if draw(st.booleans()) else None
+    return Sheet(field, rim, start, (1.0, draw(st.floats(flattest, 1.0 / flattest))))
 
 
 #: Any angle, the two compact states included.

@@ -51,7 +51,7 @@ class Wish:
 def wishes(draw: st.DrawFn, trimmed: bool = False) -> Wish:
     """Sheets of 8 to 30 mm a cell; connectors up to a seventh of that."""
     decades = 0.5 if trimmed else 0.75
-    sheet = draw(st.one_of(ratio_fields(grids(5), decades).map(Sheet), sheets(5, decades)))
+    sheet = draw(st.one_of(ratio_fields(grids(5), decades).map(Sheet), sheets(5, decades, narrowest=0.5, flattest=0.8)))
     cell = draw(st.floats(8.0, 30.0))
     connector = draw(st.floats(0.05, 0.07 * cell))
     kerf = draw(st.sampled_from([0.0, 0.02, 0.15, 0.4]))
