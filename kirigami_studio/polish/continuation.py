@@ -151,7 +151,8 @@ def fit_shape(
     Returns
     -------
     fits : list of Fit
-        Best exact IoU first; at least one.  ``evaluations`` counts the decodings of the whole search.
+        Those that are worth most first: exact IoU, less the prices of ``wishes``; at least one.  ``evaluations`` counts
+        the decodings of the whole search.
 
     Raises
     ------

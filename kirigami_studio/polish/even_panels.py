@@ -36,6 +36,7 @@ class EvenPanels:
     uniform : (E, 2) float
         The same of the uniform sheet.
     stiffness : (N, N) sparse
+        Second derivative of the value by the nodes' x, and by their y.
     """
 
     difference: csr_matrix
@@ -55,7 +56,7 @@ class EvenPanels:
             (np.concatenate([sign, -sign]), (np.concatenate([rows, rows]), np.concatenate([end, start]))),
             shape=(start.size, len(nodes)),
         )
-        return cls(difference, difference @ nodes, (difference.T @ difference).tocsr())
+        return cls(difference, difference @ nodes, 2.0 * (difference.T @ difference).tocsr())
 
     def value(self, nodes: FloatArray) -> float:
         """Mean squared change of the panel edges of compact ``nodes`` (N, 2), in uniform edges squared."""
@@ -65,8 +66,3 @@ class EvenPanels:
         """Derivative (N, 2) of the value by the nodes."""
         pull: FloatArray = 2.0 * (self.difference.T @ (self.difference @ nodes - self.uniform))
         return pull
-
-    def curvature(self, slopes: FloatArray) -> FloatArray:
-        """Second derivative (S, S) by variables that move the nodes by ``slopes`` (2, N, S)."""
-        curved: FloatArray = 2.0 * sum(part.T @ (self.stiffness @ part) for part in slopes)
-        return curved

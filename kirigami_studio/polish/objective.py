@@ -27,7 +27,7 @@ from kirigami_studio.polish.guide import Guide
 from kirigami_studio.polish.matching import EDGE_SHARES, Matching, OneSided, check_excess, matched, outer_hinges
 from kirigami_studio.polish.panel_size import PENALTY, shortage
 from kirigami_studio.polish.preferences import PreferenceTerms
-from kirigami_studio.polish.sensitivity import OutlineModel
+from kirigami_studio.polish.sensitivity import NodeMotion, OutlineModel
 
 #: Distance (unit-area lengths) beyond which a residual counts linearly when nothing else is asked for.
 #: Found on 50 outlines, drawn ones and those of random fields: 0.003 to 0.03 differ by 0.002 in mean exact IoU.
@@ -127,26 +127,28 @@ class Objective:
             cost += shortage(small, self.least)
         return Look(state, nodes, outline, matching, small, gaps, cost)
 
-    def slopes(self, state: FloatArray, basis: Basis | None = None) -> Slopes:
-        """Derivatives at a state, by the variables of ``basis``; by the shape's own numbers if missing."""
+    def slopes(self, state: FloatArray, basis: Basis | None = None, stiffness: FloatArray | None = None) -> Slopes:
+        """Derivatives at a state, by the variables of ``basis``; by the shape's own numbers if missing.
+
+        ``stiffness`` (V, V) is the even panels' of a state nearby, to be used again.
+        """
         basis = basis or Basis.of(state.size - POSE, None)
         shape, pose = state[:-POSE], state[-POSE:]
         own, derivative = self.model.linearised(shape)
         derivative = basis.reduced(derivative)
-        nodes = None
-        if self.even is not None or self.guide is not None:
-            nodes = basis.reduced(self.model.node_derivative(shape))
-        curvature = None
-        if self.even is not None and nodes is not None:
-            curvature = self.stage.even * self.even.curvature(nodes)
+        motion = None
+        if self.even is not None or self.guide is not None or self.least:
+            motion = self.model.node_motion(shape)
+        if self.even is not None and motion is not None and stiffness is None:
+            stiffness = motion.curvature(self.even.stiffness, basis)
         centroids = None
-        if self.guide is not None and nodes is not None:
+        if self.guide is not None and motion is not None:
             flat = self.model.nodes(shape)
             centroids = _state_derivative(
-                _posed(self.guide.centroids(flat), pose), self.guide.slopes(nodes), pose
+                _posed(self.guide.centroids(flat), pose), self.guide.slopes(motion.derivative(basis)), pose
             ).reshape(-1, derivative.shape[2] + POSE)
         outline = _state_derivative(_posed(own, pose), derivative, pose)
-        return Slopes(basis, outline.reshape(-1, outline.shape[2]), nodes, curvature, centroids)
+        return Slopes(basis, outline.reshape(-1, outline.shape[2]), motion, stiffness, centroids)
 
     def quadratic(self, look: Look, slopes: Slopes) -> Quadratic:
         """Gradient and Gauss-Newton matrix at a state, from the derivatives there or nearby."""
@@ -171,16 +173,11 @@ class Objective:
         pull[:voids] = self.terms.gradient(shape[:voids])
         gradient += basis.reduced(pull)
         hessian += basis.matrix(*self.terms.curvature(shape[:voids]))
-        if self.even is not None and slopes.nodes is not None and slopes.curvature is not None:
-            force = self.stage.even * self.even.pull(look.nodes)
-            gradient += force[:, 0] @ slopes.nodes[0] + force[:, 1] @ slopes.nodes[1]
-            hessian += slopes.curvature
-        if len(look.small.size):
-            along = look.small.reach(self.model.node_count)
-            if slopes.nodes is not None:
-                grown = along[0] @ slopes.nodes[0] + along[1] @ slopes.nodes[1]
-            else:
-                grown = basis.reduced(self.model.node_slopes(shape, *along))
+        if self.even is not None and slopes.motion is not None and slopes.stiffness is not None:
+            gradient += basis.reduced(slopes.motion.gradient(self.stage.even * self.even.pull(look.nodes)))
+            hessian += self.stage.even * slopes.stiffness
+        if len(look.small.size) and slopes.motion is not None:
+            grown = basis.reduced(slopes.motion.slopes(*look.small.reach(self.model.node_count)))
             gradient += 2.0 * PENALTY * ((look.small.size - self.least) @ grown)
             hessian += 2.0 * PENALTY * (grown.T @ grown)
 
@@ -195,18 +192,18 @@ class Slopes:
         How the variables move the shape.
     outline : (2 L, V + 4) float
         Of the outline in the target's frame.
-    nodes : (2, N, V) float or None
-        Of the compact nodes, where a term needs them.
-    curvature : (V, V) float or None
-        Of the term for even panels.
+    motion : NodeMotion or None
+        Of the compact nodes, where a term needs it.
+    stiffness : (V, V) float or None
+        Second derivative of the term for even panels with weight 1, there or nearby.
     centroids : (2 P, V + 4) float or None
         Of the panel centroids in the target's frame, where there is a guide.
     """
 
     basis: Basis
     outline: FloatArray
-    nodes: FloatArray | None
-    curvature: FloatArray | None
+    motion: NodeMotion | None
+    stiffness: FloatArray | None
     centroids: FloatArray | None
 
 

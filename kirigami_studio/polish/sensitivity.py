@@ -13,14 +13,15 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-import numpy.typing as npt
-from scipy.linalg.lapack import dgetrf, dgetri, dgetrs
+from scipy.sparse import csr_matrix
 
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray, IntArray
 from kirigami_studio.lattice.compact import barycentric_stencil
 from kirigami_studio.lattice.deployment import ZIPPED_BELOW, even_part_of_outline, rotate
 from kirigami_studio.lattice.sheet import Rim, RimPath, Sheet, rim_table
 from kirigami_studio.lattice.topology import topology
+from kirigami_studio.polish.basis import Basis
+from kirigami_studio.polish.factor import Factor, factored
 
 LN10 = math.log(10.0)
 
@@ -41,9 +42,11 @@ class _Plan:
         How free h nodes rest on free v nodes, and v on h.
     v_under_h, h_under_v : _Rests
         The same from below: which free h nodes rest on each free v node, and which v on each h.
+    slot : (H,) int
+        Where each free h node stands in the m rows of n + 1 places of ``factor``.
     around : (first, second, place) int arrays
         Paths from a free h node over a v node to an h node: the stencil weights of both legs, and where their product
-        stands in the flat (h, h) matrix.
+        stands in the flat coupling (2, m, n + 1, n + 1) of ``factor``.
     given : (K, 2) bool
         Stencil ends that are given nodes.
     to_given : (entry, row, column) int arrays
@@ -61,6 +64,7 @@ class _Plan:
     v_on_h: _Rests
     v_under_h: _Rests
     h_under_v: _Rests
+    slot: IntArray
     around: tuple[IntArray, IntArray, IntArray]
     given: BoolArray
     to_given: tuple[IntArray, IntArray, IntArray]
@@ -127,6 +131,9 @@ def _plan(rows: int, columns: int, zipped: bool) -> _Plan:
     v_to_h = entry[from_v], row[from_v] - h, column[from_v]
     first, second = np.nonzero(h_to_v[2][:, None] == v_to_h[1])
     known = column < 0
+    slot = node[:h] - (columns + 1)
+    (up, left), (down, right) = (np.divmod(slot[place], columns + 1) for place in (h_to_v[1][first], v_to_h[2][second]))
+    around = (((down > up) * rows + up) * (columns + 1) + left) * (columns + 1) + right
     return _Plan(
         free=node,
         ends=ends,
@@ -137,7 +144,8 @@ def _plan(rows: int, columns: int, zipped: bool) -> _Plan:
         v_on_h=_Rests.of(*v_to_h, node.size - h),
         v_under_h=_Rests.of(h_to_v[0], h_to_v[2], h_to_v[1], node.size - h),
         h_under_v=_Rests.of(v_to_h[0], v_to_h[2], v_to_h[1], h),
-        around=(h_to_v[0][first], v_to_h[0][second], h_to_v[1][first] * h + v_to_h[2][second]),
+        slot=slot,
+        around=(h_to_v[0][first], v_to_h[0][second], around),
         given=known.reshape(-1, 2),
         to_given=(entry[known], row[known], rim_position[ends].ravel()[known]),
         even=even,
@@ -221,53 +229,17 @@ class OutlineModel:
             share = self._table.share[:, self._table.mouths]
             followed = reach[:, self._table.node] @ share + through @ self._known(system.weights, share)
             even, whole = np.split(followed, 2)
-            along = self._path.slopes(self.positions(shape))
-            self._fill(derivative[..., self.voids :], even, whole - even, along, per_void=False)
+            self._fill(derivative[..., self.voids :], even, whole - even, self._along(shape), per_void=False)
         return self.outline_of(nodes), derivative
 
-    def node_derivative(self, shape: FloatArray) -> FloatArray:
-        """Derivative (2, N, S) of all compact nodes, x then y, by the shape."""
+    def node_motion(self, shape: FloatArray) -> NodeMotion:
+        """How all compact nodes move with the shape."""
         nodes, system = self._solve(shape)
-        plan, h, weights = self._plan, self._plan.h_count, system.weights
-        count = plan.free.size
-        inverse = np.empty((count, count))
-        at_h = np.asarray(dgetri(*system.factor)[0])
-        inverse[:h, :h] = at_h
-        inverse[:h, h:] = plan.v_under_h.times(weights, np.ascontiguousarray(at_h.T)).T
-        inverse[h:] = plan.v_on_h.times(weights, inverse[:h])
-        inverse[np.arange(h, count), np.arange(h, count)] += 1.0
-        derivative = np.zeros((2, len(nodes), self.size))
-        pull = self._pull(shape, nodes)
-        first, second = plan.pair
-        for axis in (0, 1):
-            own = inverse[:, first] * pull[first, axis]
-            own += inverse[:, second] * pull[second, axis]
-            derivative[axis, plan.free, : self.voids] = own
-        if self.free_rim:
-            share = self._table.share[:, self._table.mouths]
-            moved = np.zeros((len(nodes), share.shape[1]))
-            moved[self._table.node] = share
-            moved[plan.free] = inverse @ self._known(weights, share)
-            along = self._path.slopes(self.positions(shape))
-            for axis in (0, 1):
-                derivative[axis, :, self.voids :] = moved * along[:, axis]
-        return derivative
+        return NodeMotion(self, system, self._pull(shape, nodes), self._along(shape))
 
-    def node_slopes(self, shape: FloatArray, along_x: FloatArray, along_y: FloatArray) -> FloatArray:
-        """Derivative (F, S) of ``along_x @ x + along_y @ y`` of the compact nodes, both matrices (F, N)."""
-        nodes, system = self._solve(shape)
-        pull = self._pull(shape, nodes)
-        through_x, through_y = self._adjoint(along_x, system), self._adjoint(along_y, system)
-        slopes = np.empty((len(along_x), self.size))
-        slopes[:, : self.voids] = self._per_void(through_x * pull[:, 0] + through_y * pull[:, 1])
-        if self.free_rim:
-            share = self._table.share[:, self._table.mouths]
-            known, along = self._known(system.weights, share), self._path.slopes(self.positions(shape))
-            slopes[:, self.voids :] = sum(
-                (reach[:, self._table.node] @ share + through @ known) * along[:, axis]
-                for axis, (reach, through) in enumerate(((along_x, through_x), (along_y, through_y)))
-            )
-        return slopes
+    def _along(self, shape: FloatArray) -> FloatArray:
+        """Derivative of the mouths' points by their offsets, (R, 2); none where the rim is not free."""
+        return self._path.slopes(self.positions(shape)) if self.free_rim else np.zeros((0, 2))
 
     def _fill(
         self, derivative: FloatArray, even: FloatArray, odd: FloatArray, motion: FloatArray, *, per_void: bool
@@ -307,15 +279,14 @@ class OutlineModel:
         known = ((weights * plan.given)[..., None] * given[plan.ends]).sum(axis=1)
         flat = np.append(weights.ravel(), 0.0)
         first, second, place = plan.around
-        reduced = np.asarray(-np.bincount(place, flat[first] * flat[second], h * h), dtype=np.float64).reshape(h, h)
-        reduced[np.diag_indices(h)] += 1.0
-        # LAPACK itself: at small grids SciPy's own checks take longer than the work.
-        lu, pivots, _ = dgetrf(reduced, overwrite_a=True)
-        at_h = dgetrs(lu, pivots, known[:h] + plan.h_on_v.times(flat, known[h:]))[0]
+        width = self.columns + 1
+        coupling = np.bincount(place, flat[first] * flat[second], 2 * self.rows * width * width)
+        factor = factored(np.asarray(coupling, dtype=np.float64).reshape(2, self.rows, width, width), plan.slot)
+        at_h = factor.solve(known[:h] + plan.h_on_v.times(flat, known[h:]))
         nodes = given.copy()
         nodes[plan.free[:h]] = at_h
         nodes[plan.free[h:]] = plan.v_on_h.times(flat, at_h) + known[h:]
-        return nodes, _System(flat, (lu, pivots))
+        return nodes, _System(flat, factor)
 
     def _known(self, weights: FloatArray, values: FloatArray) -> FloatArray:
         """What free nodes get from given ones that have ``values`` (G, D): (K, D)."""
@@ -326,16 +297,118 @@ class OutlineModel:
 
     def _adjoint(self, reach: FloatArray, system: _System) -> FloatArray:
         """``reach`` (F, N) times A^-1 over the free nodes: (F, K)."""
+        return self._backward(np.ascontiguousarray(reach[:, self._plan.free].T), system).T
+
+    def _forward(self, right: FloatArray, system: _System) -> FloatArray:
+        """A^-1 times ``right`` (K, D), both over the free nodes."""
         plan, h = self._plan, self._plan.h_count
-        on_h, on_v = reach[:, plan.free[:h]].T, reach[:, plan.free[h:]].T
-        seen = on_h + plan.h_under_v.times(system.weights, on_v)
-        through_h = dgetrs(*system.factor, seen, trans=1)[0]
-        return np.concatenate([through_h, on_v + plan.v_under_h.times(system.weights, through_h)]).T
+        at_h = system.factor.solve(right[:h] + plan.h_on_v.times(system.weights, right[h:]))
+        return np.concatenate([at_h, right[h:] + plan.v_on_h.times(system.weights, at_h)])
+
+    def _backward(self, right: FloatArray, system: _System) -> FloatArray:
+        """The transpose of A^-1 times ``right`` (K, D), both over the free nodes."""
+        plan, h = self._plan, self._plan.h_count
+        at_h = system.factor.solve_transposed(right[:h] + plan.h_under_v.times(system.weights, right[h:]))
+        return np.concatenate([at_h, right[h:] + plan.v_under_h.times(system.weights, at_h)])
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class NodeMotion:
+    """How the compact nodes of one shape move with it: a derivative that is applied, and written out only where needed.
+
+    Attributes
+    ----------
+    model : OutlineModel
+    system : _System
+    pull : (K, 2) float
+        How each free node's own equation moves it per unit of its void's z.
+    along : (R, 2) float
+        How the mouths move; none where the rim is not free.
+    """
+
+    model: OutlineModel
+    system: _System
+    pull: FloatArray
+    along: FloatArray
+
+    def moved(self, axis: int, basis: Basis) -> FloatArray:
+        """Derivative (N, V) of the nodes' x (0) or y (1) by the variables."""
+        model, free = self.model, self.model._plan.free
+        moved = np.zeros((model.node_count, basis.size))
+        if len(self.along):
+            moved[model._table.node] = basis.reduced(self._wide(self._share() * self.along[:, axis]))
+        moved[free] = model._forward(self._right(axis, basis), self.system)
+        return moved
+
+    def derivative(self, basis: Basis) -> FloatArray:
+        """Derivative (2, N, V) of all nodes, x then y, by the variables."""
+        return np.stack([self.moved(axis, basis) for axis in (0, 1)])
+
+    def gradient(self, force: FloatArray) -> FloatArray:
+        """Derivative (S,) by the shape of a sum whose derivative by the nodes is ``force`` (N, 2)."""
+        slopes: FloatArray = self.slopes(force[None, :, 0], force[None, :, 1])[0]
+        return slopes
+
+    def slopes(self, along_x: FloatArray, along_y: FloatArray) -> FloatArray:
+        """Derivative (F, S) of ``along_x @ x + along_y @ y`` of the nodes, both matrices (F, N)."""
+        model = self.model
+        slopes = np.zeros((len(along_x), model.size))
+        for axis, reach in enumerate((along_x, along_y)):
+            through = model._adjoint(reach, self.system)
+            slopes[:, : model.voids] += model._per_void(through * self.pull[:, axis])
+            if len(self.along):
+                share = self._share()
+                followed = reach[:, model._table.node] @ share + through @ model._known(self.system.weights, share)
+                slopes[:, model.voids :] += followed * self.along[:, axis]
+        return slopes
+
+    def curvature(self, stiffness: csr_matrix, basis: Basis) -> FloatArray:
+        """Second derivative (V, V) by the variables of P^T ``stiffness`` P / 2, summed over x and y.
+
+        Two solves for each axis take the place of the product of two full derivatives.
+        """
+        model, free = self.model, self.model._plan.free
+        total = np.zeros((basis.size, basis.size))
+        for axis in (0, 1):
+            force = stiffness @ self.moved(axis, basis)
+            back = model._backward(force[free], self.system)
+            by_shape = np.empty((model.size, basis.size))
+            scaled = back * self.pull[:, axis, None]
+            first, second = model._plan.pair
+            by_shape[: model.voids] = scaled[first] + scaled[second]
+            if len(self.along):
+                share = self._share() * self.along[:, axis]
+                known = model._known(self.system.weights, share)
+                by_shape[model.voids :] = share.T @ force[model._table.node] + known.T @ back
+            total += basis.reduced(np.ascontiguousarray(by_shape.T)).T
+        return total
+
+    def _right(self, axis: int, basis: Basis) -> FloatArray:
+        """Right-hand sides (K, V): what each variable does to the free nodes' own equations."""
+        model = self.model
+        right = np.zeros((len(self.pull), basis.size + 1))
+        voids = np.arange(model.voids)
+        for node in model._plan.pair:
+            # A node belongs to one void, and a void follows one variable: no two entries of a row meet.
+            right[node, basis.variable[voids]] = self.pull[node, axis] * basis.sign[voids]
+        right = right[:, :-1]
+        if len(self.along):
+            known = model._known(self.system.weights, self._share() * self.along[:, axis])
+            right = right + basis.reduced(self._wide(known))
+        return right
+
+    def _share(self) -> FloatArray:
+        """How the given nodes follow the mouths: (G, R)."""
+        return self.model._table.share[:, self.model._table.mouths]
+
+    def _wide(self, by_mouths: FloatArray) -> FloatArray:
+        """The same (., R) with columns for the voids before it: (., S)."""
+        return np.concatenate([np.zeros((len(by_mouths), self.model.voids)), by_mouths], axis=1)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _System:
-    """One field's stencil weights (2 K + 1,), the last of them 0, and the factors of I - S_hv S_vh."""
+    """One field's stencil weights (2 K + 1,), the last of them 0, and the factored system of the h nodes."""
 
     weights: FloatArray
-    factor: tuple[FloatArray, npt.NDArray[np.signedinteger]]
+    factor: Factor

@@ -17,7 +17,7 @@ from kirigami_studio.outlines.proportions import Proportions
 from kirigami_studio.outlines.silhouettes import load
 from kirigami_studio.outlines.symmetry import turned
 from kirigami_studio.polish import continuation
-from kirigami_studio.polish.continuation import KEPT, first_angles, fit_shape, lifted
+from kirigami_studio.polish.continuation import FAIR_LOSS, KEPT, first_angles, fit_shape, lifted
 from kirigami_studio.polish.levenberg import Fit, polish
 
 
@@ -39,7 +39,8 @@ def test_that_the_search_beats_the_plain_fit_where_that_gets_stuck(name: str) ->
     best, *others = fit_shape(target, (6, 6))
     assert iou(best, target) > iou(plain, target) + 0.02
     assert len(others) == KEPT - 1
-    assert all(iou(best, target) >= iou(other, target) for other in others)
+    # A symmetric one may come before another that matches a little better.
+    assert all(iou(best, target) >= iou(other, target) - FAIR_LOSS for other in others)
 
 
 @pytest.mark.usefixtures("two_rotations")

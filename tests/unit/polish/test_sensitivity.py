@@ -6,10 +6,14 @@ import math
 
 import numpy as np
 import pytest
+import scipy.sparse
 
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.sheet import Rim, Sheet
+from kirigami_studio.lattice.symmetry import Symmetry
+from kirigami_studio.polish.basis import Basis
+from kirigami_studio.polish.factor import factored
 from kirigami_studio.polish.sensitivity import OutlineModel
 
 GRIDS = [(2, 2), (3, 4), (5, 5), (6, 3), (10, 10)]
@@ -97,8 +101,47 @@ def test_that_derivatives_by_ratios_and_mouths_are_central_differences(
     outline = np.stack([(model.outline(shape + one) - model.outline(shape - one)) / (2 * step) for one in steps], -1)
     nodes = np.stack([(model.nodes(shape + one) - model.nodes(shape - one)) / (2 * step) for one in steps], -1)
     assert np.abs(model.linearised(shape)[1] - outline).max() < 1e-6
-    assert np.abs(model.node_derivative(shape) - np.moveaxis(nodes, 1, 0)).max() < 1e-6
+    assert (
+        np.abs(model.node_motion(shape).derivative(Basis.of(shape.size, None)) - np.moveaxis(nodes, 1, 0)).max() < 1e-6
+    )
     draw = np.random.default_rng(2)
     along = draw.normal(size=(2, 3, model.node_count))
     expected = along[0] @ nodes[:, 0] + along[1] @ nodes[:, 1]
-    assert np.abs(model.node_slopes(shape, *along) - expected).max() < 1e-5
+    assert np.abs(model.node_motion(shape).slopes(*along) - expected).max() < 1e-5
+
+
+@pytest.mark.parametrize("grid", [(5, 5), (13, 14)], ids=["dense", "by rows"])
+@pytest.mark.parametrize("symmetry", [None, Symmetry.LEFT_RIGHT, Symmetry.TOP_BOTTOM])
+def test_that_the_curvature_is_the_product_of_derivatives(grid: tuple[int, int], symmetry: Symmetry | None) -> None:
+    if symmetry is not None and not symmetry.fits(*grid):
+        symmetry = None
+    model = OutlineModel(*grid, 0.0, free_rim=True)
+    shape = random_shape(grid)
+    basis = Basis.of(shape.size, None if symmetry is None else symmetry.on(*grid))
+    motion = model.node_motion(basis.nearest(shape))
+    random = scipy.sparse.random(model.node_count, model.node_count, 0.01, format="csr", random_state=1)
+    stiffness = (random + random.T).tocsr()
+    whole = motion.derivative(basis)
+    expected = sum(part.T @ (stiffness @ part) for part in whole)
+    np.testing.assert_allclose(motion.curvature(stiffness, basis), expected, atol=1e-9 * np.abs(expected).max())
+    force = np.random.default_rng(3).normal(size=(model.node_count, 2))
+    gradient = basis.reduced(motion.gradient(force))
+    np.testing.assert_allclose(gradient, force[:, 0] @ whole[0] + force[:, 1] @ whole[1], atol=1e-9)
+
+
+@pytest.mark.parametrize("rows", [4, 20])
+def test_that_the_system_is_solved_both_ways(rows: int) -> None:
+    """The dense way and the way row by row against a plain solution of the written-out matrix."""
+    draw, width = np.random.default_rng(4), 11
+    coupling = draw.uniform(0.0, 0.5 / width, (2, rows, width, width))
+    matrix = np.eye(rows * width)
+    for i in range(rows):
+        own = slice(i * width, (i + 1) * width)
+        if i:
+            matrix[own, (i - 1) * width : i * width] = -coupling[0, i]
+        if i < rows - 1:
+            matrix[own, (i + 1) * width : (i + 2) * width] = -coupling[1, i]
+    right = draw.normal(size=(rows * width, 3))
+    factor = factored(coupling, np.arange(rows * width))
+    np.testing.assert_allclose(factor.solve(right), np.linalg.solve(matrix, right), atol=1e-12)
+    np.testing.assert_allclose(factor.solve_transposed(right), np.linalg.solve(matrix.T, right), atol=1e-12)

@@ -1,0 +1,128 @@
+"""The reduced system of the compact sheet, factored: one row of h nodes rests on the rows above and below it.
+
+    h_i = L_i h_(i-1) + U_i h_(i+1) + c_i,        L_i, U_i : (n + 1) x (n + 1)
+
+The system is an M-matrix, so elimination row by row needs no pivoting between rows: E_i = I - L_i T_(i-1) and
+T_i = E_i^-1 U_i.  At small grids one dense factorisation takes less time than a loop over rows.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+import numpy.typing as npt
+from scipy.linalg.lapack import dgetrf, dgetrs
+
+from kirigami_studio.foundation.arrays import FloatArray, IntArray
+
+#: Up to this many unknowns the dense factorisation is the faster one.
+DENSE = 160
+
+
+class Factor(Protocol):
+    """A factored matrix A (H, H)."""
+
+    def solve(self, right: FloatArray) -> FloatArray:
+        """A^-1 times ``right`` (H, D)."""
+        ...
+
+    def solve_transposed(self, right: FloatArray) -> FloatArray:
+        """The transpose of A^-1 times ``right`` (H, D)."""
+        ...
+
+
+def factored(coupling: FloatArray, slot: IntArray) -> Factor:
+    """Factor the system whose rows rest on the rows above, ``coupling[0]``, and below: (2, m, w, w).
+
+    ``slot`` (H,) says which of the m w places are unknowns; nothing rests on the others.
+    """
+    _, rows, width, _ = coupling.shape
+    return _Dense.of(coupling, slot) if rows * width <= DENSE else _ByRows.of(coupling, slot)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Dense:
+    """LU factors."""
+
+    lu: FloatArray
+    pivots: npt.NDArray[np.signedinteger]
+
+    @classmethod
+    def of(cls, coupling: FloatArray, slot: IntArray) -> _Dense:
+        _, rows, width, _ = coupling.shape
+        matrix = np.zeros((rows, width, rows, width))
+        row = np.arange(rows)
+        matrix[row, :, row] = np.eye(width)
+        matrix[row[1:], :, row[:-1]] = -coupling[0, 1:]
+        matrix[row[:-1], :, row[1:]] = -coupling[1, :-1]
+        # LAPACK itself: at these sizes SciPy's own checks take longer than the work.
+        lu, pivots, _ = dgetrf(matrix.reshape(rows * width, -1)[np.ix_(slot, slot)])
+        return cls(lu, pivots)
+
+    def solve(self, right: FloatArray) -> FloatArray:
+        return np.asarray(dgetrs(self.lu, self.pivots, right)[0])
+
+    def solve_transposed(self, right: FloatArray) -> FloatArray:
+        return np.asarray(dgetrs(self.lu, self.pivots, right, trans=1)[0])
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _ByRows:
+    """Elimination row by row.
+
+    Attributes
+    ----------
+    lower : (m, w, w) float
+        L_i.
+    slot : (H,) int
+        Places of the unknowns.
+    inverse : (m, w, w) float
+        E_i^-1.
+    transfer : (m, w, w) float
+        T_i.
+    """
+
+    lower: FloatArray
+    slot: IntArray
+    inverse: FloatArray
+    transfer: FloatArray
+
+    @classmethod
+    def of(cls, coupling: FloatArray, slot: IntArray) -> _ByRows:
+        lower, upper = coupling
+        identity = np.eye(lower.shape[1])
+        inverse, transfer = np.empty_like(lower), np.empty_like(upper)
+        inverse[0], transfer[0] = identity, upper[0]
+        for i in range(1, len(lower)):
+            inverse[i] = np.linalg.inv(identity - lower[i] @ transfer[i - 1])
+            np.matmul(inverse[i], upper[i], out=transfer[i])
+        return cls(lower, slot, inverse, transfer)
+
+    def solve(self, right: FloatArray) -> FloatArray:
+        rows = self._in_rows(right)
+        found = np.empty_like(rows)
+        found[0] = rows[0]
+        for i in range(1, len(rows)):
+            np.matmul(self.inverse[i], rows[i] + self.lower[i] @ found[i - 1], out=found[i])
+        for i in range(len(rows) - 2, -1, -1):
+            found[i] += self.transfer[i] @ found[i + 1]
+        return found.reshape(-1, right.shape[1])[self.slot]
+
+    def solve_transposed(self, right: FloatArray) -> FloatArray:
+        found = self._in_rows(right)
+        for i in range(1, len(found)):
+            found[i] += self.transfer[i - 1].T @ found[i - 1]
+        for i in range(len(found) - 1, -1, -1):
+            if i < len(found) - 1:
+                found[i] += self.lower[i + 1].T @ found[i + 1]
+            found[i] = self.inverse[i].T @ found[i]
+        return found.reshape(-1, right.shape[1])[self.slot]
+
+    def _in_rows(self, right: FloatArray) -> FloatArray:
+        """A right-hand side (H, D) in its places: (m, w, D)."""
+        rows, width = self.lower.shape[:2]
+        places = np.zeros((rows * width, right.shape[1]))
+        places[self.slot] = right
+        return places.reshape(rows, width, -1)
