@@ -85,6 +85,12 @@ def reach_of(outline: Outline, grid: tuple[int, int]) -> Reach:
     return Reach((rows, columns), arms, notches, 2.0 * radius, share)
 
 
+def share_of_arms(outline: Outline, radius: float) -> float:
+    """Share of a target's area in parts that are narrower than twice a radius (unit-area lengths)."""
+    shape = outline.polygon.simplify(COARSENESS * radius)
+    return float(shape.difference(_there_and_back(shape, -radius)).area)
+
+
 def _there_and_back(shape: BaseGeometry, by: float) -> BaseGeometry:
     """Grown and shrunk again, or the other way round, with pointed corners, so that a square stays a square."""
     there = shape.buffer(by, join_style="mitre", mitre_limit=SHARPEST)
