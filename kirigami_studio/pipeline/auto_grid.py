@@ -129,7 +129,9 @@ class ShapeFigures:
 def predicted_match(figures: ShapeFigures, grid: tuple[int, int], proportion: float) -> float:
     """Expected exact IoU of the best design on a grid without a search.
 
-    Found with FITTED.
+    The logarithm of what is missed is linear in a few figures.  Fitted to fits from the uniform sheet, led by the
+    transport map and not: 76 shapes (the library and 36 drawn ones) on 177 grids.  On these the median error is 0.004,
+    on 23 other shapes (52 grids) 0.003; what is predicted at 0.95 or less may be off by several hundredths.
 
     Parameters
     ----------

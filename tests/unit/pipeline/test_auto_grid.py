@@ -5,11 +5,14 @@ from __future__ import annotations
 import math
 import time
 
+import numpy as np
 import pytest
+from shapely.geometry import LineString, Point, Polygon, box
 
 from kirigami_studio.foundation.errors import TargetError
 from kirigami_studio.lattice.symmetry import Symmetry
 from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.outlines.proportions import Proportions
 from kirigami_studio.outlines.silhouettes import load, names
 from kirigami_studio.outlines.symmetry import turned
 from kirigami_studio.pipeline.auto_grid import GOAL, ShapeFigures, choose_grid, chosen_for, predicted_match
@@ -102,6 +105,39 @@ def test_that_more_panels_and_simpler_shapes_are_expected_to_match_better() -> N
     assert predicted_match(star, (10, 11), 0.0) < predicted_match(star, (14, 15), 0.0)
     assert predicted_match(star, (10, 11), 0.0) < predicted_match(egg, (10, 11), 0.0)
     assert predicted_match(egg, (10, 11), 1.0) < predicted_match(egg, (16, 7), 1.0)
+
+
+def star(points: int, inner: float) -> Polygon:
+    angle = np.arange(2 * points) * math.pi / points + math.pi / 2
+    radius = np.where(np.arange(2 * points) % 2, inner, 1.0)
+    return Polygon(np.stack([radius * np.cos(angle), radius * np.sin(angle)], axis=1))
+
+
+#: Shapes that had no part in the calibration, a grid, and the exact IoU that fits from the uniform sheet reached on it.
+REACHED = [
+    (star(7, 0.6), (10, 9), 0.982),
+    (star(7, 0.6), (14, 13), 0.992),
+    (Point(0, 1).buffer(0.8).union(Polygon([[-0.3, 1], [0.3, 1], [0.7, -1.2], [-0.7, -1.2]])), (16, 7), 0.994),
+    (box(0, 0, 2, 2.4).union(Point(2, 1.2).buffer(0.8)), (10, 9), 0.995),
+    (Polygon([[0, 2], [1, 0], [0, -3], [-1, 0]]), (16, 5), 0.992),
+    (Polygon([[-2, 0], [2, 0], [1, 1.6], [-1, 1.6]]), (6, 13), 0.997),
+    (Point(0, 0).buffer(1).intersection(box(-1, 0, 1, 1)), (6, 13), 0.995),
+    (LineString([[-1.6, 0], [1.6, 0]]).buffer(0.8), (5, 15), 0.988),
+    (Point(0, 0).buffer(2).difference(Point(0, 0).buffer(1)).intersection(box(-3, 0, 3, 3)), (7, 15), 0.986),
+    (box(0, 0, 1, 4).union(box(2.5, 0, 3.5, 4)).union(box(0, 1.5, 3.5, 2.5)), (13, 13), 0.903),
+]
+
+
+def test_that_shapes_that_were_not_fitted_match_as_predicted() -> None:
+    predicted, reached = [], []
+    for shape, grid, match in REACHED:
+        target = Outline.from_points(shape.exterior.coords[:-1])
+        upright = Proportions.of(target).along(0.5 * math.pi)
+        predicted.append(predicted_match(ShapeFigures.of(target), grid, upright))
+        reached.append(match)
+    off = np.abs(np.array(predicted) - reached)
+    assert np.median(off) < 0.004 and off.mean() < 0.006
+    assert np.corrcoef(np.log(1.0 - np.array(predicted)), np.log(1.0 - np.array(reached)))[0, 1] > 0.8
 
 
 def test_that_the_choice_does_not_delay_the_first_design() -> None:
