@@ -134,11 +134,16 @@ class GalleryView(QListView):
         self.viewport().update()
 
     def mark(self, candidate: Candidate | None) -> None:
-        """Highlight the chosen candidate without reporting it as a gesture."""
-        self._marked = candidate
-        if candidate is not None:
+        """Highlight the chosen candidate without reporting it as a gesture.
+
+        A newly chosen one comes out of its stack; one that gets under another later is shown by that card.
+        """
+        if candidate is not None and candidate != self._marked:
             self._quietly(lambda: self.model_.reveal(candidate))
+        self._marked = candidate
         row = self.model_.row_of(candidate) if candidate is not None else -1
+        if candidate is not None and row < 0:
+            row = self.model_.row_of(self.model_.head_of(candidate))
         self._reporting = False
         if row < 0:
             self.selectionModel().clear()
