@@ -116,6 +116,8 @@ class WatchedSession:
             "open a large project", lambda: self.press("open_project"), lambda: self.shown(MANY) and self.planned()
         )
         self.step("choose in the large project", lambda: self.press("next"), self.planned)
+        self.step("move the balance over it", self.balance)
+        self.step("show every look-alike", lambda: self.window.gallery.bar.grouped.setChecked(False))
         self.step("look through its gallery", self.look_through)
         self.step("scrub a large design", self.scrub)
         self.step("show its cuts", lambda: self.press("cuts"))
@@ -165,7 +167,7 @@ class WatchedSession:
         settings = self.window.settings
         settings.candidates.setValue(designs)
         settings.search.setChecked(search)
-        self.window.controller.change_settings(polish=polish)
+        self.window.controller.change_settings(polish=polish, grid=(10, 10))
         self.let_live(0.1)
 
     def generate(self) -> None:
@@ -179,7 +181,7 @@ class WatchedSession:
         return self.window.fabrication.export.isEnabled() and not self.window.controller.queue.busy
 
     def shown(self, designs: int) -> bool:
-        return self.window.gallery.view.model_.rowCount() == designs
+        return len(self.window.gallery.view.model_.all_entries) == designs
 
     def told(self) -> bool:
         """An export has said how it went."""
@@ -191,6 +193,15 @@ class WatchedSession:
         for value in range(0, slider.maximum(), slider.maximum() // 20):
             slider.setValue(value)
             QApplication.processEvents()
+
+    def balance(self) -> None:
+        """Drag the slider from match to regular and back, without letting go elsewhere."""
+        slider = self.window.settings.regular
+        slider.setSliderDown(True)
+        for value in (60, 70, 80, 90, 100, 80, 50):
+            slider.setValue(value)
+            QApplication.processEvents()
+        slider.setSliderDown(False)
 
     def look_through(self) -> None:
         """Turn the pages of the gallery."""

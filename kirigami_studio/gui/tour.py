@@ -58,7 +58,10 @@ def steps_of(window: MainWindow, controller: Controller) -> tuple[Step, ...]:
         Step(
             lambda: window.gallery,
             tr("Compare"),
-            tr("Designs arrive best first; sIoU shows how well each matches. Click one, or press PgDown."),
+            tr(
+                "Designs arrive best first. Each card shows the match, how even the panels are, and the flat sheet. "
+                "Click one, or press PgDown."
+            ),
             (window.gallery.view.chosen,),
         ),
         Step(

@@ -9,7 +9,6 @@ from __future__ import annotations
 from typing import Literal
 
 import numpy as np
-from scipy.interpolate import RBFInterpolator
 
 from kirigami_studio.foundation.arrays import FloatArray
 
@@ -19,6 +18,9 @@ def resize_fields(z: FloatArray, rows: int, columns: int) -> FloatArray:
     count, m, n = z.shape
     if (m, n) == (rows, columns):
         return z
+    # Imported when it is needed: it takes as long as half of the window's start.
+    from scipy.interpolate import RBFInterpolator
+
     old_place, old_even = _places(m, n)
     new_place, new_even = _places(rows, columns)
     flat = z.reshape(count, m * n)

@@ -63,7 +63,7 @@ def fit_again(
     Cancelled
         ``cancel`` returned true.
     """
-    asked = replace(request, k=max(len(candidates), 1), search=0, trim=False, near=None, nearness=0.0)
+    asked = replace(request, k=max(len(candidates), 1), search=0, guided=0, trim=False, near=None, nearness=0.0)
     workers = shared_pool() if pool is None else pool
     if gains(workers, asked):
         workers.start()

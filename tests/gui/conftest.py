@@ -119,7 +119,7 @@ def designs() -> Document:
     target, draw = silhouettes.load("heart"), np.random.default_rng(5)
     found = []
     for index in range(3):
-        field = RatioField.from_log10(0.12 * (index + 1) * draw.normal(size=(4, 5)))
+        field = RatioField.from_log10(0.1 * (index + 1) * draw.normal(size=(4, 5)))
         found.append(Candidate(Sheet(field), evaluate(deploy(field), target, 0.0), seed=7, index=index))
     start = edits.set_target(Document(), target).document
     return edits.set_candidates(start, USUAL.ranked(found), {}).document

@@ -4,13 +4,26 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
 from pytestqt.modeltest import ModelTester
 from pytestqt.qtbot import QtBot
 
+from kirigami_studio.evaluate.candidate import Origin
 from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.gui.session import Entry
-from kirigami_studio.gui.views.gallery_model import GalleryModel, problems
+from kirigami_studio.gui.views.card_delegate import SIGNS
+from kirigami_studio.gui.views.gallery_model import (
+    GRID_ROLE,
+    SYMMETRY_TEXTS,
+    GalleryModel,
+    came_from,
+    problems,
+    symmetry_text,
+)
 from kirigami_studio.lattice.deployment import deploy
+from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.lattice.sheet import Sheet
+from kirigami_studio.lattice.symmetry import Symmetry
 from kirigami_studio.project.document import Document
 
 
@@ -50,3 +63,28 @@ def test_that_every_reason_against_a_design_is_told(designs: Document) -> None:
     assert problems(replace(candidate, score=bad)) == ["Panels overlap by 3.12 % of their area."]
     worse = replace(bad, n_invalid=2)
     assert problems(replace(candidate, score=worse)) == ["Invalid panels or voids: 2."]
+
+
+def test_that_a_card_tells_how_its_design_came_to_be_whatever_its_origin(designs: Document) -> None:
+    told = [came_from(replace(designs.candidates[0], origin=origin)) for origin in Origin]
+    assert all(lines and lines[0] for lines in told) and len({lines[0] for lines in told}) == len(Origin)
+
+
+def test_that_a_symmetric_design_is_called_so_and_the_others_are_not(designs: Document) -> None:
+    plain = designs.candidates[0]
+    assert symmetry_text(plain) == []
+    z = np.linspace(-0.2, 0.2, 20).reshape(4, 5)
+    mirrored = replace(plain, sheet=Sheet(RatioField.from_log10(Symmetry.LEFT_RIGHT.symmetric(z))))
+    assert mirrored.symmetry is Symmetry.LEFT_RIGHT
+    assert symmetry_text(mirrored) == ["Symmetric: its own mirror image at every angle"]
+    assert set(SYMMETRY_TEXTS) == set(SIGNS) == set(Symmetry)
+
+
+def test_that_the_grid_is_told_where_designs_of_several_are_mixed(designs: Document) -> None:
+    model, first = GalleryModel(), entries(designs)
+    model.replace(first)
+    assert model.index(0, 0).data(GRID_ROLE) == ""
+    other = replace(first[0].candidate, sheet=Sheet.uniform(6, 7), index=9)
+    model.insert(Entry(other, PosedDesign(deploy(other.sheet), other.score.transform, 0.0)))
+    told = {str(model.index(row, 0).data(GRID_ROLE)) for row in range(model.rowCount())}
+    assert told == {"4 \N{MULTIPLICATION SIGN} 5", "6 \N{MULTIPLICATION SIGN} 7"}

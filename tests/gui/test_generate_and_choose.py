@@ -114,7 +114,7 @@ def test_that_designs_of_a_stopped_run_can_be_kept_as_one_undo_step(heart: MainW
     assert f"after {len(kept.candidates)} designs" in message.sentence
     assert kept.provenance["model"] == "balanced" and heart.messages.messages == ()
     until(lambda: heart.fabrication.export.isEnabled())
-    assert heart.gallery.view.model_.rowCount() == len(kept.candidates)
+    assert len(heart.gallery.view.model_.all_entries) == len(kept.candidates)
     keep()  # a click that came too late
     assert heart.controller.document is kept
     heart.commands["undo"].trigger()

@@ -42,6 +42,7 @@ def small(window: MainWindow) -> MainWindow:
 @pytest.fixture
 def drawn(heart: MainWindow, until: Until) -> MainWindow:
     """A studio with three designs drawn from seed 0."""
+    heart.gallery.bar.grouped.setChecked(False)
     small(heart).commands["generate"].trigger()
     until(lambda: not heart.controller.running and len(heart.controller.document.candidates) == 3)
     return heart

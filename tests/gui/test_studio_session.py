@@ -89,7 +89,9 @@ class Sitting:
         """Click on the second card."""
         view = self.window.gallery.view
         self.bot.mouseClick(view.viewport(), LEFT, pos=view.visualRect(view.model_.index(1, 0)).center())
-        assert self.document.chosen == 1 and self.window.stage.title.text() == "Design 2"
+        number = view.model_.number_of(view.model_.entries[1].candidate)
+        assert number > 1 and self.document.chosen == number - 1
+        assert self.window.stage.title.text() == f"Design {number}"
         self.until(lambda: self.window.fabrication.export.isEnabled() and not self.window.controller.queue.busy)
 
     def scrub(self) -> None:
@@ -121,7 +123,7 @@ class Sitting:
         assert after is not None and self.document.chosen == 1
         changed = np.argwhere(after.sheet.field.ratio != before.sheet.field.ratio).tolist()
         assert changed == [list(void)] and after.sheet.field.ratio[void] > before.sheet.field.ratio[void]
-        exact = after.score.transform.apply(deploy(after.sheet.field).nodes(after.score.phi))
+        exact = after.score.transform.apply(deploy(after.sheet).nodes(after.score.phi))
         shown = view.design
         assert shown is not None and np.ptp(shown.nodes(after.score.phi) - exact, axis=0) == pytest.approx(
             0.0, abs=1e-9

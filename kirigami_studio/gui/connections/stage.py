@@ -102,6 +102,8 @@ def _facts(entry: Entry) -> list[str]:
         tr("even rim") if entry.candidate.final_sheet.has_even_rim else tr("free rim"),
         tr("exact IoU {iou_exact:.1f} %", iou_exact=100 * score.iou_exact),
     ]
+    if entry.candidate.symmetry is not None:
+        facts.insert(1, tr("symmetric"))
     if trim is not None:
         facts.append(tr("trimmed IoU {iou:.1f} %", iou=100 * trim.iou))
     return [*facts, tr("feasible") if score.feasible else tr("not feasible")]

@@ -12,7 +12,7 @@ from functools import partial
 
 from PySide6.QtCore import QElapsedTimer, QObject, Signal
 
-from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.evaluate.candidate import Candidate, Origin
 from kirigami_studio.foundation.errors import KirigamiError, UsageError
 from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.gui.designs.hand_editor import HandEditor
@@ -23,7 +23,7 @@ from kirigami_studio.gui.session import Entry, Session
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.pipeline.events import CandidateFound, CandidateImproved, Finished, Progress, Result, Started
 from kirigami_studio.pipeline.rank import Ranking
-from kirigami_studio.pipeline.request import Request, provenance
+from kirigami_studio.pipeline.request import GUIDED_STARTS, Request, provenance
 from kirigami_studio.pipeline.variety import distinct
 from kirigami_studio.project import candidate_edits
 from kirigami_studio.project.candidate_edits import NewDesigns
@@ -205,7 +205,8 @@ class RunPlanner:
         first = document.candidates[0]
         seed = next_seed(document)
         same = replace(document.settings, auto_grid=False, grid=first.sheet.grid, phi=first.score.phi, seed=seed)
-        return request_of(target, same, document.fabrication)
+        # Fits from the uniform sheet do not depend on the seed: they would be the same again.
+        return replace(request_of(target, same, document.fabrication), k=same.k, guided=0)
 
     def _joined(self, request: Request, status: str) -> RunPlan:
         seed = None if self.keeps_seed else request.seed
@@ -281,16 +282,19 @@ def next_seed(document: Document) -> int:
 def request_of(target: Outline, settings: DesignSettings, cut: FabricationSettings) -> Request:
     """The run that these settings ask for, on the sheet that is cut.
 
+    Of the designs, a quarter but no more than ``GUIDED_STARTS`` are fitted from the uniform sheet instead of sampled.
+
     Raises
     ------
     KirigamiError
         The settings do not go together.
     """
+    guided = min(GUIDED_STARTS, settings.k // 4) if settings.polish else 0
     return Request(
         target,
         None if settings.auto_grid else settings.grid,
         settings.phi,
-        settings.k,
+        settings.k - guided,
         settings.seed,
         settings.variant,
         settings.steps,
@@ -302,6 +306,7 @@ def request_of(target: Outline, settings: DesignSettings, cut: FabricationSettin
         regular=settings.regular,
         width_mm=cut.width_mm,
         least_feature_mm=least_feature_mm(cut),
+        guided=guided,
     )
 
 
@@ -423,13 +428,21 @@ class DesignRun(QObject):
         self._sampled.setdefault(candidate.index, siou)
         self._latest[candidate.index] = candidate
         self._reports += 1
-        best = min(self._latest.values(), key=self._ranking.key).score.siou
-        if candidate.index >= self._asked:
+        best = min(self._latest.values(), key=self._ranking.key).score
+        if candidate.origin is Origin.GUIDED:
+            self._session.set_status(
+                tr(
+                    "Fitted from the uniform sheet: match {match:.1f} % (best {best:.1f} %).",
+                    match=100 * candidate.score.iou_exact,
+                    best=100 * best.iou_exact,
+                )
+            )
+        elif candidate.index >= self._asked:
             self._session.set_status(
                 tr(
                     "Search found a design with sIoU {siou:.1f} % (best {best:.1f} %).",
                     siou=100 * siou,
-                    best=100 * best,
+                    best=100 * best.siou,
                 )
             )
         elif improved:
@@ -439,7 +452,7 @@ class DesignRun(QObject):
                     "Polished {polished} of {asked} (best {best:.1f} %)",
                     polished=polished,
                     asked=self._asked,
-                    best=100 * best,
+                    best=100 * best.siou,
                 )
             )
 

@@ -148,6 +148,6 @@ def _request(document: Document, regular: float) -> Request | None:
         search=0,
     )
     try:
-        return request_of(document.target, settings, document.fabrication)
+        return replace(request_of(document.target, settings, document.fabrication), guided=0)
     except KirigamiError:
         return None

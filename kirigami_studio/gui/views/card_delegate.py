@@ -44,6 +44,8 @@ SMALLEST_RISE = 5e-4
 BUTTON = 24
 #: Edge of the dot on new designs, pixels.
 DOT = 7
+#: Pixels that the match takes at the left of the first line of text.
+MATCH_WIDTH = 66
 #: Opacity of a rejected design's picture.
 DIMMED = 0.3
 #: Seconds for new pictures in one paint event; a large window shows dozens of cards, a large design takes 7 ms.
@@ -168,8 +170,10 @@ class CardDelegate(QStyledItemDelegate):
 
     def _paint_alike(self, painter: QPainter, box: QRect, count: int, opened: bool) -> None:
         """How many more designs look the same, as a button."""
-        text = tr("hide alike") if opened else tr("+{count} alike", count=count)
         metrics = painter.fontMetrics()
+        text = tr("hide alike") if opened else tr("+{count} alike", count=count)
+        if metrics.horizontalAdvance(text) + 12 > box.width():
+            text = tr("hide") if opened else f"+{count}"
         width = min(metrics.horizontalAdvance(text) + 12, box.width())
         chip = QRectF(box.right() - width + 1, box.top() + 0.5, width, box.height() - 1)
         painter.setPen(QPen(QColor(self.palette_.strong_border), 1.0))
@@ -297,7 +301,8 @@ def picture_of(card: QRect) -> QRect:
 def alike_box(rect: QRect) -> QRect:
     """Place of the mark of look-alikes in a cell of the list: at the right of the first line of text."""
     card = card_of(rect)
-    return QRect(card.right() - 11 - 76, card.bottom() - TEXT_HEIGHT + 2, 78, 20)
+    width = min(78, card.width() - 22 - MATCH_WIDTH)
+    return QRect(card.right() - 9 - width, card.bottom() - TEXT_HEIGHT + 2, width, 20)
 
 
 def button_boxes(rect: QRect) -> dict[CardButton, QRect]:

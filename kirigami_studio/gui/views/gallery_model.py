@@ -82,11 +82,11 @@ class GalleryModel(QAbstractListModel):
             return None
         entry = self._shown[index.row()]
         if role == Qt.ItemDataRole.ToolTipRole:
-            return f"{self._described(entry)}\n{self._size(entry)}"
+            return f"{self._described(entry)}\n{self._placed(entry)}"
         if role == Qt.ItemDataRole.AccessibleTextRole:
             return self._described(entry)
         if role == Qt.ItemDataRole.AccessibleDescriptionRole:
-            return self._size(entry)
+            return self._placed(entry)
         if role == VALUE_ROLE:
             return format_value(self._as_item(entry, 0), self._selection, self._width_mm)
         simple = {CANDIDATE_ROLE: entry.candidate, DESIGN_ROLE: entry.design, RISE_ROLE: entry.rise}
@@ -117,7 +117,11 @@ class GalleryModel(QAbstractListModel):
             lines.append(tr("Pinned") if mark is Mark.PINNED else tr("Rejected"))
         if entry.candidate in self._fresh:
             lines.append(tr("Added by the last run"))
-        reason = self._rank_reason(entry)
+        return "\n".join(lines)
+
+    def _placed(self, entry: Entry) -> str:
+        """How small its panels are, why it has its rank, and what lies under its card."""
+        lines, reason = [self._size(entry)], self._rank_reason(entry)
         if reason:
             lines.append(tr("Rank: {reason}", reason=reason))
         alike = self._stacks.under(entry.candidate)
@@ -367,6 +371,7 @@ def came_from(candidate: Candidate) -> list[str]:
     """Which model generated a design, from which seed, and how."""
     origin = {
         Origin.SAMPLED: tr("Seed {seed}, sample {index}", seed=candidate.seed, index=candidate.index),
+        Origin.GUIDED: tr("Fitted from the uniform sheet"),
         Origin.SEARCHED: tr("Seed {seed}, found by the search", seed=candidate.seed),
         Origin.RESAMPLED: tr("Seed {seed}, generated near another design", seed=candidate.seed),
         Origin.EDITED: tr("Seed {seed}, sample {index}, edited by hand", seed=candidate.seed, index=candidate.index),
