@@ -14,7 +14,6 @@ from functools import lru_cache
 
 import numpy as np
 import shapely
-from scipy.optimize import linear_sum_assignment
 from scipy.spatial import KDTree
 from scipy.spatial.distance import cdist
 
@@ -68,6 +67,9 @@ class TransportMap:
     @classmethod
     def of(cls, sheet: Sheet, target: Outline, angle: float) -> TransportMap:
         """The map of a sheet's flat outline, turned by ``angle`` (radians) into the target's frame."""
+        # Imported when it is needed: it takes long, and the window starts without it.
+        from scipy.optimize import linear_sum_assignment
+
         flat = shapely.Polygon(anchor_points(sheet))
         source = even_points(flat)
         middle = shapely.get_coordinates(flat.centroid)[0]
