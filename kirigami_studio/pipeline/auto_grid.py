@@ -30,8 +30,8 @@ COARSEST, FINEST = 6, 16
 FEWEST_VOIDS = 99
 #: The coarsest grid with at least this predicted match is taken.
 GOAL = 0.99
-#: Where no grid reaches it, the coarsest one is taken that misses no more than the best one divided by this: a flag and a
-#: house match 0.986 and 0.977 on 14 x 14, 0.980 and 0.980 on 16 x 16, which takes half as long again.
+#: Where no grid reaches it, the coarsest one is taken that misses no more than the best one divided by this.  A flag
+#: and a house match 0.986 and 0.977 on 14 x 14, 0.980 and 0.980 on 16 x 16, which takes half as long again.
 WORTHWHILE = 0.9
 #: Panels of a fitted sheet have hardly any edge or neck below this share of a cell.
 SMALLEST_SHARE = 0.25
