@@ -21,6 +21,7 @@ from kirigami_studio.lattice.symmetry import Symmetry
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.proportions import Proportions
 from kirigami_studio.outlines.reach import share_of_arms
+from kirigami_studio.outlines.symmetry import TOLERANCE
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.polish.symmetry import SymmetricPose, shared_symmetries, symmetric_poses
 
@@ -195,8 +196,11 @@ def choose_grid(
     best = _coarsest([one for one in cuttable if one.grid[0] * one.grid[1] >= FEWEST_VOIDS] or cuttable)
     finer = [one for one in found if one.panels > best.panels and one.match > best.match]
     held_back = best.match < GOAL and len(cuttable) < len(found) and bool(finer)
+    # Of a sketch, a symmetric sheet shows the shape halfway to its image.
+    overlap = 1.0 if best.pose is None or best.pose.overlap >= TOLERANCE else best.pose.overlap
+    match = best.match - 0.5 * (1.0 - overlap)
     rows, columns = best.grid
-    fields: dict[str, object] = {"rows": rows, "columns": columns, "percent": 100.0 * best.match}
+    fields: dict[str, object] = {"rows": rows, "columns": columns, "percent": 100.0 * match}
     if held_back:
         code = "grid.panels_would_be_too_small"
         fields |= {"width_mm": width_mm, "least_mm": least_feature_mm}
@@ -206,7 +210,7 @@ def choose_grid(
         code = COARSEST_CODES[best.pose.symmetry if best.pose else None]
     kept = shared_symmetries(target, best.grid, phi, symmetry)
     kept.sort(key=lambda pose: pose != best.pose)
-    return GridChoice(best.grid, tuple(kept), best.match, code, tuple(fields.items()))
+    return GridChoice(best.grid, tuple(kept), match, code, tuple(fields.items()))
 
 
 def chosen_for(request: Request) -> GridChoice:

@@ -79,6 +79,7 @@ def test_that_a_setting_decides_which_symmetry_counts() -> None:
     assert choose_grid(cloud).poses == ()
     forced = choose_grid(cloud, symmetry="mirror")
     assert forced.poses[0].symmetry is Symmetry.LEFT_RIGHT and forced.grid[1] % 2 == 1
+    assert forced.predicted_match < 0.96, "half of what the sketch and its image do not share is lost"
     with pytest.raises(TargetError) as refused:
         choose_grid(load("letter-l"), symmetry="mirror")
     assert refused.value.code == "symmetry.no_mirror_axis"
