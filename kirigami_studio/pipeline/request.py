@@ -23,7 +23,7 @@ LARGEST_STEPS = 64
 LARGEST_POLISH = 200
 LARGEST_SEARCH = 8
 LARGEST_GUIDED = 64
-#: The default of window and command line: two ways from a few poses.
+#: Two ways from a few poses.
 GUIDED_STARTS = 8
 #: The default of window and command line: nearly converged from a generator sample.
 POLISH_STEPS = 15
@@ -87,7 +87,8 @@ class Request:
     grid_chosen : bool
         Whether the run chose the grid.
     guided : int, 0..64
-        Designs beyond the samples that are fitted from the uniform sheet, in several poses; needs ``polish``.
+        Designs that are fitted from the uniform sheet instead of sampled, in several poses: at most a quarter of all,
+        and none without ``polish``, near another design, or on a budget.
     """
 
     target: Outline
@@ -112,7 +113,7 @@ class Request:
     width_mm: float = 100.0
     least_feature_mm: float = 0.0
     grid_chosen: bool = False
-    guided: int = 0
+    guided: int = GUIDED_STARTS
 
     def __post_init__(self) -> None:
         if self.grid is not None:
@@ -164,6 +165,17 @@ class Request:
         return self.grid
 
     @property
+    def fitted_starts(self) -> int:
+        """Designs that are fitted from the uniform sheet."""
+        possible = self.polish and self.near is None and self.budget_seconds is None
+        return min(self.guided, self.k // 4) if possible else 0
+
+    @property
+    def samples(self) -> int:
+        """Designs that the generator samples."""
+        return self.k - self.fitted_starts
+
+    @property
     def even(self) -> float:
         """Weight of even panels in fits, see :func:`kirigami_studio.polish.even_panels.even_weight`."""
         return even_weight(self.regular)
@@ -197,7 +209,7 @@ def _is_number(value: object) -> bool:
 
 def as_in_paper(request: Request) -> Request:
     """The same request in the paper's setting: an even rim, no symmetry asked for, ranked by match alone."""
-    return replace(request, symmetry="none", rim="even", regular=0.0)
+    return replace(request, symmetry="none", rim="even", regular=0.0, guided=0)
 
 
 def provenance(request: Request, digest: str) -> dict[str, str]:
@@ -227,6 +239,8 @@ def provenance(request: Request, digest: str) -> dict[str, str]:
         known["trim_keep"] = f"{request.keep:g}"
     if request.search:
         known["search"] = str(request.search)
+    if request.fitted_starts:
+        known["fitted_starts"] = str(request.fitted_starts)
     if request.near is not None:
         mouths = b"" if request.near.has_even_rim else request.near.rim.positions.tobytes()
         known["near"] = hashlib.sha256(request.near.field.ratio.tobytes() + mouths).hexdigest()[:16]

@@ -116,11 +116,11 @@ def run(request: Request, cancel: Callable[[], bool] = never, pool: Pool | None 
     yield Started(request.k)
     yield Progress(0, request.k, tr("Loading the generator"))
     fields = sample(request)
-    work.evaluations += request.k * decodings(request)
+    work.evaluations += request.samples * decodings(request)
     yield from work.score([on_sheet(request, field) for field in fields])
     if request.polish:
         yield from work.polish()
-        if request.guided:
+        if request.fitted_starts:
             yield from work.guide()
     if request.search:
         yield from work.search()
@@ -165,13 +165,13 @@ def sample(request: Request) -> tuple[RatioField, ...]:
     grid, seed, steps, phi = request.chosen_grid, request.seed, request.steps, request.phi
     if request.near is not None:
         near = Near(request.near.field, rotation_of_target(request.near, request.target, phi), request.nearness)
-        return sample_fields(model, request.target, grid, request.k, seed, steps, phi, near=near)
+        return sample_fields(model, request.target, grid, request.samples, seed, steps, phi, near=near)
     fields: list[RatioField] = []
     for pose, count in symmetric_shares(request):
         target = fit_target(request, pose.symmetry)
         fields += sample_fields(model, target, grid, count, seed, steps, phi, symmetry=pose.symmetry, upward=pose.angle)
-    if len(fields) < request.k:
-        fields += sample_fields(model, request.target, grid, request.k - len(fields), seed, steps, phi)
+    if len(fields) < request.samples:
+        fields += sample_fields(model, request.target, grid, request.samples - len(fields), seed, steps, phi)
     return tuple(fields)
 
 
@@ -179,7 +179,7 @@ def symmetric_shares(request: Request) -> list[tuple[SymmetricPose, int]]:
     """Symmetries that samples keep, and how many samples keep each."""
     poses = shared_symmetries(request.target, request.chosen_grid, request.phi, request.wishes.symmetry)
     poses = poses[:MOST_SYMMETRIES]
-    together = request.k if request.symmetry in ("mirror", "turn") and poses else request.k // 2
+    together = request.samples if request.symmetry in ("mirror", "turn") and poses else request.samples // 2
     each = [together // len(poses) + (place < together % len(poses)) for place in range(len(poses))]
     return [(pose, count) for pose, count in zip(poses, each, strict=True) if count]
 
@@ -274,11 +274,11 @@ class _Work:
 
     def guide(self) -> Iterator[Event]:
         """Fit from the uniform sheet in several poses, by two ways each; symmetric ones first."""
-        request, first = self.request, self.request.k
-        angles = first_angles(request.target, request.chosen_grid, request.phi, 1, request.wishes.symmetry)
+        request, first = self.request, self.request.samples
+        angles = first_angles(request.target, request.chosen_grid, request.phi, 1, request.symmetry)
         if request.symmetry in ("mirror", "turn"):
             angles = [one for one in angles if one[1] is not None] or angles
-        ways = [(angle, symmetry, led) for angle, symmetry in angles for led in (False, True)][: request.guided]
+        ways = [(angle, symmetry, led) for angle, symmetry in angles for led in (False, True)][: request.fitted_starts]
         tasks = [GuidedTask(first + place, *way) for place, way in enumerate(ways)]
         for report in self._carried_out(tasks, GUIDING, 0, len(tasks)):
             if isinstance(report, Progress):

@@ -9,9 +9,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.evaluate.candidate import Candidate, Origin
 from kirigami_studio.foundation.errors import AngleError, Cancelled, GridError, KirigamiError, UsageError
 from kirigami_studio.generator.weights import load_model
+from kirigami_studio.lattice.symmetry import Symmetry
 from kirigami_studio.outlines.silhouettes import load
 from kirigami_studio.pipeline.events import CandidateFound, CandidateImproved, Finished, Progress, Started
 from kirigami_studio.pipeline.pool import Pool
@@ -24,7 +25,7 @@ pytestmark = pytest.mark.torch
 
 @pytest.fixture(scope="module")
 def request_for_heart() -> Request:
-    return Request(load("heart"), k=4, seed=3)
+    return Request(load("heart"), k=4, seed=3, guided=0)
 
 
 def test_that_events_come_in_order(request_for_heart: Request) -> None:
@@ -188,6 +189,27 @@ def test_that_a_budget_that_ends_during_scoring_returns_the_first_batch(request_
     hasty = best_of(replace(request_for_heart, k=40, budget_seconds=1e-3))
     assert hasty.budget_ended
     assert sorted(candidate.index for candidate in hasty.candidates) == list(range(32))
+
+
+def test_that_some_designs_are_fitted_from_the_uniform_sheet_after_the_samples() -> None:
+    wish = Request(load("heart"), grid=(6, 7), k=8, polish=4)
+    result = best_of(wish, pool=Pool(0))
+    origins = {candidate.index: candidate.origin for candidate in result.candidates}
+    assert sorted(origins) == list(range(8))
+    assert [origins[index] for index in range(8)] == [Origin.SAMPLED] * 6 + [Origin.GUIDED] * 2
+    mirrored = [candidate.index for candidate in result.candidates if candidate.symmetry is Symmetry.LEFT_RIGHT]
+    assert set(mirrored) >= {0, 1, 2, 6, 7}  # half of the samples, and the first fits
+    assert not any(one.origin is Origin.GUIDED for one in best_of(replace(wish, guided=0), pool=Pool(0)).candidates)
+
+
+def test_that_an_even_rim_and_no_symmetry_are_kept_where_asked_for() -> None:
+    wish = Request(load("heart"), grid=(6, 7), k=8, polish=4)
+    free = best_of(wish, pool=Pool(0)).candidates
+    assert not any(candidate.sheet.has_even_rim for candidate in free if candidate.polished)
+    plain = best_of(replace(wish, rim="even", symmetry="none"), pool=Pool(0)).candidates
+    assert all(candidate.sheet.has_even_rim and candidate.symmetry is None for candidate in plain)
+    asked = best_of(replace(wish, symmetry="mirror"), pool=Pool(0)).candidates
+    assert all(candidate.symmetry is Symmetry.LEFT_RIGHT for candidate in asked)
 
 
 def test_that_a_search_adds_one_candidate_after_the_samples(request_for_heart: Request) -> None:
