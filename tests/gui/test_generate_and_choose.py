@@ -50,7 +50,7 @@ def test_that_a_run_given_up_for_the_same_target_leaves_nothing_in_sight(heart: 
     heart.settings.candidates.setValue(400)
     before = heart.controller.document
     heart.commands["generate"].trigger()
-    until(lambda: heart.gallery.view.model_.rowCount() > 2)
+    until(lambda: len(heart.gallery.view.model_.all_entries) > 2)
     heart.controller.targeting.open("heart")
     until(lambda: not heart.controller.running)
     assert heart.controller.document is before
@@ -83,7 +83,7 @@ def test_that_a_cancelled_run_leaves_the_document_unchanged(heart: MainWindow, q
     heart.settings.candidates.setValue(400)
     before = heart.controller.document
     qtbot.keyClick(heart, Qt.Key.Key_G, Qt.KeyboardModifier.ControlModifier)
-    until(lambda: heart.gallery.view.model_.rowCount() > 2)
+    until(lambda: len(heart.gallery.view.model_.all_entries) > 2)
     qtbot.keyClick(heart, Qt.Key.Key_Escape)
     until(lambda: not heart.controller.running)
     assert heart.controller.document is before
@@ -96,7 +96,7 @@ def stop_early(heart: MainWindow, until: Until, count: int = 400) -> None:
     """Begin a run of many designs and stop it by Esc after the first few."""
     heart.settings.candidates.setValue(count)
     heart.commands["generate"].trigger()
-    until(lambda: heart.gallery.view.model_.rowCount() > 2)
+    until(lambda: len(heart.gallery.view.model_.all_entries) > 2)
     heart.commands["cancel"].trigger()
     until(lambda: not heart.controller.running)
 
@@ -140,7 +140,7 @@ def test_that_designs_of_a_stopped_further_run_join_those_that_are_there(heart: 
     first = heart.controller.document
     heart.settings.candidates.setValue(400)
     heart.commands["again"].trigger()
-    until(lambda: heart.gallery.view.model_.rowCount() > len(first.candidates) + 2)
+    until(lambda: len(heart.gallery.view.model_.all_entries) > len(first.candidates) + 2)
     heart.commands["cancel"].trigger()
     until(lambda: not heart.controller.running)
     assert heart.controller.document.candidates is first.candidates

@@ -12,6 +12,7 @@ from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.connections.side_by_side import SideBySide
 from kirigami_studio.gui.controller import Controller
+from kirigami_studio.gui.designs.generation import ranking_of
 from kirigami_studio.gui.look import icons
 from kirigami_studio.gui.messages import Tone
 from kirigami_studio.gui.session import Entry
@@ -129,13 +130,15 @@ class DesignConnections(QObject):
         gallery.view.show_marks(marks, self._controller.generation.planner.added)
         gallery.bar.show_count(document.settings.k)
         if not self._controller.running:
+            gallery.view.model_.set_ranking(ranking_of(document))
             gallery.view.mark(document.candidate)
         self._show_ready(document)
         self._show_chosen()
 
     def _show_gallery(self, entries: tuple[Entry, ...]) -> None:
         view, document = self._window.gallery.view, self._controller.document
-        view.model_.ranking = self._controller.session.display.ranking
+        running = self._controller.running
+        view.model_.set_ranking(self._controller.session.display.ranking if running else ranking_of(document))
         view.show_entries(list(entries), document.target)
         self._controller.alikes.look_at(tuple(entry.candidate for entry in entries), view.model_.ranking)
         view.mark(document.candidate)

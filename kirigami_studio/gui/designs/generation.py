@@ -279,6 +279,16 @@ def next_seed(document: Document) -> int:
     return seed
 
 
+def ranking_of(document: Document) -> Ranking:
+    """What the document's settings, sheet and material put first."""
+    settings, cut = document.settings, document.fabrication
+    try:
+        least = least_feature_mm(cut)
+    except KirigamiError:  # a material that is not known here
+        least = 0.0
+    return Ranking(settings.regular, cut.width_mm, least)
+
+
 def request_of(target: Outline, settings: DesignSettings, cut: FabricationSettings) -> Request:
     """The run that these settings ask for, on the sheet that is cut.
 

@@ -219,6 +219,8 @@ def _rows() -> tuple[tuple[str, str], ...]:
         (tr("Smallest"), tr("Smallest panel edge or neck, mm; then the difference from the other design.")),
         (tr("Gain"), tr("Gain in sIoU over the uniform sheet, points; then the difference from the other design.")),
         (tr("TV"), tr("Total variation of the ratios, lower is smoother; then the difference from the other design.")),
+        (tr("Symmetric"), tr("Whether the sheet is its own mirror image, or the same after a turn.")),
+        (tr("Rim"), tr("Where cuts meet the sheet's sides: free, or at even distances.")),
         (tr("Feasible"), tr("Whether the sheet can be built and opens without touching itself.")),
     )
 
@@ -235,6 +237,8 @@ def number_texts(one: Entry | None, other: Entry | None, width_mm: float) -> tup
         tr("{size:.2f} mm", size=mine[2]),
         tr("{gain:+.1f}", gain=mine[3]),
         tr("{tv:.2f}", tv=mine[4]),
+        tr("no") if one.candidate.symmetry is None else tr("yes"),
+        tr("even") if one.candidate.final_sheet.has_even_rim else tr("free"),
         tr("yes") if one.candidate.score.feasible else tr("no"),
     ]
     if other is None:
@@ -243,7 +247,7 @@ def number_texts(one: Entry | None, other: Entry | None, width_mm: float) -> tup
     gap_texts = [
         f"{gap:+.{digits}f}" if abs(gap) >= 0.5 * 0.1**digits else "=" for gap, digits in zip(gaps, DIGITS, strict=True)
     ]
-    return values, [*gap_texts, ""]
+    return values, [*gap_texts, "", "", ""]
 
 
 def _numbers(entry: Entry, width_mm: float) -> tuple[float, float, float, float, float]:

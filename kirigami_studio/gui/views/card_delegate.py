@@ -20,6 +20,7 @@ from kirigami_studio.gui.scene.layout_items import TARGET_SHARE, candidate_pixma
 from kirigami_studio.gui.views.gallery_model import (
     ALIKE_ROLE,
     CANDIDATE_ROLE,
+    CUTTABLE_ROLE,
     DESIGN_ROLE,
     FRESH_ROLE,
     GRID_ROLE,
@@ -69,7 +70,7 @@ class CardButton(Enum):
 
 
 class CardDelegate(QStyledItemDelegate):
-    """Paints one candidate: pictures, number, match, what it is sorted by, whether it is feasible, its mark."""
+    """Paints one candidate: pictures, number, match, what it is sorted by, whether it can be cut, its mark."""
 
     def __init__(self, parent: QWidget) -> None:
         super().__init__(parent)
@@ -139,6 +140,7 @@ class CardDelegate(QStyledItemDelegate):
         elif rise >= SMALLEST_RISE:
             self._paint_chip(painter, card, f"{100 * rise:+.1f}")
         self._paint_numbers(painter, card, candidate, index.data(VALUE_ROLE), index.data(GRID_ROLE))
+        self._paint_badge(painter, card, index.data(CUTTABLE_ROLE))
         if alike:
             self._paint_alike(painter, alike_box(rect), alike, index.data(OPEN_ROLE))
         if candidate is self.under_mouse:
@@ -252,7 +254,7 @@ class CardDelegate(QStyledItemDelegate):
 
     def _paint_numbers(self, painter: QPainter, card: QRect, candidate: Candidate, value: str, grid: str) -> None:
         score = candidate.score
-        text = card.adjusted(11, card.height() - TEXT_HEIGHT + 2, -11, -7)
+        text = _text_of(card)
         left, right = int(Qt.AlignmentFlag.AlignLeft), int(Qt.AlignmentFlag.AlignRight)
         top, bottom = int(Qt.AlignmentFlag.AlignTop), int(Qt.AlignmentFlag.AlignBottom)
         plain = QFont(painter.font())
@@ -266,11 +268,10 @@ class CardDelegate(QStyledItemDelegate):
         painter.setPen(QColor(self.palette_.muted))
         painter.drawText(text.adjusted(0, 0, -22, 0), right | bottom, grid)
         painter.drawText(text, left | bottom, value)
-        self._paint_badge(painter, text, score.feasible)
 
-    def _paint_badge(self, painter: QPainter, text: QRect, feasible: bool) -> None:
-        name, colour = ("check", self.palette_.accent) if feasible else ("warning", self.palette_.warning)
-        edge = 16
+    def _paint_badge(self, painter: QPainter, card: QRect, cuttable: bool) -> None:
+        name, colour = ("check", self.palette_.accent) if cuttable else ("warning", self.palette_.warning)
+        edge, text = 16, _text_of(card)
         ratio = painter.device().devicePixelRatio()
         painter.drawPixmap(text.right() - edge + 1, text.bottom() - edge + 1, icons.pixmap(name, colour, edge, ratio))
 
@@ -285,6 +286,11 @@ def button_tip(button: CardButton, mark: Mark) -> str:
 def card_of(rect: QRect) -> QRect:
     """The card inside the cell that the list gives it."""
     return rect.adjusted(GAP // 2, GAP // 2, -GAP // 2, -GAP // 2)
+
+
+def _text_of(card: QRect) -> QRect:
+    """The two lines of text at the bottom of a card."""
+    return card.adjusted(11, card.height() - TEXT_HEIGHT + 2, -11, -7)
 
 
 def card_size(width: int) -> QSize:

@@ -27,6 +27,7 @@ MARK_ROLE = Qt.ItemDataRole.UserRole + 5
 FRESH_ROLE = Qt.ItemDataRole.UserRole + 7  #: whether the last further run has added it
 VALUE_ROLE = Qt.ItemDataRole.UserRole + 6  #: words for the number that is sorted by
 ALIKE_ROLE = Qt.ItemDataRole.UserRole + 9  #: how many designs look like this card and belong to it
+CUTTABLE_ROLE = Qt.ItemDataRole.UserRole + 11  #: whether it is feasible and its panels are wide enough to be cut
 OPEN_ROLE = Qt.ItemDataRole.UserRole + 10  #: whether those are shown
 GRID_ROLE = Qt.ItemDataRole.UserRole + 8  #: words for the grid where designs of several grids are there, else ""
 
@@ -94,6 +95,8 @@ class GalleryModel(QAbstractListModel):
             return self.number_of(entry.candidate)
         if role == MARK_ROLE:
             return self.mark_of(entry.candidate)
+        if role == CUTTABLE_ROLE:
+            return self.ranking.cuttable(entry.candidate)
         if role == ALIKE_ROLE:
             return self._stacks.under(entry.candidate)
         if role == OPEN_ROLE:
@@ -142,9 +145,16 @@ class GalleryModel(QAbstractListModel):
         size = self._width_mm * least_panel_share(entry.design.deployment)
         return tr("Smallest feature: {size:.2f} mm on a sheet {width:g} mm wide", size=size, width=self._width_mm)
 
+    def set_ranking(self, ranking: Ranking) -> None:
+        """Tell what can be cut, and why a design has its rank, by a ranking; the order stays."""
+        if ranking != self.ranking:
+            self.ranking, self._reasons = ranking, None
+            if self._shown:
+                self.dataChanged.emit(self.index(0, 0), self.index(len(self._shown) - 1, 0))
+
     def rank_by(self, ranking: Ranking) -> None:
         """Put all designs into the order of a ranking, and later ones that are inserted."""
-        self.ranking = ranking
+        self.set_ranking(ranking)
         after = sorted(self._all, key=lambda entry: ranking.key(entry.candidate))
         if [id(one) for one in after] != [id(one) for one in self._all]:
             self._all = after
