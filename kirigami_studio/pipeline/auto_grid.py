@@ -31,9 +31,9 @@ COARSEST, FINEST = 6, 16
 FEWEST_VOIDS = 99
 #: The coarsest grid with at least this predicted match is taken.
 GOAL = 0.99
-#: Where no grid reaches it, the coarsest one is taken that misses no more than the best one divided by this.  A flag
-#: and a house match 0.986 and 0.977 on 14 x 14, 0.980 and 0.980 on 16 x 16, which takes half as long again.
-WORTHWHILE = 0.9
+#: Where no grid reaches it, the coarsest one is taken that misses no more than the best one divided by this.  Without a
+#: symmetry fits take twice as long: a flag and a house match 0.986 and 0.977 on 14 x 14, 0.980 and 0.980 on 16 x 16.
+WORTHWHILE, WORTHWHILE_FREE = 0.97, 0.88
 #: Panels of a fitted sheet have hardly any edge or neck below this share of a cell.
 SMALLEST_SHARE = 0.25
 #: Proportions of sheets (logarithm of height over width) lie between the square and the shape's own, give or take this.
@@ -234,7 +234,8 @@ def _coarsest(candidates: list[_Candidate]) -> _Candidate:
     good = [one for one in candidates if one.match >= GOAL]
     if not good:
         least_missing = min(1.0 - one.match for one in candidates)
-        good = [one for one in candidates if (1.0 - one.match) * WORTHWHILE <= least_missing]
+        share = WORTHWHILE_FREE if candidates[0].pose is None else WORTHWHILE
+        good = [one for one in candidates if (1.0 - one.match) * share <= least_missing]
     return min(good, key=lambda one: (one.panels, -one.match))
 
 
