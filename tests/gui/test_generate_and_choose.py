@@ -9,14 +9,22 @@ import pytest
 from PySide6.QtCore import Qt
 from pytestqt.qtbot import QtBot
 
+from kirigami_studio.gui.designs.generation import request_of
 from kirigami_studio.gui.main_window import MainWindow
 from kirigami_studio.gui.messages import Tone
 from kirigami_studio.gui.views.gallery_model import described
+from kirigami_studio.outlines.silhouettes import load
 from kirigami_studio.pipeline.rank import USUAL
 from kirigami_studio.project.document import Document
+from kirigami_studio.project.settings import DesignSettings, FabricationSettings
 
 Until = Callable[[Callable[[], bool]], None]
 LEFT = Qt.MouseButton.LeftButton
+
+
+def test_that_a_run_has_as_many_designs_as_the_settings_say() -> None:
+    request = request_of(load("heart"), DesignSettings(k=32, polish=15), FabricationSettings())
+    assert request.k == 32 and request.samples == 24 and request.fitted_starts == 8
 
 
 @pytest.mark.torch

@@ -23,7 +23,7 @@ from kirigami_studio.gui.session import Entry, Session
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.pipeline.events import CandidateFound, CandidateImproved, Finished, Progress, Result, Started
 from kirigami_studio.pipeline.rank import Ranking
-from kirigami_studio.pipeline.request import GUIDED_STARTS, Request, provenance
+from kirigami_studio.pipeline.request import Request, provenance
 from kirigami_studio.pipeline.variety import distinct
 from kirigami_studio.project import candidate_edits
 from kirigami_studio.project.candidate_edits import NewDesigns
@@ -206,7 +206,7 @@ class RunPlanner:
         seed = next_seed(document)
         same = replace(document.settings, auto_grid=False, grid=first.sheet.grid, phi=first.score.phi, seed=seed)
         # Fits from the uniform sheet do not depend on the seed: they would be the same again.
-        return replace(request_of(target, same, document.fabrication), k=same.k, guided=0)
+        return replace(request_of(target, same, document.fabrication), guided=0)
 
     def _joined(self, request: Request, status: str) -> RunPlan:
         seed = None if self.keeps_seed else request.seed
@@ -292,19 +292,16 @@ def ranking_of(document: Document) -> Ranking:
 def request_of(target: Outline, settings: DesignSettings, cut: FabricationSettings) -> Request:
     """The run that these settings ask for, on the sheet that is cut.
 
-    Of the designs, a quarter but no more than ``GUIDED_STARTS`` are fitted from the uniform sheet instead of sampled.
-
     Raises
     ------
     KirigamiError
         The settings do not go together.
     """
-    guided = min(GUIDED_STARTS, settings.k // 4) if settings.polish else 0
     return Request(
         target,
         None if settings.auto_grid else settings.grid,
         settings.phi,
-        settings.k - guided,
+        settings.k,
         settings.seed,
         settings.variant,
         settings.steps,
@@ -316,7 +313,6 @@ def request_of(target: Outline, settings: DesignSettings, cut: FabricationSettin
         regular=settings.regular,
         width_mm=cut.width_mm,
         least_feature_mm=least_feature_mm(cut),
-        guided=guided,
     )
 
 
