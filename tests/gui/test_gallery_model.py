@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+from PySide6.QtCore import Qt
 from pytestqt.modeltest import ModelTester
 from pytestqt.qtbot import QtBot
 
@@ -13,6 +14,7 @@ from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.gui.session import Entry
 from kirigami_studio.gui.views.card_delegate import SIGNS
 from kirigami_studio.gui.views.gallery_model import (
+    CUTTABLE_ROLE,
     GRID_ROLE,
     SYMMETRY_TEXTS,
     GalleryModel,
@@ -24,6 +26,7 @@ from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.lattice.symmetry import Symmetry
+from kirigami_studio.pipeline.rank import Ranking
 from kirigami_studio.project.document import Document
 
 
@@ -88,3 +91,15 @@ def test_that_the_grid_is_told_where_designs_of_several_are_mixed(designs: Docum
     model.insert(Entry(other, PosedDesign(deploy(other.sheet), other.score.transform, 0.0)))
     told = {str(model.index(row, 0).data(GRID_ROLE)) for row in range(model.rowCount())}
     assert told == {"4 \N{MULTIPLICATION SIGN} 5", "6 \N{MULTIPLICATION SIGN} 7"}
+
+
+def test_that_a_card_says_whether_the_material_allows_its_narrowest_panel(designs: Document) -> None:
+    feasible = replace(designs.candidates[0], score=replace(designs.candidates[0].score, feasible=True, contact=None))
+    model = GalleryModel()
+    model.replace([Entry(feasible, entries(designs)[0].design)])
+    assert model.index(0, 0).data(CUTTABLE_ROLE)
+    changed: list[int] = []
+    model.dataChanged.connect(lambda first, last, roles: changed.append(first.row()))
+    model.set_ranking(Ranking(width_mm=20.0, least_feature_mm=5.0))
+    assert changed and not model.index(0, 0).data(CUTTABLE_ROLE)
+    assert "narrowest panel measures" in str(model.index(0, 0).data(Qt.ItemDataRole.ToolTipRole))

@@ -179,3 +179,24 @@ def test_that_without_designs_the_balance_is_a_setting(window: MainWindow) -> No
     slider.setSliderDown(False)
     assert window.controller.document.settings.regular == 0.75
     assert not window.controller.regularity.busy
+
+
+@pytest.mark.torch
+def test_that_the_balance_also_ranks_what_a_run_has_found_so_far_and_what_comes_of_it(
+    heart: MainWindow, until: Until
+) -> None:
+    controller, model = heart.controller, heart.gallery.view.model_
+    controller.change_settings(grid=(5, 5), k=12, polish=0, symmetry="none")
+    controller.generation.generate()
+    until(lambda: len(model.all_entries) > 4)
+    slider = heart.settings.regular
+    slider.setSliderDown(True)
+    slider.setValue(0)
+    assert controller.running
+    found = [entry.candidate for entry in model.all_entries]
+    ranking = Ranking(0.0, controller.document.fabrication.width_mm, model.ranking.least_feature_mm)
+    assert found == list(ranking.ranked(found))
+    slider.setSliderDown(False)
+    until(lambda: not controller.running)
+    assert controller.document.settings.regular == 0.0
+    assert controller.document.candidates == ranking.ranked(controller.document.candidates)

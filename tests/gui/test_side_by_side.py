@@ -60,6 +60,7 @@ def test_that_the_numbers_below_are_those_of_the_designs_and_their_differences(
             f"{100 * mine.score.iou_exact:.1f} %", f"±{100 * mine.score.evenness.area_cv:.0f} %",
             f"{sizes[0]:.2f} mm", f"{100 * mine.score.siou_gain:+.1f}", f"{mine.score.tv:.2f}",
         ]  # fmt: skip
+        assert values[5:] == ["no", "even", "yes" if mine.score.feasible else "no"]
         assert side.gaps[0].text() == f"{100 * (mine.score.iou_exact - theirs.score.iou_exact):+.1f}"
         apart = 100 * (mine.score.evenness.area_cv - theirs.score.evenness.area_cv)
         assert side.gaps[1].text() == f"{apart:+.0f}"

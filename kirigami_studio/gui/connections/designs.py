@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject, QPoint, Qt
@@ -17,7 +18,6 @@ from kirigami_studio.gui.look import icons
 from kirigami_studio.gui.messages import Tone
 from kirigami_studio.gui.session import Entry
 from kirigami_studio.gui.views.gallery_model import ALIKE_ROLE, OPEN_ROLE
-from kirigami_studio.pipeline.rank import Ranking
 from kirigami_studio.project.document import Document, Mark
 
 if TYPE_CHECKING:
@@ -48,9 +48,9 @@ class DesignConnections(QObject):
         run.progressed.connect(window.run.show_progress)
         run.ended.connect(self._show_idle)
         regularity, settings = self._controller.regularity, window.settings
-        settings.regular_moved.connect(regularity.preview)
+        settings.regular_moved.connect(self._move_balance)
         settings.regular_chosen.connect(self._choose_balance)
-        regularity.ranked.connect(self._rank)
+        regularity.ranked.connect(window.gallery.view.rank_by)
         regularity.busy_changed.connect(self._show_fitting)
         regularity.progressed.connect(window.run.show_progress)
 
@@ -101,10 +101,15 @@ class DesignConnections(QObject):
             hint = tr("Open a file (Ctrl+O), choose from the library (Ctrl+L), or draw a silhouette on the left.")
             window.stage.view.set_hint("target", tr("Start with a target"), hint)
 
-    def _rank(self, ranking: Ranking) -> None:
-        """The balance of match and regularity is being moved."""
-        if not self._controller.running:
-            self._window.gallery.view.rank_by(ranking)
+    def _move_balance(self, regular: float) -> None:
+        """The balance of match and regularity is being moved: the cards follow, also those of a run."""
+        controller = self._controller
+        if controller.running:
+            display = controller.session.display
+            display.ranking = replace(display.ranking, regular=regular)
+            self._window.gallery.view.rank_by(display.ranking)
+        else:
+            controller.regularity.preview(regular)
 
     def _choose_balance(self, regular: float) -> None:
         """The balance was let go."""

@@ -224,7 +224,7 @@ class RunPlanner:
         if plan is not None and plan.joins:
             self.added = frozenset(result.candidates)
             new = NewDesigns(result.candidates, facts, seed)
-            edit = candidate_edits.add_candidates(document, new, Ranking.of(result.request).key)
+            edit = candidate_edits.add_candidates(document, new, ranking_of(document).key)
             return _choosing(edit, preview)
         self.added = frozenset()
         staying = _staying(document, result.request)
@@ -235,7 +235,7 @@ class RunPlanner:
         grid = result.request.grid if result.request.grid_chosen else None
         new = NewDesigns(result.candidates, facts, seed, result.request.target, grid)
         chosen = preview if preview is not None and preview in (*staying, *result.candidates) else None
-        return candidate_edits.renew_candidates(document, new, Ranking.of(result.request).key, chosen)
+        return candidate_edits.renew_candidates(document, new, ranking_of(document).key, chosen)
 
     def summary(self, result: Result, before: Document, grid_reason: str = "") -> str:
         """What the status line says of a completed run, with the reason for its grid where it chose that."""
