@@ -115,9 +115,9 @@ class Session:
         self.picture("4-designs")
 
     def choose_second(self) -> None:
-        """Go from the best design to the next."""
+        """Go from the best design to the next card."""
         press_key(self.window.gallery.view, Qt.Key.Key_Right)
-        self.until(lambda: self.window.controller.document.chosen == 1, "the second design was not chosen")
+        self.until(lambda: bool(self.window.controller.document.chosen), "the second card was not chosen")
         self.until(lambda: self.window.fabrication.export.isEnabled(), "no cut plan was made")
 
     def scrub(self) -> None:
