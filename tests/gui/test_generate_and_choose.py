@@ -19,6 +19,8 @@ from kirigami_studio.project.document import Document
 from kirigami_studio.project.settings import DesignSettings, FabricationSettings
 
 Until = Callable[[Callable[[], bool]], None]
+#: Designs of a run that a test stops after the first ones.
+MANY = 100
 LEFT = Qt.MouseButton.LeftButton
 
 
@@ -55,7 +57,7 @@ def test_that_generating_fills_the_gallery_best_first_and_is_one_undo_step(
 
 @pytest.mark.torch
 def test_that_a_run_given_up_for_the_same_target_leaves_nothing_in_sight(heart: MainWindow, until: Until) -> None:
-    heart.settings.candidates.setValue(400)
+    heart.settings.candidates.setValue(MANY)
     before = heart.controller.document
     heart.commands["generate"].trigger()
     until(lambda: len(heart.gallery.view.model_.all_entries) > 2)
@@ -88,7 +90,7 @@ def test_that_designs_still_being_decoded_do_not_mix_with_those_of_a_run(
 
 @pytest.mark.torch
 def test_that_a_cancelled_run_leaves_the_document_unchanged(heart: MainWindow, qtbot: QtBot, until: Until) -> None:
-    heart.settings.candidates.setValue(400)
+    heart.settings.candidates.setValue(MANY)
     before = heart.controller.document
     qtbot.keyClick(heart, Qt.Key.Key_G, Qt.KeyboardModifier.ControlModifier)
     until(lambda: len(heart.gallery.view.model_.all_entries) > 2)
@@ -100,7 +102,7 @@ def test_that_a_cancelled_run_leaves_the_document_unchanged(heart: MainWindow, q
     assert "nothing changed" in heart.status_text.text()
 
 
-def stop_early(heart: MainWindow, until: Until, count: int = 400) -> None:
+def stop_early(heart: MainWindow, until: Until, count: int = MANY) -> None:
     """Begin a run of many designs and stop it by Esc after the first few."""
     heart.settings.candidates.setValue(count)
     heart.commands["generate"].trigger()
@@ -118,7 +120,7 @@ def test_that_designs_of_a_stopped_run_can_be_kept_as_one_undo_step(heart: MainW
     assert message.tone is Tone.HINT and label == "Keep these designs"
     keep()
     kept = heart.controller.document
-    assert kept.candidates == USUAL.ranked(kept.candidates) and 2 < len(kept.candidates) < 400
+    assert kept.candidates == USUAL.ranked(kept.candidates) and 2 < len(kept.candidates) < MANY
     assert f"after {len(kept.candidates)} designs" in message.sentence
     assert kept.provenance["model"] == "balanced" and heart.messages.messages == ()
     until(lambda: heart.fabrication.export.isEnabled())
@@ -146,7 +148,7 @@ def test_that_designs_of_a_stopped_further_run_join_those_that_are_there(heart: 
     heart.commands["generate"].trigger()
     until(lambda: not heart.controller.running)
     first = heart.controller.document
-    heart.settings.candidates.setValue(400)
+    heart.settings.candidates.setValue(MANY)
     heart.commands["again"].trigger()
     until(lambda: len(heart.gallery.view.model_.all_entries) > len(first.candidates) + 2)
     heart.commands["cancel"].trigger()
@@ -175,7 +177,7 @@ def test_that_the_same_designs_again_are_no_undo_step_and_can_still_be_cut(heart
 
 @pytest.mark.torch
 def test_that_another_target_ends_the_run_for_the_old_one(heart: MainWindow, until: Until) -> None:
-    heart.settings.candidates.setValue(400)
+    heart.settings.candidates.setValue(MANY)
     heart.commands["generate"].trigger()
     until(lambda: heart.gallery.view.model_.rowCount() > 0)
     heart.controller.targeting.open("star")

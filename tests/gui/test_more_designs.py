@@ -170,7 +170,7 @@ def test_that_exports_tell_the_settings_of_the_designs_own_run(drawn: MainWindow
 
 @pytest.mark.torch
 def test_that_a_stopped_further_run_leaves_what_was_there(drawn: MainWindow, qtbot: QtBot, until: Until) -> None:
-    drawn.controller.change_settings(k=400)
+    drawn.controller.change_settings(k=100)
     before = drawn.controller.document
     qtbot.keyClick(drawn, Qt.Key.Key_R, CONTROL)
     until(lambda: drawn.gallery.view.model_.rowCount() > 5)

@@ -199,7 +199,7 @@ def test_that_a_search_adds_a_candidate_to_the_samples(capsys: pytest.CaptureFix
 
 @pytest.mark.torch
 def test_that_many_targets_are_designed_in_order(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["design", "circle", "drop", "--k", "1"]) == 0
+    assert main(["design", "circle", "drop", "--k", "1", "--grid", "4x4"]) == 0
     lines = [json.loads(line) for line in capsys.readouterr().out.splitlines()]
     assert [line["source"] for line in lines] == ["circle", "drop"]
     assert all(line["files"] == {} for line in lines)
@@ -259,15 +259,18 @@ def test_that_listings_are_json_and_lines(capsys: pytest.CaptureFixture[str], li
     assert names
 
 
-def test_that_every_command_shows_examples() -> None:
-    for command in (
-        "design", "decode", "score", "siou", "export", "check", "animate", "materials", "coupon", "train", "dataset",
-        "benchmark",
-    ):  # fmt: skip
-        shown = subprocess.run(
-            [sys.executable, "-m", "kirigami_studio", command, "--help"], capture_output=True, text=True, check=True
-        ).stdout
-        assert f"kirigami-studio {command}" in shown.split("examples:")[1]
+@pytest.mark.parametrize("command", sorted({command.name.split()[0] for command in SUB_COMMANDS}))
+def test_that_every_command_shows_examples(capsys: pytest.CaptureFixture[str], command: str) -> None:
+    with pytest.raises(SystemExit) as stopped:
+        main([command, "--help"])
+    assert stopped.value.code == 0
+    assert f"kirigami-studio {command}" in capsys.readouterr().out.split("examples:")[1]
+
+
+def test_that_the_program_runs_as_a_module() -> None:
+    words = [sys.executable, "-m", "kirigami_studio", "design", "--help"]
+    shown = subprocess.run(words, capture_output=True, text=True, check=True).stdout
+    assert "kirigami-studio design" in shown.split("examples:")[1]
 
 
 def test_that_datasets_are_written_and_verified(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
