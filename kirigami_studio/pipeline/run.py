@@ -83,11 +83,12 @@ def never() -> bool:
 
 
 def run(request: Request, cancel: Callable[[], bool] = never, pool: Pool | None = None) -> Iterator[Event]:
-    """Sample, score, polish and search if asked for, and rank.
+    """Sample, score, polish, fit from the uniform sheet and search if asked for, and rank.
 
     The result does not depend on who polishes, on the number of workers, or on the order in which they end; only a
-    budget makes it depend on the clock.  All ``k`` samples are returned: a duplicate of a better sample is kept as it
-    was sampled, and what a search finds is added as number ``k``.
+    budget makes it depend on the clock.  All samples are returned: a duplicate of a better sample is kept as it was
+    sampled.  Designs fitted from the uniform sheet follow them, ``k`` in all, and what a search finds is added as
+    number ``k``.
 
     Parameters
     ----------

@@ -1,12 +1,13 @@
-"""What a fit minimises: boundary distances both ways, robustly, and what the fit prefers of the ratios.
+"""What a fit minimises: boundary distances both ways, robustly, and what it asks of ratios and panels.
 
 Residuals, all in unit-area lengths and weighted by the boundary length that they stand for:
 
 * from points on every layout edge to the target boundary (nothing may stick out),
 * from even samples of the target boundary to the layout (nothing may be missed),
 
-down-weighted beyond a trusted distance so that their sum grows like an area and not like its square, terms on z, see
-``preferences``, and a penalty on panels too small to cut, see ``panel_size``.
+down-weighted beyond a trusted distance so that their sum grows like an area and not like its square.  Beside them:
+terms on z, see ``preferences``; a penalty on panels too small to cut, see ``panel_size``; and, where a stage of the fit
+asks for them, even panels, see ``even_panels``, and a guide for the inside, see ``guide``.
 """
 
 from __future__ import annotations

@@ -118,7 +118,7 @@ def test_that_designs_that_were_there_already_are_counted(
     controller.run.start(request, fewer.candidates)
     until(lambda: not controller.running)
     assert controller.document.candidates == whole.candidates
-    assert drawn.status_text.text().startswith(told + "Best new sIoU ")
+    assert drawn.status_text.text().startswith(told + "Best new match: ")
 
 
 @pytest.mark.torch

@@ -238,7 +238,7 @@ def test_that_a_fit_is_not_taken_when_voids_were_locked_since(by_hand: MainWindo
     controller.hand.lock(frozenset({(1, 1), (2, 2)}), False)  # fewer locks than the fit has held
     act()
     assert chosen(by_hand).polished and controller.history.undo_label == "Fit design 1"
-    assert by_hand.status_text.text().startswith("Fit applied: sIoU ")
+    assert by_hand.status_text.text().startswith("Fit applied: match ")
 
 
 def test_that_a_void_that_is_locked_during_a_fit_keeps_its_ratio(by_hand: MainWindow, until: Until) -> None:

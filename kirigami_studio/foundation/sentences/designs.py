@@ -9,8 +9,9 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "grid.not_whole_numbers": mark("The grid must be two whole numbers of voids, got {rows!r:.40} x {columns!r:.40}."),
     "grid.out_of_range": mark("The grid must have {least} to {most} voids each way, got {rows} x {columns}."),
     "symmetry.not_on_grid": mark(
-        "A grid of {rows} x {columns} voids does not have the symmetry {symmetry}. A mirror needs an odd number of "
-        "voids across its axis, a half turn two even or two odd numbers, a quarter turn a square grid with an even one."
+        "Sheets of {rows} x {columns} voids cannot have the symmetry {symmetry}. A mirror needs odd rows or odd "
+        "columns, a half turn rows and columns that are both even or both odd, a quarter turn a square grid with "
+        "even rows."
     ),
     "ratios.not_numbers": mark("Ratios must be an (m, n) table of numbers."),
     "ratios.wrong_shape": mark("Ratios must have shape (m, n), got {shape}."),
@@ -22,14 +23,15 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     ),
     "angle.not_a_number": mark("The deployment angle must be a number in radians, got {phi!r:.80}."),
     "angle.out_of_range": mark("The deployment angle must be 0 to pi radians (pi is the compact sheet), got {phi:g}."),
-    "rim.not_numbers": mark("The rim's {side} side must be a list of finite numbers: the mouths' positions in cells."),
+    "rim.not_numbers": mark("The rim's {side} side must be a list of finite numbers: positions of mouths in cells."),
     "rim.not_four_sides": mark('A rim must be {{"top": [...], "right": [...], "bottom": [...], "left": [...]}}.'),
     "rim.wrong_count": mark(
         "Mouths on the rim's {side} side: {got}; a sheet of {rows} x {columns} voids needs {wanted} there."
     ),
     "rim.wrong_batch_shape": mark("Rim offsets must have shape (B, {mouths}), got {shape}."),
     "rim.not_in_order": mark(
-        "The mouths of the rim's {side} side must grow from 0 to {length:g} cells and stay {least:g} cells apart."
+        "Mouths on the rim's {side} side must lie between 0 and {length:g} cells, in rising order and at least "
+        "{least:g} cells apart."
     ),
     "start.not_points": mark("A start outline must be a list of at least three points [x, y] with finite numbers."),
     "start.crosses_itself": mark("The start outline crosses itself or has no area. Use one simple closed shape."),
@@ -74,25 +76,28 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     ),
     "fit.excess_out_of_range": mark("The weight of what sticks out must be a number from 0 to 1, got {excess!r:.80}."),
     "fit.least_panel_out_of_range": mark("The least panel size must be 0 to {most:g} cells, got {least!r:.80}."),
-    "grid.coarsest_expected": mark("{rows} x {columns}: the coarsest grid that is expected to match {percent:.1f} %."),
+    "grid.coarsest_expected": mark(
+        "{rows} x {columns}: as coarse as the shape allows. Expected match: {percent:.1f} %."
+    ),
     "grid.coarsest_with_mirror_axis": mark(
-        "{rows} x {columns}: the coarsest grid that is expected to match {percent:.1f} %, with odd columns for the "
-        "mirror axis."
+        "{rows} x {columns}: as coarse as the shape allows, with odd columns for its mirror axis. "
+        "Expected match: {percent:.1f} %."
     ),
     "grid.coarsest_with_two_mirror_axes": mark(
-        "{rows} x {columns}: the coarsest grid that is expected to match {percent:.1f} %, odd both ways for the two "
-        "mirror axes."
+        "{rows} x {columns}: as coarse as the shape allows, with odd rows and columns for its two mirror axes. "
+        "Expected match: {percent:.1f} %."
     ),
     "grid.coarsest_with_turn": mark(
-        "{rows} x {columns}: the coarsest grid that is expected to match {percent:.1f} %, with rows and columns that "
-        "keep the shape's turn."
+        "{rows} x {columns}: as coarse as the shape allows, with rows and columns that keep its turn. "
+        "Expected match: {percent:.1f} %."
     ),
     "grid.best_expected": mark(
-        "{rows} x {columns}: the best of the grids tried for this shape, expected to match {percent:.1f} %."
+        "{rows} x {columns}: a hard shape, which finer grids are not expected to match much better. "
+        "Expected match: {percent:.1f} %."
     ),
     "grid.panels_would_be_too_small": mark(
         "{rows} x {columns}: on a finer grid, panels of a sheet {width_mm:.0f} mm wide would be smaller than "
-        "{least_mm:.2g} mm."
+        "{least_mm:.2g} mm. Expected match: {percent:.1f} %."
     ),
     "fit.locks_and_symmetry": mark(
         "A fit cannot keep locked voids and a symmetry at the same time. Choose one of them."
@@ -147,13 +152,13 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     ),
     "rank.best_match": mark("Best match: {match:.1f} %, panel sizes vary by {variation:.0f} %."),
     "rank.best_match_symmetric": mark("Best match: {match:.1f} %, panel sizes vary by {variation:.0f} %, symmetric."),
-    "rank.best_trimmed": mark("Best once trimmed: match {match:.1f} %."),
+    "rank.best_trimmed": mark("Best match once trimmed: {match:.1f} %."),
     "rank.equal": mark("As good as the first design."),
     "rank.less_even": mark("Panel sizes vary by {own:.0f} %, in the first design by {first:.0f} %."),
-    "rank.less_match": mark("Match {own:.1f} %, of the first design {first:.1f} %."),
-    "rank.less_trimmed_match": mark("Match {match:.1f} % once trimmed, of the first design {first:.1f} %."),
-    "rank.more_at_limit": mark("{own:.0f} % of its ratios are at a limit, in the first design {first:.0f} %."),
-    "rank.not_feasible": mark("Panels meet or overlap before the sheet has its shape."),
+    "rank.less_match": mark("It matches {own:.1f} %, the first design {first:.1f} %."),
+    "rank.less_trimmed_match": mark("Trimmed, it matches {match:.1f} %, the first design {first:.1f} %."),
+    "rank.more_at_limit": mark("Ratios at a limit: {own:.0f} %, in the first design {first:.0f} %."),
+    "rank.not_feasible": mark("Panels touch, overlap or collapse before the sheet reaches its angle."),
     "rank.not_symmetric": mark("The first design is symmetric, this one is not."),
     "rank.not_trimmed": mark("It is not trimmed."),
     "rank.thinner": mark("Its narrowest panel measures {own:.2f} mm, in the first design {first:.2f} mm."),
@@ -164,9 +169,11 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "request.budget_not_positive": mark(
         "The time budget must be a finite number of seconds above 0, got {budget!r:.80}."
     ),
-    "request.grid_not_chosen": mark("The grid is chosen when the run starts. Give one, or start the run first."),
+    "request.grid_not_chosen": mark(
+        "No grid is chosen yet: the run does that when it starts. Name a grid, such as 10x11."
+    ),
     "request.least_feature_out_of_range": mark(
-        "The least panel size of the material must be a number of at least 0 mm, got {least_mm!r:.80}."
+        "The smallest panel that the material allows must be a number of at least 0 mm, got {least_mm!r:.80}."
     ),
     "request.k_out_of_range": mark(
         "The number of candidates (k) must be a whole number from {least} to {most}, got {value!r:.80}."
@@ -180,7 +187,7 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "The number of polishing steps must be a whole number from {least} to {most}, got {value!r:.80}."
     ),
     "request.regular_out_of_range": mark(
-        "What ranking prefers must be a number from 0 (match) to 1 (regular), got {regular!r:.80}."
+        "The balance must be a number from 0 (the closest match) to 1 (even panels), got {regular!r:.80}."
     ),
     "request.search_out_of_range": mark(
         "The search effort must be a whole number from {least} to {most}, got {value!r:.80}."

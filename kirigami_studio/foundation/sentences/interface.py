@@ -19,7 +19,7 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "input.not_valid": mark("{name}: {reason}"),
     "batch.some_inputs_failed": mark("{failed} of {total} inputs failed. The entry 'error' on their lines says why."),
     "ratios.none_in_folder": mark("The folder {folder} has no sheets (.json, .npy, .npz or .kiri)."),
-    "ratios.unknown_extension": mark("Sheets are read from .json, .npy or .kiri files, got {name}."),
+    "ratios.unknown_extension": mark("Sheets are read from .json, .npy, .npz or .kiri files, got {name}."),
     "ratios.file_too_large": mark("{path} is larger than {limit} MB; sheets are smaller."),
     "ratios.not_readable": mark("Cannot read a sheet from {path}: {reason}."),
     "ratios.damaged": mark("Cannot read a sheet from {path}: the file is damaged or of another kind."),

@@ -194,21 +194,23 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "smoothing.nothing_left": mark("Smoothed this much, nothing of the target is left. Smooth it less."),
     "simplifying.strength": mark("The strength of simplifying must be between 0 and 1, got {value!r:.40}."),
     "symmetry.no_mirror_axis": mark(
-        "The target has no mirror axis: it covers {percent:.0f} % of its best mirror image, {least:.0f} % are needed. "
-        "Choose another symmetry, or draw with the mirror."
+        "The target has no mirror axis: it shares {percent:.0f} % of its area with its best mirror image, and "
+        "{least:.0f} % are needed. Choose another symmetry, or draw with the mirror."
     ),
     "symmetry.no_turn": mark(
-        "The target cannot be turned onto itself: it covers {percent:.0f} % of itself after a turn, {least:.0f} % are "
-        "needed. Choose another symmetry."
+        "The target cannot be turned onto itself: it shares {percent:.0f} % of its area with its turned self, and "
+        "{least:.0f} % are needed. Choose another symmetry."
     ),
     "symmetry.no_mirror_on_grid": mark(
         "No sheet of {rows} x {columns} voids is its own mirror image: rows or columns must be odd. Choose "
-        "{rows} x {more}, or leave the grid to auto."
+        "{rows} x {more}, or set the grid to auto."
     ),
     "symmetry.no_turn_on_grid": mark(
         "No sheet of {rows} x {columns} voids can be turned onto itself: rows and columns must be both even or both "
-        "odd. Choose {rows} x {more}, or leave the grid to auto."
+        "odd. Choose {rows} x {more}, or set the grid to auto."
     ),
-    "symmetry.nothing_in_common": mark("The target and its image have too little in common for a symmetric shape."),
+    "symmetry.nothing_in_common": mark(
+        "The target and its image share too little area for a symmetric shape. Choose another symmetry."
+    ),
     "reach.no_voids": mark("A grid has at least one void in each direction, got {rows} x {columns}."),
 }

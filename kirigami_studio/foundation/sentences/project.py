@@ -45,7 +45,7 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "settings.symmetry_not_a_name": mark("The symmetry of designs must be a name, got {value!r:.40}."),
     "settings.rim_not_a_name": mark("The rim must be a name, got {value!r:.40}."),
     "settings.regular_out_of_range": mark(
-        "What ranking prefers must be a number from 0 (match) to 1 (regular), got {value!r:.40}."
+        "The balance must be a number from 0 (the closest match) to 1 (even panels), got {value!r:.40}."
     ),
     "settings.sheet_width": mark("The sheet's width must be above 0 and at most {largest_mm:g} mm, got {value!r:.40}."),
     "settings.material_not_a_name": mark("The material must be the name of a preset, got {value!r:.40}."),

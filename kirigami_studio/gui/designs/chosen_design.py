@@ -190,12 +190,28 @@ class Refitter(QObject):
 
     def _take(self, before: Candidate, report: Refitted) -> None:
         after = report.decoded.candidate
-        numbers = {"before": 100 * before.score.siou, "after": 100 * after.score.siou}
+        numbers = {
+            "before": 100 * before.score.iou_exact,
+            "after": 100 * after.score.iou_exact,
+            "varied": 100 * before.score.evenness.area_cv,
+            "varies": 100 * after.score.evenness.area_cv,
+        }
         if report.better:
-            self._replace(before, report, tr("Fitted again: sIoU {before:.1f} % → {after:.1f} %.", **numbers))
+            better = tr(
+                "Fitted again: match {before:.1f} % → {after:.1f} %, panels ±{varied:.0f} % → ±{varies:.0f} %.",
+                **numbers,
+            )
+            self._replace(before, report, better)
         else:
-            sentence = tr("No better fit found: sIoU {after:.2f} %, was {before:.2f} %.", **numbers)
-            taken = tr("Fit applied: sIoU {after:.2f} %, was {before:.2f} %.", **numbers)
+            sentence = tr(
+                "No better fit found: match {after:.2f} %, panels ±{varies:.0f} %; "
+                "was {before:.2f} %, ±{varied:.0f} %.",
+                **numbers,
+            )
+            taken = tr(
+                "Fit applied: match {after:.2f} %, panels ±{varies:.0f} %; was {before:.2f} %, ±{varied:.0f} %.",
+                **numbers,
+            )
             actions = ((tr("Apply anyway"), partial(self._replace, before, report, taken)),)
             self._session.post(Message(sentence, Tone.HINT, actions=actions))
             self._session.set_status(tr("Fitting finished; the design is unchanged."))

@@ -256,17 +256,17 @@ class RunPlanner:
             return tr("No new designs; {count} already in the gallery.", count=result.repeats)
         if result.repeats:
             return tr_n(
-                "{count} design added, {repeats} already in the gallery. Best new sIoU {siou:.1f} %.",
-                "{count} designs added, {repeats} already in the gallery. Best new sIoU {siou:.1f} %.",
+                "{count} design added, {repeats} already in the gallery. Best new match: {match:.1f} %.",
+                "{count} designs added, {repeats} already in the gallery. Best new match: {match:.1f} %.",
                 added,
                 repeats=result.repeats,
-                siou=100 * result.best.score.siou,
+                match=100 * result.best.score.iou_exact,
             )
         return tr_n(
-            "{count} design added. Best new sIoU {siou:.1f} %.",
-            "{count} designs added. Best new sIoU {siou:.1f} %.",
+            "{count} design added. Best new match: {match:.1f} %.",
+            "{count} designs added. Best new match: {match:.1f} %.",
             added,
-            siou=100 * result.best.score.siou,
+            match=100 * result.best.score.iou_exact,
         )
 
 
@@ -429,9 +429,8 @@ class DesignRun(QObject):
 
     def _note(self, candidate: Candidate) -> None:
         """Count a candidate and say in the status line how far polishing and search have come."""
-        siou = candidate.score.siou
         improved = candidate.index in self._sampled
-        self._sampled.setdefault(candidate.index, siou)
+        self._sampled.setdefault(candidate.index, candidate.score.siou)
         self._latest[candidate.index] = candidate
         self._reports += 1
         best = min(self._latest.values(), key=self._ranking.key).score
@@ -446,9 +445,9 @@ class DesignRun(QObject):
         elif candidate.index >= self._asked:
             self._session.set_status(
                 tr(
-                    "Search found a design with sIoU {siou:.1f} % (best {best:.1f} %).",
-                    siou=100 * siou,
-                    best=100 * best.siou,
+                    "Search found a design: match {match:.1f} % (best {best:.1f} %).",
+                    match=100 * candidate.score.iou_exact,
+                    best=100 * best.iou_exact,
                 )
             )
         elif improved:
@@ -458,7 +457,7 @@ class DesignRun(QObject):
                     "Polished {polished} of {asked} (best {best:.1f} %)",
                     polished=polished,
                     asked=self._asked,
-                    best=100 * best.siou,
+                    best=100 * best.iou_exact,
                 )
             )
 

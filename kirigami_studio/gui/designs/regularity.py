@@ -113,10 +113,10 @@ class Regularity(QObject):
         session, better, expected = self._session, self._better, self._expected
         self._end()
         if session.document.candidates is not (None if expected is None else expected.candidates):
-            session.set_status(tr("The designs have changed since the fit; it is not used."))
+            session.set_status(tr("The designs changed while they were fitted; the fits are not used."))
             return
         if not better:
-            session.set_status(tr("Ranked again. No design became better by another fit."))
+            session.set_status(tr("Ranked again. Fitting again made no design better."))
             return
         key = Ranking.of(request).key
         session.apply(candidate_edits.replace_candidates(session.document, better, key, self._merge_key))

@@ -133,14 +133,20 @@ def _symmetry_sentence(found: TargetSymmetry) -> str:
     numbers = {"mirror": 100.0 * mirror, "turn": 100.0 * turn, "least": 100.0 * TOLERANCE}
     if mirror >= TOLERANCE and turn >= TOLERANCE:
         return tr(
-            "This target is symmetric: it covers {mirror:.1f} % of itself mirrored, {turn:.1f} % turned.", **numbers
+            "The target is symmetric: it shares {mirror:.1f} % of its area with its mirror image and {turn:.1f} % with "
+            "its turned self.",
+            **numbers,
         )
     if mirror >= TOLERANCE:
-        return tr("This target has a mirror axis: mirrored it covers {mirror:.1f} % of itself.", **numbers)
+        return tr(
+            "The target has a mirror axis: it shares {mirror:.1f} % of its area with its mirror image.", **numbers
+        )
     if turn >= TOLERANCE:
-        return tr("This target looks the same turned: it covers {turn:.1f} % of itself.", **numbers)
+        return tr(
+            "The target looks the same turned: it shares {turn:.1f} % of its area with its turned self.", **numbers
+        )
     return tr(
-        "This target is not symmetric: it covers {mirror:.1f} % of itself mirrored and {turn:.1f} % turned; "
-        "{least:.1f} % would count.",
+        "The target is not symmetric: it shares {mirror:.1f} % of its area with its best mirror image and {turn:.1f} % "
+        "with its turned self; {least:.1f} % would count.",
         **numbers,
     )

@@ -290,7 +290,7 @@ class GalleryBar(QWidget):
 
 def _orders() -> tuple[tuple[SortOrder, str, str], ...]:
     return (
-        (SortOrder.RANK, tr("By rank"), tr("Feasible designs first, then the highest sIoU.")),
+        (SortOrder.RANK, tr("By rank"), tr("What can be cut first, then the best balance of match and even panels.")),
         (SortOrder.MATCH, tr("By match"), tr("The closest match (exact IoU) first, feasible or not.")),
         (
             SortOrder.EVENNESS,

@@ -50,9 +50,9 @@ POLISH = (
 #: What a fit prefers among nearly equal matches: name of the preference, label, what it means.
 PREFER = (
     ("accuracy", tr("Accuracy"), tr("The closest match, regardless of panel shape.")),
-    ("balanced", tr("Balanced"), tr("Recommended: nearly as close, and about 20 % more even.")),
-    ("regularity", tr("Regularity"), tr("A third less TV than Balanced, at 0.1 to 0.2 % less match.")),
-    ("calm", tr("Calm"), tr("About half the TV of Balanced, at 0.2 to 0.9 % less match.")),
+    ("balanced", tr("Balanced"), tr("Recommended: nearly as close, with smoother ratios (lower TV).")),
+    ("regularity", tr("Regularity"), tr("Lower TV than Balanced, at a slightly lower match.")),
+    ("calm", tr("Calm"), tr("The lowest TV, at a lower match.")),
 )
 #: What designs have to keep: value of the setting, label, what it means.
 SYMMETRIES = (
@@ -66,10 +66,10 @@ RIMS = (
     ("free", tr("Free"), tr("Cuts meet the sheet's sides where that helps the match.")),
     ("even", tr("Even"), tr("Cuts meet the sheet's sides at even distances.")),
 )
-AUTO_GRID = tr("Choose the grid for each target: as coarse as its shape allows, in mm and in match.")
+AUTO_GRID = tr("Choose the grid for each target: as coarse as its shape allows.")
 REGULAR = tr(
-    "What comes first. Left: the closest match. Right: even panels. Moving it ranks the designs again at once; "
-    "letting go fits them again."
+    "What comes first: the closest match on the left, even panels on the right. Moving the slider ranks the designs "
+    "again at once; letting it go fits them again."
 )
 #: Pixels that the rows get at least, where a small window scrolls them.
 LEAST_HEIGHT = 148
@@ -78,7 +78,8 @@ POSITIONS = 100
 #: Milliseconds after the last key or notch that mean the slider has been let go.
 LET_GO_MS = 600
 SEARCH = tr(
-    "Search for one more design by way of easier shapes. Takes a few seconds; helps with thin arms and notches."
+    "Search for one more design, from more poses and in more ways. Takes a few seconds; helps with thin arms and "
+    "notches."
 )
 KEEP_SEED = tr("Keep this seed. On: Generate repeats the same designs. Off: each run uses the next seed.")
 

@@ -65,7 +65,11 @@ SQUARE = [[0, 0], [3, 0], [3, -3], [0, -3]]
         ({"rim": [1, 2]}, "rim.not_four_sides", "A rim must be"),
         ({"rim": {**RIM, "front": []}}, "rim.not_four_sides", "A rim must be"),
         ({"rim": {**RIM, "top": [1.0, 2.0]}}, "rim.wrong_count", "top side: 2; a sheet of 2 x 3 voids needs 1"),
-        ({"rim": {**RIM, "bottom": [2.9, 0.7]}}, "rim.not_in_order", "bottom side must grow from 0 to 4"),
+        (
+            {"rim": {**RIM, "bottom": [2.9, 0.7]}},
+            "rim.not_in_order",
+            "bottom side must lie between 0 and 4 cells, in rising order",
+        ),
         ({"rim": {**RIM, "left": [3.0]}}, "rim.not_in_order", "left side"),
         ({"rim": {**RIM, "left": [1e300]}}, "rim.not_in_order", "left side"),
         ({"rim": {**RIM, "left": [float("nan")]}}, "rim.not_numbers", "left side must be a list of finite"),

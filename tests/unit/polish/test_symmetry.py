@@ -107,7 +107,7 @@ def test_that_a_symmetry_can_be_switched_off_or_forced_on_a_sketch() -> None:
         symmetric_poses(load("heart"), "turn")
     assert refused.value.code == "symmetry.no_turn"
     for setting, grid in (("mirror", (10, 10)), ("turn", (10, 11))):
-        with pytest.raises(UsageError, match="leave the grid to auto") as wrong:
+        with pytest.raises(UsageError, match="set the grid to auto") as wrong:
             shared_symmetries(load("hexagon"), grid, setting=setting)
         assert wrong.value.code == f"symmetry.no_{setting}_on_grid"
 
