@@ -75,7 +75,8 @@ import sys
 from kirigami_studio.gui.jobs import design_jobs, importing
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.outlines import silhouettes
-request = Request(silhouettes.load("heart"), (4, 4), k=2, polish=1, trim=True)
+request = Request(silhouettes.load("heart"), (4, 4), k=4, polish=1, trim=True)
+assert request.fitted_starts
 importing.import_generator()
 before = set(sys.modules)
 assert "torch" in before

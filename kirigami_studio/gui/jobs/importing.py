@@ -56,8 +56,11 @@ def import_exporters() -> None:
 
 @cache
 def import_generator() -> None:
-    """What draws designs, torch included."""
+    """What draws designs and fits them: torch, and the parts of SciPy that are imported where they are needed."""
     with quietly():
+        from scipy import interpolate as _interpolate  # noqa: F401
+        from scipy import optimize as _optimize  # noqa: F401
+
         from kirigami_studio.generator.libraries import map_libraries
 
         map_libraries()
