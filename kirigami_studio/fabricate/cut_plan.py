@@ -28,7 +28,13 @@ from kirigami_studio.fabricate.ordering import in_cutting_order
 from kirigami_studio.fabricate.panel_sizes import panels_in_mm
 from kirigami_studio.fabricate.slits import SHEET_EDGE, CutTable, cut_table, edge_sides, sheet_lines
 from kirigami_studio.fabricate.tabs import joined_ring, tabbed
-from kirigami_studio.fabricate.trimmed_sheet import CutPiece, kept_area, trimmed_cuts
+from kirigami_studio.fabricate.trimmed_sheet import (
+    STRAIGHT_MM,
+    UNTRIMMED_STRAIGHT_MM,
+    CutPiece,
+    kept_area,
+    trimmed_cuts,
+)
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import FabricationError
 from kirigami_studio.lattice.deployment import Deployment
@@ -185,7 +191,8 @@ def plan_cuts(
     parts = () if kept is None or all(part is None for part in kept) else tuple(kept)
     if parts or deployment.sheet.start is not None:
         area = kept_area(deployment, parts or (None,) * len(deployment.topology.panel_nodes.reshape(-1, 4)), width)
-        outline, pieces = trimmed_cuts(area, shortened, table, kerf, overcut)
+        straight = STRAIGHT_MM if parts else UNTRIMMED_STRAIGHT_MM
+        outline, pieces = trimmed_cuts(area, shortened, table, kerf, overcut, straight)
     else:
         outline, pieces = _plain_cuts(shortened, table, size, kerf, overcut)
     cuts = hinged_cuts(

@@ -29,6 +29,9 @@ GRID_MM = 1e-6
 #: Vertices of the outline that are off a straight line by less (mm) are left out, and with them all shorter edges: an
 #: edge that a cut crosses must be long enough to tell crossing from running along, see ``finished_sheet.SAME_LINE_MM``.
 STRAIGHT_MM = 5e-3
+#: The same of a sheet that is not trimmed: its edges are long, and connectors at its edge are as wide as asked within
+#: 1e-3 mm.
+UNTRIMMED_STRAIGHT_MM = 2e-4
 #: Cuts end this far (mm) inside the material where they leave it.
 INSIDE_MM = 8e-3
 #: Gaps and spikes narrower than twice this (mm) are filled and removed whatever the kerf.
@@ -114,7 +117,12 @@ def kept_area(deployment: Deployment, kept: Sequence[FloatArray | None], width_m
 
 
 def trimmed_cuts(
-    area: Polygon, lines: FloatArray, table: CutTable, kerf_mm: float, overcut_mm: float
+    area: Polygon,
+    lines: FloatArray,
+    table: CutTable,
+    kerf_mm: float,
+    overcut_mm: float,
+    straight_mm: float = STRAIGHT_MM,
 ) -> tuple[Polygon, list[CutPiece]]:
     """Outline and remaining cuts of a trimmed sheet that fall into no crumbs.
 
@@ -126,6 +134,8 @@ def trimmed_cuts(
         As returned by :func:`kept_area`.
     lines, table, kerf_mm, overcut_mm
         As for :func:`remaining_cuts`.
+    straight_mm : float
+        As for :func:`outline_around`.
 
     Raises
     ------
@@ -133,7 +143,7 @@ def trimmed_cuts(
         A hinge has lost the material that its connector needs.
     """
     for _ in range(CRUMB_ROUNDS):
-        outline = outline_around(area, kerf_mm)
+        outline = outline_around(area, kerf_mm, straight_mm)
         pieces = remaining_cuts(lines, table, outline, kerf_mm, overcut_mm)
         loose = remaining_pieces(outline, [LineString(piece.points) for piece in pieces], kerf_mm)[1:]
         crumbs = [piece for piece in loose if piece.area < CRUMB_MM2]
@@ -143,11 +153,14 @@ def trimmed_cuts(
     return outline, pieces
 
 
-def outline_around(area: Polygon, kerf_mm: float) -> Polygon:
-    """What the centre line of the outline cut encloses: the material grown by half a kerf, gaps within it closed."""
+def outline_around(area: Polygon, kerf_mm: float, straight_mm: float = STRAIGHT_MM) -> Polygon:
+    """What the centre line of the outline cut encloses: the material grown by half a kerf, gaps within it closed.
+
+    Vertices that are off a straight line by less than ``straight_mm`` are left out.
+    """
     closed = _grown(_grown(area, max(0.5 * kerf_mm, HAIR_MM)), -max(0.5 * kerf_mm, HAIR_MM))
     smooth = _grown(_grown(Polygon(closed.exterior), -HAIR_MM), HAIR_MM + 0.5 * kerf_mm)
-    outline = shapely.simplify(Polygon(smooth.exterior), STRAIGHT_MM)
+    outline = shapely.simplify(Polygon(smooth.exterior), straight_mm)
     return Polygon(_largest(shapely.set_precision(outline, GRID_MM)).exterior)
 
 

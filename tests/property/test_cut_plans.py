@@ -18,7 +18,8 @@ from kirigami_studio.fabricate.material import default_material
 from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions
 from kirigami_studio.foundation.errors import FabricationError
 from kirigami_studio.lattice.deployment import deploy
-from kirigami_studio.lattice.sheet import Sheet
+from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.lattice.sheet import Rim, Sheet
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -75,6 +76,17 @@ def test_that_connectors_are_as_wide_as_asked_and_the_sheet_is_one_piece(wish: W
     assert check_plan(plan).pieces == 1
     if plan.kerf_mm:
         assert finished_pieces(plan, plan.kerf_mm) == 1
+
+
+def test_that_a_connector_beside_a_nearly_straight_corner_of_the_sheet_is_as_wide_as_asked() -> None:
+    """The rim edges at a mouth turn by so little that an outline without that corner is a micrometre off."""
+    corners = [(-1.57477825, -4.84368728), (-5.15221644, -1.04353254), (-2.26103317, 5.63711771)]
+    corners += [(3.74885613, 3.53750315), (5.63187893, 1.63562784), (6.7705131, -1.20264103), (5.39280624, -1.80646768)]
+    field = RatioField(np.array([[4.10388192, 0.29656633], [4.44050771, 3.57761954]]))
+    rim = Rim(np.array([1.81768148]), np.array([1.9782498]), np.array([1.12010961]), np.array([1.29184185]))
+    sheet = Sheet(field, rim, np.array(corners))
+    plan = Wish(sheet, 30.0, 0.5, 0.0, 0.5, CutOptions(style=ConnectorStyle.STRAIGHT), 0.0).plan()
+    assert np.abs(connector_distances(plan) - plan.hinges.requested_mm).max() <= 2e-4
 
 
 @given(wish=wishes())
