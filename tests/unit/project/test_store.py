@@ -101,7 +101,7 @@ def test_that_rim_start_outline_and_cell_come_back(pentagon: Outline, tmp_path: 
     [
         ([1.0], "must be a JSON object"),
         ({"rim": {"top": [1.0]}}, "top side: 1; a sheet of 4 x 5"),
-        ({"rim": {"top": [0.5, 1e300]}}, "top side must grow"),
+        ({"rim": {"top": [0.5, 1e300]}}, "top side must lie"),
         ({"rim": {"top": "even"}}, "top side must be a list"),
         ({"start": [[0, 0]]}, "at least three points"),
         ({"cell": [1]}, "above 0"),
