@@ -166,14 +166,9 @@ class Request:
 
     @property
     def fitted_starts(self) -> int:
-        """Designs that are fitted from the uniform sheet."""
+        """Most designs that are fitted from the uniform sheet: a shape may offer fewer poses to begin with."""
         possible = self.polish and self.near is None and self.budget_seconds is None
         return min(self.guided, self.k // 4) if possible else 0
-
-    @property
-    def samples(self) -> int:
-        """Designs that the generator samples."""
-        return self.k - self.fitted_starts
 
     @property
     def even(self) -> float:

@@ -117,7 +117,7 @@ def run(request: Request, cancel: Callable[[], bool] = never, pool: Pool | None 
     yield Started(request.k)
     yield Progress(0, request.k, tr("Loading the generator"))
     fields = sample(request)
-    work.evaluations += request.samples * decodings(request)
+    work.evaluations += len(fields) * decodings(request)
     yield from work.score([on_sheet(request, field) for field in fields])
     if request.polish:
         yield from work.polish()
@@ -156,33 +156,45 @@ def best_of(request: Request, cancel: Callable[[], bool] = never, pool: Pool | N
 def sample(request: Request) -> tuple[RatioField, ...]:
     """Sample the request's fields; torch is imported here, on the first run, and not when the program starts.
 
-    Where the target has symmetries that the grid can keep, samples that keep them come first: half of all, or all where
-    a symmetry is asked for.
+    They are all designs that are not fitted from the uniform sheet.  Where the target has symmetries that the grid can
+    keep, samples that keep them come first: half of all, or all where a symmetry is asked for.
     """
     from kirigami_studio.generator.sampler import Near, sample_fields
     from kirigami_studio.generator.weights import load_model
 
     model = load_model(request.variant)
     grid, seed, steps, phi = request.chosen_grid, request.seed, request.steps, request.phi
+    count = request.k - len(fits_from_uniform(request))
     if request.near is not None:
         near = Near(request.near.field, rotation_of_target(request.near, request.target, phi), request.nearness)
-        return sample_fields(model, request.target, grid, request.samples, seed, steps, phi, near=near)
+        return sample_fields(model, request.target, grid, count, seed, steps, phi, near=near)
     fields: list[RatioField] = []
-    for pose, count in symmetric_shares(request):
+    for pose, share in symmetric_shares(request, count):
         target = fit_target(request, pose.symmetry)
-        fields += sample_fields(model, target, grid, count, seed, steps, phi, symmetry=pose.symmetry, upward=pose.angle)
-    if len(fields) < request.samples:
-        fields += sample_fields(model, request.target, grid, request.samples - len(fields), seed, steps, phi)
+        fields += sample_fields(model, target, grid, share, seed, steps, phi, symmetry=pose.symmetry, upward=pose.angle)
+    if len(fields) < count:
+        fields += sample_fields(model, request.target, grid, count - len(fields), seed, steps, phi)
     return tuple(fields)
 
 
-def symmetric_shares(request: Request) -> list[tuple[SymmetricPose, int]]:
-    """Symmetries that samples keep, and how many samples keep each."""
-    poses = shared_symmetries(request.target, request.chosen_grid, request.phi, request.wishes.symmetry)
+def fits_from_uniform(request: Request) -> list[GuidedTask]:
+    """The fits from the uniform sheet, by two ways from each pose, symmetric ones first; they have the last numbers."""
+    if not request.fitted_starts:
+        return []
+    angles = first_angles(request.target, request.chosen_grid, request.phi, 1, request.symmetry)
+    if request.symmetry in ("mirror", "turn"):
+        angles = [one for one in angles if one[1] is not None] or angles
+    ways = [(angle, symmetry, led) for angle, symmetry in angles for led in (False, True)][: request.fitted_starts]
+    return [GuidedTask(request.k - len(ways) + place, *way) for place, way in enumerate(ways)]
+
+
+def symmetric_shares(request: Request, count: int) -> list[tuple[SymmetricPose, int]]:
+    """Symmetries that ``count`` samples keep, and how many of them keep each."""
+    poses = shared_symmetries(request.target, request.chosen_grid, request.phi, request.symmetry)
     poses = poses[:MOST_SYMMETRIES]
-    together = request.samples if request.symmetry in ("mirror", "turn") and poses else request.samples // 2
+    together = count if request.symmetry in ("mirror", "turn") and poses else count // 2
     each = [together // len(poses) + (place < together % len(poses)) for place in range(len(poses))]
-    return [(pose, count) for pose, count in zip(poses, each, strict=True) if count]
+    return [(pose, share) for pose, share in zip(poses, each, strict=True) if share]
 
 
 def on_sheet(request: Request, field: RatioField) -> Sheet:
@@ -274,13 +286,8 @@ class _Work:
             yield POLISHING.progress(done, total)
 
     def guide(self) -> Iterator[Event]:
-        """Fit from the uniform sheet in several poses, by two ways each; symmetric ones first."""
-        request, first = self.request, self.request.samples
-        angles = first_angles(request.target, request.chosen_grid, request.phi, 1, request.symmetry)
-        if request.symmetry in ("mirror", "turn"):
-            angles = [one for one in angles if one[1] is not None] or angles
-        ways = [(angle, symmetry, led) for angle, symmetry in angles for led in (False, True)][: request.fitted_starts]
-        tasks = [GuidedTask(first + place, *way) for place, way in enumerate(ways)]
+        """Fit from the uniform sheet in several poses."""
+        tasks = fits_from_uniform(self.request)
         for report in self._carried_out(tasks, GUIDING, 0, len(tasks)):
             if isinstance(report, Progress):
                 yield report

@@ -202,6 +202,14 @@ def test_that_some_designs_are_fitted_from_the_uniform_sheet_after_the_samples()
     assert not any(one.origin is Origin.GUIDED for one in best_of(replace(wish, guided=0), pool=Pool(0)).candidates)
 
 
+@pytest.mark.parametrize("symmetry", ["auto", "none", "mirror"])
+def test_that_a_run_has_k_designs_however_few_poses_a_shape_offers(symmetry: str) -> None:
+    wish = Request(load("heart"), grid=(4, 5), k=24, polish=1, symmetry=symmetry)
+    candidates = best_of(wish, pool=Pool(0)).candidates
+    assert sorted(candidate.index for candidate in candidates) == list(range(24))
+    assert any(candidate.origin is Origin.GUIDED for candidate in candidates)
+
+
 def test_that_an_even_rim_and_no_symmetry_are_kept_where_asked_for() -> None:
     wish = Request(load("heart"), grid=(6, 7), k=8, polish=4)
     free = best_of(wish, pool=Pool(0)).candidates
