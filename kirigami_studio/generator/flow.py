@@ -59,13 +59,13 @@ def trail(network: Velocity, start: Tensor, code: Code, steps: int, late: LateSt
     corrections = steps // 2 if network.corrects else 0
     euler = steps - corrections
     begin = 0.0 if late is None else late.time
-    z = code.state(start)
+    z = code.transfer.state(start)
     for step in range(euler):
         t = full((z.shape[0],), begin + (1.0 - begin) * step / euler, dtype=z.dtype, device=z.device)
         z = z + (1.0 - begin) * network(z, t, code) / euler
-    z = code.on_grid(z)
+    z = code.transfer.on_grid(z)
     if late is not None:
-        z = code.symmetric(z + late.remainder)
+        z = code.transfer.symmetric(z + late.remainder)
     designs = [z]
     for _ in range(corrections):
         z = z.clamp(-LOG_RATIO_LIMIT, LOG_RATIO_LIMIT)

@@ -113,18 +113,6 @@ class TargetCode:
             variation_cost=self.variation_cost.repeat_interleave(count),
         )
 
-    def state(self, z: Tensor) -> Tensor:
-        """Where a flow from fields (B, cells) of the network's grid starts."""
-        return self.transfer.state(z)
-
-    def on_grid(self, state: Tensor) -> Tensor:
-        """A state of the flow as fields of the sheet's grid: (B, m * n)."""
-        return self.transfer.on_grid(state)
-
-    def symmetric(self, z: Tensor) -> Tensor:
-        """The nearest fields of the sheet (B, m * n) that keep its symmetry, if it is to keep any."""
-        return self.transfer.symmetric(z)
-
 
 class _Block(nn.Module):
     """x + W2 silu(W1 norm(x) + condition)."""
@@ -222,7 +210,7 @@ class VelocityNetwork(nn.Module):
         Parameters
         ----------
         z : (B, cells) tensor
-            State of the flow, see ``code.state``.
+            State of the flow, see ``GridTransfer.state``.
         t : (B,) tensor in [0, 1]
         code : TargetCode of B targets
 
@@ -232,7 +220,7 @@ class VelocityNetwork(nn.Module):
         """
         features = z[:, :0]
         if code.feedback is not None:
-            features = code.feedback(code.on_grid(z), code.loop, self.shape.direction).features
+            features = code.feedback(code.transfer.on_grid(z), code.loop, self.shape.direction).features
         transfer = code.transfer
         return transfer.state_change(self.leave(self._hidden(transfer.seen(z), t, code, features)))
 

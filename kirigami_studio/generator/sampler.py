@@ -150,7 +150,7 @@ def _late_start(near: Near, noise: Tensor, own: tuple[int, int], code: Code) -> 
     z = near.field.log10[np.newaxis]
     design = torch.tensor(resize_fields(z, *own).reshape(1, -1), dtype=torch.float32)
     on_sheet = torch.tensor(z.reshape(1, -1), dtype=torch.float32)
-    remainder = near.nearness * (on_sheet - code.on_grid(code.state(design)))
+    remainder = near.nearness * (on_sheet - code.transfer.on_grid(code.transfer.state(design)))
     return (1.0 - near.nearness) * noise + near.nearness * design, LateStart(near.nearness, remainder)
 
 

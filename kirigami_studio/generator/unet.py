@@ -263,18 +263,6 @@ class MaskCode:
         """Some of the targets."""
         return MaskCode(self.hint[rows], self.transfer)
 
-    def state(self, z: Tensor) -> Tensor:
-        """Where a flow from fields (B, cells) of the network's grid starts."""
-        return self.transfer.state(z)
-
-    def on_grid(self, state: Tensor) -> Tensor:
-        """A state of the flow as fields of the sheet's grid: (B, m * n)."""
-        return self.transfer.on_grid(state)
-
-    def symmetric(self, z: Tensor) -> Tensor:
-        """The nearest fields of the sheet (B, m * n) that keep its symmetry, if it is to keep any."""
-        return self.transfer.symmetric(z)
-
 
 def _attention(shape: UNetShape, level: int) -> SelfAttention | None:
     """Attention of every level but the finest."""
@@ -401,7 +389,7 @@ class UNetVelocity(nn.Module):
         Parameters
         ----------
         z : (B, cells) tensor
-            State of the flow, see ``code.state``.
+            State of the flow, see ``GridTransfer.state``.
         t : (B,) tensor in [0, 1]
         code : MaskCode of B targets
 

@@ -11,7 +11,7 @@ from torch import Tensor
 
 from kirigami_studio.foundation.errors import ModelError
 from kirigami_studio.generator.conditioning import ConditionLayout
-from kirigami_studio.generator.deployed_grid import DeployedGrid
+from kirigami_studio.generator.deployed_grid import DeployedGrid, GridTransfer
 from kirigami_studio.generator.network import NetworkShape, VelocityNetwork
 from kirigami_studio.generator.unet import UNetShape, UNetVelocity
 
@@ -55,27 +55,17 @@ class Code(Protocol):
     It is a dataclass whose tensors have the targets as rows; what else it holds is the same for all of them.
     """
 
+    @property
+    def transfer(self) -> GridTransfer:
+        """Between the network's grid and that of the sheet, where a flow's states live."""
+        ...
+
     def repeated(self, count: int) -> Code:
         """Every target ``count`` times in a row."""
         ...
 
     def picked(self, rows: slice) -> Code:
         """Some of the targets."""
-        ...
-
-    def state(self, z: Tensor) -> Tensor:
-        """Where a flow from fields (B, cells) of the network's grid starts.
-
-        The states of a flow are fields of the network's own grid, within a symmetry those of the sheet's.
-        """
-        ...
-
-    def on_grid(self, state: Tensor) -> Tensor:
-        """A state of the flow as fields of the sheet's grid: (B, m * n)."""
-        ...
-
-    def symmetric(self, z: Tensor) -> Tensor:
-        """The nearest fields of the sheet (B, m * n) that keep its symmetry, if it is to keep any."""
         ...
 
 

@@ -76,15 +76,15 @@ class PlotsPanel(QWidget):
         self._turn.timeout.connect(self._go_on)
         self.setObjectName("plain")
         self.setAccessibleName(tr("Plots by deployment angle"))
-        self.placeholder = QLabel()
-        self.placeholder.setObjectName("muted")
-        self.placeholder.setWordWrap(True)
-        self.placeholder.setAlignment(Qt.AlignmentFlag.AlignCenter)
+        self.empty_message = QLabel()
+        self.empty_message.setObjectName("muted")
+        self.empty_message.setWordWrap(True)
+        self.empty_message.setAlignment(Qt.AlignmentFlag.AlignCenter)
         self._column = QVBoxLayout(self)
         self._column.setContentsMargins(0, 0, 0, 0)
         self._column.setSpacing(2)
         self._add_choice()
-        self._column.addWidget(self.placeholder, 1)
+        self._column.addWidget(self.empty_message, 1)
         self.setMinimumSize(200, CHART_HEIGHT + 34)
         self.show_curves(None)
 
@@ -152,8 +152,8 @@ class PlotsPanel(QWidget):
         curves = self._curves
         shown = self._built and curves is not None and bool(curves.readings)
         waiting = tr("Measuring the design at {count} angles …", count=ANGLES)
-        self.placeholder.setText("" if shown else waiting if curves is not None else tr("No design yet."))
-        self.placeholder.setVisible(not shown)
+        self.empty_message.setText("" if shown else waiting if curves is not None else tr("No design yet."))
+        self.empty_message.setVisible(not shown)
         self._share_room()
 
     def set_sheet_width(self, width_mm: float) -> None:

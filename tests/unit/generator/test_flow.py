@@ -75,7 +75,7 @@ def test_that_networks_without_the_geometry_take_euler_steps_only(direction: boo
     own = noise
     for step in range(4):
         own = own + 0.25 * network(own, torch.full((3,), 0.25 * step), code)
-    torch.testing.assert_close(drawn, code.on_grid(own))
+    torch.testing.assert_close(drawn, code.transfer.on_grid(own))
     assert drawn.shape == (3, 30)
 
 
@@ -85,7 +85,7 @@ def test_that_corrections_are_added_to_the_euler_steps_on_the_sheet(grid: Deploy
     code, noise = network.code(targets(grid), grid=grid), random_fields(OWN, 3, 1.0, seed=1)
     first, second, last = trail(network, noise, code, 4)
     half = noise + 0.5 * network(noise, torch.zeros(3), code)
-    torch.testing.assert_close(first, code.on_grid(half + 0.5 * network(half, torch.full((3,), 0.5), code)))
+    torch.testing.assert_close(first, code.transfer.on_grid(half + 0.5 * network(half, torch.full((3,), 0.5), code)))
     bounded = first.clamp(-LOG_RATIO_LIMIT, LOG_RATIO_LIMIT)
     torch.testing.assert_close(second, bounded + network.correction(bounded, code))
     bounded = second.clamp(-LOG_RATIO_LIMIT, LOG_RATIO_LIMIT)

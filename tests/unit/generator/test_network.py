@@ -102,7 +102,7 @@ def test_that_velocities_lie_on_the_networks_grid_whatever_the_sheet(grid: Deplo
     code = network.code(TARGETS, grid=grid)
     velocity = network(random_fields(OWN, 4), torch.full((4,), 0.3), code)
     assert velocity.shape == (4, 16)
-    assert code.on_grid(velocity).shape == (4, grid.rows * grid.columns)
+    assert code.transfer.on_grid(velocity).shape == (4, grid.rows * grid.columns)
     own = network(random_fields(OWN, 4), torch.full((4,), 0.3), network.code(TARGETS))
     # Only what it sees of the sheet's geometry can make a difference.
     assert torch.allclose(velocity, own, atol=1e-5) == (grid == OWN or not loop_points)
