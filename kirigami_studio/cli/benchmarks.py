@@ -245,6 +245,17 @@ def cut_files(arguments: argparse.Namespace) -> int:
     return 0 if figures.passed == figures.files else 1
 
 
+def mechanics(arguments: argparse.Namespace) -> int:
+    """The closing simulator beside published tests and simulations; 1 when a case is off."""
+    from kirigami_studio.benchmark.mechanics_suite import measure_mechanics
+
+    line = ProgressLine()
+    line.show("Closing published networks")
+    figures = measure_mechanics()
+    _print_figures(arguments, line, {**asdict(figures), "ok": figures.ok}, figures.sentences())
+    return 0 if figures.ok else 1
+
+
 def _on_targets(
     arguments: argparse.Namespace, measure: Callable[[Sequence[Outline], Report], dict[str, object]]
 ) -> int:

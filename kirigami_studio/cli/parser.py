@@ -426,6 +426,8 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
     SubCommand("benchmark fabrication", "time cut plans and compare cutting orders", "benchmarks:fabrication", (
         RANDOM_DESIGNS, SEED, *FIGURES,
     ), ("kirigami-studio benchmark fabrication",)),
+    SubCommand("benchmark mechanics", "compare the closing simulator with published tests", "benchmarks:mechanics",
+            FIGURES, ("kirigami-studio benchmark mechanics",)),
     SubCommand("benchmark cut-files", "export random designs and read them back", "benchmarks:cut_files", (
         RANDOM_DESIGNS, SEED, *FIGURES,
     ), ("kirigami-studio benchmark cut-files --count 20",)),
@@ -434,7 +436,7 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
 #: Groups of sub-commands, and what each is for.
 GROUPS = {
     "train": "train or align a generator",
-    "benchmark": "measure the generator, polishing, the exact geometry or cut plans",
+    "benchmark": "measure the generator, polishing, the exact geometry, cut plans or mechanics",
 }
 
 

@@ -71,6 +71,10 @@ class FabricationError(KirigamiError):
     """A cut plan cannot be made with the requested widths, size or material."""
 
 
+class MechanicsError(KirigamiError):
+    """A network of panels and ligaments, or what is done to it, makes no sense, or no equilibrium was found."""
+
+
 class ExportError(KirigamiError):
     """A file could not be written, or did not pass its own re-reading."""
 

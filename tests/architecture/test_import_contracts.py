@@ -37,6 +37,7 @@ FAULTS = (
     Fault("lattice", "import kirigami_studio.outlines", ONE_WAY, "kirigami_studio.outlines"),
     Fault("evaluate", "import kirigami_studio.fabricate", ONE_WAY, "kirigami_studio.fabricate"),
     Fault("generator", "import kirigami_studio.evaluate", ONE_WAY, "kirigami_studio.evaluate"),
+    Fault("mechanics", "import kirigami_studio.fabricate", ONE_WAY, "kirigami_studio.fabricate"),
     Fault("polish", "import kirigami_studio.export", ONE_WAY, "kirigami_studio.export"),
     Fault("export", "import kirigami_studio.pipeline", ONE_WAY, "kirigami_studio.pipeline"),
     Fault("project", "import kirigami_studio.pipeline", ONE_WAY, "kirigami_studio.pipeline"),
@@ -47,7 +48,7 @@ FAULTS = (
     Fault("gui/views", "import kirigami_studio.gui.panels", WINDOW, "kirigami_studio.gui.panels"),
     *(
         Fault(package, "import torch", "The exact core never reaches torch", "torch")
-        for package in ("foundation", "outlines", "evaluate", "fabricate", "polish", "export")
+        for package in ("foundation", "outlines", "evaluate", "fabricate", "mechanics", "polish", "export")
     ),
     Fault("lattice", "from torch import nn", "The exact core never reaches torch", "torch"),
     Fault("project", "def load():\n    import torch", "The exact core never reaches torch", "torch"),

@@ -14,6 +14,7 @@ from kirigami_studio.foundation.sentences import (
     export,
     fabricate,
     interface,
+    mechanics,
     outlines,
     project,
     training_and_benchmarks,
@@ -23,7 +24,7 @@ from kirigami_studio.foundation.words import tr, tr_n
 #: Every sentence by the code of its problem.
 SENTENCES: Mapping[str, str | tuple[str, str]] = {
     code: text
-    for table in (designs, export, fabricate, interface, outlines, project, training_and_benchmarks)
+    for table in (designs, export, fabricate, interface, mechanics, outlines, project, training_and_benchmarks)
     for code, text in table.SENTENCES.items()
 }
 

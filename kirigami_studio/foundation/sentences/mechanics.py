@@ -1,0 +1,60 @@
+"""Sentences of ``mechanics``, by the code of the problem.
+
+Panels, ligaments and contacts are named by their numbers, counted from 0 as in the arrays that a network is made of.
+"""
+
+from __future__ import annotations
+
+from kirigami_studio.foundation.words import mark
+
+SENTENCES: dict[str, str | tuple[str, str]] = {
+    # Networks
+    "network.too_small": mark(
+        "A network needs at least 2 panels and 1 ligament, got {panels} panels and {ligaments} ligaments."
+    ),
+    "network.wrong_shape": mark("The array '{name}' must have shape {wanted}, got {found}."),
+    "network.not_numbers": mark("The array '{name}' must hold numbers."),
+    "network.not_finite": mark("The array '{name}' holds a value at {at} that is not a finite number."),
+    "network.stiffness_not_positive": mark("The stiffness '{name}' of ligament {at} must be above 0, got {value:g}."),
+    "network.panels_touch": mark(
+        "The void angle of contact {contact} is {angle_deg:.3f} degrees at rest. Panels must not touch at rest: give "
+        "an angle above 0."
+    ),
+    "network.number_out_of_range": mark("A ligament or contact names number {number}, but the last one is {last}."),
+    "network.joins_itself": mark("Ligament {ligament} joins panel {panel} to itself. Join two different panels."),
+    "network.slender_without_length": mark(
+        "Ligament {ligament} is slender, but its two ends coincide. Make it a T-junction or move its ends apart."
+    ),
+    "network.not_connected": mark(
+        "The panels do not hang together: there are {count} parts, and panel {panel} is not joined to panel 0. Add "
+        "ligaments between the parts."
+    ),
+    # Files of networks
+    "network_file.not_found": mark("There is no file {path}. Check the path."),
+    "network_file.not_readable": mark("Cannot read {path} as an .npz archive of arrays."),
+    "network_file.too_large": mark("{path} is larger than {limit} MiB. Networks of panels are smaller."),
+    "network_file.array_missing": mark("{path} has no array '{name}', only: {found}."),
+    "network_file.too_many_panels": mark("The network has {found} panels. At most {most} are read."),
+    "network_file.bonds_not_corners": mark(
+        "The array 'bonds' of {path} must hold whole numbers: panel A, corner of A (0 to 3), panel B, corner of B."
+    ),
+    # Drives
+    "drive.wrong_shape": mark("A drive of {steps} steps cannot have values of shape {found}."),
+    "drive.not_finite": mark("A drive holds values that are not finite numbers."),
+    "drive.prescribed_twice": mark("A drive prescribes one degree of freedom twice. Name every panel once."),
+    "drive.network_adrift": mark(
+        "The drive prescribes {found} degrees of freedom, so the network can drift away. Hold at least 3."
+    ),
+    "drive.too_few_steps": mark("A drive needs at least {least} steps, got {found}."),
+    "drive.unknown_panel": mark("There is no panel {panel}: the last one is {last}."),
+    "drive.nothing_moves": mark("The drive moves nothing. Name a panel to move, and where to."),
+    "drive.ends_meet": mark("The network is a single row in that direction, so its two ends are the same panels."),
+    # Equilibria
+    "equilibrium.not_found": mark(
+        "No equilibrium was found at step {step} of the drive (displacement {displacement:.4g}): the panels run into "
+        "each other, or the ligaments are torn far apart. Drive the network less far."
+    ),
+    "equilibrium.singular": mark(
+        "The network has a part that nothing holds, so it has no equilibrium. Check stiffnesses and ligaments."
+    ),
+}

@@ -1,0 +1,216 @@
+"""Elastic energy of a network with its exact gradient and sparse Hessian, for all ligaments at once.
+
+For a ligament from x_A to x_B let ``e = R(-(theta_A + theta_B)/2 - axis) (x_B - x_A)``: what a person sees who turns
+with the mean of both panels, its first component along the ligament's axis.  Then
+
+    slender      E = 1/2 k_a (|e| - l)^2 + 1/2 k_s l^2 psi^2 + 1/2 k_t (theta_B - theta_A)^2,    psi = angle of e
+    T-junction   E = 1/2 k_n e_1^2       + 1/2 k_s e_2^2     + 1/2 k_t (theta_B - theta_A)^2
+
+(Deng, Raney, Bertoldi and Tournat 2017; Bordiga et al., Nature Materials 2024, whose program DifFlexMM has the slender
+form, which is singular where both points coincide).  A void angle a below a_c adds
+
+    E = (k_c / 4) a_c^2 (1 / (x + 1) - 1 / (x - 1) - 2),    x = (a - a_c) / a_c,
+
+which grows without bound as the void closes.  Points of the plane are complex numbers here: a turn is a product, and
+all derivatives of e are short.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.sparse import csc_array
+
+from kirigami_studio.foundation.arrays import ComplexArray, FloatArray
+from kirigami_studio.mechanics.network import CONTACT_BELOW, PanelNetwork
+
+#: Degrees of freedom of a ligament: u_x, u_y, theta of A, then of B.
+SIX = 6
+
+
+class NetworkEnergy:
+    """Energy of one network as a function of the motion of its panels.
+
+    Parameters
+    ----------
+    network : PanelNetwork
+
+    Motions are (P, 3) float: u_x and u_y in mm, theta in radians; zeros are the network at rest.  Energies are in
+    N mm = mJ.
+    """
+
+    def __init__(self, network: PanelNetwork) -> None:
+        joints = network.ligaments
+        self.network = network
+        self._first, self._second = joints.panels.T
+        centres = _plane(network.centroids)
+        points = _plane(joints.points)
+        self._gap = centres[self._second] - centres[self._first]
+        self._arms = points - centres[joints.panels]
+        span = points[:, 1] - points[:, 0]
+        self._slender = np.flatnonzero(joints.slender)
+        self._junction = np.flatnonzero(~joints.slender)
+        self._axis = np.where(joints.slender, np.angle(span), joints.axis)
+        self._rest = span * np.exp(-1j * self._axis)
+        freedom = (3 * joints.panels[:, :, None] + np.arange(3)).reshape(len(joints), SIX)
+        self._freedom = freedom
+        size = 3 * network.panel_count
+        row = np.repeat(freedom, SIX, axis=1).ravel()
+        column = np.tile(freedom, (1, SIX)).ravel()
+        pattern = csc_array((np.ones(row.size), (row, column)), shape=(size, size))
+        pattern.sort_indices()
+        self._indices, self._starts = pattern.indices, pattern.indptr
+        keys = np.repeat(np.arange(size, dtype=np.int64), np.diff(pattern.indptr)) * size + pattern.indices
+        self._place = np.searchsorted(keys, column * np.int64(size) + row)
+
+    def value(self, motion: FloatArray) -> float:
+        """Energy, mJ; infinite where a void has closed."""
+        local, _ = self._local(motion)
+        stretch, shear = self._strains(local)
+        joints = self.network.ligaments
+        turn = self.network.turns(motion)
+        elastic = 0.5 * float(
+            np.sum(joints.stretching * stretch**2 + joints.shearing * shear**2 + joints.turning * turn**2)
+        )
+        return elastic + float(np.sum(self._contact(motion)[0]))
+
+    def gradient(self, motion: FloatArray) -> FloatArray:
+        """Derivative (3 P,) of the energy by the motion: N for u_x and u_y, N mm for theta."""
+        local, by_freedom = self._local(motion)
+        return self._assembled(self._force(local), by_freedom, motion)
+
+    def slopes(self, motion: FloatArray) -> tuple[FloatArray, csc_array]:
+        """Gradient (3 P,) and Hessian (3 P, 3 P) together."""
+        local, by_freedom = self._local(motion)
+        force, curvature = self._force(local), self._curvature(local)
+        blocks = np.einsum("lia,lij,ljb->lab", by_freedom, curvature, by_freedom)
+        blocks += self._bending(force, local, motion)
+        joints, contacts = self.network.ligaments, self.network.contacts
+        turning: FloatArray = joints.turning.copy()
+        np.add.at(turning, contacts.ligament, self._contact(motion)[2])
+        for one, other, sign in ((2, 2, 1.0), (5, 5, 1.0), (2, 5, -1.0), (5, 2, -1.0)):
+            blocks[:, one, other] += sign * turning
+        values = np.bincount(self._place, weights=blocks.ravel(), minlength=self._indices.size)
+        size = 3 * self.network.panel_count
+        hessian = csc_array((values, self._indices, self._starts), shape=(size, size))
+        return self._assembled(force, by_freedom, motion), hessian
+
+    def stretch(self, motion: FloatArray) -> FloatArray:
+        """How far the two ends of every ligament moved apart, seen from between its panels: (..., L) mm, 0 at rest."""
+        if motion.ndim > 2:
+            return np.stack([self.stretch(entry) for entry in motion])
+        moved: FloatArray = np.abs(self._local(motion)[0] - self._rest)
+        return moved
+
+    def tension(self, motion: FloatArray) -> FloatArray:
+        """Force (..., L) that stretches every ligament along its axis, N; negative where it is compressed."""
+        if motion.ndim > 2:
+            return np.stack([self.tension(entry) for entry in motion])
+        pull: FloatArray = self.network.ligaments.stretching * self._strains(self._local(motion)[0])[0]
+        return pull
+
+    def _local(self, motion: FloatArray) -> tuple[ComplexArray, FloatArray]:
+        """e (L,) and its derivatives (L, 2, 6) by the six degrees of freedom."""
+        u = motion[:, 0] + 1j * motion[:, 1]
+        theta_a, theta_b = motion[self._first, 2], motion[self._second, 2]
+        frame = np.exp(-1j * (0.5 * (theta_a + theta_b) + self._axis))
+        arm_a, arm_b = self._turned_arms(motion, frame)
+        local = frame * (self._gap + u[self._second] - u[self._first]) + arm_b - arm_a
+        slopes = np.stack(
+            [-frame, -1j * frame, -1j * arm_a - 0.5j * local, frame, 1j * frame, 1j * arm_b - 0.5j * local], axis=-1
+        )
+        return local, np.stack([slopes.real, slopes.imag], axis=1)
+
+    def _turned_arms(self, motion: FloatArray, frame: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
+        """Arms of A and B (L,) in the ligaments' frames."""
+        turn = np.exp(1j * motion[:, 2])
+        return frame * turn[self._first] * self._arms[:, 0], frame * turn[self._second] * self._arms[:, 1]
+
+    def _strains(self, local: ComplexArray) -> tuple[FloatArray, FloatArray]:
+        """What the two springs are stretched by (L,), mm."""
+        off = local - self._rest
+        stretch, shear = off.real.copy(), off.imag.copy()
+        thin = self._slender
+        length = self._rest[thin].real
+        stretch[thin] = np.abs(local[thin]) - length
+        shear[thin] = length * np.angle(local[thin])
+        return stretch, shear
+
+    def _force(self, local: ComplexArray) -> FloatArray:
+        """Derivative (L, 2) of the springs' energy by e."""
+        joints = self.network.ligaments
+        stretch, shear = self._strains(local)
+        pull, push = joints.stretching * stretch, joints.shearing * shear
+        force = pull + 1j * push
+        thin = self._slender
+        along = local[thin] / np.abs(local[thin])
+        force[thin] = along * (pull[thin] + 1j * push[thin] * self._rest[thin].real / np.abs(local[thin]))
+        return np.stack([force.real, force.imag], axis=-1)
+
+    def _curvature(self, local: ComplexArray) -> FloatArray:
+        """Second derivative (L, 2, 2) of the springs' energy by e."""
+        joints = self.network.ligaments
+        found = np.zeros((len(joints), 2, 2))
+        found[:, 0, 0], found[:, 1, 1] = joints.stretching, joints.shearing
+        thin = self._slender
+        radius, length = np.abs(local[thin]), self._rest[thin].real
+        along = np.stack([local[thin].real, local[thin].imag], axis=-1) / radius[:, None]
+        across = np.stack([-along[:, 1], along[:, 0]], axis=-1)
+        pull = joints.stretching[thin] * (radius - length)
+        bend = joints.shearing[thin] * length**2
+        psi = np.angle(local[thin])
+        mixed = along[:, :, None] * across[:, None]
+        found[thin] = (
+            joints.stretching[thin, None, None] * along[:, :, None] * along[:, None]
+            + (pull / radius + bend / radius**2)[:, None, None] * across[:, :, None] * across[:, None]
+            - (bend * psi / radius**2)[:, None, None] * (mixed + np.swapaxes(mixed, 1, 2))
+        )
+        return found
+
+    def _bending(self, force: FloatArray, local: ComplexArray, motion: FloatArray) -> FloatArray:
+        """What the curvature of e itself adds to the Hessian's blocks: (L, 6, 6)."""
+        theta_a, theta_b = motion[self._first, 2], motion[self._second, 2]
+        frame = np.exp(-1j * (0.5 * (theta_a + theta_b) + self._axis))
+        arm_a, arm_b = self._turned_arms(motion, frame)
+        pull = force[:, 0] - 1j * force[:, 1]
+        found = np.zeros((len(local), SIX, SIX))
+        for moved, sign in ((0, -1.0), (3, 1.0)):
+            for axis, unit in ((0, 1.0), (1, 1j)):
+                bent = (pull * (-0.5j * sign * unit) * frame).real
+                for turned in (2, 5):
+                    found[:, moved + axis, turned] = found[:, turned, moved + axis] = bent
+        found[:, 2, 2] = found[:, 5, 5] = (pull * (-0.25 * local)).real
+        found[:, 2, 5] = found[:, 5, 2] = (pull * (0.5 * (arm_b - arm_a) - 0.25 * local)).real
+        return found
+
+    def _contact(self, motion: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Energy of every contact (C,), its slope and its curvature by theta_B - theta_A."""
+        contacts = self.network.contacts
+        x = (self.network.void_angles(motion) - CONTACT_BELOW) / CONTACT_BELOW
+        energy, slope, curvature = np.zeros((3, len(contacts)))
+        near = np.flatnonzero(x < 0.0)
+        if near.size:
+            y, scale = x[near], 0.25 * contacts.stiffness[near]
+            closed = y <= -1.0
+            y[closed] = -0.5
+            energy[near] = np.where(
+                closed, np.inf, scale * CONTACT_BELOW**2 * (1.0 / (y + 1.0) - 1.0 / (y - 1.0) - 2.0)
+            )
+            slope[near] = contacts.sign[near] * scale * CONTACT_BELOW * ((y - 1.0) ** -2 - (y + 1.0) ** -2)
+            curvature[near] = scale * 2.0 * ((y + 1.0) ** -3 - (y - 1.0) ** -3)
+        return energy, slope, curvature
+
+    def _assembled(self, force: FloatArray, by_freedom: FloatArray, motion: FloatArray) -> FloatArray:
+        joints, contacts = self.network.ligaments, self.network.contacts
+        parts = np.einsum("li,lia->la", force, by_freedom)
+        moment: FloatArray = joints.turning * self.network.turns(motion)
+        np.add.at(moment, contacts.ligament, self._contact(motion)[1])
+        parts[:, 2] -= moment
+        parts[:, 5] += moment
+        size = 3 * self.network.panel_count
+        total = np.bincount(self._freedom.ravel(), weights=parts.ravel(), minlength=size)
+        return np.asarray(total, dtype=np.float64)
+
+
+def _plane(points: FloatArray) -> ComplexArray:
+    plane: ComplexArray = points[..., 0] + 1j * points[..., 1]
+    return plane

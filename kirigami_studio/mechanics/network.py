@@ -1,0 +1,236 @@
+"""Rigid panels joined by elastic ligaments: one network as a value, checked when it is made.
+
+Every panel has three degrees of freedom, a displacement u and a turn theta about its centroid c, so that a point that
+lies at r from the centroid at rest is at ``x = c + u + R(theta) r``.  A ligament joins a point of panel A to a point of
+panel B.  A contact is a void angle that a ligament's turn changes; it resists below a few degrees.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+
+from kirigami_studio.foundation.arrays import BoolArray, FloatArray, IntArray
+from kirigami_studio.foundation.errors import MechanicsError
+
+#: Void angle (radians) below which panels resist: 5 degrees (Deng et al. 2020; DifFlexMM).
+CONTACT_BELOW = math.radians(5.0)
+#: Stiffness of a contact in turning stiffnesses of its ligament.
+CONTACT_STIFFNESS = 100.0
+#: A slender ligament must be longer than this share of the mean distance of joined panels.
+SHORTEST_SLENDER = 1e-6
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Ligaments:
+    """The elastic joints.
+
+    Attributes
+    ----------
+    panels : (L, 2) int
+        Panels A and B.
+    points : (L, 2, 2) float, mm
+        Where a ligament begins on A and ends on B, at rest.
+    slender : (L,) bool
+        True for a strip from A to B, False for a T-junction, whose two points are one rotation centre.
+    axis : (L,) float, radians
+        Direction from A to B in which a T-junction is stretched, at rest; the ligament's own where it is slender.
+    stretching, shearing : (L,) float, N/mm
+        Stiffness along and across the axis.
+    turning : (L,) float, N mm
+        Stiffness against the turn of B relative to A.
+    """
+
+    panels: IntArray
+    points: FloatArray
+    slender: BoolArray
+    axis: FloatArray
+    stretching: FloatArray
+    shearing: FloatArray
+    turning: FloatArray
+
+    def __len__(self) -> int:
+        return len(self.panels)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Contacts:
+    """Void angles that may not close.
+
+    Attributes
+    ----------
+    ligament : (C,) int
+        The ligament at the void's corner.
+    sign : (C,) float, +1 or -1
+        By how much the angle changes with theta_B - theta_A.
+    rest : (C,) float, radians
+        The angle at rest, counted from where the panels would touch.
+    stiffness : (C,) float, N mm
+    """
+
+    ligament: IntArray
+    sign: FloatArray
+    rest: FloatArray
+    stiffness: FloatArray
+
+    def __len__(self) -> int:
+        return len(self.ligament)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PanelNetwork:
+    """Panels, ligaments and contacts, all in mm and N.
+
+    Attributes
+    ----------
+    centroids : (P, 2) float, mm
+    ligaments : Ligaments
+    contacts : Contacts
+    outlines : (P, Q, 2) float, mm
+        Corners of the panels at rest, for pictures and silhouettes; may be empty, (P, 0, 2).
+
+    Raises
+    ------
+    MechanicsError
+        An array of another shape, a value that is not finite, a stiffness that is not positive, a panel that does not
+        exist, or panels that do not hang together.
+    """
+
+    centroids: FloatArray
+    ligaments: Ligaments
+    contacts: Contacts
+    outlines: FloatArray
+
+    def __post_init__(self) -> None:
+        count, joints = len(self.centroids), self.ligaments
+        if count < 2 or not len(joints):
+            raise MechanicsError("network.too_small", panels=count, ligaments=len(joints))
+        length = len(joints.panels)
+        shapes = {
+            "centroids": (self.centroids, (count, 2)),
+            "panels": (joints.panels, (length, 2)),
+            "points": (joints.points, (length, 2, 2)),
+            "axis": (joints.axis, (length,)),
+            "stretching": (joints.stretching, (length,)),
+            "shearing": (joints.shearing, (length,)),
+            "turning": (joints.turning, (length,)),
+            "slender": (joints.slender, (length,)),
+            "outlines": (self.outlines, (count, self.outlines.shape[1] if self.outlines.ndim == 3 else 0, 2)),
+            "contact ligaments": (self.contacts.ligament, (len(self.contacts),)),
+            "contact signs": (self.contacts.sign, (len(self.contacts),)),
+            "contact angles": (self.contacts.rest, (len(self.contacts),)),
+            "contact stiffness": (self.contacts.stiffness, (len(self.contacts),)),
+        }
+        for name, (values, shape) in shapes.items():
+            check_values(name, values, shape)
+            values.setflags(write=False)
+        for name, values in (("stretching", joints.stretching), ("shearing", joints.shearing),
+                             ("turning", joints.turning)):  # fmt: skip
+            if np.any(values <= 0.0):
+                worst = int(np.argmin(values))
+                raise MechanicsError("network.stiffness_not_positive", name=name, value=float(values[worst]), at=worst)
+        self._check_joints()
+        if np.any(self.contacts.rest <= 0.0):
+            worst = int(np.argmin(self.contacts.rest))
+            raise MechanicsError(
+                "network.panels_touch", angle_deg=math.degrees(float(self.contacts.rest[worst])), contact=worst
+            )
+
+    def _check_joints(self) -> None:
+        """Refuse ligaments that join nothing, or too little."""
+        count, joints = len(self.centroids), self.ligaments
+        for table, last in ((joints.panels, count - 1), (self.contacts.ligament, len(joints) - 1)):
+            if table.size and not 0 <= table.min() <= table.max() <= last:
+                worst = int(table.max() if table.max() > last else table.min())
+                raise MechanicsError("network.number_out_of_range", number=worst, last=last)
+        own = np.flatnonzero(joints.panels[:, 0] == joints.panels[:, 1])
+        if own.size:
+            raise MechanicsError("network.joins_itself", ligament=int(own[0]), panel=int(joints.panels[own[0], 0]))
+        short = np.flatnonzero(joints.slender & (self.lengths <= SHORTEST_SLENDER * self.panel_size))
+        if short.size:
+            raise MechanicsError("network.slender_without_length", ligament=int(short[0]))
+        links = coo_array((np.ones(len(joints)), tuple(joints.panels.T)), shape=(count, count))
+        parts, part = connected_components(links, directed=False)
+        if parts > 1:
+            apart = int(np.argmax(part != part[0]))
+            raise MechanicsError("network.not_connected", count=int(parts), panel=apart)
+
+    @property
+    def panel_count(self) -> int:
+        return len(self.centroids)
+
+    @property
+    def lengths(self) -> FloatArray:
+        """Distance (L,) from A's point to B's at rest, mm."""
+        span: FloatArray = np.linalg.norm(self.ligaments.points[:, 1] - self.ligaments.points[:, 0], axis=1)
+        return span
+
+    @property
+    def panel_size(self) -> float:
+        """Mean distance between the centroids of joined panels, mm: the length by which turns are compared to moves."""
+        ends = self.centroids[self.ligaments.panels]
+        return float(np.mean(np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)))
+
+    def turns(self, motion: FloatArray) -> FloatArray:
+        """Turn of B relative to A at every ligament, (..., L) radians, out of motions (..., P, 3)."""
+        theta = motion[..., 2]
+        turned: FloatArray = theta[..., self.ligaments.panels[:, 1]] - theta[..., self.ligaments.panels[:, 0]]
+        return turned
+
+    def void_angles(self, motion: FloatArray) -> FloatArray:
+        """Angles (..., C) of the contacts, radians, out of motions (..., P, 3)."""
+        found: FloatArray = self.contacts.rest + self.contacts.sign * self.turns(motion)[..., self.contacts.ligament]
+        return found
+
+    def moved_points(self, panel: int, points: npt.ArrayLike, motion: FloatArray) -> FloatArray:
+        """Points (K, 2), mm, of one panel at rest, after the motion (P, 3)."""
+        dx, dy, theta = motion[panel]
+        cos, sin = math.cos(theta), math.sin(theta)
+        arm = np.asarray(points, dtype=np.float64) - self.centroids[panel]
+        moved: FloatArray = arm @ np.array([[cos, sin], [-sin, cos]]) + self.centroids[panel] + (dx, dy)
+        return moved
+
+    def moved_outlines(self, motion: FloatArray) -> FloatArray:
+        """Corners (P, Q, 2) of the panels, mm, after the motion (P, 3)."""
+        arms = self.outlines - self.centroids[:, None]
+        cos, sin = np.cos(motion[:, 2, None]), np.sin(motion[:, 2, None])
+        turned = np.stack([cos * arms[..., 0] - sin * arms[..., 1], sin * arms[..., 0] + cos * arms[..., 1]], axis=-1)
+        moved: FloatArray = turned + (self.centroids + motion[:, :2])[:, None]
+        return moved
+
+    def with_stiffness(self, stretching: float, shearing: float, turning: float, contact: float) -> PanelNetwork:
+        """The same network with one set of constants: N/mm, N/mm, N mm, and turning stiffnesses of a contact."""
+        count = len(self.ligaments)
+        joints = replace(
+            self.ligaments,
+            stretching=np.full(count, stretching),
+            shearing=np.full(count, shearing),
+            turning=np.full(count, turning),
+        )
+        return replace(
+            self,
+            ligaments=joints,
+            contacts=replace(self.contacts, stiffness=np.full(len(self.contacts), contact * turning)),
+        )
+
+
+def check_values(name: str, values: npt.NDArray[np.generic], shape: tuple[int, ...]) -> None:
+    """Refuse an array that has another shape or holds what is not finite.
+
+    Raises
+    ------
+    MechanicsError
+        With the array's name.
+    """
+    if values.shape != shape:
+        raise MechanicsError("network.wrong_shape", name=name, found=values.shape, wanted=shape)
+    if values.dtype.kind not in "biuf":
+        raise MechanicsError("network.not_numbers", name=name)
+    bad = np.argwhere(~np.isfinite(values))
+    if bad.size:
+        raise MechanicsError("network.not_finite", name=name, at=tuple(int(place) for place in bad[0]))
