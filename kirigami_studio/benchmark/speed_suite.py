@@ -148,7 +148,7 @@ def _step_seconds(candidate: Candidate, target: Outline) -> float:
     look = objective.look(np.concatenate([z, [math.log(pose.scale), pose.angle, *pose.shift]]))
 
     def step() -> None:
-        quadratic = objective.quadratic(look, objective.slopes(look.state))
+        quadratic = objective.quadratic(look, objective.slopes(look))
         damped = quadratic.hessian + 1e-2 * np.diag(np.diagonal(quadratic.hessian))
         objective.look(look.state - np.linalg.solve(damped, quadratic.gradient))
 

@@ -138,6 +138,13 @@ def path_contact(deployment: Deployment, phi_target: float) -> Contact | None:
     return None
 
 
+def is_clear(deployment: Deployment, phi: float) -> bool:
+    """Whether :func:`path_contact` finds none; known at once for most designs."""
+    nodes = deployment.topology.outline_nodes
+    even, odd = (as_plane(part[nodes])[np.newaxis] for part in (deployment.even_part, deployment.odd_part))
+    return bool(stays_clear(even, odd, phi, PATH_ANGLES)[0]) or path_contact(deployment, phi) is None
+
+
 def outline_path(deployment: Deployment, angles: FloatArray) -> ComplexArray:
     """Outlines at several angles at once: (A, L) complex, unit cells, edge hinges included.
 

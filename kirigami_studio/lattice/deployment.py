@@ -73,6 +73,12 @@ class Deployment:
     even_part: FloatArray
     odd_part: FloatArray
 
+    @classmethod
+    def of(cls, sheet: Sheet, compact: FloatArray) -> Deployment:
+        """The motion of a sheet whose compact nodes (N, 2) are known."""
+        even = frozen(even_panel_part(compact, topology(*sheet.grid)))
+        return cls(sheet, compact, even, frozen(compact - compact[0] - even))
+
     @property
     def field(self) -> RatioField:
         """The sheet's ratios."""
@@ -124,9 +130,7 @@ def deploy(design: Sheet | RatioField) -> Deployment:
         Ratios alone stand for the paper's sheet: a rectangle of unit cells with an even rim.
     """
     sheet = Sheet.of(design)
-    compact = solve_compact(sheet)
-    even = frozen(even_panel_part(compact, topology(*sheet.grid)))
-    return Deployment(sheet, compact, even, frozen(compact - compact[0] - even))
+    return Deployment.of(sheet, solve_compact(sheet))
 
 
 def even_panel_part(nodes: FloatArray, tables: Topology) -> FloatArray:

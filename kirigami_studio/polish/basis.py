@@ -59,6 +59,13 @@ class Basis:
         signed = derivative[..., self._order] * self.sign[self._order]
         return np.asarray(np.add.reduceat(signed, self._starts, axis=-1))
 
+    def reduced_rows(self, derivative: FloatArray) -> FloatArray:
+        """The same (V, .) of derivatives that stand one below the other (S, .)."""
+        if self.is_whole:
+            return derivative
+        signed = derivative[self._order] * self.sign[self._order, None]
+        return np.asarray(np.add.reduceat(signed, self._starts, axis=0))
+
     def matrix(self, row: IntArray, column: IntArray, value: FloatArray) -> FloatArray:
         """Second derivative (V, V) by the variables, from entries by numbers of the shape."""
         if not self.is_whole:

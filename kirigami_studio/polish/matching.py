@@ -43,19 +43,30 @@ class Matching:
     distance: FloatArray
     weight: FloatArray
 
-    def reader(self, count: int) -> FloatArray:
-        """Matrix (R, 2 count) that reads changes of the distances off motions of the outline's vertices.
+    def pull(self, force: FloatArray, count: int) -> FloatArray:
+        """Derivative (2 count,) by the outline's vertices, x and y in turn, from that by the distances (R,)."""
+        column, share = self._reader(count)
+        pull = np.bincount(column.ravel(), (force[:, None] * share).ravel(), 2 * count)
+        return np.asarray(pull, dtype=np.float64)
+
+    def spread(self, stiffness: FloatArray, count: int) -> FloatArray:
+        """Second derivative (2 count, 2 count) by the vertices from that by the distances (R,), each on its own."""
+        column, share = self._reader(count)
+        place = 2 * count * column[:, :, None] + column[:, None, :]
+        value = (stiffness[:, None] * share)[:, :, None] * share[:, None, :]
+        spread = np.bincount(place.ravel(), value.ravel(), 4 * count * count)
+        return np.asarray(spread, dtype=np.float64).reshape(2 * count, 2 * count)
+
+    def _reader(self, count: int) -> tuple[IntArray, FloatArray]:
+        """Which four coordinates move each distance, and how much: (R, 4) each.
 
         The place on the target slides along the boundary, so only the part of a motion along the gap counts.
         """
-        rows = np.arange(len(self.edge))
         direction = self.gap / np.maximum(self.distance, 1e-12)[:, None]
-        matrix = np.zeros((len(rows), 2 * count))
         following = (self.edge + 1) % count
-        for axis in (0, 1):
-            matrix[rows, 2 * self.edge + axis] = direction[:, axis] * (1.0 - self.share)
-            matrix[rows, 2 * following + axis] = direction[:, axis] * self.share
-        return matrix
+        column = np.stack([2 * self.edge, 2 * self.edge + 1, 2 * following, 2 * following + 1], axis=1)
+        share = np.concatenate([direction * (1.0 - self.share)[:, None], direction * self.share[:, None]], axis=1)
+        return column, share
 
 
 def matched(outline: FloatArray, target: BoundaryTarget) -> Matching:

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-from scipy.sparse import csr_matrix
+from scipy.sparse import csc_matrix, csr_matrix
 
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray, IntArray
 from kirigami_studio.lattice.compact import barycentric_stencil
@@ -21,9 +21,11 @@ from kirigami_studio.lattice.deployment import ZIPPED_BELOW, even_part_of_outlin
 from kirigami_studio.lattice.sheet import Rim, RimPath, Sheet, rim_table
 from kirigami_studio.lattice.topology import topology
 from kirigami_studio.polish.basis import Basis
-from kirigami_studio.polish.factor import Factor, factored
+from kirigami_studio.polish.factor import Band, Factor, factored
 
 LN10 = math.log(10.0)
+#: Right-hand sides that are solved together: few enough for the processor's cache.
+BLOCK = 128
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -43,10 +45,12 @@ class _Plan:
     v_under_h, h_under_v : _Rests
         The same from below: which free h nodes rest on each free v node, and which v on each h.
     slot : (H,) int
-        Where each free h node stands in the m rows of n + 1 places of ``factor``.
+        Where each free h node stands in the m rows of n + 1 places of ``factor``, ascending.
     around : (first, second, place) int arrays
         Paths from a free h node over a v node to an h node: the stencil weights of both legs, and where their product
         stands in the flat coupling (2, m, n + 1, n + 1) of ``factor``.
+    band : Band
+        The same system with its entries, those of ``around``, near the diagonal.
     given : (K, 2) bool
         Stencil ends that are given nodes.
     to_given : (entry, row, column) int arrays
@@ -66,10 +70,17 @@ class _Plan:
     h_under_v: _Rests
     slot: IntArray
     around: tuple[IntArray, IntArray, IntArray]
+    band: Band
     given: BoolArray
     to_given: tuple[IntArray, IntArray, IntArray]
     even: FloatArray
     whole: FloatArray
+
+    def paths(self, weights: FloatArray) -> FloatArray:
+        """How much each h node rests on others, by the paths of ``around``, from stencil weights (2 K + 1,)."""
+        first, second, _ = self.around
+        product: FloatArray = weights[first] * weights[second]
+        return product
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -109,8 +120,8 @@ class _Rests:
 def _plan(rows: int, columns: int, zipped: bool) -> _Plan:
     tables = topology(rows, columns)
     node, ends, void = barycentric_stencil(rows, columns)
-    is_h = node < tables.h.size
-    order = np.concatenate([np.flatnonzero(is_h), np.flatnonzero(~is_h)])
+    # The h nodes have the lowest numbers, row by row.
+    order = np.argsort(node)
     node, ends, void = node[order], ends[order], void[order]
     position = np.full(tables.node_count, -1)
     position[node] = np.arange(node.size)
@@ -123,7 +134,7 @@ def _plan(rows: int, columns: int, zipped: bool) -> _Plan:
     whole[np.arange(loop.size), loop] = 1.0
     whole[:, 0] -= 1.0
     even = even_part_of_outline(rows, columns)[keep]
-    h = int(is_h.sum())
+    h = int(np.count_nonzero(node < tables.h.size))
     entry = np.arange(2 * node.size)
     row, column = entry // 2, position[ends].ravel()
     from_h, from_v = (row < h) & (column >= h), (row >= h) & (column >= 0)
@@ -146,6 +157,7 @@ def _plan(rows: int, columns: int, zipped: bool) -> _Plan:
         h_under_v=_Rests.of(v_to_h[0], v_to_h[2], v_to_h[1], h),
         slot=slot,
         around=(h_to_v[0][first], v_to_h[0][second], around),
+        band=Band.of(h_to_v[1][first], v_to_h[2][second], h),
         given=known.reshape(-1, 2),
         to_given=(entry[known], row[known], rim_position[ends].ravel()[known]),
         even=even,
@@ -206,7 +218,7 @@ class OutlineModel:
 
     def nodes(self, shape: FloatArray) -> FloatArray:
         """Compact nodes (N, 2) of a shape (S,), unit cells; equal to ``Deployment.compact``."""
-        return self._solve(shape)[0]
+        return self.decoded(shape).nodes
 
     def outline(self, shape: FloatArray) -> FloatArray:
         """Boundary polygon (L, 2) of a shape (S,), unit cells; equal to ``Deployment.outline(phi)``."""
@@ -218,37 +230,25 @@ class OutlineModel:
 
     def linearised(self, shape: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Outline (L, 2) and its derivative (L, 2, S) by the shape."""
-        plan = self._plan
-        nodes, system = self._solve(shape)
-        reach = np.concatenate([plan.even, plan.whole])
-        through = self._adjoint(reach, system)
-        even, whole = np.split(through, 2)
-        derivative = np.empty((even.shape[0], 2, self.size))
-        self._fill(derivative[..., : self.voids], even, whole - even, self._pull(shape, nodes), per_void=True)
+        decoded = self.decoded(shape)
+        return self.outline_of(decoded.nodes), self.node_motion(decoded).outline()
+
+    def node_motion(self, decoded: Decoded) -> NodeMotion:
+        """How all compact nodes move with the shape."""
+        plan, width = self._plan, self.columns + 1
+        coupling = np.bincount(plan.around[2], plan.paths(decoded.weights), 2 * self.rows * width * width)
+        factor = factored(np.asarray(coupling, dtype=np.float64).reshape(2, self.rows, width, width), plan.slot)
+        along, share = self._along(decoded.shape), np.zeros((self._table.node.size, 0))
         if self.free_rim:
             share = self._table.share[:, self._table.mouths]
-            followed = reach[:, self._table.node] @ share + through @ self._known(system.weights, share)
-            even, whole = np.split(followed, 2)
-            self._fill(derivative[..., self.voids :], even, whole - even, self._along(shape), per_void=False)
-        return self.outline_of(nodes), derivative
-
-    def node_motion(self, shape: FloatArray) -> NodeMotion:
-        """How all compact nodes move with the shape."""
-        nodes, system = self._solve(shape)
-        return NodeMotion(self, system, self._pull(shape, nodes), self._along(shape))
+        known = self._known(decoded.weights) @ share
+        return NodeMotion(
+            self, _System(decoded.weights, factor), self._pull(decoded.shape, decoded.nodes), along, share, known
+        )
 
     def _along(self, shape: FloatArray) -> FloatArray:
         """Derivative of the mouths' points by their offsets, (R, 2); none where the rim is not free."""
         return self._path.slopes(self.positions(shape)) if self.free_rim else np.zeros((0, 2))
-
-    def _fill(
-        self, derivative: FloatArray, even: FloatArray, odd: FloatArray, motion: FloatArray, *, per_void: bool
-    ) -> None:
-        """Derivative of the deployed outline from those of U and V (L, K) and the motion (K, 2) in the flat sheet."""
-        by_even, by_odd = rotate(motion, -self._half), rotate(motion, self._half)
-        for axis in (0, 1):
-            moved = even * by_even[:, axis] + odd * by_odd[:, axis]
-            derivative[:, axis] = self._per_void(moved) if per_void else moved
 
     def _given_nodes(self, positions: FloatArray) -> FloatArray:
         nodes = np.zeros((self.node_count, 2))
@@ -270,30 +270,25 @@ class OutlineModel:
     def _deployed(self, even: FloatArray, whole: FloatArray) -> FloatArray:
         return rotate(even, -self._half) + rotate(whole - even, self._half)
 
-    def _solve(self, shape: FloatArray) -> tuple[FloatArray, _System]:
-        """Compact nodes, and the factored system they come from."""
+    def decoded(self, shape: FloatArray) -> Decoded:
+        """The compact sheet of a shape (S,)."""
         plan, h = self._plan, self._plan.h_count
         given = self._given_nodes(self.positions(shape)) if self.free_rim else self._given
         x = np.power(10.0, shape[: self.voids])[plan.void]
         weights = np.stack([x / (1.0 + x), 1.0 / (1.0 + x)], axis=1)
         known = ((weights * plan.given)[..., None] * given[plan.ends]).sum(axis=1)
         flat = np.append(weights.ravel(), 0.0)
-        first, second, place = plan.around
-        width = self.columns + 1
-        coupling = np.bincount(place, flat[first] * flat[second], 2 * self.rows * width * width)
-        factor = factored(np.asarray(coupling, dtype=np.float64).reshape(2, self.rows, width, width), plan.slot)
-        at_h = factor.solve(known[:h] + plan.h_on_v.times(flat, known[h:]))
+        at_h = plan.band.solution(plan.paths(flat), known[:h] + plan.h_on_v.times(flat, known[h:]))
         nodes = given.copy()
         nodes[plan.free[:h]] = at_h
         nodes[plan.free[h:]] = plan.v_on_h.times(flat, at_h) + known[h:]
-        return nodes, _System(flat, factor)
+        return Decoded(shape, nodes, flat)
 
-    def _known(self, weights: FloatArray, values: FloatArray) -> FloatArray:
-        """What free nodes get from given ones that have ``values`` (G, D): (K, D)."""
+    def _known(self, weights: FloatArray) -> csr_matrix:
+        """What free nodes get from given ones: (K, G)."""
         entry, row, column = self._plan.to_given
-        known = np.zeros((self._plan.free.size, values.shape[1]))
-        np.add.at(known, row, weights[entry, None] * values[column])
-        return known
+        shape = self._plan.free.size, self._table.node.size
+        return csr_matrix((weights[entry], (row, column)), shape=shape)
 
     def _adjoint(self, reach: FloatArray, system: _System) -> FloatArray:
         """``reach`` (F, N) times A^-1 over the free nodes: (F, K)."""
@@ -313,6 +308,24 @@ class OutlineModel:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class Decoded:
+    """The compact sheet of one shape.
+
+    Attributes
+    ----------
+    shape : (S,) float
+    nodes : (N, 2) float, unit cells
+        Compact nodes.
+    weights : (2 K + 1,) float
+        Stencil weights, the last of them 0.
+    """
+
+    shape: FloatArray
+    nodes: FloatArray
+    weights: FloatArray
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class NodeMotion:
     """How the compact nodes of one shape move with it: a derivative that is applied, and written out only where needed.
 
@@ -324,29 +337,65 @@ class NodeMotion:
         How each free node's own equation moves it per unit of its void's z.
     along : (R, 2) float
         How the mouths move; none where the rim is not free.
+    share : (G, R) float
+        How the given nodes follow the mouths, along each side.
+    known : (K, R) float
+        What the free nodes' own equations get from them.
     """
 
     model: OutlineModel
     system: _System
     pull: FloatArray
     along: FloatArray
+    share: FloatArray
+    known: FloatArray
 
-    def moved(self, axis: int, basis: Basis) -> FloatArray:
-        """Derivative (N, V) of the nodes' x (0) or y (1) by the variables."""
-        model, free = self.model, self.model._plan.free
-        moved = np.zeros((model.node_count, basis.size))
+    def outline(self) -> FloatArray:
+        """Derivative (L, 2, S) of the deployed outline by the shape."""
+        plan = self.model._plan
+        return self.deployed(plan.even, plan.whole)
+
+    def deployed(self, even: FloatArray, whole: FloatArray) -> FloatArray:
+        """Derivative (F, 2, S) by the shape of F places whose U and U + V are these matrices (F, N) times the nodes."""
+        model = self.model
+        reach = np.concatenate([even, whole])
+        through = model._adjoint(reach, self.system)
+        derivative = np.empty((len(even), 2, model.size))
+        self._fill(derivative[..., : model.voids], through, self.pull, per_void=True)
         if len(self.along):
-            moved[model._table.node] = basis.reduced(self._wide(self._share() * self.along[:, axis]))
-        moved[free] = model._forward(self._right(axis, basis), self.system)
-        return moved
+            followed = reach[:, model._table.node] @ self.share + through @ self.known
+            self._fill(derivative[..., model.voids :], followed, self.along, per_void=False)
+        return derivative
+
+    def _fill(self, derivative: FloatArray, through: FloatArray, motion: FloatArray, *, per_void: bool) -> None:
+        """Derivative of deployed places from those of U and U + V (2 F, K) and the motion (K, 2) in the flat sheet."""
+        even, whole = np.split(through, 2)
+        odd, half = whole - even, self.model._half
+        by_even, by_odd = rotate(motion, -half), rotate(motion, half)
+        for axis in (0, 1):
+            moved = even * by_even[:, axis] + odd * by_odd[:, axis]
+            derivative[:, axis] = self.model._per_void(moved) if per_void else moved
 
     def derivative(self, basis: Basis) -> FloatArray:
         """Derivative (2, N, V) of all nodes, x then y, by the variables."""
-        return np.stack([self.moved(axis, basis) for axis in (0, 1)])
+        model = self.model
+        moved = np.zeros((2, model.node_count, basis.size))
+        for axis in (0, 1):
+            if len(self.along):
+                moved[axis, model._table.node] = basis.reduced(self._wide(self.share * self.along[:, axis]))
+            moved[axis, model._plan.free] = model._forward(self._right(axis, basis).toarray(), self.system)
+        return moved
 
     def gradient(self, force: FloatArray) -> FloatArray:
         """Derivative (S,) by the shape of a sum whose derivative by the nodes is ``force`` (N, 2)."""
-        slopes: FloatArray = self.slopes(force[None, :, 0], force[None, :, 1])[0]
+        model = self.model
+        back = model._backward(force[model._plan.free], self.system)
+        slopes = np.empty(model.size)
+        first, second = model._plan.pair
+        each = (back * self.pull).sum(axis=1)
+        slopes[: model.voids] = each[first] + each[second]
+        followed = self.share.T @ force[model._table.node] + self.known.T @ back
+        slopes[model.voids :] = (followed * self.along).sum(axis=1)
         return slopes
 
     def slopes(self, along_x: FloatArray, along_y: FloatArray) -> FloatArray:
@@ -357,8 +406,7 @@ class NodeMotion:
             through = model._adjoint(reach, self.system)
             slopes[:, : model.voids] += model._per_void(through * self.pull[:, axis])
             if len(self.along):
-                share = self._share()
-                followed = reach[:, model._table.node] @ share + through @ model._known(self.system.weights, share)
+                followed = reach[:, model._table.node] @ self.share + through @ self.known
                 slopes[:, model.voids :] += followed * self.along[:, axis]
         return slopes
 
@@ -367,42 +415,40 @@ class NodeMotion:
 
         Two solves for each axis take the place of the product of two full derivatives.
         """
-        model, free = self.model, self.model._plan.free
-        total = np.zeros((basis.size, basis.size))
+        model, free, given = self.model, self.model._plan.free, self.model._table.node
+        first, second = model._plan.pair
+        rows, edges = stiffness[free], stiffness[given]
+        inside, across, outside, rim = rows[:, free], rows[:, given], edges[:, free], edges[:, given]
+        by_shape = np.zeros((model.size, basis.size))
         for axis in (0, 1):
-            force = stiffness @ self.moved(axis, basis)
-            back = model._backward(force[free], self.system)
-            by_shape = np.empty((model.size, basis.size))
-            scaled = back * self.pull[:, axis, None]
-            first, second = model._plan.pair
-            by_shape[: model.voids] = scaled[first] + scaled[second]
-            if len(self.along):
-                share = self._share() * self.along[:, axis]
-                known = model._known(self.system.weights, share)
-                by_shape[model.voids :] = share.T @ force[model._table.node] + known.T @ back
-            total += basis.reduced(np.ascontiguousarray(by_shape.T)).T
-        return total
+            right, mouths = self._right(axis, basis), self.share * self.along[:, axis]
+            follow, known = basis.reduced(self._wide(mouths)), csr_matrix((self.known * self.along[:, axis]).T)
+            pull = self.pull[:, axis, None]
+            for start in range(0, basis.size, BLOCK):
+                block = slice(start, start + BLOCK)
+                moved, edge = model._forward(right[:, block].toarray(), self.system), follow[:, block]
+                back = model._backward(inside @ moved + across @ edge, self.system)
+                by_shape[model.voids :, block] += mouths.T @ (outside @ moved + rim @ edge) + known @ back
+                back *= pull
+                by_shape[: model.voids, block] += back[first] + back[second]
+        return basis.reduced_rows(by_shape)
 
-    def _right(self, axis: int, basis: Basis) -> FloatArray:
+    def _right(self, axis: int, basis: Basis) -> csc_matrix:
         """Right-hand sides (K, V): what each variable does to the free nodes' own equations."""
         model = self.model
-        right = np.zeros((len(self.pull), basis.size + 1))
-        voids = np.arange(model.voids)
-        for node in model._plan.pair:
-            # A node belongs to one void, and a void follows one variable: no two entries of a row meet.
-            right[node, basis.variable[voids]] = self.pull[node, axis] * basis.sign[voids]
-        right = right[:, :-1]
-        if len(self.along):
-            known = model._known(self.system.weights, self._share() * self.along[:, axis])
-            right = right + basis.reduced(self._wide(known))
-        return right
-
-    def _share(self) -> FloatArray:
-        """How the given nodes follow the mouths: (G, R)."""
-        return self.model._table.share[:, self.model._table.mouths]
+        rim, mouth = np.nonzero(self.known)
+        row = np.concatenate([*model._plan.pair, rim])
+        number = np.concatenate([np.arange(model.voids), np.arange(model.voids), model.voids + mouth])
+        value = np.concatenate(
+            [self.pull[row[: 2 * model.voids], axis], self.known[rim, mouth] * self.along[mouth, axis]]
+        )
+        moves = basis.variable[number] < basis.size
+        row, number, value = row[moves], number[moves], value[moves]
+        entries = value * basis.sign[number], (row, basis.variable[number])
+        return csc_matrix(entries, shape=(len(self.pull), basis.size))
 
     def _wide(self, by_mouths: FloatArray) -> FloatArray:
-        """The same (., R) with columns for the voids before it: (., S)."""
+        """Derivatives (., R) by the mouths with columns for the voids before them: (., S)."""
         return np.concatenate([np.zeros((len(by_mouths), self.model.voids)), by_mouths], axis=1)
 
 

@@ -5,13 +5,18 @@ from __future__ import annotations
 import time
 
 import numpy as np
+import pytest
 from stopwatch import fastest
 
 from kirigami_studio.foundation.threads import one_blas_thread
 from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.outlines.silhouettes import load
-from kirigami_studio.polish.levenberg import polish
-from kirigami_studio.polish.sensitivity import OutlineModel
+from kirigami_studio.polish.even_panels import USUAL_WEIGHT
+from kirigami_studio.polish.factor import Factor, factored
+from kirigami_studio.polish.levenberg import STIFFNESS_STEPS, polish
+from kirigami_studio.polish.normal_equations import Damped
+from kirigami_studio.polish.sensitivity import NodeMotion, OutlineModel
 
 
 def test_that_the_derivative_costs_a_small_part_of_central_differences() -> None:
@@ -40,3 +45,45 @@ def test_that_ten_steps_at_24_x_24_end_within_seconds() -> None:
     print(f"\n24 x 24: {fit.steps} steps, {fit.evaluations} decodings, {spent:.2f} s")
     assert fit.steps == 10
     assert spent < 6.0
+
+
+def test_how_often_a_fit_does_what_takes_long(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Large sheets spend their time on three things: none is done for every trial."""
+    counts = {"curvature": 0, "factored": 0, "damped": 0}
+    curvature, damped = NodeMotion.curvature, Damped.of
+
+    def counted_curvature(motion: NodeMotion, *arguments: object) -> object:
+        counts["curvature"] += 1
+        return curvature(motion, *arguments)  # type: ignore[arg-type]
+
+    def counted_damped(*arguments: object) -> Damped:
+        counts["damped"] += 1
+        return damped(*arguments)  # type: ignore[arg-type]
+
+    def counted_factored(*arguments: object) -> Factor:
+        counts["factored"] += 1
+        return factored(*arguments)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(NodeMotion, "curvature", counted_curvature)
+    monkeypatch.setattr(Damped, "of", counted_damped)
+    monkeypatch.setattr("kirigami_studio.polish.sensitivity.factored", counted_factored)
+    fit = polish(Sheet.uniform(10, 10), load("heart"), steps=15, free_rim=True, even=USUAL_WEIGHT)
+    assert fit.steps == 15
+    assert fit.evaluations > 3 * fit.steps, "trials and corrections beside the steps, so this test can fail"
+    assert counts == {"curvature": -(-fit.steps // (STIFFNESS_STEPS + 1)), "factored": fit.steps, "damped": fit.steps}
+
+
+def test_that_even_panels_and_a_free_rim_do_not_multiply_the_time_of_a_fit() -> None:
+    target = load("heart")
+    pose = polish(Sheet.uniform(24, 24), target, steps=0).pose
+
+    def seconds(even: float, free_rim: bool) -> float:
+        began = time.process_time()
+        polish(Sheet.uniform(24, 24), target, steps=8, pose=pose, even=even, free_rim=free_rim)
+        return time.process_time() - began
+
+    with one_blas_thread():  # as the pipeline does
+        plain = min(seconds(0.0, False) for _ in range(2))
+        whole = min(seconds(USUAL_WEIGHT, True) for _ in range(2))
+    print(f"\n24 x 24, 8 steps: match alone {plain:.2f} s, even panels and free rim {whole:.2f} s")
+    assert whole < 4.0 * plain

@@ -33,7 +33,8 @@ def test_that_the_gradient_is_the_slope_of_the_cost(field: RatioField, phi: floa
     rng = np.random.default_rng(seed)
     offsets = rng.uniform(-0.4, 0.4, field.rows + field.columns)
     state = np.concatenate([z, offsets, [-np.log(field.rows + field.columns), *rng.uniform(-0.5, 0.5, 3)]])
-    gradient = objective.quadratic(objective.look(state), objective.slopes(state)).gradient
+    look = objective.look(state)
+    gradient = objective.gradient(look, objective.slopes(look))
     direction = rng.normal(size=state.size)
     direction /= np.linalg.norm(direction)
     slopes = [

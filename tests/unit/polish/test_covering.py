@@ -81,7 +81,8 @@ def test_that_the_gradient_with_little_weight_on_excess_is_that_of_differences(p
     terms = PreferenceTerms(Preference(), z, 4, 5)
     objective = Objective(model, BoundaryTarget.of(drop, 64), terms, Stage(0, 0.01), excess=0.1)
     state = np.concatenate([z, [np.log(0.19), 0.2, -0.5, 0.5]])
-    gradient = objective.quadratic(objective.look(state), objective.slopes(state)).gradient
+    look = objective.look(state)
+    gradient = objective.gradient(look, objective.slopes(look))
     small = 1e-7 * np.eye(state.size)
     differences = np.array(
         [(objective.look(state + step).cost - objective.look(state - step).cost) / 2e-7 for step in small]

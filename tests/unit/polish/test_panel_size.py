@@ -40,7 +40,7 @@ def test_that_slopes_of_the_sizes_are_differences_of_the_sizes() -> None:
     model = OutlineModel(rows, columns, 0.0)
     z = random_field(rows, columns).log10.ravel()
     sizes = panel_sizes(model.nodes(z), rows, columns)
-    slopes = model.node_motion(z).slopes(*sizes.reach(model.node_count))
+    slopes = model.node_motion(model.decoded(z)).slopes(*sizes.reach(model.node_count))
     direction = np.random.default_rng(1).normal(size=z.size)
     ahead, behind = (panel_sizes(model.nodes(z + s * step * direction), rows, columns).size for s in (1, -1))
     assert (ahead - behind) / (2 * step) == pytest.approx(slopes @ direction, abs=1e-6)

@@ -1,0 +1,99 @@
+"""The damped Gauss-Newton step, solved by its small side.
+
+The outline has far fewer vertices than a large sheet has ratios.  With J (2 L, V) the derivative of the outline, M
+(2 L, 2 L) the curvature of the match by its vertices, B (V, V) that of all else and the damping together, a step is
+
+    s = -(B + J^T M J)^-1 g = -B^-1 (g - J^T (1 + M C)^-1 M J B^-1 g),        C = J B^-1 J^T
+
+(Woodbury).  B is factored once; other places of the target that match (another M), and more damping (a multiple of B),
+then cost a small system each.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg.lapack import dgesv, dpotrf, dtrtrs
+
+from kirigami_studio.foundation.arrays import BoolArray, FloatArray
+
+#: Share of the mean of the diagonal that the damping adds to each entry.
+FLOOR = 1e-3
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Quadratic:
+    """The objective around one state, by V variables.
+
+    Attributes
+    ----------
+    gradient : (V,) float
+    inner : (V, V) float
+        Second derivative of all that is not the match; symmetric.
+    outline : (2 L, V) float
+        Derivative of the outline.
+    spread : (2 L, 2 L) float
+        Gauss-Newton approximation of the second derivative of the match by the outline; symmetric.
+    """
+
+    gradient: FloatArray
+    inner: FloatArray
+    outline: FloatArray
+    spread: FloatArray
+
+    @property
+    def hessian(self) -> FloatArray:
+        """Second derivative (V, V)."""
+        hessian: FloatArray = self.inner + self.outline.T @ (self.spread @ self.outline)
+        return hessian
+
+    def diagonal(self) -> FloatArray:
+        """That of the second derivative: (V,)."""
+        match = np.einsum("lv,lv->v", self.outline, self.spread @ self.outline)
+        return np.asarray(np.diagonal(self.inner) + match)
+
+    def promised(self, step: FloatArray) -> float:
+        """Gain that the quadratic model foresees for a step (V,)."""
+        moved = self.outline @ step
+        bent = float(step @ (self.inner @ step)) + float(moved @ (self.spread @ moved))
+        return -float(step @ self.gradient) - 0.5 * bent
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Damped:
+    """A quadratic with damping, factored for several steps.
+
+    Attributes
+    ----------
+    held : (V,) bool
+        Variables that do not move.
+    """
+
+    held: BoolArray
+    _factor: FloatArray
+    _reach: FloatArray
+    _compliance: FloatArray
+
+    @classmethod
+    def of(cls, model: Quadratic, damping: float, held: BoolArray) -> Damped:
+        """Factor a model with a damping relative to its diagonal, (V,) variables ``held`` where they are."""
+        diagonal = model.diagonal()
+        inner, outline = model.inner.copy(), model.outline.copy()
+        inner[np.diag_indices_from(inner)] += damping * (diagonal + FLOOR * diagonal.mean())
+        inner[held], inner[:, held], outline[:, held] = 0.0, 0.0, 0.0
+        inner[held, held] = 1.0
+        # LAPACK itself: at small grids SciPy's own checks take longer than the work.  A symmetric matrix is its own
+        # transpose, which is stored as LAPACK wants it.
+        factor = dpotrf(inner.T, lower=1, clean=0, overwrite_a=1)[0]
+        reach = dtrtrs(factor, outline.T, lower=1, overwrite_b=1)[0]
+        return cls(held, factor, reach, reach.T @ reach)
+
+    def step(self, gradient: FloatArray, spread: FloatArray, stiffer: float = 1.0) -> FloatArray:
+        """The step (V,) for a gradient (V,) and a ``spread`` (2 L, 2 L), with all but the match times ``stiffer``."""
+        across = dtrtrs(self._factor, np.where(self.held, 0.0, gradient), lower=1)[0]
+        system = spread @ self._compliance
+        system[np.diag_indices_from(system)] += stiffer
+        back = dgesv(system, spread @ (across @ self._reach), overwrite_a=1)[2]
+        step: FloatArray = dtrtrs(self._factor, self._reach @ back - across, lower=1, trans=1)[0]
+        return step / stiffer

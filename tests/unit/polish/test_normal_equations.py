@@ -1,0 +1,63 @@
+"""The damped step by the small side is the one of the full matrix."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from kirigami_studio.foundation.arrays import FloatArray
+from kirigami_studio.polish.normal_equations import FLOOR, Damped, Quadratic
+
+VARIABLES, COORDINATES = 30, 12
+
+
+def positive(rng: np.random.Generator, size: int, rank: int) -> FloatArray:
+    half = rng.normal(size=(rank, size))
+    return half.T @ half
+
+
+@pytest.fixture
+def model() -> Quadratic:
+    rng = np.random.default_rng(5)
+    return Quadratic(
+        gradient=rng.normal(size=VARIABLES),
+        inner=positive(rng, VARIABLES, VARIABLES),
+        outline=rng.normal(size=(COORDINATES, VARIABLES)),
+        spread=positive(rng, COORDINATES, COORDINATES - 3),
+    )
+
+
+def full_step(model: Quadratic, damping: float, held: list[int], stiffer: float) -> FloatArray:
+    match = model.outline.T @ model.spread @ model.outline
+    diagonal = np.diagonal(model.inner + match)
+    matrix = stiffer * (model.inner + damping * np.diag(diagonal + FLOOR * diagonal.mean())) + match
+    free = np.setdiff1d(np.arange(VARIABLES), held)
+    step = np.zeros(VARIABLES)
+    step[free] = -np.linalg.solve(matrix[np.ix_(free, free)], model.gradient[free])
+    return step
+
+
+@pytest.mark.parametrize("held", [[], [3], [0, 7, 8, 29]])
+@pytest.mark.parametrize("stiffer", [1.0, 16.0])
+@pytest.mark.parametrize("damping", [1e-7, 1e-2, 10.0])
+def test_that_a_step_solves_the_full_damped_system(
+    model: Quadratic, damping: float, stiffer: float, held: list[int]
+) -> None:
+    flags = np.isin(np.arange(VARIABLES), held)
+    step = Damped.of(model, damping, flags).step(model.gradient, model.spread, stiffer)
+    np.testing.assert_allclose(step, full_step(model, damping, held, stiffer), rtol=1e-6, atol=1e-9)
+    assert not step[held].any()
+
+
+def test_that_the_promised_gain_is_that_of_the_quadratic(model: Quadratic) -> None:
+    step = np.random.default_rng(6).normal(size=VARIABLES)
+    expected = -(step @ model.gradient) - 0.5 * step @ model.hessian @ step
+    assert model.promised(step) == pytest.approx(expected)
+
+
+def test_that_a_model_can_be_factored_again(model: Quadratic) -> None:
+    none = np.zeros(VARIABLES, dtype=np.bool_)
+    inner, outline = model.inner.copy(), model.outline.copy()
+    Damped.of(model, 1e-2, none)
+    np.testing.assert_array_equal(model.inner, inner)
+    np.testing.assert_array_equal(model.outline, outline)
