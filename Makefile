@@ -32,14 +32,16 @@ help:
 
 setup: $(STAMP)
 
-# torch first and by itself: only it needs the extra index, and only once.
+# torch first and by itself: only it needs the extra index, and only once.  System libraries come
+# meanwhile.  Python compiles what it imports, a tenth of what is installed.
 $(STAMP): pyproject.toml setup.py packaging/constraints-cpu.txt packaging/system_libraries.sh
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' \
 	  || { echo "Kirigami Studio needs Python 3.11 or newer. Choose one with: make PYTHON=/path/to/python3 $(MAKECMDGOALS)"; exit 1; }
-	@sh packaging/system_libraries.sh
-	test -x $(BIN)/python || $(PYTHON) -m venv .venv
-	$(BIN)/python -m pip install -q --retries 1 --extra-index-url $(TORCH_INDEX) -c packaging/constraints-cpu.txt torch
-	$(BIN)/python -m pip install -q -c packaging/constraints-cpu.txt -e '.[test,lint]'
+	sh packaging/system_libraries.sh & libraries=$$!; \
+	{ test -x $(BIN)/python || $(PYTHON) -m venv .venv; } \
+	  && $(BIN)/python -m pip install -q --no-compile --retries 1 --extra-index-url $(TORCH_INDEX) -c packaging/constraints-cpu.txt torch \
+	  && $(BIN)/python -m pip install -q --no-compile -c packaging/constraints-cpu.txt -e '.[test,lint]'; made=$$?; \
+	  wait $$libraries && exit $$made
 	@touch $@
 
 run: setup
@@ -50,11 +52,13 @@ run: setup
 	  QT_QPA_PLATFORM=offscreen $(BIN)/python -m kirigami_studio.demonstrations.offscreen_session --out out; \
 	fi
 
-# First the tests that measure time, alone; then all others in two processes of one thread each, one file at a time.
-test: lint
-	@sh packaging/system_libraries.sh tests
+# First the tests that measure time, alone; then all others in two processes of one thread each.  A process that has
+# nothing left takes tests from the other: files with few tests hold some of the longest, and would end the run alone.
+test: setup
+	@sh packaging/system_libraries.sh tests & libraries=$$!; \
+	  $(MAKE) --no-print-directory lint; right=$$?; wait $$libraries && exit $$right
 	QT_QPA_PLATFORM=offscreen $(BIN)/python -m pytest -m clock
-	OMP_NUM_THREADS=1 QT_QPA_PLATFORM=offscreen $(BIN)/python -m pytest -n 2 --dist loadfile -m "not clock"
+	OMP_NUM_THREADS=1 QT_QPA_PLATFORM=offscreen $(BIN)/python -m pytest -n 2 --dist worksteal -m "not clock"
 
 quick: setup
 	HYPOTHESIS_PROFILE=quick $(BIN)/python -m pytest -p no:pytest-qt -p no:benchmark \

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from PySide6.QtCore import QCoreApplication, QEvent
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
@@ -18,4 +19,6 @@ def shown(made: StateSheet, qtbot: QtBot) -> Iterator[StateSheet]:
     made.window.controller.history.mark_saved()
     assert made.window.close()
     made.window.deleteLater()
+    # Outside an event loop nothing is deleted later: every change of theme would style this window as well.
+    QCoreApplication.sendPostedEvents(None, QEvent.Type.DeferredDelete)
     QApplication.processEvents()

@@ -1,8 +1,8 @@
 """One session through the real window in a process of its own, with the user-interface thread watched at every step.
 
 ``python tests/watched_session.py FOLDER`` prints one JSON object: step -> [wall, own, frozen] in seconds, the longest
-turn of the event loop in it.  ``--block SECONDS`` plays only steps that are known to hold the thread up.  Another
-session with other steps is in ``watched_tools.py``.
+turn of the event loop in it.  ``--last STEP`` ends after that step, ``--block SECONDS`` plays only steps that are
+known to hold the thread up.  Another session with other steps is in ``watched_tools.py``.
 """
 
 from __future__ import annotations
@@ -64,10 +64,15 @@ class Places:
         return self.everything
 
 
+class LastStepDone(Exception):  # noqa: N818 - nothing is wrong
+    """The session was to end here."""
+
+
 class WatchedSession:
     """Plays the steps on one window."""
 
-    rest = 0.3  #: seconds that the window lives on after each step, still watched
+    rest = 0.2  #: seconds that the window lives on after each step, still watched
+    last = ""  #: the step after which the session ends; without one it plays them all
 
     def __init__(self, folder: Path) -> None:
         self.places = Places(folder)
@@ -109,7 +114,7 @@ class WatchedSession:
         self.step("undo", lambda: [self.press("undo") for _ in range(3)], self.planned)
         self.step("redo", lambda: [self.press("redo") for _ in range(3)], self.planned)
         self.step("scrub", self.scrub)
-        self.set_up(2, 5, search=True)
+        self.set_up(2, 5, search=True, grid=(6, 6))  # the fits are other processes' work, whatever their size
         self.step("generate 2 and search", self.generate, self.generated)
         controller.history.mark_saved()
         self.step(
@@ -143,6 +148,8 @@ class WatchedSession:
         self.let_live(self.rest)
         turn = self.watch.end()
         self.longest[name] = (turn.wall, turn.own, turn.frozen)
+        if name == self.last:
+            raise LastStepDone
 
     def until(self, happened: Callable[[], bool]) -> None:
         """Let the window live until something has happened."""
@@ -162,12 +169,12 @@ class WatchedSession:
     def press(self, name: str) -> None:
         self.window.commands[name].trigger()
 
-    def set_up(self, designs: int, polish: int, search: bool) -> None:
+    def set_up(self, designs: int, polish: int, search: bool, grid: tuple[int, int] = (10, 10)) -> None:
         """Ask for so many designs."""
         settings = self.window.settings
         settings.candidates.setValue(designs)
         settings.search.setChecked(search)
-        self.window.controller.change_settings(polish=polish, grid=(10, 10))
+        self.window.controller.change_settings(polish=polish, grid=grid)
         self.let_live(0.1)
 
     def generate(self) -> None:
@@ -233,17 +240,21 @@ def main(kind: type[WatchedSession]) -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("folder", type=Path)
     parser.add_argument("--block", type=float, default=0.0)
+    parser.add_argument("--last", default="")
     chosen = parser.parse_args()
     if not chosen.block:
         kind.prepare(chosen.folder)
     create_application(["kirigami-studio"])
     session = kind(chosen.folder)
+    session.last = chosen.last
     try:
         session.begin()
         if chosen.block:
             session.block(chosen.block)
         else:
             session.play()
+    except LastStepDone:
+        pass
     finally:
         session.watch.close()
         window: QWidget = session.window

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import math
+import time
 
 import numpy as np
 import pytest
-from stopwatch import fastest
 
 from kirigami_studio.export.dxf import dxf_bytes
 from kirigami_studio.export.profile import DEFAULT_PROFILE, find_profile
@@ -24,14 +24,21 @@ def test_that_576_voids_are_planned_checked_and_written_while_one_waits(style: C
     field = RatioField.from_log10(np.random.default_rng(0).uniform(-0.7, 0.7, (VOIDS, VOIDS)))
     design, options = deploy(field), CutOptions(style=style, tabs=4)
     profile = find_profile(DEFAULT_PROFILE)
-    plan = plan_cuts(design, 240.0, options=options)
-    report = check_plan(plan, phi=math.pi / 4)
-    assert report.ok and report.pieces == 1
-    planning = fastest(lambda: plan_cuts(design, 240.0, options=options), 3)
-    checking = fastest(lambda: check_plan(plan, phi=math.pi / 4), 3)
-    writing = fastest(lambda: dxf_bytes(plan, "R2010", profile), 3)
-    print(
-        f"\n{style.value}: plan {planning:.2f} s, check {checking:.2f} s, DXF {writing:.2f} s, {len(plan.paths)} paths"
-    )
     # Twelve hundred holes, arcs or bars more take their time; two seconds are promised for straight ends.
-    assert planning + checking + writing < (2.0 if style is ConnectorStyle.STRAIGHT else 3.0)
+    limit = 2.0 if style is ConnectorStyle.STRAIGHT else 3.0
+    spent: list[float] = []
+    while len(spent) < 3 and min(spent, default=limit) >= limit:
+        began = time.process_time()
+        plan = plan_cuts(design, 240.0, options=options)
+        planned = time.process_time()
+        report = check_plan(plan, phi=math.pi / 4)
+        checked = time.process_time()
+        dxf_bytes(plan, "R2010", profile)
+        written = time.process_time()
+        assert report.ok and report.pieces == 1
+        spent.append(written - began)
+        print(
+            f"\n{style.value}: plan {planned - began:.2f} s, check {checked - planned:.2f} s, "
+            f"DXF {written - checked:.2f} s, {len(plan.paths)} paths"
+        )
+    assert min(spent) < limit

@@ -19,6 +19,7 @@ pytestmark = [pytest.mark.qt, pytest.mark.torch, pytest.mark.slow]
 THEME, THEME_LIMIT = "switch the theme", 0.5
 #: Sessions played until no step froze the UI, the best turn of each counts: a cache that is cold or a
 #: neighbour that takes memory bandwidth is no fault of the program; what it does itself it does every time.
+#: A session that is played again ends with the last step that is still in doubt.
 SESSIONS = 3
 
 #: The sessions, how many steps each has at least, and for how long (seconds) none may hold the window up.  The second
@@ -48,11 +49,14 @@ def too_long(turns: Turns, limit: float) -> Turns:
 def test_that_no_step_of_a_session_freezes_the_ui(script: str, tmp_path: Path) -> None:
     best: Turns = {}
     steps, limit = SCRIPTS[script]
+    again: tuple[str, ...] = ()
     for _ in range(SESSIONS):
-        for step, turn in played(script, tmp_path).items():
+        for step, turn in played(script, tmp_path, *again).items():
             best[step] = min(turn, best.get(step, turn), key=lambda one: one[2])
-        if not too_long(best, limit):
+        in_doubt = list(too_long(best, limit))
+        if not in_doubt:
             break
+        again = ("--last", in_doubt[-1])
     print(f"\n{'longest turn of the event loop (ms)':40}{'wall':>8}{'own':>8}{'frozen':>9}")
     for step, (wall, own, frozen) in best.items():
         print(f"{step:40}{1000 * wall:8.0f}{1000 * own:8.0f}{1000 * frozen:9.0f}")
@@ -61,7 +65,7 @@ def test_that_no_step_of_a_session_freezes_the_ui(script: str, tmp_path: Path) -
 
 
 def test_that_the_watch_sees_a_busy_handler_and_a_thread_that_keeps_the_lock(tmp_path: Path) -> None:
-    turns = played("watched_session.py", tmp_path, "--block", "0.4")
+    turns = played("watched_session.py", tmp_path, "--block", "0.8")
     _, limit = SCRIPTS["watched_session.py"]
     busy, locked = turns["computing in the handler of a timer"], turns["another thread keeps the lock"]
     assert busy[2] > limit and busy[1] > limit

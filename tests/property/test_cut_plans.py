@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from cut_sheets import bitten, connector_distances, covered_hinges, drawn_line, finished_pieces, mouths
-from hypothesis import assume, given
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from lattice_strategies import grids, ratio_fields, sheets
 from shapely.geometry import Polygon
@@ -20,6 +20,9 @@ from kirigami_studio.foundation.errors import FabricationError
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.sheet import Rim, Sheet
+
+#: Half of the profile's examples: each makes and checks plans for 0.1 to 0.2 s.
+FEWER = settings(max_examples=settings.default.max_examples // 2)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -65,6 +68,7 @@ def wishes(draw: st.DrawFn, trimmed: bool = False) -> Wish:
     return Wish(sheet, cell * (sheet.columns + 1), connector, kerf, draw(st.floats(0.03, 0.5)), options, bite)
 
 
+@FEWER
 @given(wish=wishes())
 def test_that_connectors_are_as_wide_as_asked_and_the_sheet_is_one_piece(wish: Wish) -> None:
     plan = wish.plan()
@@ -89,6 +93,7 @@ def test_that_a_connector_beside_a_nearly_straight_corner_of_the_sheet_is_as_wid
     assert np.abs(connector_distances(plan) - plan.hinges.requested_mm).max() <= 2e-4
 
 
+@FEWER
 @given(wish=wishes())
 def test_that_a_kerf_wider_than_every_gap_frees_every_panel(wish: Wish) -> None:
     plan = wish.plan()
@@ -98,6 +103,7 @@ def test_that_a_kerf_wider_than_every_gap_frees_every_panel(wish: Wish) -> None:
     assert report.min_connector_mm < 0.0
 
 
+@FEWER
 @given(wish=wishes(trimmed=True))
 def test_that_trimmed_sheets_are_one_piece_with_no_connector_narrower_than_asked(wish: Wish) -> None:
     plan = wish.plan()
@@ -107,6 +113,7 @@ def test_that_trimmed_sheets_are_one_piece_with_no_connector_narrower_than_asked
     assert not any(problem.code == "plan.connectors_narrower" for problem in report.problems)
 
 
+@FEWER
 @given(wish=st.one_of(wishes(), wishes(trimmed=True)))
 def test_that_plans_are_finite_above_the_origin_closed_where_they_must_be_and_cut_nothing_twice(wish: Wish) -> None:
     plan = wish.plan()
@@ -121,6 +128,7 @@ def test_that_plans_are_finite_above_the_origin_closed_where_they_must_be_and_cu
     assert Polygon(plan.outline).is_valid
 
 
+@FEWER
 @given(wish=wishes())
 def test_that_cuts_meet_only_where_a_slit_ends_on_its_own_shape(wish: Wish) -> None:
     inner = [path for path in wish.plan().paths if path.layer is not Layer.OUTLINE]
@@ -130,6 +138,7 @@ def test_that_cuts_meet_only_where_a_slit_ends_on_its_own_shape(wish: Wish) -> N
     assert all(inner[one].cut == inner[other].cut for one, other in meeting)
 
 
+@FEWER
 @given(wish=wishes())
 def test_that_finished_widths_and_panels_do_not_change_with_the_kerf(wish: Wish) -> None:
     plans = [

@@ -13,7 +13,7 @@ from kirigami_studio.lattice.ratio_field import RatioField
 MakeDesign = Callable[..., Deployment]
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def make_design() -> MakeDesign:
     """Return a maker of random designs: ``make_design(rows, columns, seed, spread)``."""
 

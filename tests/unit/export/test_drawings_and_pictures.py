@@ -31,7 +31,7 @@ SVG_NS = "{http://www.w3.org/2000/svg}"
 PX_PER_MM = 96.0 / 25.4
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def job(make_design: MakeDesign) -> ExportJob:
     """A 4 x 5 design whose target is its own outline, turned, scaled and shifted."""
     design = make_design(4, 5, seed=1, spread=0.3)

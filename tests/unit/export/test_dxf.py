@@ -23,7 +23,7 @@ MakeDesign = Callable[..., Deployment]
 GRIDS = [(4, 5), (10, 10), (24, 24)]
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def plan(make_design: MakeDesign) -> CutPlan:
     """A 4 x 5 design at the default size."""
     return plan_cuts(make_design(4, 5, seed=1))

@@ -36,7 +36,7 @@ from kirigami_studio.lattice.sheet_files import sheet_of_json
 MakeDesign = Callable[..., Deployment]
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def job(make_design: MakeDesign) -> ExportJob:
     """A small design with its plan, and word of its model."""
     design = make_design(4, 5, seed=1)

@@ -18,7 +18,7 @@ from kirigami_studio.foundation.errors import ExportError
 from kirigami_studio.lattice.deployment import Deployment
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def job(make_design: Callable[..., Deployment]) -> ExportJob:
     """A small design for a program that takes one file for each layer."""
     design = make_design(4, 5, seed=1)

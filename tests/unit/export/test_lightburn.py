@@ -17,7 +17,7 @@ from kirigami_studio.foundation.errors import ExportError
 from kirigami_studio.lattice.deployment import Deployment
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def plan(make_design: Callable[..., Deployment]) -> CutPlan:
     """A 4 x 5 design at the default size."""
     return plan_cuts(make_design(4, 5, seed=1))

@@ -17,7 +17,7 @@ from kirigami_studio.foundation.files import write_atomically
 from kirigami_studio.lattice.deployment import Deployment
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def job(make_design: Callable[..., Deployment]) -> ExportJob:
     """A small design with its plan."""
     design = make_design(2, 3)

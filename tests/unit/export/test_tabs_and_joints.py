@@ -44,7 +44,7 @@ def sentences(report: FileReport) -> str:
     return " | ".join(problem.text for problem in report.problems)
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def plan(make_design: MakeDesign) -> CutPlan:
     """Bars, tabs, and a connector removed inside."""
     options = CutOptions(style=ConnectorStyle.DOUBLE, tabs=4, tab_mm=0.6, removed=(7,))

@@ -25,7 +25,7 @@ MakeDesign = Callable[..., Deployment]
 ONE_FILE = [key for key, profile in PROFILES.items() if not profile.file_per_layer]
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def plan(make_design: MakeDesign) -> CutPlan:
     """A 4 x 5 design at the default size."""
     return plan_cuts(make_design(4, 5, seed=1))

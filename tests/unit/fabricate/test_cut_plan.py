@@ -19,7 +19,7 @@ from kirigami_studio.lattice.deployment import Deployment
 MakeDesign = Callable[..., Deployment]
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def plan(make_design: MakeDesign) -> CutPlan:
     """A 6 x 7 design at the default size."""
     return plan_cuts(make_design(6, 7, seed=1))

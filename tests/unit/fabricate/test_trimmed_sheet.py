@@ -23,12 +23,12 @@ from kirigami_studio.lattice.deployment import Deployment
 MakeDesign = Callable[..., Deployment]
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def design(make_design: MakeDesign) -> Deployment:
     return make_design(6, 7, seed=2, spread=0.3)
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def plan(design: Deployment) -> CutPlan:
     """Bites at all edge cuts."""
     return plan_cuts(design, 160.0, kept=bitten(design, mouths(design), 0.2))
