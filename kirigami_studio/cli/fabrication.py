@@ -36,7 +36,7 @@ from kirigami_studio.project.store import load
 def material_settings(arguments: argparse.Namespace) -> FabricationSettings:
     """Fabrication settings from the width options; unknown materials are refused here, before any work."""
     material = default_material() if arguments.material is None else find_material(arguments.material)
-    return _overridden(FabricationSettings(material=material.key), arguments)
+    return overridden(FabricationSettings(material=material.key), arguments)
 
 
 def checked_plan(candidate: Candidate, fabrication: FabricationSettings) -> tuple[CutPlan, Report]:
@@ -60,7 +60,7 @@ def export(arguments: argparse.Namespace) -> int:
     if not arguments.all:
         find_exporter(arguments.out)
     document = load(arguments.project)
-    settings = _overridden(document.fabrication, arguments)
+    settings = overridden(document.fabrication, arguments)
     _check_hinges(_chosen(document), settings.options)
     plan, report = checked_plan(_chosen(document), settings)
     job = replace(_job(document), plan=plan, dxf_version=settings.dxf_version, profile=settings.profile,
@@ -196,7 +196,7 @@ def _job(document: Document) -> ExportJob:
     return replace(job, provenance=design_facts(document, chosen))
 
 
-def _overridden(saved: FabricationSettings, arguments: argparse.Namespace) -> FabricationSettings:
+def overridden(saved: FabricationSettings, arguments: argparse.Namespace) -> FabricationSettings:
     """The project's settings with the command line's on top.
 
     Raises

@@ -63,6 +63,8 @@ class Material:
         How many times the job is cut; 1 in files without it.
     min_slit_mm : float
         A warning is given about slits shorter than this; 0.1 in files without it.
+    young_gpa : float
+        Young's modulus; 3 in files without it, as many plastics have.
     measured_on, measured_by : str
         Day (ISO 8601) and author of the calibration, both may be empty.
     """
@@ -86,6 +88,7 @@ class Material:
     off_delay_s: float = 0.0
     passes: int = 1
     min_slit_mm: float = 0.1
+    young_gpa: float = 3.0
     measured_on: str = ""
     measured_by: str = ""
 

@@ -7,7 +7,7 @@ ligaments' turns; all the rest is free.  Degree of freedom 3 p + k is u_x, u_y o
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -71,6 +71,17 @@ class Drive:
     def steps(self) -> int:
         return len(self.displacement)
 
+    def first(self, steps: int) -> Drive:
+        """The drive up to a step."""
+        return replace(
+            self,
+            path=self.path[:steps],
+            displacement=self.displacement[:steps],
+            rate=self.rate[:steps],
+            level=self.level[:steps],
+            level_rate=self.level_rate[:steps],
+        )
+
     def force(self, reaction: FloatArray, pull: FloatArray) -> FloatArray:
         """Force (S,) along the displacement from the reactions (S, D) and from the pull (S,) on the prescribed mean."""
         along: FloatArray = np.sum(reaction * self.rate, axis=1)
@@ -78,9 +89,17 @@ class Drive:
 
 
 def rated(path: FloatArray, displacement: FloatArray) -> FloatArray:
-    """Derivative (S, D) of a path by the displacement (S,), of second order in the steps."""
+    """Derivative (S, D) of a path by the displacement (S,), of second order in the steps.
+
+    Raises
+    ------
+    MechanicsError
+        Fewer than 3 steps, or steps at which the displacement does not grow.
+    """
     if len(displacement) < 3:
         raise MechanicsError("drive.too_few_steps", found=len(displacement), least=3)
+    if not np.all(np.diff(displacement) > 0.0):
+        raise MechanicsError("drive.nothing_moves")
     slope: FloatArray = np.gradient(path, displacement, axis=0, edge_order=2)
     return slope
 
@@ -153,11 +172,22 @@ def mean_turn(network: PanelNetwork, signs: FloatArray, turns: FloatArray) -> Dr
     return Drive(freedoms, still, turns, still, weights, turns, np.ones(len(turns)))
 
 
-def prescribed_motion(panels: Sequence[int], motions: FloatArray, displacement: FloatArray) -> Drive:
-    """Move some panels through given motions (S, P, 3); the displacement (S,) is what the force is measured against."""
-    freedoms = _all_of(panels)
-    path = motions.reshape(len(motions), -1)[:, freedoms]
-    return Drive(freedoms, path, displacement, rated(path, displacement))
+def prescribed_places(panels: Sequence[int], shifts: FloatArray, displacement: FloatArray, every: int = 1) -> Drive:
+    """Lead panels through given places and let them turn.
+
+    Parameters
+    ----------
+    panels : sequence of K int
+    shifts : (S, K, 2) float, mm
+    displacement : (S,) float, mm
+        The way of the grips.
+    every : int
+        Only each so many of the places is a step; those between make the derivative exact.
+    """
+    freedoms: IntArray = (3 * np.asarray(panels, dtype=np.intp)[:, None] + np.arange(2)).ravel()
+    path = shifts.reshape(len(shifts), -1)
+    rate = rated(path, displacement)
+    return Drive(freedoms, path[::every], displacement[::every], rate[::every])
 
 
 def prescribed_turns(network: PanelNetwork, turns: FloatArray, displacement: FloatArray) -> Drive:

@@ -17,10 +17,12 @@ all derivatives of e are short.
 
 from __future__ import annotations
 
+from functools import cached_property
+
 import numpy as np
 from scipy.sparse import csc_array
 
-from kirigami_studio.foundation.arrays import ComplexArray, FloatArray
+from kirigami_studio.foundation.arrays import ComplexArray, FloatArray, IntArray
 from kirigami_studio.mechanics.network import CONTACT_BELOW, PanelNetwork
 
 #: Degrees of freedom of a ligament: u_x, u_y, theta of A, then of B.
@@ -36,6 +38,14 @@ class NetworkEnergy:
 
     Motions are (P, 3) float: u_x and u_y in mm, theta in radians; zeros are the network at rest.  Energies are in
     N mm = mJ.
+
+    Attributes
+    ----------
+    network : PanelNetwork
+    freedoms : (L, 6) int
+        Degrees of freedom of A and B at every ligament: 3 p + k is u_x, u_y or theta of panel p.
+    rest : (L,) complex, mm
+        e at rest.
     """
 
     def __init__(self, network: PanelNetwork) -> None:
@@ -50,21 +60,23 @@ class NetworkEnergy:
         self._slender = np.flatnonzero(joints.slender)
         self._junction = np.flatnonzero(~joints.slender)
         self._axis = np.where(joints.slender, np.angle(span), joints.axis)
-        self._rest = span * np.exp(-1j * self._axis)
-        freedom = (3 * joints.panels[:, :, None] + np.arange(3)).reshape(len(joints), SIX)
-        self._freedom = freedom
-        size = 3 * network.panel_count
-        row = np.repeat(freedom, SIX, axis=1).ravel()
-        column = np.tile(freedom, (1, SIX)).ravel()
-        pattern = csc_array((np.ones(row.size), (row, column)), shape=(size, size))
-        pattern.sort_indices()
-        self._indices, self._starts = pattern.indices, pattern.indptr
-        keys = np.repeat(np.arange(size, dtype=np.int64), np.diff(pattern.indptr)) * size + pattern.indices
-        self._place = np.searchsorted(keys, column * np.int64(size) + row)
+        self.rest: ComplexArray = span * np.exp(-1j * self._axis)
+        self.freedoms: IntArray = (3 * joints.panels[:, :, None] + np.arange(3)).reshape(len(joints), SIX)
+
+    @cached_property
+    def _pattern(self) -> tuple[csc_array, IntArray]:
+        """A matrix with the Hessian's entries, and to which of them every entry of the ligaments' blocks adds."""
+        size = 3 * self.network.panel_count
+        row = np.repeat(self.freedoms, SIX, axis=1).ravel()
+        column = np.tile(self.freedoms, (1, SIX)).ravel()
+        filled = csc_array((np.ones(row.size), (row, column)), shape=(size, size))
+        filled.sort_indices()
+        keys = np.repeat(np.arange(size), np.diff(filled.indptr)) * size + filled.indices
+        return filled, np.searchsorted(keys, column * size + row)
 
     def value(self, motion: FloatArray) -> float:
         """Energy, mJ; infinite where a void has closed."""
-        local, _ = self._local(motion)
+        local, _ = self.local(motion)
         stretch, shear = self._strains(local)
         joints = self.network.ligaments
         turn = self.network.turns(motion)
@@ -75,12 +87,12 @@ class NetworkEnergy:
 
     def gradient(self, motion: FloatArray) -> FloatArray:
         """Derivative (3 P,) of the energy by the motion: N for u_x and u_y, N mm for theta."""
-        local, by_freedom = self._local(motion)
+        local, by_freedom = self.local(motion)
         return self._assembled(self._force(local), by_freedom, motion)
 
     def slopes(self, motion: FloatArray) -> tuple[FloatArray, csc_array]:
         """Gradient (3 P,) and Hessian (3 P, 3 P) together."""
-        local, by_freedom = self._local(motion)
+        local, by_freedom = self.local(motion)
         force, curvature = self._force(local), self._curvature(local)
         blocks = np.einsum("lia,lij,ljb->lab", by_freedom, curvature, by_freedom)
         blocks += self._bending(force, local, motion)
@@ -89,27 +101,27 @@ class NetworkEnergy:
         np.add.at(turning, contacts.ligament, self._contact(motion)[2])
         for one, other, sign in ((2, 2, 1.0), (5, 5, 1.0), (2, 5, -1.0), (5, 2, -1.0)):
             blocks[:, one, other] += sign * turning
-        values = np.bincount(self._place, weights=blocks.ravel(), minlength=self._indices.size)
-        size = 3 * self.network.panel_count
-        hessian = csc_array((values, self._indices, self._starts), shape=(size, size))
+        pattern, place = self._pattern
+        values = np.bincount(place, weights=blocks.ravel(), minlength=pattern.nnz)
+        hessian = csc_array((values, pattern.indices, pattern.indptr), shape=pattern.shape)
         return self._assembled(force, by_freedom, motion), hessian
 
     def stretch(self, motion: FloatArray) -> FloatArray:
         """How far the two ends of every ligament moved apart, seen from between its panels: (..., L) mm, 0 at rest."""
         if motion.ndim > 2:
             return np.stack([self.stretch(entry) for entry in motion])
-        moved: FloatArray = np.abs(self._local(motion)[0] - self._rest)
+        moved: FloatArray = np.abs(self.local(motion)[0] - self.rest)
         return moved
 
     def tension(self, motion: FloatArray) -> FloatArray:
         """Force (..., L) that stretches every ligament along its axis, N; negative where it is compressed."""
         if motion.ndim > 2:
             return np.stack([self.tension(entry) for entry in motion])
-        pull: FloatArray = self.network.ligaments.stretching * self._strains(self._local(motion)[0])[0]
+        pull: FloatArray = self.network.ligaments.stretching * self._strains(self.local(motion)[0])[0]
         return pull
 
-    def _local(self, motion: FloatArray) -> tuple[ComplexArray, FloatArray]:
-        """e (L,) and its derivatives (L, 2, 6) by the six degrees of freedom."""
+    def local(self, motion: FloatArray) -> tuple[ComplexArray, FloatArray]:
+        """e (L,), mm, and its derivatives (L, 2, 6) by the degrees of freedom of A and B; rows of ``freedoms``."""
         u = motion[:, 0] + 1j * motion[:, 1]
         theta_a, theta_b = motion[self._first, 2], motion[self._second, 2]
         frame = np.exp(-1j * (0.5 * (theta_a + theta_b) + self._axis))
@@ -127,10 +139,10 @@ class NetworkEnergy:
 
     def _strains(self, local: ComplexArray) -> tuple[FloatArray, FloatArray]:
         """What the two springs are stretched by (L,), mm."""
-        off = local - self._rest
+        off = local - self.rest
         stretch, shear = off.real.copy(), off.imag.copy()
         thin = self._slender
-        length = self._rest[thin].real
+        length = self.rest[thin].real
         stretch[thin] = np.abs(local[thin]) - length
         shear[thin] = length * np.angle(local[thin])
         return stretch, shear
@@ -143,7 +155,7 @@ class NetworkEnergy:
         force = pull + 1j * push
         thin = self._slender
         along = local[thin] / np.abs(local[thin])
-        force[thin] = along * (pull[thin] + 1j * push[thin] * self._rest[thin].real / np.abs(local[thin]))
+        force[thin] = along * (pull[thin] + 1j * push[thin] * self.rest[thin].real / np.abs(local[thin]))
         return np.stack([force.real, force.imag], axis=-1)
 
     def _curvature(self, local: ComplexArray) -> FloatArray:
@@ -152,7 +164,7 @@ class NetworkEnergy:
         found = np.zeros((len(joints), 2, 2))
         found[:, 0, 0], found[:, 1, 1] = joints.stretching, joints.shearing
         thin = self._slender
-        radius, length = np.abs(local[thin]), self._rest[thin].real
+        radius, length = np.abs(local[thin]), self.rest[thin].real
         along = np.stack([local[thin].real, local[thin].imag], axis=-1) / radius[:, None]
         across = np.stack([-along[:, 1], along[:, 0]], axis=-1)
         pull = joints.stretching[thin] * (radius - length)
@@ -207,7 +219,7 @@ class NetworkEnergy:
         parts[:, 2] -= moment
         parts[:, 5] += moment
         size = 3 * self.network.panel_count
-        total = np.bincount(self._freedom.ravel(), weights=parts.ravel(), minlength=size)
+        total = np.bincount(self.freedoms.ravel(), weights=parts.ravel(), minlength=size)
         return np.asarray(total, dtype=np.float64)
 
 

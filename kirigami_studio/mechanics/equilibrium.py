@@ -86,7 +86,9 @@ class EquilibriumPath:
         return found
 
 
-def follow(network: PanelNetwork, drive: Drive, start: FloatArray | None = None) -> EquilibriumPath:
+def follow(
+    network: PanelNetwork, drive: Drive, start: FloatArray | None = None, until_stuck: bool = False
+) -> EquilibriumPath:
     """Find the equilibria along a drive.
 
     Parameters
@@ -95,6 +97,8 @@ def follow(network: PanelNetwork, drive: Drive, start: FloatArray | None = None)
     drive : Drive
     start : (P, 3) float, optional
         Motion to begin with; at rest unless given.
+    until_stuck : bool
+        Whether to return the steps up to the last equilibrium that there is, instead of refusing.
 
     Raises
     ------
@@ -107,7 +111,12 @@ def follow(network: PanelNetwork, drive: Drive, start: FloatArray | None = None)
         raise MechanicsError("network.wrong_shape", name="start", found=motion.shape, wanted=(network.panel_count, 3))
     motions, energies, reactions, pulls, least, snapped = [], [], [], [], [], []
     for step in range(drive.steps):
-        motion, jumped = system.advance(motion, step)
+        try:
+            motion, jumped = system.advance(motion, step)
+        except MechanicsError:
+            if not until_stuck or step == 0:
+                raise
+            break
         motions.append(motion)
         found = system.report(motion)
         energies.append(found.energy)
@@ -115,7 +124,7 @@ def follow(network: PanelNetwork, drive: Drive, start: FloatArray | None = None)
         pulls.append(found.pull)
         least.append(found.least)
         snapped.append(jumped)
-    reaction = np.array(reactions)
+    reaction, drive = np.array(reactions), drive.first(len(motions))
     return EquilibriumPath(
         drive,
         np.array(motions),

@@ -48,6 +48,7 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "drive.too_few_steps": mark("A drive needs at least {least} steps, got {found}."),
     "drive.unknown_panel": mark("There is no panel {panel}: the last one is {last}."),
     "drive.nothing_moves": mark("The drive moves nothing. Name a panel to move, and where to."),
+    "drive.no_grips": mark("Name at least one panel to hold and one to move."),
     "drive.ends_meet": mark("The network is a single row in that direction, so its two ends are the same panels."),
     # Equilibria
     "equilibrium.not_found": mark(
@@ -56,5 +57,25 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     ),
     "equilibrium.singular": mark(
         "The network has a part that nothing holds, so it has no equilibrium. Check stiffnesses and ligaments."
+    ),
+    # Sheets
+    "sheet.constant_not_positive": mark("The sheet's {name} must be a number above 0, got {value}."),
+    "sheet.no_junction": mark("No two panels hang together at node {node}. Name nodes inside the sheet."),
+    "sheet.widths_wrong": mark(
+        "Connector widths must be {count} numbers of 0 mm or more, one for each connector; got shape {found}."
+    ),
+    "sheet.centres_wrong": mark(
+        "Rotation centres must be {count} places in mm, or {count} pairs of places; got shape {found}."
+    ),
+    # The command
+    "mechanics.one_source": mark("Name either a project or sheet, or a network with --network."),
+    "mechanics.one_sheet": mark("{name} holds {found} sheets. Name a single one."),
+    "mechanics.no_design_chosen": mark("No design is chosen in {path}. Choose one in the window and save."),
+    "mechanics.end_angle": mark("--end-deg must be below 180 degrees, which is the flat sheet, got {angle:g}."),
+    "mechanics.hold_and_move": mark("Use --hold and --move together: what is held, and what is led along the path."),
+    "mechanics.constant_missing": mark("A network needs {option}. Give --ka, --ks (N/m) and --kt (N m)."),
+    "mechanics.unknown_drive": mark(
+        "There is no drive '{text:.40}'. Use morpher, or clamped:AXIS:MM with AXIS x, y, xy or yx, such as "
+        "clamped:y:1.05."
     ),
 }

@@ -66,6 +66,7 @@ NUMBERS = (
         tr("Strain at which the material breaks."),
         100.0,
     ),
+    Number("young_gpa", tr("Stiffness"), "GPa", 0.0001, 1000.0, 0.5, 4, tr("Young's modulus of the material.")),
     Number("speed_mm_s", tr("Cutting speed"), "mm/s", 0.01, 10_000.0, 5.0, 2, tr("Speed with the beam on.")),
     Number("travel_mm_s", tr("Travel speed"), "mm/s", 0.01, 20_000.0, 20.0, 2, tr("Speed between cuts.")),
     Number(

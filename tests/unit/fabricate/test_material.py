@@ -19,17 +19,18 @@ def test_that_the_five_presets_are_bundled_and_none_claims_to_be_calibrated() ->
     assert presets()["drag-knife"].kerf_mm == 0.0
     assert presets()["foil-uv"].strain_limit == 0.05 < presets()["film-uv"].strain_limit
     assert all("strain limit" in material.note.lower() for material in presets().values())
+    assert all("young's modulus" in material.note.lower() for material in presets().values())
 
 
 def test_that_files_from_before_the_newer_entries_still_load_with_their_defaults(tmp_path: Path) -> None:
-    newer = ("strain_limit", "on_delay_s", "off_delay_s", "passes", "min_slit_mm")
+    newer = ("strain_limit", "on_delay_s", "off_delay_s", "passes", "min_slit_mm", "young_gpa")
     lines = resource("materials", "drag-knife.toml").read_text(encoding="utf-8").splitlines()
     old = [line for line in lines if not line.startswith(newer)]
     assert len(old) == len(lines) - len(newer)
     (tmp_path / "old.toml").write_text("\n".join(old), encoding="utf-8")
     material = read_preset(tmp_path / "old.toml")
     assert (material.strain_limit, material.on_delay_s, material.off_delay_s) == (0.05, 0.0, 0.0)
-    assert (material.passes, material.min_slit_mm) == (1, 0.1)
+    assert (material.passes, material.min_slit_mm, material.young_gpa) == (1, 0.1, 3.0)
     assert material.speed_mm_s == presets()["drag-knife"].speed_mm_s
 
 

@@ -1,0 +1,281 @@
+"""``mechanics``: what a cut sheet, or a given network of panels, does on its elastic connectors."""
+
+from __future__ import annotations
+
+import argparse
+import math
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from kirigami_studio.cli.console import print_json, say
+from kirigami_studio.cli.fabrication import overridden
+from kirigami_studio.cli.inputs import read_sheets
+from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.evaluate.siou import siou_of_many
+from kirigami_studio.fabricate.connectors import hinge_widths
+from kirigami_studio.fabricate.slits import cut_table
+from kirigami_studio.foundation.errors import MechanicsError, UsageError
+from kirigami_studio.foundation.words import tr
+from kirigami_studio.lattice.deployment import Deployment, deploy
+from kirigami_studio.mechanics.closing import (
+    Closing,
+    closing,
+    even_closing,
+    grips,
+    ideal_motion,
+    silhouette,
+)
+from kirigami_studio.mechanics.connectors import ElasticSheet, junctions, straight_connectors
+from kirigami_studio.mechanics.drive import Drive, clamped_ends
+from kirigami_studio.mechanics.equilibrium import EquilibriumPath, follow
+from kirigami_studio.mechanics.estimate import estimate_stretch
+from kirigami_studio.mechanics.network_files import NetworkFile, SpringConstants, morpher_drive, read_network
+from kirigami_studio.mechanics.sheet_network import SheetNetwork, sheet_network
+from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.project.cutting import material_for
+from kirigami_studio.project.settings import FabricationSettings
+from kirigami_studio.project.store import SUFFIX as PROJECT
+from kirigami_studio.project.store import load
+
+MPA_PER_GPA = 1e3
+LEAST_STEPS = 3
+#: Rows of the table for a person.
+SHOWN_ROWS = 11
+AXES = {"x": (0, 0), "y": (1, 1), "xx": (0, 0), "yy": (1, 1), "xy": (0, 1), "yx": (1, 0)}
+
+
+def mechanics(arguments: argparse.Namespace) -> int:
+    """Close a sheet, or drive a network, and print force, energy, strain and stability."""
+    if (arguments.source is None) == (arguments.network is None):
+        raise UsageError("mechanics.one_source")
+    if arguments.steps < LEAST_STEPS:
+        raise UsageError("drive.too_few_steps", found=arguments.steps, least=LEAST_STEPS)
+    return _drive_network(arguments) if arguments.network is not None else _close_sheet(arguments)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Cut:
+    """A sheet as it is cut.
+
+    Attributes
+    ----------
+    deployment : Deployment
+    sheet : SheetNetwork
+    settings : FabricationSettings
+    target : Outline or None
+    phi : float, radians
+        At which the sheet is meant to show the target.
+    """
+
+    deployment: Deployment
+    sheet: SheetNetwork
+    settings: FabricationSettings
+    target: Outline | None
+    phi: float
+
+
+def _close_sheet(arguments: argparse.Namespace) -> int:
+    cut = _cut(arguments)
+    held, moved = arguments.hold, arguments.move
+    if (held is None) != (moved is None):
+        raise UsageError("mechanics.hold_and_move")
+    if arguments.end_deg >= 180.0:
+        raise UsageError("mechanics.end_angle", angle=arguments.end_deg)
+    end = math.radians(arguments.end_deg)
+    if held is None:
+        drive = even_closing(cut.sheet, end, arguments.steps)
+    else:
+        drive = grips(cut.deployment, cut.sheet, cut.settings.width_mm, held, moved, end, arguments.steps)
+    found = closing(cut.sheet, drive)
+    figures = _figures(cut, found, held is not None, arguments.tolerance)
+    if arguments.json:
+        print_json(figures)
+    else:
+        _tell(cut, figures)
+    return 0
+
+
+def _cut(arguments: argparse.Namespace) -> _Cut:
+    """The sheet that the command line names, with the material, widths and kerf that apply."""
+    path, target, phi = Path(arguments.source), None, 0.0
+    if path.suffix.lower() == PROJECT:
+        document = load(path)
+        candidate = _chosen(document.candidate, path)
+        deployment, saved = deploy(candidate.final_sheet), document.fabrication
+        target, phi = document.target, candidate.final_phi
+    else:
+        named = list(read_sheets([arguments.source]))
+        if len(named) != 1:
+            raise UsageError("mechanics.one_sheet", name=arguments.source, found=len(named))
+        deployment, saved = deploy(named[0].read()), FabricationSettings()
+    settings = overridden(saved, arguments)
+    material = material_for(settings)
+    kerf = material.kerf_mm if settings.kerf_mm is None else settings.kerf_mm
+    width = material.connector_mm if settings.connector_mm is None else settings.connector_mm
+    table = cut_table(*deployment.sheet.grid)
+    widths = hinge_widths(table.hinge_count, width, dict(settings.options.hinge_mm), settings.options.removed)
+    found = junctions(deployment, settings.width_mm, table.hinge_node)
+    centres = found.place if arguments.centres == "node" else None
+    young = material.young_gpa if arguments.young_gpa is None else arguments.young_gpa
+    elastic = ElasticSheet(MPA_PER_GPA * young, material.thickness_mm)
+    sheet = sheet_network(found.corners, straight_connectors(found, widths, kerf, centres), elastic)
+    return _Cut(deployment, sheet, settings, target, phi)
+
+
+def _chosen(candidate: Candidate | None, path: Path) -> Candidate:
+    if candidate is None:
+        raise MechanicsError("mechanics.no_design_chosen", path=path)
+    return candidate
+
+
+def _figures(cut: _Cut, found: Closing, gripped: bool, tolerated: float) -> dict[str, object]:
+    """The JSON answer for a sheet."""
+    network, connectors = cut.sheet.network, cut.sheet.connectors
+    jam = found.jam_phi(tolerated)
+    estimate = estimate_stretch(cut.deployment, cut.sheet, cut.settings.width_mm)
+    # Against an angle the slope of the energy is a moment: what a lever of one panel's size needs at its end.
+    arm = 1.0 if gripped else network.panel_size
+    believed = "out_of_plane" if cut.sheet.sheet.thickness_mm < float(connectors.width_mm.min()) else "in_plane"
+    opening = np.degrees(cut.sheet.opening(found.path.motion))
+    figures: dict[str, object] = {
+        "panels": network.panel_count,
+        "connectors": len(connectors),
+        "width_mm": cut.settings.width_mm,
+        "connector_mm": float(connectors.width_mm.min()),
+        "phi_deg": np.degrees(found.phi),
+        "least_phi_deg": 180.0 - opening.max(axis=1),
+        "most_phi_deg": 180.0 - opening.min(axis=1),
+        "energy_mj": found.path.energy,
+        "force_n": found.path.force / arm,
+        "displacement": found.path.drive.displacement,
+        "displacement_unit": "mm" if gripped else "rad",
+        "max_stretch_widths": found.stretch.max(axis=1),
+        "max_strain": found.in_plane.max(axis=1),
+        "max_strain_out_of_plane": found.out_of_plane.max(axis=1),
+        "strain_believed": believed,
+        "least_eigenvalue_n_mm": found.path.least,
+        "snap_deg": np.degrees(found.phi[found.path.snapped]),
+        "stuck": len(found.phi) < found.asked,
+        "tolerated_stretch_widths": tolerated,
+        "jam_deg": math.degrees(jam),
+        "estimated_jam_deg": math.degrees(estimate.jam_phi(tolerated)),
+        "stable_deg": np.degrees(found.stable_phi),
+        "stretch_at_end_widths": found.stretch[-1],
+    }
+    if cut.target is not None:
+        figures |= _overlap(cut, found, jam, cut.target)
+    return figures
+
+
+def _overlap(cut: _Cut, found: Closing, jam: float, target: Outline) -> dict[str, object]:
+    """IoU with the target of the sheet as cut, where it comes to, and as designed."""
+    width, network = cut.settings.width_mm, cut.sheet.network
+    reached = max(cut.phi, jam, float(found.phi.min()))
+    forced = max(cut.phi, float(found.phi.min()))
+    motions = (
+        found.motion_at(reached),
+        found.motion_at(forced),
+        ideal_motion(cut.deployment, network, width, cut.phi),
+    )
+    rings = [silhouette(cut.deployment, network, width, motion) for motion in motions]
+    as_cut, shut, ideal = (siou_of_many([ring], target)[0].iou_exact for ring in rings)
+    return {
+        "reached_deg": math.degrees(reached),
+        "iou_as_cut": as_cut,
+        "forced_deg": math.degrees(forced),
+        "iou_forced": shut,
+        "iou_ideal": ideal,
+    }
+
+
+def _tell(cut: _Cut, figures: dict[str, object]) -> None:
+    """The figures as a table and sentences."""
+    columns = [
+        np.asarray(figures[name], dtype=np.float64)
+        for name in ("phi_deg", "energy_mj", "force_n", "max_stretch_widths", "max_strain", "max_strain_out_of_plane")
+    ]
+    say(tr("   phi   energy mJ     force N  stretch  strain in plane, out of plane"))
+    for step in np.unique(np.linspace(0, len(columns[0]) - 1, SHOWN_ROWS).round().astype(int)).tolist():
+        phi, energy, force, stretch, inner, outer = (float(column[step]) for column in columns)
+        say(f"{phi:6.1f}  {energy:10.4g}  {force:10.4g}  {stretch:6.3f}w  {100 * inner:8.1f} % {100 * outer:8.1f} %")
+    jam, tolerated = float(str(figures["jam_deg"])), float(str(figures["tolerated_stretch_widths"]))
+    if jam == 0.0:
+        say(tr("Closes: no connector is stretched by more than {limit:g} of its width.", limit=tolerated))
+    else:
+        say(
+            tr(
+                "Jams at {jam:.0f} degrees: a connector would be stretched by more than {limit:g} of its width, or "
+                "panels touch.",
+                jam=jam,
+                limit=tolerated,
+            )
+        )
+    say(tr("Fast estimate of the same angle: {jam:.0f} degrees.", jam=float(str(figures["estimated_jam_deg"]))))
+    stable = ", ".join(f"{angle:.0f}" for angle in np.asarray(figures["stable_deg"], dtype=np.float64))
+    say(tr("Rests by itself at (degrees): {angles}.", angles=stable or tr("nowhere on this path")))
+    if "iou_as_cut" in figures:
+        say(
+            tr(
+                "IoU as cut, at {phi:.0f} degrees: {cut:.4f}; forced to {end:.0f} degrees: {forced:.4f}; as designed: "
+                "{ideal:.4f}.",
+                phi=float(str(figures["reached_deg"])),
+                end=float(str(figures["forced_deg"])),
+                forced=float(str(figures["iou_forced"])),
+                cut=float(str(figures["iou_as_cut"])),
+                ideal=float(str(figures["iou_ideal"])),
+            )
+        )
+    say(tr("Friction, plastic set and motion out of the plane are not modelled."))
+
+
+def _drive_network(arguments: argparse.Namespace) -> int:
+    given = {"--ka": arguments.ka, "--ks": arguments.ks, "--kt": arguments.kt}
+    if missing := [name for name, value in given.items() if value is None]:
+        raise UsageError("mechanics.constant_missing", option=missing[0])
+    constants = SpringConstants(arguments.ka, arguments.ks, arguments.kt, arguments.contact)
+    file = read_network(Path(arguments.network), constants)
+    drive = _network_drive(file, arguments.drive, arguments.steps)
+    found = follow(file.network, drive)
+    if arguments.json:
+        print_json(
+            {
+                "panels": file.network.panel_count,
+                "ligaments": len(file.network.ligaments),
+                "displacement_mm": drive.displacement,
+                "force_n": found.force,
+                "energy_mj": found.energy,
+                "least_eigenvalue_n_mm": found.least,
+                "snap_mm": drive.displacement[found.snapped],
+                "stable_mm": found.stable,
+            }
+        )
+        return 0
+    _tell_network(found)
+    return 0
+
+
+def _tell_network(found: EquilibriumPath) -> None:
+    say(tr("displacement mm     force N   energy mJ"))
+    at = found.drive.displacement
+    for step in np.unique(np.linspace(0, len(at) - 1, SHOWN_ROWS).round().astype(int)).tolist():
+        say(f"{at[step]:15.3f}  {found.force[step]:10.4g}  {found.energy[step]:10.4g}")
+    stable = ", ".join(f"{place:.2f}" for place in found.stable)
+    say(tr("Rests by itself at (mm): {places}.", places=stable or tr("nowhere on this path")))
+
+
+def _network_drive(file: NetworkFile, text: str, steps: int) -> Drive:
+    """``morpher``, or ``clamped:AXIS:MM``."""
+    if text == "morpher":
+        return morpher_drive(file, steps)
+    kind, _, rest = text.partition(":")
+    axis, _, distance = rest.partition(":")
+    try:
+        length = float(distance)
+    except ValueError:
+        length = math.nan
+    if kind != "clamped" or axis not in AXES or not math.isfinite(length) or length == 0.0:
+        raise UsageError("mechanics.unknown_drive", text=text)
+    ends, direction = AXES[axis]
+    return clamped_ends(file.network, ends, direction, length, steps)

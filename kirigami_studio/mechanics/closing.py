@@ -1,0 +1,251 @@
+"""What a cut sheet does as it opens from flat towards phi = 0: force, energy, stretch, strain, and where it jams."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+
+from kirigami_studio.foundation.arrays import FloatArray
+from kirigami_studio.foundation.errors import MechanicsError
+from kirigami_studio.lattice.deployment import Deployment, check_phi
+from kirigami_studio.mechanics.drive import Drive, mean_turn, prescribed_places
+from kirigami_studio.mechanics.energy import NetworkEnergy
+from kirigami_studio.mechanics.equilibrium import EquilibriumPath, follow
+from kirigami_studio.mechanics.network import PanelNetwork
+from kirigami_studio.mechanics.sheet_network import SheetNetwork
+
+#: A sheet that comes to this angle counts as closed; contacts keep it from phi = 0 itself.
+CLOSED = math.radians(2.0)
+#: Steps of a closing unless given.
+STEPS = 31
+#: So many times as finely is the way of grips followed, so that its length and direction are exact.
+FINER = 8
+#: Stretch (in connector widths) that a connector is taken to bear: what a neck of ductile film yields by.
+TOLERATED_STRETCH = 0.45
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Closing:
+    """A sheet on its way from flat towards phi = 0.
+
+    Attributes
+    ----------
+    sheet : SheetNetwork
+    path : EquilibriumPath
+    phi : (S,) float, radians
+        Mean angle of the sheet: pi less the mean turn of its connectors.
+    stretch_mm : (S, H) float
+        How far the two panels at every connector were pulled apart or pushed off each other.
+    in_plane, out_of_plane : (S, H) float
+        Upper and lower figure of the strain in every connector, see :meth:`SheetNetwork.strains`.
+    asked : int
+        Number of steps that were asked for; more than S where the sheet got stuck.
+    """
+
+    sheet: SheetNetwork
+    path: EquilibriumPath
+    phi: FloatArray
+    stretch_mm: FloatArray
+    in_plane: FloatArray
+    out_of_plane: FloatArray
+    asked: int
+
+    @property
+    def stretch(self) -> FloatArray:
+        """Stretch in widths of the connectors: (S, H)."""
+        widths: FloatArray = self.stretch_mm / self.sheet.connectors.width_mm
+        return widths
+
+    @property
+    def stable_phi(self) -> FloatArray:
+        """Angles (radians) at which the sheet rests if it is let go."""
+        at = self.path.drive.displacement
+        order = np.argsort(at, kind="stable")
+        found: FloatArray = np.interp(self.path.stable, at[order], self.phi[order])
+        return found
+
+    def jam_phi(self, tolerated: float = TOLERATED_STRETCH) -> float:
+        """Angle (radians) at which a connector is stretched by more than it tolerates (in widths); 0 if none is.
+
+        A sheet that comes to rest against its contacts before it has closed jams there.
+        """
+        return jam_angle(self.phi, self.stretch.max(axis=1), tolerated, len(self.phi) == self.asked)
+
+    def motion_at(self, phi: float) -> FloatArray:
+        """Motion (P, 3) at a mean angle (radians), between the two steps beside it."""
+        phis = np.minimum.accumulate(self.phi)
+        after = int(np.clip(np.searchsorted(-phis, -phi), 1, len(phis) - 1)) if len(phis) > 1 else 0
+        before = max(after - 1, 0)
+        run = self.phi[before] - self.phi[after]
+        share = float(np.clip((self.phi[before] - phi) / run, 0.0, 1.0)) if run > 0.0 else 1.0
+        found: FloatArray = (1.0 - share) * self.path.motion[before] + share * self.path.motion[after]
+        return found
+
+
+def jam_angle(phi: FloatArray, stretch: FloatArray, tolerated: float, reached_end: bool) -> float:
+    """Where a growing stretch passes what is tolerated.
+
+    Parameters
+    ----------
+    phi : (S,) float, radians
+        Falling.
+    stretch : (S,) float
+        In connector widths.
+    tolerated : float
+    reached_end : bool
+        Whether the sheet came as far as it was driven.
+
+    Returns
+    -------
+    phi : float, radians
+        0 for a sheet that closes.
+    """
+    over = np.flatnonzero(stretch > tolerated)
+    if not over.size:
+        closed = reached_end and phi[-1] <= CLOSED + 1e-9
+        return 0.0 if closed else float(phi[-1])
+    last = int(over[0])
+    if last == 0:
+        return float(phi[0])
+    share = (tolerated - stretch[last - 1]) / (stretch[last] - stretch[last - 1])
+    return float(phi[last - 1] + share * (phi[last] - phi[last - 1]))
+
+
+def closing(sheet: SheetNetwork, drive: Drive | None = None) -> Closing:
+    """Close a sheet along a drive, as far as it goes.
+
+    Parameters
+    ----------
+    sheet : SheetNetwork
+    drive : Drive, optional
+        The mean turn of the connectors, from the flat sheet to :data:`CLOSED`, unless given.
+    """
+    chosen = even_closing(sheet) if drive is None else drive
+    path = follow(sheet.network, chosen, until_stuck=True)
+    energy = NetworkEnergy(sheet.network)
+    opening = sheet.opening(path.motion)
+    in_plane, out_of_plane = sheet.strains(opening, energy.tension(path.motion))
+    return Closing(
+        sheet=sheet,
+        path=path,
+        phi=math.pi - opening.mean(axis=1),
+        stretch_mm=energy.stretch(path.motion),
+        in_plane=in_plane,
+        out_of_plane=out_of_plane,
+        asked=chosen.steps,
+    )
+
+
+def even_closing(sheet: SheetNetwork, end: float = CLOSED, steps: int = STEPS) -> Drive:
+    """Drive the mean turn of the connectors from the flat sheet to an angle (radians): the sheet finds its own way."""
+    return mean_turn(sheet.network, sheet.connectors.sign, np.linspace(0.0, math.pi - end, steps))
+
+
+def grips(
+    deployment: Deployment,
+    sheet: SheetNetwork,
+    width_mm: float,
+    held: Sequence[int],
+    moved: Sequence[int],
+    end: float = CLOSED,
+    steps: int = STEPS,
+) -> Drive:
+    """Pin some panels at their middles and lead them along the ideal path; pinned panels may turn.
+
+    Parameters
+    ----------
+    deployment : Deployment
+    sheet : SheetNetwork
+    width_mm : float
+    held, moved : sequence of int
+        Panels, row by row.  The middle of those that are held stays where it is.
+    end : float, radians
+    steps : int
+
+    Returns
+    -------
+    drive : Drive
+        Its displacement is the way, mm, that the middle of the moved panels has gone from that of the held ones.
+
+    Raises
+    ------
+    MechanicsError
+        Unknown panels, fewer than two altogether, or none to move.
+    """
+    network = sheet.network
+    panels = [*held, *moved]
+    for panel in panels:
+        if not 0 <= panel < network.panel_count:
+            raise MechanicsError("drive.unknown_panel", panel=panel, last=network.panel_count - 1)
+    if not held or not moved:
+        raise MechanicsError("drive.no_grips")
+    angles = np.linspace(math.pi, end, FINER * (steps - 1) + 1)
+    places = np.stack([network.centroids + ideal_motion(deployment, network, width_mm, phi)[:, :2] for phi in angles])
+    # Seen from the held panels, whose middle stays.
+    places -= places[:, list(held)].mean(axis=1, keepdims=True) - places[0, list(held)].mean(axis=0)
+    middle = places[:, list(moved)].mean(axis=1)
+    way = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(middle, axis=0), axis=1))])
+    return prescribed_places(panels, (places - network.centroids)[:, panels], way, FINER)
+
+
+def ideal_motion(deployment: Deployment, network: PanelNetwork, width_mm: float, phi: float) -> FloatArray:
+    """Displacement (mm) and turn (radians) of every panel (P, 3) at an angle: the way with connectors on the nodes.
+
+    Parameters
+    ----------
+    deployment : Deployment
+    network : PanelNetwork
+        Its panels, row by row, at rest as the flat sheet of that width with its smallest coordinates at 0.
+    width_mm : float
+    phi : float, radians
+
+    The middle of the nodes stays where it is.
+    """
+    tables = deployment.topology
+    half = 0.5 * (math.pi - check_phi(phi))
+    flat, scale = _flat_nodes(deployment, width_mm)
+    nodes = deployment.nodes(phi) * scale
+    nodes += flat.mean(axis=0) - nodes.mean(axis=0)
+    row, column = np.indices((tables.rows + 1, tables.columns + 1))
+    theta = np.where((row + column) % 2 == 0, -half, half).ravel()
+    first = tables.panel_nodes.reshape(-1, 4)[:, 0]
+    moved = _turned(network.centroids - flat[first], theta) + nodes[first]
+    return np.column_stack([moved - network.centroids, theta])
+
+
+def silhouette(deployment: Deployment, network: PanelNetwork, width_mm: float, motion: FloatArray) -> FloatArray:
+    """Outer boundary (K, 2), mm, of the sheet after a motion (P, 3): of the union of all panels and voids.
+
+    Corners that two panels share lie halfway between theirs where a connector is stretched.
+    """
+    tables = deployment.topology
+    flat, _ = _flat_nodes(deployment, width_mm)
+    table = tables.panel_nodes.reshape(-1, 4)
+    theta = np.repeat(motion[:, 2, None], 4, axis=1)
+    corners = _turned(flat[table] - network.centroids[:, None], theta)
+    corners += (network.centroids + motion[:, :2])[:, None]
+    count = np.bincount(table.ravel(), minlength=tables.node_count)
+    nodes = np.stack(
+        [np.bincount(table.ravel(), corners[..., axis].ravel(), tables.node_count) / count for axis in (0, 1)], axis=1
+    )
+    quads = np.concatenate([corners, nodes[tables.void_nodes.reshape(-1, 4)]])
+    shapes = shapely.make_valid(shapely.polygons(quads))
+    united = shapely.union_all(shapes, grid_size=1e-6 * width_mm)
+    largest = max(shapely.get_parts(united), key=lambda part: float(part.area))
+    return np.asarray(shapely.get_coordinates(shapely.get_exterior_ring(largest))[:-1], dtype=np.float64)
+
+
+def _flat_nodes(deployment: Deployment, width_mm: float) -> tuple[FloatArray, float]:
+    """All nodes (N, 2) of the flat sheet, mm, smallest coordinates 0, and the mm of a unit cell."""
+    scale = width_mm / float(np.ptp(deployment.compact[:, 0]))
+    return (deployment.compact - deployment.compact.min(axis=0)) * scale, scale
+
+
+def _turned(arms: FloatArray, theta: FloatArray) -> FloatArray:
+    """Vectors (..., 2) turned by angles (...)."""
+    cos, sin = np.cos(theta), np.sin(theta)
+    return np.stack([cos * arms[..., 0] - sin * arms[..., 1], sin * arms[..., 0] + cos * arms[..., 1]], axis=-1)

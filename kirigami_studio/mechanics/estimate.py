@@ -1,0 +1,142 @@
+"""A fast estimate of what closing a sheet stretches: the over-constrained linkage by linear least squares.
+
+The ideal path is pushed into the sheet: every panel is put where it would be with its connectors on the nodes, and the
+gaps that then open at the real rotation centres are closed as well as they can be, weighted by stiffness, with the mean
+turn kept.  That is one Gauss-Newton step at every angle, begun with the correction found at the angle before.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import cho_solve_banded, cholesky_banded
+
+from kirigami_studio.foundation.arrays import FloatArray
+from kirigami_studio.lattice.deployment import Deployment
+from kirigami_studio.mechanics.closing import CLOSED, TOLERATED_STRETCH, ideal_motion, jam_angle
+from kirigami_studio.mechanics.energy import SIX, NetworkEnergy
+from kirigami_studio.mechanics.sheet_network import SheetNetwork
+
+#: Angles (degrees) at which stretch is estimated.
+ANGLES_DEG = (150.0, 115.0, 80.0, 45.0, 15.0)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class StretchEstimate:
+    """Estimated stretch of every connector at some angles.
+
+    Attributes
+    ----------
+    phi : (A,) float, radians
+        Falling.
+    stretch : (A, H) float
+        In connector widths.
+    room : (A,) float, radians
+        The smallest void angle that is left before panels touch.
+    """
+
+    phi: FloatArray
+    stretch: FloatArray
+    room: FloatArray
+
+    def jam_phi(self, tolerated: float = TOLERATED_STRETCH) -> float:
+        """Angle (radians) at which a connector is stretched by more than it tolerates or panels touch; 0 if neither."""
+        phi = np.concatenate([[math.pi], self.phi])
+        worst = np.concatenate([[0.0], self.stretch.max(axis=1)])
+        if self.phi[-1] > CLOSED:
+            # Stretch grows like cos(phi / 2) as the sheet closes, and hardly any more at the end.
+            phi, worst = np.append(phi, CLOSED), np.append(worst, worst[-1])
+        stretched = jam_angle(phi, worst, tolerated, True)
+        # Voids close as fast as the mean angle falls.
+        touching = float(self.phi[-1] - self.room[-1])
+        return max(stretched, touching if touching > CLOSED else 0.0)
+
+
+def estimate_stretch(
+    deployment: Deployment, sheet: SheetNetwork, width_mm: float, angles_deg: tuple[float, ...] = ANGLES_DEG
+) -> StretchEstimate:
+    """Estimate the stretch of all connectors.
+
+    Parameters
+    ----------
+    deployment : Deployment
+    sheet : SheetNetwork
+        Made of its panels, row by row, at that width.
+    width_mm : float
+    angles_deg : tuple of float
+        Falling.
+    """
+    network, energy = sheet.network, NetworkEnergy(sheet.network)
+    tables = deployment.topology
+    layout = _Bands.of(energy, tables.rows + 1, tables.columns + 1)
+    springs = np.stack([network.ligaments.stretching, network.ligaments.shearing], axis=1)
+    phis, stretch, room = np.radians(angles_deg), [], []
+    correction = np.zeros((network.panel_count, 3))
+    for phi in phis.tolist():
+        ideal = ideal_motion(deployment, network, width_mm, phi)
+        correction = correction + layout.step(energy, ideal + correction, springs, sheet.connectors.sign, phi)
+        motion = ideal + correction
+        stretch.append(energy.stretch(motion) / sheet.connectors.width_mm)
+        room.append(float(network.void_angles(motion)[: len(sheet.connectors)].min()))
+    return StretchEstimate(phis, np.array(stretch), np.array(room))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Bands:
+    """Where the blocks of the ligaments go in a banded matrix: panels line by line along the shorter side.
+
+    Attributes
+    ----------
+    order : (3 P,) int
+        Place of every degree of freedom.
+    place : (L, 36) int
+        Entries of the flattened lower bands; those above the diagonal go to a last place that is dropped.
+    depth, size : int
+    """
+
+    order: np.ndarray
+    place: np.ndarray
+    depth: int
+    size: int
+
+    @classmethod
+    def of(cls, energy: NetworkEnergy, rows: int, columns: int) -> _Bands:
+        number = np.arange(rows * columns).reshape(rows, columns)
+        rank = np.argsort((number if rows >= columns else number.T).ravel(), kind="stable")
+        order = (3 * rank[:, None] + np.arange(3)).ravel()
+        freedoms = order[energy.freedoms]
+        row, column = np.repeat(freedoms, SIX, axis=1), np.tile(freedoms, (1, SIX))
+        size, below = order.size, row - column
+        depth = int(below.max()) + 1
+        return cls(order, np.where(below >= 0, below * size + column, depth * size), depth, size)
+
+    def step(
+        self, energy: NetworkEnergy, motion: FloatArray, springs: FloatArray, sign: FloatArray, phi: float
+    ) -> FloatArray:
+        """One Gauss-Newton step (P, 3) of the springs' energy with the mean turn kept at pi - phi."""
+        joints = energy.network.ligaments
+        local, slopes = energy.local(motion)
+        off = local - energy.rest
+        misfit = springs * np.stack([off.real, off.imag], axis=1)
+        weighted = springs[:, :, None] * slopes
+        blocks = np.matmul(np.swapaxes(slopes, 1, 2), weighted)
+        turn = np.array([0.0, 0.0, -1.0, 0.0, 0.0, 1.0])
+        blocks += joints.turning[:, None, None] * np.outer(turn, turn)
+        # Gradient: springs and turning; border: the mean turn.
+        moment = joints.turning * energy.network.turns(motion)
+        pull = np.einsum("li,lia->la", misfit, slopes) + moment[:, None] * turn
+        mean = (sign / len(sign))[:, None] * turn
+        freedoms = self.order[energy.freedoms].ravel()
+        right = np.stack([np.bincount(freedoms, part.ravel(), self.size) for part in (-pull, mean)], axis=1)
+        bands = np.bincount(self.place.ravel(), blocks.ravel(), self.depth * self.size + 1)[:-1]
+        bands = bands.reshape(self.depth, self.size)
+        # The whole may go anywhere: holding the first panel fixes that and costs nothing.
+        bands[0, :3] += bands[0].mean()
+        factor = cholesky_banded(bands, overwrite_ab=True, lower=True, check_finite=False)
+        free, leaning = cho_solve_banded((factor, True), right, check_finite=False).T
+        missing = math.pi - phi - float(np.mean(sign * energy.network.turns(motion)))
+        step = free + (missing - float(right[:, 1] @ free)) / float(right[:, 1] @ leaning) * leaning
+        found: FloatArray = step[self.order].reshape(-1, 3)
+        return found
