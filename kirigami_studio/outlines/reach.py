@@ -1,13 +1,14 @@
-"""Which parts of a target a sheet of a given grid can hardly show: thin arms and narrow notches.
+"""Which parts of a target a sheet of a given grid can hardly show: thin arms, narrow notches and undercuts.
 
 A sheet of m x n voids shows a target of area 1 with (m + 1)(n + 1) panels, so a panel is about
 ``1 / sqrt((m + 1)(n + 1))`` wide.  An arm is made of two rows of panels at least, and their hinges cannot lie anywhere.
+What turns back by 180 degrees or more is out of reach for every grid, see ``turning``.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 import shapely
@@ -18,6 +19,7 @@ from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import TargetError
 from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.outlines.turning import LIMIT, turn_back
 
 #: Narrower than this many panels is marked.  Found with fits of 20 drawn shapes (8 x 8 and 12 x 12 voids, 6 samples
 #: polished): the 14 of 40 that are marked miss 7.1 % on average and 2.3 % at least, the others 2.2 % on average; the
@@ -31,6 +33,9 @@ SMALLEST_PART = 0.5
 #: The outline is simplified by this share of a panel first.
 COARSENESS = 0.02
 FINEST_GRID = 32
+#: Outlines that turn back by this much more than closed layouts can (radians) are marked: parallel walls of a wide
+#: notch turn back by 180 degrees and cost little when they lean a bit.
+BEYOND = math.radians(10.0)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -46,6 +51,10 @@ class Reach:
         What the grid can show.
     share : float
         Area of the marked parts, with the target's as 1.
+    undercut : (L, 2) float, outline units
+        The notch around which the outline turns back most, if no sheet with a convex outline can show it closed.
+    turns_back : float, radians
+        By how much it turns back there; 0 where that is no hindrance.
     """
 
     grid: tuple[int, int]
@@ -53,11 +62,13 @@ class Reach:
     notches: tuple[FloatArray, ...]
     narrowest: float
     share: float
+    undercut: FloatArray = field(default_factory=lambda: np.zeros((0, 2)))
+    turns_back: float = 0.0
 
     @property
     def clear(self) -> bool:
         """Whether nothing is marked."""
-        return not self.arms and not self.notches
+        return not self.arms and not self.notches and not self.turns_back
 
 
 def reach_of(outline: Outline, grid: tuple[int, int]) -> Reach:
@@ -82,7 +93,10 @@ def reach_of(outline: Outline, grid: tuple[int, int]) -> Reach:
     arms = _parts(shape.difference(_there_and_back(shape, -radius)), panel)
     notches = _parts(_there_and_back(shape, radius).difference(shape), panel)
     share = float(sum(Polygon(ring).area for ring in (*arms, *notches)))
-    return Reach((rows, columns), arms, notches, 2.0 * radius, share)
+    back = turn_back(outline)
+    if back.angle < LIMIT + BEYOND:
+        return Reach((rows, columns), arms, notches, 2.0 * radius, share)
+    return Reach((rows, columns), arms, notches, 2.0 * radius, share, back.stretch, back.angle)
 
 
 def share_of_arms(outline: Outline, radius: float) -> float:
@@ -118,6 +132,17 @@ def reach_texts(reach: Reach, outline: Outline, scale_mm: float | None = None) -
     """
     if reach.clear:
         return "", ""
+    if reach.turns_back:
+        # This comes first: no grid helps.
+        degrees = math.degrees(reach.turns_back)
+        return (
+            tr(
+                "The outline turns back by {degrees:.0f}° around the marked notch. A closed sheet turns back by less "
+                "than 180° on any grid, so it will fill a part of the notch. Make the notch wider at its mouth.",
+                degrees=degrees,
+            ),
+            tr("The marked notch turns back too far."),
+        )
     finer = _finer_grid(outline, reach.grid)
     advice = (
         tr("Make them wider.")

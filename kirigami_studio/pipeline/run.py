@@ -39,7 +39,7 @@ from kirigami_studio.pipeline.tasks import (
     scored,
 )
 from kirigami_studio.pipeline.variety import worth_a_fit
-from kirigami_studio.polish.continuation import first_angles
+from kirigami_studio.polish.continuation import Way, first_angles
 from kirigami_studio.polish.symmetry import SymmetricPose, shared_symmetries
 
 #: Candidates scored in one batch.
@@ -184,7 +184,8 @@ def fits_from_uniform(request: Request) -> list[GuidedTask]:
     angles = first_angles(request.target, request.chosen_grid, request.phi, 1, request.symmetry)
     if request.symmetry in ("mirror", "turn"):
         angles = [one for one in angles if one[1] is not None] or angles
-    ways = [(angle, symmetry, led) for angle, symmetry in angles for led in (False, True)][: request.fitted_starts]
+    suited = Way.suited_to(request.target)
+    ways = [(angle, symmetry, way) for angle, symmetry in angles for way in suited][: request.fitted_starts]
     return [GuidedTask(request.k - len(ways) + place, *way) for place, way in enumerate(ways)]
 
 

@@ -18,7 +18,7 @@ from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.pipeline.rank import EVENNESS, MILDER, SYMMETRY, Ranking
 from kirigami_studio.pipeline.redesign import kept_symmetry, trimmed
 from kirigami_studio.pipeline.request import Request
-from kirigami_studio.polish.continuation import FAIR_LOSS, cooled, fit_shape, guided, guided_start
+from kirigami_studio.polish.continuation import FAIR_LOSS, Way, fit_from_uniform, fit_shape
 from kirigami_studio.polish.levenberg import polish
 from kirigami_studio.polish.objective import Stage
 from kirigami_studio.polish.preferences import PREFERENCES
@@ -109,15 +109,14 @@ class GuidedTask:
     index: int
     angle: float
     symmetry: Symmetry | None
-    led: bool
+    way: Way
 
     def carry_out(self, request: Request, stopped: Callable[[], bool]) -> Answer:
-        """Fit with even panels that soften, led by the transport map of the inside if asked for."""
-        stages = guided(request.even) if self.led else cooled(request.even)
+        """Fit the way that the task says."""
         grid, wishes = request.chosen_grid, request.wishes
         with one_blas_thread():
             target = fit_target(request, self.symmetry)
-            fit = guided_start(target, grid, request.phi, self.angle, stages, wishes, self.symmetry, stopped)
+            fit = fit_from_uniform(target, grid, request.phi, self.angle, self.way, wishes, self.symmetry, stopped)
         (found,) = scored(request, [fit.sheet], self.index, Origin.GUIDED, fitted=True)
         return Answer(found, fit.evaluations + 1)
 

@@ -207,9 +207,10 @@ class TargetView(Canvas):
     def _paint_reach(self, painter: QPainter, transform: ViewTransform, placed: Placed) -> None:
         if self.reach is None or self._preview is not None:
             return
+        undercuts = (self.reach.undercut,) if self.reach.turns_back else ()
         arms, notches = (
             [transform.to_pixels(ring * placed.scale + placed.centre) for ring in rings]
-            for rings in (self.reach.arms, self.reach.notches)
+            for rings in (self.reach.arms, self.reach.notches + undercuts)
         )
         paint_reach(painter, arms, notches, self.palette_)
 

@@ -125,3 +125,17 @@ def test_that_fits_miss_more_at_the_marked_places_than_along_the_rest() -> None:
         edge = outline.polygon.exterior
         length, around = length + edge.intersection(zone).length, around + edge.length
     assert inside / total > 1.4 * length / around
+
+
+def test_that_an_undercut_is_marked_on_every_grid_and_the_advice_is_not_a_finer_one() -> None:
+    mouth, inside = 1.0, 5.0
+    notch = [(5 - mouth / 2, 10), (5 - inside / 2, 6), (5 + inside / 2, 6), (5 + mouth / 2, 10)]
+    outline = Outline.from_points(np.array([(0, 0), (10, 0), (10, 10), *notch[::-1], (0, 10)], dtype=float))
+    leaning = [(8, 10), (6, 6), (4, 6), (2, 10)]
+    wide = Outline.from_points(np.array([(0, 0), (10, 0), (10, 10), *leaning, (0, 10)], dtype=float))
+    for grid in ((8, 8), (30, 30)):
+        reach = reach_of(outline, grid)
+        assert math.degrees(reach.turns_back) == pytest.approx(180 + 2 * math.degrees(math.atan2(2, 4)), abs=1)
+        assert Polygon(reach.undercut).area * 84 == pytest.approx(0.5 * (mouth + inside) * 4, rel=0.1)
+        assert "wider at its mouth" in reach_texts(reach, outline)[0]
+        assert not reach_of(wide, grid).turns_back

@@ -1,0 +1,72 @@
+"""How far outlines turn back, and that no closed layout of a convex sheet turns back by 180 degrees."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from kirigami_studio.lattice.deployment import deploy
+from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.lattice.sheet import Rim, Sheet
+from kirigami_studio.outlines import turning
+from kirigami_studio.outlines.figures import Box, Figure, figure
+from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.outlines.rounding import rounded
+from kirigami_studio.outlines.turning import turn_back
+
+#: A plate of 10 with a slit of 2 by 6 from the top.
+SLIT = np.array([(0, 0), (10, 0), (10, 10), (6, 10), (6, 4), (4, 4), (4, 10), (0, 10)], dtype=float)
+
+
+def every_turn_back(points: np.ndarray) -> float:
+    """The same from its definition, with every edge counted: the largest drop of direction, twice round."""
+    edges = np.roll(points, -1, axis=0) - points
+    directions = np.unwrap(np.tile(np.arctan2(edges[:, 1], edges[:, 0]), 2))
+    return max(float(directions[first] - directions[first:].min()) for first in range(len(directions)))
+
+
+@pytest.mark.parametrize("kind", [Figure.RECTANGLE, Figure.ELLIPSE, Figure.REGULAR])
+def test_that_convex_outlines_do_not_turn_back(kind) -> None:
+    found = turn_back(Outline.from_points(figure(kind, Box(0, 0, 10, 7), 5)))
+    assert found.angle == 0.0
+    assert len(found.stretch) == 0
+
+
+@pytest.mark.parametrize("first", range(8))
+def test_that_a_slit_turns_back_by_half_a_turn_wherever_the_outline_begins(first) -> None:
+    outline = Outline.from_points(np.roll(SLIT, first, axis=0))
+    found = turn_back(outline)
+    assert math.degrees(found.angle) == pytest.approx(180.0)
+    area = float(np.ptp(found.stretch[:, 0]) * np.ptp(found.stretch[:, 1]))
+    assert area == pytest.approx(12 / 88, rel=0.01)
+
+
+@given(
+    rows=st.integers(2, 7),
+    columns=st.integers(2, 7),
+    seed=st.integers(0, 10_000),
+    reach=st.floats(0.0, 0.7),
+)
+@settings(max_examples=60, deadline=None)
+def test_that_closed_layouts_turn_back_by_less_than_half_a_turn(rows, columns, seed, reach) -> None:
+    rng = np.random.default_rng(seed)
+    field = RatioField.from_log10(rng.uniform(-1, 1, (rows, columns)))
+    rim = Rim.moved(rows, columns, rng.uniform(-reach, reach, rows + columns))
+    sheet = Sheet(field, rim)
+    assert every_turn_back(deploy(sheet).outline(0.0)) < turning.LIMIT
+
+
+def test_that_rounder_shapes_lead_from_a_circle_to_the_target() -> None:
+    outline = Outline.from_points(SLIT)
+    shapes = rounded(outline, 6)
+    assert len(shapes) == 6
+    assert all(shape.is_valid and shape.area == pytest.approx(1.0) for shape in shapes)
+    lengths = [shape.length for shape in shapes]
+    assert lengths == sorted(lengths)
+    assert lengths[0] < 3.7 < 4.5 < lengths[-1] < outline.polygon.length
+    depths = [shape.convex_hull.area for shape in shapes]
+    assert depths == sorted(depths)
