@@ -7,6 +7,8 @@ TORCH_INDEX := https://download.pytorch.org/whl/cpu
 # Arrays are small: more threads only slow each other down.
 export OMP_NUM_THREADS ?= 2
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
+# The tests start dozens of programs: what Python compiled for one of them is kept for the others.
+unexport PYTHONDONTWRITEBYTECODE
 
 # Values and geometry; file readers and raster scores take longer and run in `make test` only.
 QUICK_TESTS := tests/architecture tests/property $(wildcard $(addprefix tests/unit/,foundation lattice evaluate fabricate project)) \
@@ -32,15 +34,14 @@ help:
 
 setup: $(STAMP)
 
-# torch first and by itself: only it needs the extra index, and only once.  System libraries come
-# meanwhile.  Python compiles what it imports, a tenth of what is installed.
+# torch first and by itself: only it needs the extra index, and only once.  System libraries come meanwhile.
 $(STAMP): pyproject.toml setup.py packaging/constraints-cpu.txt packaging/system_libraries.sh
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' \
 	  || { echo "Kirigami Studio needs Python 3.11 or newer. Choose one with: make PYTHON=/path/to/python3 $(MAKECMDGOALS)"; exit 1; }
 	sh packaging/system_libraries.sh & libraries=$$!; \
 	{ test -x $(BIN)/python || $(PYTHON) -m venv .venv; } \
-	  && $(BIN)/python -m pip install -q --no-compile --retries 1 --extra-index-url $(TORCH_INDEX) -c packaging/constraints-cpu.txt torch \
-	  && $(BIN)/python -m pip install -q --no-compile -c packaging/constraints-cpu.txt -e '.[test,lint]'; made=$$?; \
+	  && $(BIN)/python -m pip install -q --retries 1 --extra-index-url $(TORCH_INDEX) -c packaging/constraints-cpu.txt torch \
+	  && $(BIN)/python -m pip install -q -c packaging/constraints-cpu.txt -e '.[test,lint]'; made=$$?; \
 	  wait $$libraries && exit $$made
 	@touch $@
 

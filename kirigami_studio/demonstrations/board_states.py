@@ -39,10 +39,10 @@ class BoardStates(Session):
 
     def all_sizes(self, name: str) -> None:
         """Take one picture for every size and theme."""
-        for size in self.sizes(name):
-            self.window.resize(size)
-            for palette in (LIGHT, DARK):
-                self.window.set_theme(palette)
+        for palette in (LIGHT, DARK):
+            self.window.set_theme(palette)  # styles every widget anew, which takes longer than another size
+            for size in self.sizes(name):
+                self.window.resize(size)
                 QApplication.processEvents()
                 self.picture(f"{name}-{size.width()}x{size.height()}-{palette.name}")
         self.window.set_theme(LIGHT)

@@ -12,7 +12,9 @@ import tomllib
 from collections.abc import Mapping
 from dataclasses import MISSING, dataclass, fields
 from datetime import date
+from functools import cache
 from pathlib import Path
+from types import MappingProxyType
 
 import platformdirs
 
@@ -141,8 +143,14 @@ class Library:
 
 def presets() -> dict[str, Material]:
     """Return all bundled presets by key, the default one first, the rest in alphabetical order."""
+    return dict(_bundled())
+
+
+@cache
+def _bundled() -> Mapping[str, Material]:
+    """The presets; they come with the program, so one reading is enough."""
     found = {path.stem: read_preset(path) for path in sorted(resource("materials").glob("*.toml"))}
-    return dict(sorted(found.items(), key=lambda item: (item[0] != DEFAULT_PRESET, item[0])))
+    return MappingProxyType(dict(sorted(found.items(), key=lambda item: (item[0] != DEFAULT_PRESET, item[0]))))
 
 
 def own_folder() -> Path:

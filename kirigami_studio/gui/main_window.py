@@ -257,9 +257,8 @@ class MainWindow(QMainWindow):
         application = QApplication.instance()
         if isinstance(application, QApplication):
             theme.apply(application, palette)
-        for part in self.findChildren(QWidget):
-            if isinstance(part, theme.Themed):
-                part.set_palette(palette)
+        for part in theme.themed(self.findChildren(QWidget)):
+            part.set_palette(palette)
         self.commands.set_palette(palette)
 
     def restore(self, settings: QSettings) -> None:

@@ -8,13 +8,14 @@ Side ratios run from blue to orange through the colour of the ground, areas from
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
 from dataclasses import asdict, dataclass
 from string import Template
 from typing import Protocol, runtime_checkable
 
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QColor, QGuiApplication, QPalette
-from PySide6.QtWidgets import QApplication
+from PySide6.QtWidgets import QApplication, QWidget
 
 from kirigami_studio.foundation.resources import resource
 
@@ -76,6 +77,17 @@ class Themed(Protocol):
     def set_palette(self, palette: Palette) -> None:
         """Draw in other colours."""
         ...
+
+
+def themed(widgets: Iterable[QWidget]) -> Iterator[Themed]:
+    """Return those that have colours of their own; only few classes do, and asking is slow, so each is asked once."""
+    known: dict[type[QWidget], bool] = {}
+    for widget in widgets:
+        kind = type(widget)
+        if kind not in known:
+            known[kind] = issubclass(kind, Themed)
+        if known[kind] and isinstance(widget, Themed):
+            yield widget
 
 
 LIGHT = Palette(
