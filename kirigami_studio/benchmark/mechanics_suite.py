@@ -23,7 +23,7 @@ from kirigami_studio.foundation.resources import resource
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.mechanics.closing import closing
-from kirigami_studio.mechanics.connectors import ElasticSheet, junctions, straight_connectors
+from kirigami_studio.mechanics.connectors import ElasticSheet, cut_connectors, junctions
 from kirigami_studio.mechanics.drive import clamped_ends
 from kirigami_studio.mechanics.equilibrium import follow
 from kirigami_studio.mechanics.estimate import estimate_stretch
@@ -216,9 +216,9 @@ def measure_sheet(size: int, seed: int = 0) -> CaseResult:
     found = junctions(design, WIDTH_MM)
     widths = np.full(len(found.node), CONNECTOR_MM)
     began = time.perf_counter()
-    exact = closing(sheet_network(found.corners, straight_connectors(found, widths, KERF_MM, found.place), FILM))
+    exact = closing(sheet_network(found.corners, cut_connectors(found, widths, KERF_MM, found.place), FILM))
     seconds = time.perf_counter() - began
-    cut = sheet_network(found.corners, straight_connectors(found, widths, KERF_MM), FILM)
+    cut = sheet_network(found.corners, cut_connectors(found, widths, KERF_MM), FILM)
     straight = closing(cut)
     durations = []
     for _ in range(ESTIMATES):

@@ -14,7 +14,7 @@ from kirigami_studio.cli.fabrication import overridden
 from kirigami_studio.cli.inputs import read_sheets
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.siou import siou_of_many
-from kirigami_studio.fabricate.connectors import hinge_widths
+from kirigami_studio.fabricate.panel_sizes import panels_in_mm
 from kirigami_studio.fabricate.slits import cut_table
 from kirigami_studio.foundation.errors import MechanicsError, UsageError
 from kirigami_studio.foundation.words import tr
@@ -27,20 +27,22 @@ from kirigami_studio.mechanics.closing import (
     ideal_motion,
     silhouette,
 )
-from kirigami_studio.mechanics.connectors import ElasticSheet, junctions, straight_connectors
+from kirigami_studio.mechanics.connectors import ElasticSheet, cut_connectors, junctions
 from kirigami_studio.mechanics.drive import Drive, clamped_ends
 from kirigami_studio.mechanics.equilibrium import EquilibriumPath, follow
 from kirigami_studio.mechanics.estimate import estimate_stretch
 from kirigami_studio.mechanics.network_files import NetworkFile, SpringConstants, morpher_drive, read_network
-from kirigami_studio.mechanics.sheet_network import SheetNetwork, sheet_network
+from kirigami_studio.mechanics.sheet_network import SheetNetwork, polygons_as_rows, sheet_network
 from kirigami_studio.outlines.outline import Outline
-from kirigami_studio.project.cutting import material_for
+from kirigami_studio.project.cutting import plan_sheet
 from kirigami_studio.project.settings import FabricationSettings
 from kirigami_studio.project.store import SUFFIX as PROJECT
 from kirigami_studio.project.store import load
 
 MPA_PER_GPA = 1e3
 LEAST_STEPS = 3
+#: A connector counts as longer than a straight one above this (mm); coordinates are rounded to a tenth of it.
+LONGER_MM = 1e-3
 #: Rows of the table for a person.
 SHOWN_ROWS = 11
 AXES = {"x": (0, 0), "y": (1, 1), "xx": (0, 0), "yy": (1, 1), "xy": (0, 1), "yx": (1, 0)}
@@ -99,29 +101,35 @@ def _close_sheet(arguments: argparse.Namespace) -> int:
 
 def _cut(arguments: argparse.Namespace) -> _Cut:
     """The sheet that the command line names, with the material, widths and kerf that apply."""
-    path, target, phi = Path(arguments.source), None, 0.0
+    path, target, phi, kept = Path(arguments.source), None, 0.0, None
     if path.suffix.lower() == PROJECT:
         document = load(path)
         candidate = _chosen(document.candidate, path)
         deployment, saved = deploy(candidate.final_sheet), document.fabrication
         target, phi = document.target, candidate.final_phi
+        kept = None if candidate.trim is None else candidate.trim.kept
     else:
         named = list(read_sheets([arguments.source]))
         if len(named) != 1:
             raise UsageError("mechanics.one_sheet", name=arguments.source, found=len(named))
         deployment, saved = deploy(named[0].read()), FabricationSettings()
     settings = overridden(saved, arguments)
-    material = material_for(settings)
-    kerf = material.kerf_mm if settings.kerf_mm is None else settings.kerf_mm
-    width = material.connector_mm if settings.connector_mm is None else settings.connector_mm
-    table = cut_table(*deployment.sheet.grid)
-    widths = hinge_widths(table.hinge_count, width, dict(settings.options.hinge_mm), settings.options.removed)
-    found = junctions(deployment, settings.width_mm, table.hinge_node)
-    centres = found.place if arguments.centres == "node" else None
-    young = material.young_gpa if arguments.young_gpa is None else arguments.young_gpa
-    elastic = ElasticSheet(MPA_PER_GPA * young, material.thickness_mm)
-    sheet = sheet_network(found.corners, straight_connectors(found, widths, kerf, centres), elastic)
-    return _Cut(deployment, sheet, settings, target, phi)
+    plan = plan_sheet(deployment, settings, kept)
+    hinges = plan.hinges
+    found = junctions(deployment, settings.width_mm, cut_table(*deployment.sheet.grid).hinge_node)
+    # A straight slit's connector bends over a span; arcs and bars make it longer.
+    longer = np.where(hinges.removed, 0.0, hinges.flexure_mm - hinges.requested_mm - plan.kerf_mm)
+    connectors = cut_connectors(
+        found,
+        np.maximum(hinges.finished_mm, 0.0),
+        plan.kerf_mm,
+        found.place if arguments.centres == "node" else None,
+        np.where(longer > LONGER_MM, longer, 0.0),
+    )
+    young = plan.material.young_gpa if arguments.young_gpa is None else arguments.young_gpa
+    elastic = ElasticSheet(MPA_PER_GPA * young, plan.material.thickness_mm)
+    panels = polygons_as_rows(panels_in_mm(deployment, () if kept is None else kept, settings.width_mm, np.zeros(2)))
+    return _Cut(deployment, sheet_network(panels, connectors, elastic), settings, target, phi)
 
 
 def _chosen(candidate: Candidate | None, path: Path) -> Candidate:

@@ -244,6 +244,7 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
         "mechanics:mechanics", (
         option("source", nargs="?", metavar="PROJECT|SHEET", help="a .kiri project (its chosen design), or a sheet"),
         *WIDTHS,
+        *CUTS,
         option("--young-gpa", type=positive, default=None, help="Young's modulus (default: the material's)"),
         option("--centres", choices=("straight", "node"), default="straight",
                help="where connectors turn: where straight ones do, or ideally, on their nodes (default straight)"),

@@ -24,6 +24,8 @@ CLOSED = math.radians(2.0)
 STEPS = 31
 #: So many times as finely is the way of grips followed, so that its length and direction are exact.
 FINER = 8
+#: A panel that has lost more than this share of its area was trimmed.
+TRIMMED = 1e-6
 #: Stretch (in connector widths) that a connector is taken to bear: what a neck of ductile film yields by.
 TOLERATED_STRETCH = 0.45
 
@@ -220,21 +222,22 @@ def ideal_motion(deployment: Deployment, network: PanelNetwork, width_mm: float,
 def silhouette(deployment: Deployment, network: PanelNetwork, width_mm: float, motion: FloatArray) -> FloatArray:
     """Outer boundary (K, 2), mm, of the sheet after a motion (P, 3): of the union of all panels and voids.
 
-    Corners that two panels share lie halfway between theirs where a connector is stretched.
+    Corners that panels share lie halfway between theirs where a connector is stretched.  Voids beside a trimmed panel
+    are left out, because they may reach beyond it.
     """
     tables = deployment.topology
     flat, _ = _flat_nodes(deployment, width_mm)
     table = tables.panel_nodes.reshape(-1, 4)
-    theta = np.repeat(motion[:, 2, None], 4, axis=1)
-    corners = _turned(flat[table] - network.centroids[:, None], theta)
+    corners = _turned(flat[table] - network.centroids[:, None], np.repeat(motion[:, 2, None], 4, axis=1))
     corners += (network.centroids + motion[:, :2])[:, None]
-    count = np.bincount(table.ravel(), minlength=tables.node_count)
-    nodes = np.stack(
-        [np.bincount(table.ravel(), corners[..., axis].ravel(), tables.node_count) / count for axis in (0, 1)], axis=1
-    )
-    quads = np.concatenate([corners, nodes[tables.void_nodes.reshape(-1, 4)]])
-    shapes = shapely.make_valid(shapely.polygons(quads))
-    united = shapely.union_all(shapes, grid_size=1e-6 * width_mm)
+    sums = [np.bincount(table.ravel(), corners[..., axis].ravel(), tables.node_count) for axis in (0, 1)]
+    nodes = np.stack(sums, axis=1) / np.bincount(table.ravel())[:, None]
+    panels = shapely.polygons(network.moved_outlines(motion))
+    lost = shapely.area(shapely.polygons(corners)) - shapely.area(panels)
+    whole = (lost <= TRIMMED * shapely.area(panels)).reshape(tables.rows + 1, tables.columns + 1)
+    closed_in = whole[:-1, :-1] & whole[:-1, 1:] & whole[1:, :-1] & whole[1:, 1:]
+    voids = shapely.polygons(nodes[tables.void_nodes[closed_in]])
+    united = shapely.union_all(shapely.make_valid(np.concatenate([panels, voids])), grid_size=1e-6 * width_mm)
     largest = max(shapely.get_parts(united), key=lambda part: float(part.area))
     return np.asarray(shapely.get_coordinates(shapely.get_exterior_ring(largest))[:-1], dtype=np.float64)
 

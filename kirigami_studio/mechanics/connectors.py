@@ -8,6 +8,7 @@ that ends w before a flank, thickness h, panels of size S):
     E h / k_n = 4.08 ln(S / w) - 1.7
     E h / k_s = 4.29 ln(S / w) + 1.6
 
+An arc or a bar lengthens the connector: by a strip of that length, with E h / k_n = L / w and E h / k_s = (L / w)^3.
 At k = 0 the first is 3 % above E h w^2 / 15.8, the value of handbooks for a ligament beside a deep edge crack (Tada,
 Paris and Irwin).  A connector turns about a point 0.73 w from the flank, 0.56 w at k = 4 w.
 """
@@ -76,13 +77,14 @@ def turning_stiffness(sheet: ElasticSheet, width_mm: FloatArray, flexure_mm: Flo
 
 
 def plane_stiffness(
-    sheet: ElasticSheet, width_mm: FloatArray, panel_mm: FloatArray, constants: tuple[float, float]
-) -> FloatArray:
-    """k_n or k_s (H,), N/mm, with the constants ``STRETCHING`` or ``SHEARING``."""
-    slope, offset = constants
-    ratio = np.maximum(panel_mm / width_mm, LEAST_RATIO)
-    stiffness: FloatArray = sheet.young_mpa * sheet.thickness_mm / (slope * np.log(ratio) + offset)
-    return stiffness
+    sheet: ElasticSheet, width_mm: FloatArray, panel_mm: FloatArray, longer_mm: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """k_n and k_s (H,), N/mm; what makes a connector longer is a strip in series with it."""
+    ratio = np.log(np.maximum(panel_mm / width_mm, LEAST_RATIO))
+    slender = longer_mm / width_mm
+    (n_slope, n_offset), (s_slope, s_offset) = STRETCHING, SHEARING
+    film = sheet.young_mpa * sheet.thickness_mm
+    return film / (n_slope * ratio + n_offset + slender), film / (s_slope * ratio + s_offset + slender**3)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -102,6 +104,8 @@ class Connectors:
         Finished width.
     flexure_mm : (H,) float
         Length over which the connector bends.
+    longer_mm : (H,) float
+        By how much that is longer than at the end of a straight slit, because of an arc or a bar.
     sign : (H,) float
         +1 where theta_B - theta_A grows as the sheet opens, -1 where it falls.
     touch : (H,) float, radians
@@ -113,6 +117,7 @@ class Connectors:
     along: FloatArray
     width_mm: FloatArray
     flexure_mm: FloatArray
+    longer_mm: FloatArray
     sign: FloatArray
     touch: FloatArray
 
@@ -219,10 +224,14 @@ def junctions(deployment: Deployment, width_mm: float, nodes: IntArray | None = 
     )
 
 
-def straight_connectors(
-    found: Junctions, width_mm: FloatArray, kerf_mm: float, centres: FloatArray | None = None
+def cut_connectors(
+    found: Junctions,
+    width_mm: FloatArray,
+    kerf_mm: float,
+    centres: FloatArray | None = None,
+    longer_mm: FloatArray | None = None,
 ) -> Connectors:
-    """Connectors where straight slits end a finished width before the junction; those of width 0 are left out.
+    """Connectors where slits end a finished width before the junction; those of width 0 are left out.
 
     Parameters
     ----------
@@ -231,8 +240,10 @@ def straight_connectors(
         Finished widths; 0 for a removed connector.
     kerf_mm : float
     centres : (H, 2) or (H, 2, 2) float, mm, optional
-        Rotation centres in the flat sheet, one place or a place on A and one on B; where straight connectors have
-        theirs unless given: off the junction on the slit's side.
+        Rotation centres in the flat sheet, one place or a place on A and one on B; where connectors at straight slits
+        have theirs unless given: off the junction on the slit's side.
+    longer_mm : (H,) float, mm, optional
+        By how much connectors are longer than at the ends of straight slits; then they turn about their middle.
 
     Raises
     ------
@@ -240,15 +251,17 @@ def straight_connectors(
         Arrays of other shapes or values that are not finite.
     """
     count = len(found.node)
-    if width_mm.shape != (count,) or not np.all(np.isfinite(width_mm)) or np.any(width_mm < 0.0):
-        raise MechanicsError("sheet.widths_wrong", found=width_mm.shape, count=count)
+    more = np.zeros(count) if longer_mm is None else longer_mm
+    for values in (width_mm, more):
+        if values.shape != (count,) or not np.all(np.isfinite(values)) or np.any(values < 0.0):
+            raise MechanicsError("sheet.widths_wrong", found=values.shape, count=count)
     if not (math.isfinite(kerf_mm) and kerf_mm >= 0.0):
         raise MechanicsError("sheet.constant_not_positive", name="kerf", value=kerf_mm)
     there = np.flatnonzero(width_mm > 0.0)
-    width = width_mm[there]
+    width, longer = width_mm[there], more[there]
     flank = np.where(found.on_edge[there], 0.0, 0.5 * kerf_mm)
     if centres is None:
-        height = centre_height(width, kerf_mm) + flank
+        height = np.where(longer > 0.0, 0.5 * width, centre_height(width, kerf_mm)) + flank
         middle = found.place[there] + (height / found.sine[there])[:, None] * found.along[there]
         both = np.stack([middle, middle], axis=1)
     else:
@@ -261,7 +274,8 @@ def straight_connectors(
         centres=both,
         along=found.along[there],
         width_mm=width,
-        flexure_mm=flexure_length(width, kerf_mm),
+        flexure_mm=flexure_length(width, kerf_mm) + longer,
+        longer_mm=longer,
         sign=found.sign[there],
         touch=2.0 * np.arctan2(height - flank, found.reach_mm[there]),
     )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,8 +11,6 @@ import numpy as np
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import MechanicsError
 from kirigami_studio.mechanics.connectors import (
-    SHEARING,
-    STRETCHING,
     Connectors,
     ElasticSheet,
     plane_stiffness,
@@ -88,14 +87,15 @@ def sheet_network(panels: FloatArray, connectors: Connectors, sheet: ElasticShee
     centroids, sizes = _middles(panels)
     between = np.sqrt(sizes[numbers[:, 0]] * sizes[numbers[:, 1]])
     turning = turning_stiffness(sheet, connectors.width_mm, connectors.flexure_mm)
+    stretching, shearing = plane_stiffness(sheet, connectors.width_mm, between, connectors.longer_mm)
     axis = np.arctan2(connectors.along[:, 1], connectors.along[:, 0]) + 0.5 * math.pi
     ligaments = Ligaments(
         panels=numbers.copy(),
         points=connectors.centres.copy(),
         slender=np.zeros(count, dtype=np.bool_),
         axis=axis,
-        stretching=plane_stiffness(sheet, connectors.width_mm, between, STRETCHING),
-        shearing=plane_stiffness(sheet, connectors.width_mm, between, SHEARING),
+        stretching=stretching,
+        shearing=shearing,
         turning=turning,
     )
     # The void of the through cut is flat and closes; that of the slit is closed, with a little room, and opens.
@@ -106,6 +106,13 @@ def sheet_network(panels: FloatArray, connectors: Connectors, sheet: ElasticShee
         stiffness=np.tile(CONTACT_STIFFNESS * turning, 2),
     )
     return SheetNetwork(PanelNetwork(centroids, ligaments, contacts, panels.copy()), connectors, sheet)
+
+
+def polygons_as_rows(polygons: Sequence[FloatArray]) -> FloatArray:
+    """Polygons (Q_p, 2) as one array (P, Q, 2): those with fewer corners repeat their last one."""
+    most = max((len(polygon) for polygon in polygons), default=0)
+    rows = [np.concatenate([polygon, np.repeat(polygon[-1:], most - len(polygon), axis=0)]) for polygon in polygons]
+    return np.stack(rows)
 
 
 def _middles(panels: FloatArray) -> tuple[FloatArray, FloatArray]:

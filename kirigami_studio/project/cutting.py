@@ -5,11 +5,13 @@ A person's own material is stored in the project with its numbers, for machines 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.fabricate.cut_plan import CutPlan, plan_cuts
 from kirigami_studio.fabricate.material import Material, find_material, library
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.settings import FabricationSettings
@@ -31,14 +33,28 @@ def plan_of(candidate: Candidate, settings: FabricationSettings, deployment: Dep
         No such material, or a plan that cannot be made.
     """
     trim = candidate.trim
+    kept = None if trim is None else trim.kept
+    return plan_sheet(deployment or deploy(candidate.final_sheet), settings, kept)
+
+
+def plan_sheet(
+    deployment: Deployment, settings: FabricationSettings, kept: Sequence[FloatArray | None] | None = None
+) -> CutPlan:
+    """Plan the cuts of any sheet; ``kept`` is what stays of every panel of a trimmed one, as in a trim.
+
+    Raises
+    ------
+    FabricationError
+        No such material, or a plan that cannot be made.
+    """
     return plan_cuts(
-        deployment or deploy(candidate.final_sheet),
+        deployment,
         width_mm=settings.width_mm,
         connector_mm=settings.connector_mm,
         kerf_mm=settings.kerf_mm,
         material=material_for(settings),
         options=settings.options,
-        kept=None if trim is None else trim.kept,
+        kept=kept,
     )
 
 

@@ -91,7 +91,7 @@ def shapely_area(path: CutPath) -> float:
     return abs(0.5 * float(np.dot(x[:-1], y[1:]) - np.dot(x[1:], y[:-1])))
 
 
-def test_that_arcs_lie_around_their_hinge_and_pads_bend_longer_than_straight_connectors(
+def test_that_arcs_lie_around_their_hinge_and_pads_bend_longer_than_cut_connectors(
     make_design: MakeDesign,
 ) -> None:
     plan = styled(make_design(4, 5, seed=1), ConnectorStyle.ARC)

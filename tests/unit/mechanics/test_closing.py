@@ -28,16 +28,16 @@ from kirigami_studio.mechanics.connectors import (
     ElasticSheet,
     Junctions,
     centre_height,
+    cut_connectors,
     flexure_length,
     junctions,
-    straight_connectors,
     turning_stiffness,
 )
 from kirigami_studio.mechanics.drive import prescribed_turns
 from kirigami_studio.mechanics.energy import NetworkEnergy
 from kirigami_studio.mechanics.equilibrium import follow
 from kirigami_studio.mechanics.estimate import estimate_stretch
-from kirigami_studio.mechanics.sheet_network import SheetNetwork, sheet_network
+from kirigami_studio.mechanics.sheet_network import SheetNetwork, polygons_as_rows, sheet_network
 
 FILM = ElasticSheet(2500.0, 0.05)
 WIDTH_MM, KERF_MM = 60.0, 0.02
@@ -55,7 +55,7 @@ def found(design: Deployment) -> Junctions:
 
 def as_cut(found: Junctions, connector_mm: float, on_nodes: bool, kerf_mm: float = KERF_MM) -> SheetNetwork:
     widths = np.full(len(found.node), connector_mm)
-    connectors = straight_connectors(found, widths, kerf_mm, found.place if on_nodes else None)
+    connectors = cut_connectors(found, widths, kerf_mm, found.place if on_nodes else None)
     return sheet_network(found.corners, connectors, FILM)
 
 
@@ -68,7 +68,7 @@ def exact(found: Junctions) -> Closing:
 def shifted(found: Junctions) -> Closing:
     """Centres a tenth of a millimetre off their nodes, each another way."""
     off = np.random.default_rng(5).normal(size=found.place.shape) * 0.08
-    connectors = straight_connectors(found, np.full(len(found.node), 0.3), KERF_MM, found.place + off)
+    connectors = cut_connectors(found, np.full(len(found.node), 0.3), KERF_MM, found.place + off)
     return closing(sheet_network(found.corners, connectors, FILM))
 
 
@@ -88,7 +88,7 @@ def test_that_shifted_centres_jam(shifted: Closing) -> None:
     assert tight > loose
 
 
-def test_that_wide_straight_connectors_touch_before_the_sheet_has_closed(found: Junctions) -> None:
+def test_that_wide_cut_connectors_touch_before_the_sheet_has_closed(found: Junctions) -> None:
     wide = closing(as_cut(found, 1.2, False))
     assert len(wide.phi) < wide.asked
     assert wide.jam_phi(1e9) == pytest.approx(wide.phi[-1]) and wide.phi[-1] > CLOSED
@@ -210,7 +210,7 @@ def test_that_junctions_lie_where_the_cuts_end(design: Deployment) -> None:
     through = lines[table.hinge_through, 1] - lines[table.hinge_through, 0]
     crossed = through[:, 0] * found.through[:, 1] - through[:, 1] * found.through[:, 0]
     assert np.abs(crossed[~found.on_edge]).max() < 1e-9 * WIDTH_MM
-    straight = straight_connectors(found, np.full(table.hinge_count, 0.3), KERF_MM)
+    straight = cut_connectors(found, np.full(table.hinge_count, 0.3), KERF_MM)
     offset = np.sum((straight.centres[:, 0] - found.place) ** 2, axis=1) ** 0.5 * found.sine
     expected = np.where(found.on_edge, 0.0, 0.5 * KERF_MM) + centre_height(np.array([0.3]), KERF_MM)
     assert offset == pytest.approx(expected)
@@ -221,27 +221,27 @@ def test_that_given_centres_and_widths_are_checked(found: Junctions, design: Dep
     torn = widths.copy()
     torn[np.any(found.panels == 0, axis=1)] = 0.0
     cases = (
-        (lambda: straight_connectors(found, widths[1:], KERF_MM), "sheet.widths_wrong"),
-        (lambda: straight_connectors(found, -widths, KERF_MM), "sheet.widths_wrong"),
-        (lambda: straight_connectors(found, widths, math.nan), "sheet.constant_not_positive"),
-        (lambda: straight_connectors(found, widths, KERF_MM, found.place[1:]), "sheet.centres_wrong"),
+        (lambda: cut_connectors(found, widths[1:], KERF_MM), "sheet.widths_wrong"),
+        (lambda: cut_connectors(found, -widths, KERF_MM), "sheet.widths_wrong"),
+        (lambda: cut_connectors(found, widths, math.nan), "sheet.constant_not_positive"),
+        (lambda: cut_connectors(found, widths, KERF_MM, found.place[1:]), "sheet.centres_wrong"),
         (
-            lambda: straight_connectors(found, widths, KERF_MM, np.full(found.place.shape, math.nan)),
+            lambda: cut_connectors(found, widths, KERF_MM, np.full(found.place.shape, math.nan)),
             "sheet.centres_wrong",
         ),
         (lambda: junctions(design, WIDTH_MM, np.array([0])), "sheet.no_junction"),
         (lambda: junctions(design, -1.0), "sheet.constant_not_positive"),
         (lambda: ElasticSheet(0.0, 1.0), "sheet.constant_not_positive"),
         (
-            lambda: sheet_network(found.corners, straight_connectors(found, torn, KERF_MM), FILM),
+            lambda: sheet_network(found.corners, cut_connectors(found, torn, KERF_MM), FILM),
             "network.not_connected",
         ),
         (
-            lambda: sheet_network(found.corners[:3], straight_connectors(found, widths, KERF_MM), FILM),
+            lambda: sheet_network(found.corners[:3], cut_connectors(found, widths, KERF_MM), FILM),
             "network.number_out_of_range",
         ),
         (
-            lambda: sheet_network(found.corners[..., :1], straight_connectors(found, widths, KERF_MM), FILM),
+            lambda: sheet_network(found.corners[..., :1], cut_connectors(found, widths, KERF_MM), FILM),
             "network.wrong_shape",
         ),
     )
@@ -254,7 +254,7 @@ def test_that_given_centres_and_widths_are_checked(found: Junctions, design: Dep
 
 def test_that_centres_may_be_given_apart_for_both_panels(found: Junctions) -> None:
     both = np.stack([found.place, found.place + np.array([0.02, 0.0])], axis=1)
-    connectors = straight_connectors(found, np.full(len(found.node), 0.3), KERF_MM, both)
+    connectors = cut_connectors(found, np.full(len(found.node), 0.3), KERF_MM, both)
     assert connectors.centres == pytest.approx(both)
     sheet = sheet_network(found.corners, connectors, FILM)
     energy = NetworkEnergy(sheet.network)
@@ -265,12 +265,48 @@ def test_that_centres_may_be_given_apart_for_both_panels(found: Junctions) -> No
 
 def test_that_panels_with_gaps_left_may_pass_phi_zero_and_thick_ones_touch_before(found: Junctions) -> None:
     widths = np.full(len(found.node), 0.3)
-    with_gap = straight_connectors(found, widths, 0.4, found.place)
+    with_gap = cut_connectors(found, widths, 0.4, found.place)
     assert np.all(with_gap.touch[~found.on_edge] < 0.0)
-    thick = straight_connectors(found, widths, 0.0)
+    thick = cut_connectors(found, widths, 0.0)
     assert np.all(thick.touch > 0.0)
     reach = found.reach_mm
     assert thick.touch == pytest.approx(2.0 * np.arctan(0.73 * 0.3 / reach))
+
+
+def test_that_longer_connectors_are_softer_and_turn_about_their_middle(found: Junctions) -> None:
+    widths = np.full(len(found.node), 0.3)
+    short, long = (
+        cut_connectors(found, widths, KERF_MM, longer_mm=np.full(len(found.node), more)) for more in (0.0, 1.2)
+    )
+    assert long.flexure_mm == pytest.approx(short.flexure_mm + 1.2)
+    one, other = (sheet_network(found.corners, connectors, FILM).network.ligaments for connectors in (short, long))
+    assert other.turning == pytest.approx(one.turning * short.flexure_mm / long.flexure_mm)
+    film = FILM.young_mpa * FILM.thickness_mm
+    assert film / other.stretching - film / one.stretching == pytest.approx(np.full(len(widths), 4.0))
+    assert film / other.shearing - film / one.shearing == pytest.approx(np.full(len(widths), 64.0))
+    away = np.linalg.norm(long.centres[:, 0] - found.place, axis=1) * found.sine
+    assert away == pytest.approx(np.where(found.on_edge, 0.15, 0.16))
+    with pytest.raises(MechanicsError) as caught:
+        cut_connectors(found, widths, KERF_MM, longer_mm=widths[1:])
+    assert caught.value.code == "sheet.widths_wrong"
+
+
+def test_that_trimmed_panels_are_trimmed_in_the_silhouette(design: Deployment, found: Junctions) -> None:
+    polygons = list(found.corners)
+    whole = as_cut(found, 0.3, True)
+    polygons[0] = np.concatenate([polygons[0][:3], polygons[0][2:3] + 0.4 * (polygons[0][3:] - polygons[0][2:3])])
+    triangle = list(found.corners)
+    triangle[0] = polygons[0][:3]
+    motion = np.zeros((len(polygons), 3))
+    for shapes in (polygons, triangle):
+        rows = polygons_as_rows(shapes)
+        assert rows.shape == (30, 4, 2)
+        trimmed = sheet_network(rows, whole.connectors, FILM)
+        lost = shapely.Polygon(found.corners[0]).area - shapely.Polygon(shapes[0]).area
+        areas = [
+            shapely.Polygon(silhouette(design, sheet.network, WIDTH_MM, motion)).area for sheet in (whole, trimmed)
+        ]
+        assert areas[0] - areas[1] == pytest.approx(lost, rel=1e-3)
 
 
 def test_that_the_jam_angle_is_where_stretch_passes_the_limit() -> None:
