@@ -31,6 +31,7 @@ TOOLS = ("Xvfb", "xdotool")
 MISSING = [tool for tool in TOOLS if shutil.which(tool) is None]
 PATIENCE = 90.0
 SIZE = (1440, 900)
+DESIGNS = 8
 
 pytestmark = [
     pytest.mark.slow,
@@ -150,6 +151,7 @@ def test_that_a_person_draws_designs_chooses_exports_and_saves(
     second_card = view.viewport().mapTo(designed, view.visualRect(view.model_.index(1, 0)).center())
     slider = [middle(designed.stage.deployment.slider, designed, along) for along in (0.95, 0.7, 0.4, 0.3)]
     generate = middle(designed.run.generate, designed)
+    count = middle(designed.settings.candidates, designed, 0.3)
     cut, project = tmp_path / "drawn.dxf", tmp_path / "drawn.kiri"
     with started(person, tmp_path / "log.txt") as program:
         person.looks_at("Kirigami Studio")
@@ -164,6 +166,8 @@ def test_that_a_person_draws_designs_chooses_exports_and_saves(
         drawn = saved(project)
         assert drawn is not None and drawn.target is not None and drawn.target.name == "drawing"
         person.looks_at("drawn.kiri")
+        person.clicks(count)
+        person.presses("ctrl+a", *str(DESIGNS), "Tab")
         person.clicks(generate)
 
         def designs() -> int:
@@ -171,7 +175,7 @@ def test_that_a_person_draws_designs_chooses_exports_and_saves(
             document = saved(project)
             return 0 if document is None else len(document.candidates)
 
-        person.waits(lambda: designs() > 0, "designs in the saved project")
+        person.waits(lambda: designs() == DESIGNS, "designs in the saved project")
         person.clicks(second_card)
         person.drags(slider)
         person.presses("ctrl+e")
