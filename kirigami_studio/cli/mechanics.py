@@ -23,7 +23,6 @@ from kirigami_studio.mechanics.closing import (
     Closing,
     closing,
     even_closing,
-    grips,
     ideal_motion,
     silhouette,
 )
@@ -31,6 +30,7 @@ from kirigami_studio.mechanics.connectors import ElasticSheet, cut_connectors, j
 from kirigami_studio.mechanics.drive import Drive, clamped_ends
 from kirigami_studio.mechanics.equilibrium import EquilibriumPath, follow
 from kirigami_studio.mechanics.estimate import estimate_stretch
+from kirigami_studio.mechanics.gripping import Gripping, find_grips, grips
 from kirigami_studio.mechanics.network_files import NetworkFile, SpringConstants, morpher_drive, read_network
 from kirigami_studio.mechanics.sheet_network import SheetNetwork, polygons_as_rows, sheet_network
 from kirigami_studio.outlines.outline import Outline
@@ -80,18 +80,20 @@ class _Cut:
 
 def _close_sheet(arguments: argparse.Namespace) -> int:
     cut = _cut(arguments)
-    held, moved = arguments.hold, arguments.move
-    if (held is None) != (moved is None):
+    if (arguments.hold is None) != (arguments.move is None):
         raise UsageError("mechanics.hold_and_move")
     if arguments.end_deg >= 180.0:
         raise UsageError("mechanics.end_angle", angle=arguments.end_deg)
-    end = math.radians(arguments.end_deg)
-    if held is None:
-        drive = even_closing(cut.sheet, end, arguments.steps)
+    end, width = math.radians(arguments.end_deg), cut.settings.width_mm
+    if arguments.hold is not None:
+        drive = grips(cut.deployment, cut.sheet, width, arguments.hold, arguments.move, end, arguments.steps)
+        figures = _figures(cut, closing(cut.sheet, drive), True, arguments.tolerance)
+    elif arguments.find_grips:
+        gripping = find_grips(cut.deployment, cut.sheet, width, end, arguments.steps)
+        figures = _figures(cut, gripping.closing, True, arguments.tolerance) | _found_grips(gripping)
     else:
-        drive = grips(cut.deployment, cut.sheet, cut.settings.width_mm, held, moved, end, arguments.steps)
-    found = closing(cut.sheet, drive)
-    figures = _figures(cut, found, held is not None, arguments.tolerance)
+        found = closing(cut.sheet, even_closing(cut.sheet, end, arguments.steps))
+        figures = _figures(cut, found, False, arguments.tolerance)
     if arguments.json:
         print_json(figures)
     else:
@@ -177,6 +179,10 @@ def _figures(cut: _Cut, found: Closing, gripped: bool, tolerated: float) -> dict
     return figures
 
 
+def _found_grips(gripping: Gripping) -> dict[str, object]:
+    return {"hold": gripping.held, "move": gripping.moved, "follows": gripping.follows}
+
+
 def _overlap(cut: _Cut, found: Closing, jam: float, target: Outline) -> dict[str, object]:
     """IoU with the target of the sheet as cut, where it comes to, and as designed."""
     width, network = cut.settings.width_mm, cut.sheet.network
@@ -223,6 +229,12 @@ def _tell(cut: _Cut, figures: dict[str, object]) -> None:
     say(tr("Fast estimate of the same angle: {jam:.0f} degrees.", jam=float(str(figures["estimated_jam_deg"]))))
     stable = ", ".join(f"{angle:.0f}" for angle in np.asarray(figures["stable_deg"], dtype=np.float64))
     say(tr("Rests by itself at (degrees): {angles}.", angles=stable or tr("nowhere on this path")))
+    if "follows" in figures:
+        panels = {"hold": _numbers(figures["hold"]), "move": _numbers(figures["move"])}
+        if figures["follows"]:
+            say(tr("Hold panel {hold} and lead panels {move}: the sheet follows its path.", **panels))
+        else:
+            say(tr("Not even by holding panel {hold} and leading panels {move} does the sheet follow.", **panels))
     if "iou_as_cut" in figures:
         say(
             tr(
@@ -236,6 +248,10 @@ def _tell(cut: _Cut, figures: dict[str, object]) -> None:
             )
         )
     say(tr("Friction, plastic set and motion out of the plane are not modelled."))
+
+
+def _numbers(panels: object) -> str:
+    return ", ".join(str(panel) for panel in np.asarray(panels).tolist())
 
 
 def _drive_network(arguments: argparse.Namespace) -> int:

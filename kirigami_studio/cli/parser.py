@@ -254,6 +254,8 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
                help="panels to hold by a pin, by number, row by row from the top left"),
         option("--move", nargs="+", type=whole, default=None, metavar="N",
                help="panels to lead along the ideal path (default: nothing is gripped, the mean angle is driven)"),
+        option("--find-grips", action="store_true",
+               help="find the fewest panels that lead the sheet along its ideal path, and lead them"),
         option("--end-deg", type=amount, default=2.0, help="mean angle to close to, degrees (default 2)"),
         option("--steps", type=count, default=31, help="equilibria along the path (default 31)"),
         option("--network", default=None, metavar="FILE.npz",

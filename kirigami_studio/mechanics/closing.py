@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import shapely
 
 from kirigami_studio.foundation.arrays import FloatArray
-from kirigami_studio.foundation.errors import MechanicsError
 from kirigami_studio.lattice.deployment import Deployment, check_phi
-from kirigami_studio.mechanics.drive import Drive, mean_turn, prescribed_places
+from kirigami_studio.mechanics.drive import Drive, mean_turn
 from kirigami_studio.mechanics.energy import NetworkEnergy
 from kirigami_studio.mechanics.equilibrium import EquilibriumPath, follow
 from kirigami_studio.mechanics.network import PanelNetwork
@@ -22,8 +20,6 @@ from kirigami_studio.mechanics.sheet_network import SheetNetwork
 CLOSED = math.radians(2.0)
 #: Steps of a closing unless given.
 STEPS = 31
-#: So many times as finely is the way of grips followed, so that its length and direction are exact.
-FINER = 8
 #: A panel that has lost more than this share of its area was trimmed.
 TRIMMED = 1e-6
 #: Stretch (in connector widths) that a connector is taken to bear: what a neck of ductile film yields by.
@@ -145,53 +141,6 @@ def closing(sheet: SheetNetwork, drive: Drive | None = None) -> Closing:
 def even_closing(sheet: SheetNetwork, end: float = CLOSED, steps: int = STEPS) -> Drive:
     """Drive the mean turn of the connectors from the flat sheet to an angle (radians): the sheet finds its own way."""
     return mean_turn(sheet.network, sheet.connectors.sign, np.linspace(0.0, math.pi - end, steps))
-
-
-def grips(
-    deployment: Deployment,
-    sheet: SheetNetwork,
-    width_mm: float,
-    held: Sequence[int],
-    moved: Sequence[int],
-    end: float = CLOSED,
-    steps: int = STEPS,
-) -> Drive:
-    """Pin some panels at their middles and lead them along the ideal path; pinned panels may turn.
-
-    Parameters
-    ----------
-    deployment : Deployment
-    sheet : SheetNetwork
-    width_mm : float
-    held, moved : sequence of int
-        Panels, row by row.  The middle of those that are held stays where it is.
-    end : float, radians
-    steps : int
-
-    Returns
-    -------
-    drive : Drive
-        Its displacement is the way, mm, that the middle of the moved panels has gone from that of the held ones.
-
-    Raises
-    ------
-    MechanicsError
-        Unknown panels, fewer than two altogether, or none to move.
-    """
-    network = sheet.network
-    panels = [*held, *moved]
-    for panel in panels:
-        if not 0 <= panel < network.panel_count:
-            raise MechanicsError("drive.unknown_panel", panel=panel, last=network.panel_count - 1)
-    if not held or not moved:
-        raise MechanicsError("drive.no_grips")
-    angles = np.linspace(math.pi, end, FINER * (steps - 1) + 1)
-    places = np.stack([network.centroids + ideal_motion(deployment, network, width_mm, phi)[:, :2] for phi in angles])
-    # Seen from the held panels, whose middle stays.
-    places -= places[:, list(held)].mean(axis=1, keepdims=True) - places[0, list(held)].mean(axis=0)
-    middle = places[:, list(moved)].mean(axis=1)
-    way = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(middle, axis=0), axis=1))])
-    return prescribed_places(panels, (places - network.centroids)[:, panels], way, FINER)
 
 
 def ideal_motion(deployment: Deployment, network: PanelNetwork, width_mm: float, phi: float) -> FloatArray:

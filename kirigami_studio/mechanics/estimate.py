@@ -31,6 +31,7 @@ class StretchEstimate:
     ----------
     phi : (A,) float, radians
         Falling.
+    motion : (A, P, 3) float, mm and radians
     stretch : (A, H) float
         In connector widths.
     room : (A,) float, radians
@@ -38,6 +39,7 @@ class StretchEstimate:
     """
 
     phi: FloatArray
+    motion: FloatArray
     stretch: FloatArray
     room: FloatArray
 
@@ -72,15 +74,16 @@ def estimate_stretch(
     tables = deployment.topology
     layout = _Bands.of(energy, tables.rows + 1, tables.columns + 1)
     springs = np.stack([network.ligaments.stretching, network.ligaments.shearing], axis=1)
-    phis, stretch, room = np.radians(angles_deg), [], []
+    phis, motions, stretch, room = np.radians(angles_deg), [], [], []
     correction = np.zeros((network.panel_count, 3))
     for phi in phis.tolist():
         ideal = ideal_motion(deployment, network, width_mm, phi)
         correction = correction + layout.step(energy, ideal + correction, springs, sheet.connectors.sign, phi)
         motion = ideal + correction
+        motions.append(motion)
         stretch.append(energy.stretch(motion) / sheet.connectors.width_mm)
         room.append(float(network.void_angles(motion)[: len(sheet.connectors)].min()))
-    return StretchEstimate(phis, np.array(stretch), np.array(room))
+    return StretchEstimate(phis, np.array(motions), np.array(stretch), np.array(room))
 
 
 @dataclass(frozen=True, slots=True, eq=False)

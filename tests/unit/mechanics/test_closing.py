@@ -19,7 +19,6 @@ from kirigami_studio.mechanics.closing import (
     Closing,
     closing,
     even_closing,
-    grips,
     ideal_motion,
     jam_angle,
     silhouette,
@@ -37,6 +36,7 @@ from kirigami_studio.mechanics.drive import prescribed_turns
 from kirigami_studio.mechanics.energy import NetworkEnergy
 from kirigami_studio.mechanics.equilibrium import follow
 from kirigami_studio.mechanics.estimate import estimate_stretch
+from kirigami_studio.mechanics.gripping import find_grips, grips, panels_to_pin
 from kirigami_studio.mechanics.sheet_network import SheetNetwork, polygons_as_rows, sheet_network
 
 FILM = ElasticSheet(2500.0, 0.05)
@@ -185,6 +185,20 @@ def test_that_the_force_at_the_grips_does_the_work(design: Deployment, found: Ju
     drive = grips(design, sheet, WIDTH_MM, [0, 5], [24, 29], math.radians(60.0), 49)
     path = closing(sheet, drive).path
     assert np.trapezoid(path.force, drive.displacement) == pytest.approx(path.energy[-1], rel=0.01)
+
+
+def test_that_two_corners_do_not_lead_a_large_sheet_but_the_grips_that_are_found_do() -> None:
+    large = deploy(RatioField.from_log10(np.random.default_rng(1).uniform(-0.3, 0.3, (6, 6))))
+    sheet = as_cut(junctions(large, WIDTH_MM), 0.05, True)
+    end = math.radians(20.0)
+    corners = closing(sheet, grips(large, sheet, WIDTH_MM, [0], [48], end, 15))
+    assert corners.phi[-1] > math.radians(140.0)
+    assert corners.phi.min() > math.radians(60.0)
+    found = find_grips(large, sheet, WIDTH_MM, end, 15)
+    assert found.follows
+    assert len(found.held) == 1 and 3 <= len(found.moved) <= 19
+    assert found.closing.phi[-1] == pytest.approx(end, abs=math.radians(5.0))
+    assert panels_to_pin(large, sheet, WIDTH_MM, 20)[: len(found.moved) + 1] == [*found.held, *found.moved]
 
 
 def test_that_grips_must_name_panels(design: Deployment, exact: Closing) -> None:

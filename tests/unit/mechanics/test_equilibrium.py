@@ -129,6 +129,52 @@ def test_that_a_buckling_strut_leaves_the_straight_path_when_its_eigenvalue_reac
     assert 0.0 < found.drive.displacement[critical] < 0.01
 
 
+def shallow_arch(driver: float) -> PanelNetwork:
+    """Two bars that meet in a raised middle panel, which a driver panel above pulls by a spring of that stiffness."""
+    places = np.array([[-5.0, 0.0], [5.0, 0.0], [0.0, 1.5], [0.0, 60.0]])
+    joints = Ligaments(
+        panels=np.array([[0, 2], [1, 2], [2, 3]]),
+        points=places[[[0, 2], [1, 2], [2, 3]]],
+        slender=np.ones(3, dtype=np.bool_),
+        axis=np.zeros(3),
+        stretching=np.array([100.0, 100.0, driver]),
+        shearing=np.array([1e-3, 1e-3, 1e-3]),
+        turning=np.array([1e3, 1e3, 1e3]),
+    )
+    empty = np.zeros(0)
+    contacts = Contacts(np.zeros(0, dtype=np.intp), empty, empty.copy(), empty.copy())
+    return PanelNetwork(places, joints, contacts, np.zeros((4, 0, 2)))
+
+
+def test_that_a_shallow_arch_snaps_through_under_a_soft_spring() -> None:
+    network = shallow_arch(driver=1.0)
+    found = follow(network, moved_panels(network, [0, 1], {3: (0.0, -20.0, 0.0)}, 121))
+    (step,) = np.flatnonzero(found.snapped)
+    middle = found.motion[:, 2, 1]
+    assert middle[step - 1] > -1.2 and middle[step] < -2.5
+    steps = np.abs(np.diff(middle))
+    assert np.delete(steps, step - 1).max() < 0.1 * steps[step - 1]
+    assert found.energy[step] < found.energy[step - 1]
+    assert np.all(found.least > 0.0)
+    # The eigenvalue falls to zero like the root of the way that is left, and reaches it before the next step.
+    before, last = found.least[step - 2] ** 2, found.least[step - 1] ** 2
+    assert 0.0 < last / (before - last) < 1.0
+    assert last / (before - last) == pytest.approx(before / (found.least[step - 3] ** 2 - before) - 1.0, abs=0.1)
+
+
+def test_that_a_stiff_grip_leads_the_same_arch_through_and_finds_both_states() -> None:
+    network = shallow_arch(driver=1.0)
+    still, way = np.zeros((61, 3)), np.linspace(0.0, 3.6, 61)
+    freedoms = np.array([0, 1, 2, 3, 4, 5, 7])
+    path = np.column_stack([still, still, -way])
+    drive = Drive(freedoms, path, way, np.column_stack([still, still, -np.ones(61)]))
+    found = follow(network, drive)
+    assert not np.any(found.snapped)
+    assert found.stable == pytest.approx([0.0, 3.0], abs=0.1)
+    barrier = 2.0 * 0.5 * 100.0 * (np.hypot(5.0, 1.5) - 5.0) ** 2
+    assert found.energy.max() == pytest.approx(barrier, rel=0.05)
+
+
 def test_that_a_network_that_is_pressed_shut_says_so() -> None:
     file = read_network(resource("mechanics", "panel_network.npz"), MORPHER_HINGES["L2"])
     network = file.network

@@ -1,0 +1,153 @@
+"""Which panels to hold and lead by pins, so that a sheet follows its ideal path.
+
+An over-constrained sheet has one easy motion, but long waves of it are nearly as easy: led by two corners, a large
+sheet opens as far as its widest state and turns back.  Panels that take part most in the softest motions are the ones
+to pin.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.sparse import csc_array, diags_array
+from scipy.sparse.linalg import eigsh
+
+from kirigami_studio.foundation.arrays import FloatArray
+from kirigami_studio.foundation.errors import MechanicsError
+from kirigami_studio.lattice.deployment import Deployment
+from kirigami_studio.mechanics.closing import CLOSED, STEPS, Closing, closing, ideal_motion
+from kirigami_studio.mechanics.drive import Drive, prescribed_places
+from kirigami_studio.mechanics.energy import NetworkEnergy
+from kirigami_studio.mechanics.sheet_network import SheetNetwork
+
+#: So many times as finely is the way of grips followed, so that its length and direction are exact.
+FINER = 8
+#: Angles (degrees) of the ideal path whose softest motions are looked at, and how many beyond the number of pins.
+LOOKED_AT_DEG, MORE_MOTIONS = (137.0, 86.0, 40.0), 4
+#: Numbers of pins that are tried, the fewest first.
+PINS = (2, 4, 8, 12, 20)
+#: A sheet follows its path if its mean angle keeps within this (radians) of that of the pins.  It lags by some degrees
+#: where it is widest, because pins pull hardly on turns there; one that does not follow turns back and ends far away.
+FOLLOWS = math.radians(15.0)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Gripping:
+    """Panels to hold and to lead, and what comes of it.
+
+    Attributes
+    ----------
+    held, moved : tuple of int
+        Panels, row by row.
+    closing : Closing
+    follows : bool
+        Whether the sheet keeps to the ideal path as far as it was led.
+    """
+
+    held: tuple[int, ...]
+    moved: tuple[int, ...]
+    closing: Closing
+    follows: bool
+
+
+def find_grips(
+    deployment: Deployment, sheet: SheetNetwork, width_mm: float, end: float = CLOSED, steps: int = STEPS
+) -> Gripping:
+    """The fewest pins by which a sheet can be led along its ideal path; the most that are tried if none suffice.
+
+    Parameters
+    ----------
+    deployment : Deployment
+    sheet : SheetNetwork
+    width_mm : float
+    end : float, radians
+    steps : int
+    """
+    angles = np.linspace(math.pi, end, steps)
+    order = panels_to_pin(deployment, sheet, width_mm, min(PINS[-1], sheet.network.panel_count))
+    for count in PINS:
+        held, moved = tuple(order[:1]), tuple(order[1:count])
+        found = closing(sheet, grips(deployment, sheet, width_mm, held, moved, end, steps))
+        off = np.abs(found.phi - angles[: len(found.phi)])
+        tried = Gripping(held, moved, found, len(found.phi) == steps and bool(np.all(off <= FOLLOWS)))
+        if tried.follows or count >= len(order):
+            break
+    return tried
+
+
+def panels_to_pin(deployment: Deployment, sheet: SheetNetwork, width_mm: float, count: int) -> list[int]:
+    """Panels in the order in which pins at their middles take away most of the sheet's softest motions.
+
+    Motions are those of the least eigenvalues of the Hessian on the ideal path, each as large as its energy allows.
+    What a pin takes away is no longer counted for the next one.
+    """
+    energy, network = NetworkEnergy(sheet.network), sheet.network
+    per_turn = diags_array(1.0 / np.tile([1.0, 1.0, network.panel_size], network.panel_count))
+    soft = []
+    for angle in LOOKED_AT_DEG:
+        hessian = energy.slopes(ideal_motion(deployment, network, width_mm, math.radians(angle)))[1]
+        scaled = csc_array(per_turn @ hessian @ per_turn)
+        wanted = min(count + MORE_MOTIONS, 3 * network.panel_count - 2)
+        # Below all eigenvalues: the three motions of the whole have none.
+        shift = -1e-3 * float(np.mean(scaled.diagonal()))
+        start = np.linspace(1.0, 2.0, 3 * network.panel_count)
+        values, vectors = eigsh(scaled, k=wanted, sigma=shift, v0=start)
+        soft.append((vectors / np.sqrt(np.maximum(values - shift, 1e-12))).reshape(-1, 3, wanted)[:, :2])
+    left: FloatArray = np.concatenate(soft, axis=2)
+    chosen: list[int] = []
+    for _ in range(count):
+        panel = int(np.argmax(np.sum(left**2, axis=(1, 2))))
+        chosen.append(panel)
+        basis, _ = np.linalg.qr(left[panel].T)
+        left = left - (left @ basis) @ basis.T
+    return list(dict.fromkeys(chosen))
+
+
+def grips(
+    deployment: Deployment,
+    sheet: SheetNetwork,
+    width_mm: float,
+    held: Sequence[int],
+    moved: Sequence[int],
+    end: float = CLOSED,
+    steps: int = STEPS,
+) -> Drive:
+    """Pin some panels at their middles and lead them along the ideal path; pinned panels may turn.
+
+    Parameters
+    ----------
+    deployment : Deployment
+    sheet : SheetNetwork
+    width_mm : float
+    held, moved : sequence of int
+        Panels, row by row.  The middle of those that are held stays where it is.
+    end : float, radians
+    steps : int
+
+    Returns
+    -------
+    drive : Drive
+        Its displacement is the way, mm, that the middle of the moved panels has gone from that of the held ones.
+
+    Raises
+    ------
+    MechanicsError
+        Unknown panels, fewer than two altogether, or none to move.
+    """
+    network = sheet.network
+    panels = [*held, *moved]
+    for panel in panels:
+        if not 0 <= panel < network.panel_count:
+            raise MechanicsError("drive.unknown_panel", panel=panel, last=network.panel_count - 1)
+    if not held or not moved:
+        raise MechanicsError("drive.no_grips")
+    angles = np.linspace(math.pi, end, FINER * (steps - 1) + 1)
+    places = np.stack([network.centroids + ideal_motion(deployment, network, width_mm, phi)[:, :2] for phi in angles])
+    # Seen from the held panels, whose middle stays.
+    places -= places[:, list(held)].mean(axis=1, keepdims=True) - places[0, list(held)].mean(axis=0)
+    middle = places[:, list(moved)].mean(axis=1)
+    way = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(middle, axis=0), axis=1))])
+    return prescribed_places(panels, (places - network.centroids)[:, panels], way, FINER)
