@@ -62,7 +62,7 @@ def connector_distances(plan: CutPlan) -> FloatArray:
         if path.layer is not Layer.OUTLINE:
             band = burned(path, plan.kerf_mm)
             bands[path.cut] = band if path.cut not in bands else bands[path.cut].union(band)
-    rims = [LineString(path.travelled) for path in plan.on_layer(Layer.OUTLINE)]
+    rims = [drawn_line(path) for path in plan.on_layer(Layer.OUTLINE)]
     outline = shapely.union_all(rims)
     if plan.kerf_mm:
         outline = outline.buffer(0.5 * plan.kerf_mm, join_style="mitre")
@@ -92,7 +92,9 @@ def covered_hinges(plan: CutPlan) -> np.ndarray:
         along = np.subtract(resting.coords[-1], resting.coords[0]) / _extent(resting)
         foot = junction + np.dot(tip - junction, along) * along
         near = shapely.union_all(lines[through])
-        there.append(max(near.distance(Point(place)) for place in (junction, foot)) < 1e-3)
+        # Around a centred connector, the through cut makes way by less than the connector's width and the kerf.
+        beside = 1e-3 if plan.centres is None else float(plan.hinges.requested_mm[hinge]) + plan.kerf_mm
+        there.append(max(near.distance(Point(place)) for place in (junction, foot)) < beside)
     return np.array(there)
 
 

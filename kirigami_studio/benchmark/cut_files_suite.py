@@ -16,6 +16,7 @@ from kirigami_studio.export.registry import export
 from kirigami_studio.export.verification import verify_export
 from kirigami_studio.fabricate.cut_plan import plan_cuts
 from kirigami_studio.fabricate.material import presets
+from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
@@ -68,14 +69,17 @@ class CutFileFigures:
 
 
 def measure_cut_files(
-    count: int, seed: int, report: Callable[[int, int], None] = lambda done, total: None
+    count: int,
+    seed: int,
+    report: Callable[[int, int], None] = lambda done, total: None,
+    style: ConnectorStyle = ConnectorStyle.CENTRED,
 ) -> CutFileFigures:
     """Write and verify ``count`` random designs in every profile; ``report`` gets the designs done and their number."""
     passed, failures = 0, []
     writing: list[float] = []
     verifying: list[float] = []
     ratios: list[float] = []
-    jobs = list(_jobs(count, seed))
+    jobs = list(_jobs(count, seed, style))
     with tempfile.TemporaryDirectory() as folder:
         for number, job in enumerate(jobs):
             for profile in PROFILES:
@@ -107,7 +111,7 @@ def measure_cut_files(
     )
 
 
-def _jobs(count: int, seed: int) -> Iterator[ExportJob]:
+def _jobs(count: int, seed: int, style: ConnectorStyle) -> Iterator[ExportJob]:
     """Designs of random grids, ratios, widths and materials; those without room for connectors are left out."""
     materials = [material for material in presets().values() if material.kerf_mm > 0.0]
     for number in range(count):
@@ -117,7 +121,7 @@ def _jobs(count: int, seed: int) -> Iterator[ExportJob]:
         design = deploy(RatioField.from_log10(random.uniform(-spread, spread, (rows, columns))))
         width = float(random.uniform(*WIDTHS_MM))
         try:
-            plan = plan_cuts(design, width, material=materials[number % len(materials)])
+            plan = plan_cuts(design, width, material=materials[number % len(materials)], options=CutOptions(style))
         except KirigamiError:
             continue
         yield ExportJob(design, plan=plan)

@@ -11,6 +11,7 @@ from pathlib import Path
 from kirigami_studio.cli.console import ProgressLine, plain, print_json, say
 from kirigami_studio.cli.inputs import read_targets
 from kirigami_studio.cli.option_types import parse_grid, parse_grid_or_auto
+from kirigami_studio.fabricate.options import ConnectorStyle
 from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.foundation.files import write_atomically
 from kirigami_studio.lattice.deployment import deploy
@@ -240,7 +241,9 @@ def cut_files(arguments: argparse.Namespace) -> int:
     from kirigami_studio.benchmark.cut_files_suite import measure_cut_files
 
     line = ProgressLine()
-    figures = measure_cut_files(arguments.count, arguments.seed, _shown_on(line, "Random designs"))
+    figures = measure_cut_files(
+        arguments.count, arguments.seed, _shown_on(line, "Random designs"), ConnectorStyle(arguments.style)
+    )
     _print_figures(arguments, line, asdict(figures), figures.sentences())
     return 0 if figures.passed == figures.files else 1
 

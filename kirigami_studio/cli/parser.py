@@ -56,6 +56,12 @@ WIDTHS = (
     option("--connector-mm", type=positive, default=None, help="finished connector width (default: the material's)"),
     option("--kerf-mm", type=number, default=None, help="full width of the cut (default: the material's)"),
 )
+STYLE = option(
+    "--style",
+    choices=[style.value for style in ConnectorStyle],
+    default=ConnectorStyle.CENTRED.value,
+    help="how slits end at their connectors (default: centred)",
+)
 CUTS = (
     option(
         "--style",
@@ -462,7 +468,7 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
     SubCommand("benchmark mechanics", "compare the closing simulator with published tests", "benchmarks:mechanics",
             FIGURES, ("kirigami-studio benchmark mechanics",)),
     SubCommand("benchmark cut-files", "export random designs and read them back", "benchmarks:cut_files", (
-        RANDOM_DESIGNS, SEED, *FIGURES,
+        RANDOM_DESIGNS, SEED, STYLE, *FIGURES,
     ), ("kirigami-studio benchmark cut-files --count 20",)),
 )  # fmt: skip
 

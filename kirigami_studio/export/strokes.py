@@ -18,7 +18,7 @@ from kirigami_studio.export.profile import Profile
 from kirigami_studio.fabricate.cut_path import CHORD_MM, flattened
 from kirigami_studio.fabricate.cut_plan import DECIMALS, CutPath, CutPlan, Layer
 from kirigami_studio.fabricate.finished_sheet import DUST_MM2
-from kirigami_studio.fabricate.tabs import joined_ring
+from kirigami_studio.fabricate.options import ConnectorStyle
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import ExportError
 
@@ -88,9 +88,23 @@ def strokes_of(plan: CutPlan, profile: Profile) -> tuple[Stroke, ...]:
     found = []
     for path in plan.paths:
         flat = profile.flatten and path.bulges is not None
-        points, bulges = (np.round(path.flattened, DECIMALS) + 0.0, None) if flat else (path.points, path.bulges)
+        points, bulges = (np.round(_chords(path, plan), DECIMALS) + 0.0, None) if flat else (path.points, path.bulges)
         found.append(Stroke(points, path.closed, profile.layer_name(path.layer), profile.colour[path.layer], bulges))
     return tuple(found)
+
+
+def _chords(path: CutPath, plan: CutPlan) -> FloatArray:
+    """Points of a path without arcs, its first one not repeated; finer where the chords of arcs around centred
+    connectors would narrow them.
+    """
+    if plan.options.style is not ConnectorStyle.CENTRED or path.bulges is None:
+        return path.flattened
+    return flattened(path.points, path.bulges, path.closed, TIP_CHORD_MM)
+
+
+def _chord_line(path: CutPath, plan: CutPlan) -> LineString:
+    points = _chords(path, plan)
+    return LineString(np.concatenate([points, points[:1]]) if path.closed else points)
 
 
 def layer_colours(strokes: Sequence[Stroke]) -> dict[str, int]:
@@ -131,9 +145,8 @@ def slot_contours(plan: CutPlan) -> list[tuple[Layer, FloatArray]]:
 def _finished_sheet(plan: CutPlan) -> Polygon:
     """What is left of the sheet: area between its slots."""
     half = 0.5 * plan.kerf_mm
-    ring = joined_ring([path.flattened for path in plan.on_layer(Layer.OUTLINE)])
-    outline = Polygon(ring).buffer(-half, join_style="mitre", mitre_limit=MITRE_LIMIT)
-    lines = np.array([LineString(path.travelled) for path in plan.paths if path.layer is not Layer.OUTLINE])
+    outline = Polygon(plan.outline).buffer(-half, join_style="mitre", mitre_limit=MITRE_LIMIT)
+    lines = np.array([_chord_line(path, plan) for path in plan.paths if path.layer is not Layer.OUTLINE])
     burned = shapely.union_all(shapely.buffer(lines, half, quad_segs=_quarter_chords(half)))
     inside = [LineString(path.travelled) for path in plan.paths if path.closed and path.layer is not Layer.OUTLINE]
     burned = shapely.union_all([burned, *(Polygon(line) for line in inside)])

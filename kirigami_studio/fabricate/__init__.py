@@ -11,6 +11,12 @@ T-junction
     what remains is the *connector* (the hinge of the finished sheet).
 seat
     The frame of one T-junction: the through cut's direction, the slit's slant, and the gap between them.
+centre
+    Where a connector turns: the middle of its neck.  A *centred* connector has it on its node, or where all centres
+    moved together so that every void stays a parallelogram.
+turn, bow
+    The last part of a slit that arrives square to what it rests on, and the arc on which a through cut (or the
+    outline) goes around a centred connector.
 ending
     The shape that a slit ends in: nothing (straight), a relief hole, an arc around the junction, or a bar along the
     through cut.

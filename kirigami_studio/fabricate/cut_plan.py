@@ -14,10 +14,12 @@ import shapely
 from shapely.geometry import LineString, Polygon
 
 from kirigami_studio.fabricate import timing
+from kirigami_studio.fabricate.centred import Arranged, Trimming, centred_cuts
+from kirigami_studio.fabricate.centres import void_misses
 from kirigami_studio.fabricate.connectors import OVERCUT_MM, Hinges, edge_cut_paths, hinge_widths, outline_path, shorten
+from kirigami_studio.fabricate.cut_path import MEASURED_CHORD_MM, check_length, flattened, measured_line
 from kirigami_studio.fabricate.cut_path import CutPath as CutPath
 from kirigami_studio.fabricate.cut_path import Layer as Layer
-from kirigami_studio.fabricate.cut_path import check_length
 from kirigami_studio.fabricate.endings import seats
 from kirigami_studio.fabricate.findings import Note
 from kirigami_studio.fabricate.fitting import Obstacle
@@ -75,6 +77,8 @@ class CutPlan:
         What a person should read before cutting.
     panels : tuple of (P, 2) float, mm
         Panels between the centre lines of the cuts, row by row; four corners each unless trimmed.
+    centres : (H, 2) float or None, mm
+        Where the connectors turn; None for styles that do not place them.
     origin : mapping of str to str
         Where the design comes from, repeated in every file of the plan; decides nothing.
     """
@@ -90,6 +94,7 @@ class CutPlan:
     options: CutOptions = field(default_factory=CutOptions)
     notes: tuple[Note, ...] = ()
     panels: tuple[FloatArray, ...] = ()
+    centres: FloatArray | None = None
     origin: Mapping[str, str] = field(default_factory=lambda: MappingProxyType({}))
 
     @cached_property
@@ -121,7 +126,7 @@ class CutPlan:
     @property
     def outline(self) -> FloatArray:
         """Centre line of the outline as one ring (P, 2), mm, tabs closed; the first point is not repeated."""
-        return joined_ring([path.points for path in self.on_layer(Layer.OUTLINE)])
+        return joined_ring([_finely(path) for path in self.on_layer(Layer.OUTLINE)])
 
     @property
     def bounds_mm(self) -> tuple[float, float]:
@@ -189,27 +194,29 @@ def plan_cuts(
     sides = edge_sides(deployment, width)
     shortened = shorten(lines, table, sides, widths, kerf)
     parts = () if kept is None or all(part is None for part in kept) else tuple(kept)
-    if parts or deployment.sheet.start is not None:
-        area = kept_area(deployment, parts or (None,) * len(deployment.topology.panel_nodes.reshape(-1, 4)), width)
-        straight = STRAIGHT_MM if parts else UNTRIMMED_STRAIGHT_MM
-        outline, pieces = trimmed_cuts(area, shortened, table, kerf, overcut, straight)
-    else:
-        outline, pieces = _plain_cuts(shortened, table, size, kerf, overcut)
-    cuts = hinged_cuts(
-        pieces,
-        shortened[table.hinge_cut, table.hinge_end],
-        seats(lines, shortened, table, sides, widths, kerf),
-        table,
-        outline,
-        options,
-        material,
-        kerf,
-        overcut,
-    )
-    ring = shapely.get_coordinates(shapely.orient_polygons(outline).exterior)[:-1]
-    origin = np.concatenate([ring, *(piece.points for piece in cuts.pieces)]).min(axis=0)
-    cuts, ring = cuts.moved(lambda points: _on_grid(points - origin)), _on_grid(ring - origin)
-    hinges = _hinges(cuts, table, widths, cuts.widths(table, options.removed, Polygon(ring), kerf))
+    trimming = _trimming(deployment, parts, table, width, size, kerf, overcut)
+    arranged = None
+    if options.style is ConnectorStyle.CENTRED:
+        arranged = centred_cuts(lines, table, sides, widths, kerf, overcut, options.removed, trimming)
+    if arranged is None:
+        outline, pieces = trimming(shortened)
+        cuts = hinged_cuts(
+            pieces,
+            shortened[table.hinge_cut, table.hinge_end],
+            seats(lines, shortened, table, sides, widths, kerf),
+            table,
+            outline,
+            options,
+            material,
+            kerf,
+            overcut,
+        )
+        arranged = Arranged.without_centres(cuts, outline)
+    origin = arranged.lowest
+    cuts = arranged.cuts.moved(lambda points: _on_grid(points - origin))
+    ring = CutPath(_on_grid(arranged.ring - origin), Layer.OUTLINE, True, bulges=arranged.ring_bulges)
+    boundary = Polygon(measured_line(ring.points, ring.bulges, True))
+    hinges = _hinges(cuts, table, widths, cuts.widths(table, options.removed, boundary, kerf))
     return CutPlan(
         paths=in_cutting_order(
             _paths(cuts.pieces, ring, hinges.position[hinges.through == SHEET_EDGE], options, kerf),
@@ -224,9 +231,18 @@ def plan_cuts(
         material=material,
         design_hash=_design_hash(deployment, parts),
         options=options,
-        notes=plan_notes(hinges, material, connector, kerf, options.style, cuts.straight),
+        notes=(
+            *plan_notes(hinges, material, connector, kerf, options.style, cuts.straight),
+            *_centring_notes(arranged, options, table),
+        ),
         panels=panels_in_mm(deployment, parts, width, origin),
+        centres=None if arranged.centres is None else _frozen(arranged.centres - origin),
     )
+
+
+def _finely(path: CutPath) -> FloatArray:
+    """Points of a path with chords for arcs so fine that widths can be measured on them."""
+    return path.points if path.bulges is None else flattened(path.points, path.bulges, path.closed, MEASURED_CHORD_MM)
 
 
 def _check_size(size: tuple[float, float]) -> None:
@@ -238,6 +254,23 @@ def _check_size(size: tuple[float, float]) -> None:
             smallest_mm=SMALLEST_SHEET_MM,
             largest_mm=LARGEST_SHEET_MM,
         )
+
+
+def _trimming(
+    deployment: Deployment,
+    parts: Sequence[FloatArray | None],
+    table: CutTable,
+    width: float,
+    size: tuple[float, float],
+    kerf: float,
+    overcut: float,
+) -> Trimming:
+    """How straight cuts become outline and remaining cuts of this sheet."""
+    if not parts and deployment.sheet.start is None:
+        return lambda pulled: _plain_cuts(pulled, table, size, kerf, overcut)
+    area = kept_area(deployment, parts or (None,) * len(deployment.topology.panel_nodes.reshape(-1, 4)), width)
+    straight = STRAIGHT_MM if parts else UNTRIMMED_STRAIGHT_MM
+    return lambda pulled: trimmed_cuts(area, pulled, table, kerf, overcut, straight)
 
 
 def _plain_cuts(
@@ -255,7 +288,7 @@ def _hinges(cuts: HingedCuts, table: CutTable, requested: FloatArray, finished: 
 
 
 def _paths(
-    pieces: Sequence[CutPiece], ring: FloatArray, on_edge: FloatArray, options: CutOptions, kerf: float
+    pieces: Sequence[CutPiece], ring: CutPath, on_edge: FloatArray, options: CutOptions, kerf: float
 ) -> list[CutPath]:
     """All cuts on their layers, the outline last: one ring, or the open paths between its tabs.
 
@@ -266,12 +299,18 @@ def _paths(
         layer = Layer.RELIEF if piece.closed else Layer.EDGE_SLITS if piece.opens else Layer.SLITS
         paths.append(CutPath(piece.points, layer, piece.closed, piece.cut, piece.bulges))
     if options.tabs == 0:
-        return [*paths, CutPath(ring, Layer.OUTLINE, True)]
-    exterior = Polygon(ring).exterior
+        return [*paths, ring]
+    line = _finely(ring)
+    exterior = Polygon(line).exterior
     over = [shapely.intersection(LineString(p.points), exterior) for p in paths if p.layer is Layer.EDGE_SLITS]
     busy = np.concatenate([shapely.get_coordinates(over), on_edge])
-    parts = tabbed(ring, options.tabs, options.tab_mm + kerf, busy)
+    parts = tabbed(line, options.tabs, options.tab_mm + kerf, busy)
     return [*paths, *(CutPath(_on_grid(part), Layer.OUTLINE, False) for part in parts)]
+
+
+def _frozen(values: FloatArray) -> FloatArray:
+    values.setflags(write=False)
+    return values
 
 
 def _on_grid(points: FloatArray) -> FloatArray:
@@ -290,6 +329,18 @@ def _design_hash(deployment: Deployment, kept: Sequence[FloatArray | None]) -> s
         if part is not None:
             content += f"{index}".encode() + np.ascontiguousarray(part, dtype="<f8").tobytes()
     return hashlib.sha256(content).hexdigest()[:16]
+
+
+def _centring_notes(arranged: Arranged, options: CutOptions, table: CutTable) -> list[Note]:
+    """Where connectors that were to be centred are not."""
+    if options.style is not ConnectorStyle.CENTRED:
+        return []
+    if arranged.centres is None:
+        return [Note.of("plan.no_room_to_centre")]
+    if not arranged.off_centre:
+        return []
+    miss = float(void_misses(arranged.centres, table, options.removed).max(initial=0.0))
+    return [Note.of("plan.off_centre", count=arranged.off_centre, total=table.hinge_count, miss_mm=miss)]
 
 
 def plan_notes(

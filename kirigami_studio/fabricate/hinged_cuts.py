@@ -138,7 +138,7 @@ def hinged_cuts(
     places = places_of_ends(pieces, tips, table)
     made, places = cut_through(pieces, options.removed, places, hinge_seats, table, outline, overcut_mm)
     flexure = np.array([seat.span_mm for seat in hinge_seats])
-    if options.style is ConnectorStyle.STRAIGHT:
+    if options.style in (ConnectorStyle.STRAIGHT, ConnectorStyle.CENTRED):
         return HingedCuts(tuple(made), tuple(hinge_seats), tuple(places), {}, flexure, Counter())
     fitting = Fitting(options.style, hinge_seats, radius, table, made, places, outline, kerf_mm)
     removed = set(options.removed)

@@ -19,6 +19,7 @@ MOST_TABS = 200
 class ConnectorStyle(Enum):
     """How a slit ends before its hinge; the values are the names on the command line and in files."""
 
+    CENTRED = "centred"
     STRAIGHT = "straight"
     ROUND = "round"
     TEARDROP = "teardrop"

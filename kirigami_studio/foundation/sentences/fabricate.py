@@ -144,6 +144,22 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "plan.connectors_may_tear": mark(
         "Connectors of {width_mm:g} mm may tear: {material!r} needs {least_mm:g} mm or more."
     ),
+    "plan.no_room_to_centre": mark(
+        "The connectors cannot be centred on their nodes: the cuts are too near to each other. They are straight "
+        "instead. Use a larger sheet, narrower connectors or a more regular design."
+    ),
+    "plan.off_centre": (
+        mark(
+            "{count} of {total} connectors has no room to be centred, and a void misses being a parallelogram by "
+            "{miss_mm:.3f} mm: the sheet jams before it closes. Use a larger sheet, narrower connectors or a more "
+            "regular design."
+        ),
+        mark(
+            "{count} of {total} connectors have no room to be centred, and voids miss being parallelograms by up to "
+            "{miss_mm:.3f} mm: the sheet jams before it closes. Use a larger sheet, narrower connectors or a more "
+            "regular design."
+        ),
+    ),
     "plan.straight_because_slanted": (
         mark(
             "{count} of {total} slit ends is straight instead of {style}: the slit is too slanted, or the cut it ends "

@@ -15,6 +15,11 @@ from kirigami_studio.project.settings import FabricationSettings
 TOOLTIP = Qt.ItemDataRole.ToolTipRole
 #: Value, label, what it means.
 STYLES = (
+    (
+        ConnectorStyle.CENTRED,
+        tr("Centred"),
+        tr("The cut that a slit ends on makes way, so that the connector turns exactly on its corner."),
+    ),
     (ConnectorStyle.STRAIGHT, tr("Straight"), tr("The slit ends in a plain tip.")),
     (ConnectorStyle.ROUND, tr("Round"), tr("A round hole at the slit's end relieves stress.")),
     (ConnectorStyle.TEARDROP, tr("Teardrop"), tr("A drop-shaped hole at the slit's end: rounded, with no step.")),

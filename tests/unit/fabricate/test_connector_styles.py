@@ -21,7 +21,7 @@ from kirigami_studio.foundation.errors import FabricationError
 from kirigami_studio.lattice.deployment import Deployment
 
 MakeDesign = Callable[..., Deployment]
-SHAPED = [style for style in ConnectorStyle if style is not ConnectorStyle.STRAIGHT]
+SHAPED = [style for style in ConnectorStyle if style not in (ConnectorStyle.STRAIGHT, ConnectorStyle.CENTRED)]
 HOLED = [ConnectorStyle.ROUND, ConnectorStyle.TEARDROP]
 
 

@@ -1,0 +1,409 @@
+"""Connectors that turn on their nodes: slits turn square to what they rest on, which makes way around them.
+
+Where ``centres`` puts a connector's centre, the slit ends half a span (finished width and kerf) before it and the
+through cut, or the outline, goes around it on a circle whose deepest place is half a span behind it.  A slit that
+arrives slanted leaves its line a few spans before and turns square to the through cut, straight or by an arc, so that
+nothing but the tip itself comes nearer to the through cut than a span.
+
+What is in the way of each other gives way in steps: slits turn within a shorter length, then the through cut stays
+straight (the connector lies beside it, its centre half a span away), then the slit stays straight too.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+import shapely
+from shapely.geometry import Point, Polygon
+
+from kirigami_studio.fabricate.centres import Centres, settled_centres
+from kirigami_studio.fabricate.connectors import SHORTEST_CUT_MM
+from kirigami_studio.fabricate.cut_path import measured_line
+from kirigami_studio.fabricate.detours import NEGLIGIBLE_MM, ON_LINE_MM, TURNS, Bow, Track, crossings, first_turn
+from kirigami_studio.fabricate.endings import Seat
+from kirigami_studio.fabricate.fitting import Place
+from kirigami_studio.fabricate.hinged_cuts import HingedCuts, cut_through, places_of_ends
+from kirigami_studio.fabricate.slits import SHEET_EDGE, CutTable
+from kirigami_studio.fabricate.trimmed_sheet import CutPiece
+from kirigami_studio.foundation.arrays import BoolArray, FloatArray, IntArray
+from kirigami_studio.foundation.errors import FabricationError
+
+#: Distances may fall short of what is demanded by this (mm).
+CLEAR_MM = 5e-4
+#: Chords that stand for each arc, from outside, where conflicts are looked for.
+CHORDS = 24
+#: How often what is in the way of each other is made to give way, and from which time on in one step.
+ROUNDS, HASTY_FROM = 8, 3
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Arranged:
+    """Cuts with centred connectors.
+
+    Attributes
+    ----------
+    cuts : HingedCuts
+    ring : (P, 2) float, mm
+        Centre line of the outline, counter-clockwise.
+    ring_bulges : (P,) float or None
+        Arcs around the connectors on it.
+    centres : (H, 2) float or None, mm
+        Where the connectors turn; None for styles that do not place them.
+    off_centre : int
+        How many connectors had no room to be centred, so that the voids beside them are no parallelograms.
+    """
+
+    cuts: HingedCuts
+    ring: FloatArray
+    ring_bulges: FloatArray | None
+    centres: FloatArray | None
+    off_centre: int = 0
+
+    @classmethod
+    def without_centres(cls, cuts: HingedCuts, outline: Polygon) -> Arranged:
+        """Cuts of another style."""
+        return cls(cuts, counter_clockwise(outline), None, None)
+
+    @property
+    def lowest(self) -> FloatArray:
+        """Smallest coordinates (2,) that the head reaches."""
+        ring = shapely.get_coordinates(measured_line(self.ring, self.ring_bulges, True))
+        lowest: FloatArray = np.concatenate([ring, *(piece.points for piece in self.cuts.pieces)]).min(axis=0)
+        return lowest
+
+
+def counter_clockwise(outline: Polygon) -> FloatArray:
+    """The ring of an outline (P, 2), its first point not repeated."""
+    ring: FloatArray = shapely.get_coordinates(shapely.orient_polygons(outline).exterior)[:-1]
+    return ring
+
+
+#: Makes outline and remaining straight cuts from cuts (C, 2, 2) that end at their tips.
+Trimming = Callable[[FloatArray], tuple[Polygon, list[CutPiece]]]
+
+
+def centred_cuts(
+    lines: FloatArray,
+    table: CutTable,
+    sides: FloatArray,
+    widths: FloatArray,
+    kerf_mm: float,
+    overcut_mm: float,
+    removed: tuple[int, ...],
+    trimmed: Trimming,
+) -> Arranged | None:
+    """Arrange all cuts so that as many connectors as possible turn on their nodes.
+
+    Parameters
+    ----------
+    lines : (C, 2, 2) float, mm
+        Cuts from node to node.
+    table : CutTable
+    sides : (H, 2, 2) float, mm
+        Sides of the sheet beside the hinges on its edge.
+    widths : (H,) float, mm
+        Finished width of each hinge, 0 for removed ones.
+    kerf_mm, overcut_mm : float
+    removed : tuple of int
+    trimmed : function
+        Makes outline and cuts of the straight cuts.
+
+    Returns
+    -------
+    arranged : Arranged or None
+        None where the cuts do not get out of each other's way, or trimming leaves too little for moved connectors.
+    """
+    spans = np.maximum(widths, 0.0) + kerf_mm
+    attempt = np.zeros(table.hinge_count, dtype=np.intp)
+    flat = np.zeros(table.hinge_count, dtype=np.bool_)
+    flat[_facing(table, removed)] = True
+    centres: Centres | None = None
+    for turn in range(ROUNDS):
+        straight = attempt >= len(TURNS)
+        centres = settled_centres(lines, table, sides, spans, kerf_mm, flat | straight, removed, centres)
+        try:
+            draft = _Draft(centres, table, attempt, flat | straight, removed, kerf_mm, overcut_mm, trimmed)
+        except FabricationError:
+            # Trimming took the material that a moved connector needs.
+            return None
+        tighter, flatter = draft.in_the_way()
+        flatter -= set(np.flatnonzero(flat).tolist())
+        if not tighter and not flatter:
+            return draft.arranged()
+        for hinge in tighter:
+            attempt[hinge] = draft.next_attempt(hinge) if turn < HASTY_FROM else len(TURNS)
+        flat[list(flatter)] = True
+    return None
+
+
+def _facing(table: CutTable, removed: tuple[int, ...]) -> IntArray:
+    """Removed hinges and those that face them across their cut."""
+    through = table.hinge_through[list(removed)]
+    beside = np.isin(table.hinge_through, through[through != SHEET_EDGE])
+    beside[list(removed)] = True
+    return np.flatnonzero(beside)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Feature:
+    """A part of a cut that a hinge is the reason for: its turn, or the bow around it."""
+
+    points: FloatArray
+    bulges: FloatArray
+    hinge: int
+    turns: bool
+
+    @property
+    def line(self) -> shapely.Geometry:
+        """Its line, or the tip alone."""
+        if len(self.points) == 1:
+            return Point(self.points[0])
+        return measured_line(self.points, np.array([*self.bulges, 0.0]), False)
+
+
+class _Draft:
+    """One arrangement, and who is in whose way."""
+
+    def __init__(
+        self,
+        centres: Centres,
+        table: CutTable,
+        attempt: IntArray,
+        flat: BoolArray,
+        removed: tuple[int, ...],
+        kerf_mm: float,
+        overcut_mm: float,
+        trimmed: Trimming,
+    ) -> None:
+        self._centres, self._table, self._flat, self._removed = centres, table, flat, removed
+        self._shortest = max(SHORTEST_CUT_MM, 2.0 * kerf_mm)
+        self._tight: set[int] = set()
+        self._crowded: set[int] = set()
+        self._turns = [None if hinge in removed else first_turn(centres, hinge, int(attempt[hinge]))
+                       for hinge in range(table.hinge_count)]  # fmt: skip
+        self._straight = np.array([turn is None for turn in self._turns])
+        left = np.stack([-centres.normal[:, 1], centres.normal[:, 0]], axis=1)
+        self._along = np.cos(centres.slant)[:, None] * centres.normal + np.sin(centres.slant)[:, None] * left
+        tips = self._tips()
+        pulled = centres.bodies.copy()
+        pulled[table.hinge_cut, table.hinge_end] = tips
+        self._outline, pieces = trimmed(pulled)
+        self._seats = self._all_seats(left)
+        places = places_of_ends(pieces, tips, table)
+        self._pieces, places = cut_through(pieces, removed, places, self._seats, table, self._outline, overcut_mm)
+        self._places: list[Place] = places
+        self._end_of = {place: hinge for hinge, place in enumerate(self._places)}
+        self._resting: dict[int, list[int]] = {}
+        for hinge, through in enumerate(table.hinge_through.tolist()):
+            self._resting.setdefault(through, []).append(hinge)
+        self._bowed: set[int] = set()
+        self._features: list[list[_Feature]] = []
+        self._made = [self._shaped(number, piece) for number, piece in enumerate(self._pieces)]
+        self._ring, self._ring_bulges = self._bowed_outline()
+
+    def _tips(self) -> FloatArray:
+        """Where the slits end on their own lines: a span from what they rest on, or square before their tips."""
+        centres = self._centres
+        height = np.where(self._straight, centres.span_mm - centres.height_mm, 0.5 * centres.span_mm)
+        back = np.where(self._straight, height / np.cos(centres.slant), height)
+        tips: FloatArray = centres.position + back[:, None] * self._along
+        return tips
+
+    def _all_seats(self, left: FloatArray) -> list[Seat]:
+        centres = self._centres
+        down = np.where(self._straight[:, None], self._along / np.cos(centres.slant)[:, None], centres.normal)
+        foot = centres.position - centres.height_mm[:, None] * down
+        spans = centres.span_mm.tolist()
+        return [
+            Seat(foot[hinge], centres.normal[hinge], left[hinge], float(centres.slant[hinge]), span, span, np.zeros(2))
+            for hinge, span in enumerate(spans)
+        ]
+
+    def _shaped(self, number: int, piece: CutPiece) -> CutPiece:
+        """A piece with its turns and bows."""
+        features: list[_Feature] = []
+        self._features.append(features)
+        body = self._centres.bodies[piece.cut]
+        across = np.array([body[0, 1] - body[1, 1], body[1, 0] - body[0, 0]]) / np.linalg.norm(body[1] - body[0])
+        on_line = np.flatnonzero(np.abs((piece.points - body[0]) @ across) < ON_LINE_MM)
+        if len(on_line) < 2:
+            return piece
+        first, last = int(on_line[0]), int(on_line[-1])
+        ends = [self._end_of.get((number, False)), self._end_of.get((number, True))]
+        turns = [None if end is None else self._turns[end] for end in ends]
+        start = piece.points[first] if turns[0] is None else turns[0].points[-1]
+        stop = piece.points[last] if turns[1] is None else turns[1].points[-1]
+        heading = piece.points[last] - piece.points[first]
+        heading = heading / np.linalg.norm(heading)
+        length = float(np.dot(stop - start, heading))
+        turning = [end for end, turn in zip(ends, turns, strict=True) if end is not None and turn is not None]
+        if length < self._shortest:
+            self._tight.update(turning)
+            return piece
+        track = Track()
+        for point in piece.points[:first]:
+            track.to(point)
+        if turns[0] is None:
+            track.to(start)
+        else:
+            for point, bulge in zip(turns[0].points, [0.0, *turns[0].bulges], strict=True):
+                track.to(point, float(bulge))
+        bows = self._bows(piece.cut, start, heading, length, turning)
+        for (hinge, _), (ends_of_arc, bulge) in zip(bows, track.around([bow for _, bow in bows]), strict=True):
+            self._bowed.add(hinge)
+            features.append(_Feature(ends_of_arc, np.array([bulge]), hinge, False))
+        if turns[1] is None:
+            track.to(stop)
+        else:
+            for point, bulge in zip(turns[1].points[::-1], [0.0, *turns[1].bulges[::-1]], strict=True):
+                track.to(point, -float(bulge))
+        for point in piece.points[last + 1 :]:
+            track.to(point)
+        for end, turn in zip(ends, turns, strict=True):
+            if end is not None and turn is not None:
+                features.append(_Feature(turn.points, turn.bulges, end, True))
+        return track.piece(piece)
+
+    def _bows(
+        self, cut: int, start: FloatArray, heading: FloatArray, length: float, turning: Sequence[int]
+    ) -> list[tuple[int, Bow]]:
+        """What a straight run has to go around, by hinge, in its own order."""
+        middles, radii = self._centres.circle
+        left = np.array([-heading[1], heading[0]])
+        found: list[tuple[float, int, Bow]] = []
+        for hinge in self._resting.get(cut, []) if cut < self._table.slit_count else []:
+            away = middles[hinge] - start
+            off, place, radius = float(away @ left), float(away @ heading), float(radii[hinge])
+            if self._flat[hinge] or hinge in self._removed or radius - abs(off) < NEGLIGIBLE_MM:
+                continue
+            half = math.sqrt(radius * radius - off * off)
+            if place + half <= 0.0 or place - half >= length:
+                continue
+            if place - half < 0.0 or place + half > length:
+                # Short of room: slits that end here turn within less, if they do.
+                able = [end for end in turning if self._can_tighten(end)]
+                self._tight.update(able)
+                (self._bowed if able else self._crowded).add(hinge)
+                continue
+            bow = Bow(middles[hinge], radius, off > 0.0, start + (place - half) * heading,
+                      start + (place + half) * heading)  # fmt: skip
+            found.append((place, hinge, bow))
+        return [(hinge, bow) for _, hinge, bow in sorted(found, key=lambda entry: entry[0])]
+
+    def _bowed_outline(self) -> tuple[FloatArray, FloatArray]:
+        """The outline with bows around the connectors on it."""
+        ring = counter_clockwise(self._outline)
+        bulges = np.zeros(len(ring))
+        middles, radii = self._centres.circle
+        self._outline_features = []
+        waiting = [hinge for hinge in range(self._table.hinge_count)
+                   if not self._flat[hinge] and hinge not in self._bowed and hinge not in self._crowded
+                   and hinge not in self._removed
+                   and self._centres.height_mm[hinge] < 0.5 * self._centres.span_mm[hinge] - NEGLIGIBLE_MM]  # fmt: skip
+        for hinge in waiting:
+            crossing = crossings(ring, bulges, middles[hinge], float(radii[hinge]))
+            if crossing is None:
+                self._crowded.add(hinge)
+                continue
+            entry, exit_, (before, after) = crossing
+            bow = Bow(middles[hinge], float(radii[hinge]), True, entry, exit_)
+            bulge = bow.bulge(entry, exit_)
+            # From the vertex after the way out round to the vertex before the way in.
+            kept = np.arange(after + 1, before + 1 + (len(ring) if before < after + 1 else 0)) % len(ring)
+            if len(kept) < 2:
+                self._crowded.add(hinge)
+                continue
+            ring = np.concatenate([ring[kept], [entry, exit_]])
+            bulges = np.concatenate([bulges[kept], [bulge, 0.0]])
+            self._outline_features.append(_Feature(np.stack([entry, exit_]), np.array([bulge]), hinge, False))
+        return ring, bulges
+
+    def in_the_way(self) -> tuple[set[int], set[int]]:
+        """Hinges whose slits must turn within less room, and hinges that nothing can bow around."""
+        tight = {hinge for hinge in self._tight if self._turns[hinge] is not None}
+        flatter = set(self._crowded)
+        lines = self._lines()
+        features = [*self._features, self._outline_features]
+        cut = np.array([*(piece.cut for piece in self._made), -1])
+        opens = np.array([*(piece.opens for piece in self._made), True])
+        one, other = shapely.STRtree(lines).query(lines, "dwithin", float(self._centres.span_mm.max()))
+        apart = (one < other) & (cut[one] != cut[other]) & ~(opens[one] & opens[other])
+        one, other = one[apart], other[apart]
+        near = np.flatnonzero(shapely.distance(lines[one], lines[other]) < self._needed(cut[one], cut[other]))
+        between = shapely.get_coordinates(shapely.shortest_line(lines[one[near]], lines[other[near]])).reshape(-1, 2, 2)
+        for (first, second), places in zip(zip(one[near].tolist(), other[near].tolist(), strict=True), between,
+                                           strict=True):  # fmt: skip
+            guilty = [feature for number, place in zip((first, second), places, strict=True)
+                      for feature in features[number]
+                      if shapely.distance(feature.line, Point(place)) < NEGLIGIBLE_MM]  # fmt: skip
+            bows = {feature.hinge for feature in guilty if not feature.turns}
+            turning = {feature.hinge for feature in guilty if feature.turns}
+            able = {hinge for hinge in turning if self._can_tighten(hinge)}
+            tight |= able or (set() if bows else turning)
+            flatter |= set() if able else bows
+        return tight, flatter
+
+    def next_attempt(self, hinge: int) -> int:
+        """The next way for the slit of a hinge to turn; past the last one it stays straight."""
+        turn = self._turns[hinge]
+        return len(TURNS) if turn is None or len(turn.points) == 1 else turn.attempt + 1
+
+    def _lines(self) -> npt.NDArray[np.object_]:
+        """Centre lines of all pieces and of the outline, with ``CHORDS`` chords for each arc."""
+        points = [*(piece.points for piece in self._made), np.concatenate([self._ring, self._ring[:1]])]
+        bulges = [
+            *(np.zeros(len(piece.points)) if piece.bulges is None else piece.bulges for piece in self._made),
+            np.concatenate([self._ring_bulges, [0.0]]),
+        ]
+        place, bulge = np.concatenate(points), np.concatenate(bulges)
+        owner = np.repeat(np.arange(len(points)), [len(part) for part in points])
+        arcs = np.flatnonzero(bulge != 0.0)
+        start, stop = (ends[:, 0] + 1j * ends[:, 1] for ends in (place[arcs], place[arcs + 1]))
+        height = (1.0 - bulge[arcs] ** 2) / (4.0 * bulge[arcs])
+        middle = 0.5 * (start + stop) + 1j * (stop - start) * height
+        share = np.arange(1, CHORDS) / CHORDS
+        angle = 4.0 * np.arctan(bulge[arcs])[:, None]
+        on_arc = middle[:, None] + (start - middle)[:, None] * np.exp(1j * angle * share) / np.cos(0.5 * angle / CHORDS)
+        order = np.concatenate([np.arange(len(place), dtype=np.float64), (arcs[:, None] + share).ravel()])
+        coordinates = np.concatenate([place, np.stack([on_arc.real.ravel(), on_arc.imag.ravel()], axis=1)])
+        owners = np.concatenate([owner, np.repeat(owner[arcs], CHORDS - 1)])
+        sorted_ = np.argsort(order, kind="stable")
+        return np.asarray(shapely.linestrings(coordinates[sorted_], indices=owners[sorted_]))
+
+    def _can_tighten(self, hinge: int) -> bool:
+        turn = self._turns[hinge]
+        return turn is not None and len(turn.points) > 1 and turn.attempt + 1 < len(TURNS)
+
+    def _needed(self, one: IntArray, other: IntArray) -> FloatArray:
+        """Least distances between cuts: the span of the connector between them, else the narrowest of the sheet."""
+        there = ~np.isin(np.arange(self._table.hinge_count), self._removed)
+        table, spans = self._table, self._centres.span_mm
+        least = float(spans[there].min(initial=math.inf))
+        resting = {}
+        for hinge in np.flatnonzero(there).tolist():
+            pair = sorted((int(table.hinge_cut[hinge]), int(table.hinge_through[hinge])))
+            resting[pair[0], pair[1]] = float(spans[hinge])
+        for hinge in self._removed:
+            pair = sorted((int(table.hinge_cut[hinge]), int(table.hinge_through[hinge])))
+            resting[pair[0], pair[1]] = 0.0
+        pairs = np.sort(np.stack([one, other], axis=1), axis=1).tolist()
+        needed = np.array([resting.get((a, b), least) for a, b in pairs])
+        return needed - CLEAR_MM
+
+    def arranged(self) -> Arranged:
+        """The result."""
+        centres = self._centres
+        flexure = centres.span_mm.copy()
+        tips = self._tips()
+        turned = centres.position
+        straight = tips - 0.5 * centres.span_mm[:, None] * centres.normal
+        cuts = HingedCuts(tuple(self._made), tuple(self._seats), tuple(self._places), {}, flexure, Counter())
+        bulges = self._ring_bulges if self._ring_bulges.any() else None
+        there = ~np.isin(np.arange(len(self._straight)), self._removed)
+        where = np.where(self._straight[:, None], straight, turned)
+        return Arranged(cuts, self._ring, bulges, where, int(np.sum(self._straight & there)))
