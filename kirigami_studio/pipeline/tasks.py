@@ -20,7 +20,7 @@ from kirigami_studio.pipeline.redesign import kept_symmetry, trimmed
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.polish.continuation import FAIR_LOSS, Way, fit_from_uniform, fit_shape
 from kirigami_studio.polish.levenberg import polish
-from kirigami_studio.polish.objective import Stage
+from kirigami_studio.polish.objective import CONVERGED, Stage
 from kirigami_studio.polish.preferences import PREFERENCES
 from kirigami_studio.polish.symmetry import shared_symmetries, symmetric_target
 
@@ -96,7 +96,7 @@ class PolishTask:
 
     def _stages(self, even: float) -> tuple[Stage, ...]:
         if not even:
-            return (Stage(self.steps),)
+            return (Stage(self.steps, least_gain=CONVERGED),)
         if self.last:
             return (Stage(self.steps, LAST_TRUST, LAST_SHARE * even),)
         return (Stage(self.steps, FIRST_TRUST, FIRST_SHARE * even),)

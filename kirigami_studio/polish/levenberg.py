@@ -32,15 +32,13 @@ from kirigami_studio.polish.even_panels import EvenPanels
 from kirigami_studio.polish.guide import Guide, TransportMap
 from kirigami_studio.polish.matching import check_excess
 from kirigami_studio.polish.normal_equations import Damped
-from kirigami_studio.polish.objective import POSE, TRUST, Look, Objective, Slopes, Stage
+from kirigami_studio.polish.objective import CONVERGED, POSE, TRUST, Look, Objective, Slopes, Stage
 from kirigami_studio.polish.panel_size import check_least
 from kirigami_studio.polish.preferences import Preference, PreferenceTerms
 from kirigami_studio.polish.sensitivity import OutlineModel
 
 #: Even samples of the target boundary.
 SAMPLES = 256
-#: A step must lower the cost by this share, or the fit has converged.
-SMALLEST_GAIN = 1e-4
 #: Damping relative to the matrix' diagonal: where it starts and between what it stays.
 FIRST_DAMPING, SMALLEST_DAMPING, LARGEST_DAMPING = 1e-2, 1e-7, 1e4
 #: First growth of the damping after a refused step, itself doubled with each refusal in a row; an accepted step eases
@@ -153,7 +151,7 @@ def polish(
     start = bounds.allowed(bounds.start)
     pose = pose or align(model.outline(start), target.points)
     terms = PreferenceTerms(preference or Preference(), start[: model.voids], sheet.rows, sheet.columns)
-    stages = tuple(stages) or (Stage(steps, trust, even),)
+    stages = tuple(stages) or (Stage(steps, trust, even, least_gain=CONVERGED),)
     even_panels = EvenPanels.of(sheet) if any(stage.even for stage in stages) else None
     term = Guide(sheet, phi, guide) if guide is not None else None
     boundary, least, excess = BoundaryTarget.of(target, SAMPLES), check_least(least_panel), check_excess(excess)
@@ -296,7 +294,7 @@ class _Descent:
                     self.damping = max(eased, SMALLEST_DAMPING)
                     before, self.here = self.here.cost, there
                     self.steps += 1
-                    return before - there.cost > SMALLEST_GAIN * before
+                    return before - there.cost > self.objective.stage.least_gain * before
             self.damping *= harden
             stiffer *= harden
             harden *= 2.0

@@ -35,6 +35,11 @@ from kirigami_studio.polish.sensitivity import Decoded, NodeMotion, OutlineModel
 #: Found on 50 outlines, drawn ones and those of random fields: 0.003 to 0.03 differ by 0.002 in mean exact IoU.
 TRUST = 0.005
 
+#: A step that lowers the cost by no more than this share ends a fit: one for the match alone, and a stage of one with
+#: even panels.  In whole runs for 4 shapes the larger share saves a quarter of the decodings; the mean IoU of the first
+#: designs stays within 0.0002.  Where only the match counts it would take 0.0001 off an IoU of 0.9987.
+CONVERGED, SETTLED = 1e-4, 2e-3
+
 #: Number of pose parameters: log scale, angle, shift.
 POSE = 4
 NO_SIZES = panel_sizes(topology(2, 2).uniform_nodes, 2, 2).below(0.0)
@@ -55,12 +60,15 @@ class Stage:
         Weight of even panels, see ``even_panels``.
     guide : float
         Weight of the guide for the inside, see ``guide``.
+    least_gain : float
+        The stage ends with a step that lowers the cost by no more than this share.
     """
 
     steps: int
     trust: float = TRUST
     even: float = 0.0
     guide: float = 0.0
+    least_gain: float = SETTLED
 
 
 #: Nothing but the match and what the ratios prefer.

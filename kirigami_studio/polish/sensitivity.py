@@ -284,11 +284,12 @@ class OutlineModel:
         nodes[plan.free[h:]] = plan.v_on_h.times(flat, at_h) + known[h:]
         return Decoded(shape, nodes, flat)
 
-    def _known(self, weights: FloatArray) -> csr_matrix:
+    def _known(self, weights: FloatArray) -> FloatArray:
         """What free nodes get from given ones: (K, G)."""
         entry, row, column = self._plan.to_given
         shape = self._plan.free.size, self._table.node.size
-        return csr_matrix((weights[entry], (row, column)), shape=shape)
+        known = np.bincount(row * shape[1] + column, weights[entry], shape[0] * shape[1])
+        return np.asarray(known, dtype=np.float64).reshape(shape)
 
     def _adjoint(self, reach: FloatArray, system: _System) -> FloatArray:
         """``reach`` (F, N) times A^-1 over the free nodes: (F, K)."""
