@@ -20,7 +20,9 @@ from kirigami_studio.foundation.errors import MechanicsError, UsageError
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.mechanics.closing import (
+    CLOSED,
     Closing,
+    carried_on,
     closing,
     even_closing,
     ideal_motion,
@@ -41,6 +43,8 @@ from kirigami_studio.project.store import load
 
 MPA_PER_GPA = 1e3
 LEAST_STEPS = 3
+#: A sheet within this (radians) of being closed has closed.
+CLOSE_TO = math.radians(1.0)
 #: A connector counts as longer than a straight one above this (mm); coordinates are rounded to a tenth of it.
 LONGER_MM = 1e-3
 #: Rows of the table for a person.
@@ -169,7 +173,7 @@ def _figures(cut: _Cut, found: Closing, gripped: bool, tolerated: float) -> dict
         "snap_deg": np.degrees(found.phi[found.path.snapped]),
         "stuck": len(found.phi) < found.asked,
         "tolerated_stretch_widths": tolerated,
-        "jam_deg": math.degrees(jam),
+        "jam_deg": None if _ended_early(found, tolerated) else math.degrees(jam),
         "estimated_jam_deg": math.degrees(estimate.jam_phi(tolerated)),
         "stable_deg": np.degrees(found.stable_phi),
         "stretch_at_end_widths": found.stretch[-1],
@@ -179,6 +183,12 @@ def _figures(cut: _Cut, found: Closing, gripped: bool, tolerated: float) -> dict
     return figures
 
 
+def _ended_early(found: Closing, tolerated: float) -> bool:
+    """Whether the sheet was not driven as far as it would go, so that nothing is known about where it jams."""
+    free = len(found.phi) == found.asked and float(found.stretch.max()) <= tolerated
+    return free and float(found.phi[-1]) > CLOSED + CLOSE_TO
+
+
 def _found_grips(gripping: Gripping) -> dict[str, object]:
     return {"hold": gripping.held, "move": gripping.moved, "follows": gripping.follows}
 
@@ -186,11 +196,13 @@ def _found_grips(gripping: Gripping) -> dict[str, object]:
 def _overlap(cut: _Cut, found: Closing, jam: float, target: Outline) -> dict[str, object]:
     """IoU with the target of the sheet as cut, where it comes to, and as designed."""
     width, network = cut.settings.width_mm, cut.sheet.network
-    reached = max(cut.phi, jam, float(found.phi.min()))
-    forced = max(cut.phi, float(found.phi.min()))
+    # A sheet that came to the last step goes on to the angle that it is meant for.
+    closed = len(found.phi) == found.asked and found.phi.min() <= CLOSED + CLOSE_TO
+    forced = cut.phi if closed else max(cut.phi, float(found.phi.min()))
+    reached = max(forced, jam)
     motions = (
-        found.motion_at(reached),
-        found.motion_at(forced),
+        carried_on(found, cut.deployment, width, reached),
+        carried_on(found, cut.deployment, width, forced),
         ideal_motion(cut.deployment, network, width, cut.phi),
     )
     rings = [silhouette(cut.deployment, network, width, motion) for motion in motions]
@@ -214,8 +226,15 @@ def _tell(cut: _Cut, figures: dict[str, object]) -> None:
     for step in np.unique(np.linspace(0, len(columns[0]) - 1, SHOWN_ROWS).round().astype(int)).tolist():
         phi, energy, force, stretch, inner, outer = (float(column[step]) for column in columns)
         say(f"{phi:6.1f}  {energy:10.4g}  {force:10.4g}  {stretch:6.3f}w  {100 * inner:8.1f} % {100 * outer:8.1f} %")
-    jam, tolerated = float(str(figures["jam_deg"])), float(str(figures["tolerated_stretch_widths"]))
-    if jam == 0.0:
+    tolerated = float(str(figures["tolerated_stretch_widths"]))
+    if figures["jam_deg"] is None:
+        say(
+            tr(
+                "As far as it was driven no connector is stretched by more than {limit:g} of its width.",
+                limit=tolerated,
+            )
+        )
+    elif (jam := float(str(figures["jam_deg"]))) == 0.0:
         say(tr("Closes: no connector is stretched by more than {limit:g} of its width.", limit=tolerated))
     else:
         say(

@@ -168,6 +168,26 @@ def ideal_motion(deployment: Deployment, network: PanelNetwork, width_mm: float,
     return np.column_stack([moved - network.centroids, theta])
 
 
+def carried_on(found: Closing, deployment: Deployment, width_mm: float, phi: float) -> FloatArray:
+    """Motion (P, 3) at an angle (radians) that may lie a little beyond the last step of a closing.
+
+    Up to the last step it is what was simulated.  Beyond it the panels go on as the ideal ones do, with what they were
+    off by: a closed sheet is simulated to :data:`CLOSED` only, where contacts set in.
+    """
+    if phi >= found.phi.min():
+        return found.motion_at(phi)
+    network, last = found.sheet.network, found.path.motion[int(np.argmin(found.phi))]
+    before, after = (
+        ideal_motion(deployment, network, width_mm, angle) for angle in (float(found.phi.min()), max(phi, 0.0))
+    )
+    here, ideal, ahead = (network.centroids @ (1.0, 1j) + motion[:, :2] @ (1.0, 1j) for motion in (last, before, after))
+    # The simulated sheet lies elsewhere in the plane: both are compared after the best rigid motion.
+    turned = float(np.angle(np.sum((here - here.mean()) * np.conj(ideal - ideal.mean()))))
+    place = np.exp(1j * turned) * (ahead - ahead.mean() - ideal + ideal.mean()) + here
+    theta = after[:, 2] - before[:, 2] + last[:, 2]
+    return np.column_stack([place.real - network.centroids[:, 0], place.imag - network.centroids[:, 1], theta])
+
+
 def silhouette(deployment: Deployment, network: PanelNetwork, width_mm: float, motion: FloatArray) -> FloatArray:
     """Outer boundary (K, 2), mm, of the sheet after a motion (P, 3): of the union of all panels and voids.
 

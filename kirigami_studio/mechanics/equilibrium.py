@@ -38,6 +38,8 @@ SYMMETRIC = {"SymmetricMode": True}
 FEW = 12
 #: A force below this share of the largest one is none.
 NO_FORCE = 1e-6
+#: Stable states nearer to each other than this share of the path are one.
+SAME_STATE = 1e-3
 #: Precision of the least eigenvalue, relative.
 EIGENVALUE_PRECISION = 1e-4
 
@@ -82,8 +84,10 @@ class EquilibriumPath:
         rises = np.flatnonzero((onward * before < 0.0) & (onward * after > 0.0) & ~self.snapped[1:])
         rises = rises[(rises > 0) | (rest.size == 0)]
         share = before[rises] / (before[rises] - after[rises])
-        found: FloatArray = np.concatenate([rest, at[rises] + share * (at[rises + 1] - at[rises])])
-        return found
+        found = np.sort(np.concatenate([rest, at[rises] + share * (at[rises + 1] - at[rises])]))
+        # A path that comes back passes the same state twice.
+        apart = np.diff(found, prepend=-np.inf) > SAME_STATE * float(np.ptp(at))
+        return np.asarray(found[apart], dtype=np.float64)
 
 
 def follow(

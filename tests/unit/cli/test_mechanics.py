@@ -43,6 +43,7 @@ def test_that_a_sheet_is_closed_as_the_contract_says(sheet_file: Path, capsys: p
         assert found["max_strain_out_of_plane"][-1] < found["max_strain"][-1]
     # Finished widths differ by less than a micrometre, so connectors do not turn quite alike.
     assert max(ideal["max_stretch_widths"]) < 1e-3
+    assert ideal["jam_deg"] is None
     assert cut["max_stretch_widths"][-1] > 0.01
     stiff = answer(capsys, *words, "--young-gpa", 5.0)
     assert stiff["energy_mj"][-1] == pytest.approx(2.0 * cut["energy_mj"][-1], rel=1e-6)
@@ -82,7 +83,7 @@ def test_that_a_project_tells_its_overlap_as_cut(capsys: pytest.CaptureFixture[s
     project = resource("examples", "heart.kiri")
     found = answer(capsys, "mechanics", project, "--centres", "node", "--steps", 11, "--json")
     assert found["jam_deg"] == 0.0
-    assert found["iou_as_cut"] == pytest.approx(found["iou_ideal"], abs=0.01)
+    assert found["iou_as_cut"] == pytest.approx(found["iou_ideal"], abs=0.003)
     assert main(["mechanics", str(project), "--steps", "11", "--width-mm", "60"]) == 0
     told = capsys.readouterr().out
     assert "Jams at" in told or "Closes" in told

@@ -17,6 +17,7 @@ from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.mechanics.closing import (
     CLOSED,
     Closing,
+    carried_on,
     closing,
     even_closing,
     ideal_motion,
@@ -133,6 +134,19 @@ def test_that_the_ideal_motion_is_that_of_the_deployment(design: Deployment, fou
         moved = sheet.network.moved_outlines(motion).reshape(-1, 2)
         placed = design.panels(phi).reshape(-1, 2) * scale
         assert moved - moved.mean(axis=0) == pytest.approx(placed - placed.mean(axis=0), abs=1e-9)
+
+
+def test_that_a_closed_sheet_is_carried_on_to_phi_zero(design: Deployment, exact: Closing, shifted: Closing) -> None:
+    network, ideal = exact.sheet.network, ideal_motion(design, exact.sheet.network, WIDTH_MM, 0.0)
+    ring = silhouette(design, network, WIDTH_MM, carried_on(exact, design, WIDTH_MM, 0.0))
+    expected = silhouette(design, network, WIDTH_MM, ideal)
+    assert shapely.Polygon(ring).area == pytest.approx(shapely.Polygon(expected).area, rel=2e-3)
+    assert exact.sheet.opening(carried_on(exact, design, WIDTH_MM, 0.0)).mean() == pytest.approx(math.pi)
+    for found in (exact, shifted):
+        energy = NetworkEnergy(found.sheet.network)
+        before, after = (energy.stretch(carried_on(found, design, WIDTH_MM, phi)) for phi in (found.phi[-1], 0.0))
+        assert after == pytest.approx(before, abs=0.02)
+        assert carried_on(found, design, WIDTH_MM, 1.0) == pytest.approx(found.motion_at(1.0))
 
 
 def test_that_the_silhouette_of_the_ideal_motion_is_the_outline(design: Deployment, found: Junctions) -> None:

@@ -20,7 +20,7 @@ from kirigami_studio.mechanics.drive import Drive, clamped_ends, mean_turn, move
 from kirigami_studio.mechanics.energy import NetworkEnergy
 from kirigami_studio.mechanics.equilibrium import EquilibriumPath, follow
 from kirigami_studio.mechanics.network import Contacts, Ligaments, PanelNetwork
-from kirigami_studio.mechanics.network_files import morpher_drive, read_network
+from kirigami_studio.mechanics.network_files import SpringConstants, morpher_drive, read_network
 
 
 @pytest.mark.parametrize("case", SQUARES_CASES, ids=lambda case: case.name)
@@ -190,3 +190,12 @@ def test_that_the_way_back_ends_where_it_began() -> None:
     assert len(found.energy) == 49
     assert found.energy[-1] == pytest.approx(0.0, abs=1e-6)
     assert found.energy[24] == found.energy.max()
+    assert found.stable == pytest.approx([0.0], abs=1e-6)
+
+
+def test_that_weaker_hinges_make_the_morpher_bistable() -> None:
+    path = resource("mechanics", "panel_network.npz")
+    file = read_network(path, SpringConstants(1512.0, 252.0, 1e-5))
+    found = follow(file.network, morpher_drive(file, 50))
+    assert found.force.min() < -0.1
+    assert found.stable == pytest.approx([0.0, 7.66], abs=0.1)
