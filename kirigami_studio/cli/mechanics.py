@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 import math
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 
 import numpy as np
@@ -16,6 +16,7 @@ from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.siou import siou_of_many
 from kirigami_studio.fabricate.panel_sizes import panels_in_mm
 from kirigami_studio.fabricate.slits import cut_table
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import MechanicsError, UsageError
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.lattice.deployment import Deployment, deploy
@@ -42,6 +43,7 @@ from kirigami_studio.project.store import SUFFIX as PROJECT
 from kirigami_studio.project.store import load
 
 MPA_PER_GPA = 1e3
+FLAT_DEG = 180.0
 LEAST_STEPS = 3
 #: A sheet within this (radians) of being closed has closed.
 CLOSE_TO = math.radians(1.0)
@@ -82,26 +84,54 @@ class _Cut:
     phi: float
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class _Overlap:
+    """Angles (degrees) that the sheet comes to, by itself and forced, and its IoU there and as designed."""
+
+    reached_deg: float
+    iou_as_cut: float
+    forced_deg: float
+    iou_forced: float
+    iou_ideal: float
+
+
 def _close_sheet(arguments: argparse.Namespace) -> int:
     cut = _cut(arguments)
     if (arguments.hold is None) != (arguments.move is None):
         raise UsageError("mechanics.hold_and_move")
-    if arguments.end_deg >= 180.0:
+    if arguments.end_deg >= FLAT_DEG:
         raise UsageError("mechanics.end_angle", angle=arguments.end_deg)
-    end, width = math.radians(arguments.end_deg), cut.settings.width_mm
+    end, width, gripping = math.radians(arguments.end_deg), cut.settings.width_mm, None
     if arguments.hold is not None:
         drive = grips(cut.deployment, cut.sheet, width, arguments.hold, arguments.move, end, arguments.steps)
-        figures = _figures(cut, closing(cut.sheet, drive), True, arguments.tolerance)
+        found = closing(cut.sheet, drive)
     elif arguments.find_grips:
         gripping = find_grips(cut.deployment, cut.sheet, width, end, arguments.steps)
-        figures = _figures(cut, gripping.closing, True, arguments.tolerance) | _found_grips(gripping)
+        found = gripping.closing
     else:
         found = closing(cut.sheet, even_closing(cut.sheet, end, arguments.steps))
-        figures = _figures(cut, found, False, arguments.tolerance)
+    gripped, tolerated = arguments.hold is not None or arguments.find_grips, arguments.tolerance
+    jam = None if _ended_early(found, tolerated) else math.degrees(found.jam_phi(tolerated))
+    estimate = math.degrees(estimate_stretch(cut.deployment, cut.sheet, width).jam_phi(tolerated))
+    overlap = None if cut.target is None else _overlap(cut, found, found.jam_phi(tolerated), cut.target)
+    # Against an angle the slope of the energy is a moment: what a lever of one panel's size needs at its end.
+    force = found.path.force / (1.0 if gripped else cut.sheet.network.panel_size)
     if arguments.json:
-        print_json(figures)
-    else:
-        _tell(cut, figures)
+        answer = _steps(cut, found, gripped) | {"force_n": force, "tolerated_stretch_widths": tolerated}
+        answer |= {"jam_deg": jam, "estimated_jam_deg": estimate}
+        if gripping is not None:
+            answer |= {"hold": gripping.held, "move": gripping.moved, "follows": gripping.follows}
+        print_json(answer if overlap is None else answer | asdict(overlap))
+        return 0
+    _tell_steps(found, force)
+    _tell_jam(jam, estimate, tolerated)
+    stable = ", ".join(f"{angle:.0f}" for angle in np.degrees(found.stable_phi))
+    say(tr("Rests by itself at (degrees): {angles}.", angles=stable or tr("nowhere on this path")))
+    if gripping is not None:
+        _tell_grips(gripping)
+    if overlap is not None:
+        _tell_overlap(overlap)
+    say(tr("Friction, plastic set and motion out of the plane are not modelled."))
     return 0
 
 
@@ -125,17 +155,24 @@ def _cut(arguments: argparse.Namespace) -> _Cut:
     found = junctions(deployment, settings.width_mm, cut_table(*deployment.sheet.grid).hinge_node)
     # A straight slit's connector bends over a span; arcs and bars make it longer.
     longer = np.where(hinges.removed, 0.0, hinges.flexure_mm - hinges.requested_mm - plan.kerf_mm)
+    polygons = panels_in_mm(deployment, () if kept is None else kept, settings.width_mm, np.zeros(2))
+    centres = None
+    if arguments.centres == "node":
+        centres = found.place
+    elif plan.centres is not None:
+        # The plan has its own origin.
+        centres = plan.centres + (polygons[0][0] - plan.panels[0][0])
     connectors = cut_connectors(
         found,
         np.maximum(hinges.finished_mm, 0.0),
         plan.kerf_mm,
-        found.place if arguments.centres == "node" else None,
+        centres,
         np.where(longer > LONGER_MM, longer, 0.0),
     )
     young = plan.material.young_gpa if arguments.young_gpa is None else arguments.young_gpa
     elastic = ElasticSheet(MPA_PER_GPA * young, plan.material.thickness_mm)
-    panels = polygons_as_rows(panels_in_mm(deployment, () if kept is None else kept, settings.width_mm, np.zeros(2)))
-    return _Cut(deployment, sheet_network(panels, connectors, elastic), settings, target, phi)
+    sheet = sheet_network(polygons_as_rows(polygons), connectors, elastic)
+    return _Cut(deployment, sheet, settings, target, phi)
 
 
 def _chosen(candidate: Candidate | None, path: Path) -> Candidate:
@@ -144,43 +181,32 @@ def _chosen(candidate: Candidate | None, path: Path) -> Candidate:
     return candidate
 
 
-def _figures(cut: _Cut, found: Closing, gripped: bool, tolerated: float) -> dict[str, object]:
-    """The JSON answer for a sheet."""
-    network, connectors = cut.sheet.network, cut.sheet.connectors
-    jam = found.jam_phi(tolerated)
-    estimate = estimate_stretch(cut.deployment, cut.sheet, cut.settings.width_mm)
-    # Against an angle the slope of the energy is a moment: what a lever of one panel's size needs at its end.
-    arm = 1.0 if gripped else network.panel_size
-    believed = "out_of_plane" if cut.sheet.sheet.thickness_mm < float(connectors.width_mm.min()) else "in_plane"
+def _steps(cut: _Cut, found: Closing, gripped: bool) -> dict[str, object]:
+    """What the JSON tells of every step, and of the sheet."""
+    connectors = cut.sheet.connectors
     opening = np.degrees(cut.sheet.opening(found.path.motion))
-    figures: dict[str, object] = {
-        "panels": network.panel_count,
+    thin = cut.sheet.sheet.thickness_mm < float(connectors.width_mm.min())
+    return {
+        "panels": cut.sheet.network.panel_count,
         "connectors": len(connectors),
         "width_mm": cut.settings.width_mm,
         "connector_mm": float(connectors.width_mm.min()),
         "phi_deg": np.degrees(found.phi),
-        "least_phi_deg": 180.0 - opening.max(axis=1),
-        "most_phi_deg": 180.0 - opening.min(axis=1),
+        "least_phi_deg": FLAT_DEG - opening.max(axis=1),
+        "most_phi_deg": FLAT_DEG - opening.min(axis=1),
         "energy_mj": found.path.energy,
-        "force_n": found.path.force / arm,
         "displacement": found.path.drive.displacement,
         "displacement_unit": "mm" if gripped else "rad",
         "max_stretch_widths": found.stretch.max(axis=1),
         "max_strain": found.in_plane.max(axis=1),
         "max_strain_out_of_plane": found.out_of_plane.max(axis=1),
-        "strain_believed": believed,
+        "strain_believed": "out_of_plane" if thin else "in_plane",
         "least_eigenvalue_n_mm": found.path.least,
         "snap_deg": np.degrees(found.phi[found.path.snapped]),
         "stuck": len(found.phi) < found.asked,
-        "tolerated_stretch_widths": tolerated,
-        "jam_deg": None if _ended_early(found, tolerated) else math.degrees(jam),
-        "estimated_jam_deg": math.degrees(estimate.jam_phi(tolerated)),
         "stable_deg": np.degrees(found.stable_phi),
         "stretch_at_end_widths": found.stretch[-1],
     }
-    if cut.target is not None:
-        figures |= _overlap(cut, found, jam, cut.target)
-    return figures
 
 
 def _ended_early(found: Closing, tolerated: float) -> bool:
@@ -189,11 +215,7 @@ def _ended_early(found: Closing, tolerated: float) -> bool:
     return free and float(found.phi[-1]) > CLOSED + CLOSE_TO
 
 
-def _found_grips(gripping: Gripping) -> dict[str, object]:
-    return {"hold": gripping.held, "move": gripping.moved, "follows": gripping.follows}
-
-
-def _overlap(cut: _Cut, found: Closing, jam: float, target: Outline) -> dict[str, object]:
+def _overlap(cut: _Cut, found: Closing, jam: float, target: Outline) -> _Overlap:
     """IoU with the target of the sheet as cut, where it comes to, and as designed."""
     width, network = cut.settings.width_mm, cut.sheet.network
     # A sheet that came to the last step goes on to the angle that it is meant for.
@@ -207,70 +229,70 @@ def _overlap(cut: _Cut, found: Closing, jam: float, target: Outline) -> dict[str
     )
     rings = [silhouette(cut.deployment, network, width, motion) for motion in motions]
     as_cut, shut, ideal = (siou_of_many([ring], target)[0].iou_exact for ring in rings)
-    return {
-        "reached_deg": math.degrees(reached),
-        "iou_as_cut": as_cut,
-        "forced_deg": math.degrees(forced),
-        "iou_forced": shut,
-        "iou_ideal": ideal,
-    }
+    return _Overlap(math.degrees(reached), as_cut, math.degrees(forced), shut, ideal)
 
 
-def _tell(cut: _Cut, figures: dict[str, object]) -> None:
-    """The figures as a table and sentences."""
-    columns = [
-        np.asarray(figures[name], dtype=np.float64)
-        for name in ("phi_deg", "energy_mj", "force_n", "max_stretch_widths", "max_strain", "max_strain_out_of_plane")
-    ]
+def _tell_steps(found: Closing, force: FloatArray) -> None:
+    """Some of the steps as a table."""
     say(tr("   phi   energy mJ     force N  stretch  strain in plane, out of plane"))
-    for step in np.unique(np.linspace(0, len(columns[0]) - 1, SHOWN_ROWS).round().astype(int)).tolist():
-        phi, energy, force, stretch, inner, outer = (float(column[step]) for column in columns)
-        say(f"{phi:6.1f}  {energy:10.4g}  {force:10.4g}  {stretch:6.3f}w  {100 * inner:8.1f} % {100 * outer:8.1f} %")
-    tolerated = float(str(figures["tolerated_stretch_widths"]))
-    if figures["jam_deg"] is None:
+    stretch, inner, outer = (100.0 * part.max(axis=1) for part in (found.stretch, found.in_plane, found.out_of_plane))
+    for step in _shown(len(found.phi)):
+        phi, energy = math.degrees(found.phi[step]), found.path.energy[step]
         say(
-            tr(
-                "As far as it was driven no connector is stretched by more than {limit:g} of its width.",
-                limit=tolerated,
-            )
+            f"{phi:6.1f}  {energy:10.4g}  {force[step]:10.4g}  {0.01 * stretch[step]:6.3f}w  {inner[step]:8.1f} % "
+            f"{outer[step]:8.1f} %"
         )
-    elif (jam := float(str(figures["jam_deg"]))) == 0.0:
-        say(tr("Closes: no connector is stretched by more than {limit:g} of its width.", limit=tolerated))
+
+
+def _tell_jam(jam: float | None, estimate: float, tolerated: float) -> None:
+    if jam is None:
+        say(tr("As far as it was driven no connector is stretched by more than {w:g} of its width.", w=tolerated))
+    elif jam == 0.0:
+        say(tr("Closes: no connector is stretched by more than {w:g} of its width.", w=tolerated))
     else:
         say(
             tr(
-                "Jams at {jam:.0f} degrees: a connector would be stretched by more than {limit:g} of its width, or "
-                "panels touch.",
+                "Jams at {jam:.0f} degrees: a connector would be stretched by more than {w:g} of its width, or panels "
+                "touch.",
                 jam=jam,
-                limit=tolerated,
+                w=tolerated,
             )
         )
-    say(tr("Fast estimate of the same angle: {jam:.0f} degrees.", jam=float(str(figures["estimated_jam_deg"]))))
-    stable = ", ".join(f"{angle:.0f}" for angle in np.asarray(figures["stable_deg"], dtype=np.float64))
-    say(tr("Rests by itself at (degrees): {angles}.", angles=stable or tr("nowhere on this path")))
-    if "follows" in figures:
-        panels = {"hold": _numbers(figures["hold"]), "move": _numbers(figures["move"])}
-        if figures["follows"]:
-            say(tr("Hold panel {hold} and lead panels {move}: the sheet follows its path.", **panels))
-        else:
-            say(tr("Not even by holding panel {hold} and leading panels {move} does the sheet follow.", **panels))
-    if "iou_as_cut" in figures:
+    say(tr("Fast estimate of the same angle: {jam:.0f} degrees.", jam=estimate))
+
+
+def _tell_grips(gripping: Gripping) -> None:
+    hold, move = (", ".join(str(panel) for panel in panels) for panels in (gripping.held, gripping.moved))
+    if gripping.follows:
+        say(tr("Hold panel {hold} and lead panels {move}: the sheet follows its path.", hold=hold, move=move))
+    else:
         say(
             tr(
-                "IoU as cut, at {phi:.0f} degrees: {cut:.4f}; forced to {end:.0f} degrees: {forced:.4f}; as designed: "
-                "{ideal:.4f}.",
-                phi=float(str(figures["reached_deg"])),
-                end=float(str(figures["forced_deg"])),
-                forced=float(str(figures["iou_forced"])),
-                cut=float(str(figures["iou_as_cut"])),
-                ideal=float(str(figures["iou_ideal"])),
+                "Not even by holding panel {hold} and leading panels {move} does the sheet follow its path.",
+                hold=hold,
+                move=move,
             )
         )
-    say(tr("Friction, plastic set and motion out of the plane are not modelled."))
 
 
-def _numbers(panels: object) -> str:
-    return ", ".join(str(panel) for panel in np.asarray(panels).tolist())
+def _tell_overlap(overlap: _Overlap) -> None:
+    say(
+        tr(
+            "IoU as cut, at {phi:.0f} degrees: {cut:.4f}; forced to {end:.0f} degrees: {forced:.4f}; as designed: "
+            "{ideal:.4f}.",
+            phi=overlap.reached_deg,
+            cut=overlap.iou_as_cut,
+            end=overlap.forced_deg,
+            forced=overlap.iou_forced,
+            ideal=overlap.iou_ideal,
+        )
+    )
+
+
+def _shown(steps: int) -> list[int]:
+    """Numbers of the steps that the table shows."""
+    numbers: list[int] = np.unique(np.linspace(0, steps - 1, SHOWN_ROWS).round().astype(int)).tolist()
+    return numbers
 
 
 def _drive_network(arguments: argparse.Namespace) -> int:
@@ -302,7 +324,7 @@ def _drive_network(arguments: argparse.Namespace) -> int:
 def _tell_network(found: EquilibriumPath) -> None:
     say(tr("displacement mm     force N   energy mJ"))
     at = found.drive.displacement
-    for step in np.unique(np.linspace(0, len(at) - 1, SHOWN_ROWS).round().astype(int)).tolist():
+    for step in _shown(len(at)):
         say(f"{at[step]:15.3f}  {found.force[step]:10.4g}  {found.energy[step]:10.4g}")
     stable = ", ".join(f"{place:.2f}" for place in found.stable)
     say(tr("Rests by itself at (mm): {places}.", places=stable or tr("nowhere on this path")))

@@ -84,6 +84,14 @@ def test_that_a_project_tells_its_overlap_as_cut(capsys: pytest.CaptureFixture[s
     found = answer(capsys, "mechanics", project, "--centres", "node", "--steps", 11, "--json")
     assert found["jam_deg"] == 0.0
     assert found["iou_as_cut"] == pytest.approx(found["iou_ideal"], abs=0.003)
+    centred, straight = (
+        answer(capsys, "mechanics", project, "--style", style, "--steps", 16, "--json")
+        for style in ("centred", "straight")
+    )
+    assert centred["jam_deg"] == 0.0 < straight["jam_deg"]
+    assert centred["max_stretch_widths"][-2] < 0.05 < straight["max_stretch_widths"][-2]
+    assert centred["iou_as_cut"] == pytest.approx(centred["iou_ideal"], abs=0.003)
+    assert straight["iou_as_cut"] < straight["iou_ideal"] - 0.01
     assert main(["mechanics", str(project), "--steps", "11", "--width-mm", "60"]) == 0
     told = capsys.readouterr().out
     assert "Jams at" in told or "Closes" in told
