@@ -3,7 +3,8 @@
 How well a grid will match is predicted from the shape alone, with a formula that was fitted to fits, see
 :func:`predicted_match`.  Long outlines, deep hollows and many bends need many panels, and a sheet of the shape's own
 proportions does with fewer.  Of all grids with the right parities the one with the fewest voids is taken that is
-expected to match well enough, or, where none is, the one that is expected to match best.
+expected to match well enough, or, where none is, the one that is expected to match best.  A hard shape with a mirror
+axis depends much on the proportions of its sheet: there, short fits on a few grids decide.
 """
 
 from __future__ import annotations
@@ -16,13 +17,20 @@ from functools import lru_cache
 import numpy as np
 import shapely
 
+from kirigami_studio.evaluate.evenness import evenness
+from kirigami_studio.evaluate.siou import exact_iou
 from kirigami_studio.foundation.sentences import sentence
+from kirigami_studio.foundation.threads import one_blas_thread
+from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.symmetry import Symmetry
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.proportions import Proportions
 from kirigami_studio.outlines.reach import share_of_arms
 from kirigami_studio.outlines.symmetry import TOLERANCE
+from kirigami_studio.pipeline.rank import EVENNESS
 from kirigami_studio.pipeline.request import Request
+from kirigami_studio.polish.continuation import first_angles, fit_by_stages
+from kirigami_studio.polish.objective import Stage
 from kirigami_studio.polish.symmetry import SymmetricPose, shared_symmetries, symmetric_poses
 
 #: Fewest rows and columns, and most unless another limit is asked for.
@@ -34,6 +42,12 @@ GOAL = 0.99
 #: Where no grid reaches it, the coarsest one is taken that misses no more than the best one divided by this.  Without a
 #: symmetry fits take twice as long: a flag and a house match 0.986 and 0.977 on 14 x 14, 0.980 and 0.980 on 16 x 16.
 WORTHWHILE, WORTHWHILE_FREE = 0.97, 0.88
+#: Where a shape with a mirror axis is not expected to reach the goal, grids are tried that miss no more than the best
+#: one times this, of proportions (logarithm of height over width) that differ by at least the second and lie within the
+#: third of the square's and the shape's own.  Nine short steps rank the grids of a star, a butterfly, a vase and a
+#: cross as the whole fits do.
+TRIED_MISSING, TRIED_APART, TRIED_ROOM, MOST_TRIED = 1.6, 0.09, 0.25, 4
+TRIAL = (Stage(3, 0.1, 3e-2), Stage(3, 0.04, 3e-3), Stage(3, 0.01, 1e-3))
 #: Panels of a fitted sheet have hardly any edge or neck below this share of a cell.
 SMALLEST_SHARE = 0.25
 #: Proportions of sheets (logarithm of height over width) lie between the square and the shape's own, give or take this.
@@ -213,9 +227,60 @@ def choose_grid(
     return GridChoice(best.grid, tuple(kept), match, code, tuple(fields.items()))
 
 
-def chosen_for(request: Request) -> GridChoice:
-    """What :func:`choose_grid` says for a request, whether or not the request has that grid."""
+def predicted_for(request: Request) -> GridChoice:
+    """What :func:`choose_grid` says for a request, at once."""
     return choose_grid(request.target, request.phi, request.symmetry, request.width_mm, request.least_feature_mm)
+
+
+def chosen_for(request: Request) -> GridChoice:
+    """The grid that a run takes, whether or not the request has it: the predicted one, or the best that was tried.
+
+    Trying takes about a second, and is done for hard shapes with a mirror axis alone.
+    """
+    wishes = request.wishes
+    return _tried(
+        request.target, request.phi, request.symmetry, request.width_mm, request.least_feature_mm, wishes.free_rim
+    )
+
+
+@lru_cache(maxsize=64)
+def _tried(
+    target: Outline, phi: float, symmetry: str, width_mm: float, least_feature_mm: float, free_rim: bool
+) -> GridChoice:
+    choice = choose_grid(target, phi, symmetry, width_mm, least_feature_mm)
+    if choice.code != "grid.best_expected" or not choice.poses or choice.poses[0].angle is None:
+        return choice
+    poses = symmetric_poses(target, symmetry)
+    figures = ShapeFigures.of(target)
+    smallest = SMALLEST_SHARE * width_mm / least_feature_mm if least_feature_mm > 0.0 else math.inf
+    near = [
+        one
+        for one in _candidates(target, figures, poses, phi, FINEST, TRIED_ROOM)
+        if 1.0 - one.match <= TRIED_MISSING * (1.0 - choice.predicted_match) and one.grid[1] + 1 <= smallest
+    ]
+    picked: list[_Candidate] = []
+    for one in sorted(near, key=lambda one: -one.match):
+        if len(picked) < MOST_TRIED and all(abs(one.proportion - other.proportion) > TRIED_APART for other in picked):
+            picked.append(one)
+    if len(picked) < 2:
+        return choice
+    best = max(picked, key=lambda one: _trial(target, one.grid, phi, symmetry, free_rim))
+    rows, columns = best.grid
+    kept = shared_symmetries(target, best.grid, phi, symmetry)
+    fields = {"rows": rows, "columns": columns, "count": len(picked), "percent": 100.0 * best.match}
+    return GridChoice(best.grid, tuple(kept), best.match, "grid.best_tried", tuple(fields.items()))
+
+
+def _trial(target: Outline, grid: tuple[int, int], phi: float, symmetry: str, free_rim: bool) -> float:
+    """What short symmetric fits on a grid reach: the best exact IoU, less the price of uneven panels."""
+    worth = []
+    for angle, kept in first_angles(target, grid, phi, 1, symmetry)[:2]:
+        with one_blas_thread():
+            fit = fit_by_stages(target, grid, phi, angle, TRIAL, free_rim, kept)
+        deployment = deploy(fit.sheet)
+        iou = exact_iou(fit.pose.apply(deployment.outline(phi)), target)
+        worth.append(iou - EVENNESS * evenness(deployment).area_cv)
+    return max(worth)
 
 
 @dataclass(frozen=True, slots=True)
@@ -223,6 +288,10 @@ class _Candidate:
     grid: tuple[int, int]
     pose: SymmetricPose | None
     match: float
+
+    @property
+    def proportion(self) -> float:
+        return math.log((self.grid[0] + 1) / (self.grid[1] + 1))
 
     @property
     def panels(self) -> int:
@@ -240,7 +309,12 @@ def _coarsest(candidates: list[_Candidate]) -> _Candidate:
 
 
 def _candidates(
-    target: Outline, figures: ShapeFigures, poses: tuple[SymmetricPose, ...], phi: float, limit: int
+    target: Outline,
+    figures: ShapeFigures,
+    poses: tuple[SymmetricPose, ...],
+    phi: float,
+    limit: int,
+    room: float = PROPORTION_ROOM,
 ) -> Iterator[_Candidate]:
     """Grids with the parities of the most specific symmetries, of proportions between the square and the shape's."""
     coarsest = min(COARSEST, limit - 1)
@@ -252,7 +326,7 @@ def _candidates(
         # Without an axis the sheet may lie anyhow: wide rather than high.
         along = proportions.direction + 0.5 * math.pi if pose is None or pose.angle is None else pose.angle
         proportion = proportions.along(along)
-        low, high = min(0.0, proportion) - PROPORTION_ROOM, max(0.0, proportion) + PROPORTION_ROOM
+        low, high = min(0.0, proportion) - room, max(0.0, proportion) + room
         for rows in sizes:
             for columns in sizes:
                 grid = rows, columns

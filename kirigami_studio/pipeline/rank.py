@@ -29,7 +29,7 @@ SLENDER = 0.2
 #: IoU that a sheet without ratios at a limit is worth over one with nothing else.
 AT_LIMIT = 0.01
 #: IoU that a symmetric sheet may lack and still comes first.
-SYMMETRY = 0.01
+SYMMETRY = 0.03
 
 #: The IoU that this preference gives away for a total variation (per void) that is lower by 1.
 WORTH = {"accuracy": 0.0, "balanced": 0.0, "regularity": 0.005, "calm": 0.03}

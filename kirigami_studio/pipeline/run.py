@@ -184,8 +184,9 @@ def fits_from_uniform(request: Request) -> list[GuidedTask]:
     angles = first_angles(request.target, request.chosen_grid, request.phi, 1, request.symmetry)
     if request.symmetry in ("mirror", "turn"):
         angles = [one for one in angles if one[1] is not None] or angles
-    suited = Way.suited_to(request.target)
-    ways = [(angle, symmetry, way) for angle, symmetry in angles for way in suited][: request.fitted_starts]
+    ways = [(angle, symmetry, way) for angle, symmetry in angles for way in Way.suited_to(request.target, symmetry)][
+        : request.fitted_starts
+    ]
     return [GuidedTask(request.k - len(ways) + place, *way) for place, way in enumerate(ways)]
 
 

@@ -114,11 +114,13 @@ class Way(Enum):
     COOLED = "cooled"
     GUIDED = "guided"
     GROWN = "grown"
+    THICKENED = "thickened"
 
     @classmethod
-    def suited_to(cls, target: Outline) -> tuple[Way, Way]:
-        """The two ways that find most for a target."""
-        return (cls.GUIDED, cls.GROWN) if turn_back(target).angle >= TURNS_BACK else (cls.COOLED, cls.GUIDED)
+    def suited_to(cls, target: Outline, symmetry: Symmetry | None = None) -> tuple[Way, ...]:
+        """The ways that find most for a target: one more where a symmetry leaves few poses to begin with."""
+        ways = (cls.GUIDED, cls.GROWN) if turn_back(target).angle >= TURNS_BACK else (cls.COOLED, cls.GUIDED)
+        return ways if symmetry is None else (*ways, cls.THICKENED)
 
 
 @dataclass(frozen=True, slots=True)
@@ -219,32 +221,36 @@ def fit_from_uniform(
     cancel: Callable[[], bool] = lambda: False,
 ) -> Fit:
     """One fit from the uniform sheet, turned by ``angle`` (radians): stiff and even first, led by the transport map of
-    the inside, or growing out of a round shape.
+    the inside, growing out of a round shape, or shrinking from a thickened one.
     """
-    sheet = Sheet.uniform(*grid)
+    sheet, even = Sheet.uniform(*grid), wishes.even
     pose, evaluations = _centred(sheet, phi, angle), 0
-    stages = cooled(wishes.even) if way is Way.COOLED else guided(wishes.even)
-    if way is Way.GROWN:
-        route = _rounder(target)
-        for place, easy in enumerate(route):
-            weight = GROWN_EVEN if place < len(route) - LAST_GROWN else LAST_GROWN_EVEN
-            fit = polish(
-                sheet,
-                easy.outline,
-                phi,
-                0,
-                wishes.preference,
-                easy.frame.inverse().compose(pose),
-                cancel,
-                stages=[Stage(EASY_STEPS, FAR, max(weight, wishes.even))],
-                free_rim=wishes.free_rim,
-                symmetry=symmetry,
-            )
-            sheet, pose, evaluations = fit.sheet, easy.frame.compose(fit.pose), evaluations + fit.evaluations
-        stages = (
-            Stage(LOOK_STEPS, FAR, max(LAST_GROWN_EVEN, wishes.even)),
-            Stage(LAST_STEPS, FINE, wishes.even),
+    route = _route(target, way, even)
+    if route:
+        pose = route[0][0].frame.compose(pose)
+    for easy, weight in route:
+        fit = polish(
+            sheet,
+            easy.outline,
+            phi,
+            0,
+            wishes.preference,
+            easy.frame.inverse().compose(pose),
+            cancel,
+            stages=[Stage(EASY_STEPS, FAR, weight)],
+            free_rim=wishes.free_rim,
+            symmetry=symmetry,
         )
+        sheet, pose, evaluations = fit.sheet, easy.frame.compose(fit.pose), evaluations + fit.evaluations
+    match way:
+        case Way.COOLED:
+            stages = cooled(even)
+        case Way.GUIDED:
+            stages = guided(even)
+        case Way.GROWN:
+            stages = (Stage(LOOK_STEPS, FAR, max(LAST_GROWN_EVEN, even)), Stage(LAST_STEPS, FINE, even))
+        case Way.THICKENED:
+            stages = (Stage(LOOK_STEPS, FAR, even), Stage(LAST_STEPS, FINE, even))
     fit = polish(
         sheet,
         target,
@@ -260,6 +266,36 @@ def fit_from_uniform(
         symmetry=symmetry,
     )
     return replace(fit, evaluations=evaluations + fit.evaluations)
+
+
+def _route(target: Outline, way: Way, even: float) -> list[tuple[EasyShape, float]]:
+    """Shapes on the way to a target, and the weight of even panels on each."""
+    match way:
+        case Way.GROWN:
+            shapes = _rounder(target)
+            stiff = len(shapes) - LAST_GROWN
+            return [
+                (easy, max(even, GROWN_EVEN if place < stiff else LAST_GROWN_EVEN)) for place, easy in enumerate(shapes)
+            ]
+        case Way.THICKENED:
+            return [(easy, even) for easy in thickened(target, MARGINS)]
+        case _:
+            return []
+
+
+def fit_by_stages(
+    target: Outline,
+    grid: tuple[int, int],
+    phi: float,
+    angle: float,
+    stages: Sequence[Stage],
+    free_rim: bool,
+    symmetry: Symmetry | None,
+) -> Fit:
+    """One fit from the uniform sheet, turned by ``angle`` (radians), through ``stages`` that need no guide."""
+    sheet = Sheet.uniform(*grid)
+    pose = _centred(sheet, phi, angle)
+    return polish(sheet, target, phi, 0, pose=pose, stages=stages, free_rim=free_rim, symmetry=symmetry)
 
 
 def first_angles(

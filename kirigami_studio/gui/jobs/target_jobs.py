@@ -114,11 +114,11 @@ class TargetReading:
 def reading_shape(request: Request, cancel: Cancel) -> Iterator[TargetReading]:
     """Measure how symmetric a request's target is, and choose a grid for it."""
     from kirigami_studio.outlines.symmetry import symmetry_of
-    from kirigami_studio.pipeline.auto_grid import chosen_for
+    from kirigami_studio.pipeline.auto_grid import predicted_for
 
     found = _symmetry_sentence(symmetry_of(request.target))
     try:
-        choice = chosen_for(request)
+        choice = predicted_for(request)
     except KirigamiError as error:
         yield TargetReading(found, None, str(error))
     else:

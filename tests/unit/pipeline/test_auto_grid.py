@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import time
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -15,7 +16,15 @@ from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.proportions import Proportions
 from kirigami_studio.outlines.silhouettes import load, names
 from kirigami_studio.outlines.symmetry import turned
-from kirigami_studio.pipeline.auto_grid import GOAL, ShapeFigures, choose_grid, chosen_for, predicted_match
+from kirigami_studio.pipeline import auto_grid
+from kirigami_studio.pipeline.auto_grid import (
+    GOAL,
+    ShapeFigures,
+    choose_grid,
+    chosen_for,
+    predicted_for,
+    predicted_match,
+)
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.pipeline.run import with_grid
 
@@ -157,3 +166,30 @@ def test_that_a_run_takes_the_chosen_grid_unless_one_is_given() -> None:
     assert with_grid(Request(heart, (7, 8))).grid == (7, 8)
     assert with_grid(Request(heart, None, width_mm=40.0, least_feature_mm=1.0)).chosen_grid[1] <= 9
     assert math.isclose(chosen_for(chosen).predicted_match, choose_grid(heart).predicted_match)
+
+
+def test_that_a_hard_shape_with_an_axis_takes_the_grid_that_short_fits_rank_first(monkeypatch) -> None:
+    star = load("star")
+    tried: list[tuple[int, int]] = []
+
+    def trial(target, grid, phi, symmetry, free_rim) -> float:
+        tried.append(grid)
+        return 0.9 if grid == max(tried) else 0.5 + 0.001 * len(tried)
+
+    monkeypatch.setattr(auto_grid, "_trial", trial)
+    auto_grid._tried.cache_clear()
+    choice = chosen_for(Request(star, None))
+    auto_grid._tried.cache_clear()
+    assert 2 <= len(tried) <= auto_grid.MOST_TRIED
+    assert choice.grid == max(tried) and choice.code == "grid.best_tried"
+    assert str(len(tried)) in choice.reason
+    proportions = sorted(math.log((rows + 1) / (columns + 1)) for rows, columns in tried)
+    assert all(after - before > auto_grid.TRIED_APART for before, after in pairwise(proportions))
+
+
+def test_that_easy_shapes_and_shapes_without_an_axis_take_the_predicted_grid(monkeypatch) -> None:
+    monkeypatch.setattr(auto_grid, "_trial", lambda *given: pytest.fail("a trial"))
+    auto_grid._tried.cache_clear()
+    for name in ("heart", "hexagon", "letter-l"):
+        request = Request(load(name), None)
+        assert chosen_for(request) == predicted_for(request)
