@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+import numpy as np
 import shapely
 from shapely.geometry import LineString, Polygon
 from shapely.geometry.base import BaseGeometry
@@ -17,6 +18,7 @@ from kirigami_studio.export.layer_files import by_layer, layer_folder, layer_pat
 from kirigami_studio.export.profile import Profile, find_profile
 from kirigami_studio.export.strokes import Stroke, extent, layer_colours, strokes_of
 from kirigami_studio.export.svg_reading import read_with_svgelements, read_with_xml
+from kirigami_studio.export.voids_read import FoundVoids, read_voids
 from kirigami_studio.fabricate.checks import OVERLAP_TOLERANCE_MM, WIDTH_TOLERANCE_MM
 from kirigami_studio.fabricate.cut_path import MEASURED_CHORD_MM
 from kirigami_studio.fabricate.cut_plan import CutPlan, Layer
@@ -28,6 +30,9 @@ from kirigami_studio.foundation.errors import ExportError
 from kirigami_studio.foundation.sentences import sentence
 
 Reader = Callable[[Path], FileContent]
+
+#: Voids may miss being parallelograms by this much (micrometres) in a file whose connectors are all centred.
+VOID_MISS_UM = 5.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,6 +84,9 @@ class Verification:
     findings : tuple of Finding
     warnings : tuple of Note
         What a person should read before cutting.
+    void_miss_um : float or None
+        By how much voids miss being parallelograms about the connectors' centres as read from the file; None where
+        none were found.
     """
 
     path: Path
@@ -90,6 +98,7 @@ class Verification:
     seconds_high: float
     findings: tuple[Finding, ...]
     warnings: tuple[Note, ...]
+    void_miss_um: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -159,9 +168,11 @@ def _judged(
     kind: Format,
 ) -> Verification:
     physics = file_physics(contents[-1].strokes, plan, profile)
+    voids = file_voids(contents[-1].strokes, plan, profile)
     findings = [
         *_agreed(contents, strokes, version, kind),
         *_physics_findings(physics, plan),
+        *void_findings(voids, plan),
     ]
     warnings = [*plan.notes, *_cautions(plan, profile, version, strokes, path)]
     return Verification(
@@ -174,6 +185,7 @@ def _judged(
         seconds_high=plan.times.high,
         findings=tuple(findings),
         warnings=tuple(warnings),
+        void_miss_um=voids.miss_um if voids.voids else None,
     )
 
 
@@ -338,6 +350,33 @@ def _physics_findings(physics: Physics, plan: CutPlan) -> list[Finding]:
         narrow = ligament < planned - WIDTH_TOLERANCE_MM
         found.append(Finding("verify.smallest_ligament", widths, ok=ligament > 0.0, warning=narrow))
     return found
+
+
+def file_voids(strokes: Sequence[Stroke], plan: CutPlan, profile: Profile) -> FoundVoids:
+    """Find connectors and voids in the strokes of a file; arguments as for :func:`file_physics`."""
+    outlines = 1 if profile.slots else len(plan.on_layer(Layer.OUTLINE))
+    return read_voids(strokes, outlines, plan.kerf_mm, profile.slots)
+
+
+def void_findings(voids: FoundVoids, plan: CutPlan) -> list[Finding]:
+    """Whether the sheet can close, by the connectors that were read from its file.
+
+    Of a plan whose connectors are all centred, every one has to be found, as wide as planned, and every void has to
+    be a parallelogram within ``VOID_MISS_UM``; of other plans, a person should know by how much voids miss that.
+    """
+    found = {"connectors": len(voids.connectors), "voids": voids.voids, "miss_um": voids.miss_um}
+    centred = plan.void_miss_mm is not None and 1e3 * plan.void_miss_mm < VOID_MISS_UM
+    if centred:
+        narrowest, planned = voids.narrowest_mm, int(np.sum(~plan.hinges.removed))
+        if len(voids.connectors) != planned or narrowest < plan.min_connector_mm - 2.0 * WIDTH_TOLERANCE_MM:
+            widths = {"narrowest_mm": narrowest, "planned": planned, "planned_mm": plan.min_connector_mm}
+            return [Finding.judged(False, "verify.connectors_lost", connectors=len(voids.connectors), **widths)]
+        if voids.miss_um <= VOID_MISS_UM:
+            return [Finding.judged(True, "verify.voids_close", narrowest_mm=narrowest, **found)]
+    if voids.where is None:
+        return []
+    x, y = voids.where
+    return [Finding("verify.voids_miss", {**found, "x": x, "y": y}, ok=not centred, warning=not centred)]
 
 
 def _cautions(plan: CutPlan, profile: Profile, version: str, strokes: Sequence[Stroke], path: Path) -> list[Note]:

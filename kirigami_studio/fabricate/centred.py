@@ -26,6 +26,7 @@ from kirigami_studio.fabricate.connectors import SHORTEST_CUT_MM
 from kirigami_studio.fabricate.cut_path import measured_line
 from kirigami_studio.fabricate.detours import NEGLIGIBLE_MM, ON_LINE_MM, TURNS, Bow, Track, crossings, first_turn
 from kirigami_studio.fabricate.endings import Seat
+from kirigami_studio.fabricate.finished_sheet import remaining_pieces
 from kirigami_studio.fabricate.fitting import Place
 from kirigami_studio.fabricate.hinged_cuts import HingedCuts, cut_through, places_of_ends
 from kirigami_studio.fabricate.slits import SHEET_EDGE, CutTable
@@ -75,6 +76,11 @@ class Arranged:
         ring = shapely.get_coordinates(measured_line(self.ring, self.ring_bulges, True))
         lowest: FloatArray = np.concatenate([ring, *(piece.points for piece in self.cuts.pieces)]).min(axis=0)
         return lowest
+
+    def pieces(self, kerf_mm: float) -> int:
+        """How many pieces the sheet falls into: what a trimmed outline leaves beside a moved cut may come off."""
+        outline = Polygon(measured_line(self.ring, self.ring_bulges, True))
+        return len(remaining_pieces(outline, [piece.line for piece in self.cuts.pieces], kerf_mm))
 
 
 def counter_clockwise(outline: Polygon) -> FloatArray:

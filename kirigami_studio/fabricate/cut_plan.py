@@ -79,6 +79,8 @@ class CutPlan:
         Panels between the centre lines of the cuts, row by row; four corners each unless trimmed.
     centres : (H, 2) float or None, mm
         Where the connectors turn; None for styles that do not place them.
+    void_miss_mm : float or None
+        By how much a void misses being a parallelogram of its centres, at most; None without centres.
     origin : mapping of str to str
         Where the design comes from, repeated in every file of the plan; decides nothing.
     """
@@ -95,6 +97,7 @@ class CutPlan:
     notes: tuple[Note, ...] = ()
     panels: tuple[FloatArray, ...] = ()
     centres: FloatArray | None = None
+    void_miss_mm: float | None = None
     origin: Mapping[str, str] = field(default_factory=lambda: MappingProxyType({}))
 
     @cached_property
@@ -198,6 +201,8 @@ def plan_cuts(
     arranged = None
     if options.style is ConnectorStyle.CENTRED:
         arranged = centred_cuts(lines, table, sides, widths, kerf, overcut, options.removed, trimming)
+        if arranged is not None and parts and arranged.pieces(kerf) > 1 + len(options.removed):
+            arranged = None
     if arranged is None:
         outline, pieces = trimming(shortened)
         cuts = hinged_cuts(
@@ -237,6 +242,7 @@ def plan_cuts(
         ),
         panels=panels_in_mm(deployment, parts, width, origin),
         centres=None if arranged.centres is None else _frozen(arranged.centres - origin),
+        void_miss_mm=_void_miss(arranged, options, table),
     )
 
 
@@ -339,8 +345,14 @@ def _centring_notes(arranged: Arranged, options: CutOptions, table: CutTable) ->
         return [Note.of("plan.no_room_to_centre")]
     if not arranged.off_centre:
         return []
-    miss = float(void_misses(arranged.centres, table, options.removed).max(initial=0.0))
+    miss = _void_miss(arranged, options, table)
     return [Note.of("plan.off_centre", count=arranged.off_centre, total=table.hinge_count, miss_mm=miss)]
+
+
+def _void_miss(arranged: Arranged, options: CutOptions, table: CutTable) -> float | None:
+    if arranged.centres is None:
+        return None
+    return float(void_misses(arranged.centres, table, options.removed).max(initial=0.0))
 
 
 def plan_notes(

@@ -255,6 +255,19 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "verify.smallest_ligament": mark(
         "The smallest ligament is {ligament_mm:.3f} mm; the smallest connector is planned with {planned_mm:.3f} mm."
     ),
+    "verify.voids_close": mark(
+        "Read back from the file: {connectors} connectors of {narrowest_mm:.3f} mm or more, and {voids} voids that "
+        "miss being parallelograms by {miss_um:.1f} um at most."
+    ),
+    "verify.voids_miss": mark(
+        "Read back from the file: {voids} voids miss being parallelograms by up to {miss_um:.0f} um at x = {x:.2f}, "
+        "y = {y:.2f} mm, so the sheet stretches its connectors as it closes, or jams. Use centred connectors, or a "
+        "larger sheet."
+    ),
+    "verify.connectors_lost": mark(
+        "Read back from the file: {connectors} connectors, the narrowest {narrowest_mm:.3f} mm wide; {planned} were "
+        "planned, {planned_mm:.3f} mm wide or more."
+    ),
     "verify.tabs_left_out": (
         mark("Contours for a cutting service have no gaps: {count} tab is left out."),
         mark("Contours for a cutting service have no gaps: {count} tabs are left out."),
