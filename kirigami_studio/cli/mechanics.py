@@ -22,6 +22,7 @@ from kirigami_studio.foundation.words import tr
 from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.mechanics.closing import (
     CLOSED,
+    STEPS,
     Closing,
     carried_on,
     closing,
@@ -44,7 +45,7 @@ from kirigami_studio.project.store import load
 
 MPA_PER_GPA = 1e3
 FLAT_DEG = 180.0
-LEAST_STEPS = 3
+LEAST_STEPS, NETWORK_STEPS = 3, 100
 #: A sheet within this (radians) of being closed has closed.
 CLOSE_TO = math.radians(1.0)
 #: A connector counts as longer than a straight one above this (mm); coordinates are rounded to a tenth of it.
@@ -58,6 +59,8 @@ def mechanics(arguments: argparse.Namespace) -> int:
     """Close a sheet, or drive a network, and print force, energy, strain and stability."""
     if (arguments.source is None) == (arguments.network is None):
         raise UsageError("mechanics.one_source")
+    if arguments.steps is None:
+        arguments.steps = STEPS if arguments.network is None else NETWORK_STEPS
     if arguments.steps < LEAST_STEPS:
         raise UsageError("drive.too_few_steps", found=arguments.steps, least=LEAST_STEPS)
     return _drive_network(arguments) if arguments.network is not None else _close_sheet(arguments)

@@ -263,7 +263,7 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
         option("--find-grips", action="store_true",
                help="find the fewest panels that lead the sheet along its ideal path, and lead them"),
         option("--end-deg", type=amount, default=2.0, help="mean angle to close to, degrees (default 2)"),
-        option("--steps", type=count, default=31, help="equilibria along the path (default 31)"),
+        option("--steps", type=count, default=None, help="equilibria along the path (default 31; a network: 100)"),
         option("--network", default=None, metavar="FILE.npz",
                help="simulate this network of panels instead (arrays as in resources/mechanics/README.md)"),
         option("--ka", type=positive, default=None, help="network: stretching stiffness of a ligament, N/m"),

@@ -116,7 +116,9 @@ def follow(
     motions, energies, reactions, pulls, least, snapped = [], [], [], [], [], []
     for step in range(drive.steps):
         try:
-            motion, jumped = system.advance(motion, step)
+            # A step that goes too far overflows; it is then shortened.
+            with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
+                motion, jumped = system.advance(motion, step)
         except MechanicsError:
             if not until_stuck or step == 0:
                 raise

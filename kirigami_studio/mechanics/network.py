@@ -22,6 +22,10 @@ from kirigami_studio.foundation.errors import MechanicsError
 CONTACT_BELOW = math.radians(5.0)
 #: Stiffness of a contact in turning stiffnesses of its ligament.
 CONTACT_STIFFNESS = 100.0
+#: Coordinates (mm) are no larger than this, and panels no smaller than that.
+LARGEST_MM, SMALLEST_MM = 1e7, 1e-6
+#: A void angle at rest (radians) is no larger than a full turn and what a rotation centre off the edges adds.
+LARGEST_ANGLE = 3.0 * math.pi
 #: A slender ligament must be longer than this share of the mean distance of joined panels.
 SHORTEST_SLENDER = 1e-6
 
@@ -135,8 +139,9 @@ class PanelNetwork:
                 worst = int(np.argmin(values))
                 raise MechanicsError("network.stiffness_not_positive", name=name, value=float(values[worst]), at=worst)
         self._check_joints()
-        if np.any(self.contacts.rest <= 0.0):
-            worst = int(np.argmin(self.contacts.rest))
+        wrong = (self.contacts.rest <= 0.0) | (self.contacts.rest > LARGEST_ANGLE)
+        if np.any(wrong):
+            worst = int(np.argmax(wrong))
             raise MechanicsError(
                 "network.panels_touch", angle_deg=math.degrees(float(self.contacts.rest[worst])), contact=worst
             )
@@ -148,6 +153,9 @@ class PanelNetwork:
             if table.size and not 0 <= table.min() <= table.max() <= last:
                 worst = int(table.max() if table.max() > last else table.min())
                 raise MechanicsError("network.number_out_of_range", number=worst, last=last)
+        largest = max(float(np.abs(part).max()) for part in (self.centroids, joints.points))
+        if largest > LARGEST_MM or self.panel_size < SMALLEST_MM:
+            raise MechanicsError("network.size_out_of_range", largest_mm=LARGEST_MM, smallest_mm=SMALLEST_MM)
         own = np.flatnonzero(joints.panels[:, 0] == joints.panels[:, 1])
         if own.size:
             raise MechanicsError("network.joins_itself", ligament=int(own[0]), panel=int(joints.panels[own[0], 0]))

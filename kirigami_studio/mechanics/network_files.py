@@ -191,7 +191,7 @@ def morpher_drive(file: NetworkFile, steps: int = 100, there_and_back: bool = Fa
     Raises
     ------
     MechanicsError
-        A network with too few panels.
+        A network with too few panels, or whose grips do not move.
     """
     network, free = file.network, file.without_gap
     if network.panel_count <= max(HELD_PANEL, MOVED_PANEL):
@@ -216,6 +216,8 @@ def morpher_drive(file: NetworkFile, steps: int = 100, there_and_back: bool = Fa
     freedoms = np.concatenate([3 * HELD_PANEL + np.arange(3), 3 * MOVED_PANEL + np.arange(3)])
     path, rate = np.zeros((2, len(shift), 6))
     path[:, 3:5] = shift
+    if not (np.all(distance > 0.0) and np.all(np.abs(np.sum(between * along, axis=1)) > 0.0)):
+        raise MechanicsError("drive.nothing_moves")
     nearer = -np.sum(between * along, axis=1) / distance
     rate[:, 3:5] = along / nearer[:, None]
     return Drive(freedoms, path, displacement, rate)

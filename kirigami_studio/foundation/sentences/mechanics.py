@@ -17,8 +17,12 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "network.not_finite": mark("The array '{name}' holds a value at {at} that is not a finite number."),
     "network.stiffness_not_positive": mark("The stiffness '{name}' of ligament {at} must be above 0, got {value:g}."),
     "network.panels_touch": mark(
-        "The void angle of contact {contact} is {angle_deg:.3f} degrees at rest. Panels must not touch at rest: give "
-        "an angle above 0."
+        "The void angle of contact {contact} is {angle_deg:.4g} degrees at rest. Panels must not touch at rest: give "
+        "an angle above 0, and no more than a full turn."
+    ),
+    "network.size_out_of_range": mark(
+        "Coordinates must be within {largest_mm:g} mm, and panels farther apart than {smallest_mm:g} mm. Check the "
+        "unit."
     ),
     "network.number_out_of_range": mark("A ligament or contact names number {number}, but the last one is {last}."),
     "network.joins_itself": mark("Ligament {ligament} joins panel {panel} to itself. Join two different panels."),

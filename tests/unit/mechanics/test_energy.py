@@ -131,7 +131,7 @@ def test_that_a_closing_void_resists_without_bound_and_an_open_one_not_at_all() 
         motion = np.zeros((5, 3))
         motion[:, 2] = 0.0
         motion[1, 2] = angle - 0.2
-        bare = NetworkEnergy(replace(one, contacts=replace(one.contacts, rest=np.array([10.0]))))
+        bare = NetworkEnergy(replace(one, contacts=replace(one.contacts, rest=np.array([9.0]))))
         return energy.value(motion) - bare.value(motion)
 
     assert contact(CONTACT_BELOW) == pytest.approx(0.0, abs=1e-12)

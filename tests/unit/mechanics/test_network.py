@@ -42,6 +42,9 @@ def row_of_squares(count: int = 3, gap: float = 0.5) -> PanelNetwork:
         ({"shearing": np.array([1.0, np.inf])}, "network.not_finite"),
         ({"points": np.zeros((2, 2, 2))}, "network.slender_without_length"),
         ({"rest": np.array([1.0, 1.0, 0.0, 1.0])}, "network.panels_touch"),
+        ({"rest": np.array([1.0, 1.0, 40.0, 1.0])}, "network.panels_touch"),
+        ({"centroids": np.array([[0.0, 0.0], [1e9, 0.0], [1.0, 0.0]])}, "network.size_out_of_range"),
+        ({"centroids": np.full((3, 2), 5.0)}, "network.size_out_of_range"),
         ({"ligament": np.array([0, 0, 1, 2])}, "network.number_out_of_range"),
         ({"outlines": np.zeros((2, 4, 2))}, "network.wrong_shape"),
     ],
@@ -128,8 +131,9 @@ def test_that_what_is_no_archive_is_refused(tmp_path: Path) -> None:
     assert caught.value.code == "network.stiffness_not_positive"
 
 
-def test_that_an_impossible_drive_is_refused() -> None:
+def test_that_an_impossible_drive_is_refused(tmp_path: Path) -> None:
     network = row_of_squares()
+    still_file = saved(tmp_path / "still.npz", quads_without_gap_m=np.zeros((64, 4, 2)))
     still = np.zeros((2, 3))
     held = np.arange(3)
     cases = (
@@ -143,6 +147,7 @@ def test_that_an_impossible_drive_is_refused() -> None:
         (lambda: Drive(held, still, np.arange(3.0), still), "drive.wrong_shape"),
         (lambda: follow(network, Drive(held + 40, still, np.arange(2.0), still)), "drive.unknown_panel"),
         (lambda: morpher_drive(type("File", (), {"network": network, "without_gap": still})()), "drive.unknown_panel"),
+        (lambda: morpher_drive(read_network(still_file, CONSTANTS)), "drive.nothing_moves"),
         (
             lambda: follow(network, mean_turn(row_of_squares(4), np.ones(3), np.linspace(0.0, 0.1, 3))),
             "network.wrong_shape",
