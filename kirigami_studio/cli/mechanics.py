@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 import math
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -13,43 +13,26 @@ from kirigami_studio.cli.console import print_json, say
 from kirigami_studio.cli.fabrication import overridden
 from kirigami_studio.cli.inputs import read_sheets
 from kirigami_studio.evaluate.candidate import Candidate
-from kirigami_studio.evaluate.siou import siou_of_many
-from kirigami_studio.fabricate.panel_sizes import panels_in_mm
-from kirigami_studio.fabricate.slits import cut_table
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import MechanicsError, UsageError
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.lattice.deployment import Deployment, deploy
-from kirigami_studio.mechanics.closing import (
-    CLOSED,
-    STEPS,
-    Closing,
-    carried_on,
-    closing,
-    even_closing,
-    ideal_motion,
-    silhouette,
-)
-from kirigami_studio.mechanics.connectors import ElasticSheet, cut_connectors, junctions
+from kirigami_studio.mechanics.closing import CLOSED, STEPS, Closing, closing, even_closing
 from kirigami_studio.mechanics.drive import Drive, clamped_ends
 from kirigami_studio.mechanics.equilibrium import EquilibriumPath, follow
 from kirigami_studio.mechanics.estimate import estimate_stretch
 from kirigami_studio.mechanics.gripping import Gripping, find_grips, grips
 from kirigami_studio.mechanics.network_files import NetworkFile, SpringConstants, morpher_drive, read_network
-from kirigami_studio.mechanics.sheet_network import SheetNetwork, polygons_as_rows, sheet_network
+from kirigami_studio.mechanics.sheet_network import SheetNetwork
 from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.project.as_cut import CLOSE_TO, Overlap, believed_figure, overlap, planned_sheet
 from kirigami_studio.project.cutting import plan_sheet
 from kirigami_studio.project.settings import FabricationSettings
 from kirigami_studio.project.store import SUFFIX as PROJECT
 from kirigami_studio.project.store import load
 
-MPA_PER_GPA = 1e3
 FLAT_DEG = 180.0
 LEAST_STEPS, NETWORK_STEPS = 3, 100
-#: A sheet within this (radians) of being closed has closed.
-CLOSE_TO = math.radians(1.0)
-#: A connector counts as longer than a straight one above this (mm); coordinates are rounded to a tenth of it.
-LONGER_MM = 1e-3
 #: Rows of the table for a person.
 SHOWN_ROWS = 11
 AXES = {"x": (0, 0), "y": (1, 1), "xx": (0, 0), "yy": (1, 1), "xy": (0, 1), "yx": (1, 0)}
@@ -87,17 +70,6 @@ class _Cut:
     phi: float
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class _Overlap:
-    """Angles (degrees) that the sheet comes to, by itself and forced, and its IoU there and as designed."""
-
-    reached_deg: float
-    iou_as_cut: float
-    forced_deg: float
-    iou_forced: float
-    iou_ideal: float
-
-
 def _close_sheet(arguments: argparse.Namespace) -> int:
     cut = _cut(arguments)
     if (arguments.hold is None) != (arguments.move is None):
@@ -116,7 +88,9 @@ def _close_sheet(arguments: argparse.Namespace) -> int:
     gripped, tolerated = arguments.hold is not None or arguments.find_grips, arguments.tolerance
     jam = None if _ended_early(found, tolerated) else math.degrees(found.jam_phi(tolerated))
     estimate = math.degrees(estimate_stretch(cut.deployment, cut.sheet, width).jam_phi(tolerated))
-    overlap = None if cut.target is None else _overlap(cut, found, found.jam_phi(tolerated), cut.target)
+    lap = None
+    if cut.target is not None:
+        lap = overlap(cut.deployment, found, width, cut.phi, found.jam_phi(tolerated), cut.target)
     # Against an angle the slope of the energy is a moment: what a lever of one panel's size needs at its end.
     force = found.path.force / (1.0 if gripped else cut.sheet.network.panel_size)
     if arguments.json:
@@ -124,7 +98,7 @@ def _close_sheet(arguments: argparse.Namespace) -> int:
         answer |= {"jam_deg": jam, "estimated_jam_deg": estimate}
         if gripping is not None:
             answer |= {"hold": gripping.held, "move": gripping.moved, "follows": gripping.follows}
-        print_json(answer if overlap is None else answer | asdict(overlap))
+        print_json(answer if lap is None else answer | _overlap_json(lap))
         return 0
     _tell_steps(found, force)
     _tell_jam(jam, estimate, tolerated)
@@ -132,8 +106,8 @@ def _close_sheet(arguments: argparse.Namespace) -> int:
     say(tr("Rests by itself at (degrees): {angles}.", angles=stable or tr("nowhere on this path")))
     if gripping is not None:
         _tell_grips(gripping)
-    if overlap is not None:
-        _tell_overlap(overlap)
+    if lap is not None:
+        _tell_overlap(lap)
     say(tr("Friction, plastic set and motion out of the plane are not modelled."))
     return 0
 
@@ -154,27 +128,8 @@ def _cut(arguments: argparse.Namespace) -> _Cut:
         deployment, saved = deploy(named[0].read()), FabricationSettings()
     settings = overridden(saved, arguments)
     plan = plan_sheet(deployment, settings, kept)
-    hinges = plan.hinges
-    found = junctions(deployment, settings.width_mm, cut_table(*deployment.sheet.grid).hinge_node)
-    # A straight slit's connector bends over a span; arcs and bars make it longer.
-    longer = np.where(hinges.removed, 0.0, hinges.flexure_mm - hinges.requested_mm - plan.kerf_mm)
-    polygons = panels_in_mm(deployment, () if kept is None else kept, settings.width_mm, np.zeros(2))
-    centres = None
-    if arguments.centres == "node":
-        centres = found.place
-    elif plan.centres is not None:
-        # The plan has its own origin.
-        centres = plan.centres + (polygons[0][0] - plan.panels[0][0])
-    connectors = cut_connectors(
-        found,
-        np.maximum(hinges.finished_mm, 0.0),
-        plan.kerf_mm,
-        centres,
-        np.where(longer > LONGER_MM, longer, 0.0),
-    )
-    young = plan.material.young_gpa if arguments.young_gpa is None else arguments.young_gpa
-    elastic = ElasticSheet(MPA_PER_GPA * young, plan.material.thickness_mm)
-    sheet = sheet_network(polygons_as_rows(polygons), connectors, elastic)
+    on_nodes = arguments.centres == "node"
+    sheet = planned_sheet(deployment, plan, settings.width_mm, kept, on_nodes, arguments.young_gpa)
     return _Cut(deployment, sheet, settings, target, phi)
 
 
@@ -188,7 +143,6 @@ def _steps(cut: _Cut, found: Closing, gripped: bool) -> dict[str, object]:
     """What the JSON tells of every step, and of the sheet."""
     connectors = cut.sheet.connectors
     opening = np.degrees(cut.sheet.opening(found.path.motion))
-    thin = cut.sheet.sheet.thickness_mm < float(connectors.width_mm.min())
     return {
         "panels": cut.sheet.network.panel_count,
         "connectors": len(connectors),
@@ -203,7 +157,7 @@ def _steps(cut: _Cut, found: Closing, gripped: bool) -> dict[str, object]:
         "max_stretch_widths": found.stretch.max(axis=1),
         "max_strain": found.in_plane.max(axis=1),
         "max_strain_out_of_plane": found.out_of_plane.max(axis=1),
-        "strain_believed": "out_of_plane" if thin else "in_plane",
+        "strain_believed": believed_figure(cut.sheet).value,
         "least_eigenvalue_n_mm": found.path.least,
         "snap_deg": np.degrees(found.phi[found.path.snapped]),
         "stuck": len(found.phi) < found.asked,
@@ -216,23 +170,6 @@ def _ended_early(found: Closing, tolerated: float) -> bool:
     """Whether the sheet was not driven as far as it would go, so that nothing is known about where it jams."""
     free = len(found.phi) == found.asked and float(found.stretch.max()) <= tolerated
     return free and float(found.phi[-1]) > CLOSED + CLOSE_TO
-
-
-def _overlap(cut: _Cut, found: Closing, jam: float, target: Outline) -> _Overlap:
-    """IoU with the target of the sheet as cut, where it comes to, and as designed."""
-    width, network = cut.settings.width_mm, cut.sheet.network
-    # A sheet that came to the last step goes on to the angle that it is meant for.
-    closed = len(found.phi) == found.asked and found.phi.min() <= CLOSED + CLOSE_TO
-    forced = cut.phi if closed else max(cut.phi, float(found.phi.min()))
-    reached = max(forced, jam)
-    motions = (
-        carried_on(found, cut.deployment, width, reached),
-        carried_on(found, cut.deployment, width, forced),
-        ideal_motion(cut.deployment, network, width, cut.phi),
-    )
-    rings = [silhouette(cut.deployment, network, width, motion) for motion in motions]
-    as_cut, shut, ideal = (siou_of_many([ring], target)[0].iou_exact for ring in rings)
-    return _Overlap(math.degrees(reached), as_cut, math.degrees(forced), shut, ideal)
 
 
 def _tell_steps(found: Closing, force: FloatArray) -> None:
@@ -278,16 +215,27 @@ def _tell_grips(gripping: Gripping) -> None:
         )
 
 
-def _tell_overlap(overlap: _Overlap) -> None:
+def _overlap_json(lap: Overlap) -> dict[str, float]:
+    """The angles in degrees, and the IoU."""
+    return {
+        "reached_deg": math.degrees(lap.reached),
+        "iou_as_cut": lap.iou_as_cut,
+        "forced_deg": math.degrees(lap.forced),
+        "iou_forced": lap.iou_forced,
+        "iou_ideal": lap.iou_ideal,
+    }
+
+
+def _tell_overlap(lap: Overlap) -> None:
     say(
         tr(
             "IoU as cut, at {phi:.0f} degrees: {cut:.4f}; forced to {end:.0f} degrees: {forced:.4f}; as designed: "
             "{ideal:.4f}.",
-            phi=overlap.reached_deg,
-            cut=overlap.iou_as_cut,
-            end=overlap.forced_deg,
-            forced=overlap.iou_forced,
-            ideal=overlap.iou_ideal,
+            phi=math.degrees(lap.reached),
+            cut=lap.iou_as_cut,
+            end=math.degrees(lap.forced),
+            forced=lap.iou_forced,
+            ideal=lap.iou_ideal,
         )
     )
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Generator
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,7 +13,7 @@ from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.lattice.deployment import Deployment, check_phi
 from kirigami_studio.mechanics.drive import Drive, mean_turn
 from kirigami_studio.mechanics.energy import NetworkEnergy
-from kirigami_studio.mechanics.equilibrium import EquilibriumPath, follow
+from kirigami_studio.mechanics.equilibrium import EquilibriumPath, follow_steps
 from kirigami_studio.mechanics.network import PanelNetwork
 from kirigami_studio.mechanics.sheet_network import SheetNetwork
 
@@ -114,7 +115,18 @@ def jam_angle(phi: FloatArray, stretch: FloatArray, tolerated: float, reached_en
 
 
 def closing(sheet: SheetNetwork, drive: Drive | None = None) -> Closing:
-    """Close a sheet along a drive, as far as it goes.
+    """Close a sheet along a drive, as far as it goes, all in one go; see :func:`closing_steps`."""
+    steps = closing_steps(sheet, drive)
+    while True:
+        try:
+            next(steps)
+        except StopIteration as end:
+            found: Closing = end.value
+            return found
+
+
+def closing_steps(sheet: SheetNetwork, drive: Drive | None = None) -> Generator[None, None, Closing]:
+    """Close a sheet along a drive, as far as it goes; yields after each step, and returns the closing.
 
     Parameters
     ----------
@@ -123,7 +135,7 @@ def closing(sheet: SheetNetwork, drive: Drive | None = None) -> Closing:
         The mean turn of the connectors, from the flat sheet to :data:`CLOSED`, unless given.
     """
     chosen = even_closing(sheet) if drive is None else drive
-    path = follow(sheet.network, chosen, until_stuck=True)
+    path = yield from follow_steps(sheet.network, chosen, until_stuck=True)
     energy = NetworkEnergy(sheet.network)
     opening = sheet.opening(path.motion)
     in_plane, out_of_plane = sheet.strains(opening, energy.tension(path.motion))

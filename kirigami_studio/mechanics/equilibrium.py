@@ -9,6 +9,7 @@ the least eigenvalue of the free Hessian has reached zero and the network snaps 
 
 from __future__ import annotations
 
+from collections.abc import Generator
 from dataclasses import dataclass
 
 import numpy as np
@@ -93,7 +94,20 @@ class EquilibriumPath:
 def follow(
     network: PanelNetwork, drive: Drive, start: FloatArray | None = None, until_stuck: bool = False
 ) -> EquilibriumPath:
-    """Find the equilibria along a drive.
+    """Find the equilibria along a drive, all in one go; see :func:`follow_steps`."""
+    steps = follow_steps(network, drive, start, until_stuck)
+    while True:
+        try:
+            next(steps)
+        except StopIteration as end:
+            path: EquilibriumPath = end.value
+            return path
+
+
+def follow_steps(
+    network: PanelNetwork, drive: Drive, start: FloatArray | None = None, until_stuck: bool = False
+) -> Generator[None, None, EquilibriumPath]:
+    """Find the equilibria along a drive; yields after each, and returns the path.
 
     Parameters
     ----------
@@ -130,6 +144,7 @@ def follow(
         pulls.append(found.pull)
         least.append(found.least)
         snapped.append(jumped)
+        yield
     reaction, drive = np.array(reactions), drive.first(len(motions))
     return EquilibriumPath(
         drive,
