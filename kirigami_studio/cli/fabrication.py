@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import math
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -74,6 +75,7 @@ def export(arguments: argparse.Namespace) -> int:
             tr("The folder has files of an earlier export: {names}. Delete what you do not want to cut.", names=names)
         )
     warnings = list(dict.fromkeys(warnings))
+    verified = [_summary(found) for found in written.verifications]
     bad = [finding.text for found in written.verifications for finding in found.findings if not finding.ok]
     if arguments.json:
         print_json(
@@ -85,8 +87,10 @@ def export(arguments: argparse.Namespace) -> int:
                 "seconds_estimate": plan.seconds_estimate,
                 "pieces": report.pieces,
                 "min_connector_mm": plan.min_connector_mm,
+                "void_miss_um": None if not verified else verified[0]["void_miss_um"],
+                "jam_deg": None if not verified else verified[0]["jam_deg"],
                 "warnings": warnings,
-                "verified": [_summary(found) for found in written.verifications],
+                "verified": verified,
             }
         )
         return 0 if written.ok else 1
@@ -125,7 +129,7 @@ def _written(job: ExportJob, arguments: argparse.Namespace) -> ExportSet:
     path = export_file(job, arguments.out)
     files, verified = [path], []
     if Path(arguments.out).suffix.lower() in FORMATS:
-        verified.append(verify_export(job.required_plan, path, job.profile, job.dxf_version))
+        verified.append(verify_export(job.required_plan, path, job.profile, job.dxf_version, job.deployment))
     if arguments.sidecar:
         files.append(write_sidecar(job, sidecar_path(Path(arguments.out)), [path]))
     return ExportSet(tuple(files), tuple(verified))
@@ -138,6 +142,8 @@ def _summary(found: Verification) -> dict[str, object]:
         "pieces": found.pieces,
         "cut_length_mm": found.cut_length_mm,
         "seconds": [found.seconds_low, found.seconds_high],
+        "void_miss_um": found.void_miss_um,
+        "jam_deg": None if found.jam_phi is None else math.degrees(found.jam_phi),
         "findings": [finding.text for finding in found.findings],
     }
 

@@ -81,7 +81,7 @@ def export_all(
 
     for goal, version in ((cut, R2010), (home / f"{name}_r12.dxf", R12), (home / f"{name}.svg", R2010)):
         path = export(replace(job, dxf_version=version), goal)
-        verified.append(verify_export(plan, path, job.profile, version))
+        verified.append(verify_export(plan, path, job.profile, version, job.deployment))
         done(path)
     cut_files = tuple(written)
     if not find_profile(job.profile).slots:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -14,6 +15,7 @@ from shapely.geometry.base import BaseGeometry
 from kirigami_studio.export.dxf_reading import read_with_ezdxf
 from kirigami_studio.export.file_content import MILLIMETRES, FileContent, bent_otherwise, largest_shift, one_drawing
 from kirigami_studio.export.group_codes import read_group_codes
+from kirigami_studio.export.jam_angle import jam_angle_of_file
 from kirigami_studio.export.layer_files import by_layer, layer_folder, layer_paths
 from kirigami_studio.export.profile import Profile, find_profile
 from kirigami_studio.export.strokes import Stroke, extent, layer_colours, strokes_of
@@ -28,6 +30,8 @@ from kirigami_studio.fabricate.joints import Pair, joined_pairs
 from kirigami_studio.fabricate.tabs import joined_ring
 from kirigami_studio.foundation.errors import ExportError
 from kirigami_studio.foundation.sentences import sentence
+from kirigami_studio.lattice.deployment import Deployment
+from kirigami_studio.mechanics.closing import CLOSED
 
 Reader = Callable[[Path], FileContent]
 
@@ -87,6 +91,8 @@ class Verification:
     void_miss_um : float or None
         By how much voids miss being parallelograms about the connectors' centres as read from the file; None where
         none were found.
+    jam_phi : float or None, radians
+        Where the sheet jams by the estimate for these centres, 0 if it closes; None where nothing is known.
     """
 
     path: Path
@@ -99,6 +105,7 @@ class Verification:
     findings: tuple[Finding, ...]
     warnings: tuple[Note, ...]
     void_miss_um: float | None = None
+    jam_phi: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -126,7 +133,13 @@ FORMATS = {
 }
 
 
-def verify_export(plan: CutPlan, path: str | Path, profile_key: str, version: str = "R2010") -> Verification:
+def verify_export(
+    plan: CutPlan,
+    path: str | Path,
+    profile_key: str,
+    version: str = "R2010",
+    deployment: Deployment | None = None,
+) -> Verification:
     """Read a written file with two readers and compare it with the plan that it was written from.
 
     Parameters
@@ -137,6 +150,8 @@ def verify_export(plan: CutPlan, path: str | Path, profile_key: str, version: st
     profile_key : str
     version : str
         DXF dialect that it was written in.
+    deployment : Deployment, optional
+        The design of the plan; without it nothing is said about where the sheet jams.
 
     Raises
     ------
@@ -150,12 +165,12 @@ def verify_export(plan: CutPlan, path: str | Path, profile_key: str, version: st
         parts = layer_paths(goal)
         strokes = tuple(stroke for part in by_layer(strokes).values() for stroke in part)
         contents = [one_drawing([read(part) for part in parts]) for read in kind.readers]
-        return _judged(plan, goal, profile, version, strokes, contents, kind)
+        return _judged(plan, goal, profile, version, strokes, contents, kind, deployment)
     if goal.suffix.lower() not in FORMATS:
         raise ExportError("verify.unknown_kind", path=goal, known=", ".join(FORMATS))
     kind = FORMATS[goal.suffix.lower()]
     contents = [read(goal) for read in kind.readers]
-    return _judged(plan, goal, profile, version, strokes, contents, kind)
+    return _judged(plan, goal, profile, version, strokes, contents, kind, deployment)
 
 
 def _judged(
@@ -166,13 +181,16 @@ def _judged(
     strokes: Sequence[Stroke],
     contents: Sequence[FileContent],
     kind: Format,
+    deployment: Deployment | None,
 ) -> Verification:
     physics = file_physics(contents[-1].strokes, plan, profile)
     voids = file_voids(contents[-1].strokes, plan, profile)
+    jam = None if deployment is None else jam_angle_of_file(voids, plan, deployment)
     findings = [
         *_agreed(contents, strokes, version, kind),
         *_physics_findings(physics, plan),
         *void_findings(voids, plan),
+        *_jam_findings(jam),
     ]
     warnings = [*plan.notes, *_cautions(plan, profile, version, strokes, path)]
     return Verification(
@@ -186,6 +204,7 @@ def _judged(
         findings=tuple(findings),
         warnings=tuple(warnings),
         void_miss_um=voids.miss_um if voids.voids else None,
+        jam_phi=jam,
     )
 
 
@@ -377,6 +396,14 @@ def void_findings(voids: FoundVoids, plan: CutPlan) -> list[Finding]:
         return []
     x, y = voids.where
     return [Finding("verify.voids_miss", {**found, "x": x, "y": y}, ok=not centred, warning=not centred)]
+
+
+def _jam_findings(jam: float | None) -> list[Finding]:
+    if jam is None:
+        return []
+    jams = jam > CLOSED
+    code = "verify.sheet_jams" if jams else "verify.sheet_closes"
+    return [Finding(code, {"jam_deg": math.degrees(jam)}, warning=jams)]
 
 
 def _cautions(plan: CutPlan, profile: Profile, version: str, strokes: Sequence[Stroke], path: Path) -> list[Note]:

@@ -21,6 +21,7 @@ import numpy.typing as npt
 import shapely
 from shapely.geometry import Point, Polygon
 
+from kirigami_studio.fabricate.centres import ROUNDS as CENTRE_ROUNDS
 from kirigami_studio.fabricate.centres import Centres, settled_centres
 from kirigami_studio.fabricate.connectors import SHORTEST_CUT_MM
 from kirigami_studio.fabricate.cut_path import measured_line
@@ -38,8 +39,12 @@ from kirigami_studio.foundation.errors import FabricationError
 CLEAR_MM = 5e-4
 #: Chords that stand for each arc, from outside, where conflicts are looked for.
 CHORDS = 24
+#: Slits turn within so many spans at most.
+LONGEST_TURN = 8.0
 #: How often what is in the way of each other is made to give way, and from which time on in one step.
-ROUNDS, HASTY_FROM = 8, 3
+ROUNDS, HASTY_FROM = 10, 3
+#: Rounds of the centres while things still give way.
+HASTY_ROUNDS = 2
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -129,9 +134,11 @@ def centred_cuts(
     flat = np.zeros(table.hinge_count, dtype=np.bool_)
     flat[_facing(table, removed)] = True
     centres: Centres | None = None
+    settled = False
     for turn in range(ROUNDS):
         straight = attempt >= len(TURNS)
-        centres = settled_centres(lines, table, sides, spans, kerf_mm, flat | straight, removed, centres)
+        centres = settled_centres(lines, table, sides, spans, kerf_mm, flat | straight, removed, centres,
+                                  CENTRE_ROUNDS if settled or centres is None else HASTY_ROUNDS)  # fmt: skip
         try:
             draft = _Draft(centres, table, attempt, flat | straight, removed, kerf_mm, overcut_mm, trimmed)
         except FabricationError:
@@ -140,7 +147,10 @@ def centred_cuts(
         tighter, flatter = draft.in_the_way()
         flatter -= set(np.flatnonzero(flat).tolist())
         if not tighter and not flatter:
-            return draft.arranged()
+            if settled or turn == 0:
+                return draft.arranged()
+            settled = True
+            continue
         for hinge in tighter:
             attempt[hinge] = draft.next_attempt(hinge) if turn < HASTY_FROM else len(TURNS)
         flat[list(flatter)] = True
@@ -286,6 +296,10 @@ class _Draft:
             away = middles[hinge] - start
             off, place, radius = float(away @ left), float(away @ heading), float(radii[hinge])
             if self._flat[hinge] or hinge in self._removed or radius - abs(off) < NEGLIGIBLE_MM:
+                # A connector beside a straight cut needs it straight there.
+                if hinge not in self._removed and min(place, length - place) < 0.0:
+                    beyond = -place if place < 0.0 else place - length
+                    self._tight.update(turning if beyond < LONGEST_TURN * self._centres.span_mm[hinge] else ())
                 continue
             half = math.sqrt(radius * radius - off * off)
             if place + half <= 0.0 or place - half >= length:
@@ -406,7 +420,9 @@ class _Draft:
         centres = self._centres
         flexure = centres.span_mm.copy()
         tips = self._tips()
-        turned = centres.position
+        # A tip that is further from a straight through cut than a span makes a wider neck.
+        wider = np.maximum(centres.height_mm - 0.5 * centres.span_mm, 0.0)
+        turned = centres.position - 0.5 * wider[:, None] * centres.normal
         straight = tips - 0.5 * centres.span_mm[:, None] * centres.normal
         cuts = HingedCuts(tuple(self._made), tuple(self._seats), tuple(self._places), {}, flexure, Counter())
         bulges = self._ring_bulges if self._ring_bulges.any() else None

@@ -28,8 +28,10 @@ from kirigami_studio.lattice.topology import topology
 BULGE_SPANS = 1.5
 #: Bulges that face each other across a cut stay this far apart (mm), so that rounding does not join them.
 APART_MM = 1e-3
-#: How often the conditions between neighbours are made linear anew, and how often from similar centres on.
-ROUNDS, MORE_ROUNDS = 6, 2
+#: How often the conditions between neighbours are made linear anew, at most.
+ROUNDS = 12
+#: Centres that move by less than this (mm) have settled.
+SETTLED_MM = 5e-5
 #: Conditions that cannot all hold give way in this order: places of single connectors, then parallelograms.
 GIVING_WAY = (1e-5, 1e-9)
 #: A centre this far (mm) from its node is on it.
@@ -103,6 +105,7 @@ def settled_centres(
     flat: BoolArray,
     removed: tuple[int, ...] = (),
     start: Centres | None = None,
+    rounds: int = ROUNDS,
 ) -> Centres:
     """Find the centres by one constrained least-squares problem, made linear a few times.
 
@@ -127,14 +130,14 @@ def settled_centres(
     shift = np.zeros((table.hinge_count, 2))
     if start is not None:
         facing, shift = start.facing.copy(), start.position - lines[table.hinge_cut, table.hinge_end]
-    for _ in range(ROUNDS if start is None else MORE_ROUNDS):
+    for _ in range(rounds):
         now = problem.centres(shift)
         held |= now.height_mm > 0.5 * spans + ON_NODE_MM
         facing |= problem.overlap(now) > 0.0
         settled = problem.solve(now, shift, held, facing)
         moved = float(np.abs(settled - shift).max(initial=0.0))
         shift = settled
-        if moved < ON_NODE_MM:
+        if moved < SETTLED_MM:
             break
     return replace(problem.centres(shift), facing=facing)
 

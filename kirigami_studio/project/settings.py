@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
+from functools import partial
 
 from kirigami_studio.fabricate.material import DEFAULT_PRESET, Material
-from kirigami_studio.fabricate.options import CutOptions
+from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions
 from kirigami_studio.foundation.errors import AngleError, GridError, UsageError
 from kirigami_studio.lattice.ratio_field import check_grid
 
@@ -105,6 +106,7 @@ class FabricationSettings:
     kerf_mm : float or None
         Width of the cut; None takes the material's own.
     options : CutOptions
+        Centred connectors unless chosen otherwise.
     profile : str
         Key of the machine profile that cut files are written for.
     dxf_version : str
@@ -123,7 +125,7 @@ class FabricationSettings:
     material: str = DEFAULT_PRESET
     connector_mm: float | None = None
     kerf_mm: float | None = None
-    options: CutOptions = field(default_factory=CutOptions)
+    options: CutOptions = field(default_factory=partial(CutOptions, style=ConnectorStyle.CENTRED))
     profile: str = "any"
     dxf_version: str = "R2010"
     own: Material | None = field(default=None, compare=False)

@@ -123,8 +123,9 @@ def exporting(request: CutRequest, path: Path, cancel: Cancel) -> Iterator[Expor
 
     find_exporter(path)  # an unknown kind is refused before anything is planned
     made = planned(request) if kind_of(path.suffix).cuts else None
-    written = export(export_job(request, made), path)
-    yield Exported(written, made, () if made is None else _verified(made.plan, path, request.settings))
+    job = export_job(request, made)
+    written = export(job, path)
+    yield Exported(written, made, () if made is None else _verified(made.plan, path, request.settings, job.deployment))
 
 
 def exporting_all(request: CutRequest, folder: Path, name: str, cancel: Cancel) -> Iterator[Exported]:
@@ -168,10 +169,12 @@ def exporting_coupon(
     yield Exported(path, Planned(plan, check_plan(plan)), _verified(plan, path, settings))
 
 
-def _verified(plan: CutPlan, path: Path, settings: FabricationSettings) -> tuple[Verification, ...]:
+def _verified(
+    plan: CutPlan, path: Path, settings: FabricationSettings, deployment: Deployment | None = None
+) -> tuple[Verification, ...]:
     """Read a cut file again with two readers, if its kind is among those that are verified."""
     from kirigami_studio.export.verification import FORMATS, verify_export
 
     if path.suffix.lower() not in FORMATS:
         return ()
-    return (verify_export(plan, path, settings.profile, settings.dxf_version),)
+    return (verify_export(plan, path, settings.profile, settings.dxf_version, deployment),)

@@ -30,7 +30,19 @@ def sheet_file(tmp_path: Path) -> Path:
 
 
 def test_that_a_sheet_is_closed_as_the_contract_says(sheet_file: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    words = ("mechanics", sheet_file, "--connector-mm", 2, "--steps", 9, "--end-deg", 30, "--json")
+    words = (
+        "mechanics",
+        sheet_file,
+        "--connector-mm",
+        2,
+        "--style",
+        "straight",
+        "--steps",
+        9,
+        "--end-deg",
+        30,
+        "--json",
+    )
     cut = answer(capsys, *words)
     ideal = answer(capsys, *words, "--centres", "node")
     for found in (cut, ideal):

@@ -19,6 +19,8 @@ from kirigami_studio.project import edits
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.history import History
 
+CENTRED = ConnectorStyle.CENTRED
+
 
 def options_of(document: Document) -> CutOptions:
     return document.fabrication.options
@@ -46,17 +48,17 @@ def test_that_a_removed_connector_has_no_width_and_a_width_brings_it_back() -> N
     first = edits.set_hinge_width(Document(), {5}, 0.3).document
     removed = edits.remove_hinges(first, {5, 2})
     assert removed.label == "Cut through 2 connectors"
-    assert options_of(removed.document) == CutOptions(removed=(2, 5))
+    assert options_of(removed.document) == CutOptions(CENTRED, removed=(2, 5))
     back = edits.set_hinge_width(removed.document, {5}, 0.25).document
-    assert options_of(back) == CutOptions(removed=(2,), hinge_mm=((5, 0.25),))
-    assert options_of(edits.reset_hinges(back, {2, 5}).document) == CutOptions()
+    assert options_of(back) == CutOptions(CENTRED, removed=(2,), hinge_mm=((5, 0.25),))
+    assert options_of(edits.reset_hinges(back, {2, 5}).document) == CutOptions(CENTRED)
 
 
 def test_that_a_width_for_many_leaves_the_removed_among_them_removed() -> None:
     removed = edits.remove_hinges(Document(), {5, 2}).document
     wide = edits.set_hinge_width(removed, {2, 3, 4}, 0.6)
     assert wide.label == "Set 2 connectors to 0.6 mm"
-    assert options_of(wide.document) == CutOptions(removed=(2, 5), hinge_mm=((3, 0.6), (4, 0.6)))
+    assert options_of(wide.document) == CutOptions(CENTRED, removed=(2, 5), hinge_mm=((3, 0.6), (4, 0.6)))
 
 
 def test_that_a_width_of_nothing_is_refused() -> None:

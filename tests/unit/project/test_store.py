@@ -244,7 +244,7 @@ def test_that_all_choices_about_the_cuts_come_back(document: Document, tmp_path:
 @pytest.mark.parametrize(
     ("place", "value", "said"),
     [
-        ("style", "glued", "'glued' is none of straight"),
+        ("style", "glued", "'glued' is none of centred"),
         ("order", "random", "'random' is none of shortest"),
         ("tabs", -1, "0 to 200 tabs"),
         ("tab_mm", 0.0, "tab width"),
