@@ -18,6 +18,7 @@ from kirigami_studio.export.profile import find_profile
 from kirigami_studio.export.provenance import sidecar_path, write_sidecar
 from kirigami_studio.export.registry import export as export_file
 from kirigami_studio.export.registry import find_exporter
+from kirigami_studio.export.strokes import Work, strokes_of, work_of
 from kirigami_studio.export.verification import FORMATS, Verification, verify_export
 from kirigami_studio.fabricate.checks import Report, check_plan
 from kirigami_studio.fabricate.cut_plan import CutPlan
@@ -65,8 +66,9 @@ def export(arguments: argparse.Namespace) -> int:
     _check_hinges(_chosen(document), settings.options)
     plan, report = checked_plan(_chosen(document), settings)
     job = replace(_job(document), plan=plan, dxf_version=settings.dxf_version, profile=settings.profile,
-                  paper=arguments.paper)  # fmt: skip
+                  paper=arguments.paper, markers=arguments.markers)  # fmt: skip
     written = _written(job, arguments)
+    work = _work(job, arguments)
     notes = [*plan.notes, *report.problems, *(note for found in written.verifications for note in found.warnings)]
     warnings = [note.text for note in notes]
     if written.older:
@@ -82,9 +84,9 @@ def export(arguments: argparse.Namespace) -> int:
             {
                 "files": [str(path) for path in written.files],
                 "size_mm": plan.size_mm,
-                "cut_length_mm": plan.cut_length_mm,
-                "travel_mm": plan.travel_mm,
-                "seconds_estimate": plan.seconds_estimate,
+                "cut_length_mm": work.cut_length_mm,
+                "travel_mm": work.travel_mm,
+                "seconds_estimate": work.times.total,
                 "pieces": report.pieces,
                 "min_connector_mm": plan.min_connector_mm,
                 "void_miss_um": None if not verified else verified[0]["void_miss_um"],
@@ -104,9 +106,9 @@ def export(arguments: argparse.Namespace) -> int:
             files=", ".join(str(path) for path in written.files),
             width=plan.size_mm[0],
             height=plan.size_mm[1],
-            cut=plan.cut_length_mm,
-            travel=plan.travel_mm,
-            seconds=plan.seconds_estimate,
+            cut=work.cut_length_mm,
+            travel=work.travel_mm,
+            seconds=work.times.total,
             connector=plan.min_connector_mm,
         )
     )
@@ -120,6 +122,14 @@ def export(arguments: argparse.Namespace) -> int:
     for warning in warnings:
         say("  " + tr("note: {text}", text=warning))
     return 0 if written.ok else 1
+
+
+def _work(job: ExportJob, arguments: argparse.Namespace) -> Work:
+    """What cutting the files takes; that of the plan for kinds of file that have no profile."""
+    plan = job.required_plan
+    if arguments.all or Path(arguments.out).suffix.lower() in FORMATS:
+        return work_of(strokes_of(plan, find_profile(job.profile)), plan.material)
+    return Work(plan.cut_length_mm, plan.travel_mm, plan.times)
 
 
 def _written(job: ExportJob, arguments: argparse.Namespace) -> ExportSet:

@@ -242,6 +242,8 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
                help="spread a PDF over pages of this size (default none)"),
         option("--sidecar", action=argparse.BooleanOptionalAction, default=None,
                help="also write all settings as .json beside the cut file (default: only with --all)"),
+        option("--markers", action="store_true",
+               help="mark the connectors in LightBurn projects, on a layer that LightBurn does not cut"),
         JSON,
     ), ("kirigami-studio export heart.kiri --out heart.dxf --width-mm 80 --connector-mm 0.6",
         "kirigami-studio export heart.kiri --out heart/ --all --profile k40 --paper a4",

@@ -118,7 +118,7 @@ def check_file(path: str | Path, kerf_mm: float | None = None) -> FileReport:
         outline = tabbed_outline(content, problems)
     problems += placement_problems(content.paths, outline)
     pieces, ligament = _physics(content, outline, kerf, problems)
-    length = float(sum(line.length for line in lines))
+    length = sum(path.length for path in content.paths)
     return FileReport(Path(path), tuple(problems), content.unit, content.layers, len(lines), length,
                       twice.length_mm, bounds, kerf, pieces, ligament)  # fmt: skip
 

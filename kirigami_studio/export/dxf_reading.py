@@ -15,6 +15,8 @@ from pathlib import Path
 import numpy as np
 from ezdxf import recover, units
 from ezdxf.document import Drawing
+from ezdxf.entities.arc import Arc
+from ezdxf.entities.circle import Circle
 from ezdxf.entities.dxfentity import DXFEntity
 from ezdxf.entities.lwpolyline import LWPolyline
 from ezdxf.entities.polyline import Polyline
@@ -25,6 +27,7 @@ from ezdxf.path import make_path
 
 from kirigami_studio.export.file_content import FileContent
 from kirigami_studio.export.strokes import Stroke
+from kirigami_studio.fabricate.cut_path import edge_lengths
 from kirigami_studio.fabricate.findings import Problem
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import ExportError
@@ -110,11 +113,19 @@ class FilePath:
     layer : str
     closed : bool
         Closed by its own flag or kind, not merely by ends that meet.
+    arcs_mm : float
+        By how much the arcs of a polyline, an arc or a circle are longer than their chords in ``points``.
     """
 
     points: FloatArray
     layer: str
     closed: bool
+    arcs_mm: float = 0.0
+
+    @property
+    def length(self) -> float:
+        """Length in mm, arcs as arcs; other curves along their chords."""
+        return float(np.linalg.norm(np.diff(self.points, axis=0), axis=1).sum()) + self.arcs_mm
 
 
 @dataclass(slots=True)
@@ -247,7 +258,27 @@ def _add_path(content: DxfContent, entity: DXFEntity, factor: float) -> None:
         content.problems.append(Problem.error("cut_file.no_length", where, **name))
         return
     closed = _is_closed(entity)
-    content.paths.append(FilePath(_met(points) if closed else points, layer, closed))
+    exact = _exact_length(entity)
+    arcs = 0.0 if exact is None else exact * factor - length
+    content.paths.append(FilePath(_met(points) if closed else points, layer, closed, arcs))
+
+
+def _exact_length(entity: DXFEntity) -> float | None:
+    """Length of a curve with arcs in the drawing's unit; None for kinds that are measured along chords."""
+    if isinstance(entity, LWPolyline) and entity.has_arc:
+        rows = np.array(entity.get_points("xyb"), dtype=np.float64)
+        return float(edge_lengths(rows[:, :2], rows[:, 2], bool(entity.closed)).sum())
+    if isinstance(entity, Polyline) and entity.is_2d_polyline and entity.has_arc:
+        rows = np.array(
+            [(vertex.dxf.location.x, vertex.dxf.location.y, vertex.dxf.bulge) for vertex in entity.vertices]
+        )
+        return float(edge_lengths(rows[:, :2], rows[:, 2], bool(entity.is_closed)).sum())
+    if isinstance(entity, Circle) and not isinstance(entity, Arc):
+        return float(2.0 * math.pi * entity.dxf.radius)
+    if isinstance(entity, Arc):
+        turn = math.radians((entity.dxf.end_angle - entity.dxf.start_angle) % 360.0)
+        return float(entity.dxf.radius * (turn or 2.0 * math.pi))
+    return None
 
 
 def _flattened(entity: DXFEntity, factor: float) -> FloatArray:

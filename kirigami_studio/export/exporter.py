@@ -45,6 +45,8 @@ class ExportJob:
         repeats it.
     trim : Trim or None
         What was cut off the edge panels; pictures show what stays.
+    markers : bool
+        A LightBurn project also marks the connectors, on a layer that LightBurn does not cut.
     """
 
     deployment: Deployment
@@ -57,6 +59,7 @@ class ExportJob:
     paper: str = NO_PAPER
     provenance: Mapping[str, str] = field(default_factory=lambda: MappingProxyType({}))
     trim: Trim | None = None
+    markers: bool = False
 
     @classmethod
     def of(cls, candidate: Candidate, target: FloatArray | None, plan: CutPlan | None = None) -> ExportJob:

@@ -22,6 +22,8 @@ from kirigami_studio.fabricate.cut_plan import CutPlan
 from kirigami_studio.foundation.errors import ExportError
 from kirigami_studio.foundation.files import write_atomically
 
+#: Letters of the folder's name in that of a temporary folder: the name may already be as long as a name can be.
+NAME_PART = 40
 OWN_NAME = re.compile(r"[1-9]_[A-Z_]+\.dxf")
 
 
@@ -53,7 +55,7 @@ def write_layer_files(plan: CutPlan, path: str | Path, version: str, profile: Pr
     fresh: Path | None = None
     try:
         folder.parent.mkdir(parents=True, exist_ok=True)
-        fresh = Path(tempfile.mkdtemp(prefix=f".{folder.name}.", dir=folder.parent))
+        fresh = Path(tempfile.mkdtemp(prefix=f".{folder.name[:NAME_PART]}.", dir=folder.parent))
         for name, part in by_layer(strokes).items():
             verify = partial(check_written, strokes=part, size=size, version=version)
             write_atomically(fresh / name, strokes_dxf(part, size, version, facts), verify)
@@ -106,7 +108,7 @@ def _put_in_place(fresh: Path, folder: Path) -> None:
     if not folder.exists():
         fresh.replace(folder)
         return
-    old = Path(tempfile.mkdtemp(prefix=f".{folder.name}.old.", dir=folder.parent)) / folder.name
+    old = Path(tempfile.mkdtemp(prefix=f".{folder.name[:NAME_PART]}.old.", dir=folder.parent)) / folder.name
     folder.replace(old)
     try:
         fresh.replace(folder)

@@ -1,4 +1,6 @@
-"""Cut plan -> LightBurn project (.lbrn2): named layers with priorities in the order of cutting, connectors on T1.
+"""Cut plan -> LightBurn project (.lbrn2): named layers with speed, power and passes, in the order of cutting.
+
+Connectors are marked on the tool layer T1 where that is asked for: LightBurn leaves it out, but MeerK40t engraves it.
 
 The file is XML; a path is a list of vertices (``V x y``, with handles where a curve leaves or arrives) and a list of
 primitives between them (``L`` line, ``B`` Bezier curve).  Arcs become Bezier curves of a quarter turn at most.  The
@@ -9,6 +11,7 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from xml.etree import ElementTree
@@ -21,6 +24,8 @@ from kirigami_studio.export.provenance import facts_of
 from kirigami_studio.export.strokes import layer_colours, strokes_of
 from kirigami_studio.fabricate.cut_path import arc_of
 from kirigami_studio.fabricate.cut_plan import CutPath, CutPlan, Layer
+from kirigami_studio.fabricate.findings import Note
+from kirigami_studio.fabricate.material import Material
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import ExportError
 from kirigami_studio.foundation.files import write_atomically
@@ -58,18 +63,25 @@ class LightBurnExporter:
         """
         if find_profile(job.profile).slots:
             raise ExportError("lightburn.open_cuts_only")
-        write_lightburn(job.required_plan, path)
+        write_lightburn(job.required_plan, path, job.markers)
 
 
-def write_lightburn(plan: CutPlan, path: str | Path) -> None:
+def write_lightburn(plan: CutPlan, path: str | Path, markers: bool = False) -> None:
     """Write a plan as LightBurn project and read it back.
+
+    Parameters
+    ----------
+    plan : CutPlan
+    path : str or Path
+    markers : bool
+        Also draw a circle around every connector, on the tool layer.
 
     Raises
     ------
     ExportError
         The place cannot be written, or the file did not read back.
     """
-    content = lightburn_bytes(plan)
+    content = lightburn_bytes(plan, markers)
     strokes = strokes_of(plan, find_profile("any"))
     meant = {name: sum(stroke.length for stroke in strokes if stroke.layer == name) for name in layer_colours(strokes)}
 
@@ -84,37 +96,53 @@ def write_lightburn(plan: CutPlan, path: str | Path) -> None:
     write_atomically(Path(path), content, verify)
 
 
-def lightburn_bytes(plan: CutPlan) -> bytes:
-    """Return the project's XML."""
+def lightburn_bytes(plan: CutPlan, markers: bool = False) -> bytes:
+    """Return the project's XML; ``markers`` as for :func:`write_lightburn`."""
     # Mirrored in y means that y counts upwards.
     root = ElementTree.Element(
         "LightBurnProject",
         {"AppVersion": "1.0.00", "FormatVersion": "1", "MaterialHeight": "0", "MirrorX": "False", "MirrorY": "True"},
     )
+    material = plan.material
+    power = f"{material.power_percent:g}"
+    work = {
+        "speed": f"{material.speed_mm_s:g}",
+        "minPower": power,
+        "maxPower": power,
+        "numPasses": f"{material.passes}",
+        "kerf": "0",
+    }
     for priority, layer in enumerate(plan.layers):
-        _add_setting(root, "Cut", PALETTE_NUMBER[layer], layer.value, priority, plan.material.speed_mm_s)
-    _add_setting(root, "Tool", TOOL_LAYER, "CONNECTORS", len(plan.layers), plan.material.speed_mm_s)
+        _add_setting(root, "Cut", PALETTE_NUMBER[layer], layer.value, priority, work)
+    if markers:
+        _add_setting(root, "Tool", TOOL_LAYER, "CONNECTORS", len(plan.layers), {})
     for path in plan.paths:
         _add_path(root, path)
-    for x, y in plan.hinges.position.tolist():
+    for x, y in plan.hinges.position.tolist() if markers else []:
         size = f"{MARKER_RADIUS_MM:g}"
         marker = ElementTree.SubElement(
             root, "Shape", {"Type": "Ellipse", "CutIndex": str(TOOL_LAYER), "Rx": size, "Ry": size}
         )
         ElementTree.SubElement(marker, "XForm").text = f"1 0 0 1 {x:.4f} {y:.4f}"
     notes = [f"{key} {value}" for key, value in facts_of(plan, find_profile("lightburn")).items()]
-    notes += [note.text for note in plan.notes]
+    notes += [note.text for note in (*plan.notes, *power_notes(material))]
     ElementTree.SubElement(root, "Notes", {"ShowOnLoad": "0", "Notes": "\n".join(notes)})
     ElementTree.indent(root)
     content: bytes = ElementTree.tostring(root, encoding="utf-8", xml_declaration=True)
     return content
 
 
-def _add_setting(root: ElementTree.Element, kind: str, index: int, name: str, priority: int, speed: float) -> None:
+def power_notes(material: Material) -> tuple[Note, ...]:
+    """What to do about the power in LightBurn where the material does not know it."""
+    return () if material.power_percent else (Note.of("lightburn.no_power", material=material.name),)
+
+
+def _add_setting(
+    root: ElementTree.Element, kind: str, index: int, name: str, priority: int, work: Mapping[str, str]
+) -> None:
     setting = ElementTree.SubElement(root, "CutSetting", {"type": kind})
-    values = {"index": index, "name": name, "priority": priority, "speed": f"{speed:g}", "kerf": 0}
-    for key, value in values.items():
-        ElementTree.SubElement(setting, key, {"Value": str(value)})
+    for key, value in {"index": f"{index}", "name": name, "priority": f"{priority}", **work}.items():
+        ElementTree.SubElement(setting, key, {"Value": value})
 
 
 def _add_path(root: ElementTree.Element, path: CutPath) -> None:

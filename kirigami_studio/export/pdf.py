@@ -27,7 +27,7 @@ from kirigami_studio.export.paper import FOOTER_MM, MARGIN_MM, NO_PAPER, Box, Ti
 from kirigami_studio.export.picture import Colour
 from kirigami_studio.export.profile import find_profile
 from kirigami_studio.export.provenance import facts_of
-from kirigami_studio.fabricate.cut_plan import CutPlan
+from kirigami_studio.fabricate.cut_plan import CutPath, CutPlan
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import ExportError
 from kirigami_studio.foundation.files import write_atomically
@@ -221,6 +221,11 @@ def _stroke_colour(canvas: Any, colour: Colour) -> None:
     canvas.setStrokeColorRGB(*(channel / 255.0 for channel in colour))
 
 
+def _chord_length(cut: CutPath) -> float:
+    """Length (mm) of a cut as it is drawn, with chords for arcs."""
+    return float(np.linalg.norm(np.diff(cut.travelled, axis=0), axis=1).sum())
+
+
 def _verify(path: Path, plan: CutPlan, tiling: Tiling) -> None:
     """Read the pages back: their size, and that their cells together hold every cut once."""
     pages = read_pages(path)
@@ -239,7 +244,7 @@ def _verify(path: Path, plan: CutPlan, tiling: Tiling) -> None:
         colour = picture.LAYER_COLOUR[layer]
         shown = zip(pages[-len(tiling.tiles) :], tiling.tiles, strict=True)
         found = sum(_length_in_cell(page, part, colour) for page, part in shown)
-        meant = sum(cut.length for cut in plan.on_layer(layer))
+        meant = sum(_chord_length(cut) for cut in plan.on_layer(layer))
         corners = sum(len(cut.flattened) for cut in plan.on_layer(layer))
         if abs(found - meant) > SAME_LENGTH * meant + ROUNDING_MM * corners:
             raise ExportError("pdf.other_length", found_mm=found, planned_mm=meant, layer=layer.value)

@@ -60,23 +60,26 @@ class Profile:
 
 
 _ALL_RED = MappingProxyType(dict.fromkeys(Layer, RED))
-_ALL_WHITE = MappingProxyType(dict.fromkeys(Layer, WHITE))
 _BY_LAYER = MappingProxyType({Layer.RELIEF: MAGENTA, Layer.SLITS: RED, Layer.EDGE_SLITS: GREEN, Layer.OUTLINE: BLUE})
 _TABLE = (
     Profile("any", "Any machine: everything red, cut in file order", _ALL_RED),
-    Profile("lightburn", "LightBurn: one colour for each layer", _BY_LAYER),
+    Profile(
+        "lightburn",
+        "LightBurn: one colour for each layer",
+        _BY_LAYER,
+        note=Note.of("profile.only_red_is_cut"),
+    ),
     Profile("k40", "MeerK40t, K40 Whisperer: everything red, arcs as chords", _ALL_RED, flatten=True),
     Profile(
         "single",
         "One colour, one layer: for programs that sort by colour or layer",
-        _ALL_WHITE,
+        _ALL_RED,
         one_layer=True,
-        note=Note.of("profile.white_lines"),
     ),
     Profile(
         "layers",
         "One file for each layer, in a folder (CircuitPro)",
-        _ALL_WHITE,
+        _ALL_RED,
         file_per_layer=True,
         note=Note.of("profile.one_origin"),
     ),

@@ -16,7 +16,8 @@ from typing import Any
 
 from kirigami_studio import __version__
 from kirigami_studio.export.exporter import ExportJob
-from kirigami_studio.export.profile import Profile
+from kirigami_studio.export.profile import Profile, find_profile
+from kirigami_studio.export.strokes import strokes_of, work_of
 from kirigami_studio.fabricate.cut_plan import CutPlan
 from kirigami_studio.fabricate.joints import joint_count
 from kirigami_studio.foundation.errors import ExportError
@@ -134,18 +135,19 @@ def sidecar_record(job: ExportJob, cut_files: Sequence[Path] = ()) -> dict[str, 
             "dxf_version": job.dxf_version,
             "paper": job.paper,
         },
-        "expected": _expected(plan),
+        "expected": _expected(plan, find_profile(job.profile)),
         "provenance": dict(sorted(job.provenance.items())),
         "files": {name: digest for path in cut_files for name, digest in _digests(path)},
     }
 
 
-def _expected(plan: CutPlan) -> dict[str, Any]:
+def _expected(plan: CutPlan, profile: Profile) -> dict[str, Any]:
+    work = work_of(strokes_of(plan, profile), plan.material)
     return {
         "size_mm": [float(side) for side in plan.size_mm],
-        "cut_length_mm": plan.cut_length_mm,
-        "travel_mm": plan.travel_mm,
-        "seconds": {"low": plan.times.low, "estimate": plan.times.total, "high": plan.times.high},
+        "cut_length_mm": work.cut_length_mm,
+        "travel_mm": work.travel_mm,
+        "seconds": {"low": work.times.low, "estimate": work.times.total, "high": work.times.high},
         "paths": {layer.value: len(plan.on_layer(layer)) for layer in plan.layers},
         "min_connector_mm": plan.min_connector_mm,
         "notes": [note.text for note in plan.notes],

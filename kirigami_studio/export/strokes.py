@@ -15,10 +15,12 @@ import shapely
 from shapely.geometry import LineString, Polygon
 
 from kirigami_studio.export.profile import Profile
-from kirigami_studio.fabricate.cut_path import CHORD_MM, flattened
+from kirigami_studio.fabricate.cut_path import CHORD_MM, edge_lengths, flattened
 from kirigami_studio.fabricate.cut_plan import DECIMALS, CutPath, CutPlan, Layer
 from kirigami_studio.fabricate.finished_sheet import DUST_MM2
+from kirigami_studio.fabricate.material import Material
 from kirigami_studio.fabricate.options import ConnectorStyle
+from kirigami_studio.fabricate.timing import CutTimes, cut_times, travel_lengths
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import ExportError
 
@@ -61,16 +63,7 @@ class Stroke:
     @property
     def length(self) -> float:
         """Length in mm, arcs as arcs."""
-        stops = np.roll(self.points, -1, axis=0)
-        edges = len(self.points) if self.closed else len(self.points) - 1
-        chords = np.linalg.norm(stops - self.points, axis=1)[:edges]
-        if self.bulges is None:
-            return float(chords.sum())
-        bulge = np.abs(self.bulges[:edges])
-        curved = bulge > 0.0
-        stretch = np.ones(edges)
-        stretch[curved] = (1.0 + bulge[curved] ** 2) * np.arctan(bulge[curved]) / bulge[curved]
-        return float((chords * stretch).sum())
+        return float(edge_lengths(self.points, self.bulges, self.closed).sum())
 
 
 def strokes_of(plan: CutPlan, profile: Profile) -> tuple[Stroke, ...]:
@@ -105,6 +98,32 @@ def _chords(path: CutPath, plan: CutPlan) -> FloatArray:
 def _chord_line(path: CutPath, plan: CutPlan) -> LineString:
     points = _chords(path, plan)
     return LineString(np.concatenate([points, points[:1]]) if path.closed else points)
+
+
+@dataclass(frozen=True, slots=True)
+class Work:
+    """What the machine does for a file, which need not be what it would do for the plan: slots are twice as long.
+
+    Attributes
+    ----------
+    cut_length_mm : float
+        Of one pass.
+    travel_mm : float
+        Way with the beam off, from the origin to the first cut and between cuts.
+    times : CutTimes
+    """
+
+    cut_length_mm: float
+    travel_mm: float
+    times: CutTimes
+
+
+def work_of(strokes: Sequence[Stroke], material: Material) -> Work:
+    """What cutting the strokes of a file takes."""
+    # Strokes know no layer of a plan; lengths and times do not depend on it.
+    paths = [CutPath(stroke.points, Layer.SLITS, stroke.closed, bulges=stroke.bulges) for stroke in strokes]
+    length, travel = sum(path.length for path in paths), float(travel_lengths(paths).sum())
+    return Work(length, travel, cut_times(paths, material))
 
 
 def layer_colours(strokes: Sequence[Stroke]) -> dict[str, int]:

@@ -75,11 +75,11 @@ def _cut_drawing(plan: CutPlan, profile: Profile) -> tuple[ElementTree.Element, 
     for number, ((name, colour), run) in enumerate(groupby(strokes, lambda stroke: (stroke.layer, stroke.colour))):
         # A layer that comes back later in the cutting order needs a name of its own.
         again = any(element.get("id") == name for element in root)
-        attributes = {"id": f"{name}.{number}" if again else name, "fill": "none"}
-        attributes |= {"stroke": hexadecimal(ACI_COLOUR[colour]), "stroke-width": f"{CUT_LINE_MM:g}"}
-        group = ElementTree.SubElement(root, "g", attributes)
+        group = ElementTree.SubElement(root, "g", {"id": f"{name}.{number}" if again else name})
+        # On every path: MeerK40t takes a path that inherits its stroke for a second operation too, and burns it twice.
+        look = {"fill": "none", "stroke": hexadecimal(ACI_COLOUR[colour]), "stroke-width": f"{CUT_LINE_MM:g}"}
         for stroke in run:
-            ElementTree.SubElement(group, "path", {"d": _stroke_data(stroke, height)})
+            ElementTree.SubElement(group, "path", {"d": _stroke_data(stroke, height), **look})
     return root, len(strokes), (width, height)
 
 

@@ -66,7 +66,7 @@ def read_with_xml(path: Path) -> FileContent:
         box = [float(number) for number in str(root.get("viewBox")).split()]
         size = (_millimetres(width), _millimetres(height))
         strokes = tuple(
-            _stroke(*_words(str(element.get("d"))), str(group.get("id")), str(group.get("stroke")), size[1])
+            _stroke(*_words(str(element.get("d"))), str(group.get("id")), str(element.get("stroke")), size[1])
             for group in root.findall(f"{{{NAMESPACE}}}g")
             for element in group.findall(f"{{{NAMESPACE}}}path")
         )

@@ -18,7 +18,7 @@ from kirigami_studio.export.group_codes import read_group_codes
 from kirigami_studio.export.jam_angle import jam_angle_of_file
 from kirigami_studio.export.layer_files import by_layer, layer_folder, layer_paths
 from kirigami_studio.export.profile import Profile, find_profile
-from kirigami_studio.export.strokes import Stroke, extent, layer_colours, strokes_of
+from kirigami_studio.export.strokes import Stroke, extent, layer_colours, strokes_of, work_of
 from kirigami_studio.export.svg_reading import read_with_svgelements, read_with_xml
 from kirigami_studio.export.voids_read import FoundVoids, read_voids
 from kirigami_studio.fabricate.checks import OVERLAP_TOLERANCE_MM, WIDTH_TOLERANCE_MM
@@ -186,6 +186,7 @@ def _judged(
     physics = file_physics(contents[-1].strokes, plan, profile)
     voids = file_voids(contents[-1].strokes, plan, profile)
     jam = None if deployment is None else jam_angle_of_file(voids, plan, deployment)
+    times = work_of(strokes, plan.material).times
     findings = [
         *_agreed(contents, strokes, version, kind),
         *_physics_findings(physics, plan),
@@ -199,8 +200,8 @@ def _judged(
         size_mm=extent(contents[-1].strokes),
         pieces=physics.pieces,
         cut_length_mm=contents[-1].length,
-        seconds_low=plan.times.low,
-        seconds_high=plan.times.high,
+        seconds_low=times.low,
+        seconds_high=times.high,
         findings=tuple(findings),
         warnings=tuple(warnings),
         void_miss_um=voids.miss_um if voids.voids else None,

@@ -92,6 +92,8 @@ def check_plan(plan: CutPlan, kerf_mm: float | None = None, phi: float | None = 
         *_overlap_problems(twice),
         *_ligament_problems(plan, kerf, ligament),
         *panel_problems(plan, kerf, edge, neck),
+        *bed_problems(plan),
+        *([] if phi is None or plan.material.connectors_hold else [_breaking(plan)]),
         *([] if bent is None else strain_problems(plan, bent, plan.material.strain_limit)),
     ]
     return Report(
@@ -234,7 +236,7 @@ def _ligament_problems(plan: CutPlan, kerf: float, ligament: Ligament | None) ->
 
 def panel_problems(plan: CutPlan, kerf_mm: float, edge: SmallPlace | None, neck: SmallPlace | None) -> list[Problem]:
     """Warn about panels smaller than what the material needs."""
-    name, least = plan.material.name, plan.material.min_ligament_mm
+    name, least = plan.material.name, max(plan.material.min_ligament_mm, plan.material.min_panel_mm)
     problems = []
     for code, small in (("plan.panel_edge_small", edge), ("plan.panel_neck_small", neck)):
         if small is not None and small.size_mm < least - WIDTH_TOLERANCE_MM:
@@ -243,6 +245,31 @@ def panel_problems(plan: CutPlan, kerf_mm: float, edge: SmallPlace | None, neck:
     if place is not None:
         problems.append(Problem.warning("plan.trimmed_neck_small", place, material=name, least_mm=least))
     return problems
+
+
+def _breaking(plan: CutPlan) -> Problem:
+    return Problem.warning("plan.material_does_not_hold", material=plan.material.name)
+
+
+def bed_problems(plan: CutPlan) -> list[Problem]:
+    """Warn about a sheet that the machine cannot reach all of, whichever way round it lies."""
+    material = plan.material
+    bed = (material.bed_width_mm, material.bed_height_mm)
+    width, height = plan.bounds_mm
+    fits = any(width <= across and height <= along for across, along in (bed, bed[::-1]))
+    if min(bed) == 0.0 or fits:
+        return []
+    largest = width * max(min(across / width, along / height) for across, along in (bed, bed[::-1]))
+    return [
+        Problem.warning(
+            "plan.larger_than_bed",
+            width_mm=width,
+            height_mm=height,
+            bed_width_mm=bed[0],
+            bed_height_mm=bed[1],
+            largest_mm=largest,
+        )
+    ]
 
 
 @dataclass(frozen=True, slots=True)

@@ -76,8 +76,8 @@ class CutPath:
 
     @cached_property
     def length(self) -> float:
-        """Cut length, mm."""
-        return float(np.linalg.norm(np.diff(self.travelled, axis=0), axis=1).sum())
+        """Cut length, mm, arcs as arcs."""
+        return float(edge_lengths(self.points, self.bulges, self.closed).sum())
 
     def backwards(self) -> CutPath:
         """The same cut in the other direction, from the same place if it is closed."""
@@ -134,6 +134,19 @@ def flattened(points: FloatArray, bulges: FloatArray, closed: bool, chord_mm: fl
         parts += [_between(start, stop, float(bulge), chord_mm), stop[None]]
     edges = len(points) if closed else len(points) - 1
     return np.concatenate(parts[: 2 * edges] if closed else parts[: 2 * edges + 1])
+
+
+def edge_lengths(points: FloatArray, bulges: FloatArray | None, closed: bool) -> FloatArray:
+    """Length (E,), mm, of every edge, arcs as arcs; arguments as above, no bulges for straight edges only."""
+    stops = np.roll(points, -1, axis=0)
+    edges = len(points) if closed else len(points) - 1
+    chords: FloatArray = np.linalg.norm(stops - points, axis=1)[:edges]
+    if bulges is None:
+        return chords
+    bulge = np.abs(bulges[:edges])
+    # An arc of angle 4 atan(b) has the radius chord (1 + b^2) / (4 b).
+    stretch = np.divide((1.0 + bulge**2) * np.arctan(bulge), bulge, out=np.ones_like(bulge), where=bulge > 0.0)
+    return chords * stretch
 
 
 def measured_line(points: FloatArray, bulges: FloatArray | None, closed: bool) -> LineString:

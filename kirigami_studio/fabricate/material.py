@@ -26,6 +26,13 @@ from kirigami_studio.foundation.resources import resource
 DEFAULT_PRESET = "film-uv"
 #: Names the folder of a person's own materials, if it is set.
 FOLDER_VARIABLE = "KIRIGAMI_STUDIO_MATERIALS"
+#: Numbers that may be 0; all others are above it.
+MAY_BE_ZERO = frozenset(
+    {"kerf_mm", "relief_radius_mm", "join_tolerance_mm", "on_delay_s", "off_delay_s", "power_percent", "bed_width_mm",
+     "bed_height_mm", "min_panel_mm"}
+)  # fmt: skip
+#: Full power, percent.
+LARGEST_POWER = 100.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,6 +74,14 @@ class Material:
         A warning is given about slits shorter than this; 0.1 in files without it.
     young_gpa : float
         Young's modulus; 3 in files without it, as many plastics have.
+    power_percent : float
+        Power of the laser while it cuts, 0 to 100; 0 for a blade, and where nobody knows it.
+    bed_width_mm, bed_height_mm : float
+        What the machine can reach; 0 in files without it, where nobody knows it.
+    min_panel_mm : float
+        A warning is given about panels narrower than this or than the smallest ligament; 0 in files without it.
+    connectors_hold : bool
+        False where no style, width and sheet size is known whose connectors survive opening.
     measured_on, measured_by : str
         Day (ISO 8601) and author of the calibration, both may be empty.
     """
@@ -91,21 +106,27 @@ class Material:
     passes: int = 1
     min_slit_mm: float = 0.1
     young_gpa: float = 3.0
+    power_percent: float = 0.0
+    bed_width_mm: float = 0.0
+    bed_height_mm: float = 0.0
+    min_panel_mm: float = 0.0
+    connectors_hold: bool = True
     measured_on: str = ""
     measured_by: str = ""
 
     def __post_init__(self) -> None:
-        may_be_zero = {"kerf_mm", "relief_radius_mm", "join_tolerance_mm", "on_delay_s", "off_delay_s"}
         for field in fields(self):
             value = getattr(self, field.name)
             if field.type == "float":
-                self._check_number(field.name, value, zero_allowed=field.name in may_be_zero)
+                self._check_number(field.name, value, zero_allowed=field.name in MAY_BE_ZERO)
             elif type(value).__name__ != field.type:
                 raise FabricationError(
                     "material.wrong_type", key=self.key, name=field.name, kind=field.type, value=value
                 )
         if self.passes < 1:
             raise FabricationError("material.no_passes", key=self.key, passes=self.passes)
+        if self.power_percent > LARGEST_POWER:
+            raise FabricationError("material.power_above_full", key=self.key, power_percent=self.power_percent)
         if self.measured_on:
             self._check_day()
 

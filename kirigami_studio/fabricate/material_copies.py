@@ -18,6 +18,8 @@ from kirigami_studio.foundation.resources import resource
 
 #: Keys are file names on every platform: lower case, so that no two differ by capitals only.
 KEY = re.compile(r"[a-z0-9][a-z0-9_-]{0,39}")
+#: Entries that are no numbers or words of a person's own.
+JUDGED = frozenset({"key", "calibrated", "connectors_hold"})
 #: Files of these names cannot exist on Windows.
 RESERVED = frozenset({"con", "prn", "aux", "nul", *(f"{port}{n}" for port in ("com", "lpt") for n in range(10))})
 
@@ -90,7 +92,7 @@ def changed_copy(source: str, key: str, changes: Mapping[str, object]) -> Materi
         No such material or field, or a value that makes no sense.
     """
     original = find_material(source)
-    kinds = {field.name: str(field.type) for field in fields(Material) if field.name not in ("key", "calibrated")}
+    kinds = {field.name: str(field.type) for field in fields(Material) if field.name not in JUDGED}
     for name in changes:
         if name not in kinds:
             raise FabricationError("material.no_such_entry", name=name, known=", ".join(kinds))
@@ -98,6 +100,8 @@ def changed_copy(source: str, key: str, changes: Mapping[str, object]) -> Materi
     if key != original.key and "name" not in values:
         values["name"] = f"{original.name} ({key})"
     clean: dict[str, Any] = {"calibrated": False, "measured_on": "", "measured_by": ""}
+    if any(kinds[name] != "str" for name in changes):
+        clean["connectors_hold"] = True  # what was known of the original is not known of other numbers
     return replace(original, key=check_key(key), **(clean | values))
 
 

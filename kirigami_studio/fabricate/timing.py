@@ -15,7 +15,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from kirigami_studio.fabricate.cut_path import CutPath
+from kirigami_studio.fabricate.cut_path import CutPath, edge_lengths
 from kirigami_studio.fabricate.material import Material
 from kirigami_studio.foundation.arrays import FloatArray
 
@@ -76,8 +76,7 @@ def run_lengths(path: CutPath, flowing_turn: float) -> FloatArray:
     bulge = np.zeros(len(ends)) if path.bulges is None else path.bulges[: len(ends)]
     # An arc of sweep 4 atan(b) sets out half of that to the right of its chord and arrives as much to the left.
     half = 2.0 * np.arctan(bulge)
-    stretch = np.divide(half, np.sin(half), out=np.ones_like(half), where=np.abs(half) > 0.0)
-    length: FloatArray = np.linalg.norm(chord, axis=1) * stretch
+    length = edge_lengths(path.points, path.bulges, path.closed)
     heading = np.arctan2(chord[:, 1], chord[:, 0])
     turn = (heading - half)[1:] - (heading + half)[:-1]
     stops = np.flatnonzero(np.abs(np.angle(np.exp(1j * turn))) > flowing_turn) + 1

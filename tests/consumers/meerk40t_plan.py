@@ -13,10 +13,13 @@ import io
 import json
 import sys
 from collections import Counter
+from itertools import pairwise
 from typing import Any
 
 from meerk40t.core import core, svg_io
+from meerk40t.core.cutcode.cubiccut import CubicCut
 from meerk40t.core.cutcode.cutcode import CutCode
+from meerk40t.core.cutcode.quadcut import QuadCut
 from meerk40t.core.units import UNITS_PER_MM
 from meerk40t.device import dummydevice
 from meerk40t.dxf.plugin import plugin as dxf_plugin
@@ -27,6 +30,8 @@ from meerk40t.kernel import Kernel
 from meerk40t.network import kernelserver
 from meerk40t.rotary import rotary
 
+#: Chords that a curve is measured with.
+CHORDS = 64
 PLUGINS = (
     kernelserver.plugin,
     dummydevice.plugin,
@@ -59,6 +64,8 @@ def planned(path: str) -> dict[str, Any]:
             "type": op.type,
             "label": op.label,
             "elements": len(op.children),
+            "speed": op.speed,
+            "power": op.power,
             "drawn_mm": sum(child.node.as_geometry().length() for child in op.children) / UNITS_PER_MM,
         }
         for op in elements.ops()
@@ -67,10 +74,18 @@ def planned(path: str) -> dict[str, Any]:
     return {
         "elements": Counter(str(node.type) for node in elements.elems()),
         "operations": operations,
-        "cut_mm": sum(part.length_cut() for part in cuts) / per_mm,
+        "cut_mm": sum(_length(piece) for part in cuts for piece in part.flat()) / per_mm,
         "note": elements.note,
         "first_points": [_first_point(node) for node in elements.elems() if node.type != "elem ellipse"],
     }
+
+
+def _length(piece: Any) -> float:
+    """Length of one planned move; MeerK40t itself tells a curve's as that of the polygon of its handles."""
+    if not isinstance(piece, (CubicCut, QuadCut)):
+        return float(piece.length())
+    points = [complex(*piece.point(step / CHORDS)) for step in range(CHORDS + 1)]
+    return sum(abs(stop - start) for start, stop in pairwise(points))
 
 
 def _first_point(node: Any) -> tuple[float, float]:

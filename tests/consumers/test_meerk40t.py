@@ -10,10 +10,15 @@ import numpy as np
 import pytest
 
 from kirigami_studio.export.dxf import write_dxf
+from kirigami_studio.export.exporter import ExportJob
 from kirigami_studio.export.lightburn import write_lightburn
+from kirigami_studio.export.profile import PROFILES
+from kirigami_studio.export.registry import export
+from kirigami_studio.export.strokes import strokes_of
 from kirigami_studio.fabricate.cut_plan import CutPlan, plan_cuts
 from kirigami_studio.fabricate.material import find_material
-from kirigami_studio.lattice.deployment import deploy
+from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions
+from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 
 Planner = Callable[[Sequence[Path]], list[dict[str, Any]]]
@@ -21,10 +26,13 @@ Planner = Callable[[Sequence[Path]], list[dict[str, Any]]]
 SAME_LENGTH = 1e-3
 
 
-def plan(rows: int, columns: int, seed: int, width_mm: float, material: str) -> CutPlan:
+def design_of(rows: int, columns: int, seed: int) -> Deployment:
     generator = np.random.default_rng(seed)
-    field = RatioField.from_log10(generator.uniform(-0.35, 0.35, (rows, columns)))
-    return plan_cuts(deploy(field), width_mm, material=find_material(material))
+    return deploy(RatioField.from_log10(generator.uniform(-0.35, 0.35, (rows, columns))))
+
+
+def plan(rows: int, columns: int, seed: int, width_mm: float, material: str) -> CutPlan:
+    return plan_cuts(design_of(rows, columns, seed), width_mm, material=find_material(material))
 
 
 PLANS = [
@@ -49,6 +57,34 @@ def test_that_the_planned_length_is_the_length_of_the_plan(
         assert found["cut_mm"] == pytest.approx(made.cut_length_mm, rel=SAME_LENGTH)
 
 
+@pytest.mark.parametrize("style", [ConnectorStyle.CENTRED, ConnectorStyle.ROUND, ConnectorStyle.ARC])
+def test_that_the_planned_length_is_that_of_the_file_in_every_profile_style_and_kind(
+    style: ConnectorStyle, meerk40t_plans: Planner, tmp_path: Path
+) -> None:
+    design = design_of(6, 6, 2)
+    made = plan_cuts(design, 120.0, material=find_material("card-co2"), options=CutOptions(style=style))
+    meant: dict[Path, float] = {}
+    for profile in PROFILES.values():
+        kinds = [".svg", *([] if profile.file_per_layer else [".dxf"]), *([] if profile.slots else [".lbrn2"])]
+        for kind in kinds:
+            path = export(ExportJob(design, plan=made, profile=profile.key), tmp_path / f"{profile.key}{kind}")
+            strokes = strokes_of(made, PROFILES["any"] if kind == ".lbrn2" else profile)
+            meant[path] = sum(stroke.length for stroke in strokes)
+    for path, found in zip(meant, meerk40t_plans(list(meant)), strict=True):
+        assert found["cut_mm"] == pytest.approx(meant[path], rel=SAME_LENGTH), path.name
+        if path.stem in ("any", "k40", "single", "layers") or path.suffix == ".lbrn2":
+            assert {entry["type"] for entry in found["operations"]} == {"op cut"}, path.name
+
+
+def test_that_lightburn_projects_hand_over_speed_and_power(meerk40t_plans: Planner, tmp_path: Path) -> None:
+    made = PLANS[1]
+    write_lightburn(made, tmp_path / "sheet.lbrn2")
+    (found,) = meerk40t_plans([tmp_path / "sheet.lbrn2"])
+    for entry in found["operations"]:
+        # MeerK40t counts power to 1000.
+        assert (entry["speed"], entry["power"]) == (made.material.speed_mm_s, 10.0 * made.material.power_percent)
+
+
 def test_that_a_layer_name_with_cut_in_it_doubles_the_planned_length(meerk40t_plans: Planner, tmp_path: Path) -> None:
     path = tmp_path / "trap.dxf"
     write_dxf(PLANS[0], path, "R2010", "k40")
@@ -68,7 +104,7 @@ def test_that_the_lightburn_project_has_the_layers_and_lengths_of_the_plan(
     meerk40t_plans: Planner, tmp_path: Path
 ) -> None:
     made = PLANS[1]
-    write_lightburn(made, tmp_path / "sheet.lbrn2")
+    write_lightburn(made, tmp_path / "sheet.lbrn2", markers=True)
     (found,) = meerk40t_plans([tmp_path / "sheet.lbrn2"])
     assert [entry["label"] for entry in found["operations"]] == [*(layer.value for layer in made.layers), "CONNECTORS"]
     assert [entry["type"] for entry in found["operations"]] == ["op cut"] * len(made.layers) + ["op engrave"]

@@ -10,8 +10,8 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "export.unknown_kind": mark("Cannot write {extension:.20} files ({path}). Use one of {known}."),
     "export.no_extension": mark("Cannot write a file without extension ({path}). Use one of {known}."),
     "profile.unknown": mark("There is no machine profile {name!r:.40}. Choose one of {known}."),
-    "profile.white_lines": mark(
-        "MeerK40t rasters white lines, and some other programs engrave them: choose the k40 profile for those."
+    "profile.only_red_is_cut": mark(
+        "MeerK40t and K40 Whisperer cut red lines only and engrave the others: choose the k40 profile for those."
     ),
     "profile.one_origin": mark(
         "Import all files of the folder at one origin and cut them in the order of their numbers."
@@ -31,6 +31,7 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "lightburn.open_cuts_only": mark(
         "A LightBurn project holds open cuts, not slots. Write DXF or SVG for a cutting service."
     ),
+    "lightburn.no_power": mark("The material {material!r} has no power: set it in LightBurn before cutting."),
     "gif.too_few_frames": mark("An animation needs at least 2 frames, got {frames}."),
     "dxf.unknown_version": mark("The DXF version must be R2010 or R12, got {version!r:.40}."),
     # Folders of layer files

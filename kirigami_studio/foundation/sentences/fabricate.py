@@ -90,6 +90,9 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "material.number_negative": mark(
         "Material {key!r:.60}: {name} must be a number of 0 or more, got {value!r:.40}. Correct its file."
     ),
+    "material.power_above_full": mark(
+        "Material {key!r:.40}: power_percent must be 0 to 100, got {power_percent:g}. Give the share of full power."
+    ),
     "material.no_passes": mark("Material {key!r:.60}: passes must be 1 or more, got {passes}. Correct its file."),
     "material.not_a_day": mark(
         "Material {key!r:.60}: measured_on must be a day such as 2026-11-21, got {value!r:.40}. Correct its file."
@@ -255,6 +258,14 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "plan.cuts_too_near": mark(
         "Two cuts leave only {width_mm:.3f} mm of material at x = {x:.2f}, y = {y:.2f} mm, less than the connectors. "
         "Use a larger sheet or a more regular design."
+    ),
+    "plan.larger_than_bed": mark(
+        "The cuts cover {width_mm:.1f} x {height_mm:.1f} mm, but the machine reaches {bed_width_mm:g} x "
+        "{bed_height_mm:g} mm. Make the sheet less than {largest_mm:.1f} mm wide or set the bed of your machine."
+    ),
+    "plan.material_does_not_hold": mark(
+        "Connectors of {material!r} break before a sheet is closed: no style, width and size is known that holds. Cut "
+        "a tougher sheet, such as film, felt or polypropylene."
     ),
     "plan.slits_short": (
         mark(

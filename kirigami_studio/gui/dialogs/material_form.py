@@ -45,6 +45,7 @@ NUMBERS = (
         tr("Warn about ligaments narrower than this."),
     ),
     Number("min_slit_mm", tr("Shortest slit"), "mm", 0.005, 20.0, 0.05, 3, tr("Shortest slit for this material.")),
+    Number("min_panel_mm", tr("Smallest panel"), "mm", 0.0, 100.0, 0.5, 3, tr("Warn about panels narrower than this.")),
     Number(
         "relief_radius_mm",
         tr("Relief radius"),
@@ -68,6 +69,7 @@ NUMBERS = (
     ),
     Number("young_gpa", tr("Stiffness"), "GPa", 0.0001, 1000.0, 0.5, 4, tr("Young's modulus of the material.")),
     Number("speed_mm_s", tr("Cutting speed"), "mm/s", 0.01, 10_000.0, 5.0, 2, tr("Speed with the beam on.")),
+    Number("power_percent", tr("Power"), "%", 0.0, 100.0, 5.0, 1, tr("Laser power while cutting; 0 for a blade.")),
     Number("travel_mm_s", tr("Travel speed"), "mm/s", 0.01, 20_000.0, 20.0, 2, tr("Speed between cuts.")),
     Number(
         "acceleration_mm_s2",
@@ -81,6 +83,10 @@ NUMBERS = (
     ),
     Number("on_delay_s", tr("Delay before a cut"), "ms", 0.0, 10_000.0, 5.0, 1, tr("Pause before each cut."), 1000.0),
     Number("off_delay_s", tr("Delay after a cut"), "ms", 0.0, 10_000.0, 5.0, 1, tr("Pause after each cut."), 1000.0),
+    Number("bed_width_mm", tr("Bed width"), "mm", 0.0, 5000.0, 10.0, 1, tr("Width that the machine reaches; 0: any.")),
+    Number(
+        "bed_height_mm", tr("Bed height"), "mm", 0.0, 5000.0, 10.0, 1, tr("Height that the machine reaches; 0: any.")
+    ),
     Number(
         "join_tolerance_mm",
         tr("Joins gaps below"),

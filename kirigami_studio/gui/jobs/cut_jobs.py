@@ -18,6 +18,7 @@ from kirigami_studio.project.settings import FabricationSettings
 
 if TYPE_CHECKING:
     from kirigami_studio.export.exporter import ExportJob
+    from kirigami_studio.export.strokes import Work
     from kirigami_studio.export.verification import Verification
     from kirigami_studio.fabricate.checks import Report
     from kirigami_studio.fabricate.cut_plan import CutPlan
@@ -34,14 +35,14 @@ class Planned:
     report : Report
     removed_share : float, 0..1
         Share of the sheet that was trimmed away.
-    slots_mm : float or None
-        Cut length where the machine profile makes a closed slot of every slit; ``plan`` has that of open cuts.
+    slots : Work or None
+        Length and time where the machine profile makes a closed slot of every slit; ``plan`` has those of open cuts.
     """
 
     plan: CutPlan
     report: Report
     removed_share: float = 0.0
-    slots_mm: float | None = None
+    slots: Work | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -99,19 +100,19 @@ def planned(request: CutRequest) -> Planned:
     report = check_plan(plan, phi=request.candidate.final_phi)
     _ = plan.times  # worked out once and kept: here, so that the window need not
     removed = 0.0 if trim is None else trim.removed_share
-    return Planned(plan, report, removed, _slots_length(plan, request.settings.profile))
+    return Planned(plan, report, removed, _slots(plan, request.settings.profile))
 
 
-def _slots_length(plan: CutPlan, profile: str) -> float | None:
-    """Length of the file's cuts if it holds slots; None where it does not, or cannot, which exporting then explains."""
+def _slots(plan: CutPlan, profile: str) -> Work | None:
+    """What cutting takes if the file holds slots; None where it does not, or cannot, which exporting then explains."""
     from kirigami_studio.export.profile import find_profile
-    from kirigami_studio.export.strokes import strokes_of
+    from kirigami_studio.export.strokes import strokes_of, work_of
 
     found = find_profile(profile)
     if not found.slots:
         return None
     try:
-        return sum(stroke.length for stroke in strokes_of(plan, found))
+        return work_of(strokes_of(plan, found), plan.material)
     except ExportError:
         return None
 

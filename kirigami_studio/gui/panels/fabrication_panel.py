@@ -306,17 +306,20 @@ class FabricationPanel(Card):
             self._warn(tr("Choose a design to see its cut plan."), calm=True)
             return
         plan, report = planned.plan, planned.report
+        length, times = plan.cut_length_mm, plan.times
+        if planned.slots is not None:
+            length, times = planned.slots.cut_length_mm, planned.slots.times
         texts = {
             "size": readable_size(*plan.size_mm),
             "slits": f"{len(plan.paths)}",
-            "length": readable_length(planned.slots_mm or plan.cut_length_mm),
-            "time": readable_range(plan.times.low, plan.times.high),
+            "length": readable_length(length),
+            "time": readable_range(times.low, times.high),
             "pieces": f"{report.pieces}",
             "ligament": tr("{width_mm:.2f} mm", width_mm=report.min_ligament_mm),
         }
         for key, text in texts.items():
             self.numbers[key].setText(text)
-        self.numbers["time"].setToolTip(format_times(plan.times))
+        self.numbers["time"].setToolTip(format_times(times))
         self.numbers["length"].setToolTip(format_slots(planned))
         self._sum_up(texts["size"], len(plan.paths), planned.removed_share)
         found = [note.text for note in (*report.problems, *plan.notes)]
@@ -422,13 +425,13 @@ class OpenedRow(QWidget):
 
 def format_slots(planned: Planned) -> str:
     """What slots cost, where the machine profile asks for them."""
-    if planned.slots_mm is None:
+    if planned.slots is None:
         return ""
-    length, factor = readable_length(planned.plan.cut_length_mm), planned.slots_mm / planned.plan.cut_length_mm
+    open_mm = planned.plan.cut_length_mm
     return tr(
-        "Closed slots: {factor:.2f} times the open cut length of {length}. The time is for open cuts.",
-        factor=factor,
-        length=length,
+        "Closed slots: {factor:.2f} times the open cut length of {length}.",
+        factor=planned.slots.cut_length_mm / open_mm,
+        length=readable_length(open_mm),
     )
 
 

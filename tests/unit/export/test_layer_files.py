@@ -66,6 +66,13 @@ def test_that_a_missing_layer_is_a_bad_finding(job: ExportJob, tmp_path: Path) -
     assert not verify_export(job.required_plan, folder, "layers").ok
 
 
+def test_that_a_folder_may_have_a_name_as_long_as_names_can_be(job: ExportJob, tmp_path: Path) -> None:
+    name = "n" * 250
+    for _ in range(2):
+        assert export(job, tmp_path / f"{name}.dxf") == tmp_path / name
+    assert [path.name for path in tmp_path.iterdir()] == [name]
+
+
 def test_that_a_failure_half_way_leaves_the_old_folder(
     job: ExportJob, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -24,7 +24,7 @@ def plan(make_design: Callable[..., Deployment]) -> CutPlan:
 
 
 def test_that_layers_have_names_and_priorities_in_cutting_order(plan: CutPlan, tmp_path: Path) -> None:
-    lightburn.write_lightburn(plan, tmp_path / "sheet.lbrn2")
+    lightburn.write_lightburn(plan, tmp_path / "sheet.lbrn2", markers=True)
     root = ElementTree.parse(tmp_path / "sheet.lbrn2").getroot()
     settings = {setting.find("name").get("Value"): setting for setting in root.findall("CutSetting")}  # type: ignore[union-attr]
     assert list(settings) == ["SLITS", "EDGE_SLITS", "OUTLINE", "CONNECTORS"]
@@ -34,6 +34,31 @@ def test_that_layers_have_names_and_priorities_in_cutting_order(plan: CutPlan, t
     markers = [shape for shape in root.findall("Shape") if shape.get("CutIndex") == "30"]
     assert len(markers) == len(plan.hinges)
     assert "KERF_MM 0.02" in str(root.find("Notes").get("Notes"))  # type: ignore[union-attr]
+
+
+def test_that_connectors_are_marked_only_where_that_is_asked_for(plan: CutPlan, tmp_path: Path) -> None:
+    lightburn.write_lightburn(plan, tmp_path / "sheet.lbrn2")
+    root = ElementTree.parse(tmp_path / "sheet.lbrn2").getroot()
+    assert {setting.get("type") for setting in root.findall("CutSetting")} == {"Cut"}
+    assert {shape.get("Type") for shape in root.findall("Shape")} == {"Path"}
+
+
+def test_that_every_layer_has_the_power_speed_and_passes_of_the_material(plan: CutPlan, tmp_path: Path) -> None:
+    material = replace(plan.material, power_percent=62.5, passes=3, speed_mm_s=12.5)
+    lightburn.write_lightburn(replace(plan, material=material), tmp_path / "sheet.lbrn2")
+    for setting in ElementTree.parse(tmp_path / "sheet.lbrn2").getroot().findall("CutSetting"):
+        values = {entry.tag: entry.get("Value") for entry in setting}
+        assert (values["minPower"], values["maxPower"]) == ("62.5", "62.5")
+        assert (values["numPasses"], values["speed"]) == ("3", "12.5")
+
+
+def test_that_a_project_says_when_the_power_is_not_known(plan: CutPlan, tmp_path: Path) -> None:
+    for power, known in ((40.0, True), (0.0, False)):
+        material = replace(plan.material, power_percent=power)
+        lightburn.write_lightburn(replace(plan, material=material), tmp_path / "sheet.lbrn2")
+        notes = ElementTree.parse(tmp_path / "sheet.lbrn2").getroot().find("Notes")
+        assert notes is not None
+        assert ("has no power" in str(notes.get("Notes"))) != known
 
 
 def test_that_each_layer_has_the_length_of_the_plan(plan: CutPlan, tmp_path: Path) -> None:
@@ -54,7 +79,7 @@ def test_that_arcs_become_curves_of_their_length(plan: CutPlan, tmp_path: Path) 
 
 def test_that_a_shorter_file_is_refused(plan: CutPlan, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     short = lightburn.lightburn_bytes(replace(plan, paths=plan.paths[1:]))
-    monkeypatch.setattr(lightburn, "lightburn_bytes", lambda _: short)
+    monkeypatch.setattr(lightburn, "lightburn_bytes", lambda *_: short)
     with pytest.raises(ExportError, match="did not read back"):
         lightburn.write_lightburn(plan, tmp_path / "sheet.lbrn2")
     assert list(tmp_path.iterdir()) == []

@@ -12,8 +12,9 @@ from shapely.geometry import LineString, Polygon, box
 
 from kirigami_studio.fabricate.checks import check_plan
 from kirigami_studio.fabricate.cut_plan import CutPath, Layer, plan_cuts
-from kirigami_studio.fabricate.findings import Severity
+from kirigami_studio.fabricate.findings import Problem, Severity
 from kirigami_studio.fabricate.finished_sheet import overlap_length, remaining_pieces, smallest_ligament
+from kirigami_studio.fabricate.material import find_material
 from kirigami_studio.lattice.deployment import Deployment
 
 MakeDesign = Callable[..., Deployment]
@@ -119,3 +120,32 @@ def test_that_slits_shorter_than_the_material_needs_are_warned_about_with_the_pl
     shortest = min(slits, key=lambda path: path.length)
     assert problem.where == pytest.approx(tuple(shortest.points.mean(axis=0)))
     assert problem.text.startswith("3 cuts are shorter than")
+
+
+def test_that_a_sheet_larger_than_the_bed_is_told_unless_it_fits_turned(make_design: MakeDesign) -> None:
+    design = make_design(4, 5, seed=1)
+
+    def told(width_mm: float, bed: tuple[float, float]) -> list[Problem]:
+        material = replace(find_material("card-co2"), bed_width_mm=bed[0], bed_height_mm=bed[1])
+        found = check_plan(plan_cuts(design, width_mm, material=material)).problems
+        return [problem for problem in found if problem.code == "plan.larger_than_bed"]
+
+    (problem,) = told(500.0, (305.0, 229.0))
+    assert told(problem.fields["largest_mm"] - 2.0, (305.0, 229.0)) == []
+    assert len(told(problem.fields["largest_mm"] + 2.0, (305.0, 229.0))) == 1
+    assert told(500.0, (450.0, 600.0)) == told(500.0, (600.0, 450.0)) == []
+    assert told(500.0, (0.0, 0.0)) == []
+
+
+def test_that_panels_below_the_smallest_of_the_material_are_told(make_design: MakeDesign) -> None:
+    design, material = make_design(4, 5, seed=1), find_material("card-co2")
+    for least, expected in ((0.0, False), (60.0, True)):
+        problems = check_plan(plan_cuts(design, 150.0, material=replace(material, min_panel_mm=least))).problems
+        assert any(problem.code == "plan.panel_edge_small" for problem in problems) == expected
+
+
+def test_that_a_material_whose_connectors_break_anyway_is_told(make_design: MakeDesign) -> None:
+    for holds in (True, False):
+        material = replace(find_material("film-uv"), connectors_hold=holds)
+        problems = check_plan(plan_cuts(make_design(3, 3), material=material), phi=0.0).problems
+        assert any(problem.code == "plan.material_does_not_hold" for problem in problems) != holds
