@@ -192,7 +192,7 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
                help="what polishing prefers among nearly equal matches, and a preset of --regular: "
                     "0, 0.5, 0.75, 1 (default balanced)"),
         option("--least-panel-mm", type=amount, default=0.0, metavar="MM",
-               help="smallest panel edge and neck that polishing aims for, in the finished sheet (default: any)"),
+               help="least panel edge and neck in the finished sheet, kept by fits (default: what the material needs)"),
         option("--trim", action="store_true",
                help="trim the best design to the target: adds trimmed_iou and trims cut.dxf"),
         option("--search", type=whole, nargs="?", const=1, default=0, metavar="EFFORT",

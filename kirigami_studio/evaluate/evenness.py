@@ -12,7 +12,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from kirigami_studio.foundation.arrays import FloatArray, IntArray
+from kirigami_studio.foundation.arrays import BoolArray, FloatArray, IntArray
 from kirigami_studio.foundation.paper import LOG_RATIO_LIMIT
 from kirigami_studio.lattice.deployment import Deployment
 from kirigami_studio.lattice.topology import topology
@@ -112,9 +112,24 @@ class PanelSizes:
 
     def below(self, least: float) -> PanelSizes:
         """Those sizes that are smaller than ``least``."""
-        small = self.size < least
+        return self._some(self.size < least)
+
+    def distinct(self) -> PanelSizes:
+        """Those of all panels' sizes, as :func:`panel_sizes` lists them, that are not an edge a second time.
+
+        The place on a far edge that is nearest to a corner may be the end that is a neighbour of the corner.
+        """
+        kind = np.arange(len(self.size)) % 12 // 4
+        return self._some(~(((kind == 1) & (self.share <= 0.0)) | ((kind == 2) & (self.share >= 1.0))))
+
+    def _some(self, chosen: BoolArray) -> PanelSizes:
         return PanelSizes(
-            self.corner[small], self.start[small], self.end[small], self.share[small], self.gap[small], self.size[small]
+            self.corner[chosen],
+            self.start[chosen],
+            self.end[chosen],
+            self.share[chosen],
+            self.gap[chosen],
+            self.size[chosen],
         )
 
     def reach(self, node_count: int) -> tuple[FloatArray, FloatArray]:

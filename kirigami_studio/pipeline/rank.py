@@ -113,11 +113,13 @@ class Ranking:
     def improves(self, after: Candidate, before: Candidate, prefer: str) -> bool:
         """Whether a fitted design may take the place of the one it came from.
 
-        It has to be worth more.  A fit that prefers low total variation may give away some worth for it; that is no
-        more than :data:`MOST_LOST`, and what was gained in total variation outweighs it.  ``prefer`` is a key of
-        :data:`kirigami_studio.polish.preferences.PREFERENCES`.
+        It has to be worth more, unless only one of the two can be cut.  A fit that prefers low total variation may give
+        away some worth for it; that is no more than :data:`MOST_LOST`, and what was gained in total variation outweighs
+        it.  ``prefer`` is a key of :data:`kirigami_studio.polish.preferences.PREFERENCES`.
         """
-        price = WORTH[prefer]
+        price, can_cut = WORTH[prefer], self.cuttable(after)
+        if can_cut is not self.cuttable(before) and after.score.feasible is before.score.feasible:
+            return can_cut
 
         def key(candidate: Candidate) -> tuple[bool, float, float]:
             score = candidate.score

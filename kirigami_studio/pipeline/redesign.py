@@ -29,6 +29,7 @@ from kirigami_studio.pipeline.rank import Ranking
 from kirigami_studio.polish.covering import fit_cover
 from kirigami_studio.polish.even_panels import even_weight
 from kirigami_studio.polish.levenberg import polish
+from kirigami_studio.polish.panel_size import least_in_cells
 from kirigami_studio.polish.preferences import PREFERENCES
 from kirigami_studio.polish.vertex_drag import VertexDrag
 
@@ -139,6 +140,7 @@ def trimmed(
     keep: float,
     cancel: Callable[[], bool],
     locked: BoolArray | None = None,
+    least_panel: float = 0.0,
 ) -> Trimmed:
     """Fit a candidate so that it covers the target, and trim its edge panels.
 
@@ -152,6 +154,8 @@ def trimmed(
         Asked before every step; the best so far is returned.
     locked : (m, n) bool, optional
         Voids that keep their ratios.
+    least_panel : float, unit cells
+        Panel edges and necks before trimming, see :func:`kirigami_studio.polish.levenberg.polish`.
 
     Raises
     ------
@@ -172,6 +176,7 @@ def trimmed(
             locked,
             free_rim=not sheet.has_even_rim,
             symmetry=None if locked is not None and locked.any() else kept_symmetry(sheet),
+            least_panel=least_panel,
         )
     return Trimmed(replace(candidate, trim=cover.trim), cover.fit.evaluations + 1)
 
@@ -186,6 +191,8 @@ def refitted(
     *,
     regular: float = 0.0,
     free_rim: bool = False,
+    width_mm: float = 100.0,
+    least_feature_mm: float = 0.0,
 ) -> Refit:
     """Fit a candidate on the exact geometry from its present sheet, and trim it again if it is trimmed.
 
@@ -207,6 +214,8 @@ def refitted(
         ``better``.
     free_rim : bool
         Whether the mouths may move.
+    width_mm, least_feature_mm : float
+        Width of the flat sheet, and the least panel edge and neck that the material allows, 0 where that is not known.
 
     Raises
     ------
@@ -219,6 +228,7 @@ def refitted(
     ratios = np.where(table, candidate.final_sheet.field.ratio, candidate.sheet.field.ratio)
     start = candidate.sheet.with_field(RatioField(ratios))
     score, preference = candidate.score, PREFERENCES[prefer]
+    least = least_in_cells(least_feature_mm, width_mm, start.columns)
     with one_blas_thread():
         fit = polish(
             start,
@@ -232,16 +242,17 @@ def refitted(
             free_rim=free_rim,
             symmetry=None if table.any() else kept_symmetry(start),
             locked=table,
+            least_panel=least,
         )
         _stop_if(cancel)
         found = evaluate_near(deploy(fit.sheet), target, score.phi, fit.pose)
     first = candidate.sampled_sheet or candidate.sheet
     fitted = replace(candidate, sheet=fit.sheet, score=found, polished=True, sampled_sheet=first, trim=None)
-    better = Ranking(regular).improves(fitted, candidate, prefer)
+    better = Ranking(regular, width_mm, least_feature_mm).improves(fitted, candidate, prefer)
     if candidate.trim is None:
         return Refit(fitted, better)
     try:
-        again = trimmed(fitted, target, keep(), cancel, table)
+        again = trimmed(fitted, target, keep(), cancel, table, least)
     except KirigamiError as problem:
         return Refit(fitted, better, problem)
     _stop_if(cancel)

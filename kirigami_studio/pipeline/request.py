@@ -14,7 +14,7 @@ from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.polish.continuation import Wishes
 from kirigami_studio.polish.even_panels import even_weight
-from kirigami_studio.polish.panel_size import check_least
+from kirigami_studio.polish.panel_size import check_least, least_in_cells
 from kirigami_studio.polish.preferences import PREFERENCES
 from kirigami_studio.polish.symmetry import SYMMETRIES
 
@@ -60,7 +60,8 @@ class Request:
     prefer : str
         What the fits prefer among nearly equal matches, see :data:`kirigami_studio.polish.preferences.PREFERENCES`.
     least_panel : float, unit cells, 0..0.9
-        Panel edges and necks that fits try not to fall below; 0 for any size.
+        Panel edges and necks that no fit falls below, wherever a sheet near by allows that; 0 for any size.  What the
+        material needs (``least_feature_mm``) is kept in any case, see :attr:`kept_size`.
     search : int, 0..8
         Effort of a search for a design beyond the samples, started from the best of them; 0 does without.
     trim : bool
@@ -176,9 +177,17 @@ class Request:
         return even_weight(self.regular)
 
     @property
+    def kept_size(self) -> float:
+        """Edges and necks (unit cells) that fits do not fall below: ``least_panel``, or more if the material needs it.
+
+        Where that is nearly a cell or more, no design can be cut, and only ``least_panel`` counts.
+        """
+        return max(self.least_panel, least_in_cells(self.least_feature_mm, self.width_mm, self.chosen_grid[1]))
+
+    @property
     def wishes(self) -> Wishes:
         """What fits ask for beside the match."""
-        return Wishes(PREFERENCES[self.prefer], self.least_panel, self.rim == "free", self.even, self.symmetry)
+        return Wishes(PREFERENCES[self.prefer], self.kept_size, self.rim == "free", self.even, self.symmetry)
 
     def resolved(self, grid: tuple[int, int]) -> Request:
         """The same request on the grid that was chosen for it; a grid that it has already stays."""
@@ -228,8 +237,8 @@ def provenance(request: Request, digest: str) -> dict[str, str]:
     known |= {"symmetry": request.symmetry, "rim": request.rim, "regular": f"{request.regular:g}"}
     if request.grid_chosen:
         known["grid_choice"] = "auto"
-    if request.least_panel:
-        known["least_panel"] = f"{request.least_panel:g}"
+    if request.kept_size:
+        known["least_panel"] = f"{request.kept_size:g}"
     if request.trim:
         known["trim_keep"] = f"{request.keep:g}"
     if request.search:

@@ -83,7 +83,7 @@ class PolishTask:
                     candidate.score.transform,
                     stopped,
                     stages=self._stages(request.even),
-                    least_panel=request.least_panel,
+                    least_panel=request.kept_size,
                     free_rim=request.rim == "free",
                     symmetry=symmetry,
                 )
@@ -158,7 +158,7 @@ class TrimTask:
     def carry_out(self, request: Request, stopped: Callable[[], bool]) -> Answer:
         """Trim, unless the design crosses itself."""
         try:
-            made = trimmed(self.candidate, request.target, request.keep, stopped)
+            made = trimmed(self.candidate, request.target, request.keep, stopped, least_panel=request.kept_size)
         except KirigamiError:
             return Answer(None, 1)
         return Answer(made.candidate, made.evaluations)

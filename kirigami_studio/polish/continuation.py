@@ -35,8 +35,9 @@ from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.proportions import Proportions
 from kirigami_studio.outlines.rounding import rounded
 from kirigami_studio.outlines.turning import turn_back
+from kirigami_studio.polish.bounds import RIM_REACH
 from kirigami_studio.polish.guide import TransportMap
-from kirigami_studio.polish.levenberg import RIM_REACH, Fit, check_fit, polish
+from kirigami_studio.polish.levenberg import Fit, check_fit, polish
 from kirigami_studio.polish.objective import Stage
 from kirigami_studio.polish.panel_size import check_least
 from kirigami_studio.polish.preferences import Preference
@@ -335,12 +336,14 @@ def lifted(sheet: Sheet, grid: tuple[int, int]) -> Sheet:
 class _Found:
     """A fit, its exact IoU in its own pose, whether the sheet gets there untouched, and what symmetry it has.
 
-    ``worth`` is the IoU less the price of uneven panels, plus what a symmetry is worth.
+    ``small`` says that a panel is smaller than asked for; ``worth`` is the IoU less the price of uneven panels, plus
+    what a symmetry is worth.
     """
 
     fit: Fit
     iou: float
     clear: bool
+    small: bool
     worth: float
     symmetry: Symmetry | None = None
 
@@ -377,7 +380,7 @@ class _Search:
     def _along(self, route: list[EasyShape], sheet: Sheet, pose: Similarity, symmetry: Symmetry | None) -> _Found:
         for easy in route:
             own = easy.frame.inverse().compose(pose)
-            fit = self._polish(sheet, easy.outline, EASY_STEPS, own, FAR, symmetry)
+            fit = self._polish(sheet, easy.outline, EASY_STEPS, own, FAR, symmetry, least_panel=0.0)
             sheet, pose = fit.sheet, easy.frame.compose(fit.pose)
         return self._fit(sheet, pose, LOOK_STEPS, FAR, symmetry)
 
@@ -414,19 +417,29 @@ class _Search:
         return _best([_best([end, one], 1)[0] for end, one in zip(ends, found, strict=True)], len(ends))
 
     def _fit(self, sheet: Sheet, pose: Similarity, steps: int, trust: float, symmetry: Symmetry | None) -> _Found:
-        return self._found(self._polish(sheet, self.target, steps, pose, trust, symmetry), symmetry)
+        least = self.wishes.least_panel
+        return self._found(self._polish(sheet, self.target, steps, pose, trust, symmetry, least), symmetry)
 
     def _found(self, fit: Fit, symmetry: Symmetry | None) -> _Found:
         deployment = deploy(fit.sheet)
         laid = fit.pose.apply(deployment.outline(self.phi))
         iou, wishes = exact_iou(laid, self.target), self.wishes
-        worth = iou - wishes.evenness_price * evenness(deployment).area_cv
+        figures = evenness(deployment)
+        small = min(figures.least_edge, figures.least_neck) < wishes.least_panel
+        worth = iou - wishes.evenness_price * figures.area_cv
         if symmetry is not None:
             worth += wishes.symmetry_price
-        return _Found(fit, iou, path_contact(deployment, self.phi) is None, worth, symmetry)
+        return _Found(fit, iou, path_contact(deployment, self.phi) is None, small, worth, symmetry)
 
     def _polish(
-        self, sheet: Sheet, target: Outline, steps: int, pose: Similarity, trust: float, symmetry: Symmetry | None
+        self,
+        sheet: Sheet,
+        target: Outline,
+        steps: int,
+        pose: Similarity,
+        trust: float,
+        symmetry: Symmetry | None,
+        least_panel: float,
     ) -> Fit:
         wishes = self.wishes
         fit = polish(
@@ -439,7 +452,7 @@ class _Search:
             self.cancel,
             trust=trust,
             even=wishes.even,
-            least_panel=wishes.least_panel,
+            least_panel=least_panel,
             free_rim=wishes.free_rim,
             symmetry=symmetry,
         )
@@ -448,10 +461,13 @@ class _Search:
 
 
 def _best(found: list[_Found], count: int) -> list[_Found]:
-    """The ``count`` that are worth most, those that touch themselves last; equal ones keep their order."""
+    """The ``count`` that are worth most, those with small panels and those that touch themselves last.
 
-    def key(one: _Found) -> tuple[bool, float]:
-        return not one.clear, -one.worth
+    Equal ones keep their order.
+    """
+
+    def key(one: _Found) -> tuple[bool, bool, float]:
+        return not one.clear, one.small, -one.worth
 
     return sorted(found, key=key)[:count]
 

@@ -69,6 +69,7 @@ def fit_cover(
     free_rim: bool = False,
     symmetry: Symmetry | None = None,
     even: float = 0.0,
+    least_panel: float = 0.0,
 ) -> Cover:
     """Fit a polished sheet so that its trimmed silhouette matches best.
 
@@ -87,7 +88,7 @@ def fit_cover(
         Asked before every step; the best so far is returned.
     locked : (m, n) bool, optional
         Voids whose ratio stays exactly as it is.
-    free_rim, symmetry, even
+    free_rim, symmetry, even, least_panel
         As for :func:`polish`.
 
     Raises
@@ -110,6 +111,7 @@ def fit_cover(
         cancel=cancel,
         trust=TRUST,
         even=even,
+        least_panel=least_panel,
         free_rim=free_rim,
         symmetry=symmetry,
         excess=EXCESS,

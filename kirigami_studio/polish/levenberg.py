@@ -16,20 +16,19 @@ import numpy as np
 import shapely
 
 from kirigami_studio.evaluate.alignment import align
-from kirigami_studio.evaluate.feasibility import is_clear
 from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray
 from kirigami_studio.foundation.errors import AngleError, UsageError
-from kirigami_studio.foundation.paper import LOG_RATIO_LIMIT
-from kirigami_studio.lattice.deployment import Deployment, check_phi
+from kirigami_studio.lattice.deployment import check_phi
 from kirigami_studio.lattice.ratio_field import RatioField
-from kirigami_studio.lattice.sheet import Rim, Sheet
-from kirigami_studio.lattice.symmetry import GridSymmetry, Symmetry
+from kirigami_studio.lattice.sheet import Sheet
+from kirigami_studio.lattice.symmetry import Symmetry
 from kirigami_studio.outlines.outline import Outline
-from kirigami_studio.polish.basis import Basis
 from kirigami_studio.polish.boundary_target import BoundaryTarget
+from kirigami_studio.polish.bounds import Bounds
 from kirigami_studio.polish.even_panels import EvenPanels
 from kirigami_studio.polish.guide import Guide, TransportMap
+from kirigami_studio.polish.kept_sizes import with_kept_sizes
 from kirigami_studio.polish.matching import check_excess
 from kirigami_studio.polish.normal_equations import Damped
 from kirigami_studio.polish.objective import CONVERGED, POSE, TRUST, Look, Objective, Slopes, Stage
@@ -51,8 +50,6 @@ CORRECTIONS, WORTHWHILE_GAIN = 5, 0.01
 #: of a large sheet.  After 15 steps of 8 shapes on 10 x 10 and 16 x 16 voids and 3 on 24 x 24 fits are as good with a
 #: fresh one at every step, every 4, every 8 or none after the first: mean IoU within 0.0007, better on 24 x 24.
 STIFFNESS_STEPS = 7
-#: How far (unit cells) a fit may move a mouth from its even place: rim edges stay longer than 0.3 cells.
-RIM_REACH = 0.7
 
 
 @dataclass(frozen=True, slots=True)
@@ -123,9 +120,9 @@ def polish(
     guide : TransportMap, optional
         Needed by stages with a guide.
     least_panel : float, unit cells
-        Panel edges and necks are kept from falling below this where the shape allows it; 0 for any size.
+        No panel edge or neck of the fitted sheet is smaller, wherever a sheet near by allows that; 0 for any size.
     free_rim : bool
-        Whether the mouths move too, by at most :data:`RIM_REACH` from their even places.
+        Whether the mouths move too, by at most :data:`~kirigami_studio.polish.bounds.RIM_REACH` from their even places.
     symmetry : Symmetry, optional
         The sheet keeps this symmetry of the lattice; the pose should lay the target's own upon it.
     excess : float, 0..1
@@ -147,7 +144,7 @@ def polish(
     if symmetry is not None and locked.any():
         raise UsageError("fit.locks_and_symmetry")
     model = OutlineModel.of(sheet, phi, free_rim)
-    bounds = _Bounds.of(sheet, model, symmetry.on(*sheet.grid) if symmetry else None, locked)
+    bounds = Bounds.of(sheet, model, symmetry.on(*sheet.grid) if symmetry else None, locked)
     start = bounds.allowed(bounds.start)
     pose = pose or align(model.outline(start), target.points)
     terms = PreferenceTerms(preference or Preference(), start[: model.voids], sheet.rows, sheet.columns)
@@ -161,66 +158,24 @@ def polish(
         objective = Objective(model, boundary, terms, stage, least, excess, even_panels, term)
         descent = _Descent(objective, state, bounds) if descent is None else descent.turned_to(objective)
         until = descent.steps + stage.steps
-        while descent.steps < until and not cancel() and descent.advance():
-            pass
+        # Where panels are too small, the last half of the last stage is left for their bound.
+        half = until - stage.steps // 2 if least and stage is stages[-1] else until
+        if descent.run(half, cancel) and not len(descent.here.small.size):
+            descent.run(until, cancel)
     assert descent is not None
-    last = descent.here.state[-POSE:]
+    here, taken, evaluations = descent.here, descent.steps, descent.evaluations
+    if least and any(stage.steps for stage in stages):
+        bare, left = Objective(model, boundary, terms, stages[-1], 0.0, excess, even_panels, term), until - taken
+        sized = with_kept_sizes(bare, here.state, bounds, least, left, cancel, descent.stiffness)
+        here, taken, evaluations = sized.look, taken + sized.steps, evaluations + sized.evaluations
+    last = here.state[-POSE:]
     return Fit(
-        bounds.sheet_of(descent.here.state[:-POSE]),
+        bounds.sheet_of(here.state[:-POSE]),
         Similarity(math.exp(last[0]), last[1], (last[2], last[3])),
-        descent.here.cost,
-        descent.steps,
-        descent.evaluations,
+        here.cost,
+        taken,
+        evaluations,
     )
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class _Bounds:
-    """Which shapes a fit may reach.
-
-    Attributes
-    ----------
-    sheet : Sheet
-        Where the fit begins.
-    start : (S,) float
-        Its shape.
-    low, high : (S,) float
-        The limits; both are the start's own value for what is locked.
-    basis : Basis
-        The variables that move it.
-    """
-
-    sheet: Sheet
-    start: FloatArray
-    low: FloatArray
-    high: FloatArray
-    basis: Basis
-    _locked: BoolArray
-
-    @classmethod
-    def of(cls, sheet: Sheet, model: OutlineModel, symmetry: GridSymmetry | None, locked: BoolArray) -> _Bounds:
-        """The bounds of one fit."""
-        z, fixed = sheet.field.log10.ravel(), locked.ravel()
-        start, reach = z, np.full(z.size, LOG_RATIO_LIMIT)
-        if model.free_rim:
-            start = np.concatenate([z, sheet.rim.offsets(*sheet.grid)])
-            reach = np.concatenate([reach, np.full(start.size - z.size, RIM_REACH)])
-            fixed = np.concatenate([fixed, np.zeros(start.size - z.size, dtype=np.bool_)])
-        low, high = np.where(fixed, start, -reach), np.where(fixed, start, reach)
-        return cls(sheet, start, low, high, Basis.of(start.size, symmetry), locked)
-
-    def allowed(self, shape: FloatArray) -> FloatArray:
-        """The nearest shape within the bounds and of the symmetry."""
-        return np.clip(self.basis.nearest(shape), self.low, self.high)
-
-    def sheet_of(self, shape: FloatArray) -> Sheet:
-        """The sheet of a shape, rounded so that files repeat it exactly; locked ratios keep every digit."""
-        sheet, voids = self.sheet, self.sheet.rows * self.sheet.columns
-        found = RatioField.from_log10(np.round(shape[:voids], 9).reshape(sheet.grid))
-        if self._locked.any():
-            found = RatioField(np.where(self._locked, sheet.field.ratio, found.ratio))
-        rim = Rim.moved(*sheet.grid, np.round(shape[voids:], 9)) if shape.size > voids else sheet.rim
-        return Sheet(found, rim, sheet.start, sheet.cell)
 
 
 def check_locked(locked: BoolArray | None, field: RatioField) -> BoolArray:
@@ -254,14 +209,14 @@ def check_fit(phi: float, steps: int, trust: float) -> float:
 class _Descent:
     """The moving state of one fit."""
 
-    def __init__(self, objective: Objective, state: FloatArray, bounds: _Bounds) -> None:
+    def __init__(self, objective: Objective, state: FloatArray, bounds: Bounds) -> None:
         self.objective, self._bounds = objective, bounds
         self.here = objective.look(state)
         # A start that touches itself is free to move until it no longer does.
         self._guarded = self._is_clear(self.here)
         self.damping = FIRST_DAMPING
         self.steps, self.evaluations = 0, 1
-        self._stiffness: FloatArray | None = None
+        self.stiffness: FloatArray | None = None
         self._uses = 0
 
     def turned_to(self, objective: Objective) -> _Descent:
@@ -272,11 +227,18 @@ class _Descent:
         self.evaluations += 1
         return self
 
+    def run(self, until: int, cancel: Callable[[], bool]) -> bool:
+        """Advance until that many steps have been taken in all; False where none is worth taking before."""
+        while self.steps < until:
+            if cancel() or not self.advance():
+                return False
+        return True
+
     def advance(self) -> bool:
         """Take one step that lowers the cost and stays clear of itself; False when there is none worth taking."""
         slopes = self.objective.slopes(self.here, self._bounds.basis, self._known_stiffness())
-        if slopes.stiffness is not None and slopes.stiffness is not self._stiffness:
-            self._stiffness, self._uses = slopes.stiffness, 0
+        if slopes.stiffness is not None and slopes.stiffness is not self.stiffness:
+            self.stiffness, self._uses = slopes.stiffness, 0
         model = self.objective.quadratic(self.here, slopes)
         self.evaluations += 1
         damped = Damped.of(model, self.damping, self._held(self.here.state[:-POSE], model.gradient))
@@ -303,7 +265,7 @@ class _Descent:
     def _known_stiffness(self) -> FloatArray | None:
         """The even panels' second derivative, where it is not too old."""
         self._uses += 1
-        return self._stiffness if self._uses <= STIFFNESS_STEPS else None
+        return self.stiffness if self._uses <= STIFFNESS_STEPS else None
 
     def _corrected(self, look: Look, slopes: Slopes, damped: Damped, stiffer: float) -> Look:
         """Go on with the same derivative for as long as it pays."""
@@ -321,8 +283,7 @@ class _Descent:
 
     def _is_clear(self, look: Look) -> bool:
         """The full look: is the outline clear of itself all the way from the compact sheet?"""
-        # Of the sheet only grid, start outline and cell matter here, the nodes being known.
-        return is_clear(Deployment.of(self._bounds.sheet, look.decoded.nodes), self.objective.model.phi)
+        return self._bounds.is_clear(look.decoded.nodes, self.objective.model.phi)
 
     def _moved(self, look: Look, step: FloatArray) -> tuple[Look, FloatArray]:
         """What a step of the variables leads to within the bounds, and the step as far as it was taken."""

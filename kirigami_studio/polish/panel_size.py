@@ -1,4 +1,7 @@
-"""Panels large enough to cut: a penalty on edges and necks below a least size, measured by ``evaluate.evenness``."""
+"""Panels large enough to cut: a penalty on edges and necks below a least size, measured by ``evaluate.evenness``.
+
+It keeps fits near sheets that can be cut; their last steps, see ``kept_sizes``, make the least size a bound.
+"""
 
 from __future__ import annotations
 
@@ -27,6 +30,15 @@ def check_least(least: float) -> float:
     if not (math.isfinite(least) and 0.0 <= least <= LARGEST_LEAST):
         raise UsageError("fit.least_panel_out_of_range", most=LARGEST_LEAST, least=least)
     return float(least)
+
+
+def least_in_cells(least_mm: float, width_mm: float, columns: int) -> float:
+    """A least size in unit cells, for sheets of so many columns of voids that are ``width_mm`` wide.
+
+    0 where it would be nearly a cell or more: no sheet has such panels, and fits need not try.
+    """
+    cells = least_mm * (columns + 1) / width_mm
+    return cells if cells <= LARGEST_LEAST else 0.0
 
 
 def shortage(sizes: PanelSizes, least: float) -> float:

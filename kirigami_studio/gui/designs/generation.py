@@ -16,7 +16,7 @@ from kirigami_studio.evaluate.candidate import Candidate, Origin
 from kirigami_studio.foundation.errors import KirigamiError, UsageError
 from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.gui.designs.hand_editor import HandEditor
-from kirigami_studio.gui.jobs.design_jobs import Decoded, GridChosen, ModelFound, RunReport, generating
+from kirigami_studio.gui.jobs.design_jobs import Decoded, GridChosen, ModelFound, RunReport, generating, least_of
 from kirigami_studio.gui.jobs.queue import JobCallbacks, LatestJob
 from kirigami_studio.gui.messages import Message, Tone
 from kirigami_studio.gui.session import Entry, Session
@@ -282,11 +282,7 @@ def next_seed(document: Document) -> int:
 def ranking_of(document: Document) -> Ranking:
     """What the document's settings, sheet and material put first."""
     settings, cut = document.settings, document.fabrication
-    try:
-        least = least_feature_mm(cut)
-    except KirigamiError:  # a material that is not known here
-        least = 0.0
-    return Ranking(settings.regular, cut.width_mm, least)
+    return Ranking(settings.regular, cut.width_mm, least_of(cut))
 
 
 def request_of(target: Outline, settings: DesignSettings, cut: FabricationSettings) -> Request:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from functools import partial
 
 from kirigami_studio.evaluate.candidate import Candidate
-from kirigami_studio.foundation.errors import Cancelled
+from kirigami_studio.foundation.errors import Cancelled, KirigamiError
 from kirigami_studio.gui.jobs import importing
 from kirigami_studio.gui.jobs.queue import Cancel
 from kirigami_studio.lattice.deployment import Deployment, deploy
@@ -148,6 +148,8 @@ def refitting(
         cancel,
         regular=wanted.regular,
         free_rim=wanted.rim == "free",
+        width_mm=settings.width_mm,
+        least_feature_mm=least_of(settings),
     )
     untrimmed = "" if refit.trim_problem is None else str(refit.trim_problem)
     yield Refitted(decoded(refit.candidate), refit.better, untrimmed)
@@ -168,11 +170,23 @@ def fitting_again(
 def trimming(candidate: Candidate, target: Outline, settings: FabricationSettings, cancel: Cancel) -> Iterator[Decoded]:
     """Fit a candidate so that it covers the target, and trim it, with room for the connectors at its hinges."""
     from kirigami_studio.pipeline.redesign import trimmed
+    from kirigami_studio.polish.panel_size import least_in_cells
 
-    found = trimmed(candidate, target, keep_for(candidate, settings), cancel)
+    least = least_in_cells(least_of(settings), settings.width_mm, candidate.sheet.columns)
+    found = trimmed(candidate, target, keep_for(candidate, settings), cancel, least_panel=least)
     if cancel():
         raise Cancelled("trim.stopped")
     yield decoded(found.candidate)
+
+
+def least_of(settings: FabricationSettings) -> float:
+    """Least panel edge and neck (mm) that the settings' material allows; 0 for a material that is not known here."""
+    from kirigami_studio.project.cutting import least_feature_mm
+
+    try:
+        return least_feature_mm(settings)
+    except KirigamiError:
+        return 0.0
 
 
 def keep_for(candidate: Candidate, settings: FabricationSettings) -> float:

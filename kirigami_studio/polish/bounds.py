@@ -1,0 +1,74 @@
+"""Which sheets a fit may reach: limits of ratios and mouths, locked voids, and the symmetry it keeps."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from kirigami_studio.evaluate.feasibility import is_clear
+from kirigami_studio.foundation.arrays import BoolArray, FloatArray
+from kirigami_studio.foundation.paper import LOG_RATIO_LIMIT
+from kirigami_studio.lattice.deployment import Deployment
+from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.lattice.sheet import Rim, Sheet
+from kirigami_studio.lattice.symmetry import GridSymmetry
+from kirigami_studio.polish.basis import Basis
+from kirigami_studio.polish.sensitivity import OutlineModel
+
+#: How far (unit cells) a fit may move a mouth from its even place: rim edges stay longer than 0.3 cells.
+RIM_REACH = 0.7
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Bounds:
+    """Which shapes a fit may reach.
+
+    Attributes
+    ----------
+    sheet : Sheet
+        Where the fit begins.
+    start : (S,) float
+        Its shape.
+    low, high : (S,) float
+        The limits; both are the start's own value for what is locked.
+    basis : Basis
+        The variables that move it.
+    """
+
+    sheet: Sheet
+    start: FloatArray
+    low: FloatArray
+    high: FloatArray
+    basis: Basis
+    _locked: BoolArray
+
+    @classmethod
+    def of(cls, sheet: Sheet, model: OutlineModel, symmetry: GridSymmetry | None, locked: BoolArray) -> Bounds:
+        """The bounds of one fit."""
+        z, fixed = sheet.field.log10.ravel(), locked.ravel()
+        start, reach = z, np.full(z.size, LOG_RATIO_LIMIT)
+        if model.free_rim:
+            start = np.concatenate([z, sheet.rim.offsets(*sheet.grid)])
+            reach = np.concatenate([reach, np.full(start.size - z.size, RIM_REACH)])
+            fixed = np.concatenate([fixed, np.zeros(start.size - z.size, dtype=np.bool_)])
+        low, high = np.where(fixed, start, -reach), np.where(fixed, start, reach)
+        return cls(sheet, start, low, high, Basis.of(start.size, symmetry), locked)
+
+    def allowed(self, shape: FloatArray) -> FloatArray:
+        """The nearest shape within the bounds and of the symmetry."""
+        return np.clip(self.basis.nearest(shape), self.low, self.high)
+
+    def is_clear(self, nodes: FloatArray, phi: float) -> bool:
+        """Whether the outline of the sheet with compact ``nodes`` (N, 2) is clear of itself all the way to ``phi``."""
+        # Of the sheet only grid, start outline and cell matter here, the nodes being known.
+        return is_clear(Deployment.of(self.sheet, nodes), phi)
+
+    def sheet_of(self, shape: FloatArray) -> Sheet:
+        """The sheet of a shape, rounded so that files repeat it exactly; locked ratios keep every digit."""
+        sheet, voids = self.sheet, self.sheet.rows * self.sheet.columns
+        found = RatioField.from_log10(np.round(shape[:voids], 9).reshape(sheet.grid))
+        if self._locked.any():
+            found = RatioField(np.where(self._locked, sheet.field.ratio, found.ratio))
+        rim = Rim.moved(*sheet.grid, np.round(shape[voids:], 9)) if shape.size > voids else sheet.rim
+        return Sheet(found, rim, sheet.start, sheet.cell)

@@ -1,0 +1,283 @@
+"""The last steps of a fit with a least panel size: every edge and neck keeps it, at the least cost of the match.
+
+The penalty in the objective leaves sizes a little below the least one, because the match goes on pulling.  Here each
+step s solves the quadratic problem
+
+    minimise  g s + s H s / 2    such that    size_i + J_i s >= least    for all sizes near it,
+
+with g, H and J the derivatives of the other cost and of the sizes, and the limits of ratios and mouths as further
+conditions (sequential quadratic programming: Nocedal and Wright, Numerical Optimization, 2nd ed., ch. 18).  Its dual
+has one multiplier >= 0 for each condition, and is solved as non-negative least squares (Lawson and Hanson).  Conditions
+that contradict each other give way a little.  A step counts if it lowers the cost plus the missing sizes, weighted
+above every multiplier.  Where that does not end with all sizes kept, the nearest sheet that keeps them is looked for.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.linalg import cho_factor, cho_solve, cholesky, solve_triangular
+from scipy.optimize import nnls
+
+from kirigami_studio.evaluate.evenness import panel_sizes
+from kirigami_studio.foundation.arrays import BoolArray, FloatArray
+from kirigami_studio.polish.bounds import Bounds
+from kirigami_studio.polish.normal_equations import FLOOR
+from kirigami_studio.polish.objective import POSE, SETTLED, Look, Objective, Slopes
+
+#: How far above the least size (unit cells) steps aim, and what counts as kept: rounding a sheet takes less.
+AIM, KEPT = 2e-6, 5e-7
+#: Sizes up to this much (unit cells) above the least one are looked at in a step; and how much one step is to add.
+NEAR, MOST_ADDED = 0.1, 0.15
+#: Fewest steps for match and sizes, most for sizes alone; parts of a step that are tried.
+LEAST_STEPS, SIZE_STEPS = 2, 12
+PARTS = (1.0, 0.5, 0.25, 0.1, 0.03)
+#: Damping relative to the diagonal of H, and its growth where no part of a step counts.
+DAMPING, LARGEST_DAMPING, HARDEN = 1e-3, 1e3, 30.0
+#: Weight of missing sizes over the largest multiplier.
+OVER_MULTIPLIERS = 2.0
+#: How much conditions give way, relative to how far the sheet does.
+GIVING = 1e-10
+#: Sizes that are no more than this (unit cells) above the least one are conditions from the start; rounds in which
+#: sizes and limits that a step violates by more than that become conditions: of hundreds, few do.
+TOUCHING, VIOLATED, ROUNDS = 1e-3, 1e-9, 6
+
+
+@dataclass(frozen=True, slots=True)
+class Sized:
+    """Where the steps end.
+
+    Attributes
+    ----------
+    look : Look
+        The state found; the one given, if no sheet near by keeps all sizes.
+    kept : bool
+        Whether all edges and necks are at least as long as asked for.
+    steps, evaluations : int
+        Steps taken and layouts decoded.
+    """
+
+    look: Look
+    kept: bool
+    steps: int
+    evaluations: int
+
+
+def with_kept_sizes(
+    objective: Objective,
+    state: FloatArray,
+    bounds: Bounds,
+    least: float,
+    steps: int,
+    cancel: Callable[[], bool],
+    stiffness: FloatArray | None = None,
+) -> Sized:
+    """Go on from a fitted state until no edge and no neck is smaller than ``least``.
+
+    Parameters
+    ----------
+    objective : Objective
+        Without a least size of its own.
+    state : (S + 4,) float
+        Of a fit with a penalty on small sizes, or of any other sheet.
+    bounds : Bounds
+    least : float, unit cells
+    steps : int
+        Most steps for match and sizes together; at least :data:`LEAST_STEPS`.
+    cancel : callable
+        Asked before every step.
+    stiffness : (V, V) float, optional
+        Second derivative of even panels at a state nearby, to be used again.
+    """
+    descent = _Descent(objective, state, bounds, least, stiffness)
+    first = descent.here
+    if descent.is_kept:
+        return Sized(first, True, 0, descent.evaluations)
+    descent.run(max(steps, LEAST_STEPS), cancel, sizes_alone=False)
+    if not descent.is_kept:
+        descent.run(SIZE_STEPS, cancel, sizes_alone=True)
+    return Sized(descent.here if descent.is_kept else first, descent.is_kept, descent.steps, descent.evaluations)
+
+
+class _Descent:
+    """The moving state."""
+
+    def __init__(
+        self, objective: Objective, state: FloatArray, bounds: Bounds, least: float, stiffness: FloatArray | None
+    ) -> None:
+        self.objective, self.bounds, self.least = objective, bounds, least
+        self.here, self._stiffness = objective.look(state), stiffness
+        self.steps, self.evaluations = 0, 1
+        self._guarded = self._is_clear(self.here)
+
+    @property
+    def is_kept(self) -> bool:
+        return float(self._sizes(self.here).min()) >= self.least + KEPT
+
+    def run(self, steps: int, cancel: Callable[[], bool], *, sizes_alone: bool) -> None:
+        """Take at most so many steps, until all sizes are kept and, unless they alone count, no step gains much."""
+        damping, weight = DAMPING, 0.0
+        for _ in range(steps):
+            if cancel() or (sizes_alone and self.is_kept):
+                return
+            problem = _Problem.of(self, sizes_alone)
+            before = self.here
+            while damping <= LARGEST_DAMPING:
+                step, multiplier = problem.step(damping)
+                weight = max(weight, OVER_MULTIPLIERS * multiplier)
+                if self._taken(step, weight, sizes_alone):
+                    break
+                damping *= HARDEN
+            if self.here is before:
+                return
+            damping = max(damping / HARDEN, DAMPING)
+            if self.is_kept and before.cost - self.here.cost <= SETTLED * before.cost:
+                return
+
+    def slopes(self) -> Slopes:
+        """Derivatives where it is."""
+        slopes = self.objective.slopes(self.here, self.bounds.basis, self._stiffness)
+        self._stiffness = slopes.stiffness
+        self.evaluations += 1
+        return slopes
+
+    def _taken(self, step: FloatArray, weight: float, sizes_alone: bool) -> bool:
+        """Take as much of a step as lowers the merit and leaves the sheet clear of itself; False where nothing does."""
+        before = self._merit(self.here, weight, sizes_alone)
+        for part in PARTS:
+            trial = self._moved(part * step)
+            if self._merit(trial, weight, sizes_alone) < before:
+                clear = self._is_clear(trial)
+                if clear or not self._guarded:
+                    self.here, self._guarded = trial, clear
+                    self.steps += 1
+                    return True
+        return False
+
+    def _merit(self, look: Look, weight: float, sizes_alone: bool) -> float:
+        missing = float(np.maximum(self.least + AIM - self._sizes(look), 0.0).sum())
+        return missing if sizes_alone else look.cost + weight * missing
+
+    def _sizes(self, look: Look) -> FloatArray:
+        model = self.objective.model
+        return panel_sizes(look.decoded.nodes, model.rows, model.columns).size
+
+    def _moved(self, step: FloatArray) -> Look:
+        state = self.here.state.copy()
+        state[:-POSE] = self.bounds.allowed(state[:-POSE] + self.bounds.basis.moved(step[:-POSE]))
+        state[-POSE:] += step[-POSE:]
+        self.evaluations += 1
+        return self.objective.look(state)
+
+    def _is_clear(self, look: Look) -> bool:
+        return self.bounds.is_clear(look.decoded.nodes, self.objective.model.phi)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Problem:
+    """The quadratic problem at one state, by V variables and the pose.
+
+    Attributes
+    ----------
+    gradient : (V + 4,) float
+    hessian : (V + 4, V + 4) float
+    slopes : (F, V + 4) float
+        Of the sizes near the least one.
+    added : (F,) float
+        What a step has to add to them.
+    shape : (S,) float
+    bounds : Bounds
+    """
+
+    gradient: FloatArray
+    hessian: FloatArray
+    slopes: FloatArray
+    added: FloatArray
+    shape: FloatArray
+    bounds: Bounds
+
+    @classmethod
+    def of(cls, descent: _Descent, sizes_alone: bool) -> _Problem:
+        """The problem where a descent is; with ``sizes_alone`` that of the shortest step."""
+        objective, here, bounds = descent.objective, descent.here, descent.bounds
+        model, basis = objective.model, bounds.basis
+        derivatives = None if sizes_alone else descent.slopes()
+        motion = model.node_motion(here.decoded) if derivatives is None else derivatives.motion
+        near = panel_sizes(here.decoded.nodes, model.rows, model.columns).distinct().below(descent.least + NEAR)
+        slopes = np.zeros((len(near.size), basis.size + POSE))
+        slopes[:, :-POSE] = basis.reduced(motion.slopes(*near.reach(model.node_count)))
+        added = np.minimum(descent.least + AIM - near.size, MOST_ADDED)
+        shape = here.state[:-POSE]
+        if derivatives is None:
+            count = basis.size + POSE
+            return cls(np.zeros(count), np.eye(count), slopes, added, shape, bounds)._without_locked()
+        model_here = objective.quadratic(here, derivatives)
+        return cls(model_here.gradient, model_here.hessian, slopes, added, shape, bounds)._without_locked()
+
+    def _without_locked(self) -> _Problem:
+        """The same with variables that cannot move at rest."""
+        fixed = self.bounds.low == self.bounds.high
+        if not fixed.any():
+            return self
+        basis = self.bounds.basis
+        held = np.zeros(basis.size + POSE, dtype=np.bool_)
+        held[basis.variable[fixed & (basis.variable < basis.size)]] = True
+        gradient, hessian, slopes = self.gradient.copy(), self.hessian.copy(), self.slopes.copy()
+        gradient[held], slopes[:, held], hessian[held], hessian[:, held] = 0.0, 0.0, 0.0, 0.0
+        hessian[held, held] = 1.0
+        return replace(self, gradient=gradient, hessian=hessian, slopes=slopes)
+
+    def step(self, damping: float) -> tuple[FloatArray, float]:
+        """The step (V + 4,) for a damping, and the largest multiplier of a size."""
+        hessian, diagonal = self.hessian.copy(), np.diagonal(self.hessian)
+        hessian[np.diag_indices_from(hessian)] += damping * (diagonal + FLOOR * diagonal.mean())
+        factor = cho_factor(hessian, overwrite_a=True, check_finite=False)
+        free = -cho_solve(factor, self.gradient, check_finite=False)
+        step, largest = free, 0.0
+        rows, asked, of_sizes = np.zeros((0, free.size)), np.zeros(0), np.zeros(0, dtype=np.bool_)
+        reach, short = np.zeros((free.size, 0)), self.added > -TOUCHING
+        limits, room = rows, asked
+        for _ in range(ROUNDS):
+            new = np.concatenate([self.slopes[short], limits])
+            rows, asked = np.concatenate([rows, new]), np.concatenate([asked, self.added[short], room])
+            of_sizes = np.concatenate([of_sizes, np.arange(len(new)) < len(new) - len(room)])
+            reach = np.concatenate([reach, cho_solve(factor, new.T, check_finite=False)], axis=1)
+            multipliers = _multipliers(rows @ reach, asked - rows @ free)
+            step = free + reach @ multipliers
+            largest = float(multipliers[of_sizes].max(initial=0.0))
+            pushes = multipliers > 0.0
+            rows, asked, of_sizes, reach = rows[pushes], asked[pushes], of_sizes[pushes], reach[:, pushes]
+            short = self.slopes @ step < self.added - VIOLATED
+            limits, room = self._passed(step)
+            if not short.any() and not len(room):
+                break
+        return step, largest
+
+    def _passed(self, step: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """The limits that a step passes, as conditions (C, V + 4) and what they ask for (C,)."""
+        bounds, basis = self.bounds, self.bounds.basis
+        moved = self.shape + basis.moved(step[:-POSE])
+        over, under = moved > bounds.high + VIOLATED, moved < bounds.low - VIOLATED
+        passed: BoolArray = (over | under) & (basis.variable < basis.size) & (bounds.low < bounds.high)
+        # One number stands for all that follow the same variable.
+        _, first = np.unique(basis.variable[passed], return_index=True)
+        number = np.flatnonzero(passed)[first]
+        way = np.where(over[number], -1.0, 1.0)
+        rows = np.zeros((number.size, step.size))
+        rows[np.arange(number.size), basis.variable[number]] = way * basis.sign[number]
+        limit = np.where(over[number], bounds.high[number], bounds.low[number])
+        return rows, way * (limit - self.shape[number])
+
+
+def _multipliers(compliance: FloatArray, asked: FloatArray) -> FloatArray:
+    """The multipliers l >= 0 (C,) with l M l / 2 - asked l least, M the compliance (C, C) of the conditions."""
+    if not len(asked):
+        return np.zeros(0)
+    softened = compliance.copy()
+    softened[np.diag_indices_from(softened)] += GIVING * max(float(np.diagonal(compliance).mean()), 1e-12)
+    lower = cholesky(softened, lower=True, check_finite=False)
+    right = solve_triangular(lower, asked, lower=True, check_finite=False)
+    found: FloatArray = nnls(lower.T, right, maxiter=10 * len(asked) + 100)[0]
+    return found
