@@ -39,7 +39,7 @@ class WindowState:
         The drawing board is open.
     comparing : bool
         Two designs are shown side by side.
-    before, trim, hand, cuts, plots : Switch
+    before, trim, hand, cuts, plots, ideal : Switch
     overlays : frozenset of Overlay
         What is drawn over the layout.
     dark, follows_system : bool
@@ -61,6 +61,7 @@ class WindowState:
     hand: Switch
     cuts: Switch
     plots: Switch
+    ideal: Switch
     overlays: frozenset[Overlay]
     dark: bool
     follows_system: bool

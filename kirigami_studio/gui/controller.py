@@ -16,6 +16,7 @@ from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.foundation.resources import resource_root
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.cutting import CutPlanner, FabricationEditor
+from kirigami_studio.gui.designs.as_cut import AsCutReader
 from kirigami_studio.gui.designs.chosen_design import Refitter, SampledScores, TrimSwitch
 from kirigami_studio.gui.designs.collection import DesignMarks
 from kirigami_studio.gui.designs.curves import CurveReader
@@ -45,7 +46,7 @@ class Controller(QObject):
     ----------
     session : Session
         Document, history, stage; the parts report to the user through it.
-    hand, trimming, refitting, sampled, marks, curves
+    hand, trimming, refitting, sampled, marks, curves, as_cut
         What is done to the chosen design, or found out about it.
     generation, run
         Making designs, and the run that makes them.
@@ -79,6 +80,7 @@ class Controller(QObject):
         self.alikes = LookAlikes(session, self)
         self.fabrication = FabricationEditor(session)
         self.cutting = CutPlanner(session, self)
+        self.as_cut = AsCutReader(session, self)
         self.targeting = Targeting(session, self)
         self.filing = Filing(session, self.targeting, self)
         self.preferences = UserPreferences(session)
@@ -87,6 +89,8 @@ class Controller(QObject):
     def _connect(self) -> None:
         self.session.display.stage_changed.connect(self._stop_work_on_others)
         self.hand.drafted.connect(self._stop_work_on_design)
+        self.cutting.answered.connect(self.as_cut.read)
+        self.cutting.refused.connect(lambda _: self.as_cut.forget())
         self.generation.begun.connect(self._stop_work_on_design)
         self.targeting.replaced.connect(self._replace_target)
         self.targeting.adjusted.connect(self._adjust_target)
@@ -225,6 +229,7 @@ class Controller(QObject):
         self.regularity.stop()
         self.trimming.job.stop()
         self.refitting.job.stop()
+        self.as_cut.forget()
 
     # cuts ----------------------------------------------------------------------------------------------------------
 

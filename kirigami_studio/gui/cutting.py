@@ -41,6 +41,7 @@ class CutPlanner(QObject):
     """Keeps the cut plan of the design on the stage up to date, and writes files."""
 
     planned = Signal(object)  #: Planned, or None without a design
+    answered = Signal(CutRequest, Planned)  #: what was to be planned, and its plan
     refused = Signal(str)
     exported = Signal(Exported)
 
@@ -79,8 +80,12 @@ class CutPlanner(QObject):
         if self._wanted is None:
             self.planned.emit(None)
             return
-        callbacks = JobCallbacks(self.planned.emit, on_failed=partial(self._refuse, self._wanted))
+        callbacks = JobCallbacks(partial(self._take, self._wanted), on_failed=partial(self._refuse, self._wanted))
         self._job.start(tr("planning the cuts"), partial(planning, self._wanted), callbacks)
+
+    def _take(self, request: CutRequest, made: Planned) -> None:
+        self.planned.emit(made)
+        self.answered.emit(request, made)
 
     def _refuse(self, request: CutRequest, sentence: str, trace: str) -> None:
         self.refused.emit(sentence if request.candidate.trim is None else f"{sentence} {TRIM_AGAIN}")

@@ -177,6 +177,7 @@ class MainWindow(QMainWindow):
             hand=_switch(stage.hand),
             cuts=_switch(stage.cuts_switch),
             plots=_switch(stage.plots_switch),
+            ideal=Switch(stage.deployment.slider.jam is not None, stage.deployment.ideal.isChecked()),
             overlays=stage.view.overlays,
             dark=self.palette_.dark,
             follows_system=self.appearance.follows_system,

@@ -26,6 +26,7 @@ OVERLAY_COMMANDS = {
     "show_target": Overlay.TARGET,
     "show_mismatch": Overlay.MISMATCH,
     "show_faults": Overlay.FAULTS,
+    "show_stretch": Overlay.STRETCH,
     "show_ratios": Overlay.RATIOS,
     "show_openings": Overlay.OPENINGS,
     "show_small_parts": Overlay.SMALL_PARTS,
@@ -126,6 +127,16 @@ def _deployment(window: MainWindow) -> tuple[Command, ...]:
             partial(_go_to_target, window),
             shortcuts=("Ctrl+Right",),
         ),
+        Command(
+            "ideal",
+            menu,
+            tr("Ideal beyond the &jam"),
+            tr("Let the slider go on where the sheet would jam as cut"),
+            bar.ideal.toggle,
+            shortcuts=("Shift+J",),
+            enabled_when=lambda now: now.ideal.enabled,
+            checked_when=lambda now: now.ideal.checked,
+        ),
     )
 
 
@@ -147,11 +158,13 @@ def _overlays(window: MainWindow) -> tuple[Command, ...]:
         )
 
     small = tr("Mark the shortest edges and narrowest necks, in mm between cut centre lines")
+    stretch = tr("Colour connectors by their stretch at this angle, as cut")
     opening = tr("Colour voids by their area at this angle, mm²")
     return (
         overlay("show_target", tr("Tar&get outline"), "T", "target", tr("Show the target's outline"), gap=True),
         overlay("show_mismatch", tr("&Mismatch"), "M", "mismatch", tr("Show missing and extra area")),
         overlay("show_faults", tr("F&aults"), "F", "fault", tr("Mark inverted panels and contacts")),
+        overlay("show_stretch", tr("Connector stretch"), "Shift+S", "connector", stretch),
         overlay("show_ratios", tr("&Ratio heat map"), "Shift+H", "heat", tr("Colour voids by their ratio")),
         overlay("show_openings", tr("&Void opening"), "Shift+O", "opening", opening),
         overlay("show_small_parts", tr("&Smallest features"), "Shift+T", "small", small),

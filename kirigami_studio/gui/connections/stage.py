@@ -45,6 +45,7 @@ class StageConnections(QObject):
         stage.status.connect(window.status_text.setText)
         controller.sampled.known.connect(stage.show_sample)
         controller.trimming.busy_changed.connect(stage.show_trimming)
+        controller.as_cut.changed.connect(stage.show_as_cut)
         controller.curves.grown.connect(stage.plots.show_curves)
 
     def _connect_cuts(self) -> None:

@@ -69,6 +69,14 @@ class DeploymentBar(QWidget):
         self.play = ToolButton("play", "play", tr("Play or pause the deployment (Space)."), checkable=True)
         self.options = PlayOptions()
         self.slider = PhiSlider()
+        self.ideal = QToolButton()
+        self.ideal.setText(tr("Ideal"))
+        self.ideal.setObjectName("ideal")
+        self.ideal.setCheckable(True)
+        self.ideal.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+        self.ideal.setToolTip(tr("Ideal: go on beyond the jam, as connectors of no width would (Shift+J)."))
+        self.ideal.setAccessibleName(tr("Ideal motion beyond the jam"))
+        self.ideal.hide()
         self.number = DecimalField()
         self.number.setObjectName("phiNumber")
         self.number.setRange(0.0, 180.0)
@@ -85,6 +93,7 @@ class DeploymentBar(QWidget):
         row.addWidget(self.play)
         row.addWidget(self.options)
         row.addWidget(self.slider, 1)
+        row.addWidget(self.ideal)
         row.addWidget(self.number)
         self._timer = QTimer(self)
         self._timer.setInterval(FRAME_MS)
@@ -92,6 +101,7 @@ class DeploymentBar(QWidget):
         self.play.toggled.connect(self._toggle)
         self.options.changed.connect(self._play_on)
         self.slider.phi_changed.connect(self._take_phi)
+        self.ideal.toggled.connect(self.slider.set_ideal)
         self.number.valueChanged.connect(lambda degrees: self.set_phi(math.radians(degrees)))
         self._take_phi(self.slider.phi)
         self.set_ready(False)
@@ -108,6 +118,11 @@ class DeploymentBar(QWidget):
         """Mark the target angle and the first contact, radians."""
         self._target = target
         self.slider.set_marks(target, contact)
+
+    def set_jam(self, jam: float | None) -> None:
+        """Mark the angle (radians) at which the sheet jams as cut; None where it does not, or nothing is known."""
+        self.slider.set_jam(jam)
+        self.ideal.setVisible(jam is not None)
 
     def set_ready(self, ready: bool) -> None:
         """Whether there is a design to move."""

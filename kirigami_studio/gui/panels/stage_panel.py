@@ -8,6 +8,8 @@ from PySide6.QtWidgets import QMenu, QSplitter, QStackedWidget, QToolButton, QVB
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.words import tr
+from kirigami_studio.gui.designs.as_cut import UNKNOWN, AsCutState
+from kirigami_studio.gui.panels.as_cut_line import AsCutLine
 from kirigami_studio.gui.panels.card import INSET, Card, FittingLabel, ToolButton
 from kirigami_studio.gui.panels.compare_page import ComparePage
 from kirigami_studio.gui.panels.cuts_page import CutBar, CutsPage
@@ -61,10 +63,12 @@ class StagePanel(Card):
         self._rank = 0
         self._width_mm = USUAL_WIDTH_MM
         self._trimmable, self._trimming = True, False
+        self._as_cut = UNKNOWN
         self.view = LayoutView()
         self.tour = FaultTour(self.view)
         self.deployment = DeploymentBar()
         self.cuts = CutsPage()
+        self.as_cut = AsCutLine()
         self.plots = PlotsPanel()
         self.compare = ComparePage()
         self.numbers = FittingLabel()
@@ -88,6 +92,7 @@ class StagePanel(Card):
         self._add_overlays()
         self._add_pages()
         self.deployment.phi_changed.connect(self.view.set_phi)
+        self.deployment.ideal.toggled.connect(lambda _: self.switches_changed.emit())
         self.deployment.phi_changed.connect(self.plots.set_phi)
         self.plots.phi_wanted.connect(self.deployment.set_phi)
         self.tour.phi_wanted.connect(self.deployment.set_phi)
@@ -141,6 +146,7 @@ class StagePanel(Card):
         self.voids.hide()
         column.addWidget(self.voids)
         column.addWidget(self.deployment)
+        column.addWidget(self.as_cut)
         self.pages = QStackedWidget()
         self.pages.addWidget(layout)
         self.pages.addWidget(self.cuts)
@@ -228,6 +234,20 @@ class StagePanel(Card):
             self._sample = sample
             self._show()
 
+    def show_as_cut(self, state: AsCutState) -> None:
+        """Show what is known of the design as cut."""
+        self._as_cut = state
+        self._tell_as_cut()
+
+    def _tell_as_cut(self) -> None:
+        """The sample of a design is not cut: nothing is said of it."""
+        state = UNKNOWN if self._sample is not None else self._as_cut
+        jam = 0.0 if state.sheet is None else state.sheet.as_cut.jam_phi
+        self.as_cut.show_state(state)
+        self.deployment.set_jam(jam or None)
+        self.view.show_as_cut(state.sheet)
+        self.switches_changed.emit()
+
     def show_trimming(self, busy: bool) -> None:
         """The design is being trimmed, or no longer."""
         self._trimming = busy
@@ -277,6 +297,7 @@ class StagePanel(Card):
         self.view.show_design(shown.design, score, self._target)
         self.deployment.set_marks(shown.design.phi_target, None if contact is None else contact.phi)
         self.plots.set_target(shown.design.phi_target)
+        self._tell_as_cut()
 
     def show_title(self) -> None:
         """Show what the header says of the design or of its cuts."""

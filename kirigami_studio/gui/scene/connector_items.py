@@ -1,4 +1,4 @@
-"""The connectors of a plan as markers: coloured by their finished width, picked by the mouse."""
+"""Connectors as markers: coloured by finished width and picked by the mouse, or coloured by their stretch as cut."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from kirigami_studio.fabricate.cut_plan import CutPlan
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray, IntArray
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.look.theme import Palette
+from kirigami_studio.gui.scene.colour_scale import ColourScale
 from kirigami_studio.gui.scene.view_transform import ViewTransform
 
 #: Smallest and largest radius (pixels) of a marker, its share of the usual distance between two, and how far from its
@@ -21,6 +22,11 @@ from kirigami_studio.gui.scene.view_transform import ViewTransform
 RADII, SHARE, REACH = (1.6, 3.2), 0.16, 9.0
 #: Widths closer than this (mm) get one colour.
 SAME_MM = 2e-3
+STRETCH_TITLE = tr("connector stretch, widths")
+#: Smallest and largest radius (pixels) of a dot, and its share of the usual distance between two connectors.
+STRETCH_RADII, STRETCH_SHARE = (2.0, 5.0), 0.13
+#: By how much (pixels) the dots of connectors that stretch too far are larger.
+LARGER = 2.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -126,3 +132,41 @@ def _paint_dots(painter: QPainter, pixels: FloatArray, colour: str, width: float
 def _crosses(pixels: FloatArray, arm: float) -> list[QLineF]:
     arms = ((-arm, -arm), (-arm, arm))
     return [QLineF(x + dx, y + dy, x - dx, y - dy) for x, y in pixels.tolist() for dx, dy in arms]
+
+
+def stretch_scale(tolerated: float, palette: Palette) -> ColourScale:
+    """The scale of stretch, from none to what a connector tolerates; more than that has a sign of its own."""
+    ticks = ((0.0, "0"), (tolerated, tr("{most:g} tolerated", most=tolerated)))
+    return ColourScale(STRETCH_TITLE, 0.0, tolerated, palette.sequential, ticks)
+
+
+def paint_stretch(
+    painter: QPainter, pixels: FloatArray, stretch: FloatArray, tolerated: float, scale: ColourScale, palette: Palette
+) -> None:
+    """Draw a dot for each connector.
+
+    Parameters
+    ----------
+    painter : QPainter
+    pixels : (H, 2) float
+    stretch : (H,) float
+        In widths of the connectors.
+    tolerated : float
+        Those above it get a larger dot in the colour of faults with a dark rim.
+    scale : ColourScale
+    palette : Palette
+    """
+    if not len(pixels):
+        return
+    apart = math.sqrt(float(np.prod(np.ptp(pixels, axis=0))) / len(pixels))
+    radius = min(max(STRETCH_SHARE * apart, STRETCH_RADII[0]), STRETCH_RADII[1])
+    painter.setPen(QPen(QColor(palette.muted), 0.8))
+    colours = scale.shades(stretch)
+    over = np.flatnonzero(stretch > tolerated)
+    for index in np.flatnonzero(stretch <= tolerated).tolist():
+        painter.setBrush(colours[index])
+        painter.drawEllipse(QPointF(*pixels[index].tolist()), radius, radius)
+    painter.setPen(QPen(QColor(palette.fault_line), 1.4, Qt.PenStyle.SolidLine))
+    painter.setBrush(QColor(palette.fault))
+    for place in pixels[over].tolist():
+        painter.drawEllipse(QPointF(*place), radius + LARGER, radius + LARGER)

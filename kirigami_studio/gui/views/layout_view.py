@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 from enum import Enum
+from typing import TYPE_CHECKING
 
 import numpy as np
 from PySide6.QtCore import QEvent, QObject, QPointF, QRectF, Qt, Signal
@@ -24,6 +25,7 @@ from kirigami_studio.gui.scene.colour_scale import (
     paint_colour_bars,
     ratio_scale,
 )
+from kirigami_studio.gui.scene.connector_items import STRETCH_TITLE, paint_stretch, stretch_scale
 from kirigami_studio.gui.scene.fault_items import (
     Fault,
     FaultKind,
@@ -54,6 +56,9 @@ from kirigami_studio.gui.views.canvas import Canvas
 from kirigami_studio.gui.views.void_gestures import VoidGestures
 from kirigami_studio.outlines.outline import Outline
 
+if TYPE_CHECKING:
+    from kirigami_studio.project.as_cut import SimulatedSheet
+
 #: Radians around the target angle within which sheet and target are compared; elsewhere a difference means nothing.
 COMPARED_WITHIN = math.radians(12.0)
 #: Opacity of the target's outline there.
@@ -82,6 +87,7 @@ class Overlay(Enum):
     TARGET = "target"
     MISMATCH = "mismatch"
     FAULTS = "faults"
+    STRETCH = "stretch"
     RATIOS = "ratios"
     OPENINGS = "openings"
     PANEL_NUMBERS = "panel_numbers"
@@ -98,7 +104,7 @@ FAULT_SENTENCES = {
     FaultKind.CROSSING: tr("The sheet overlaps itself here."),
 }
 #: Overlays that a colour bar explains.
-BAR_TITLES = {Overlay.RATIOS: RATIO_TITLE, Overlay.OPENINGS: OPENING_TITLE}
+BAR_TITLES = {Overlay.RATIOS: RATIO_TITLE, Overlay.OPENINGS: OPENING_TITLE, Overlay.STRETCH: STRETCH_TITLE}
 
 
 class LayoutView(Canvas):
@@ -119,6 +125,8 @@ class LayoutView(Canvas):
         self._small: list[SmallPart] = []
         self._largest_opening = 0.0
         self._scales: list[ColourScale] = []
+        self._cut: SimulatedSheet | None = None
+        self._overstretched = 0
         self._areas: Mismatch | None = None
         self._faults: tuple[Fault, ...] = ()
         self._hint = ("generate", tr("No design yet"), tr("Choose a target on the left, then press Generate (Ctrl+G)."))
@@ -154,7 +162,7 @@ class LayoutView(Canvas):
 
     def show_design(self, design: PosedDesign | None, score: Score | None, target: Outline | None) -> None:
         """Show another design; None shows the empty state."""
-        self._design, self._target = design, target
+        self._design, self._target, self._cut = design, target, None
         self._areas, self._faults = None, ()
         before, self._bounds = self._bounds, None
         if design is not None:
@@ -180,10 +188,15 @@ class LayoutView(Canvas):
 
     def show_draft(self, design: PosedDesign) -> None:
         """Show a design that is being edited by hand, without fitting the view again."""
-        self._design = design
+        self._design, self._cut = design, None
         self._areas, self._faults, self._contact = None, (), None
         self._inverted = inverted_panels(design.panels(design.nodes(design.phi_target)))
         self._measure(design)
+        self.update()
+
+    def show_as_cut(self, sheet: SimulatedSheet | None) -> None:
+        """Show how much the connectors of the design are stretched; None where that is not known."""
+        self._cut = sheet
         self.update()
 
     def _void_shapes(self) -> VoidShapes | None:
@@ -275,6 +288,11 @@ class LayoutView(Canvas):
             legends += legend_boxes(chips, metrics, self.width(), self.height())
         return clear_box(bounds, view, self.margin(), legends)
 
+    @property
+    def overstretched(self) -> int:
+        """How many connectors of the last painted picture are stretched by more than they tolerate."""
+        return self._overstretched
+
     def _bars_top(self) -> float:
         return CAPTION_HEIGHT if self._caption else 10.0
 
@@ -292,6 +310,11 @@ class LayoutView(Canvas):
         if self._faults:
             count = len(self._faults)
             found = [Chip((self.palette_.fault,), tr_n("{count} fault", "{count} faults", count))]
+        if self.overstretched:
+            words = tr_n(
+                "{count} connector stretched too far", "{count} connectors stretched too far", self.overstretched
+            )
+            found.append(Chip((self.palette_.fault,), words))
         chips = found
         if self._areas is not None:
             areas, mm = self._areas, self.mm_per_unit
@@ -313,6 +336,7 @@ class LayoutView(Canvas):
         self._paint_voids(painter, transform, nodes)
         if self._target is not None:
             self._paint_comparison(painter, transform, nodes)
+        self._paint_stretch(painter, transform, nodes)
         self._paint_labels(painter, transform, nodes)
         self._paint_faults(painter, transform)
         self.voids.paint(painter, self.palette_)
@@ -332,6 +356,19 @@ class LayoutView(Canvas):
             self._scales.append(opening_scale(self._largest_opening * mm2, self.palette_))
             areas = quad_areas(voids).ravel() * mm2
             paint_shaded(painter, transform.to_pixels(voids).reshape(-1, 4, 2), areas, self._scales[-1])
+
+    def _paint_stretch(self, painter: QPainter, transform: ViewTransform, nodes: FloatArray) -> None:
+        """Connectors by how much they are stretched at this angle."""
+        self._overstretched = 0
+        if Overlay.STRETCH not in self._overlays or self._cut is None or self._design is None:
+            return
+        from kirigami_studio.mechanics.closing import TOLERATED_STRETCH
+
+        self._scales.append(stretch_scale(TOLERATED_STRETCH, self.palette_))
+        pixels = transform.to_pixels(nodes[self._cut.node])
+        stretch = self._cut.stretch_at(self._phi)
+        self._overstretched = int(np.sum(stretch > TOLERATED_STRETCH))
+        paint_stretch(painter, pixels, stretch, TOLERATED_STRETCH, self._scales[-1], self.palette_)
 
     def _paint_labels(self, painter: QPainter, transform: ViewTransform, nodes: FloatArray) -> None:
         """Numbers of panels and voids where they fit, and sizes of the smallest parts."""

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from enum import Enum
 
 from PySide6.QtCore import QLineF, QPointF, QRectF, QSize, Qt, Signal
-from PySide6.QtGui import QColor, QMouseEvent, QPainter, QPainterPath, QPaintEvent, QPen
+from PySide6.QtGui import QColor, QKeyEvent, QMouseEvent, QPainter, QPainterPath, QPaintEvent, QPen, QWheelEvent
 from PySide6.QtWidgets import QSlider, QWidget
 
 from kirigami_studio.foundation.words import tr
@@ -39,6 +39,8 @@ class PhiSlider(QSlider):
         self.palette_: Palette = LIGHT
         self._target = 0.0
         self._contact: float | None = None
+        self._jam: float | None = None
+        self._ideal = False
         self.setRange(0, LAST)
         self.setSingleStep(RESOLUTION)
         self.setPageStep(10 * RESOLUTION)
@@ -69,6 +71,28 @@ class PhiSlider(QSlider):
         self._update_tooltip()
         self.update()
 
+    def set_jam(self, jam: float | None) -> None:
+        """Mark the angle (radians) at which the sheet jams as cut; None where it closes or nothing is known."""
+        self._jam = jam
+        self._update_tooltip()
+        self.update()
+
+    def set_ideal(self, ideal: bool) -> None:
+        """Whether the handle goes on beyond the jam, as connectors of no width would let it."""
+        self._ideal = ideal
+        self.update()
+
+    @property
+    def jam(self) -> float | None:
+        """The angle (radians) at which the sheet jams, if it does."""
+        return self._jam
+
+    def stopped(self, value: int) -> int:
+        """Where the handle stops on its way to a value: at the jam, unless it is beyond it already."""
+        if self._jam is None or self._ideal or self.value() > value_at(self._jam):
+            return value
+        return min(value, value_at(self._jam))
+
     def set_palette(self, palette: Palette) -> None:
         """Draw in other colours."""
         self.palette_ = palette
@@ -81,6 +105,9 @@ class PhiSlider(QSlider):
         if self._contact is not None:
             degrees = f"{math.degrees(self._contact):.0f}°"
             marks.append(TrackMark(MarkKind.CONTACT, self._contact, tr("{angle} contact", angle=degrees), degrees))
+        if self._jam is not None:
+            degrees = f"{math.degrees(self._jam):.0f}°"
+            marks.insert(0, TrackMark(MarkKind.JAM, self._jam, tr("{angle} jams", angle=degrees), degrees))
         marks.append(TrackMark(MarkKind.FLAT, math.pi, tr("180° flat"), "180°"))
         marks.append(TrackMark(MarkKind.TURNED, 0.0, "0°", "0°"))
         return tuple(marks[:-1] if self._target == 0.0 else marks)
@@ -92,6 +119,13 @@ class PhiSlider(QSlider):
         ]
         if self._contact is not None:
             lines.append(tr("First contact at {angle:.1f}°.", angle=math.degrees(self._contact)))
+        if self._jam is not None:
+            lines.append(
+                tr(
+                    "Jams at {angle:.1f}° as cut: the handle stops there. Ideal lets it go on.",
+                    angle=math.degrees(self._jam),
+                )
+            )
         lines.append(tr("Click a mark to go there. Arrow keys: 1°, Page keys: 10°, Home and End: the ends."))
         self.setToolTip("\n".join(lines))
 
@@ -123,6 +157,21 @@ class PhiSlider(QSlider):
     def mouseReleaseEvent(self, event: QMouseEvent) -> None:  # noqa: N802 - Qt's name
         self.setSliderDown(False)
 
+    def keyPressEvent(self, event: QKeyEvent) -> None:  # noqa: N802 - Qt's name
+        before = self.value()
+        super().keyPressEvent(event)
+        self._stop_after(before)
+
+    def wheelEvent(self, event: QWheelEvent) -> None:  # noqa: N802 - Qt's name
+        before = self.value()
+        super().wheelEvent(event)
+        self._stop_after(before)
+
+    def _stop_after(self, before: int) -> None:
+        """Go back to the jam where a step has led past it."""
+        if self._jam is not None and not self._ideal and before <= value_at(self._jam) < self.value():
+            self.setValue(value_at(self._jam))
+
     def mark_at(self, place: QPointF) -> TrackMark | None:
         """The mark whose sign or label lies under a pixel, if any."""
         if place.y() < MIDDLE + BELOW:
@@ -138,7 +187,7 @@ class PhiSlider(QSlider):
         self.setAccessibleDescription(tr("{angle:.1f}°", angle=math.degrees(self.phi)))
 
     def _go(self, x: float) -> None:
-        self.setValue(round(LAST * (x - SIDE) / max(self.width() - 2 * SIDE, 1.0)))
+        self.setValue(self.stopped(round(LAST * (x - SIDE) / max(self.width() - 2 * SIDE, 1.0))))
 
     def _x(self, phi: float) -> float:
         return SIDE + (self.width() - 2 * SIDE) * (1.0 - phi / math.pi)
@@ -163,7 +212,7 @@ class PhiSlider(QSlider):
         painter.end()
 
     def _paint_track(self, painter: QPainter) -> None:
-        parts = track_parts(self._target, self._contact)
+        parts = track_parts(self._target, self._contact, self._jam)
         for kind, first, last in parts:
             left, right = self._x(first), self._x(last)
             box = QRectF(left, MIDDLE - 5.0, right - left, 10.0)
@@ -211,6 +260,7 @@ class TrackPart(Enum):
 
     FREE = "free"
     CONTACT = "contact"
+    JAMMED = "jammed"
     PAST = "past"
 
 
@@ -218,6 +268,7 @@ class MarkKind(Enum):
     """What a mark on the track stands for."""
 
     FLAT = "flat"
+    JAM = "jam"
     CONTACT = "contact"
     TARGET = "target"
     TURNED = "turned"
@@ -241,15 +292,21 @@ class TrackMark:
     short: str
 
 
-def track_parts(target: float, contact: float | None) -> tuple[tuple[TrackPart, float, float], ...]:
+def track_parts(
+    target: float, contact: float | None, jam: float | None = None
+) -> tuple[tuple[TrackPart, float, float], ...]:
     """Parts of the track with their first and last angle, radians; those without length are left out.
 
     Contacts are looked for up to the target angle only, so that what comes after it is said to be past the target.
+    What comes after a jam is jammed, up to the target.
     """
     free_until = target if contact is None else max(contact, target)
+    moves_until = free_until if jam is None else max(jam, free_until)
+    touches_until = target if jam is None else max(jam, target)
     parts = (
-        (TrackPart.FREE, math.pi, free_until),
-        (TrackPart.CONTACT, free_until, target),
+        (TrackPart.FREE, math.pi, moves_until),
+        (TrackPart.CONTACT, moves_until, touches_until),
+        (TrackPart.JAMMED, min(moves_until, touches_until), target),
         (TrackPart.PAST, target, 0.0),
     )
     return tuple(part for part in parts if part[1] > part[2])
@@ -261,6 +318,11 @@ def paint_track_part(painter: QPainter, kind: TrackPart, box: QRectF, palette: P
     if kind is TrackPart.FREE or not enabled:
         painter.setPen(Qt.PenStyle.NoPen)
         painter.setBrush(QColor(palette.strong_border))
+        bar = QRectF(box.left(), middle - 0.5 * FREE_HEIGHT, box.width(), FREE_HEIGHT)
+        painter.drawRoundedRect(bar, 2.5, 2.5)
+    elif kind is TrackPart.JAMMED:
+        painter.setPen(QPen(QColor(palette.warning), 1.2))
+        painter.setBrush(QColor(palette.warning_soft))
         bar = QRectF(box.left(), middle - 0.5 * FREE_HEIGHT, box.width(), FREE_HEIGHT)
         painter.drawRoundedRect(bar, 2.5, 2.5)
     elif kind is TrackPart.CONTACT:
@@ -291,7 +353,13 @@ def _paint_striped(painter: QPainter, bar: QRectF, palette: Palette) -> None:
 
 
 def paint_mark(painter: QPainter, kind: MarkKind, tip: QPointF, palette: Palette) -> None:
-    """Draw the sign of a mark below the track: an arrow to the target, a diamond at a contact, a tick at the ends."""
+    """Draw the sign of a mark below the track: an arrow to the target, a diamond at a contact, a bar at a jam, a tick
+    at the ends."""
+    if kind is MarkKind.JAM:
+        painter.setPen(Qt.PenStyle.NoPen)
+        painter.setBrush(QColor(palette.warning))
+        painter.drawRoundedRect(QRectF(tip.x() - 1.75, tip.y() - 13.0, 3.5, 21.0), 1.5, 1.5)
+        return
     path = QPainterPath(tip)
     if kind is MarkKind.TARGET:
         path.lineTo(tip + QPointF(-5, 8))

@@ -1,0 +1,65 @@
+"""Jobs on sheets as cut: close the chosen one on its connectors, estimate for all designs whether they close."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.foundation.errors import Cancelled, KirigamiError
+from kirigami_studio.gui.jobs.cut_jobs import CutRequest, Planned
+from kirigami_studio.gui.jobs.queue import Cancel
+from kirigami_studio.lattice.deployment import Deployment
+from kirigami_studio.project.settings import FabricationSettings
+
+if TYPE_CHECKING:
+    from kirigami_studio.project.as_cut import AsCut, SimulatedSheet
+
+#: Designs that are estimated between two reports.
+AT_ONCE = 4
+
+
+@dataclass(frozen=True, slots=True)
+class Estimated:
+    """What is expected of some designs as cut; those that cannot be cut at all are left out."""
+
+    found: tuple[tuple[Candidate, AsCut], ...]
+
+
+def simulating(request: CutRequest, made: Planned, cancel: Cancel) -> Iterator[SimulatedSheet | None]:
+    """Close a sheet on the connectors of its plan; None after every step, so that other jobs have their turn."""
+    from kirigami_studio.project.as_cut import simulate
+
+    candidate = request.candidate
+    kept = None if candidate.trim is None else candidate.trim.kept
+    steps = simulate(
+        request.deployment, made.plan, request.settings.width_mm, candidate.final_phi, request.target, kept
+    )
+    while True:
+        if cancel():
+            raise Cancelled("run.no_result")
+        try:
+            next(steps)
+        except StopIteration as end:
+            yield end.value
+            return
+        yield None
+
+
+def estimating(
+    designs: tuple[tuple[Candidate, Deployment], ...], settings: FabricationSettings, cancel: Cancel
+) -> Iterator[Estimated]:
+    """Estimate whether designs close in a material, a few at a time."""
+    from kirigami_studio.project.as_cut import estimate
+    from kirigami_studio.project.cutting import material_for
+
+    material = material_for(settings)
+    for start in range(0, len(designs), AT_ONCE):
+        found = []
+        for candidate, deployment in designs[start : start + AT_ONCE]:
+            try:
+                found.append((candidate, estimate(deployment, settings, candidate.final_phi, material)))
+            except KirigamiError:
+                continue  # its cuts cannot be planned, which planning explains once it is chosen
+        yield Estimated(tuple(found))

@@ -1,0 +1,152 @@
+"""The chosen design as cut: closed in the worker; the slider stops where it jams, connectors show their stretch."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import pytest
+from PySide6.QtCore import QPoint, Qt
+from PySide6.QtTest import QTest
+from pytestqt.qtbot import QtBot
+
+from kirigami_studio.gui.main_window import MainWindow
+from kirigami_studio.gui.views.layout_view import Overlay
+from kirigami_studio.gui.views.phi_slider import MarkKind, PhiSlider, TrackPart, track_parts, value_at
+
+LEFT = Qt.MouseButton.LeftButton
+Until = Callable[[Callable[[], bool]], None]
+JAM = math.radians(40.0)
+
+
+@pytest.fixture
+def closed(designed: MainWindow, until: Until) -> MainWindow:
+    """A studio whose chosen design was closed on its connectors."""
+    until(lambda: designed.controller.as_cut.state.sheet is not None)
+    return designed
+
+
+@pytest.fixture
+def jammed(closed: MainWindow, until: Until) -> MainWindow:
+    """The same with connectors that are too wide."""
+    closed.controller.fabrication.change(connector_mm=2.0)
+    until(lambda: closed.stage.deployment.slider.jam is not None)
+    return closed
+
+
+@pytest.fixture
+def slider(qtbot: QtBot) -> PhiSlider:
+    made = PhiSlider()
+    qtbot.addWidget(made)
+    made.resize(600, 50)
+    made.set_jam(JAM)
+    with qtbot.waitExposed(made):
+        made.show()
+    return made
+
+
+def pixel(slider: PhiSlider, phi: float) -> QPoint:
+    return QPoint(round(14 + (slider.width() - 28) * (1 - phi / math.pi)), 15)
+
+
+def test_that_a_sheet_which_closes_says_so_and_has_no_mark(closed: MainWindow) -> None:
+    stage = closed.stage
+    assert stage.as_cut.text().startswith("Closes as cut: ")
+    assert "Largest stretch" in stage.as_cut.toolTip() and "bends out of the plane" in stage.as_cut.toolTip()
+    assert stage.deployment.slider.jam is None and not stage.deployment.ideal.isVisible()
+    assert not closed.commands["ideal"].isEnabled()
+
+
+def test_that_other_connectors_are_closed_anew_and_known_ones_at_once(jammed: MainWindow, until: Until) -> None:
+    stage, reader = jammed.stage, jammed.controller.as_cut
+    assert stage.as_cut.text().startswith("Jams at ") and stage.deployment.ideal.isVisible()
+    assert jammed.commands["ideal"].isEnabled()
+    jammed.commands["undo"].trigger()
+    assert stage.deployment.slider.jam is None and reader.state.busy
+    assert stage.as_cut.text() == "Closing the sheet as cut …"
+    until(lambda: not reader.state.busy)
+    assert stage.as_cut.text().startswith("Closes as cut: ") and not reader.busy
+
+
+def test_that_other_files_are_no_reason_to_close_the_sheet_again(closed: MainWindow, until: Until) -> None:
+    reader = closed.controller.as_cut
+    before = reader.state.sheet
+    closed.controller.fabrication.change(profile="lightburn")
+    until(lambda: not reader.state.busy)
+    assert reader.state.sheet is before
+
+
+def test_that_another_choice_stops_the_work_on_the_one_before(closed: MainWindow, until: Until) -> None:
+    controller = closed.controller
+    first = controller.document.candidates[0]
+    other = next(one for one in controller.document.candidates if one != controller.document.candidate)
+    controller.choose(other)
+    assert controller.as_cut.state.sheet is None
+    controller.choose(first)
+    until(lambda: controller.as_cut.state.sheet is not None)
+    assert controller.stage is not None and controller.stage.candidate == first
+
+
+def test_that_a_drag_stops_at_the_jam_and_ideal_goes_on(slider: PhiSlider) -> None:
+    QTest.mousePress(slider, LEFT, pos=pixel(slider, 2.0))
+    QTest.mouseMove(slider, pixel(slider, 0.2))
+    assert slider.phi == pytest.approx(JAM)
+    QTest.mouseRelease(slider, LEFT, pos=pixel(slider, 0.2))
+    slider.set_ideal(True)
+    QTest.mousePress(slider, LEFT, pos=pixel(slider, 0.2))
+    QTest.mouseRelease(slider, LEFT, pos=pixel(slider, 0.2))
+    assert slider.phi == pytest.approx(0.2, abs=0.02)
+    # Beyond the jam already: it moves there, and back.
+    slider.set_ideal(False)
+    QTest.mousePress(slider, LEFT, pos=pixel(slider, 0.1))
+    QTest.mouseRelease(slider, LEFT, pos=pixel(slider, 0.1))
+    assert slider.phi == pytest.approx(0.1, abs=0.02)
+
+
+def test_that_keys_stop_at_the_jam_and_programs_do_not(slider: PhiSlider) -> None:
+    slider.set_phi(JAM + math.radians(4.0))
+    QTest.keyClick(slider, Qt.Key.Key_Right)
+    assert slider.phi == pytest.approx(JAM + math.radians(3.0))
+    for key in (Qt.Key.Key_PageUp, Qt.Key.Key_End, Qt.Key.Key_Right):
+        QTest.keyClick(slider, key)
+        assert slider.phi == pytest.approx(JAM), key
+    slider.set_phi(0.0)
+    assert slider.phi == 0.0
+
+
+def test_that_the_track_says_where_it_jams(slider: PhiSlider) -> None:
+    parts = track_parts(0.0, None, JAM)
+    assert parts == ((TrackPart.FREE, math.pi, JAM), (TrackPart.JAMMED, JAM, 0.0))
+    assert [kind for kind, _, _ in track_parts(0.2, 1.0, JAM)] == [
+        TrackPart.FREE,
+        TrackPart.CONTACT,
+        TrackPart.JAMMED,
+        TrackPart.PAST,
+    ]
+    assert [kind for kind, _, _ in track_parts(0.2, 0.5, JAM)] == [TrackPart.FREE, TrackPart.JAMMED, TrackPart.PAST]
+    assert slider.marks()[0].kind is MarkKind.JAM and slider.marks()[0].words == "40° jams"
+    assert "Jams at 40.0° as cut" in slider.toolTip()
+    assert slider.stopped(1800) == value_at(JAM)
+
+
+def test_that_connectors_show_their_stretch(jammed: MainWindow) -> None:
+    view = jammed.stage.view
+    plain = view.grab().toImage()
+    jammed.commands["show_stretch"].trigger()
+    assert Overlay.STRETCH in view.overlays
+    jammed.stage.deployment.set_phi(math.pi)
+    view.grab()
+    assert view.overstretched == 0
+    assert [scale.title for scale in view.scales] == ["connector stretch, widths"]
+    jammed.stage.deployment.set_phi(0.0)
+    shown = view.grab().toImage()
+    sheet = jammed.controller.as_cut.state.sheet
+    assert sheet is not None and view.overstretched == int((sheet.stretch_at(0.0) > 0.45).sum())
+    assert shown != plain
+
+
+def test_that_nothing_is_said_of_a_sheet_that_is_edited(closed: MainWindow, until: Until) -> None:
+    closed.commands["hand"].trigger()
+    closed.controller.hand.nudge(frozenset({(1, 1)}), 0.2)
+    assert closed.controller.as_cut.state.sheet is None and closed.stage.as_cut.text() == ""
+    until(lambda: closed.controller.as_cut.state.sheet is not None)
