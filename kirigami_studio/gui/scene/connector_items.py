@@ -27,6 +27,8 @@ STRETCH_TITLE = tr("connector stretch, widths")
 STRETCH_RADII, STRETCH_SHARE = (2.0, 5.0), 0.13
 #: By how much (pixels) the dots of connectors that stretch too far are larger.
 LARGER = 2.0
+#: Colours that dots have, from no stretch to what is tolerated.
+STRETCH_SHADES = 10
 
 
 @dataclass(frozen=True, eq=False)
@@ -160,13 +162,12 @@ def paint_stretch(
         return
     apart = math.sqrt(float(np.prod(np.ptp(pixels, axis=0))) / len(pixels))
     radius = min(max(STRETCH_SHARE * apart, STRETCH_RADII[0]), STRETCH_RADII[1])
-    painter.setPen(QPen(QColor(palette.muted), 0.8))
-    colours = scale.shades(stretch)
-    over = np.flatnonzero(stretch > tolerated)
-    for index in np.flatnonzero(stretch <= tolerated).tolist():
-        painter.setBrush(colours[index])
-        painter.drawEllipse(QPointF(*pixels[index].tolist()), radius, radius)
-    painter.setPen(QPen(QColor(palette.fault_line), 1.4, Qt.PenStyle.SolidLine))
-    painter.setBrush(QColor(palette.fault))
-    for place in pixels[over].tolist():
-        painter.drawEllipse(QPointF(*place), radius + LARGER, radius + LARGER)
+    within = stretch <= tolerated
+    # Dots of one colour are drawn at once, over their rims.
+    step = np.rint(scale.share(stretch) * (STRETCH_SHADES - 1)).astype(np.intp)
+    _paint_dots(painter, pixels[within], palette.muted, 2.0 * radius + 1.2)
+    colours = scale.shades(np.linspace(scale.low, scale.high, STRETCH_SHADES))
+    for number, colour in enumerate(colours):
+        _paint_dots(painter, pixels[within & (step == number)], colour.name(), 2.0 * radius)
+    _paint_dots(painter, pixels[~within], palette.fault_line, 2.0 * (radius + LARGER) + 2.4)
+    _paint_dots(painter, pixels[~within], palette.fault, 2.0 * (radius + LARGER))

@@ -24,7 +24,7 @@ from kirigami_studio.project.as_cut import (
 from kirigami_studio.project.cutting import plan_sheet
 from kirigami_studio.project.settings import FabricationSettings
 
-STRAIGHT = FabricationSettings(connector_mm=0.4)
+STRAIGHT = FabricationSettings(connector_mm=0.4, options=CutOptions(style=ConnectorStyle.STRAIGHT))
 CENTRED = replace(STRAIGHT, options=CutOptions(style=ConnectorStyle.CENTRED))
 
 
