@@ -282,7 +282,7 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
         "kirigami-studio mechanics --network resources/mechanics/panel_network.npz --ka 882 --ks 220.5 --kt 3.78e-4 "
         "--steps 100")),
     SubCommand("check", "read a DXF cut file and list its problems", "fabrication:check", (
-        option("file", help="a .dxf file"),
+        option("file", help="a .dxf file, or a folder of layer files"),
         JSON,
     ), ("kirigami-studio check heart.dxf",)),
     SubCommand("animate", "write an animation of the sheet opening to its target angle", "fabrication:animate", (

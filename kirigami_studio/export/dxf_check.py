@@ -1,7 +1,8 @@
 """Judge any cut file: units, layers, duplicates, gaps in the outline, pieces and the narrowest ligament.
 
-:func:`check_file` reads a DXF of any origin.  A file written here says how many tabs its outline has and how many cuts
-end on other cuts, and is held to that; in a foreign file the outline is the largest closed contour.
+:func:`check_file` reads a DXF of any origin, or a folder of layer files.  A file written here says how many tabs its
+outline has and how many cuts end on other cuts, and is held to that; in a foreign file the outline is the largest
+closed contour.
 """
 
 from __future__ import annotations
@@ -9,7 +10,7 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -18,6 +19,7 @@ from shapely.geometry import LineString, Polygon
 from shapely.geometry.base import BaseGeometry
 
 from kirigami_studio.export.dxf_reading import DxfContent, FilePath, read_content
+from kirigami_studio.export.layer_files import REGISTRATION_LAYER, layer_paths
 from kirigami_studio.fabricate.checks import OVERLAP_TOLERANCE_MM, place_of
 from kirigami_studio.fabricate.cut_plan import LARGEST_SHEET_MM, SMALLEST_SHEET_MM, Layer
 from kirigami_studio.fabricate.findings import Problem, Severity
@@ -92,6 +94,8 @@ def check_file(path: str | Path, kerf_mm: float | None = None) -> FileReport:
     Parameters
     ----------
     path : str or Path
+        A file; or a folder of layer files, which is checked as the one drawing that it is.  One file of such a folder
+        is checked by itself without the sheet that only all of them show.
     kerf_mm : float, optional
         Full cut width; else what the file says of itself, else 0.
 
@@ -100,7 +104,7 @@ def check_file(path: str | Path, kerf_mm: float | None = None) -> FileReport:
     ExportError
         The file is missing or not a DXF, or the kerf makes no sense.
     """
-    content = read_content(Path(path))
+    content = _read(Path(path))
     kerf = _kerf(content, kerf_mm)
     problems = [*content.problems, *_layer_problems(content.layers)]
     if not content.paths:
@@ -112,7 +116,10 @@ def check_file(path: str | Path, kerf_mm: float | None = None) -> FileReport:
     bounds = (float(size[0]), float(size[1]))
     twice = overlap(lines)
     problems += [*_size_problems(bounds), *_double_problems(content.paths, twice)]
-    if content.facts.get("TABS", "0") == "0":
+    part = "PART" in content.facts and all(found.layer != Layer.OUTLINE.value for found in content.paths)
+    if part:
+        outline = None
+    elif content.facts.get("TABS", "0") == "0":
         outline = _find_outline(content.paths, problems)
     else:
         outline = tabbed_outline(content, problems)
@@ -121,6 +128,33 @@ def check_file(path: str | Path, kerf_mm: float | None = None) -> FileReport:
     length = sum(path.length for path in content.paths)
     return FileReport(Path(path), tuple(problems), content.unit, content.layers, len(lines), length,
                       twice.length_mm, bounds, kerf, pieces, ligament)  # fmt: skip
+
+
+def _read(path: Path) -> DxfContent:
+    """A file, or the files of a folder as one drawing; registration marks are no cuts."""
+    if not path.is_dir() or not any(path.iterdir()):
+        return _without_marks(read_content(path))
+    contents = [read_content(part) for part in layer_paths(path)]
+    marks = [[p.points.tolist() for p in content.paths if p.layer == REGISTRATION_LAYER] for content in contents]
+    if any(found != marks[0] or not found for found in marks):
+        raise ExportError("layers.not_registered", folder=path)
+    problems = [problem for content in contents for problem in content.problems]
+    whole = DxfContent(
+        paths=[found for content in contents for found in content.paths],
+        unit=contents[0].unit,
+        layers=tuple(sorted({name for content in contents for name in content.layers})),
+        facts={key: value for key, value in contents[0].facts.items() if key != "PART"},
+        problems=[problem for nth, problem in enumerate(problems) if problem not in problems[:nth]],
+    )
+    return _without_marks(whole)
+
+
+def _without_marks(content: DxfContent) -> DxfContent:
+    return replace(
+        content,
+        paths=[path for path in content.paths if path.layer != REGISTRATION_LAYER],
+        layers=tuple(name for name in content.layers if name != REGISTRATION_LAYER),
+    )
 
 
 def _kerf(content: DxfContent, kerf_mm: float | None) -> float:
@@ -283,7 +317,7 @@ def _physics(
     content: DxfContent, outline: Polygon | None, kerf: float, problems: list[Problem]
 ) -> tuple[int | None, float | None]:
     """Cut the sheet: number of pieces and narrowest ligament."""
-    if outline is None:
+    if outline is None or "PART" in content.facts:
         return None, None
     ring = outline.exterior
     near_ring = ring.buffer(SAME_POINT_MM)

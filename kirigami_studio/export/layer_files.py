@@ -1,7 +1,8 @@
 """Cut plan -> a folder with one DXF for each layer and nothing else, numbered in the order of cutting.
 
-All files share one origin and one extent, so that a program that imports them one by one lays them upon each other.
-The folder appears whole or not at all.
+All files share one origin and one extent: each begins with the same three marks in corners around the sheet, on a layer
+of their own, so that programs that place a file by what is drawn in it lay the files upon each other too.  The folder
+appears whole or not at all.
 """
 
 from __future__ import annotations
@@ -11,19 +12,26 @@ import re
 import shutil
 import tempfile
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
-from kirigami_studio.export.dxf import check_written, strokes_dxf
-from kirigami_studio.export.profile import Profile
+import numpy as np
+
+from kirigami_studio.export.dxf import SAME_MM, check_written, strokes_dxf
+from kirigami_studio.export.file_content import FileContent, one_drawing
+from kirigami_studio.export.profile import BLUE, Profile
 from kirigami_studio.export.provenance import facts_of
 from kirigami_studio.export.strokes import Stroke, extent, strokes_of
-from kirigami_studio.fabricate.cut_plan import CutPlan
+from kirigami_studio.fabricate.cut_plan import DECIMALS, CutPlan
 from kirigami_studio.foundation.errors import ExportError
 from kirigami_studio.foundation.files import write_atomically
 
 #: Letters of the folder's name in that of a temporary folder: the name may already be as long as a name can be.
 NAME_PART = 40
+REGISTRATION_LAYER = "REGISTRATION"
+#: Length (mm) of the arms of a registration mark, and distance of the marks' frame from everything that is cut.
+MARK_MM, MARK_GAP_MM = 3.0, 2.0
 OWN_NAME = re.compile(r"[1-9]_[A-Z_]+\.dxf")
 
 
@@ -51,14 +59,17 @@ def write_layer_files(plan: CutPlan, path: str | Path, version: str, profile: Pr
     folder = layer_folder(Path(path))
     _refuse_strange_content(folder)
     strokes = strokes_of(plan, profile)
-    size, facts = extent(strokes), facts_of(plan, profile)
+    marks, facts = registration_marks(extent(strokes)), facts_of(plan, profile)
+    size, parts = extent(marks), by_layer(strokes)
     fresh: Path | None = None
     try:
         folder.parent.mkdir(parents=True, exist_ok=True)
         fresh = Path(tempfile.mkdtemp(prefix=f".{folder.name[:NAME_PART]}.", dir=folder.parent))
-        for name, part in by_layer(strokes).items():
-            verify = partial(check_written, strokes=part, size=size, version=version)
-            write_atomically(fresh / name, strokes_dxf(part, size, version, facts), verify)
+        for number, (name, part) in enumerate(parts.items(), start=1):
+            drawn = [*marks, *(_moved(stroke, MARK_GAP_MM) for stroke in part)]
+            said = facts | {"PART": f"{number} of {len(parts)}"}
+            verify = partial(check_written, strokes=drawn, size=size, version=version)
+            write_atomically(fresh / name, strokes_dxf(drawn, size, version, said), verify)
         fresh.chmod(0o755)
         _put_in_place(fresh, folder)
         fresh = None
@@ -90,6 +101,48 @@ def by_layer(strokes: Sequence[Stroke]) -> dict[str, list[Stroke]]:
     for stroke in strokes:
         parts.setdefault(stroke.layer, []).append(stroke)
     return {f"{number}_{name}.dxf": part for number, (name, part) in enumerate(parts.items(), start=1)}
+
+
+def registration_marks(size: tuple[float, float]) -> tuple[Stroke, ...]:
+    """Marks in three corners around a sheet (width, height), mm, that lies ``MARK_GAP_MM`` from the origin.
+
+    Three tell a file that is turned or mirrored; none of them comes nearer to the sheet than the gap.
+    """
+    width, height = (side + 2.0 * MARK_GAP_MM for side in size)
+    arms = (
+        [[MARK_MM, 0.0], [0.0, 0.0], [0.0, MARK_MM]],
+        [[width - MARK_MM, 0.0], [width, 0.0], [width, MARK_MM]],
+        [[0.0, height - MARK_MM], [0.0, height], [MARK_MM, height]],
+    )
+    return tuple(Stroke(np.array(arm).round(DECIMALS), False, REGISTRATION_LAYER, BLUE) for arm in arms)
+
+
+def laid_together(contents: Sequence[FileContent], folder: Path) -> FileContent:
+    """The files of a folder as one drawing, without their registration marks and where the plan has it.
+
+    Raises
+    ------
+    ExportError
+        The files do not have the same marks.
+    """
+    drawing = one_drawing(contents)
+    marks = [[s.points.tolist() for s in content.strokes if s.layer == REGISTRATION_LAYER] for content in contents]
+    if not marks or any(len(found) != 3 or found != marks[0] for found in marks):
+        raise ExportError("layers.not_registered", folder=folder)
+    size = drawing.extent
+    return replace(
+        drawing,
+        strokes=tuple(_moved(s, -MARK_GAP_MM) for s in drawing.strokes if s.layer != REGISTRATION_LAYER),
+        extent=None if size is None else (size[0] - 2.0 * MARK_GAP_MM, size[1] - 2.0 * MARK_GAP_MM),
+        layers={name: colour for name, colour in drawing.layers.items() if name != REGISTRATION_LAYER},
+    )
+
+
+def _moved(stroke: Stroke, by: float) -> Stroke:
+    """A stroke moved along both axes (mm), on the grid of the plan's coordinates if it was on it."""
+    moved = stroke.points + by
+    near = moved.round(DECIMALS) + 0.0
+    return replace(stroke, points=near if np.allclose(near, moved, rtol=0.0, atol=SAME_MM) else moved)
 
 
 def _refuse_strange_content(folder: Path) -> None:

@@ -13,10 +13,10 @@ from shapely.geometry import LineString, Polygon
 from shapely.geometry.base import BaseGeometry
 
 from kirigami_studio.export.dxf_reading import read_with_ezdxf
-from kirigami_studio.export.file_content import MILLIMETRES, FileContent, bent_otherwise, largest_shift, one_drawing
+from kirigami_studio.export.file_content import MILLIMETRES, FileContent, bent_otherwise, largest_shift
 from kirigami_studio.export.group_codes import read_group_codes
 from kirigami_studio.export.jam_angle import jam_angle_of_file
-from kirigami_studio.export.layer_files import by_layer, layer_folder, layer_paths
+from kirigami_studio.export.layer_files import by_layer, laid_together, layer_folder, layer_paths
 from kirigami_studio.export.profile import Profile, find_profile
 from kirigami_studio.export.strokes import Stroke, extent, layer_colours, strokes_of, work_of
 from kirigami_studio.export.svg_reading import read_with_svgelements, read_with_xml
@@ -164,7 +164,7 @@ def verify_export(
         goal, kind = layer_folder(goal), FORMATS[".dxf"]
         parts = layer_paths(goal)
         strokes = tuple(stroke for part in by_layer(strokes).values() for stroke in part)
-        contents = [one_drawing([read(part) for part in parts]) for read in kind.readers]
+        contents = [laid_together([read(part) for part in parts], goal) for read in kind.readers]
         return _judged(plan, goal, profile, version, strokes, contents, kind, deployment)
     if goal.suffix.lower() not in FORMATS:
         raise ExportError("verify.unknown_kind", path=goal, known=", ".join(FORMATS))

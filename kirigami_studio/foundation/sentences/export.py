@@ -14,7 +14,8 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "MeerK40t and K40 Whisperer cut red lines only and engrave the others: choose the k40 profile for those."
     ),
     "profile.one_origin": mark(
-        "Import all files of the folder at one origin and cut them in the order of their numbers."
+        "Import all files of the folder at one origin, so that their registration marks (layer REGISTRATION) lie upon "
+        "each other, and cut them in the order of their numbers. The marks need not be cut."
     ),
     "profile.kerf_is_theirs": mark(
         "Contours are the edges of the finished part: the cutting service has to allow for its kerf."
@@ -37,6 +38,10 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     # Folders of layer files
     "layers.file_in_the_way": mark("Cannot write the folder {folder}: a file has that name. Choose another name."),
     "layers.not_a_folder": mark("{folder} is not a folder of layer files. Export it again."),
+    "layers.not_registered": mark(
+        "The files in {folder} do not have the same registration marks, so they would not lie upon each other. Export "
+        "the folder again."
+    ),
     "layers.other_files": mark(
         "The folder {folder} holds other files ({name:.60}). Layer files need a folder of their own."
     ),

@@ -3,17 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import ezdxf
 import pytest
+from ezdxf import bbox
+from ezdxf.path import make_path
 
 from kirigami_studio.export import layer_files
+from kirigami_studio.export.dxf_check import check_file
 from kirigami_studio.export.exporter import ExportJob
 from kirigami_studio.export.profile import find_profile
 from kirigami_studio.export.registry import export
 from kirigami_studio.export.verification import verify_export
 from kirigami_studio.fabricate.cut_plan import plan_cuts
+from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions
 from kirigami_studio.foundation.errors import ExportError
 from kirigami_studio.lattice.deployment import Deployment
 
@@ -37,12 +42,58 @@ def test_that_the_folder_holds_one_numbered_file_for_each_layer_and_the_outline_
     corners = set()
     for path in folder.iterdir():
         document = ezdxf.readfile(path)
-        assert {entity.dxf.layer for entity in document.modelspace()} == {path.stem[2:]}
+        assert {entity.dxf.layer for entity in document.modelspace()} == {path.stem[2:], "REGISTRATION"}
         corners.add(tuple(document.header["$EXTMAX"])[:2])
-    assert corners == {plan.bounds_mm}
+    # A frame of 2 mm around the sheet, with the same marks in every file.
+    assert corners == {(plan.bounds_mm[0] + 4.0, plan.bounds_mm[1] + 4.0)}
     report = verify_export(plan, tmp_path / "sheet.dxf", "layers", version)
     assert report.ok
     assert report.pieces == 1
+
+
+@pytest.mark.parametrize("version", ["R2010", "R12"])
+def test_that_all_files_have_the_same_extent_and_marks_as_another_program_sees_them(
+    version: str, job: ExportJob, tmp_path: Path
+) -> None:
+    folder = layer_files.write_layer_files(job.required_plan, tmp_path / "sheet", version, find_profile("layers"))
+    boxes, marks = set(), []
+    for path in folder.iterdir():
+        modelspace = ezdxf.readfile(path).modelspace()
+        box = bbox.extents(modelspace)
+        boxes.add((box.extmin.x, box.extmin.y, box.extmax.x, box.extmax.y))
+        drawn = [make_path(entity) for entity in modelspace if entity.dxf.layer == "REGISTRATION"]
+        marks.append([[(point.x, point.y) for point in path.control_vertices()] for path in drawn])
+    width, height = job.required_plan.bounds_mm
+    assert boxes == {(0.0, 0.0, width + 4.0, height + 4.0)}
+    assert marks == [marks[0]] * 3 and len(marks[0]) == 3
+
+
+@pytest.mark.parametrize(("version", "tabs"), [("R2010", 0), ("R12", 3)])
+@pytest.mark.parametrize("style", [ConnectorStyle.STRAIGHT, ConnectorStyle.ROUND])
+def test_that_the_check_takes_the_folder_and_each_of_its_files_for_ready(
+    style: ConnectorStyle, version: str, tabs: int, job: ExportJob, tmp_path: Path
+) -> None:
+    plan = plan_cuts(job.deployment, 150.0, options=CutOptions(style=style, tabs=tabs))
+    folder = export(replace(job, plan=plan, dxf_version=version), tmp_path / "sheet.dxf")
+    whole = check_file(folder)
+    assert whole.ok and whole.pieces == 1, [problem.text for problem in whole.problems]
+    assert [problem.code for problem in whole.problems] == ([] if version == "R2010" else ["cut_file.no_unit"])
+    assert whole.cut_length_mm == pytest.approx(plan.cut_length_mm, rel=1e-9)
+    parts = [check_file(path) for path in sorted(folder.iterdir())]
+    assert all(part.ok for part in parts), [problem.text for part in parts for problem in part.problems]
+    assert sum(part.cut_length_mm for part in parts) == pytest.approx(plan.cut_length_mm, rel=1e-9)
+
+
+def test_that_a_file_that_was_moved_by_itself_is_noticed(job: ExportJob, tmp_path: Path) -> None:
+    folder = export(job, tmp_path / "sheet.dxf")
+    document = ezdxf.readfile(folder / "2_EDGE_SLITS.dxf")
+    for entity in document.modelspace():
+        entity.translate(1.0, 0.0, 0.0)
+    document.save()
+    for reader in (lambda: check_file(folder), lambda: verify_export(job.required_plan, folder, "layers")):
+        with pytest.raises(ExportError) as refused:
+            reader()
+        assert refused.value.code == "layers.not_registered"
 
 
 def test_that_a_folder_of_ours_is_replaced_and_one_with_other_files_refused(job: ExportJob, tmp_path: Path) -> None:
