@@ -150,3 +150,19 @@ def test_that_nothing_is_said_of_a_sheet_that_is_edited(closed: MainWindow, unti
     closed.controller.hand.nudge(frozenset({(1, 1)}), 0.2)
     assert closed.controller.as_cut.state.sheet is None and closed.stage.as_cut.text() == ""
     until(lambda: closed.controller.as_cut.state.sheet is not None)
+
+
+def test_that_force_and_energy_are_plotted(jammed: MainWindow, until: Until) -> None:
+    plots = jammed.stage.plots
+    jammed.resize(1440, 900)
+    jammed.commands["plots"].trigger()
+    until(lambda: plots.complete)
+    sheet = jammed.controller.as_cut.state.sheet
+    assert sheet is not None
+    force, energy = plots.cut_charts
+    degrees, values = energy.curves[0].getData()
+    assert values == pytest.approx(sheet.closing.path.energy) and degrees[0] == pytest.approx(180.0)
+    assert force.curves[0].getData()[1][-1] > 0.0
+    assert force.isVisible() and energy.isVisible()
+    jammed.controller.as_cut.forget()
+    assert not force.isVisible() and not energy.isVisible() and plots.charts[0].isVisible()

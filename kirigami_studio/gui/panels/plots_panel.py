@@ -1,4 +1,4 @@
-"""Curves of one design over the deployment angle: match, area, size and gaps, with a line to scrub by."""
+"""Curves of one design over the deployment angle: match, area, size, gaps; force and energy as cut."""
 
 from __future__ import annotations
 
@@ -18,7 +18,10 @@ from kirigami_studio.gui.jobs.plot_jobs import ANGLES, Reading
 from kirigami_studio.gui.look.theme import LIGHT, Palette
 
 if TYPE_CHECKING:
+    from kirigami_studio.foundation.arrays import FloatArray
     from kirigami_studio.gui.views.chart import Chart
+    from kirigami_studio.mechanics.closing import Closing
+    from kirigami_studio.project.as_cut import SimulatedSheet
 
 #: A chart needs this height (pixels); with less for all of them one is shown at a time.
 CHART_HEIGHT = 132
@@ -54,6 +57,27 @@ def _rows() -> tuple[_Row, ...]:
     )  # fmt: skip
 
 
+@dataclass(frozen=True, slots=True)
+class _CutRow:
+    """One chart of the sheet as cut: its button's text, its tooltip, its unit, and what it draws of a closing."""
+
+    text: str
+    tip: str
+    unit: str
+    take: Callable[[Closing], FloatArray]
+
+
+def _cut_rows() -> tuple[_CutRow, ...]:
+    # Against an angle the slope of the energy is a moment: what a lever of one panel's size needs at its end.
+    force = tr("Force at the edge of a panel that holds the sheet at each angle as cut, N")
+    return (
+        _CutRow(tr("Force"), force, "N", lambda found: found.path.force / found.sheet.network.panel_size),
+        _CutRow(
+            tr("Energy"), tr("Energy in the connectors at each angle as cut, mJ"), "mJ", lambda found: found.path.energy
+        ),
+    )
+
+
 class PlotsPanel(QWidget):
     """Charts below each other where there is room, else one of them; nothing is drawn before the first curve comes.
 
@@ -69,8 +93,10 @@ class PlotsPanel(QWidget):
         self._curves: Curves | None = None
         self._width_mm = 100.0
         self._phi, self._target, self._pointed = math.pi, 0.0, -1.0
-        self._rows = _rows()
+        self._rows, self._cut_rows = _rows(), _cut_rows()
+        self._closing: Closing | None = None
         self.charts: list[Chart] = []
+        self.cut_charts: list[Chart] = []  #: of the sheet as cut
         self._stale: list[int] = []  # charts whose curves are to be drawn
         self._turn = QTimer(self, singleShot=True, interval=0)
         self._turn.timeout.connect(self._go_on)
@@ -95,11 +121,12 @@ class PlotsPanel(QWidget):
         row.setContentsMargins(0, 0, 0, 0)
         row.setSpacing(2)
         self.buttons = QButtonGroup(self)
-        for number, line in enumerate(self._rows):
+        rows = [*((row.text, row.tip) for row in self._rows), *((row.text, row.tip) for row in self._cut_rows)]
+        for number, (text, tip) in enumerate(rows):
             button = QToolButton()
-            button.setText(line.text)
-            button.setToolTip(line.tip)
-            button.setAccessibleName(line.tip)
+            button.setText(text)
+            button.setToolTip(tip)
+            button.setAccessibleName(tip)
             button.setCheckable(True)
             button.setFocusPolicy(Qt.FocusPolicy.TabFocus)
             button.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
@@ -128,14 +155,37 @@ class PlotsPanel(QWidget):
             self._draw()
         self._arrange()
 
+    def show_as_cut(self, sheet: SimulatedSheet | None) -> None:
+        """Draw what the sheet does as cut; None where that is not known."""
+        self._closing = None if sheet is None else sheet.closing
+        if self._built:
+            self._draw_as_cut()
+            self._share_room()
+
+    def _draw_as_cut(self) -> None:
+        from kirigami_studio.gui.views.chart import Series
+
+        found = self._closing
+        if found is None:
+            return
+        for row, chart in zip(self._cut_rows, self.cut_charts, strict=True):
+            chart.set_series(Series(np.degrees(found.phi), (row.take(found),)))
+            chart.read_out(self._angle)
+
+    @property
+    def _all_charts(self) -> list[Chart]:
+        return [*self.charts, *self.cut_charts]
+
     @property
     def _built(self) -> bool:
-        return len(self.charts) == len(self._rows)
+        return len(self._all_charts) == len(self._rows) + len(self._cut_rows)
 
     def _go_on(self) -> None:
         """Make one chart, or redraw one."""
         if not self._built:
             self._build()
+            if self._built:
+                self._draw_as_cut()
             self._turn.start()
             return
         if self._stale:
@@ -165,14 +215,14 @@ class PlotsPanel(QWidget):
     def set_phi(self, phi: float) -> None:
         """Another angle is shown, radians."""
         self._phi = phi
-        for chart in self.charts:
+        for chart in self._all_charts:
             chart.set_phi(phi)
         self._read_out()
 
     def set_target(self, phi: float) -> None:
         """Mark the target angle, radians."""
         self._target = phi
-        for chart in self.charts:
+        for chart in self._all_charts:
             chart.set_target(phi)
 
     def set_palette(self, palette: Palette) -> None:
@@ -186,9 +236,19 @@ class PlotsPanel(QWidget):
     def _build(self) -> None:
         from kirigami_studio.gui.views.chart import Chart  # the worker has imported what it draws with
 
-        row = self._rows[len(self.charts)]
-        chart = Chart(row.text, row.unit, tuple(name for name, _ in row.series), row.from_zero)
-        chart.setToolTip(tr("{what}\nDrag the line or click to jump to an angle.", what=row.tip))
+        if len(self.charts) < len(self._rows):
+            row = self._rows[len(self.charts)]
+            chart = Chart(row.text, row.unit, tuple(name for name, _ in row.series), row.from_zero)
+            self._add(chart, row.tip)
+            self.charts.append(chart)
+        else:
+            line = self._cut_rows[len(self.cut_charts)]
+            chart = Chart(line.text, line.unit, (line.text.lower(),))
+            self._add(chart, line.tip)
+            self.cut_charts.append(chart)
+
+    def _add(self, chart: Chart, tip: str) -> None:
+        chart.setToolTip(tr("{what}\nDrag the line or click to jump to an angle.", what=tip))
         chart.set_palette(self._palette)
         chart.phi_wanted.connect(self.phi_wanted)
         chart.pointed.connect(self._point)
@@ -196,16 +256,21 @@ class PlotsPanel(QWidget):
         chart.set_target(self._target)
         chart.hide()
         self._column.addWidget(chart, 1)
-        self.charts.append(chart)
 
     def _share_room(self) -> None:
         """All charts where they fit; one of them, and the choice, where they do not."""
         everything = self.height() >= len(self._rows) * CHART_HEIGHT
         self.choice.setVisible(not everything)
         known = self._built and self._curves is not None and bool(self._curves.readings)
-        last = len(self.charts) - 1
-        for number, chart in enumerate(self.charts):
-            chart.setVisible(known and (everything or number == self.buttons.checkedId()))
+        closed = self._closing is not None
+        for number in range(len(self._rows), len(self._rows) + len(self._cut_rows)):
+            self.buttons.button(number).setEnabled(closed)
+            if not closed and number == self.buttons.checkedId():
+                self.buttons.button(0).setChecked(True)
+        last = len(self.charts) - 1 + (len(self.cut_charts) if closed else 0)
+        for number, chart in enumerate(self._all_charts):
+            there = known and (closed or number < len(self._rows))
+            chart.setVisible(there and (everything or number == self.buttons.checkedId()))
             chart.show_angles(not everything or number == last)
 
     def _draw(self) -> None:
@@ -230,7 +295,7 @@ class PlotsPanel(QWidget):
 
     def _read_out(self) -> None:
         """Say the numbers where the mouse points, or where the sheet is, at the nearest angle that was read."""
-        for chart in self.charts:
+        for chart in self.charts if self._closing is None else self._all_charts:
             chart.read_out(self._angle)
 
     @property

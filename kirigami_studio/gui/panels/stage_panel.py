@@ -246,6 +246,7 @@ class StagePanel(Card):
         self.as_cut.show_state(state)
         self.deployment.set_jam(jam or None)
         self.view.show_as_cut(state.sheet)
+        self.plots.show_as_cut(state.sheet)
         self.switches_changed.emit()
 
     def show_trimming(self, busy: bool) -> None:
