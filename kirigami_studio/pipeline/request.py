@@ -180,9 +180,12 @@ class Request:
     def kept_size(self) -> float:
         """Edges and necks (unit cells) that fits do not fall below: ``least_panel``, or more if the material needs it.
 
-        Where that is nearly a cell or more, no design can be cut, and only ``least_panel`` counts.
+        Where that is nearly a cell or more, no design can be cut, and only ``least_panel`` counts; so it does while the
+        grid is left to the run.
         """
-        return max(self.least_panel, least_in_cells(self.least_feature_mm, self.width_mm, self.chosen_grid[1]))
+        if self.grid is None:
+            return self.least_panel
+        return max(self.least_panel, least_in_cells(self.least_feature_mm, self.width_mm, self.grid[1]))
 
     @property
     def wishes(self) -> Wishes:

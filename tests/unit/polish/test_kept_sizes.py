@@ -126,6 +126,8 @@ def test_that_the_material_asks_for_a_size_in_cells() -> None:
     assert Request(target, (10, 11), least_panel=0.3, width_mm=120.0, least_feature_mm=2.0).kept_size == 0.3
     assert Request(target, (10, 11), width_mm=120.0, least_feature_mm=9.5).kept_size == 0.0
     assert Request(target, (10, 11)).kept_size == 0.0
+    without_grid = Request(target, None, least_panel=0.3, width_mm=10.0, least_feature_mm=2.0)
+    assert without_grid.kept_size == without_grid.wishes.least_panel == 0.3
     assert least_in_cells(1.0, 10.0, 3) == pytest.approx(0.4)
 
 
