@@ -14,6 +14,7 @@ from kirigami_studio.export.animation import FRAMES, write_animation
 from kirigami_studio.export.dxf_check import check_file
 from kirigami_studio.export.export_set import ExportSet, export_all
 from kirigami_studio.export.exporter import ExportJob
+from kirigami_studio.export.paper import page_notes
 from kirigami_studio.export.profile import find_profile
 from kirigami_studio.export.provenance import sidecar_path, write_sidecar
 from kirigami_studio.export.registry import export as export_file
@@ -70,12 +71,17 @@ def export(arguments: argparse.Namespace) -> int:
     written = _written(job, arguments)
     work = _work(job, arguments)
     notes = [*plan.notes, *report.problems, *(note for found in written.verifications for note in found.warnings)]
+    if arguments.all or Path(arguments.out).suffix.lower() == ".pdf":
+        notes += page_notes(plan.bounds_mm, arguments.paper)
     warnings = [note.text for note in notes]
-    if written.older:
-        names = ", ".join(path.name for path in written.older)
+    if left := [path.name for path in written.older if path not in written.removed]:
+        names = ", ".join(left)
         warnings.append(
             tr("The folder has files of an earlier export: {names}. Delete what you do not want to cut.", names=names)
         )
+    if written.removed:
+        names = ", ".join(path.name for path in written.removed)
+        warnings.append(tr("Removed files of an earlier export that this one does not have: {names}.", names=names))
     warnings = list(dict.fromkeys(warnings))
     verified = [_summary(found) for found in written.verifications]
     bad = [finding.text for found in written.verifications for finding in found.findings if not finding.ok]

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import hashlib
+import json
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -13,7 +15,11 @@ from kirigami_studio.export.provenance import sidecar_path, write_sidecar
 from kirigami_studio.export.registry import export
 from kirigami_studio.export.svg import write_layout_svg
 from kirigami_studio.export.verification import Verification, verify_export
+from kirigami_studio.foundation.errors import ExportError
+from kirigami_studio.foundation.files import folder_of_one_writer
 
+#: A record larger than this (bytes) is none of ours.
+LARGEST_RECORD = 50_000_000
 R12 = "R12"
 R2010 = "R2010"
 
@@ -29,12 +35,15 @@ class ExportSet:
     verifications : tuple of Verification
         One for each cut file that two readers can read.
     older : tuple of Path
-        Cut files of the same name that lie beside these from an earlier export.
+        Cut files of the same name that an earlier export left and this one does not have.
+    removed : tuple of Path
+        Those of an earlier export, by its record, that nobody had changed since; they are gone.
     """
 
     files: tuple[Path, ...]
     verifications: tuple[Verification, ...]
     older: tuple[Path, ...] = ()
+    removed: tuple[Path, ...] = ()
 
     @property
     def ok(self) -> bool:
@@ -49,7 +58,8 @@ def export_all(
     """Write the whole set into a folder; each file appears whole or not at all.
 
     Cut file as DXF R2010 and R12, as SVG and as LightBurn project, PDF on the job's paper, layout and preview, the
-    record of the job and the reference drawing.
+    record of the job and the reference drawing.  What an earlier export of the same name left, and this one does not
+    have, is removed if that one's record names it and nobody changed it.
 
     Parameters
     ----------
@@ -67,10 +77,22 @@ def export_all(
     Raises
     ------
     ExportError
-        No plan, an unwritable place, or a file that did not pass its own re-reading; files written before stay.
+        No plan, an unwritable place, a folder that another export is writing into or that holds that of another name,
+        or a file that did not pass its own re-reading; files written before stay.
     """
-    plan, home = job.required_plan, Path(folder)
+    home = Path(folder)
+    _ = job.required_plan  # refused before a folder is made
+    with folder_of_one_writer(home):
+        _refuse_other_sets(home, name)
+        return _written(job, home, name, sidecar, on_written)
+
+
+def _written(
+    job: ExportJob, home: Path, name: str, sidecar: bool, on_written: Callable[[Path], None] | None
+) -> ExportSet:
+    plan = job.required_plan
     cut = home / f"{name}.dxf"
+    before = _recorded(sidecar_path(cut))
     written: list[Path] = []
     verified: list[Verification] = []
 
@@ -83,7 +105,6 @@ def export_all(
         path = export(replace(job, dxf_version=version), goal)
         verified.append(verify_export(plan, path, job.profile, version, job.deployment))
         done(path)
-    cut_files = tuple(written)
     if not find_profile(job.profile).slots:
         done(export(job, home / f"{name}.lbrn2"))
     for goal in (home / f"{name}.pdf", home / "preview.png"):
@@ -92,7 +113,52 @@ def export_all(
     done(home / "layout.svg")
     done(write_reference(plan, home / "reference.dxf"))
     if sidecar:
-        done(write_sidecar(job, sidecar_path(cut), cut_files))
+        done(write_sidecar(job, sidecar_path(cut), written))
     known = (f"{name}{rest}" for rest in ("", ".dxf", ".lbrn2", ".json", f"_{R12.lower()}", f"_{R12.lower()}.dxf"))
     older = tuple(path for path in map(home.joinpath, known) if path.exists() and path not in written)
-    return ExportSet(tuple(written), tuple(verified), older)
+    return ExportSet(tuple(written), tuple(verified), older, _remove(home, before, written))
+
+
+def _refuse_other_sets(home: Path, name: str) -> None:
+    """Pictures and reference drawing have the same names in every set, so a folder holds one."""
+    for path in sorted(home.glob("*.json")):
+        if path.stem != name and "preview.png" in _recorded(path):
+            raise ExportError("set.other_design", folder=home, other=path.stem)
+
+
+def _recorded(path: Path) -> dict[str, str]:
+    """SHA-256 of the files that a record names, by their paths in its folder; none where it is no record of ours."""
+    try:
+        if path.stat().st_size > LARGEST_RECORD:
+            return {}
+        record = json.loads(path.read_bytes())
+        if not str(record["application"]).startswith("kirigami-studio "):
+            return {}
+        return {str(name): str(digest) for name, digest in record["files"].items()}
+    except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError):
+        return {}
+
+
+def _remove(home: Path, before: Mapping[str, str], written: Sequence[Path]) -> tuple[Path, ...]:
+    """Remove what an earlier set recorded, this one did not write, and nobody changed; returns files and folders."""
+    removed = []
+    for name, digest in before.items():
+        path = home / name
+        inside = Path(name).parts
+        # Names of a record are not to lead out of the folder, nor into one that is written now.
+        if not 1 <= len(inside) <= 2 or ".." in inside or Path(name).is_absolute():
+            continue
+        if path in written or home / inside[0] in written or path.is_symlink() or not path.is_file():
+            continue
+        try:
+            if hashlib.sha256(path.read_bytes()).hexdigest() != digest:
+                continue
+            path.unlink()
+            if len(inside) == 1:
+                removed.append(path)
+            elif not any(path.parent.iterdir()):
+                path.parent.rmdir()
+                removed.append(path.parent)
+        except OSError:
+            continue  # it stays, and is told among the older ones
+    return tuple(removed)

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 
+from kirigami_studio.fabricate.findings import Note
 from kirigami_studio.foundation.errors import ExportError
 
 Size = tuple[float, float]
@@ -23,6 +24,8 @@ FOOTER_MM = 14.0
 OVERLAP_MM = 10.0
 #: More pages than this are a mistake in the size.
 MOST_PAGES = 400
+#: From this many pages on, a person is told.
+MANY_PAGES = 20
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,6 +91,20 @@ def tile(size: Size, paper: str) -> Tiling:
     if len(best.tiles) > MOST_PAGES:
         raise ExportError("paper.too_many_pages", pages=len(best.tiles), paper=paper)
     return best
+
+
+def page_notes(size: Size, paper: str) -> tuple[Note, ...]:
+    """What to know about a drawing (width, height; mm) on this paper before it is printed.
+
+    Raises
+    ------
+    ExportError
+        Unknown paper, or too many pages.
+    """
+    if find_paper(paper) is None:
+        return ()
+    pages = len(tile(size, paper).tiles)
+    return (Note.of("paper.many_pages", pages=pages, paper=paper),) if pages >= MANY_PAGES else ()
 
 
 def find_paper(name: str) -> Size | None:

@@ -1,12 +1,13 @@
-"""Atomic writing: a file appears whole or not at all, and an old one survives a failure."""
+"""Atomic writing: a file appears whole or not at all, and an old one survives a failure.  Folders for one writer."""
 
 from __future__ import annotations
 
 import contextlib
 import os
 import stat
+import sys
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 from kirigami_studio.foundation.errors import ExportError
@@ -81,6 +82,59 @@ def linked_file(path: Path) -> Path:
         raise ExportError("file.link_to_nothing", path=path, target=to) from error
     except (OSError, RuntimeError) as error:  # RuntimeError: pathlib's word for a circle
         raise ExportError("file.link_in_circle", path=path) from error
+
+
+@contextlib.contextmanager
+def folder_of_one_writer(folder: Path) -> Iterator[None]:
+    """Make a folder and keep other writers that ask the same way out of it; a writer that is killed lets go of it.
+
+    Where the file system knows no locks, everybody is let in.
+
+    Raises
+    ------
+    ExportError
+        Somebody else is writing there, or the folder cannot be made.
+    """
+    handle = None
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        handle = _lock(folder)
+    except BlockingIOError as error:
+        raise ExportError("file.folder_in_use", folder=folder) from error
+    except OSError as error:
+        raise ExportError("file.not_written", path=folder, reason=error.strerror or str(error)) from error
+    try:
+        yield
+    finally:
+        if handle is not None:
+            os.close(handle)
+
+
+if sys.platform == "win32":
+
+    def _lock(folder: Path) -> int | None:
+        """A file that only one process can make, and that disappears with its handle."""
+        flags = os.O_CREAT | os.O_EXCL | os.O_RDWR | os.O_TEMPORARY
+        try:
+            return os.open(folder / ".kirigami-studio.lock", flags)
+        except FileExistsError as error:
+            raise BlockingIOError from error
+
+else:
+    import fcntl
+
+    def _lock(folder: Path) -> int | None:
+        """A lock on the folder itself, which leaves no file behind."""
+        handle = os.open(folder, os.O_RDONLY)
+        try:
+            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            os.close(handle)
+            raise
+        except OSError:  # a file system without locks
+            os.close(handle)
+            return None
+        return handle
 
 
 def check_folder(folder: Path) -> None:

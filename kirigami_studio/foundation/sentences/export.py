@@ -35,6 +35,13 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "lightburn.no_power": mark("The material {material!r} has no power: set it in LightBurn before cutting."),
     "gif.too_few_frames": mark("An animation needs at least 2 frames, got {frames}."),
     "dxf.unknown_version": mark("The DXF version must be R2010 or R12, got {version!r:.40}."),
+    "paper.many_pages": mark(
+        "The PDF has {pages} pages of {paper} to be glued together. Make the sheet smaller or choose one large page."
+    ),
+    "set.other_design": mark(
+        "The folder {folder} holds the export of {other:.80}, whose pictures this one would replace. Choose another "
+        "folder."
+    ),
     # Folders of layer files
     "layers.file_in_the_way": mark("Cannot write the folder {folder}: a file has that name. Choose another name."),
     "layers.not_a_folder": mark("{folder} is not a folder of layer files. Export it again."),

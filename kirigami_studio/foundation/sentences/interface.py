@@ -69,6 +69,9 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "export.stopped": mark("Export to {folder} stopped; files already written are kept."),
     # foundation
     "file.not_written": mark("Cannot write {path}: {reason}. Choose another folder or free some space."),
+    "file.folder_in_use": mark(
+        "Cannot write into {folder}: another export is writing there. Wait for it or choose another folder."
+    ),
     "file.is_a_folder": mark("Cannot write {path}: it is a folder. Give a file name."),
     "file.link_to_nothing": mark(
         "Cannot write {path}: it is a link to {target}, which does not exist. Delete the link or choose another name."

@@ -77,6 +77,55 @@ def test_that_cut_files_of_an_earlier_export_are_told(job: ExportJob, tmp_path: 
     assert [path.name for path in again.older] == ["cut.dxf", "cut_r12.dxf"]
 
 
+def test_that_what_an_earlier_export_left_is_removed_if_nobody_changed_it(job: ExportJob, tmp_path: Path) -> None:
+    export_all(job, tmp_path)
+    (tmp_path / "cut_r12.dxf").write_text("changed by hand")
+    (tmp_path / "notes.txt").write_text("mine")
+    again = export_all(replace(job, profile="layers"), tmp_path)
+    assert again.removed == (tmp_path / "cut.dxf",)
+    assert {path.name for path in tmp_path.iterdir()} == {
+        *(path.name for path in again.files), "cut_r12.dxf", "notes.txt"
+    }  # fmt: skip
+    back = export_all(job, tmp_path)
+    assert {path.name for path in back.removed} == {"cut", "cut_r12"}
+    assert not (tmp_path / "cut").exists() and (tmp_path / "notes.txt").read_text() == "mine"
+
+
+def test_that_a_record_cannot_have_files_outside_the_folder_removed(job: ExportJob, tmp_path: Path) -> None:
+    home, outside = tmp_path / "set", tmp_path / "outside.txt"
+    export_all(job, home)
+    outside.write_text("mine")
+    record = json.loads((home / "cut.json").read_text())
+    digest = hashlib.sha256(outside.read_bytes()).hexdigest()
+    record["files"] |= {"../outside.txt": digest, str(outside): digest}
+    (home / "cut.json").write_text(json.dumps(record))
+    assert export_all(job, home).removed == ()
+    assert outside.exists()
+
+
+def test_that_a_folder_holds_the_set_of_one_design(job: ExportJob, tmp_path: Path) -> None:
+    export_all(job, tmp_path, "heart")
+    before = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
+    with pytest.raises(ExportError) as refused:
+        export_all(job, tmp_path, "star")
+    assert refused.value.code == "set.other_design"
+    assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == before
+
+
+def test_that_two_exports_do_not_write_into_one_folder_at_once(job: ExportJob, tmp_path: Path) -> None:
+    refusals = []
+
+    def second(_: Path) -> None:
+        if not refusals:
+            with pytest.raises(ExportError) as refused:
+                export_all(job, tmp_path)
+            refusals.append(refused.value.code)
+
+    export_all(job, tmp_path, on_written=second)
+    assert refusals == ["file.folder_in_use"]
+    assert export_all(job, tmp_path).ok
+
+
 def test_that_the_same_job_gives_the_same_set(job: ExportJob, tmp_path: Path) -> None:
     for name in ("one", "two"):
         export_all(job, tmp_path / name)

@@ -15,7 +15,7 @@ from shapely.geometry import LineString
 
 from kirigami_studio.export import pdf, picture
 from kirigami_studio.export.exporter import ExportJob
-from kirigami_studio.export.paper import PAPERS, tile
+from kirigami_studio.export.paper import PAPERS, page_notes, tile
 from kirigami_studio.export.pdf import read_pages
 from kirigami_studio.export.registry import export
 from kirigami_studio.fabricate.cut_plan import CutPlan, Layer, plan_cuts
@@ -155,3 +155,10 @@ def test_that_a_missing_cut_is_noticed(
     with pytest.raises(ExportError, match="did not read back"):
         pdf.write_pdf(plan, tmp_path / "sheet.pdf", "a4")
     assert sum(path.layer is Layer.SLITS for path in plan.paths) == 30
+
+
+def test_that_a_pdf_of_many_pages_is_told() -> None:
+    assert page_notes((3000.0, 2900.0), "none") == page_notes((300.0, 200.0), "a4") == ()
+    (note,) = page_notes((1500.0, 1500.0), "a4")
+    assert note.code == "paper.many_pages"
+    assert note.fields["pages"] == len(tile((1500.0, 1500.0), "a4").tiles)
