@@ -38,15 +38,15 @@ COARSEST, FINEST = 6, 16
 #: Fewest voids; coarser grids match simple shapes, but hardly show how a sheet opens.
 FEWEST_VOIDS = 99
 #: The coarsest grid with at least this predicted match is taken.
-GOAL = 0.99
+GOAL = 0.992
 #: Where no grid reaches it, the coarsest one is taken that misses no more than the best one divided by this.  Without a
 #: symmetry fits take twice as long: a flag and a house match 0.986 and 0.977 on 14 x 14, 0.980 and 0.980 on 16 x 16.
 WORTHWHILE, WORTHWHILE_FREE = 0.97, 0.88
-#: Where a shape with a mirror axis is not expected to reach the goal, grids are tried that miss no more than the best
-#: one times this, of proportions (logarithm of height over width) that differ by at least the second and lie within the
-#: third of the square's and the shape's own.  Nine short steps rank the grids of a star, a butterfly, a vase and a
-#: cross as the whole fits do.
-TRIED_MISSING, TRIED_APART, TRIED_ROOM, MOST_TRIED = 1.6, 0.09, 0.25, 4
+#: Where a shape with a mirror axis is expected to stay below the last number, grids are tried that miss no more than
+#: the best one times the first, of proportions (logarithm of height over width) that differ by at least the second and
+#: lie within the third of the square's and the shape's own.  Nine short steps rank the grids of a star, a butterfly, a
+#: vase and a cross as the whole fits do.
+TRIED_MISSING, TRIED_APART, TRIED_ROOM, MOST_TRIED, TRIED_BELOW = 1.6, 0.09, 0.25, 4, 0.987
 TRIAL = (Stage(3, 0.1, 3e-2), Stage(3, 0.04, 3e-3), Stage(3, 0.01, 1e-3))
 #: Panels of a fitted sheet have hardly any edge or neck below this share of a cell.
 SMALLEST_SHARE = 0.25
@@ -248,7 +248,8 @@ def _tried(
     target: Outline, phi: float, symmetry: str, width_mm: float, least_feature_mm: float, free_rim: bool
 ) -> GridChoice:
     choice = choose_grid(target, phi, symmetry, width_mm, least_feature_mm)
-    if choice.code != "grid.best_expected" or not choice.poses or choice.poses[0].angle is None:
+    hard = choice.code == "grid.best_expected" and choice.predicted_match < TRIED_BELOW
+    if not hard or not choice.poses or choice.poses[0].angle is None:
         return choice
     poses = symmetric_poses(target, symmetry)
     figures = ShapeFigures.of(target)

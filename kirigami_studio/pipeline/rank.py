@@ -20,8 +20,8 @@ from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.fabricate.findings import Note
 from kirigami_studio.pipeline.request import Request
 
-#: IoU (0..1) that a coefficient of variation of panel areas lower by 1 is worth: 0.5 rather than 0.8 is worth 0.9 %.
-EVENNESS = 0.03
+#: IoU (0..1) that a coefficient of variation of panel areas lower by 1 is worth: 0.4 rather than 0.8 is worth 1 %.
+EVENNESS = 0.025
 #: IoU that a sheet without thin panels is worth over one with a panel of no width.
 THIN = 0.005
 #: Edges and necks (unit cells) below this count as thin.
@@ -29,7 +29,7 @@ SLENDER = 0.2
 #: IoU that a sheet without ratios at a limit is worth over one with nothing else.
 AT_LIMIT = 0.01
 #: IoU that a symmetric sheet may lack and still comes first.
-SYMMETRY = 0.03
+SYMMETRY = 0.02
 
 #: The IoU that this preference gives away for a total variation (per void) that is lower by 1.
 WORTH = {"accuracy": 0.0, "balanced": 0.0, "regularity": 0.005, "calm": 0.03}

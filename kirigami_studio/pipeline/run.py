@@ -6,6 +6,7 @@ import time
 from collections.abc import Callable, Generator, Iterator, Sequence
 from contextlib import closing
 from dataclasses import dataclass
+from itertools import zip_longest
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.score import evaluate
@@ -14,6 +15,7 @@ from kirigami_studio.foundation.words import mark, tr
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.sheet import Sheet
+from kirigami_studio.lattice.symmetry import Symmetry
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.pipeline.auto_grid import chosen_for
 from kirigami_studio.pipeline.events import (
@@ -178,16 +180,22 @@ def sample(request: Request) -> tuple[RatioField, ...]:
 
 
 def fits_from_uniform(request: Request) -> list[GuidedTask]:
-    """The fits from the uniform sheet, by two ways from each pose, symmetric ones first; they have the last numbers."""
+    """The fits from the uniform sheet, by several ways from each pose, symmetric ones first and of each symmetry in
+    turn; they have the last numbers.
+    """
     if not request.fitted_starts:
         return []
     angles = first_angles(request.target, request.chosen_grid, request.phi, 1, request.symmetry)
     if request.symmetry in ("mirror", "turn"):
         angles = [one for one in angles if one[1] is not None] or angles
-    ways = [(angle, symmetry, way) for angle, symmetry in angles for way in Way.suited_to(request.target, symmetry)][
-        : request.fitted_starts
-    ]
-    return [GuidedTask(request.k - len(ways) + place, *way) for place, way in enumerate(ways)]
+    ways: dict[Symmetry | None, list[tuple[float, Symmetry | None, Way]]] = {}
+    for angle, symmetry in angles:
+        for way in Way.suited_to(request.target, symmetry):
+            ways.setdefault(symmetry, []).append((angle, symmetry, way))
+    free = ways.pop(None, [])
+    in_turn = [one for several in zip_longest(*ways.values()) for one in several if one is not None]
+    chosen = [*in_turn, *free][: request.fitted_starts]
+    return [GuidedTask(request.k - len(chosen) + place, *way) for place, way in enumerate(chosen)]
 
 
 def symmetric_shares(request: Request, count: int) -> list[tuple[SymmetricPose, int]]:

@@ -53,13 +53,19 @@ class SymmetricPose:
         """Whether sheets of a grid can have it at an angle: quarter turns are kept in the compact state alone."""
         return self.symmetry.fits(*grid) and (self.symmetry is not Symmetry.QUARTER_TURN or phi < ZIPPED_BELOW)
 
+    def is_part_of(self, other: SymmetricPose) -> bool:
+        """Whether every sheet that keeps the other keeps this one too, and lies as freely."""
+        part = set(self.symmetry.moves) < set(other.symmetry.moves)
+        return part and (other.angle is None or self.angle is not None)
+
 
 def shared_symmetries(
     target: Outline, grid: tuple[int, int], phi: float = 0.0, setting: str = "auto"
 ) -> list[SymmetricPose]:
     """Symmetries of ``target`` that the lattice of ``grid`` has at ``phi`` too, the most specific first.
 
-    What is only a part of another one in the list is left out: the half turn of two mirrors, for instance.
+    What is only a part of another one in the list is left out, unless it lets the sheet lie at other angles: beside two
+    mirrors the half turn stays, with which a diamond may lie on its corner.
 
     Raises
     ------
@@ -70,8 +76,7 @@ def shared_symmetries(
     """
     found: list[SymmetricPose] = []
     for pose in symmetric_poses(target, setting):
-        moves = set(pose.symmetry.moves)
-        if pose.fits(grid, phi) and not any(moves < set(other.symmetry.moves) for other in found):
+        if pose.fits(grid, phi) and not any(pose.is_part_of(other) for other in found):
             found.append(pose)
     if not found and setting in ("mirror", "turn"):
         rows, columns = grid

@@ -87,10 +87,10 @@ def test_that_a_grid_offers_only_the_symmetries_of_its_lattice() -> None:
     assert offered("plus", (10, 10), 0.5) == [Symmetry.HALF_TURN]
     assert offered("wave", (8, 12)) == [Symmetry.HALF_TURN]
     assert offered("wave", (8, 11)) == []
-    assert offered("hexagon", (9, 11)) == [Symmetry.TWO_MIRRORS] * 2
+    assert offered("hexagon", (9, 11)) == [Symmetry.TWO_MIRRORS] * 2 + [Symmetry.HALF_TURN]
     assert offered("hexagon", (10, 10)) == [Symmetry.HALF_TURN]
     assert offered("star", (10, 11)) == [Symmetry.LEFT_RIGHT]
-    assert offered("square", (11, 11)) == [Symmetry.TWO_MIRRORS] * 2
+    assert offered("square", (11, 11)) == [Symmetry.TWO_MIRRORS] * 2 + [Symmetry.HALF_TURN]
 
 
 def test_that_a_symmetry_can_be_switched_off_or_forced_on_a_sketch() -> None:
