@@ -16,7 +16,7 @@ from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.foundation.resources import resource_root
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.cutting import CutPlanner, FabricationEditor
-from kirigami_studio.gui.designs.as_cut import AsCutReader
+from kirigami_studio.gui.designs.as_cut import AsCutEstimates, AsCutReader
 from kirigami_studio.gui.designs.chosen_design import Refitter, SampledScores, TrimSwitch
 from kirigami_studio.gui.designs.collection import DesignMarks
 from kirigami_studio.gui.designs.curves import CurveReader
@@ -52,8 +52,8 @@ class Controller(QObject):
         Making designs, and the run that makes them.
     reader
         What the target's shape says before a run.
-    regularity, alikes
-        The balance of match and regularity over the designs, and which of them look the same.
+    regularity, alikes, estimates
+        The balance of match and regularity over the designs, which of them look the same, which close as cut.
     fabrication, cutting
         The numbers a design is cut with, and its cut plan and files.
     targeting, filing, preferences
@@ -81,6 +81,7 @@ class Controller(QObject):
         self.fabrication = FabricationEditor(session)
         self.cutting = CutPlanner(session, self)
         self.as_cut = AsCutReader(session, self)
+        self.estimates = AsCutEstimates(session, self)
         self.targeting = Targeting(session, self)
         self.filing = Filing(session, self.targeting, self)
         self.preferences = UserPreferences(session)
@@ -133,6 +134,7 @@ class Controller(QObject):
         """Stop all work; the window is going away."""
         self.reader.close()
         self.cutting.close()
+        self.estimates.close()
         self.hand.close()
         self.queue.close()
         self.filing.close()

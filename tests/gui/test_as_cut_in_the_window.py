@@ -11,6 +11,7 @@ from PySide6.QtTest import QTest
 from pytestqt.qtbot import QtBot
 
 from kirigami_studio.gui.main_window import MainWindow
+from kirigami_studio.gui.views.gallery_model import AS_CUT_ROLE
 from kirigami_studio.gui.views.layout_view import Overlay
 from kirigami_studio.gui.views.phi_slider import MarkKind, PhiSlider, TrackPart, track_parts, value_at
 
@@ -166,3 +167,19 @@ def test_that_force_and_energy_are_plotted(jammed: MainWindow, until: Until) -> 
     assert force.isVisible() and energy.isVisible()
     jammed.controller.as_cut.forget()
     assert not force.isVisible() and not energy.isVisible() and plots.charts[0].isVisible()
+
+
+def test_that_every_card_tells_whether_the_design_closes(closed: MainWindow, until: Until) -> None:
+    controller, model = closed.controller, closed.gallery.view.model_
+    designs = controller.document.candidates
+    until(lambda: controller.estimates.known.keys() == set(designs) and not controller.estimates.busy)
+    rows = [model.index(row, 0) for row in range(model.rowCount())]
+    assert len(rows) == len(designs)
+    for row in rows:
+        assert row.data(AS_CUT_ROLE).closes
+        assert "As cut: closes (estimate)" in row.data(Qt.ItemDataRole.ToolTipRole)
+    pictured = closed.gallery.view.viewport().grab().toImage()
+    controller.fabrication.change(connector_mm=3.0)
+    until(lambda: not controller.estimates.busy and not any(row.data(AS_CUT_ROLE).closes for row in rows))
+    assert all("As cut: jams at " in row.data(Qt.ItemDataRole.AccessibleDescriptionRole) for row in rows)
+    assert closed.gallery.view.viewport().grab().toImage() != pictured

@@ -50,6 +50,7 @@ class DesignConnections(QObject):
         regularity, settings = self._controller.regularity, window.settings
         settings.regular_moved.connect(self._move_balance)
         settings.regular_chosen.connect(self._choose_balance)
+        self._controller.estimates.changed.connect(window.gallery.view.model_.set_as_cut)
         regularity.ranked.connect(window.gallery.view.rank_by)
         regularity.busy_changed.connect(self._show_fitting)
         regularity.progressed.connect(window.run.show_progress)

@@ -1,4 +1,4 @@
-"""How the design on the stage does as cut, found out in the worker once its cuts are planned."""
+"""How designs do as cut, found out in the worker: the one on the stage simulated, all others estimated."""
 
 from __future__ import annotations
 
@@ -7,11 +7,11 @@ from dataclasses import dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QObject, Signal
+from PySide6.QtCore import QObject, QTimer, Signal
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui.jobs.as_cut_jobs import simulating
+from kirigami_studio.gui.jobs.as_cut_jobs import Estimated, estimating, simulating
 from kirigami_studio.gui.jobs.cut_jobs import CutRequest, Planned
 from kirigami_studio.gui.jobs.queue import JobCallbacks, LatestJob
 from kirigami_studio.gui.session import Entry, Session
@@ -19,10 +19,12 @@ from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.settings import FabricationSettings
 
 if TYPE_CHECKING:
-    from kirigami_studio.project.as_cut import SimulatedSheet
+    from kirigami_studio.project.as_cut import AsCut, SimulatedSheet
 
 #: Sheets that are kept; one of 10 x 10 voids takes about half a megabyte.
 CAPACITY = 32
+#: Changes that follow each other faster than this (ms) lead to one estimate.
+ESTIMATE_DELAY_MS = 250
 #: A design, how it is cut, and its target.
 Key = tuple[Candidate, FabricationSettings, Outline | None]
 
@@ -118,3 +120,57 @@ class AsCutReader(QObject):
         if state is not self.state:
             self.state = state
             self.changed.emit(state)
+
+
+class AsCutEstimates(QObject):
+    """Estimates for all designs of the gallery whether they close, once more when material, widths or style change."""
+
+    changed = Signal(object)  #: dict of Candidate to AsCut, as far as they are known
+
+    def __init__(self, session: Session, parent: QObject) -> None:
+        super().__init__(parent)
+        self._session = session
+        self._job = LatestJob[Estimated](session.queue)
+        self._entries: tuple[Entry, ...] = ()
+        self._settings: FabricationSettings | None = None
+        self.known: dict[Candidate, AsCut] = {}
+        self._timer = QTimer(self, singleShot=True, interval=ESTIMATE_DELAY_MS)
+        self._timer.timeout.connect(self._begin)
+        session.display.gallery_reset.connect(self._take_entries)
+        session.fabrication_changed.connect(self._timer.start)
+
+    @property
+    def busy(self) -> bool:
+        """Whether designs are still to be estimated."""
+        return self._job.busy or self._timer.isActive()
+
+    def close(self) -> None:
+        """Estimate no more."""
+        self._timer.stop()
+
+    def _take_entries(self, entries: tuple[Entry, ...]) -> None:
+        self._entries = entries
+        self._timer.start()
+
+    def _begin(self) -> None:
+        self._job.stop()
+        settings = replace(self._session.document.fabrication, profile="any", dxf_version="R2010")
+        there = {entry.candidate for entry in self._entries}
+        before = self.known
+        if settings != self._settings:
+            self._settings, self.known = settings, {}
+        self.known = {candidate: found for candidate, found in self.known.items() if candidate in there}
+        if before:
+            self.changed.emit(dict(self.known))
+        missing = tuple(
+            (entry.candidate, entry.design.deployment) for entry in self._entries if entry.candidate not in self.known
+        )
+        if missing:
+            steps = partial(estimating, missing, settings)
+            self._job.start(tr("estimating the designs as cut"), steps, JobCallbacks(self._take, self._tell))
+
+    def _take(self, report: Estimated) -> None:
+        self.known.update(report.found)
+
+    def _tell(self) -> None:
+        self.changed.emit(dict(self.known))

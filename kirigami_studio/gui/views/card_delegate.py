@@ -6,6 +6,7 @@ import math
 import time
 from collections.abc import Collection
 from enum import Enum
+from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QModelIndex, QPersistentModelIndex, QPoint, QPointF, QRect, QRectF, QSize, Qt
 from PySide6.QtGui import QColor, QFont, QHelpEvent, QPainter, QPen, QPixmap
@@ -19,6 +20,7 @@ from kirigami_studio.gui.look.theme import LIGHT, Palette
 from kirigami_studio.gui.scene.layout_items import TARGET_SHARE, candidate_pixmap
 from kirigami_studio.gui.views.gallery_model import (
     ALIKE_ROLE,
+    AS_CUT_ROLE,
     CANDIDATE_ROLE,
     CUTTABLE_ROLE,
     DESIGN_ROLE,
@@ -34,6 +36,9 @@ from kirigami_studio.gui.views.gallery_model import (
 from kirigami_studio.lattice.symmetry import Symmetry
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.document import Mark
+
+if TYPE_CHECKING:
+    from kirigami_studio.project.as_cut import AsCut
 
 SMALLEST_CARD = 132
 #: Pixels above the picture, for the number and the marks, and below it, for two lines of text.
@@ -70,7 +75,7 @@ class CardButton(Enum):
 
 
 class CardDelegate(QStyledItemDelegate):
-    """Paints one candidate: pictures, number, match, what it is sorted by, whether it can be cut, its mark."""
+    """Paints one candidate: pictures, number, match, sort value, whether it can be cut and closes, its mark."""
 
     def __init__(self, parent: QWidget) -> None:
         super().__init__(parent)
@@ -131,7 +136,7 @@ class CardDelegate(QStyledItemDelegate):
             painter.drawPixmap(picture.topLeft(), drawn)
         painter.setOpacity(1.0)
         left = self._paint_number(painter, card, index.data(NUMBER_ROLE), mark, index.data(FRESH_ROLE))
-        self._paint_symmetry(painter, card, left, candidate.symmetry)
+        left = self._paint_symmetry(painter, card, left, candidate.symmetry)
         rise: float = index.data(RISE_ROLE)
         if candidate == self.compared:
             self._paint_chip(painter, card, "", "compare")
@@ -139,6 +144,8 @@ class CardDelegate(QStyledItemDelegate):
             self._paint_chip(painter, card, f"{100 * candidate.trim.iou:.1f} %", "trim")
         elif rise >= SMALLEST_RISE:
             self._paint_chip(painter, card, f"{100 * rise:+.1f}")
+        else:
+            self._paint_as_cut(painter, card, left, index.data(AS_CUT_ROLE))
         self._paint_numbers(painter, card, candidate, index.data(VALUE_ROLE), index.data(GRID_ROLE))
         self._paint_badge(painter, card, index.data(CUTTABLE_ROLE))
         if alike:
@@ -162,13 +169,25 @@ class CardDelegate(QStyledItemDelegate):
         painter.setPen(QPen(QColor(self.palette_.strong_border), 1.0))
         painter.drawRoundedRect(QRectF(card).adjusted(4, 4, 2.5, 2.5), 8, 8)
 
-    def _paint_symmetry(self, painter: QPainter, card: QRect, left: int, symmetry: Symmetry | None) -> None:
-        """The sign of a symmetric design, right of its number and marks."""
-        if symmetry is None:
+    def _paint_as_cut(self, painter: QPainter, card: QRect, left: int, found: AsCut | None) -> None:
+        """In the upper right corner, whether the sheet is expected to close as cut, as long as there is room."""
+        if found is None:
             return
+        degrees = round(math.degrees(found.jam_phi))
+        texts = (tr("closes"),) if found.closes else (tr("jams at {jam}°", jam=degrees), tr("{jam}°!", jam=degrees))
+        place, metrics = card.adjusted(left - card.left() + 6, 6, -10, 0), painter.fontMetrics()
+        text = next((text for text in texts if metrics.horizontalAdvance(text) <= place.width()), "")
+        painter.setPen(QColor(self.palette_.muted if found.closes else self.palette_.warning))
+        painter.drawText(place, int(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignTop), text)
+
+    def _paint_symmetry(self, painter: QPainter, card: QRect, left: int, symmetry: Symmetry | None) -> int:
+        """The sign of a symmetric design, right of its number and marks; returns where there is room left."""
+        if symmetry is None:
+            return left
         edge = painter.fontMetrics().height()
         icon = icons.pixmap(SIGNS[symmetry], self.palette_.accent, edge, painter.device().devicePixelRatio())
         painter.drawPixmap(left, card.top() + 6, icon)
+        return left + edge
 
     def _paint_alike(self, painter: QPainter, box: QRect, count: int, opened: bool) -> None:
         """How many more designs look the same, as a button."""

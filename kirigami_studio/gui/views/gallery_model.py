@@ -5,6 +5,7 @@ from __future__ import annotations
 import bisect
 import math
 from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QAbstractListModel, QModelIndex, QObject, QPersistentModelIndex, Qt, Signal
 
@@ -19,6 +20,9 @@ from kirigami_studio.lattice.symmetry import Symmetry
 from kirigami_studio.pipeline.rank import Ranking
 from kirigami_studio.project.document import Mark
 
+if TYPE_CHECKING:
+    from kirigami_studio.project.as_cut import AsCut
+
 CANDIDATE_ROLE = Qt.ItemDataRole.UserRole + 1
 DESIGN_ROLE = Qt.ItemDataRole.UserRole + 2
 RISE_ROLE = Qt.ItemDataRole.UserRole + 3
@@ -29,6 +33,7 @@ VALUE_ROLE = Qt.ItemDataRole.UserRole + 6  #: words for the number that is sorte
 ALIKE_ROLE = Qt.ItemDataRole.UserRole + 9  #: how many designs look like this card and belong to it
 CUTTABLE_ROLE = Qt.ItemDataRole.UserRole + 11  #: whether it is feasible and its panels are wide enough to be cut
 OPEN_ROLE = Qt.ItemDataRole.UserRole + 10  #: whether those are shown
+AS_CUT_ROLE = Qt.ItemDataRole.UserRole + 12  #: AsCut, as estimated, or None while that is not known
 GRID_ROLE = Qt.ItemDataRole.UserRole + 8  #: words for the grid where designs of several grids are there, else ""
 
 Index = QModelIndex | QPersistentModelIndex
@@ -55,6 +60,7 @@ class GalleryModel(QAbstractListModel):
         self._selection = Selection()
         self.ranking = Ranking()  #: puts designs that are inserted into their places
         self._width_mm = 100.0
+        self._as_cut: Mapping[Candidate, AsCut] = {}
 
     @property
     def entries(self) -> tuple[Entry, ...]:
@@ -97,6 +103,8 @@ class GalleryModel(QAbstractListModel):
             return self.mark_of(entry.candidate)
         if role == CUTTABLE_ROLE:
             return self.ranking.cuttable(entry.candidate)
+        if role == AS_CUT_ROLE:
+            return self._as_cut.get(entry.candidate)
         if role == ALIKE_ROLE:
             return self._stacks.under(entry.candidate)
         if role == OPEN_ROLE:
@@ -127,6 +135,9 @@ class GalleryModel(QAbstractListModel):
         lines, reason = [self._size(entry)], self._rank_reason(entry)
         if reason:
             lines.append(tr("Rank: {reason}", reason=reason))
+        as_cut = self._as_cut.get(entry.candidate)
+        if as_cut is not None:
+            lines.append(as_cut_text(as_cut))
         alike = self._stacks.under(entry.candidate)
         if alike:
             lines.append(alike_tip(alike, self._stacks.is_open(entry.candidate)))
@@ -144,6 +155,12 @@ class GalleryModel(QAbstractListModel):
     def _size(self, entry: Entry) -> str:
         size = self._width_mm * least_panel_share(entry.design.deployment)
         return tr("Smallest feature: {size:.2f} mm on a sheet {width:g} mm wide", size=size, width=self._width_mm)
+
+    def set_as_cut(self, known: Mapping[Candidate, AsCut]) -> None:
+        """Tell which designs close as cut, by an estimate."""
+        self._as_cut = known
+        if self._shown:
+            self.dataChanged.emit(self.index(0, 0), self.index(len(self._shown) - 1, 0))
 
     def set_ranking(self, ranking: Ranking) -> None:
         """Tell what can be cut, and why a design has its rank, by a ranking; the order stays."""
@@ -336,6 +353,13 @@ def described(candidate: Candidate, rank: int) -> str:
         *came_from(candidate),
     ]
     return "\n".join([*lines, *problems(candidate)])
+
+
+def as_cut_text(found: AsCut) -> str:
+    """What is expected of a design as cut, in one line."""
+    if found.closes:
+        return tr("As cut: closes (estimate)")
+    return tr("As cut: jams at {jam:.0f}° (estimate)", jam=math.degrees(found.jam_phi))
 
 
 def rim_text(candidate: Candidate) -> str:
