@@ -28,6 +28,9 @@ SMALLEST_GRID, LARGEST_GRID = 2, 8
 SPREAD = 0.4
 WIDTHS_MM = (150.0, 400.0)
 
+#: Thin sheets with a kerf: connectors of thick ones have no room on the smaller sheets.
+MATERIALS = ("film-uv", "card-co2", "foil-uv", "pet-co2")
+
 
 @dataclass(frozen=True, slots=True)
 class CutFileFigures:
@@ -113,7 +116,7 @@ def measure_cut_files(
 
 def _jobs(count: int, seed: int, style: ConnectorStyle) -> Iterator[ExportJob]:
     """Designs of random grids, ratios, widths and materials; those without room for connectors are left out."""
-    materials = [material for material in presets().values() if material.kerf_mm > 0.0]
+    materials = [presets()[key] for key in MATERIALS]
     for number in range(count):
         random = np.random.default_rng([seed, number])
         rows, columns = (int(side) for side in random.integers(SMALLEST_GRID, LARGEST_GRID + 1, 2))
