@@ -10,6 +10,7 @@ from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 from pytestqt.qtbot import QtBot
 
+from kirigami_studio.fabricate.options import ConnectorStyle
 from kirigami_studio.gui.main_window import MainWindow
 from kirigami_studio.gui.views.gallery_model import AS_CUT_ROLE
 from kirigami_studio.gui.views.layout_view import Overlay
@@ -180,6 +181,7 @@ def test_that_every_card_tells_whether_the_design_closes(closed: MainWindow, unt
         assert "As cut: closes (estimate)" in row.data(Qt.ItemDataRole.ToolTipRole)
     pictured = closed.gallery.view.viewport().grab().toImage()
     controller.fabrication.change(connector_mm=3.0)
+    controller.fabrication.change_options(style=ConnectorStyle.STRAIGHT)
     until(lambda: not controller.estimates.busy and not any(row.data(AS_CUT_ROLE).closes for row in rows))
     assert all("As cut: jams at " in row.data(Qt.ItemDataRole.AccessibleDescriptionRole) for row in rows)
     assert closed.gallery.view.viewport().grab().toImage() != pictured
