@@ -189,9 +189,11 @@ def fits_from_uniform(request: Request) -> list[GuidedTask]:
     if request.symmetry in ("mirror", "turn"):
         angles = [one for one in angles if one[1] is not None] or angles
     ways: dict[Symmetry | None, list[tuple[float, Symmetry | None, Way]]] = {}
-    for angle, symmetry in angles:
-        for way in Way.suited_to(request.target, symmetry):
-            ways.setdefault(symmetry, []).append((angle, symmetry, way))
+    for symmetry in dict.fromkeys(symmetry for _, symmetry in angles):
+        suited = Way.suited_to(request.target, symmetry)
+        poses = [angle for angle, kept in angles if kept is symmetry]
+        # Another pose gives more than another way.
+        ways[symmetry] = [(angle, symmetry, way) for way in suited for angle in poses]
     free = ways.pop(None, [])
     in_turn = [one for several in zip_longest(*ways.values()) for one in several if one is not None]
     chosen = [*in_turn, *free][: request.fitted_starts]

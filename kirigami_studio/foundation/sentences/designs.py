@@ -92,11 +92,11 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "Expected match: {percent:.1f} %."
     ),
     "grid.best_expected": mark(
-        "{rows} x {columns}: a hard shape, which finer grids are not expected to match much better. "
+        "{rows} x {columns}: finer grids are not expected to match much better. "
         "Expected match: {percent:.1f} %."
     ),
     "grid.best_tried": mark(
-        "{rows} x {columns}: a hard shape. This grid matched best in short fits on {count} grids. "
+        "{rows} x {columns}: matched best in short fits on {count} grids. "
         "Expected match: {percent:.1f} %."
     ),
     "grid.panels_would_be_too_small": mark(
