@@ -92,12 +92,10 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "Expected match: {percent:.1f} %."
     ),
     "grid.best_expected": mark(
-        "{rows} x {columns}: finer grids are not expected to match much better. "
-        "Expected match: {percent:.1f} %."
+        "{rows} x {columns}: finer grids are not expected to match much better. Expected match: {percent:.1f} %."
     ),
     "grid.best_tried": mark(
-        "{rows} x {columns}: matched best in short fits on {count} grids. "
-        "Expected match: {percent:.1f} %."
+        "{rows} x {columns}: matched best in short fits on {count} grids. Expected match: {percent:.1f} %."
     ),
     "grid.panels_would_be_too_small": mark(
         "{rows} x {columns}: on a finer grid, panels of a sheet {width_mm:.0f} mm wide would be smaller than "
