@@ -41,7 +41,7 @@ FEWEST_VOIDS = 99
 GOAL = 0.992
 #: Where no grid reaches it, the coarsest one is taken that misses no more than the best one divided by this.  Without a
 #: symmetry fits take twice as long: a flag and a house match 0.986 and 0.977 on 14 x 14, 0.980 and 0.980 on 16 x 16.
-WORTHWHILE, WORTHWHILE_FREE = 0.97, 0.88
+WORTHWHILE, WORTHWHILE_FREE = 0.96, 0.88
 #: Where a shape with a mirror axis is expected to stay below the last number, grids are tried that miss no more than
 #: the best one times the first, of proportions (logarithm of height over width) that differ by at least the second and
 #: lie within the third of the square's and the shape's own.  Nine short steps rank the grids of a star, a butterfly, a
