@@ -164,7 +164,7 @@ def _overlays(window: MainWindow) -> tuple[Command, ...]:
         overlay("show_target", tr("Tar&get outline"), "T", "target", tr("Show the target's outline"), gap=True),
         overlay("show_mismatch", tr("&Mismatch"), "M", "mismatch", tr("Show missing and extra area")),
         overlay("show_faults", tr("F&aults"), "F", "fault", tr("Mark inverted panels and contacts")),
-        overlay("show_stretch", tr("Connector stretch"), "Shift+S", "connector", stretch),
+        overlay("show_stretch", tr("Connector stretch"), "Shift+X", "connector", stretch),
         overlay("show_ratios", tr("&Ratio heat map"), "Shift+H", "heat", tr("Colour voids by their ratio")),
         overlay("show_openings", tr("&Void opening"), "Shift+O", "opening", opening),
         overlay("show_small_parts", tr("&Smallest features"), "Shift+T", "small", small),

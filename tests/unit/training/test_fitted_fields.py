@@ -52,7 +52,8 @@ def rows(targets: Targets) -> tuple[FloatArray, FloatArray]:
 def test_that_requested_outlines_lie_on_their_sheets(fits: FittedFields) -> None:
     # Each is brought to unit area by itself, so poor fits lose a little.
     assert len(fits.z) >= 8
-    np.testing.assert_allclose(ious(fits.z, fits.requested), fits.iou, atol=0.05)
+    lost = fits.iou - ious(fits.z, fits.requested)
+    assert np.all(np.abs(lost) <= 0.002 + 0.4 * (1.0 - fits.iou))
 
 
 def test_that_requested_outlines_are_the_drawn_shapes(fits: FittedFields) -> None:
