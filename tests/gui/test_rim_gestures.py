@@ -158,8 +158,6 @@ def test_that_ratios_and_rim_are_edited_one_after_the_other(by_hand: MainWindow,
 
 def test_that_handles_belong_to_the_mode_and_name_themselves_under_the_pointer(by_hand: MainWindow) -> None:
     view = by_hand.stage.view
-    # Qt tells of no move to the place where the pointer of an earlier window was left.
-    QTest.mouseMove(view, QPoint(3, 3))
     QTest.mouseMove(view, handle(view, RIGHT))
     assert view.voids.rim.meant == RIGHT and view.voids.lines[0] == "Edge cut 1 of 2, right"
     assert "from the upper corner" in by_hand.status_text.text()

@@ -38,8 +38,6 @@ def test_that_pointing_at_a_void_tells_its_facts_even_outside_the_mode(designed:
     view = designed.stage.view
     designed.stage.deployment.set_phi(OPEN)
     before = designed.status_text.text()
-    # Qt tells of no move to the place where the pointer of an earlier window was left.
-    QTest.mouseMove(view, QPoint(3, 3))
     QTest.mouseMove(view, middle_of(view, (1, 2)))
     x = ratio(designed, (1, 2))
     width = designed.controller.document.fabrication.width_mm
