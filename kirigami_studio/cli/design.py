@@ -30,6 +30,7 @@ from kirigami_studio.pipeline.redesign import keep_for_connectors
 from kirigami_studio.pipeline.request import POLISH_STEPS, REGULAR, Request, provenance
 from kirigami_studio.pipeline.run import run, with_grid
 from kirigami_studio.pipeline.variety import look_alikes
+from kirigami_studio.project.as_cut import jam_angles
 from kirigami_studio.project.cutting import least_feature_mm, material_for
 from kirigami_studio.project.design_facts import design_facts, with_run
 from kirigami_studio.project.document import Document
@@ -73,6 +74,8 @@ def design(arguments: argparse.Namespace) -> int:
             arguments.least_panel_mm,
         )
         result = _run(request, line)
+        if arguments.material is not None:
+            result = result.ranked_as_cut(jam_angles(result.candidates, fabrication))
         if request.trim and result.best.trim is None:
             budget_ended = result.budget_ended
             raise FabricationError("design.trimming_cut_short" if budget_ended else "design.none_trimmed")
@@ -112,7 +115,7 @@ def summary(result: Result) -> dict[str, object]:
 
 def candidates_json(result: Result) -> list[dict[str, object]]:
     """The entries of ``candidates``, best first, each with its rank's reason and the group that it looks like."""
-    ranking, candidates = Ranking.of(result.request), result.candidates
+    ranking, candidates = result.ranking, result.candidates
     reasons, groups = ranking.reasons(candidates), look_alikes(candidates, ranking)
     return [
         candidate_json(candidate, ranking) | {"rank_reason": reason.text, "group": group}
@@ -255,7 +258,7 @@ def _say_result(target: Outline, result: Result, files: dict[str, str]) -> None:
         feasible = tr("It is not feasible at {angle:.0f} degrees.", angle=angle)
     ended = [tr("The budget ended the run.")] if result.budget_ended else []
     say(" ".join((best, feasible, *ended)))
-    (reason, *_) = Ranking.of(result.request).reasons(result.candidates)
+    (reason, *_) = result.ranking.reasons(result.candidates)
     say(f"{target.name}: {reason.text}")
     if trim is not None:
         say(

@@ -6,9 +6,11 @@ one more CandidateFound by the search, and Finished.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 
 from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.pipeline.rank import Ranking
 from kirigami_studio.pipeline.request import Request
 
 
@@ -61,6 +63,8 @@ class Result:
         The time budget was used up before all was done: candidates may be unpolished or, of very many, missing.
     repeats : int
         Designs that were left out because the document had them already; 0 unless that was looked for.
+    jam_phi : mapping of Candidate to float, radians
+        Angles at which they are estimated to jam as cut, where that was looked for.
     """
 
     request: Request
@@ -69,6 +73,17 @@ class Result:
     seconds: float
     budget_ended: bool = False
     repeats: int = 0
+    jam_phi: Mapping[Candidate, float] = field(default_factory=dict, hash=False)
+
+    @property
+    def ranking(self) -> Ranking:
+        """By which they are ranked."""
+        return replace(Ranking.of(self.request), jam_phi=self.jam_phi)
+
+    def ranked_as_cut(self, jam_phi: Mapping[Candidate, float]) -> Result:
+        """The same, ranked again now that it is known where designs jam (radians, 0 for those that close)."""
+        known = replace(self, jam_phi=jam_phi)
+        return replace(known, candidates=known.ranking.ranked(self.candidates))
 
     @property
     def best(self) -> Candidate:

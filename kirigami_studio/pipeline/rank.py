@@ -2,19 +2,23 @@
 
 The *worth* of a design is its exact IoU less a price for what eyes and cutters mind:
 
-    worth = IoU - s * (EVENNESS * CV of panel areas + THIN * thinness + AT_LIMIT * share of ratios at a limit
+    worth = IoU - JAMMING * share of its way that it misses as cut
+                - s * (EVENNESS * CV of panel areas + THIN * thinness + AT_LIMIT * share of ratios at a limit
                        - SYMMETRY if the sheet is symmetric),        s = (2 * regular) ** 2
 
 ``regular`` runs from 0 (s = 0: match alone) over 0.5 (s = 1) to 1 (s = 4).  Thinness is 0 for panels whose edges and
 necks all measure :data:`SLENDER` cells or more, and 1 for a panel without any width.  All figures are those that a
-score has, so that ranking again needs no geometry.  Where a run trims its best designs these come first, by their
-trimmed IoU.  Ties keep the lower total variation, then the sampling order.
+score has, so that ranking again needs no geometry.  Where it is known at which angle designs jam as cut, the share of
+its way that a design does not come costs :data:`JAMMING`, whatever ``regular`` is: the match is missed as well.  Where
+a run trims its best designs these come first, by their trimmed IoU.  Ties keep the lower total variation, then the
+sampling order.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.fabricate.findings import Note
@@ -30,6 +34,8 @@ SLENDER = 0.2
 AT_LIMIT = 0.01
 #: IoU that a symmetric sheet may lack and still comes first.
 SYMMETRY = 0.02
+#: IoU that a sheet which comes to its angle is worth over one that stays flat: jamming at 36 of 180 degrees costs 5 %.
+JAMMING = 0.25
 
 #: The IoU that this preference gives away for a total variation (per void) that is lower by 1.
 WORTH = {"accuracy": 0.0, "balanced": 0.0, "regularity": 0.005, "calm": 0.03}
@@ -54,11 +60,14 @@ class Ranking:
         Width of the flat sheet.
     least_feature_mm : float
         Least panel edge and neck that the material allows, 0 where that is not known.
+    jam_phi : mapping of Candidate to float, radians
+        Angles at which designs are expected to jam as cut, 0 for those that close; nothing is known of others.
     """
 
     regular: float = 0.5
     width_mm: float = 100.0
     least_feature_mm: float = 0.0
+    jam_phi: Mapping[Candidate, float] = field(default_factory=dict, hash=False)
 
     @classmethod
     def of(cls, request: Request) -> Ranking:
@@ -72,6 +81,11 @@ class Ranking:
     def cuttable(self, candidate: Candidate) -> bool:
         """Whether the design is feasible and all its panels are as wide as the material needs them."""
         return candidate.score.feasible and self.wide_enough(candidate)
+
+    def missed(self, candidate: Candidate) -> float:
+        """Share of its way from flat to its angle that a design does not come as cut, as far as that is known."""
+        jam, phi = self.jam_phi.get(candidate, 0.0), candidate.final_phi
+        return max(0.0, jam - phi) / (math.pi - phi)
 
     @property
     def scale(self) -> float:
@@ -87,6 +101,7 @@ class Ranking:
             "rank.thinner": scale * THIN * thinness,
             "rank.more_at_limit": scale * AT_LIMIT * figures.at_limit,
             "rank.not_symmetric": scale * SYMMETRY * (candidate.symmetry is None),
+            "rank.jams": JAMMING * self.missed(candidate),
         }
 
     def worth(self, candidate: Candidate) -> float:
@@ -168,6 +183,7 @@ class Ranking:
             "rank.thinner": (even.least_feature_mm(self.width_mm), best.least_feature_mm(self.width_mm)),
             "rank.more_at_limit": (100 * even.at_limit, 100 * best.at_limit),
             "rank.not_symmetric": (0.0, 0.0),
+            "rank.jams": (math.degrees(self.jam_phi.get(one, 0.0)), math.degrees(self.jam_phi.get(first, 0.0))),
         }[code]
         return Note.of(code, own=mine, first=theirs)
 

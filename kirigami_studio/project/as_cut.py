@@ -8,12 +8,13 @@ the one that is about to be cut.
 from __future__ import annotations
 
 import math
-from collections.abc import Generator, Sequence
+from collections.abc import Generator, Iterable, Sequence
 from dataclasses import dataclass
 from enum import Enum
 
 import numpy as np
 
+from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.siou import siou_of_many
 from kirigami_studio.fabricate.connectors import hinge_widths
 from kirigami_studio.fabricate.cut_plan import CutPlan
@@ -23,7 +24,8 @@ from kirigami_studio.fabricate.options import ConnectorStyle
 from kirigami_studio.fabricate.panel_sizes import panels_in_mm
 from kirigami_studio.fabricate.slits import cut_table
 from kirigami_studio.foundation.arrays import FloatArray, IntArray
-from kirigami_studio.lattice.deployment import Deployment
+from kirigami_studio.foundation.errors import KirigamiError
+from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.mechanics.closing import (
     CLOSED,
     TOLERATED_STRETCH,
@@ -51,7 +53,7 @@ ESTIMATE_CLOSES = math.radians(6.0)
 ROOM_SPANS = 2.5
 
 
-class Verdict(Enum):
+class Outcome(Enum):
     """Whether a sheet comes to the angle that it is designed for, and what stops it."""
 
     CLOSES = "closes"
@@ -76,7 +78,7 @@ class AsCut:
         Angle at which it jams; 0 for a sheet that closes.
     phi : float, radians
         At which it is meant to show the target.
-    verdict : Verdict
+    outcome : Outcome
     stretch : float
         Largest stretch of a connector on the way to ``phi``, in its widths; tolerated or not.
     strain : float
@@ -90,7 +92,7 @@ class AsCut:
 
     jam_phi: float
     phi: float
-    verdict: Verdict
+    outcome: Outcome
     stretch: float
     strain: float
     figure: StrainFigure
@@ -100,7 +102,7 @@ class AsCut:
     @property
     def closes(self) -> bool:
         """Whether the sheet comes to the angle that it is meant for."""
-        return self.verdict is Verdict.CLOSES
+        return self.outcome is Outcome.CLOSES
 
     @property
     def reached(self) -> float:
@@ -246,9 +248,27 @@ def estimate(
     jam = found.jam_phi()
     jam = 0.0 if jam <= ESTIMATE_CLOSES else jam
     largest = float(found.stretch[: max(1, int(np.sum(found.phi >= phi)))].max())
-    blame = Verdict.STRETCHED if float(found.stretch.max()) > TOLERATED_STRETCH else Verdict.TOUCHING
-    verdict = Verdict.CLOSES if jam <= phi + CLOSE_TO else blame
-    return AsCut(jam, phi, verdict, largest, math.nan, believed_figure(sheet))
+    blame = Outcome.STRETCHED if float(found.stretch.max()) > TOLERATED_STRETCH else Outcome.TOUCHING
+    outcome = Outcome.CLOSES if jam <= phi + CLOSE_TO else blame
+    return AsCut(jam, phi, outcome, largest, math.nan, believed_figure(sheet))
+
+
+def jam_angles(candidates: Iterable[Candidate], settings: FabricationSettings) -> dict[Candidate, float]:
+    """Estimate where designs jam (radians, 0 for those that close); those that cannot be cut at all are left out.
+
+    Raises
+    ------
+    FabricationError
+        No such material.
+    """
+    material, found = material_for(settings), {}
+    for candidate in candidates:
+        try:
+            as_cut = estimate(deploy(candidate.final_sheet), settings, candidate.final_phi, material)
+        except KirigamiError:
+            continue  # widths that make no sense on this sheet, which planning its cuts explains
+        found[candidate] = as_cut.jam_phi
+    return found
 
 
 def simulate(
@@ -299,11 +319,11 @@ def _simulated(sheet: SheetNetwork, found: Closing, jam: float, phi: float, lap:
     reached = phi if closes else jam
     worst = found.stretch.max(axis=1)
     largest = float(worst[_until(found, phi)].max())
-    blame = Verdict.STRETCHED if float(worst.max()) > TOLERATED_STRETCH else Verdict.TOUCHING
+    blame = Outcome.STRETCHED if float(worst.max()) > TOLERATED_STRETCH else Outcome.TOUCHING
     return AsCut(
         jam,
         phi,
-        Verdict.CLOSES if closes else blame,
+        Outcome.CLOSES if closes else blame,
         largest,
         float(strain[_until(found, reached)].max()),
         figure,

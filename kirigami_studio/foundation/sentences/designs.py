@@ -156,6 +156,7 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "rank.best_match_symmetric": mark("Best match: {match:.1f} %, panel sizes vary by {variation:.0f} %, symmetric."),
     "rank.best_trimmed": mark("Best match once trimmed: {match:.1f} %."),
     "rank.equal": mark("As good as the first design."),
+    "rank.jams": mark("As cut, it is estimated to jam at {own:.0f} degrees."),
     "rank.less_even": mark("Panel sizes vary by {own:.0f} %, in the first design by {first:.0f} %."),
     "rank.less_match": mark("It matches {own:.1f} %, the first design {first:.1f} %."),
     "rank.less_trimmed_match": mark("Trimmed, it matches {match:.1f} %, the first design {first:.1f} %."),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -18,10 +19,12 @@ from kirigami_studio.gui.look import icons
 from kirigami_studio.gui.messages import Tone
 from kirigami_studio.gui.session import Entry
 from kirigami_studio.gui.views.gallery_model import ALIKE_ROLE, OPEN_ROLE
+from kirigami_studio.pipeline.rank import Ranking
 from kirigami_studio.project.document import Document, Mark
 
 if TYPE_CHECKING:
     from kirigami_studio.gui.main_window import MainWindow
+    from kirigami_studio.project.as_cut import AsCut
 
 
 class DesignConnections(QObject):
@@ -33,6 +36,7 @@ class DesignConnections(QObject):
         self._controller = controller
         self._side_by_side = side_by_side
         self.menu: QMenu | None = None
+        self._ranked_as_cut = False
         self._connect_run()
         self._connect_gallery()
         controller.session.document_changed.connect(self._show_document)
@@ -50,8 +54,8 @@ class DesignConnections(QObject):
         regularity, settings = self._controller.regularity, window.settings
         settings.regular_moved.connect(self._move_balance)
         settings.regular_chosen.connect(self._choose_balance)
-        self._controller.estimates.changed.connect(window.gallery.view.model_.set_as_cut)
-        regularity.ranked.connect(window.gallery.view.rank_by)
+        self._controller.estimates.changed.connect(self._show_estimates)
+        regularity.ranked.connect(lambda ranking: window.gallery.view.rank_by(self._as_cut(ranking)))
         regularity.busy_changed.connect(self._show_fitting)
         regularity.progressed.connect(window.run.show_progress)
 
@@ -129,6 +133,23 @@ class DesignConnections(QObject):
 
     # the gallery ---------------------------------------------------------------------------------------------------
 
+    def _show_estimates(self, known: Mapping[Candidate, AsCut]) -> None:
+        """Designs were estimated as cut: the cards say so, and are ranked by it too."""
+        view = self._window.gallery.view
+        view.model_.set_as_cut(known)
+        if self._controller.running or not known:
+            return
+        ranking = self._as_cut(ranking_of(self._controller.document))
+        jams = any(ranking.missed(candidate) > 0.0 for candidate in known)
+        if jams or self._ranked_as_cut:  # the document's order stays where all designs close
+            view.rank_by(ranking)
+        self._ranked_as_cut = jams
+
+    def _as_cut(self, ranking: Ranking) -> Ranking:
+        """The ranking with what is known of the designs as cut."""
+        known = self._controller.estimates.known
+        return replace(ranking, jam_phi={candidate: found.jam_phi for candidate, found in known.items()})
+
     def _show_document(self, document: Document) -> None:
         gallery = self._window.gallery
         gallery.view.model_.set_width_mm(document.fabrication.width_mm)
@@ -136,7 +157,7 @@ class DesignConnections(QObject):
         gallery.view.show_marks(marks, self._controller.generation.planner.added)
         gallery.bar.show_count(document.settings.k)
         if not self._controller.running:
-            gallery.view.model_.set_ranking(ranking_of(document))
+            gallery.view.model_.set_ranking(self._as_cut(ranking_of(document)))
             gallery.view.mark(document.candidate)
         self._show_ready(document)
         self._show_chosen()
@@ -144,7 +165,8 @@ class DesignConnections(QObject):
     def _show_gallery(self, entries: tuple[Entry, ...]) -> None:
         view, document = self._window.gallery.view, self._controller.document
         running = self._controller.running
-        view.model_.set_ranking(self._controller.session.display.ranking if running else ranking_of(document))
+        ranking = self._controller.session.display.ranking if running else self._as_cut(ranking_of(document))
+        view.model_.set_ranking(ranking)
         view.show_entries(list(entries), document.target)
         self._controller.alikes.look_at(tuple(entry.candidate for entry in entries), view.model_.ranking)
         view.mark(document.candidate)

@@ -6,9 +6,10 @@ its result; :class:`DesignRun` runs at most one run at a time; :class:`StoppedRu
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
+from types import MappingProxyType
 
 from PySide6.QtCore import QElapsedTimer, QObject, Signal
 
@@ -224,7 +225,7 @@ class RunPlanner:
         if plan is not None and plan.joins:
             self.added = frozenset(result.candidates)
             new = NewDesigns(result.candidates, facts, seed)
-            edit = candidate_edits.add_candidates(document, new, ranking_of(document).key)
+            edit = candidate_edits.add_candidates(document, new, ranking_of(document, result.jam_phi).key)
             return _choosing(edit, preview)
         self.added = frozenset()
         staying = _staying(document, result.request)
@@ -235,7 +236,7 @@ class RunPlanner:
         grid = result.request.grid if result.request.grid_chosen else None
         new = NewDesigns(result.candidates, facts, seed, result.request.target, grid)
         chosen = preview if preview is not None and preview in (*staying, *result.candidates) else None
-        return candidate_edits.renew_candidates(document, new, ranking_of(document).key, chosen)
+        return candidate_edits.renew_candidates(document, new, ranking_of(document, result.jam_phi).key, chosen)
 
     def summary(self, result: Result, before: Document, grid_reason: str = "") -> str:
         """What the status line says of a completed run, with the reason for its grid where it chose that."""
@@ -279,10 +280,10 @@ def next_seed(document: Document) -> int:
     return seed
 
 
-def ranking_of(document: Document) -> Ranking:
-    """What the document's settings, sheet and material put first."""
+def ranking_of(document: Document, jam_phi: Mapping[Candidate, float] = MappingProxyType({})) -> Ranking:
+    """What the document's settings, sheet and material put first, and where designs jam (radians) if that is known."""
     settings, cut = document.settings, document.fabrication
-    return Ranking(settings.regular, cut.width_mm, least_of(cut))
+    return Ranking(settings.regular, cut.width_mm, least_of(cut), jam_phi)
 
 
 def request_of(target: Outline, settings: DesignSettings, cut: FabricationSettings) -> Request:
@@ -373,7 +374,8 @@ class DesignRun(QObject):
         self._sampled.clear()
         self._latest.clear()
         callbacks = JobCallbacks(self._take, partial(self.ended.emit, False), self._cancel, self._fail)
-        self._job.start(tr("generating designs"), partial(generating, request, others), callbacks)
+        steps = partial(generating, request, others, cut=self._session.document.fabrication)
+        self._job.start(tr("generating designs"), steps, callbacks)
         self.started.emit(request.k)
 
     def cancel(self) -> None:

@@ -76,16 +76,23 @@ class FittedAgain:
 RunReport = Event | ModelFound | GridChosen | Decoded
 
 
-def generating(request: Request, others: tuple[Candidate, ...] | None, cancel: Cancel) -> Iterator[RunReport]:
+def generating(
+    request: Request,
+    others: tuple[Candidate, ...] | None,
+    cancel: Cancel,
+    cut: FabricationSettings | None = None,
+) -> Iterator[RunReport]:
     """Run the pipeline; every new or improved candidate is followed by its decoded motion.
 
     With ``others`` the result keeps only designs that differ from them and from each other.  Comparing a thousand
-    designs with a thousand takes a second, which would freeze the window: hence it is done here.
+    designs with a thousand takes a second, which would freeze the window: hence it is done here.  With ``cut`` the
+    result is ranked by how designs do as cut, too.
     """
     importing.import_generator()
     from kirigami_studio.generator.weights import digest_of
     from kirigami_studio.pipeline.auto_grid import chosen_for
     from kirigami_studio.pipeline.run import run
+    from kirigami_studio.project.as_cut import jam_angles
 
     yield ModelFound(digest_of(request.variant))
     if request.grid is None and request.near is None:
@@ -96,9 +103,11 @@ def generating(request: Request, others: tuple[Candidate, ...] | None, cancel: C
             case CandidateFound() | CandidateImproved():
                 yield event
                 yield decoded(event.candidate)
-            case Finished(result) if others is not None:
-                new = distinct(result.candidates, others)
-                yield Finished(replace(result, candidates=new, repeats=len(result.candidates) - len(new)))
+            case Finished(result):
+                if others is not None:
+                    new = distinct(result.candidates, others)
+                    result = replace(result, candidates=new, repeats=len(result.candidates) - len(new))
+                yield Finished(result if cut is None else result.ranked_as_cut(jam_angles(result.candidates, cut)))
             case _:
                 yield event
 

@@ -40,7 +40,7 @@ class AsCutLine(ElidedLabel):
 
 def texts(found: AsCut) -> tuple[str, ...]:
     """What was found, longest text first."""
-    from kirigami_studio.project.as_cut import Verdict
+    from kirigami_studio.project.as_cut import Outcome
 
     phi, jam, match = math.degrees(found.phi), math.degrees(found.jam_phi), found.iou
     if found.closes:
@@ -50,7 +50,7 @@ def texts(found: AsCut) -> tuple[str, ...]:
             return (tr("Closes as cut: {match:.1f} %", match=100 * match),)
         return (tr("Opens to {phi:.0f}° as cut: {match:.1f} %", phi=phi, match=100 * match),)
     short = tr("Jams at {jam:.0f}°", jam=jam)
-    if found.verdict is Verdict.TOUCHING:
+    if found.outcome is Outcome.TOUCHING:
         return tr("Jams at {jam:.0f}°: panels touch", jam=jam), short
     long = tr(
         "Jams at {jam:.0f}°: a connector would stretch by {stretch:.1f} of its width", jam=jam, stretch=found.stretch

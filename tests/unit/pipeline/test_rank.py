@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -16,6 +17,7 @@ from kirigami_studio.lattice.symmetry import Symmetry
 from kirigami_studio.outlines import silhouettes
 from kirigami_studio.pipeline.rank import (
     EVENNESS,
+    JAMMING,
     MOST_LOST,
     SYMMETRY,
     USUAL,
@@ -111,6 +113,24 @@ def test_that_what_can_be_cut_comes_first(design: Candidate) -> None:
     assert ranking.ranked([thin, wide]) == (wide, thin) and Ranking(0.0).ranked([wide, thin]) == (thin, wide)
     crossed = replace(wide, score=replace(wide.score, feasible=False))
     assert ranking.ranked([crossed, thin]) == (thin, crossed) and not ranking.cuttable(crossed)
+
+
+def test_that_jamming_as_cut_costs_match_for_the_way_that_is_missed(design: Candidate) -> None:
+    jams, closes = with_figures(design, 0.98), with_figures(design, 0.98 - 0.9 * 0.2 * JAMMING, index=1)
+    ranking = Ranking(0.0, jam_phi={jams: math.radians(36.0), closes: 0.0})
+    assert ranking.missed(jams) == pytest.approx(0.2) and ranking.missed(closes) == 0.0
+    assert ranking.ranked([jams, closes]) == (closes, jams) and Ranking(0.0).ranked([closes, jams]) == (jams, closes)
+    worse = with_figures(design, 0.98 - 1.1 * 0.2 * JAMMING, index=1)
+    assert ranking.ranked([worse, jams]) == (jams, worse)
+    told = ranking.reasons([closes, jams])
+    assert [reason.code for reason in told] == ["rank.best_balance", "rank.jams"]
+    assert told[1].text == "As cut, it is estimated to jam at 36 degrees."
+
+
+def test_that_a_sheet_which_jams_beyond_its_angle_misses_nothing(design: Candidate) -> None:
+    half_open = replace(design, score=replace(design.score, phi=math.radians(60.0)))
+    assert Ranking(jam_phi={half_open: math.radians(50.0)}).missed(half_open) == 0.0
+    assert Ranking(jam_phi={half_open: math.radians(90.0)}).missed(half_open) == pytest.approx(0.25)
 
 
 def test_that_every_rank_has_its_reason(design: Candidate) -> None:

@@ -9,16 +9,23 @@ import numpy as np
 import pytest
 from stopwatch import fastest
 
+from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.fabricate.cut_plan import CutPlan
 from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions
+from kirigami_studio.fabricate.slits import cut_table
 from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.pipeline.events import Result
+from kirigami_studio.pipeline.rank import Ranking
+from kirigami_studio.pipeline.request import Request
 from kirigami_studio.project.as_cut import (
+    Outcome,
     SimulatedSheet,
     StrainFigure,
-    Verdict,
     estimate,
+    jam_angles,
     simulate,
 )
 from kirigami_studio.project.cutting import plan_sheet
@@ -63,7 +70,7 @@ def centred(design: Deployment, target: Outline) -> SimulatedSheet:
 
 def test_that_a_centred_sheet_closes_and_keeps_its_match(centred: SimulatedSheet) -> None:
     found = centred.as_cut
-    assert found.verdict is Verdict.CLOSES and found.jam_phi == 0.0 and found.reached == 0.0
+    assert found.outcome is Outcome.CLOSES and found.jam_phi == 0.0 and found.reached == 0.0
     assert found.iou is not None and found.ideal_iou is not None
     assert found.ideal_iou == pytest.approx(1.0, abs=1e-6)
     assert found.iou == pytest.approx(found.ideal_iou, abs=0.005)
@@ -71,7 +78,7 @@ def test_that_a_centred_sheet_closes_and_keeps_its_match(centred: SimulatedSheet
 
 def test_that_a_straight_sheet_jams_and_says_where(straight: SimulatedSheet) -> None:
     found = straight.as_cut
-    assert found.verdict is Verdict.STRETCHED and not found.closes
+    assert found.outcome is Outcome.STRETCHED and not found.closes
     assert found.reached == found.jam_phi > math.radians(10.0)
     assert found.stretch > 0.45
     assert found.iou is not None and found.ideal_iou is not None and found.iou < found.ideal_iou - 0.02
@@ -80,7 +87,7 @@ def test_that_a_straight_sheet_jams_and_says_where(straight: SimulatedSheet) -> 
 def test_that_panels_in_contact_are_told_apart_from_connectors_that_stretch() -> None:
     even = deploy(RatioField.from_log10(np.random.default_rng(3).uniform(-0.3, 0.3, (4, 4))))
     found = simulated(even, replace(STRAIGHT, connector_mm=0.8)).as_cut
-    assert found.verdict is Verdict.TOUCHING and found.stretch < 0.45
+    assert found.outcome is Outcome.TOUCHING and found.stretch < 0.45
     assert math.radians(2.0) < found.reached < math.radians(15.0)
 
 
@@ -89,7 +96,7 @@ def test_that_a_sheet_which_jams_later_than_it_is_meant_to_open_does_its_work(
 ) -> None:
     beyond = straight.as_cut.jam_phi + math.radians(15.0)
     found = simulated(design, STRAIGHT, beyond).as_cut
-    assert found.verdict is Verdict.CLOSES and found.reached == beyond
+    assert found.outcome is Outcome.CLOSES and found.reached == beyond
     assert found.jam_phi == pytest.approx(straight.as_cut.jam_phi)
     assert found.stretch < straight.as_cut.stretch
     assert found.iou is None and found.ideal_iou is None
@@ -99,8 +106,8 @@ def test_that_the_estimate_agrees_with_the_simulator(
     design: Deployment, straight: SimulatedSheet, centred: SimulatedSheet
 ) -> None:
     jams, closes = estimate(design, STRAIGHT, 0.0), estimate(design, CENTRED, 0.0)
-    assert closes.verdict is centred.as_cut.verdict and closes.jam_phi == 0.0
-    assert jams.verdict is straight.as_cut.verdict
+    assert closes.outcome is centred.as_cut.outcome and closes.jam_phi == 0.0
+    assert jams.outcome is straight.as_cut.outcome
     assert jams.jam_phi == pytest.approx(straight.as_cut.jam_phi, abs=math.radians(15.0))
     assert jams.iou is None and math.isnan(jams.strain)
 
@@ -127,3 +134,21 @@ def test_that_every_connector_has_its_node_and_its_stretch(straight: SimulatedSh
 def test_that_an_estimate_at_ten_by_ten_takes_milliseconds() -> None:
     design = deploy(RatioField.from_log10(np.random.default_rng(1).uniform(-0.3, 0.3, (10, 10))))
     assert fastest(lambda: estimate(design, CENTRED, 0.0)) < 0.02
+
+
+def test_that_designs_are_ranked_by_the_way_that_they_come_as_cut(design: Deployment, target: Outline) -> None:
+    even = deploy(RatioField.uniform(6, 6))
+    irregular = Candidate(design.sheet, evaluate(design, target, 0.0), seed=0, index=0)
+    score = replace(evaluate(even, target, 0.0), iou_exact=irregular.score.iou_exact - 0.001)
+    uniform = Candidate(even.sheet, score, seed=0, index=1)
+    request = Request(target, (6, 6), regular=0.0)
+    result = Result(request, (irregular, uniform), 2, 0.0)
+    assert Ranking.of(request).ranked([uniform, irregular]) == result.candidates
+    jams = jam_angles(result.candidates, STRAIGHT)
+    assert jams[irregular] > math.radians(10.0) > jams[uniform]
+    again = result.ranked_as_cut(jams)
+    assert again.candidates == (uniform, irregular) and again.best == uniform
+    assert [reason.code for reason in again.ranking.reasons(again.candidates)][1] == "rank.jams"
+    assert result.ranked_as_cut(jam_angles(result.candidates, CENTRED)).candidates == result.candidates
+    apart = CutOptions(removed=tuple(range(cut_table(6, 6).hinge_count)))
+    assert jam_angles(result.candidates, replace(STRAIGHT, options=apart)) == {}
