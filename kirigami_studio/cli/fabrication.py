@@ -11,6 +11,7 @@ from typing import Any
 from kirigami_studio.cli.console import print_json, say
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.export.animation import FRAMES, write_animation
+from kirigami_studio.export.cut_motion import CutMotion
 from kirigami_studio.export.dxf_check import check_file
 from kirigami_studio.export.export_set import ExportSet, export_all
 from kirigami_studio.export.exporter import ExportJob
@@ -29,6 +30,7 @@ from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions, CutOrd
 from kirigami_studio.fabricate.slits import cut_table
 from kirigami_studio.foundation.errors import ExportError, FabricationError, ProjectError, UsageError
 from kirigami_studio.foundation.words import tr, tr_n
+from kirigami_studio.project.as_cut import simulated
 from kirigami_studio.project.cutting import plan_of
 from kirigami_studio.project.design_facts import design_facts
 from kirigami_studio.project.document import Document
@@ -197,12 +199,28 @@ def animate(arguments: argparse.Namespace) -> int:
     if path.suffix.lower() != ".gif":
         raise UsageError("animate.not_a_gif", name=path.name)
     document = load(arguments.project)
-    frames = write_animation(_job(document), path, FRAMES)
+    job = _job(document)
+    if arguments.as_cut:
+        job = replace(job, motion=_cut_motion(document, overridden(document.fabrication, arguments)))
+    frames, motion = write_animation(job, path, FRAMES), job.motion
     if arguments.json:
-        print_json({"frames": frames, "files": [str(path)]})
-    else:
+        answer: dict[str, object] = {"frames": frames, "files": [str(path)]}
+        if motion is not None:
+            answer |= {"jam_deg": math.degrees(motion.jam_phi), "reached_deg": math.degrees(motion.reached)}
+        print_json(answer)
+    elif motion is None:
         say(tr("{path}: {frames} frames", path=path, frames=frames))
+    else:
+        reached = math.degrees(motion.reached)
+        say(tr("{path}: {frames} frames, as cut to {reached:.0f} degrees", path=path, frames=frames, reached=reached))
     return 0
+
+
+def _cut_motion(document: Document, settings: FabricationSettings) -> CutMotion:
+    """How the chosen design moves as cut, simulated on its planned cuts."""
+    chosen = _chosen(document)
+    _check_hinges(chosen, settings.options)
+    return simulated(chosen, settings, document.target).motion(settings.width_mm)
 
 
 def _chosen(document: Document) -> Candidate:

@@ -288,8 +288,14 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
     SubCommand("animate", "write an animation of the sheet opening to its target angle", "fabrication:animate", (
         option("project", help="a .kiri project"),
         option("--out", required=True, help=".gif file to write"),
+        option("--as-cut", action="store_true",
+               help="simulate the sheet on the connectors of its planned cuts; it stops where it jams "
+                    "(default: the ideal motion, with connectors of no width)"),
+        *WIDTHS,
+        *CUTS,
         JSON,
-    ), ("kirigami-studio animate heart.kiri --out heart.gif",)),
+    ), ("kirigami-studio animate heart.kiri --out heart.gif",
+        "kirigami-studio animate heart.kiri --out heart-as-cut.gif --as-cut --material card-co2")),
     SubCommand("targets", "list the library silhouettes", "library:targets", (JSON,), ("kirigami-studio targets",)),
     SubCommand("materials", "list the materials, or copy, change and calibrate one", "library:materials", (
         option("--copy", default=None, metavar="KEY", help="copy this material to your own"),

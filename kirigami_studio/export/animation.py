@@ -1,4 +1,8 @@
-"""Deployment from the compact sheet to the target angle -> looping GIF."""
+"""Deployment from the compact sheet to the target angle -> looping GIF.
+
+The motion is the ideal one, with connectors of no width, or that of the sheet as cut, which stops where it jams and
+says so in a caption.  The file's comment names the motion.
+"""
 
 from __future__ import annotations
 
@@ -8,14 +12,16 @@ from io import BytesIO
 from pathlib import Path
 
 import numpy as np
-from PIL import Image
+from PIL import Image, ImageDraw, ImageFont
 
+from kirigami_studio.export.cut_motion import CutMotion
 from kirigami_studio.export.exporter import ExportJob
-from kirigami_studio.export.picture import PictureFrame, draw_polygons
+from kirigami_studio.export.picture import INK, SUPERSAMPLING, Colour, PictureFrame, draw_polygons
 from kirigami_studio.export.provenance import origin_facts
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import ExportError
 from kirigami_studio.foundation.files import write_atomically
+from kirigami_studio.mechanics.closing import TOLERATED_STRETCH
 
 FRAMES = 40
 FRAME_MS = 50
@@ -24,6 +30,11 @@ HOLD_MS = 900
 LONGEST_SIDE = 480
 #: Colours of the shared palette; the picture has few and their blends.
 PALETTE_COLOURS = 64
+#: Smallest radius (pixels) of a connector's dot, and the colour of those that are stretched to this share of what they
+#: tolerate: at the angle where the sheet jams, those that stop it.
+DOT, OVERSTRETCHED, NEARLY = 1.2, (213, 0, 50), 0.95
+#: Height (pixels) of the caption's letters and its distance from the picture's corner, for a longest side of 480.
+LETTERS, INSET = 15, 7
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,7 +45,7 @@ class GifExporter:
     name: str = "GIF animation of the deployment"
 
     def write(self, job: ExportJob, path: Path) -> None:
-        """Write the motion from phi = pi to the job's angle."""
+        """Write the motion from phi = pi to the job's angle, or as far as the sheet as cut comes."""
         write_animation(job, path)
 
 
@@ -60,7 +71,8 @@ def write_animation(job: ExportJob, path: str | Path, frames: int = FRAMES, long
     pictures = animation_frames(job, frames, longest)
     durations = [HOLD_MS] + [FRAME_MS] * (frames - 2) + [HOLD_MS]
     stream = BytesIO()
-    facts = "; ".join(f"{name} {text}" for name, text in origin_facts(job.provenance).items())
+    said = origin_facts(job.provenance) | ({} if job.motion is None else {"MOTION": job.motion.caption})
+    facts = "; ".join(f"{name} {text}" for name, text in said.items())
     pictures[0].save(
         stream,
         format="GIF",
@@ -84,14 +96,39 @@ def write_animation(job: ExportJob, path: str | Path, frames: int = FRAMES, long
 
 def animation_frames(job: ExportJob, frames: int, longest: int) -> list[Image.Image]:
     """Pictures of the motion that show one part of the plane and share one palette."""
-    design = job.posed
-    poses = [design.parts(float(angle)) for angle in frame_angles(job.phi, frames)]
+    design, motion = job.posed, job.motion
+    end = job.phi if motion is None else motion.reached
+    angles = [float(angle) for angle in frame_angles(end, frames)]
+    # The ideal motion decides what part of the plane is shown.
+    poses = [design.parts(angle) for angle in angles]
     clouds = [np.concatenate(panels) for panels in poses]
     box = PictureFrame.around(clouds if job.target is None else [*clouds, job.target], longest)
-    pictures = [draw_polygons(panels, box, job.target) for panels in poses]
+    if motion is None:
+        pictures = [draw_polygons(panels, box, job.target) for panels in poses]
+    else:
+        pictures = [_as_cut(job, motion, angle, box) for angle in angles]
     # Open and closed states together show every colour.
-    sample = Image.new("RGB", (box.pixels[0], 2 * box.pixels[1]))
+    sample = Image.new("RGB", (box.pixels[0], 2 * box.pixels[1] + (0 if motion is None else LETTERS)), OVERSTRETCHED)
     sample.paste(pictures[frames // 2], (0, 0))
     sample.paste(pictures[-1], (0, box.pixels[1]))
     shared = sample.quantize(colors=PALETTE_COLOURS)
     return [picture.quantize(palette=shared, dither=Image.Dither.NONE) for picture in pictures]
+
+
+def _as_cut(job: ExportJob, motion: CutMotion, phi: float, box: PictureFrame) -> Image.Image:
+    """One frame of the sheet as cut: its panels, its connectors, and the caption in the lower left corner."""
+    pose = motion.pose(job.posed, phi)
+    image = draw_polygons(pose.panels, box, job.target)
+    large = image.resize((SUPERSAMPLING * box.pixels[0], SUPERSAMPLING * box.pixels[1]))
+    draw = ImageDraw.Draw(large)
+    widths = motion.closing.sheet.connectors.width_mm / job.posed.mm_per_world(motion.width_mm)
+    radii = SUPERSAMPLING * np.maximum(0.5 * widths * box.scale, DOT)
+    spots = box.pixel(pose.connectors.mean(axis=1), SUPERSAMPLING)
+    for (x, y), radius, stretch in zip(spots, radii.tolist(), pose.stretch.tolist(), strict=True):
+        colour: Colour = OVERSTRETCHED if stretch > NEARLY * TOLERATED_STRETCH else INK
+        draw.ellipse((x - radius, y - radius, x + radius, y + radius), fill=colour)
+    image = large.resize(box.pixels, Image.Resampling.BOX)
+    share = max(box.pixels) / LONGEST_SIDE
+    font = ImageFont.load_default(size=max(LETTERS * share, 8.0))
+    ImageDraw.Draw(image).text((INSET * share, box.pixels[1] - INSET * share), motion.caption, INK, font, anchor="ls")
+    return image

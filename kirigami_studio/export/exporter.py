@@ -12,6 +12,7 @@ from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.evaluate.trimming import Trim
+from kirigami_studio.export.cut_motion import CutMotion
 from kirigami_studio.export.paper import NO_PAPER
 from kirigami_studio.export.profile import DEFAULT_PROFILE
 from kirigami_studio.fabricate.cut_plan import CutPlan
@@ -47,6 +48,8 @@ class ExportJob:
         What was cut off the edge panels; pictures show what stays.
     markers : bool
         A LightBurn project also marks the connectors, on a layer that LightBurn does not cut.
+    motion : CutMotion or None
+        What an animation shows: the sheet as cut; None for its ideal motion.
     """
 
     deployment: Deployment
@@ -60,6 +63,7 @@ class ExportJob:
     provenance: Mapping[str, str] = field(default_factory=lambda: MappingProxyType({}))
     trim: Trim | None = None
     markers: bool = False
+    motion: CutMotion | None = None
 
     @classmethod
     def of(cls, candidate: Candidate, target: FloatArray | None, plan: CutPlan | None = None) -> ExportJob:

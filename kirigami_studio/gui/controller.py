@@ -26,6 +26,7 @@ from kirigami_studio.gui.designs.look_alikes import LookAlikes
 from kirigami_studio.gui.designs.regularity import Regularity
 from kirigami_studio.gui.designs.target_reader import TargetReader
 from kirigami_studio.gui.file_kinds import kind_of
+from kirigami_studio.gui.jobs.cut_jobs import ANIMATION, Motion
 from kirigami_studio.gui.files.filing import Filing
 from kirigami_studio.gui.files.user_preferences import UserPreferences
 from kirigami_studio.gui.jobs import importing
@@ -235,14 +236,16 @@ class Controller(QObject):
 
     # cuts ----------------------------------------------------------------------------------------------------------
 
-    def export(self, path: Path) -> None:
-        """Write the chosen design's cut file or picture; the extension says which."""
-        if self.hand.postpones(lambda: self.export(path)):
+    def export(self, path: Path, motion: Motion = Motion.AS_CUT) -> None:
+        """Write the chosen design's cut file or picture, by the extension; ``motion`` is what an animation shows."""
+        if self.hand.postpones(lambda: self.export(path, motion)):
             return
         request = self.cutting.request
         if request is None:
             text = tr("No design to export yet. Generate one first.")
             self.session.post(Message(text, Tone.HINT))
+        elif path.suffix.lower() == ANIMATION:
+            self.cutting.animate(request, path, motion, self.as_cut.state.sheet)
         else:
             if kind_of(path.suffix).cuts:
                 self.preferences.remember(self.document)

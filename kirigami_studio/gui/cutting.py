@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import asdict
 from functools import partial
 from pathlib import Path
-from typing import Unpack
+from typing import TYPE_CHECKING, Unpack
 
 from PySide6.QtCore import QObject, QTimer, Signal
 
@@ -14,9 +15,12 @@ from kirigami_studio.fabricate.material import Material, library
 from kirigami_studio.fabricate.material_copies import save_copy
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.foundation.words import tr
+from kirigami_studio.gui.jobs.as_cut_jobs import animating
 from kirigami_studio.gui.jobs.cut_jobs import (
+    ANIMATION,
     CutRequest,
     Exported,
+    Motion,
     Planned,
     exporting,
     exporting_all,
@@ -31,6 +35,9 @@ from kirigami_studio.project.cutting import stored_material
 from kirigami_studio.project.design_facts import design_facts
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.edits import Edit, FabricationChange, OptionsChange
+
+if TYPE_CHECKING:
+    from kirigami_studio.project.as_cut import SimulatedSheet
 
 #: Changes that follow each other faster than this (ms) lead to one plan.
 PLAN_DELAY_MS = 120
@@ -95,6 +102,17 @@ class CutPlanner(QObject):
         self._session.set_status(tr("Exporting {name} …", name=path.name))
         self._write(tr("exporting {name}", name=path.name), partial(exporting, request, path))
 
+    def animate(self, request: CutRequest, path: Path, motion: Motion, sheet: SimulatedSheet | None) -> None:
+        """Write an animation; ``sheet`` is the design as cut, if it is known already."""
+        self._session.set_status(tr("Exporting {name} …", name=path.name))
+        steps = partial(animating, request, path, motion, sheet)
+        callbacks = JobCallbacks(self._report_animation, on_failed=self._report_failure)
+        self._session.queue.start(tr("exporting {name}", name=path.name), steps, callbacks)
+
+    def _report_animation(self, exported: Exported | None) -> None:
+        if exported is not None:
+            self._report(exported)
+
     def export_all(self, request: CutRequest, folder: Path, name: str) -> None:
         """Write everything that there is of a design into a folder."""
         self._session.set_status(tr("Exporting to {name} …", name=folder.name))
@@ -113,7 +131,7 @@ class CutPlanner(QObject):
         path, made = exported.path, exported.planned
         if made is None:
             self._session.set_status(tr("Exported {path}.", path=path))
-            message = Message(tr("{name} exported.", name=path.name), Tone.DONE, str(path))
+            message = Message(picture_sentence(exported), Tone.DONE, str(path))
         else:
             self._session.set_status(
                 tr(
@@ -130,6 +148,20 @@ class CutPlanner(QObject):
     def _report_failure(self, sentence: str, trace: str) -> None:
         self._session.set_status(tr("Export failed."))
         self._session.post(Message(sentence, Tone.ERROR, trace))
+
+
+def picture_sentence(exported: Exported) -> str:
+    """Say that a picture was written, and which motion an animation shows."""
+    name, motion = exported.path.name, exported.motion
+    if exported.path.suffix.lower() != ANIMATION:
+        return tr("{name} exported.", name=name)
+    if motion is None:
+        sentence = tr("{name} exported: the ideal motion, with connectors of no width.", name=name)
+        why = tr("Not as cut: {reason}", reason=exported.not_as_cut)
+        return f"{sentence} {why}" if exported.not_as_cut else sentence
+    if motion.jams:
+        return tr("{name} exported: as cut, it jams at {jam:.0f}°.", name=name, jam=math.degrees(motion.jam_phi))
+    return tr("{name} exported: as cut, to {reached:.0f}°.", name=name, reached=math.degrees(motion.reached))
 
 
 def message_of(path: Path, made: Planned) -> Message:

@@ -40,7 +40,7 @@ FILE_KINDS = (
     FileKind(".svg", tr("SVG cut file, mm"), tr("Cut file in mm for laser software and Inkscape"), True),
     FileKind(".pdf", tr("PDF cut sheet, mm"), tr("Cut sheet at 1:1, to print or plot"), True),
     FileKind(".png", tr("PNG picture"), tr("Picture of the opened sheet over its target"), False),
-    FileKind(".gif", tr("GIF animation"), tr("The sheet opening from flat to the target angle"), False),
+    FileKind(".gif", tr("GIF animation, as cut"), tr("The sheet opening as cut; it stops where it jams"), False),
     FileKind(
         ".lbrn2", tr("LightBurn project"), tr("Named layers in cutting order; connectors on the tool layer"), True
     ),

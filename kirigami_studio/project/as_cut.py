@@ -16,6 +16,7 @@ import numpy as np
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.siou import siou_of_many
+from kirigami_studio.export.cut_motion import CutMotion
 from kirigami_studio.fabricate.connectors import hinge_widths
 from kirigami_studio.fabricate.cut_plan import CutPlan
 from kirigami_studio.fabricate.endings import BAR_SPANS, HALF_ANGLES
@@ -39,7 +40,7 @@ from kirigami_studio.mechanics.connectors import ElasticSheet, cut_connectors, j
 from kirigami_studio.mechanics.estimate import estimate_stretch
 from kirigami_studio.mechanics.sheet_network import SheetNetwork, polygons_as_rows, sheet_network
 from kirigami_studio.outlines.outline import Outline
-from kirigami_studio.project.cutting import material_for
+from kirigami_studio.project.cutting import material_for, plan_of
 from kirigami_studio.project.settings import FabricationSettings
 
 MPA_PER_GPA = 1e3
@@ -136,6 +137,10 @@ class SimulatedSheet:
         share = float(np.clip((phis[before] - phi) / run, 0.0, 1.0)) if run > 0.0 else 1.0
         found: FloatArray = (1.0 - share) * stretch[before] + share * stretch[after]
         return found
+
+    def motion(self, width_mm: float) -> CutMotion:
+        """What an animation shows of it; ``width_mm`` is that of the flat sheet."""
+        return CutMotion(self.closing, width_mm, self.as_cut.jam_phi, self.as_cut.reached)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -310,6 +315,27 @@ def simulate(
     table = cut_table(*deployment.sheet.grid)
     node = table.hinge_node[plan.hinges.finished_mm > 0.0]
     return SimulatedSheet(_simulated(sheet, found, jam, phi, lap), found, node)
+
+
+def simulated(candidate: Candidate, settings: FabricationSettings, target: Outline | None = None) -> SimulatedSheet:
+    """Plan the cuts of a design and close it on their connectors, all in one go; see :func:`simulate`.
+
+    Raises
+    ------
+    FabricationError
+        A plan that cannot be made.
+    MechanicsError
+        Panels that do not hang together.
+    """
+    deployment, kept = deploy(candidate.final_sheet), None if candidate.trim is None else candidate.trim.kept
+    plan = plan_of(candidate, settings, deployment)
+    steps = simulate(deployment, plan, settings.width_mm, candidate.final_phi, target, kept)
+    while True:
+        try:
+            next(steps)
+        except StopIteration as end:
+            found: SimulatedSheet = end.value
+            return found
 
 
 def _simulated(sheet: SheetNetwork, found: Closing, jam: float, phi: float, lap: Overlap | None) -> AsCut:

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from PIL import Image
 from PySide6.QtWidgets import QFileDialog
 from pytestqt.qtbot import QtBot
 
@@ -49,6 +50,40 @@ def test_that_a_refused_plan_still_leaves_pictures(designed: MainWindow, until: 
     allowed = {extension: action.isEnabled() for extension, action in designed.fabrication.kinds.items()}
     assert allowed == {".dxf": False, ".svg": False, ".pdf": False, ".png": True, ".gif": True, ".lbrn2": False}
     assert designed.fabrication.more.isEnabled()
+
+
+def test_that_the_animation_shows_the_sheet_as_cut_unless_the_ideal_motion_is_asked_for(
+    designed: MainWindow, files: object, qtbot: QtBot, tmp_path: Path
+) -> None:
+    sentences = []
+    for name, action in (
+        ("heart.gif", designed.commands["animation"]),
+        ("heart-ideal.gif", designed.fabrication.exports.ideal),
+    ):
+        files.answer = tmp_path / name  # type: ignore[attr-defined]
+        with qtbot.waitSignal(designed.controller.cutting.exported, timeout=30_000):
+            action.trigger()
+        sentences.append(designed.messages.messages[-1].sentence)
+    assert sentences == [
+        "heart.gif exported: as cut, to 0°.",
+        "heart-ideal.gif exported: the ideal motion, with connectors of no width.",
+    ]
+    assert files.proposals == ["heart.gif", "heart-ideal.gif"]  # type: ignore[attr-defined]
+    for name, said in (("heart.gif", True), ("heart-ideal.gif", False)):
+        with Image.open(tmp_path / name) as image:
+            assert (b"MOTION As cut" in image.info["comment"]) is said, name
+
+
+def test_that_an_animation_of_cuts_that_cannot_be_planned_is_ideal_and_says_why(
+    designed: MainWindow, files: object, until: Until, tmp_path: Path
+) -> None:
+    designed.fabrication.lengths["connector_mm"].setValue(20.0)
+    until(lambda: not designed.fabrication.export.isEnabled())
+    files.answer = tmp_path / "heart.gif"  # type: ignore[attr-defined]
+    designed.fabrication.kinds[".gif"].trigger()
+    until(lambda: any("heart.gif" in message.sentence for message in designed.messages.messages))
+    sentence = designed.messages.messages[-1].sentence
+    assert "the ideal motion" in sentence and "Not as cut: " in sentence
 
 
 def test_that_an_unknown_extension_is_refused_with_the_known_ones(

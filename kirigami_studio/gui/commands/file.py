@@ -13,6 +13,7 @@ from kirigami_studio.foundation.resources import resource
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.command import Command
 from kirigami_studio.gui.controller import Controller
+from kirigami_studio.gui.jobs.cut_jobs import Motion
 from kirigami_studio.gui.jobs.project_jobs import Leftover
 from kirigami_studio.gui.messages import Message, Tone
 from kirigami_studio.gui.unsaved_work import NEW_PROJECT, OTHER_PROJECT, RECOVERED, SAMPLE
@@ -66,15 +67,22 @@ class FileCommands(QObject):
         """Open what a session that ended unexpectedly has left."""
         self._window.unsaved.guard(RECOVERED, partial(self._controller.filing.recovery.recover, leftover))
 
+    def animate(self, motion: Motion = Motion.AS_CUT) -> None:
+        """Write the animation in a place of the user's choice; the ideal one says so in the name that is offered."""
+        self._export(".gif" if motion is Motion.AS_CUT else "-ideal.gif", motion)
+
     def export(self, extension: str = ".dxf") -> None:
         """Write the cut file, or another kind of file, in a place of the user's choice."""
+        self._export(extension, Motion.AS_CUT)
+
+    def _export(self, ending: str, motion: Motion) -> None:
         if self._controller.stage is None:
             sentence = tr("No design to export yet. Generate one first.")
             self._window.messages.add(Message(sentence, Tone.HINT))
             return
-        path = self._window.file_dialogs.export(f"{self._window.unsaved.name}{extension}")
+        path = self._window.file_dialogs.export(f"{self._window.unsaved.name}{ending}")
         if path is not None:
-            self._controller.export(path)
+            self._controller.export(path, motion)
 
     def export_all(self) -> None:
         """Write everything that there is of the design into a folder of the user's choice."""
@@ -165,8 +173,15 @@ def commands(window: MainWindow) -> tuple[Command, ...]:
             "animation",
             menu,
             tr("Export an&imation …"),
-            tr("Export the deployment as a looping GIF"),
-            partial(files.export, ".gif"),
+            tr("Export a looping GIF of the sheet as cut: it stops where it jams"),
+            files.animate,
+        ),
+        Command(
+            "animation_ideal",
+            menu,
+            tr("Expor&t ideal animation …"),
+            tr("Export a looping GIF of the ideal motion, with connectors of no width"),
+            partial(files.animate, Motion.IDEAL),
         ),
         Command(
             "quit",

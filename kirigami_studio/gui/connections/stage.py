@@ -10,7 +10,7 @@ from PySide6.QtWidgets import QMenu
 from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.controller import Controller
-from kirigami_studio.gui.jobs.cut_jobs import Planned
+from kirigami_studio.gui.jobs.cut_jobs import Motion, Planned
 from kirigami_studio.gui.reshaping import OpenedSizes
 from kirigami_studio.gui.scene.rim_items import MouthFacts
 from kirigami_studio.gui.scene.void_items import VoidFacts
@@ -66,6 +66,7 @@ class StageConnections(QObject):
         panel.materials_wanted.connect(window.dialogs.show_materials)
         panel.export_wanted.connect(window.files.export)
         panel.exports.all_wanted.connect(window.files.export_all)
+        panel.exports.ideal_wanted.connect(lambda: window.files.animate(Motion.IDEAL))
         panel.opened.link_wanted.connect(self._sizing.link)
         self._sizing.known.connect(panel.opened.show_size)
         self._sizing.width_wanted.connect(controller.fabrication.cut_at_drawn_size)

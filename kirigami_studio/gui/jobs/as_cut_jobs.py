@@ -1,14 +1,18 @@
-"""Jobs on sheets as cut: close the chosen one on its connectors, estimate for all designs whether they close."""
+"""Jobs on sheets as cut: close the chosen one on its connectors, write its motion, estimate for all designs whether
+they close.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.errors import Cancelled, KirigamiError
-from kirigami_studio.gui.jobs.cut_jobs import CutRequest, Planned
+from kirigami_studio.gui.jobs import importing
+from kirigami_studio.gui.jobs.cut_jobs import CutRequest, Exported, Motion, Planned, export_job, planned
 from kirigami_studio.gui.jobs.queue import Cancel
 from kirigami_studio.lattice.deployment import Deployment
 from kirigami_studio.project.settings import FabricationSettings
@@ -45,6 +49,39 @@ def simulating(request: CutRequest, made: Planned, cancel: Cancel) -> Iterator[S
             yield end.value
             return
         yield None
+
+
+def animating(
+    request: CutRequest, path: Path, motion: Motion, sheet: SimulatedSheet | None, cancel: Cancel
+) -> Iterator[Exported | None]:
+    """Write an animation; None after every step of the simulation that it may need.
+
+    Parameters
+    ----------
+    request : CutRequest
+    path : Path
+    motion : Motion
+        A sheet whose cuts cannot be planned or closed is shown in its ideal motion, and the report says why.
+    sheet : SimulatedSheet or None
+        The design as cut, if it is known already.
+    cancel : function
+    """
+    importing.import_exporters()
+    from kirigami_studio.export.registry import export
+
+    why = ""
+    if motion is Motion.AS_CUT and sheet is None:
+        try:
+            for found in simulating(request, planned(request), cancel):
+                sheet = found
+                yield None
+        except Cancelled:
+            raise
+        except KirigamiError as error:
+            why = str(error)
+    shown = None if sheet is None or motion is Motion.IDEAL else sheet.motion(request.settings.width_mm)
+    written = export(replace(export_job(request, None), motion=shown), path)
+    yield Exported(written, None, motion=shown, not_as_cut=why)
 
 
 def estimating(

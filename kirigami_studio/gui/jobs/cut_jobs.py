@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
+from enum import Enum
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -17,12 +18,22 @@ from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.settings import FabricationSettings
 
 if TYPE_CHECKING:
+    from kirigami_studio.export.cut_motion import CutMotion
     from kirigami_studio.export.exporter import ExportJob
     from kirigami_studio.export.strokes import Work
     from kirigami_studio.export.verification import Verification
     from kirigami_studio.fabricate.checks import Report
     from kirigami_studio.fabricate.cut_plan import CutPlan
     from kirigami_studio.fabricate.material import Material
+
+ANIMATION = ".gif"
+
+
+class Motion(Enum):
+    """What an animation shows."""
+
+    AS_CUT = "as_cut"  #: the sheet on its connectors, as far as it comes
+    IDEAL = "ideal"  #: connectors of no width, all the way to the target angle
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -56,11 +67,17 @@ class Exported:
         What it holds; pictures hold no plan.
     verifications : tuple of Verification
         What two readers found in each cut file; kinds of file that are not verified this way have none.
+    motion : CutMotion or None
+        What an animation shows; None for the ideal motion, and for other kinds of file.
+    not_as_cut : str
+        Why an animation cannot show the sheet as cut, a sentence, or "".
     """
 
     path: Path
     planned: Planned | None
     verifications: tuple[Verification, ...] = ()
+    motion: CutMotion | None = None
+    not_as_cut: str = ""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

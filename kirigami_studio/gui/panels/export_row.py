@@ -16,6 +16,7 @@ class ExportRow(QWidget):
     """Reports which kind of file is wanted."""
 
     export_wanted = Signal(str)  #: extension
+    ideal_wanted = Signal()  #: an animation of the ideal motion
     all_wanted = Signal()
 
     def __init__(self, parent: QWidget | None = None) -> None:
@@ -39,6 +40,10 @@ class ExportRow(QWidget):
             action.setToolTip(kind.tip)
             action.triggered.connect(lambda _=False, kind=kind: self.export_wanted.emit(kind.extension))
             self.kinds[kind.extension] = action
+            if kind.extension == ".gif":
+                self.ideal = self.menu.addAction(tr("GIF animation, ideal …"))
+                self.ideal.setToolTip(tr("The ideal motion to the target angle, with connectors of no width"))
+                self.ideal.triggered.connect(lambda: self.ideal_wanted.emit())
         self.menu.addSeparator()
         self.everything = self.menu.addAction(tr("Everything to a folder …"))
         self.everything.setToolTip(tr("Every cut file, pictures and a record of the job (Ctrl+Shift+E)"))
@@ -67,6 +72,7 @@ class ExportRow(QWidget):
         self.export.setEnabled(cuts)
         self.more.setEnabled(cuts or pictures)
         self.everything.setEnabled(cuts)
+        self.ideal.setEnabled(pictures)
         for kind in FILE_KINDS:
             self.kinds[kind.extension].setEnabled(cuts if kind.cuts else pictures)
 

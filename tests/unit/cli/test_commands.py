@@ -159,6 +159,12 @@ def test_that_a_saved_project_is_exported_to_every_kind_of_file(
     document = ezdxf.readfile(tmp_path / "x.dxf")
     assert document.header["$EXTMAX"][0] == pytest.approx(80, abs=1.0)
     assert answer(capsys, "animate", project, "--out", tmp_path / "y.gif", "--json")["frames"] > 10
+    as_cut = answer(
+        capsys, "animate", project, "--out", tmp_path / "z.gif", "--as-cut", "--style", "straight",
+        "--connector-mm", 1.5, "--json",
+    )  # fmt: skip
+    assert as_cut["frames"] > 10 and as_cut["reached_deg"] == as_cut["jam_deg"] > 5.0
+    assert (tmp_path / "z.gif").read_bytes() != (tmp_path / "y.gif").read_bytes()
 
 
 @pytest.mark.torch

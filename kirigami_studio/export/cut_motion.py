@@ -1,0 +1,98 @@
+"""The motion of a sheet as cut, laid over its ideal motion: panels on elastic connectors that stop where they jam."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from kirigami_studio.evaluate.boundary import as_plane, as_points
+from kirigami_studio.evaluate.posed_design import PosedDesign
+from kirigami_studio.foundation.arrays import ComplexArray, FloatArray
+from kirigami_studio.mechanics.closing import Closing, carried_on, ideal_motion
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class CutPose:
+    """A sheet as cut at one angle, in the target's frame.
+
+    Attributes
+    ----------
+    panels : list of (Q, 2) float
+        Row by row; of panels with fewer corners than others the last one is repeated.
+    connectors : (H, 2, 2) float
+        Where either panel of a connector has it; both places are the same where it is not stretched.
+    stretch : (H,) float
+        Distance of the two in widths of the connector.
+    """
+
+    panels: list[FloatArray]
+    connectors: FloatArray
+    stretch: FloatArray
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class CutMotion:
+    """How a sheet moves as cut.
+
+    Attributes
+    ----------
+    closing : Closing
+        Of the design's planned cuts.
+    width_mm : float
+        Width of the flat sheet.
+    jam_phi : float, radians
+        Angle at which it jams; 0 for a sheet that closes.
+    reached : float, radians
+        The angle nearest to its target angle that it comes to.
+    """
+
+    closing: Closing
+    width_mm: float
+    jam_phi: float
+    reached: float
+
+    @property
+    def jams(self) -> bool:
+        """Whether the motion ends where the sheet jams."""
+        return self.jam_phi > 0.0 and self.reached == self.jam_phi
+
+    @property
+    def caption(self) -> str:
+        """What a picture of the motion says; plain English, as in all drawings that are written."""
+        return f"As cut: jams at {math.degrees(self.jam_phi):.0f} degrees" if self.jams else "As cut"
+
+    def pose(self, design: PosedDesign, phi: float) -> CutPose:
+        """The sheet at an angle (radians), moved and turned so that its panels lie nearest to the ideal ones.
+
+        Parameters
+        ----------
+        design : PosedDesign
+            The same design, over its target.
+        phi : float, radians
+            Not below ``reached``.
+        """
+        deployment, network = design.deployment, self.closing.sheet.network
+        motion = carried_on(self.closing, deployment, self.width_mm, phi)
+        ideal = ideal_motion(deployment, network, self.width_mm, phi)
+        here, meant = (as_plane(network.centroids + moved[:, :2]) for moved in (motion, ideal))
+        turned = np.exp(1j * np.angle(np.sum((meant - meant.mean()) * np.conj(here - here.mean()))))
+        flat = as_plane(deployment.compact - deployment.compact.min(axis=0))
+        mm = self.width_mm / float(np.ptp(deployment.compact[:, 0]))
+        # The ideal motion keeps the middle of all nodes where it is in the flat sheet.
+        factor = design.pose.factor / mm
+        middle = complex(*design.nodes(phi).mean(axis=0))
+        shift = middle + factor * (meant.mean() - mm * flat.mean()) - factor * turned * here.mean()
+
+        def placed(points: FloatArray) -> FloatArray:
+            spots: ComplexArray = as_plane(points) * (factor * turned) + shift
+            return as_points(spots)
+
+        joined = network.ligaments.panels
+        theta = motion[joined, 2]
+        arms = as_plane(network.ligaments.points - network.centroids[joined]) * np.exp(1j * theta)
+        ends = as_points(arms + here[joined])
+        gap = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
+        panels = list(placed(network.moved_outlines(motion)))
+        return CutPose(panels, placed(ends), gap / self.closing.sheet.connectors.width_mm)

@@ -1,0 +1,114 @@
+"""The animation of a sheet as cut: it lies on the ideal one while flat, stops where it jams, and says so."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from kirigami_studio.evaluate.similarity import Similarity
+from kirigami_studio.export.animation import LETTERS, OVERSTRETCHED, animation_frames, write_animation
+from kirigami_studio.export.cut_motion import CutMotion
+from kirigami_studio.export.exporter import ExportJob
+from kirigami_studio.export.picture import INK
+from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions
+from kirigami_studio.lattice.deployment import Deployment, deploy
+from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.mechanics.closing import closing
+from kirigami_studio.project.as_cut import planned_sheet
+from kirigami_studio.project.cutting import plan_sheet
+from kirigami_studio.project.settings import FabricationSettings
+
+WIDTH = 100.0
+
+
+@pytest.fixture(scope="module")
+def design() -> Deployment:
+    return deploy(RatioField.from_log10(np.random.default_rng(0).uniform(-0.5, 0.5, (6, 6))))
+
+
+def made(design: Deployment, style: ConnectorStyle) -> ExportJob:
+    settings = FabricationSettings(WIDTH, connector_mm=0.8, options=CutOptions(style=style))
+    found = closing(planned_sheet(design, plan_sheet(design, settings), WIDTH))
+    pose, jam = Similarity(0.1, 0.3, (2.0, 1.0)), found.jam_phi()
+    return ExportJob(design, 0.0, None, pose.apply(design.outline(0.0)), pose, motion=CutMotion(found, WIDTH, jam, jam))
+
+
+@pytest.fixture(scope="module")
+def straight(design: Deployment) -> ExportJob:
+    return made(design, ConnectorStyle.STRAIGHT)
+
+
+@pytest.fixture(scope="module")
+def centred(design: Deployment) -> ExportJob:
+    return made(design, ConnectorStyle.CENTRED)
+
+
+def motion_of(job: ExportJob) -> CutMotion:
+    assert job.motion is not None
+    return job.motion
+
+
+def test_that_the_flat_sheet_as_cut_is_the_ideal_one(straight: ExportJob) -> None:
+    pose = motion_of(straight).pose(straight.posed, math.pi)
+    for panel, ideal in zip(pose.panels, straight.posed.parts(math.pi), strict=True):
+        np.testing.assert_allclose(panel, ideal, atol=1e-12)
+    np.testing.assert_allclose(pose.stretch, 0.0, atol=1e-12)
+
+
+def test_that_a_centred_sheet_ends_near_its_ideal_state_and_a_straight_one_does_not(
+    straight: ExportJob, centred: ExportJob
+) -> None:
+    ideal = centred.posed.parts(0.0)
+    off = [
+        max(float(np.abs(a - b).max()) for a, b in zip(motion_of(job).pose(job.posed, 0.0).panels, ideal, strict=True))
+        for job in (centred, straight)
+    ]
+    mm = centred.posed.mm_per_world(WIDTH)
+    assert off[0] * mm < 0.8 < 2.0 < off[1] * mm
+
+
+def test_that_stretch_is_that_of_the_simulation(straight: ExportJob) -> None:
+    motion = motion_of(straight)
+    step = len(motion.closing.phi) // 2
+    pose = motion.pose(straight.posed, float(motion.closing.phi[step]))
+    np.testing.assert_allclose(pose.stretch, motion.closing.stretch[step], rtol=1e-6, atol=1e-9)
+    apart = np.linalg.norm(pose.connectors[:, 1] - pose.connectors[:, 0], axis=1) * straight.posed.mm_per_world(WIDTH)
+    np.testing.assert_allclose(apart, motion.closing.stretch_mm[step], rtol=1e-6, atol=1e-9)
+
+
+def test_that_the_last_frame_shows_where_the_sheet_jams_and_says_so(straight: ExportJob, tmp_path: Path) -> None:
+    motion = motion_of(straight)
+    jam = math.degrees(motion.jam_phi)
+    assert jam > 10.0 and motion.caption == f"As cut: jams at {jam:.0f} degrees"
+    write_animation(straight, tmp_path / "jams.gif", frames=4, longest=240)
+    with Image.open(tmp_path / "jams.gif") as image:
+        assert image.info["comment"].decode() == f"MOTION {motion.caption}"
+        image.seek(3)
+        last = np.asarray(image.convert("RGB")).astype(int)
+    corner = last[-LETTERS:, :90].reshape(-1, 3)
+    assert np.any(np.abs(corner - INK).max(axis=1) < 60)
+    # The same angle in the ideal motion: no caption, other panels.
+    ideal = animation_frames(replace(straight, phi=motion.reached, motion=None), 4, 240)[-1].convert("RGB")
+    other = np.asarray(ideal).astype(int)
+    assert not np.any(np.abs(other[-LETTERS:, :90].reshape(-1, 3) - INK).max(axis=1) < 60)
+    assert np.mean(np.abs(last[: -2 * LETTERS] - other[: -2 * LETTERS]).max(axis=2) > 60) > 0.02
+
+
+def test_that_connectors_which_stop_the_sheet_are_red(straight: ExportJob) -> None:
+    def red(job: ExportJob) -> int:
+        pixels = np.asarray(animation_frames(job, 2, 900)[-1].convert("RGB")).reshape(-1, 3).astype(int)
+        return int(np.sum(np.abs(pixels - OVERSTRETCHED).max(axis=1) < 60))
+
+    motion = motion_of(straight)
+    early = replace(straight, motion=replace(motion, reached=0.5 * (math.pi + motion.jam_phi)))
+    assert red(early) == 0 < red(straight)
+
+
+def test_that_a_sheet_which_closes_has_a_caption_without_a_jam(centred: ExportJob) -> None:
+    closes = replace(motion_of(centred), jam_phi=0.0, reached=0.0)
+    assert closes.caption == "As cut" and not closes.jams
