@@ -26,10 +26,10 @@ from kirigami_studio.gui.designs.look_alikes import LookAlikes
 from kirigami_studio.gui.designs.regularity import Regularity
 from kirigami_studio.gui.designs.target_reader import TargetReader
 from kirigami_studio.gui.file_kinds import kind_of
-from kirigami_studio.gui.jobs.cut_jobs import ANIMATION, Motion
 from kirigami_studio.gui.files.filing import Filing
 from kirigami_studio.gui.files.user_preferences import UserPreferences
 from kirigami_studio.gui.jobs import importing
+from kirigami_studio.gui.jobs.cut_jobs import ANIMATION, Motion
 from kirigami_studio.gui.jobs.queue import JobCallbacks, JobQueue
 from kirigami_studio.gui.messages import Message, Tone
 from kirigami_studio.gui.session import Entry, Session
