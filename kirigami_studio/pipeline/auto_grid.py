@@ -173,7 +173,6 @@ def predicted_match(figures: ShapeFigures, grid: tuple[int, int], proportion: fl
 @lru_cache(maxsize=64)
 def choose_grid(
     target: Outline,
-    phi: float = 0.0,
     symmetry: str = "auto",
     width_mm: float = 100.0,
     least_feature_mm: float = 0.0,
@@ -184,8 +183,6 @@ def choose_grid(
     Parameters
     ----------
     target : Outline
-    phi : float, radians
-        Deployment angle of the match; quarter turns are symmetries at 0 alone.
     symmetry : {"auto", "none", "mirror", "turn"}
         As for :func:`kirigami_studio.polish.symmetry.symmetric_poses`.
     width_mm : float
@@ -205,7 +202,7 @@ def choose_grid(
     poses = symmetric_poses(target, symmetry)
     figures = ShapeFigures.of(target)
     smallest = SMALLEST_SHARE * width_mm / least_feature_mm if least_feature_mm > 0.0 else math.inf
-    found = list(_candidates(target, figures, poses, phi, limit))
+    found = list(_candidates(target, figures, poses, limit))
     cuttable = [one for one in found if one.grid[1] + 1 <= smallest] or [min(found, key=lambda one: one.grid[1])]
     best = _coarsest([one for one in cuttable if one.grid[0] * one.grid[1] >= FEWEST_VOIDS] or cuttable)
     finer = [one for one in found if one.panels > best.panels and one.match > best.match]
@@ -222,14 +219,14 @@ def choose_grid(
         code = "grid.best_expected"
     else:
         code = COARSEST_CODES[best.pose.symmetry if best.pose else None]
-    kept = shared_symmetries(target, best.grid, phi, symmetry)
+    kept = shared_symmetries(target, best.grid, symmetry)
     kept.sort(key=lambda pose: pose != best.pose)
     return GridChoice(best.grid, tuple(kept), match, code, tuple(fields.items()))
 
 
 def predicted_for(request: Request) -> GridChoice:
     """What :func:`choose_grid` says for a request, at once."""
-    return choose_grid(request.target, request.phi, request.symmetry, request.width_mm, request.least_feature_mm)
+    return choose_grid(request.target, request.symmetry, request.width_mm, request.least_feature_mm)
 
 
 def chosen_for(request: Request) -> GridChoice:
@@ -247,7 +244,7 @@ def chosen_for(request: Request) -> GridChoice:
 def _tried(
     target: Outline, phi: float, symmetry: str, width_mm: float, least_feature_mm: float, free_rim: bool
 ) -> GridChoice:
-    choice = choose_grid(target, phi, symmetry, width_mm, least_feature_mm)
+    choice = choose_grid(target, symmetry, width_mm, least_feature_mm)
     hard = choice.code == "grid.best_expected" and choice.predicted_match < TRIED_BELOW
     if not hard or not choice.poses or choice.poses[0].angle is None:
         return choice
@@ -256,7 +253,7 @@ def _tried(
     smallest = SMALLEST_SHARE * width_mm / least_feature_mm if least_feature_mm > 0.0 else math.inf
     near = [
         one
-        for one in _candidates(target, figures, poses, phi, FINEST, TRIED_ROOM)
+        for one in _candidates(target, figures, poses, FINEST, TRIED_ROOM)
         if 1.0 - one.match <= TRIED_MISSING * (1.0 - choice.predicted_match) and one.grid[1] + 1 <= smallest
     ]
     picked: list[_Candidate] = []
@@ -267,7 +264,7 @@ def _tried(
         return choice
     best = max(picked, key=lambda one: _trial(target, one.grid, phi, symmetry, free_rim))
     rows, columns = best.grid
-    kept = shared_symmetries(target, best.grid, phi, symmetry)
+    kept = shared_symmetries(target, best.grid, symmetry)
     fields = {"rows": rows, "columns": columns, "count": len(picked), "percent": 100.0 * best.match}
     return GridChoice(best.grid, tuple(kept), best.match, "grid.best_tried", tuple(fields.items()))
 
@@ -275,7 +272,7 @@ def _tried(
 def _trial(target: Outline, grid: tuple[int, int], phi: float, symmetry: str, free_rim: bool) -> float:
     """What short symmetric fits on a grid reach: the best exact IoU, less the price of uneven panels."""
     worth = []
-    for angle, kept in first_angles(target, grid, phi, 1, symmetry)[:2]:
+    for angle, kept in first_angles(target, grid, 1, symmetry)[:2]:
         with one_blas_thread():
             fit = fit_by_stages(target, grid, phi, angle, TRIAL, free_rim, kept)
         deployment = deploy(fit.sheet)
@@ -313,7 +310,6 @@ def _candidates(
     target: Outline,
     figures: ShapeFigures,
     poses: tuple[SymmetricPose, ...],
-    phi: float,
     limit: int,
     room: float = PROPORTION_ROOM,
 ) -> Iterator[_Candidate]:
@@ -333,5 +329,5 @@ def _candidates(
                 grid = rows, columns
                 if pose is None and (rows % 2 or columns % 2):
                     continue
-                if (pose is None or pose.fits(grid, phi)) and low <= math.log((rows + 1) / (columns + 1)) <= high:
+                if (pose is None or pose.fits(grid)) and low <= math.log((rows + 1) / (columns + 1)) <= high:
                     yield _Candidate(grid, pose, predicted_match(figures, grid, proportion))

@@ -185,7 +185,7 @@ def fits_from_uniform(request: Request) -> list[GuidedTask]:
     """
     if not request.fitted_starts:
         return []
-    angles = first_angles(request.target, request.chosen_grid, request.phi, 1, request.symmetry)
+    angles = first_angles(request.target, request.chosen_grid, 1, request.symmetry)
     if request.symmetry in ("mirror", "turn"):
         angles = [one for one in angles if one[1] is not None] or angles
     ways: dict[Symmetry | None, list[tuple[float, Symmetry | None, Way]]] = {}
@@ -202,7 +202,7 @@ def fits_from_uniform(request: Request) -> list[GuidedTask]:
 
 def symmetric_shares(request: Request, count: int) -> list[tuple[SymmetricPose, int]]:
     """Symmetries that ``count`` samples keep, and how many of them keep each."""
-    poses = shared_symmetries(request.target, request.chosen_grid, request.phi, request.symmetry)
+    poses = shared_symmetries(request.target, request.chosen_grid, request.symmetry)
     poses = poses[:MOST_SYMMETRIES]
     together = count if request.symmetry in ("mirror", "turn") and poses else count // 2
     each = [together // len(poses) + (place < together % len(poses)) for place in range(len(poses))]

@@ -168,12 +168,12 @@ def fit_target(request: Request, symmetry: Symmetry | None) -> Outline:
     """What a fit is to match: the target, or the symmetric shape that it is meant to be, where that is asked for."""
     if symmetry is None or request.symmetry not in ("mirror", "turn"):
         return request.target
-    return _meant(request.target, request.chosen_grid, request.phi, request.wishes.symmetry, symmetry)
+    return _meant(request.target, request.chosen_grid, request.wishes.symmetry, symmetry)
 
 
 @lru_cache(maxsize=16)
-def _meant(target: Outline, grid: tuple[int, int], phi: float, setting: str, symmetry: Symmetry) -> Outline:
-    for pose in shared_symmetries(target, grid, phi, setting):
+def _meant(target: Outline, grid: tuple[int, int], setting: str, symmetry: Symmetry) -> Outline:
+    for pose in shared_symmetries(target, grid, setting):
         if pose.symmetry is symmetry:
             return symmetric_target(target, pose)
     return target

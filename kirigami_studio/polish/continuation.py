@@ -301,13 +301,13 @@ def fit_by_stages(
 
 
 def first_angles(
-    target: Outline, grid: tuple[int, int], phi: float, effort: int = 1, setting: str = "auto"
+    target: Outline, grid: tuple[int, int], effort: int = 1, setting: str = "auto"
 ) -> list[tuple[float, Symmetry | None]]:
     """Rotations to begin with, those that keep a symmetry first: both ways up for a mirror axis.
 
     On a long grid they count from the one that lays the sheet along a long target, and those near it come first.
     """
-    angles = _rotations(grid, phi, effort)
+    angles = _rotations(grid, effort)
     rows, columns = grid
     proportions = Proportions.of(target)
     along = proportions.direction
@@ -315,7 +315,7 @@ def first_angles(
         first = along if columns > rows else along - 0.5 * math.pi
         angles = sorted((first + angle for angle in angles), key=lambda angle: abs(math.sin(angle - first)))
     looks: list[tuple[float, Symmetry | None]] = []
-    for pose in shared_symmetries(target, grid, phi, setting):
+    for pose in shared_symmetries(target, grid, setting):
         looks += [(angle, pose.symmetry) for angle in _own_angles(pose, angles)]
     return looks + [(angle, None) for angle in angles]
 
@@ -361,7 +361,7 @@ class _Search:
         thick = thickened(self.target, MARGINS)
         ways = Way.suited_to(self.target)
         found: list[_Found] = []
-        for angle, symmetry in first_angles(self.target, grid, self.phi, effort, self.wishes.symmetry):
+        for angle, symmetry in first_angles(self.target, grid, effort, self.wishes.symmetry):
             for way in ways:
                 if found and self.cancel():
                     return found
@@ -473,12 +473,12 @@ def _best(found: list[_Found], count: int) -> list[_Found]:
     return sorted(found, key=key)[:count]
 
 
-def _rotations(grid: tuple[int, int], phi: float, effort: int) -> list[float]:
+def _rotations(grid: tuple[int, int], effort: int) -> list[float]:
     """Angles to start from, evenly over the part of a turn that symmetry leaves: see the grid's exact symmetries."""
     rows, columns = grid
     if rows % 2 != columns % 2:
         turn, count = 2.0 * math.pi, WHOLE
-    elif rows % 2 == 0 and rows == columns and phi == 0.0:
+    elif rows % 2 == 0 and rows == columns:
         turn, count = 0.5 * math.pi, QUARTER
     else:
         turn, count = math.pi, HALF

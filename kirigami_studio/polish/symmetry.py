@@ -6,7 +6,6 @@ import math
 from dataclasses import dataclass
 
 from kirigami_studio.foundation.errors import TargetError, UsageError
-from kirigami_studio.lattice.deployment import ZIPPED_BELOW
 from kirigami_studio.lattice.symmetry import Symmetry
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.symmetry import (
@@ -49,9 +48,9 @@ class SymmetricPose:
     overlap: float = 1.0
     axes: tuple[MirrorAxis, ...] = ()
 
-    def fits(self, grid: tuple[int, int], phi: float = 0.0) -> bool:
-        """Whether sheets of a grid can have it at an angle: quarter turns are kept in the compact state alone."""
-        return self.symmetry.fits(*grid) and (self.symmetry is not Symmetry.QUARTER_TURN or phi < ZIPPED_BELOW)
+    def fits(self, grid: tuple[int, int]) -> bool:
+        """Whether sheets of a grid can have it; one that has, has it at every angle of deployment."""
+        return self.symmetry.fits(*grid)
 
     def is_part_of(self, other: SymmetricPose) -> bool:
         """Whether every sheet that keeps the other keeps this one too, and lies as freely."""
@@ -59,10 +58,8 @@ class SymmetricPose:
         return part and (other.angle is None or self.angle is not None)
 
 
-def shared_symmetries(
-    target: Outline, grid: tuple[int, int], phi: float = 0.0, setting: str = "auto"
-) -> list[SymmetricPose]:
-    """Symmetries of ``target`` that the lattice of ``grid`` has at ``phi`` too, the most specific first.
+def shared_symmetries(target: Outline, grid: tuple[int, int], setting: str = "auto") -> list[SymmetricPose]:
+    """Symmetries of ``target`` that the lattice of ``grid`` has too, at every angle, the most specific first.
 
     What is only a part of another one in the list is left out, unless it lets the sheet lie at other angles: beside two
     mirrors the half turn stays, with which a diamond may lie on its corner.
@@ -76,7 +73,7 @@ def shared_symmetries(
     """
     found: list[SymmetricPose] = []
     for pose in symmetric_poses(target, setting):
-        if pose.fits(grid, phi) and not any(pose.is_part_of(other) for other in found):
+        if pose.fits(grid) and not any(pose.is_part_of(other) for other in found):
             found.append(pose)
     if not found and setting in ("mirror", "turn"):
         rows, columns = grid

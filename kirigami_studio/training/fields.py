@@ -63,7 +63,7 @@ def mixed_fields(count: int, rows: int, columns: int, rng: Generator) -> FloatAr
 
 
 def turned_quarters(z: FloatArray, turns: int) -> FloatArray:
-    """Exact symmetry of even x even grids at phi = 0: each quarter turn is z -> -rot90(z) (fields (..., m, n))."""
+    """Exact symmetry of even x even grids: each quarter turn is z -> -rot90(z) (fields (..., m, n))."""
     return np.rot90(z, turns, axes=(-2, -1)) * (-1.0) ** turns
 
 

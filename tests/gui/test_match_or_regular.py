@@ -38,7 +38,7 @@ def test_that_the_grid_is_chosen_by_the_target_until_a_number_is_given(
 ) -> None:
     settings, target = heart.settings, heart.controller.document.target
     assert target is not None and settings.auto.isChecked() and heart.controller.document.settings.auto_grid
-    wanted = choose_grid(target, 0.0, "auto", 100.0, Ranking().least_feature_mm)
+    wanted = choose_grid(target, "auto", 100.0, Ranking().least_feature_mm)
     until(lambda: settings.auto.accessibleDescription() != "")
     grid = (settings.rows.value(), settings.columns.value())
     assert grid[1] % 2 == 1 and f"{grid[0]} x {grid[1]}" in settings.auto.toolTip() and wanted.grid[1] % 2 == 1

@@ -8,10 +8,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.spatial.distance import cdist
 
 from kirigami_studio.evaluate.candidate import Candidate, Origin
 from kirigami_studio.foundation.errors import AngleError, Cancelled, GridError, KirigamiError, UsageError
 from kirigami_studio.generator.weights import load_model
+from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.symmetry import Symmetry
 from kirigami_studio.outlines.silhouettes import load
 from kirigami_studio.pipeline.events import CandidateFound, CandidateImproved, Finished, Progress, Started
@@ -209,6 +211,18 @@ def test_that_a_run_has_k_designs_however_few_poses_a_shape_offers(symmetry: str
     candidates = best_of(wish, pool=Pool(0)).candidates
     assert sorted(candidate.index for candidate in candidates) == list(range(24))
     assert any(candidate.origin is Origin.GUIDED for candidate in candidates)
+
+
+@pytest.mark.parametrize("phi", [0.0, 0.6])
+def test_that_designs_keep_quarter_turns_at_any_angle(phi: float) -> None:
+    result = best_of(Request(load("plus"), grid=(6, 6), phi=phi, k=8, polish=6), pool=Pool(0))
+    turning = [one for one in result.candidates if one.symmetry is Symmetry.QUARTER_TURN]
+    assert {one.origin for one in turning} == {Origin.SAMPLED, Origin.GUIDED}
+    for one in turning:
+        outline = deploy(one.sheet).outline(phi)
+        outline = outline - outline.mean(axis=0)
+        turned = outline @ np.array([[0.0, 1.0], [-1.0, 0.0]])
+        assert cdist(outline, turned).min(axis=1).max() < 1e-6
 
 
 def test_that_an_even_rim_and_no_symmetry_are_kept_where_asked_for() -> None:

@@ -86,7 +86,7 @@ def test_that_a_long_sheet_is_first_laid_along_a_long_target() -> None:
     lying = Outline.from_points(turned(load("wave").points, 0.7))
     along = Proportions.of(lying).direction
     for grid, quarter in (((6, 16), 0.0), ((16, 6), 0.5 * math.pi)):
-        angles = [angle for angle, symmetry in first_angles(lying, grid, 0.0) if symmetry is None]
+        angles = [angle for angle, symmetry in first_angles(lying, grid) if symmetry is None]
         assert len(angles) == 6 and math.remainder(angles[0] + quarter - along, math.pi) == pytest.approx(0.0, abs=1e-9)
         off = [abs(math.remainder(angle + quarter - along, math.pi)) for angle in angles]
         assert off == pytest.approx(sorted(off))

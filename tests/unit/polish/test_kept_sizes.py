@@ -66,7 +66,7 @@ def test_that_a_bound_is_kept_where_a_penalty_does_not(grid: tuple[int, int]) ->
 def test_that_a_bound_is_kept_inside_a_symmetry(symmetry: Symmetry) -> None:
     name = {Symmetry.LEFT_RIGHT: "butterfly", Symmetry.HALF_TURN: "gear"}[symmetry]
     grid, target = ((7, 7) if symmetry is Symmetry.LEFT_RIGHT else (6, 6)), load(name)
-    pose = next(one for one in shared_symmetries(target, grid, 0.0) if one.symmetry is symmetry)
+    pose = next(one for one in shared_symmetries(target, grid) if one.symmetry is symmetry)
     wishes = Wishes(least_panel=0.3, free_rim=True, even=1e-4)
     angle = 0.0 if pose.angle is None else pose.angle - 0.5 * math.pi
     fit = fit_from_uniform(target, grid, 0.0, angle, Way.COOLED, wishes, symmetry)
