@@ -37,8 +37,6 @@ Reader = Callable[[Path], FileContent]
 
 #: Voids may miss being parallelograms by this much (micrometres) in a file whose connectors are all centred.
 VOID_MISS_UM = 5.0
-#: Above this share of a connector's width such a file is faulty; below, and above the limit, a person is told.
-FAULTY_SHARE = 0.05
 
 
 @dataclass(frozen=True, slots=True)
@@ -383,9 +381,8 @@ def file_voids(strokes: Sequence[Stroke], plan: CutPlan, profile: Profile) -> Fo
 def void_findings(voids: FoundVoids, plan: CutPlan) -> list[Finding]:
     """Whether the sheet can close, by the connectors that were read from its file.
 
-    Of a plan whose connectors are all centred, every one has to be found, as wide as planned, and no void may miss
-    being a parallelogram by more than ``FAULTY_SHARE`` of a connector; what misses by more than ``VOID_MISS_UM``, and
-    voids of other plans, a person should know.
+    Of a plan whose connectors are all centred, every one has to be found, as wide as planned, and every void has to
+    be a parallelogram within ``VOID_MISS_UM``; of other plans, a person should know by how much voids miss that.
     """
     found = {"connectors": len(voids.connectors), "voids": voids.voids, "miss_um": voids.miss_um}
     centred = plan.void_miss_mm is not None and 1e3 * plan.void_miss_mm < VOID_MISS_UM
@@ -399,9 +396,7 @@ def void_findings(voids: FoundVoids, plan: CutPlan) -> list[Finding]:
     if voids.where is None:
         return []
     x, y = voids.where
-    limit_um = max(VOID_MISS_UM, 1e3 * FAULTY_SHARE * plan.min_connector_mm)
-    faulty = centred and voids.miss_um > limit_um
-    return [Finding("verify.voids_miss", {**found, "x": x, "y": y}, ok=not faulty, warning=not faulty)]
+    return [Finding("verify.voids_miss", {**found, "x": x, "y": y}, ok=not centred, warning=not centred)]
 
 
 def _jam_findings(jam: float | None) -> list[Finding]:

@@ -5,8 +5,8 @@ of all other cuts nearest to it is the far side.  The connector turns about the 
 ``fabricate.centres``).  A void is a cut with a connector at either end on which two others rest; its four centres are
 the corners of a parallelogram if the sheet can close.
 
-The direction across a neck is that to the middle of all that is nearly as near, so that the chords that may stand for
-an arc do not decide it.
+The direction across a neck is that to the nearest place of the far side where that is straight.  Where chords may stand
+for an arc, it is that to the middle of all that is nearly as near, so that no single chord decides it.
 """
 
 from __future__ import annotations
@@ -32,6 +32,11 @@ from kirigami_studio.foundation.arrays import FloatArray, IntArray
 CHORD_MM = 2e-5
 #: The far side of a neck: all that is nearer than this times the nearest place.
 NEARLY = 1.01
+#: Chords of one arc are about as long as each other; the straight piece before an arc is longer than its chords by more.
+CHORDS_DIFFER = 2.0
+#: Chords of one arc turn by less than this, and by more than a straight line that has a point on it (radians).
+CHORD_TURN = math.radians(30.0)
+NO_TURN = 1e-4
 #: A cut that another one ends on is the shape of its end if it is shorter than this share of it.
 SHAPE_SHARE = 0.5
 #: Group of the outline.
@@ -236,13 +241,36 @@ def _connectors(
 def _middle(tip: BaseGeometry, far: BaseGeometry, gap: float, hidden_mm: float) -> tuple[float, float]:
     """The middle of the neck between a tip and its far side, ``gap`` (mm) apart as centre lines."""
     reach = NEARLY * gap
-    facing = shapely.intersection(far, shapely.buffer(tip, reach - hidden_mm, quad_segs=64)).centroid
+    facing = _facing(far, tip, reach - hidden_mm)
     if not isinstance(tip, Point):
         own = shapely.intersection(tip, shapely.buffer(far, reach - hidden_mm, quad_segs=64)).centroid
         return 0.5 * (own.x + facing.x), 0.5 * (own.y + facing.y)
     away = math.hypot(facing.x - tip.x, facing.y - tip.y)
     share = 0.5 * gap / away
     return tip.x + share * (facing.x - tip.x), tip.y + share * (facing.y - tip.y)
+
+
+def _facing(far: BaseGeometry, tip: BaseGeometry, reach: float) -> Point:
+    """The place of a far side that a tip faces; ``reach`` (mm) is a little more than the way there."""
+    nearest = Point(shapely.get_coordinates(shapely.shortest_line(far, tip))[0])
+    lines = shapely.get_parts(far)
+    corners = shapely.get_coordinates(lines[int(np.argmin(shapely.distance(lines, nearest)))])
+    edges = shapely.linestrings(np.stack([corners[:-1], corners[1:]], axis=1))
+    if _is_straight(corners, int(np.argmin(shapely.distance(edges, nearest)))):
+        return nearest
+    return shapely.intersection(far, shapely.buffer(tip, reach, quad_segs=64)).centroid
+
+
+def _is_straight(corners: FloatArray, edge: int) -> bool:
+    """Whether an edge of a polyline (P, 2) is no chord of an arc: longer than twice, or at an angle to, its neighbours."""
+    steps = np.diff(corners, axis=0)
+    length = np.hypot(*steps.T)
+    for other in (edge - 1, edge + 1):
+        if 0 <= other < len(steps) and length[edge] < CHORDS_DIFFER * length[other]:
+            (x, y), (u, v) = steps[edge], steps[other]
+            if NO_TURN < abs(math.atan2(x * v - y * u, x * u + y * v)) < CHORD_TURN:
+                return False
+    return True
 
 
 def _voids(connectors: Sequence[FoundConnector]) -> FoundVoids:

@@ -207,7 +207,8 @@ def fitted_block(block: int, seed: int, grid: tuple[int, int], size: int = BLOCK
 def fitted_field(field: RatioField, target: Outline, candidate: int) -> tuple[RatioField, Float32Array, float] | None:
     """The fit that begins with a generator's candidate, the target in its sheet's frame, and their IoU.
 
-    None where the fit shows another shape, or one that no sheet gets to without touching itself.
+    None where the fit shows another shape (as it lies on the target, or with both at unit area, which is what the
+    network is shown), or one that no sheet gets to without touching itself.
     """
     pose = _seen_pose(field, target, candidate)
     easy = polish(field, target, steps=EASY_STEPS, pose=pose, trust=FAR)
@@ -219,8 +220,11 @@ def fitted_field(field: RatioField, target: Outline, candidate: int) -> tuple[Ra
     if invalid_quads(deployment, 0.0) or overlap_ratio(deployment, 0.0) > TAU_OVERLAP:
         return None
     points = torch.tensor(fit.pose.inverse().apply(resampled(target, REQUESTED_POINTS)))[None]
-    requested: Float32Array = normalised(points)[0].numpy().astype(np.float32)
-    return fit.field, requested, iou
+    requested: FloatArray = normalised(points)[0].numpy()
+    sheet: FloatArray = normalised(torch.tensor(deployment.outline(0.0))[None])[0].numpy()
+    if exact_iou(sheet, Outline.from_points(requested)) < SMALLEST_IOU:
+        return None
+    return fit.field, requested.astype(np.float32), iou
 
 
 def _seen_pose(field: RatioField, target: Outline, candidate: int) -> Similarity:

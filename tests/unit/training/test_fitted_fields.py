@@ -21,6 +21,7 @@ from kirigami_studio.training.fitted_fields import (
     ARRAYS,
     LARGEST_MOVE,
     REQUESTED_POINTS,
+    SMALLEST_IOU,
     FittedBatches,
     FittedFields,
     Targets,
@@ -52,8 +53,8 @@ def rows(targets: Targets) -> tuple[FloatArray, FloatArray]:
 def test_that_requested_outlines_lie_on_their_sheets(fits: FittedFields) -> None:
     # Each is brought to unit area by itself, so poor fits lose a little.
     assert len(fits.z) >= 8
-    lost = fits.iou - ious(fits.z, fits.requested)
-    assert np.all(np.abs(lost) <= 0.002 + 0.4 * (1.0 - fits.iou))
+    np.testing.assert_allclose(ious(fits.z, fits.requested), fits.iou, atol=0.05)
+    assert ious(fits.z, fits.requested).min() > SMALLEST_IOU - 1e-3
 
 
 def test_that_requested_outlines_are_the_drawn_shapes(fits: FittedFields) -> None:
