@@ -32,7 +32,7 @@ from kirigami_studio.foundation.arrays import FloatArray, IntArray
 CHORD_MM = 2e-5
 #: The far side of a neck: all that is nearer than this times the nearest place.
 NEARLY = 1.01
-#: Chords of one arc are about as long as each other; the straight piece before an arc is longer than its chords by more.
+#: Chords of one arc are about as long as each other; the straight piece before an arc is longer than they are by more.
 CHORDS_DIFFER = 2.0
 #: Chords of one arc turn by less than this, and by more than a straight line that has a point on it (radians).
 CHORD_TURN = math.radians(30.0)
@@ -262,7 +262,7 @@ def _facing(far: BaseGeometry, tip: BaseGeometry, reach: float) -> Point:
 
 
 def _is_straight(corners: FloatArray, edge: int) -> bool:
-    """Whether an edge of a polyline (P, 2) is no chord of an arc: longer than twice, or at an angle to, its neighbours."""
+    """Whether an edge of a polyline (P, 2) is no chord of an arc: much longer than its neighbours, or bent off them."""
     steps = np.diff(corners, axis=0)
     length = np.hypot(*steps.T)
     for other in (edge - 1, edge + 1):
