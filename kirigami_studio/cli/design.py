@@ -9,7 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from kirigami_studio.cli.console import ProgressLine, plain, print_json, say
-from kirigami_studio.cli.fabrication import checked_plan, material_settings
+from kirigami_studio.cli.fabrication import checked_plan, material_settings, say_verdict
 from kirigami_studio.cli.inputs import are_many_targets, for_each, read_targets
 from kirigami_studio.cli.option_types import parse_grid_or_auto
 from kirigami_studio.evaluate.candidate import Candidate
@@ -17,6 +17,7 @@ from kirigami_studio.export.exporter import ExportJob
 from kirigami_studio.export.picture import write_png
 from kirigami_studio.export.registry import export
 from kirigami_studio.export.svg import write_layout_svg
+from kirigami_studio.fabricate.findings import Note
 from kirigami_studio.foundation.errors import Cancelled, FabricationError
 from kirigami_studio.foundation.files import check_folder, write_atomically
 from kirigami_studio.foundation.words import tr, tr_n
@@ -36,6 +37,10 @@ from kirigami_studio.project.design_facts import design_facts, with_run
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.settings import DesignSettings, FabricationSettings
 from kirigami_studio.project.store import save
+from kirigami_studio.project.verdict import Verdict, assess, refused, why_not_cut
+
+#: Designs that are looked at closely, cuts and all, for one that can be cut.
+MOST_LOOKED_AT = 32
 
 
 def design(arguments: argparse.Namespace) -> int:
@@ -75,7 +80,7 @@ def design(arguments: argparse.Namespace) -> int:
         )
         result = _run(request, line)
         if arguments.material is not None:
-            result = result.ranked_as_cut(jam_angles(result.candidates, fabrication))
+            result = cuttable_first(result, fabrication, line)
         if request.trim and result.best.trim is None:
             budget_ended = result.budget_ended
             raise FabricationError("design.trimming_cut_short" if budget_ended else "design.none_trimmed")
@@ -84,14 +89,52 @@ def design(arguments: argparse.Namespace) -> int:
             folder = folder / _folder_name(name, used)
         files = {} if folder is None else write_files(result, fabrication, folder)
         answer = summary(result) | {"files": files}
+        verdict = None if arguments.material is None else _verdict_on(result, fabrication)
+        if verdict is not None:
+            answer |= {"ok": verdict.ok, "verdict": verdict.to_json()}
         if batch:
             print_json({"source": name} | answer)
         elif arguments.json:
             print_json(answer)
         else:
-            _say_result(target, result, files)
+            _say_result(target, result, files, verdict)
 
     return for_each(read_targets(arguments.targets, arguments.threshold), batch, one)
+
+
+def cuttable_first(result: Result, fabrication: FabricationSettings, line: ProgressLine) -> Result:
+    """Rank designs by how they do as cut, the best that can be cut in this material first.
+
+    Those that are estimated to jam are left out at once; of the others, best first, cuts are planned and checked and
+    the sheet is closed on its connectors, until one can be cut.
+    """
+    jams = jam_angles(result.candidates, fabrication)
+    known = result.ranked_as_cut(jams)
+    refusals = {
+        one: Note.of("rank.jams", own=math.degrees(jams[one])) for one in jams if known.ranking.missed(one) > 0.0
+    }
+    hopeful = [one for one in known.candidates if known.ranking.cuttable(one) and one not in refusals]
+    for number, candidate in enumerate(hopeful):
+        if number == MOST_LOOKED_AT:
+            refusals |= dict.fromkeys(hopeful[number:], Note.of("rank.not_looked_at", count=number))
+            break
+        line.show(
+            tr("Looking for a design that can be cut: {number} of {total}", number=number + 1, total=len(hopeful))
+        )
+        reason = why_not_cut(candidate, fabrication)
+        if reason is None:
+            break
+        refusals[candidate] = reason
+    line.clear()
+    return result.ranked_as_cut(jams, refusals)
+
+
+def _verdict_on(result: Result, fabrication: FabricationSettings) -> Verdict:
+    """The verdict on the best design."""
+    try:
+        return assess(result.best, fabrication, result.request.target).verdict
+    except FabricationError as error:
+        return refused(error)
 
 
 def summary(result: Result) -> dict[str, object]:
@@ -235,7 +278,7 @@ def _folder_name(name: str, used: set[str]) -> str:
     return unique
 
 
-def _say_result(target: Outline, result: Result, files: dict[str, str]) -> None:
+def _say_result(target: Outline, result: Result, files: dict[str, str], verdict: Verdict | None) -> None:
     score, trim, angle = result.best.score, result.best.trim, math.degrees(result.request.phi)
     for note in target.notes:
         say(f"{target.name}: {note}")
@@ -269,5 +312,9 @@ def _say_result(target: Outline, result: Result, files: dict[str, str]) -> None:
                 percent=100 * trim.removed_share,
             )
         )
+    if verdict is not None:
+        if not result.ranking.cuttable(result.best):
+            say(tr("{name}: no design can be cut in this material, width and style.", name=target.name))
+        say_verdict(verdict)
     for path in files.values():
         say(f"  {path}")

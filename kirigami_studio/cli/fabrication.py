@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import math
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -36,6 +37,7 @@ from kirigami_studio.project.design_facts import design_facts
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.settings import FabricationSettings
 from kirigami_studio.project.store import load
+from kirigami_studio.project.verdict import Verdict, closed_as_cut, judge
 
 
 def material_settings(arguments: argparse.Namespace) -> FabricationSettings:
@@ -70,7 +72,14 @@ def export(arguments: argparse.Namespace) -> int:
     plan, report = checked_plan(_chosen(document), settings)
     job = replace(_job(document), plan=plan, dxf_version=settings.dxf_version, profile=settings.profile,
                   paper=arguments.paper, markers=arguments.markers)  # fmt: skip
-    written = _written(job, arguments)
+    candidate = _chosen(document)
+    as_cut = closed_as_cut(candidate, job.deployment, plan, settings.width_mm, document.target)
+
+    def judged(verifications: Sequence[Verification]) -> Verdict:
+        return judge(candidate, plan, report, as_cut, verifications)
+
+    written = _written(job, arguments, judged)
+    verdict = judged(written.verifications)
     work = _work(job, arguments)
     notes = [*plan.notes, *report.problems, *(note for found in written.verifications for note in found.warnings)]
     if arguments.all or Path(arguments.out).suffix.lower() == ".pdf":
@@ -101,6 +110,8 @@ def export(arguments: argparse.Namespace) -> int:
                 "jam_deg": None if not verified else verified[0]["jam_deg"],
                 "warnings": warnings,
                 "verified": verified,
+                "ok": verdict.ok,
+                "verdict": verdict.to_json(),
             }
         )
         return 0 if written.ok else 1
@@ -127,9 +138,23 @@ def export(arguments: argparse.Namespace) -> int:
             say("  " + tr("{path}: NOT as planned", path=found.path))
     for text in bad:
         say("  " + tr("fault: {text}", text=text))
+    say_verdict(verdict)
+    said = {note.text for note in (*verdict.problems, *verdict.notes)} | {problem.text for problem in report.problems}
     for warning in warnings:
-        say("  " + tr("note: {text}", text=warning))
+        if warning not in said:
+            say("  " + tr("note: {text}", text=warning))
     return 0 if written.ok else 1
+
+
+def say_verdict(verdict: Verdict) -> None:
+    """Say what is to be expected of a sheet, and why, one line each."""
+    say("  " + tr("verdict: {level}", level=verdict.level.words))
+    for problem in verdict.problems:
+        error = problem.severity is Severity.ERROR
+        text = problem.text
+        say("  " + (tr("problem: {text}", text=text) if error else tr("care: {text}", text=text)))
+    for note in verdict.notes:
+        say("  " + tr("note: {text}", text=note.text))
 
 
 def _work(job: ExportJob, arguments: argparse.Namespace) -> Work:
@@ -140,16 +165,24 @@ def _work(job: ExportJob, arguments: argparse.Namespace) -> Work:
     return Work(plan.cut_length_mm, plan.travel_mm, plan.times)
 
 
-def _written(job: ExportJob, arguments: argparse.Namespace) -> ExportSet:
+def _written(
+    job: ExportJob, arguments: argparse.Namespace, judged: Callable[[Sequence[Verification]], Verdict]
+) -> ExportSet:
     """Write what was asked for: the whole set, or one file with its record beside it if that was asked for."""
     if arguments.all:
-        return export_all(job, arguments.out, sidecar=arguments.sidecar is not False)
+        return export_all(
+            job,
+            arguments.out,
+            sidecar=arguments.sidecar is not False,
+            judged=lambda verifications: judged(verifications).to_json(),
+        )
     path = export_file(job, arguments.out)
     files, verified = [path], []
     if Path(arguments.out).suffix.lower() in FORMATS:
         verified.append(verify_export(job.required_plan, path, job.profile, job.dxf_version, job.deployment))
     if arguments.sidecar:
-        files.append(write_sidecar(job, sidecar_path(Path(arguments.out)), [path]))
+        record = sidecar_path(Path(arguments.out))
+        files.append(write_sidecar(job, record, [path], judged(verified).to_json()))
     return ExportSet(tuple(files), tuple(verified))
 
 

@@ -20,6 +20,8 @@ from kirigami_studio.foundation.files import folder_of_one_writer
 
 #: A record larger than this (bytes) is none of ours.
 LARGEST_RECORD = 50_000_000
+#: Judges files by what was read back from them.
+Judged = Callable[[Sequence[Verification]], Mapping[str, object]]
 R12 = "R12"
 R2010 = "R2010"
 
@@ -53,7 +55,7 @@ class ExportSet:
 
 def export_all(
     job: ExportJob, folder: str | Path, name: str = "cut", sidecar: bool = True,
-    on_written: Callable[[Path], None] | None = None,
+    on_written: Callable[[Path], None] | None = None, judged: Judged | None = None,
 ) -> ExportSet:  # fmt: skip
     """Write the whole set into a folder; each file appears whole or not at all.
 
@@ -73,6 +75,8 @@ def export_all(
         Also write the record.
     on_written : function, optional
         Is called with each path once it is written; may raise to stop.
+    judged : function, optional
+        Gets what was read back from the cut files and returns the verdict that the record is to have, as JSON.
 
     Raises
     ------
@@ -84,11 +88,16 @@ def export_all(
     _ = job.required_plan  # refused before a folder is made
     with folder_of_one_writer(home):
         _refuse_other_sets(home, name)
-        return _written(job, home, name, sidecar, on_written)
+        return _written(job, home, name, sidecar, on_written, judged)
 
 
 def _written(
-    job: ExportJob, home: Path, name: str, sidecar: bool, on_written: Callable[[Path], None] | None
+    job: ExportJob,
+    home: Path,
+    name: str,
+    sidecar: bool,
+    on_written: Callable[[Path], None] | None,
+    judged: Judged | None,
 ) -> ExportSet:
     plan = job.required_plan
     cut = home / f"{name}.dxf"
@@ -113,7 +122,7 @@ def _written(
     done(home / "layout.svg")
     done(write_reference(plan, home / "reference.dxf"))
     if sidecar:
-        done(write_sidecar(job, sidecar_path(cut), written))
+        done(write_sidecar(job, sidecar_path(cut), written, None if judged is None else judged(verified)))
     known = (f"{name}{rest}" for rest in ("", ".dxf", ".lbrn2", ".json", f"_{R12.lower()}", f"_{R12.lower()}.dxf"))
     older = tuple(path for path in map(home.joinpath, known) if path.exists() and path not in written)
     return ExportSet(tuple(written), tuple(verified), older, _remove(home, before, written))

@@ -74,7 +74,12 @@ def sidecar_path(cut_file: Path) -> Path:
     return cut_file.with_suffix(".json")
 
 
-def write_sidecar(job: ExportJob, path: str | Path, cut_files: Sequence[Path] = ()) -> Path:
+def write_sidecar(
+    job: ExportJob,
+    path: str | Path,
+    cut_files: Sequence[Path] = (),
+    verdict: Mapping[str, object] | None = None,
+) -> Path:
     """Write the record of a job, and return its path.
 
     Parameters
@@ -84,6 +89,8 @@ def write_sidecar(job: ExportJob, path: str | Path, cut_files: Sequence[Path] = 
     path : str or Path
     cut_files : sequence of Path
         Written files that the record names with their SHA-256.
+    verdict : mapping, optional
+        What is to be expected of the sheet, as JSON; the record has it as it is.
 
     Raises
     ------
@@ -91,7 +98,7 @@ def write_sidecar(job: ExportJob, path: str | Path, cut_files: Sequence[Path] = 
         No plan, or an unwritable place.
     """
     goal = Path(path)
-    record = sidecar_record(job, cut_files)
+    record = sidecar_record(job, cut_files) | ({} if verdict is None else {"verdict": verdict})
     content = json.dumps(record, indent=1, sort_keys=True, allow_nan=False).encode() + b"\n"
 
     def verify(written: Path) -> None:

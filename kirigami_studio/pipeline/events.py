@@ -8,8 +8,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from types import MappingProxyType
 
 from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.fabricate.findings import Note
 from kirigami_studio.pipeline.rank import Ranking
 from kirigami_studio.pipeline.request import Request
 
@@ -65,6 +67,8 @@ class Result:
         Designs that were left out because the document had them already; 0 unless that was looked for.
     jam_phi : mapping of Candidate to float, radians
         Angles at which they are estimated to jam as cut, where that was looked for.
+    refusals : mapping of Candidate to Note
+        Why those that were looked at closely cannot be cut.
     """
 
     request: Request
@@ -74,15 +78,20 @@ class Result:
     budget_ended: bool = False
     repeats: int = 0
     jam_phi: Mapping[Candidate, float] = field(default_factory=dict, hash=False)
+    refusals: Mapping[Candidate, Note] = field(default_factory=dict, hash=False)
 
     @property
     def ranking(self) -> Ranking:
         """By which they are ranked."""
-        return replace(Ranking.of(self.request), jam_phi=self.jam_phi)
+        return replace(Ranking.of(self.request), jam_phi=self.jam_phi, refusals=self.refusals)
 
-    def ranked_as_cut(self, jam_phi: Mapping[Candidate, float]) -> Result:
-        """The same, ranked again now that it is known where designs jam (radians, 0 for those that close)."""
-        known = replace(self, jam_phi=jam_phi)
+    def ranked_as_cut(
+        self, jam_phi: Mapping[Candidate, float], refusals: Mapping[Candidate, Note] = MappingProxyType({})
+    ) -> Result:
+        """The same, ranked again now that it is known where designs jam (radians, 0 for those that close), and why
+        some cannot be cut.
+        """
+        known = replace(self, jam_phi=jam_phi, refusals=refusals)
         return replace(known, candidates=known.ranking.ranked(self.candidates))
 
     @property

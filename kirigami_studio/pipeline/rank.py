@@ -45,7 +45,7 @@ MOST_LOST = 0.003
 MILDER = {"calm": "regularity"}
 
 #: Sorting key of a candidate; smaller is better.
-Key = tuple[bool, float, bool, float, bool, float, int]
+Key = tuple[bool, bool, float, bool, float, bool, float, int]
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,12 +62,15 @@ class Ranking:
         Least panel edge and neck that the material allows, 0 where that is not known.
     jam_phi : mapping of Candidate to float, radians
         Angles at which designs are expected to jam as cut, 0 for those that close; nothing is known of others.
+    refusals : mapping of Candidate to Note
+        Why designs that were looked at closely cannot be cut; they come after all others that are feasible.
     """
 
     regular: float = 0.5
     width_mm: float = 100.0
     least_feature_mm: float = 0.0
     jam_phi: Mapping[Candidate, float] = field(default_factory=dict, hash=False)
+    refusals: Mapping[Candidate, Note] = field(default_factory=dict, hash=False)
 
     @classmethod
     def of(cls, request: Request) -> Ranking:
@@ -79,8 +82,8 @@ class Ranking:
         return candidate.score.evenness.least_feature_mm(self.width_mm) >= self.least_feature_mm
 
     def cuttable(self, candidate: Candidate) -> bool:
-        """Whether the design is feasible and all its panels are as wide as the material needs them."""
-        return candidate.score.feasible and self.wide_enough(candidate)
+        """Whether it is feasible, all its panels are as wide as the material needs them, and nobody found otherwise."""
+        return candidate.score.feasible and self.wide_enough(candidate) and candidate not in self.refusals
 
     def missed(self, candidate: Candidate) -> float:
         """Share of its way from flat to its angle that a design does not come as cut, as far as that is known."""
@@ -113,6 +116,7 @@ class Ranking:
         score, trim = candidate.score, candidate.trim
         return (
             not score.feasible,
+            candidate in self.refusals,
             0.0 if trim is None else -trim.iou,
             not self.wide_enough(candidate),
             -self.worth(candidate),
@@ -191,6 +195,8 @@ class Ranking:
         """Why a design cannot be cut."""
         if not one.score.feasible:
             return Note.of("rank.not_feasible")
+        if one in self.refusals:
+            return self.refusals[one]
         smallest_mm = one.score.evenness.least_feature_mm(self.width_mm)
         return Note.of("rank.too_thin", smallest_mm=smallest_mm, least_mm=self.least_feature_mm)
 

@@ -162,6 +162,10 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "rank.less_trimmed_match": mark("Trimmed, it matches {match:.1f} %, the first design {first:.1f} %."),
     "rank.more_at_limit": mark("Ratios at a limit: {own:.0f} %, in the first design {first:.0f} %."),
     "rank.not_feasible": mark("Panels touch, overlap or collapse before the sheet reaches its angle."),
+    "rank.not_looked_at": (
+        mark("Not looked at closely: {count} design before it cannot be cut."),
+        mark("Not looked at closely: {count} designs before it cannot be cut."),
+    ),
     "rank.not_symmetric": mark("The first design is symmetric, this one is not."),
     "rank.not_trimmed": mark("It is not trimmed."),
     "rank.thinner": mark("Its narrowest panel measures {own:.2f} mm, in the first design {first:.2f} mm."),

@@ -233,6 +233,7 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     ),
     # What two readers find in a written file
     "verify.by_one_reader": mark("{reader}: {finding}"),
+    "verify.in_file": mark("In {name:.120}: {finding}"),
     "verify.unit_is_mm": mark("The unit of the file is mm."),
     "verify.other_unit": mark("The unit of the file is {unit} instead of 4 (mm)."),
     "verify.no_unit": mark("The file has no unit, but mm was planned."),

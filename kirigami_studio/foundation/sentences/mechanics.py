@@ -71,6 +71,28 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "sheet.centres_wrong": mark(
         "Rotation centres must be {count} places in mm, or {count} pairs of places; got shape {found}."
     ),
+    # Sheets as cut
+    "as_cut.jams_stretched": mark(
+        "As cut, the sheet jams at {jam_deg:.0f} degrees and does not come to {phi_deg:.0f}: a connector would be "
+        "stretched by {stretch:.1f} of its width."
+    ),
+    "as_cut.jams_touching": mark(
+        "As cut, the sheet jams at {jam_deg:.0f} degrees and does not come to {phi_deg:.0f}: panels run into each "
+        "other."
+    ),
+    "as_cut.jams_while_flat": mark(
+        "As cut, the sheet jams at {jam_deg:.0f} degrees and does not come to {phi_deg:.0f} while it stays flat. It is "
+        "thin, so it may pass by bending out of the plane."
+    ),
+    "as_cut.nearly": mark("As cut, the sheet comes to {jam_deg:.0f} degrees instead of {phi_deg:.0f}."),
+    "as_cut.file_jams": mark(
+        "By the connectors read from {name:.80}, the sheet jams at {jam_deg:.0f} degrees (estimate)."
+    ),
+    "as_cut.breaks": mark(
+        "A connector is expected to break: it is strained by {strain_percent:.0f} %, and {material!r} breaks at "
+        "{limit_percent:g} %."
+    ),
+    "as_cut.not_known": mark("Nobody knows how the sheet does as cut: {reason}"),
     # The command
     "mechanics.one_source": mark("Name either a project or sheet, or a network with --network."),
     "mechanics.one_sheet": mark("{name} holds {found} sheets. Name a single one."),

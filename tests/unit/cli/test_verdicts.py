@@ -1,0 +1,104 @@
+"""The verdict on the command line: the same list in the answer, in the record beside the file, and in words."""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from command_line import answer
+
+from kirigami_studio.cli import main
+from kirigami_studio.cli.console import ProgressLine
+from kirigami_studio.cli.design import cuttable_first
+from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.evaluate.score import evaluate
+from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions
+from kirigami_studio.lattice.deployment import deploy
+from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.lattice.sheet import Sheet
+from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.pipeline.events import Result
+from kirigami_studio.pipeline.request import Request
+from kirigami_studio.project.document import Document
+from kirigami_studio.project.settings import DesignSettings, FabricationSettings
+from kirigami_studio.project.store import save
+
+
+@pytest.fixture(scope="module")
+def document() -> Document:
+    field = RatioField.from_log10(np.random.default_rng(0).uniform(-0.7, 0.7, (4, 5)))
+    target = Outline.from_points(deploy(field).outline(0.0), "own")
+    design = Candidate(Sheet(field), evaluate(deploy(field), target), seed=0, index=0)
+    settings = FabricationSettings(connector_mm=0.2)
+    return Document(target, DesignSettings((4, 5)), (design,), 0, settings, {"model": "balanced"})
+
+
+@pytest.fixture
+def project(document: Document, tmp_path: Path) -> Path:
+    path = tmp_path / "own.kiri"
+    save(document, path)
+    return path
+
+
+def test_that_an_export_answers_with_the_verdict_that_its_record_has(
+    capsys: pytest.CaptureFixture[str], project: Path, tmp_path: Path
+) -> None:
+    good = answer(capsys, "export", project, "--out", tmp_path / "set", "--all", "--json")
+    assert good["ok"] and good["verdict"]["level"] == "ready_to_cut" and good["verdict"]["problems"] == []
+    assert json.loads((tmp_path / "set" / "cut.json").read_text())["verdict"] == good["verdict"]
+    straight = ("--style", "straight", "--material", "felt-co2", "--width-mm", "200", "--connector-mm", "0.6")
+    bad = answer(capsys, "export", project, "--out", tmp_path / "one.dxf", *straight, "--sidecar", "--json")
+    assert not bad["ok"] and bad["verdict"]["level"] == "will_not_work"
+    assert {"as_cut.breaks", "as_cut.jams_stretched"} <= {problem["code"] for problem in bad["verdict"]["problems"]}
+    assert json.loads((tmp_path / "one.json").read_text())["verdict"] == bad["verdict"]
+    assert bad["verified"][0]["ok"]  # the file is as planned; it is the sheet that will not work
+
+
+def test_that_the_same_list_is_said_in_words(capsys: pytest.CaptureFixture[str], project: Path, tmp_path: Path) -> None:
+    wish = ["export", str(project), "--out", str(tmp_path / "cut.dxf"), "--style", "straight"]
+    told = answer(capsys, *wish, "--json")["verdict"]
+    assert main(wish) == 0
+    said = capsys.readouterr().out.splitlines()
+    assert "  verdict: Cut with care" in said
+    assert [line for line in said if line.startswith("  care: ")] == [f"  care: {told['problems'][0]['text']}"]
+    assert [line for line in said if line.startswith("  note: ")] == [f"  note: {text}" for text in told["notes"]]
+
+
+def test_that_the_best_design_that_can_be_cut_comes_first(document: Document) -> None:
+    target = document.target
+    assert target is not None
+    irregular = document.candidates[0]
+    even = deploy(RatioField.uniform(4, 5))
+    score = replace(evaluate(even, target), iou_exact=0.5)
+    uniform = Candidate(even.sheet, score, seed=0, index=1)
+    crossed = replace(irregular, score=replace(irregular.score, feasible=False), index=2)
+    result = Result(Request(target, (4, 5), regular=0.0), (irregular, uniform, crossed), 3, 0.0)
+    straight = replace(document.fabrication, options=CutOptions(style=ConnectorStyle.STRAIGHT))
+    found = cuttable_first(result, straight, ProgressLine())
+    assert found.candidates == (uniform, irregular, crossed)
+    assert [found.ranking.cuttable(one) for one in found.candidates] == [True, False, False]
+    reasons = [reason.code for reason in found.ranking.reasons(found.candidates)]
+    assert reasons[1:] == ["rank.jams", "rank.not_feasible"]
+    assert found.jam_phi[irregular] > math.radians(10.0)
+    centred = cuttable_first(result, document.fabrication, ProgressLine())
+    assert centred.candidates == (irregular, uniform, crossed) and centred.refusals == {}
+    brittle = cuttable_first(result, replace(document.fabrication, material="card-co2"), ProgressLine())
+    assert not any(brittle.ranking.cuttable(one) for one in brittle.candidates)
+    assert {note.code for note in brittle.refusals.values()} == {"as_cut.breaks"}
+
+
+@pytest.mark.torch
+def test_that_design_says_whether_the_material_can_be_cut(capsys: pytest.CaptureFixture[str]) -> None:
+    wish = ["design", "heart", "--grid", "4x4", "--k", "2", "--no-polish", "--steps", "1"]
+    plain = answer(capsys, *wish, "--json")
+    assert "verdict" not in plain
+    card = answer(capsys, *wish, "--material", "card-co2", "--width-mm", "250", "--json")
+    assert not card["ok"] and card["verdict"]["level"] == "will_not_work"
+    assert not any(entry["cuttable"] for entry in card["candidates"])
+    assert main([*wish, "--material", "card-co2", "--width-mm", "250"]) == 0
+    out = capsys.readouterr().out
+    assert "no design can be cut in this material, width and style." in out and "verdict: Will not work" in out
