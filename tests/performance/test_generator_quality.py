@@ -18,8 +18,8 @@ pytestmark = pytest.mark.torch
 
 @cache
 def unseen_targets(family: str) -> tuple[Outline, ...]:
-    """The first 30 test targets of a family; every variant is given the same."""
-    split = generate_split(family, 30, SPLITS["test"][1])
+    """The first 60 test targets of a family; every variant is given the same."""
+    split = generate_split(family, 60, SPLITS["test"][1])
     return tuple(outline_of_mask(mask, family) for mask in split.masks)
 
 

@@ -21,7 +21,7 @@ from kirigami_studio.fabricate.material import presets
 from kirigami_studio.lattice.deployment import Deployment
 
 MakeDesign = Callable[..., Deployment]
-DESIGNS = 20
+DESIGNS = 40
 #: What R12 allows in names.
 R12_LETTERS = set("ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-$")
 MATERIALS = [material for material in presets().values() if material.kerf_mm > 0.0]

@@ -46,7 +46,7 @@ def test_that_the_search_beats_the_plain_fit_where_that_gets_stuck(name: str) ->
 @pytest.mark.usefixtures("two_rotations")
 def test_that_the_same_request_gives_the_same_fits() -> None:
     target = load("arrow")
-    assert fit_shape(target, (3, 4)) == fit_shape(target, (3, 4))
+    assert fit_shape(target, (4, 4)) == fit_shape(target, (4, 4))
 
 
 @pytest.mark.usefixtures("two_rotations")
@@ -69,11 +69,11 @@ def test_that_a_fine_grid_is_reached_by_way_of_a_coarse_one() -> None:
 @pytest.mark.usefixtures("two_rotations")
 def test_that_a_good_guess_of_another_grid_is_used() -> None:
     rng = np.random.default_rng(4)
-    hidden = RatioField.from_log10(rng.uniform(-0.9, 0.9, (4, 4)))
+    hidden = RatioField.from_log10(rng.uniform(-0.9, 0.9, (6, 6)))
     target = Outline.from_points(deploy(hidden).outline(0.0))
-    best = fit_shape(target, (4, 4), starts=(hidden,))[0]
+    best = fit_shape(target, (6, 6), starts=(hidden,))[0]
     assert iou(best, target) > 0.999
-    assert fit_shape(target, (5, 4), starts=(hidden,))[0].field.rows == 5
+    assert fit_shape(target, (7, 6), starts=(hidden,))[0].field.rows == 7
 
 
 def test_that_a_lifted_field_stays_within_the_bounds_from_any_grid() -> None:
