@@ -35,9 +35,10 @@ from kirigami_studio.project.as_cut import simulated
 from kirigami_studio.project.cutting import plan_of
 from kirigami_studio.project.design_facts import design_facts
 from kirigami_studio.project.document import Document
+from kirigami_studio.project.fixes import Advice, find_fixes
 from kirigami_studio.project.settings import FabricationSettings
 from kirigami_studio.project.store import load
-from kirigami_studio.project.verdict import Verdict, closed_as_cut, judge
+from kirigami_studio.project.verdict import Verdict, closed_as_cut, judge, refused
 
 
 def material_settings(arguments: argparse.Namespace) -> FabricationSettings:
@@ -69,7 +70,13 @@ def export(arguments: argparse.Namespace) -> int:
     document = load(arguments.project)
     settings = overridden(document.fabrication, arguments)
     _check_hinges(_chosen(document), settings.options)
-    plan, report = checked_plan(_chosen(document), settings)
+    try:
+        plan, report = checked_plan(_chosen(document), settings)
+    except FabricationError as error:
+        if not arguments.fixes:
+            raise
+        fixes = " ".join(_advice(document, settings, refused(error)).lines)
+        raise FabricationError("export.with_fixes", reason=str(error), fixes=fixes) from error
     job = replace(_job(document), plan=plan, dxf_version=settings.dxf_version, profile=settings.profile,
                   paper=arguments.paper, markers=arguments.markers)  # fmt: skip
     candidate = _chosen(document)
@@ -80,6 +87,7 @@ def export(arguments: argparse.Namespace) -> int:
 
     written = _written(job, arguments, judged)
     verdict = judged(written.verifications)
+    advice = _advice(document, settings, verdict) if arguments.fixes and not verdict.ok else None
     work = _work(job, arguments)
     notes = [*plan.notes, *report.problems, *(note for found in written.verifications for note in found.warnings)]
     if arguments.all or Path(arguments.out).suffix.lower() == ".pdf":
@@ -112,6 +120,8 @@ def export(arguments: argparse.Namespace) -> int:
                 "verified": verified,
                 "ok": verdict.ok,
                 "verdict": verdict.to_json(),
+                **({} if advice is None else {"fixes": [fix.to_json() for fix in advice.fixes]}),
+                **({} if advice is None else {"tried": advice.tried.text}),
             }
         )
         return 0 if written.ok else 1
@@ -139,11 +149,24 @@ def export(arguments: argparse.Namespace) -> int:
     for text in bad:
         say("  " + tr("fault: {text}", text=text))
     say_verdict(verdict)
+    for text in () if advice is None else advice.lines:
+        say("  " + tr("fix: {text}", text=text))
     said = {note.text for note in (*verdict.problems, *verdict.notes)} | {problem.text for problem in report.problems}
     for warning in warnings:
         if warning not in said:
             say("  " + tr("note: {text}", text=warning))
     return 0 if written.ok else 1
+
+
+def _advice(document: Document, settings: FabricationSettings, verdict: Verdict) -> Advice:
+    """Try changes on the chosen design, all in one go."""
+    search = find_fixes(_chosen(document), settings, verdict, document.candidates)
+    while True:
+        try:
+            next(search)
+        except StopIteration as end:
+            found: Advice = end.value
+            return found
 
 
 def say_verdict(verdict: Verdict) -> None:

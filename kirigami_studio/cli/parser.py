@@ -242,6 +242,8 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
                help="spread a PDF over pages of this size (default none)"),
         option("--sidecar", action=argparse.BooleanOptionalAction, default=None,
                help="also write all settings as .json beside the cut file (default: only with --all)"),
+        option("--fixes", action="store_true",
+               help="if the sheet is not ready to cut, try changes on it and tell which ones work"),
         option("--markers", action="store_true",
                help="mark the connectors in LightBurn projects, on a layer that LightBurn does not cut"),
         JSON,

@@ -258,6 +258,14 @@ def estimate(
     return AsCut(jam, phi, outcome, largest, math.nan, believed_figure(sheet))
 
 
+def least_strain(deployment: Deployment, settings: FabricationSettings, phi: float, material: Material) -> float:
+    """Strain of the least strained connector at an angle (radians), without planning the cuts: none can bear less."""
+    sheet = _unplanned_sheet(deployment, settings, material)
+    turn = np.full(len(sheet.connectors), math.pi - phi)
+    in_plane, out_of_plane = sheet.strains(turn, np.zeros(len(turn)))
+    return float((in_plane if believed_figure(sheet) is StrainFigure.IN_PLANE else out_of_plane).min())
+
+
 def jam_angles(candidates: Iterable[Candidate], settings: FabricationSettings) -> dict[Candidate, float]:
     """Estimate where designs jam (radians, 0 for those that close); those that cannot be cut at all are left out.
 

@@ -7,6 +7,7 @@ from kirigami_studio.foundation.words import mark
 SENTENCES: dict[str, str | tuple[str, str]] = {
     # What a file is asked for
     "export.no_plan": mark("A cut file needs a cut plan: choose a material and a sheet width first."),
+    "export.with_fixes": mark("{reason} {fixes}"),
     "export.unknown_kind": mark("Cannot write {extension:.20} files ({path}). Use one of {known}."),
     "export.no_extension": mark("Cannot write a file without extension ({path}). Use one of {known}."),
     "profile.unknown": mark("There is no machine profile {name!r:.40}. Choose one of {known}."),

@@ -5,6 +5,27 @@ from __future__ import annotations
 from kirigami_studio.foundation.words import mark
 
 SENTENCES: dict[str, str | tuple[str, str]] = {
+    # Fixes that were tried on a design
+    "fix.style": mark("Use {style} connectors."),
+    "fix.connector": mark("Use connectors of {connector_mm:g} mm."),
+    "fix.width": mark("Make it {width_mm:.1f} mm wide."),
+    "fix.combined": mark("Use {style} connectors of {connector_mm:g} mm on a sheet {width_mm:.1f} mm wide."),
+    "fix.material": mark("Cut {material}."),
+    "fix.design": mark("Choose design {number}."),
+    "fix.removed": mark("Put the removed connectors back."),
+    "fix.hinges": mark("Give all connectors the same width."),
+    "fix.strain": mark("{change}: strain {strain_percent:.1f} %."),
+    "fix.then": mark("{change} Then: {level}."),
+    "fix.none": (
+        mark(
+            "Nothing that was tried works: {count} change, with {styles} styles, connectors of {narrowest_mm:g} to "
+            "{widest_mm:g} mm, sheets {least_mm:.0f} to {largest_mm:.0f} mm wide and {materials} other materials."
+        ),
+        mark(
+            "Nothing that was tried works: {count} changes, with {styles} styles, connectors of {narrowest_mm:g} to "
+            "{widest_mm:g} mm, sheets {least_mm:.0f} to {largest_mm:.0f} mm wide and {materials} other materials."
+        ),
+    ),
     # The photo behind a target
     "photo.too_large": mark("{name} has {size_mb:.0f} MB; the limit is {most_mb} MB."),
     "photo.not_read": mark("Cannot read {name}: {reason}."),

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from command_line import answer
+from command_line import answer, refusal
 
 from kirigami_studio.cli import main
 from kirigami_studio.cli.console import ProgressLine
@@ -66,6 +66,20 @@ def test_that_the_same_list_is_said_in_words(capsys: pytest.CaptureFixture[str],
     assert "  verdict: Cut with care" in said
     assert [line for line in said if line.startswith("  care: ")] == [f"  care: {told['problems'][0]['text']}"]
     assert [line for line in said if line.startswith("  note: ")] == [f"  note: {text}" for text in told["notes"]]
+
+
+def test_that_fixes_are_told_where_they_are_asked_for(
+    capsys: pytest.CaptureFixture[str], project: Path, tmp_path: Path
+) -> None:
+    wish = ["export", str(project), "--out", str(tmp_path / "cut.dxf"), "--style", "straight", "--connector-mm", "0.4"]
+    assert "fixes" not in answer(capsys, *wish, "--json")
+    told = answer(capsys, *wish, "--fixes", "--json")
+    assert told["fixes"][0]["text"] == "Use centred connectors." and told["fixes"][0]["level"] == "ready_to_cut"
+    assert "tried" in told
+    assert main([*wish, "--fixes"]) == 0
+    assert "  fix: Use centred connectors. Then: Ready to cut." in capsys.readouterr().out.splitlines()
+    code, said = refusal(capsys, *wish[:4], "--connector-mm", "15", "--fixes")
+    assert code == 1 and "Then: Ready to cut." in said
 
 
 def test_that_the_best_design_that_can_be_cut_comes_first(document: Document) -> None:
