@@ -91,7 +91,7 @@ def export(arguments: argparse.Namespace) -> int:
     work = _work(job, arguments)
     notes = [*plan.notes, *report.problems, *(note for found in written.verifications for note in found.warnings)]
     if arguments.all or Path(arguments.out).suffix.lower() == ".pdf":
-        notes += page_notes(plan.bounds_mm, arguments.paper)
+        notes += page_notes(plan.copies.spread_mm, arguments.paper)
     warnings = [note.text for note in notes]
     if left := [path.name for path in written.older if path not in written.removed]:
         names = ", ".join(left)
@@ -112,7 +112,8 @@ def export(arguments: argparse.Namespace) -> int:
                 "cut_length_mm": work.cut_length_mm,
                 "travel_mm": work.travel_mm,
                 "seconds_estimate": work.times.total,
-                "pieces": report.pieces,
+                "pieces": report.pieces * len(plan.copies),
+                **({} if len(plan.copies) == 1 else {"copies": len(plan.copies)}),
                 "min_connector_mm": plan.min_connector_mm,
                 "void_miss_um": None if not verified else verified[0]["void_miss_um"],
                 "jam_deg": None if not verified else verified[0]["jam_deg"],
@@ -131,7 +132,7 @@ def export(arguments: argparse.Namespace) -> int:
             "{count} piece, smallest connector {connector:.3f} mm",
             "{files}: {width:.2f} x {height:.2f} mm, cut {cut:.1f} mm, travel {travel:.1f} mm, about {seconds:.0f} s, "
             "{count} pieces, smallest connector {connector:.3f} mm",
-            report.pieces,
+            report.pieces * len(plan.copies),
             files=", ".join(str(path) for path in written.files),
             width=plan.size_mm[0],
             height=plan.size_mm[1],
@@ -183,6 +184,8 @@ def say_verdict(verdict: Verdict) -> None:
 def _work(job: ExportJob, arguments: argparse.Namespace) -> Work:
     """What cutting the files takes; that of the plan for kinds of file that have no profile."""
     plan = job.required_plan
+    if len(plan.copies) > 1 and Path(arguments.out).suffix.lower() in (".pdf", ".lbrn2"):
+        return work_of(strokes_of(plan, find_profile("any")), plan.material)
     if arguments.all or Path(arguments.out).suffix.lower() in FORMATS:
         return work_of(strokes_of(plan, find_profile(job.profile)), plan.material)
     return Work(plan.cut_length_mm, plan.travel_mm, plan.times)
@@ -316,7 +319,9 @@ def overridden(saved: FabricationSettings, arguments: argparse.Namespace) -> Fab
 
 def _cut_options(saved: CutOptions, given: dict[str, Any]) -> CutOptions:
     """The project's choices about the cuts with the command line's on top."""
-    changes: dict[str, Any] = {name: given[name] for name in ("tabs", "tab_mm") if name in given}
+    changes: dict[str, Any] = {
+        name: given[name] for name in ("tabs", "tab_mm", "copies", "copy_gap_mm") if name in given
+    }
     if "style" in given:
         changes["style"] = ConnectorStyle(given["style"])
     if "order" in given:

@@ -6,6 +6,7 @@ import argparse
 import math
 import re
 
+from kirigami_studio.fabricate.options import AS_MANY_AS_FIT
 from kirigami_studio.foundation.errors import GridError, UsageError
 from kirigami_studio.foundation.words import tr
 
@@ -110,3 +111,8 @@ def count(text: str) -> int:
     if value < 1:
         raise argparse.ArgumentTypeError(tr("must be 1 or more, got {text}", text=text))
     return value
+
+
+def copies(text: str) -> int:
+    """A number of copies from 1 on; 0 for ``fit``."""
+    return AS_MANY_AS_FIT if text.strip().casefold() == "fit" else count(text)

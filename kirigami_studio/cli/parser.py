@@ -9,7 +9,7 @@ from importlib import import_module
 from typing import Any
 
 from kirigami_studio import __version__
-from kirigami_studio.cli.option_types import amount, angle, count, number, positive, share, whole
+from kirigami_studio.cli.option_types import amount, angle, copies, count, number, positive, share, whole
 from kirigami_studio.fabricate.options import ConnectorStyle, CutOrder
 from kirigami_studio.pipeline.request import RIMS
 from kirigami_studio.polish.preferences import PREFERENCES
@@ -87,6 +87,19 @@ CUTS = (
         default=None,
         help="connectors to cut through, by number; added to the project's own",
     ),
+)
+
+#: Several sheets in one file.
+COPIES = (
+    option(
+        "--copies",
+        type=copies,
+        default=None,
+        metavar="N|fit",
+        help="copies of the sheet in one file, in rows; fit: as many as fit on the material's bed (default: the "
+        "project's, or 1)",
+    ),
+    option("--copy-gap-mm", type=positive, default=None, help="gap between copies (default: the project's, or 5)"),
 )
 
 #: What sheets may be like, and which of them come first.
@@ -235,6 +248,7 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
         option("--all", action="store_true", help="write every file type to the folder and verify the cut files"),
         *WIDTHS,
         *CUTS,
+        *COPIES,
         option("--profile", default=None,
                help="machine profile: any, lightburn, k40, single, layers or slots (default: the project's)"),
         option("--dxf-version", default=None, choices=("R2010", "R12"), help="DXF version (default: the project's)"),
@@ -249,6 +263,7 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
         JSON,
     ), ("kirigami-studio export heart.kiri --out heart.dxf --width-mm 80 --connector-mm 0.6",
         "kirigami-studio export heart.kiri --out heart/ --all --profile k40 --paper a4",
+        "kirigami-studio export heart.kiri --out hearts.dxf --material card-co2 --copies fit --copy-gap-mm 4",
         "kirigami-studio export heart.kiri --out heart.dxf --style round --tabs 4 --hinge-mm 3=0.8 7=1 --remove 12")),
     SubCommand("mechanics", "simulate how a cut sheet closes: force, energy, stretch, where it jams",
         "mechanics:mechanics", (

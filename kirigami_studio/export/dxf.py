@@ -255,7 +255,7 @@ def _mark(document: Drawing, plan: CutPlan, facts: dict[str, str]) -> None:
     for number, (x, y) in enumerate(plan.hinges.position.tolist()):
         modelspace.add_circle((x, y), CIRCLE_MM, dxfattribs={"layer": CONNECTOR_LAYER})
         _write(document, str(number), x + CIRCLE_MM, y + CIRCLE_MM, NUMBER_MM)
-    width, height = plan.bounds_mm
+    width, height = plan.copies.spread_mm
     widths = "Numbers are those of single connector widths and removed connectors."
     facts_lines = [f"{key}: {value}" for key, value in facts.items()]
     for line, text in enumerate([*facts_lines, *(note.text for note in plan.notes), widths]):

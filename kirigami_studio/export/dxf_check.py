@@ -21,6 +21,7 @@ from shapely.geometry.base import BaseGeometry
 from kirigami_studio.export.dxf_reading import DxfContent, FilePath, read_content
 from kirigami_studio.export.layer_files import REGISTRATION_LAYER, layer_paths
 from kirigami_studio.fabricate.checks import OVERLAP_TOLERANCE_MM, place_of
+from kirigami_studio.fabricate.copies import alike, copy_numbers
 from kirigami_studio.fabricate.cut_plan import LARGEST_SHEET_MM, SMALLEST_SHEET_MM, Layer
 from kirigami_studio.fabricate.findings import Problem, Severity
 from kirigami_studio.fabricate.finished_sheet import Overlap, overlap, remaining_pieces, smallest_ligament
@@ -116,6 +117,8 @@ def check_file(path: str | Path, kerf_mm: float | None = None) -> FileReport:
     bounds = (float(size[0]), float(size[1]))
     twice = overlap(lines)
     problems += [*_size_problems(bounds), *_double_problems(content.paths, twice)]
+    whole, length = content, sum(path.length for path in content.paths)
+    content, copies = _one_of_copies(whole, kerf, problems)
     part = "PART" in content.facts and all(found.layer != Layer.OUTLINE.value for found in content.paths)
     if part:
         outline = None
@@ -125,9 +128,26 @@ def check_file(path: str | Path, kerf_mm: float | None = None) -> FileReport:
         outline = tabbed_outline(content, problems)
     problems += placement_problems(content.paths, outline)
     pieces, ligament = _physics(content, outline, kerf, problems)
-    length = sum(path.length for path in content.paths)
-    return FileReport(Path(path), tuple(problems), content.unit, content.layers, len(lines), length,
-                      twice.length_mm, bounds, kerf, pieces, ligament)  # fmt: skip
+    return FileReport(Path(path), tuple(problems), content.unit, content.layers, len(lines), length, twice.length_mm,
+                      bounds, kerf, None if pieces is None else copies * pieces, ligament)  # fmt: skip
+
+
+def _one_of_copies(content: DxfContent, kerf: float, problems: list[Problem]) -> tuple[DxfContent, int]:
+    """The first of the copies that a file says it holds, and their number; they have to be alike and apart."""
+    said, gap = content.facts.get("COPIES", "1"), _number(content, "COPY_GAP_MM")
+    copies = int(said) if said.isdecimal() and len(said) <= 3 else 0
+    if copies == 1:
+        return content, 1
+    if not 1 < copies <= len(content.paths):
+        problems.append(Problem.error("cut_file.copies_differ", promised=said))
+        return content, 1
+    numbers = copy_numbers([path.layer for path in content.paths], copies)
+    sheets = [[content.paths[at] for at in np.flatnonzero(numbers == copy).tolist()] for copy in range(copies)]
+    clouds = [np.concatenate([path.points for path in sheet] or [np.zeros((1, 2))]) for sheet in sheets]
+    # Not the other way round, so that a gap that is no number counts as a fault.
+    if not (gap > kerf and alike(clouds, gap - kerf, 2.0 * SAME_POINT_MM)):
+        problems.append(Problem.error("cut_file.copies_differ", promised=said))
+    return replace(content, paths=sheets[0]), copies
 
 
 def _read(path: Path) -> DxfContent:

@@ -116,9 +116,10 @@ def lightburn_bytes(plan: CutPlan, markers: bool = False) -> bytes:
         _add_setting(root, "Cut", PALETTE_NUMBER[layer], layer.value, priority, work)
     if markers:
         _add_setting(root, "Tool", TOOL_LAYER, "CONNECTORS", len(plan.layers), {})
-    for path in plan.paths:
+    for path in plan.copies.of(plan.paths):
         _add_path(root, path)
-    for x, y in plan.hinges.position.tolist() if markers else []:
+    marked = (plan.copies.places[:, None] + plan.hinges.position).reshape(-1, 2)
+    for x, y in marked.tolist() if markers else []:
         size = f"{MARKER_RADIUS_MM:g}"
         marker = ElementTree.SubElement(
             root, "Shape", {"Type": "Ellipse", "CutIndex": str(TOOL_LAYER), "Rx": size, "Ry": size}

@@ -76,22 +76,22 @@ def write_pdf(plan: CutPlan, path: str | Path, paper: str = NO_PAPER) -> None:
     ExportError
         Unknown paper, too many pages, an unwritable place, or a file that did not read back.
     """
-    lines = [(cut.flattened, cut.closed, picture.LAYER_COLOUR[cut.layer]) for cut in plan.paths]
-    tiling = one_page(plan) if find_paper(paper) is None else tile(plan.bounds_mm, paper)
+    lines = [(cut.flattened, cut.closed, picture.LAYER_COLOUR[cut.layer]) for cut in plan.copies.of(plan.paths)]
+    tiling = one_page(plan) if find_paper(paper) is None else tile(plan.copies.spread_mm, paper)
     content = _pdf_bytes(plan, lines, tiling)
     write_atomically(Path(path), content, lambda written: _verify(written, plan, tiling))
 
 
 def page_size_mm(plan: CutPlan) -> tuple[float, float]:
     """Width and height of the one large page: everything that is cut, a margin, and a footer with the ruler."""
-    width, height = plan.bounds_mm
+    width, height = plan.copies.spread_mm
     return max(width, RULER_MM) + 2.0 * MARGIN_MM, height + 2.0 * MARGIN_MM + FOOTER_MM
 
 
 def one_page(plan: CutPlan) -> Tiling:
     """One page as large as the sheet."""
     everything = (-np.inf, -np.inf, np.inf, np.inf)
-    return Tiling(page_size_mm(plan), 1, 1, (Tile(0, 0, (0.0, 0.0, *plan.bounds_mm), everything),))
+    return Tiling(page_size_mm(plan), 1, 1, (Tile(0, 0, (0.0, 0.0, *plan.copies.spread_mm), everything),))
 
 
 def _pdf_bytes(plan: CutPlan, lines: Sequence[Line], tiling: Tiling) -> bytes:
@@ -186,7 +186,7 @@ def _draw_map(canvas: Any, plan: CutPlan, tiling: Tiling) -> None:
     corner = np.array([MARGIN_MM, MARGIN_MM + FOOTER_MM])
     canvas.setLineWidth(CUT_LINE_MM * mm)
     _stroke_colour(canvas, picture.INK)
-    width, height = plan.bounds_mm
+    width, height = plan.copies.spread_mm
     sheet = np.array([[0.0, 0.0], [width, 0.0], [width, height], [0.0, height]])
     _draw(canvas, corner + (sheet - low) * scale, closed=True)
     canvas.setFont("Helvetica", 12)
@@ -214,6 +214,7 @@ def _draw_ruler(canvas: Any, plan: CutPlan, place: str) -> None:
         left * mm, (base + 7.0) * mm, f"Print at 100 %. This ruler is {RULER_MM:g} mm long. {place}".strip()
     )
     sheet = f"Sheet {plan.size_mm[0]:.1f} x {plan.size_mm[1]:.1f} mm, connectors {plan.connector_mm:g} mm"
+    sheet += f", {len(plan.copies)} copies" if len(plan.copies) > 1 else ""
     canvas.drawString(left * mm, (base + 3.5) * mm, sheet)
 
 
@@ -244,8 +245,8 @@ def _verify(path: Path, plan: CutPlan, tiling: Tiling) -> None:
         colour = picture.LAYER_COLOUR[layer]
         shown = zip(pages[-len(tiling.tiles) :], tiling.tiles, strict=True)
         found = sum(_length_in_cell(page, part, colour) for page, part in shown)
-        meant = sum(_chord_length(cut) for cut in plan.on_layer(layer))
-        corners = sum(len(cut.flattened) for cut in plan.on_layer(layer))
+        meant = len(plan.copies) * sum(_chord_length(cut) for cut in plan.on_layer(layer))
+        corners = len(plan.copies) * sum(len(cut.flattened) for cut in plan.on_layer(layer))
         if abs(found - meant) > SAME_LENGTH * meant + ROUNDING_MM * corners:
             raise ExportError("pdf.other_length", found_mm=found, planned_mm=meant, layer=layer.value)
 

@@ -45,8 +45,15 @@ def facts_of(plan: CutPlan, profile: Profile) -> dict[str, str]:
         "MATERIAL": plan.material.key,
         "PATHS": "edges of the finished part: apply the kerf offset of the machine" if profile.slots else paths,
         **({} if profile.slots else _deliberate(plan)),
+        **_copies(plan),
         **origin_facts(plan.origin),
     }
+
+
+def _copies(plan: CutPlan) -> dict[str, str]:
+    """How many sheets the file holds, where it is not one, and how far they are apart."""
+    copies = plan.copies
+    return {} if len(copies) == 1 else {"COPIES": f"{len(copies)}", "COPY_GAP_MM": f"{copies.gap_mm:g}"}
 
 
 def _deliberate(plan: CutPlan) -> dict[str, str]:
@@ -155,7 +162,7 @@ def _expected(plan: CutPlan, profile: Profile) -> dict[str, Any]:
         "cut_length_mm": work.cut_length_mm,
         "travel_mm": work.travel_mm,
         "seconds": {"low": work.times.low, "estimate": work.times.total, "high": work.times.high},
-        "paths": {layer.value: len(plan.on_layer(layer)) for layer in plan.layers},
+        "paths": {layer.value: len(plan.copies) * len(plan.on_layer(layer)) for layer in plan.layers},
         "min_connector_mm": plan.min_connector_mm,
         "notes": [note.text for note in plan.notes],
     }

@@ -8,13 +8,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import shapely
 from shapely.geometry import LineString, Polygon
 
 from kirigami_studio.export.profile import Profile
+from kirigami_studio.fabricate.copies import moved
 from kirigami_studio.fabricate.cut_path import CHORD_MM, edge_lengths, flattened
 from kirigami_studio.fabricate.cut_plan import DECIMALS, CutPath, CutPlan, Layer
 from kirigami_studio.fabricate.finished_sheet import DUST_MM2
@@ -67,7 +68,21 @@ class Stroke:
 
 
 def strokes_of(plan: CutPlan, profile: Profile) -> tuple[Stroke, ...]:
-    """Return what a file of this profile holds.
+    """Return what a file of this profile holds: the strokes of the sheet, of one copy after the other.
+
+    Raises
+    ------
+    ExportError
+        The profile wants slots and the plan has no kerf.
+    """
+    one = sheet_strokes(plan, profile)
+    if len(plan.copies) == 1:
+        return one
+    return tuple(replace(stroke, points=moved(stroke.points, place)) for place in plan.copies.places for stroke in one)
+
+
+def sheet_strokes(plan: CutPlan, profile: Profile) -> tuple[Stroke, ...]:
+    """Return the strokes of one sheet, whatever the number of copies.
 
     Raises
     ------

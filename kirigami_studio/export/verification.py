@@ -22,6 +22,7 @@ from kirigami_studio.export.strokes import Stroke, extent, layer_colours, stroke
 from kirigami_studio.export.svg_reading import read_with_svgelements, read_with_xml
 from kirigami_studio.export.voids_read import FoundVoids, read_voids
 from kirigami_studio.fabricate.checks import OVERLAP_TOLERANCE_MM, WIDTH_TOLERANCE_MM
+from kirigami_studio.fabricate.copies import SAME_MM, alike, copy_numbers
 from kirigami_studio.fabricate.cut_path import MEASURED_CHORD_MM
 from kirigami_studio.fabricate.cut_plan import CutPlan, Layer
 from kirigami_studio.fabricate.findings import Note
@@ -183,13 +184,15 @@ def _judged(
     kind: Format,
     deployment: Deployment | None,
 ) -> Verification:
-    physics = file_physics(contents[-1].strokes, plan, profile)
-    voids = file_voids(contents[-1].strokes, plan, profile)
+    sheets = _copies_read(contents[-1].strokes, plan)
+    physics = file_physics(sheets[0], plan, profile)
+    voids = file_voids(sheets[0], plan, profile)
     jam = None if deployment is None else jam_angle_of_file(voids, plan, deployment)
     times = work_of(strokes, plan.material).times
     findings = [
         *_agreed(contents, strokes, version, kind),
         *_physics_findings(physics, plan),
+        *_copies_findings(sheets, physics, plan, kind),
         *void_findings(voids, plan),
         *_jam_findings(jam),
     ]
@@ -198,7 +201,7 @@ def _judged(
         path=path,
         ok=all(finding.ok for finding in findings),
         size_mm=extent(contents[-1].strokes),
-        pieces=physics.pieces,
+        pieces=physics.pieces * len(sheets),
         cut_length_mm=contents[-1].length,
         seconds_low=times.low,
         seconds_high=times.high,
@@ -349,6 +352,26 @@ def file_physics(strokes: Sequence[Stroke], plan: CutPlan, profile: Profile) -> 
     return Physics(len(pieces), None if ligament is None else ligament.width_mm, max(overlap_length(lines), 0.0))
 
 
+def _copies_read(strokes: Sequence[Stroke], plan: CutPlan) -> list[list[Stroke]]:
+    """The strokes of a file by the copy of the sheet that they belong to; of one that holds a single sheet, all."""
+    numbers = copy_numbers([stroke.layer for stroke in strokes], len(plan.copies))
+    return [[strokes[at] for at in np.flatnonzero(numbers == copy).tolist()] for copy in range(len(plan.copies))]
+
+
+def _copies_findings(
+    sheets: Sequence[Sequence[Stroke]], physics: Physics, plan: CutPlan, kind: Format
+) -> list[Finding]:
+    """Whether all copies are the sheet that was judged, and lie apart: then each of them stays in as many pieces."""
+    if len(sheets) == 1:
+        return []
+    clouds = [np.concatenate([stroke.points for stroke in sheet] or [np.zeros((1, 2))]) for sheet in sheets]
+    # Slots and overcuts reach beyond cut lines by less than a kerf.
+    least = plan.copies.gap_mm - plan.kerf_mm
+    right = alike(clouds, least, 2.0 * max(kind.shift_mm, SAME_MM))
+    found = {"count": len(sheets), "gap_mm": plan.copies.gap_mm, "pieces": physics.pieces * len(sheets)}
+    return [Finding.judged(right, "verify.copies" if right else "verify.copies_differ", **found)]
+
+
 def _meant(lines: Sequence[LineString], plan: CutPlan) -> set[Pair]:
     """Which of the file's cuts meet on purpose, by number; none where the file's cuts are not those of the plan."""
     paths = [path for path in plan.paths if path.layer is not Layer.OUTLINE]
@@ -415,7 +438,7 @@ def _cautions(plan: CutPlan, profile: Profile, version: str, strokes: Sequence[S
     if profile.slots:
         if plan.options.tabs:
             found.append(Note.of("verify.tabs_left_out", count=plan.options.tabs))
-        length, open_mm = sum(stroke.length for stroke in strokes), plan.cut_length_mm
+        length, open_mm = sum(stroke.length for stroke in strokes), len(plan.copies) * plan.cut_length_mm
         found.append(Note.of("verify.slots_longer", length_mm=length, open_mm=open_mm, times=length / open_mm))
         found.append(Note.of("verify.slots_width", kerf_mm=plan.kerf_mm))
     return found

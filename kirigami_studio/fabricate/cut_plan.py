@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from types import MappingProxyType
 
@@ -17,6 +17,7 @@ from kirigami_studio.fabricate import timing
 from kirigami_studio.fabricate.centred import Arranged, Trimming, centred_cuts
 from kirigami_studio.fabricate.centres import void_misses
 from kirigami_studio.fabricate.connectors import OVERCUT_MM, Hinges, edge_cut_paths, hinge_widths, outline_path, shorten
+from kirigami_studio.fabricate.copies import Copies, lay_out
 from kirigami_studio.fabricate.cut_path import MEASURED_CHORD_MM, check_length, flattened, measured_line
 from kirigami_studio.fabricate.cut_path import CutPath as CutPath
 from kirigami_studio.fabricate.cut_path import Layer as Layer
@@ -137,6 +138,12 @@ class CutPlan:
         corner = np.concatenate([path.flattened for path in self.paths]).max(axis=0)
         return float(corner[0]), float(corner[1])
 
+    @cached_property
+    def copies(self) -> Copies:
+        """Where the sheets lie that a file of this plan holds; the plan itself is that of the first."""
+        bed = (self.material.bed_width_mm, self.material.bed_height_mm)
+        return lay_out(self.bounds_mm, bed, self.options, self.kerf_mm)
+
     @property
     def layers(self) -> tuple[Layer, ...]:
         """The layers that hold paths, in the order of cutting."""
@@ -222,7 +229,7 @@ def plan_cuts(
     ring = CutPath(_on_grid(arranged.ring - origin), Layer.OUTLINE, True, bulges=arranged.ring_bulges)
     boundary = Polygon(measured_line(ring.points, ring.bulges, True))
     hinges = _hinges(cuts, table, widths, cuts.widths(table, options.removed, boundary, kerf))
-    return CutPlan(
+    plan = CutPlan(
         paths=in_cutting_order(
             _paths(cuts.pieces, ring, hinges.position[hinges.through == SHEET_EDGE], options, kerf),
             options.order,
@@ -244,6 +251,7 @@ def plan_cuts(
         centres=None if arranged.centres is None else _frozen(arranged.centres - origin),
         void_miss_mm=_void_miss(arranged, options, table),
     )
+    return replace(plan, notes=(*plan.notes, *plan.copies.notes))
 
 
 def _finely(path: CutPath) -> FloatArray:

@@ -14,6 +14,12 @@ from kirigami_studio.foundation.errors import FabricationError
 TAB_MM = 0.5
 #: More tabs than this on one outline are a typing error.
 MOST_TABS = 200
+#: In place of a number of copies.
+AS_MANY_AS_FIT = 0
+#: More copies than this in one file are a typing error.
+MOST_COPIES = 200
+#: Distance (mm) between copies unless given.
+COPY_GAP_MM = 5.0
 
 
 class ConnectorStyle(Enum):
@@ -52,6 +58,10 @@ class CutOptions:
         Finished widths of single connectors, numbered as in ``slits.CutTable``, in ascending order of the hinges.
     removed : tuple of int
         Hinges without a connector, in ascending order: their slits are cut through.
+    copies : int
+        Of the sheet in one file, in rows; 0 for as many as fit on the bed.
+    copy_gap_mm : float
+        Between the cuts of neighbouring copies.
 
     Raises
     ------
@@ -65,11 +75,16 @@ class CutOptions:
     tab_mm: float = TAB_MM
     hinge_mm: tuple[tuple[int, float], ...] = ()
     removed: tuple[int, ...] = ()
+    copies: int = 1
+    copy_gap_mm: float = COPY_GAP_MM
 
     def __post_init__(self) -> None:
         if not 0 <= self.tabs <= MOST_TABS:
             raise FabricationError("tabs.too_many", most=MOST_TABS, tabs=self.tabs)
         check_length("tabs.width_not_positive", self.tab_mm)
+        if isinstance(self.copies, bool) or not isinstance(self.copies, int) or not 0 <= self.copies <= MOST_COPIES:
+            raise FabricationError("copies.number", most=MOST_COPIES, copies=self.copies)
+        check_length("copies.gap_not_positive", self.copy_gap_mm)
         hinges = [hinge for hinge, _ in self.hinge_mm]
         if not (_ascending(hinges) and _ascending(self.removed)):
             raise FabricationError("hinge.named_twice")

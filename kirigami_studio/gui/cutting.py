@@ -137,8 +137,8 @@ class CutPlanner(QObject):
                 tr(
                     "Exported {path}: {count} cuts, {cut_length_mm:.0f} mm.",
                     path=path,
-                    count=len(made.plan.paths),
-                    cut_length_mm=made.plan.cut_length_mm,
+                    count=len(made.plan.copies) * len(made.plan.paths),
+                    cut_length_mm=len(made.plan.copies) * made.plan.cut_length_mm,
                 )
             )
             message = message_of(path, made)
@@ -170,7 +170,7 @@ def message_of(path: Path, made: Planned) -> Message:
     details = "\n".join([str(path), *(note.text for note in (*check.problems, *plan.notes))])
     if check.ok:
         name = tr("Folder “{name}”", name=path.name) if path.is_dir() else path.name
-        values = {"name": name, "count": len(plan.paths)}
+        values = {"name": name, "count": len(plan.copies) * len(plan.paths)}
         if made.removed_share:
             sentence = tr("{name} exported and checked: {count} cuts, trimmed outline, no faults.", **values)
         else:

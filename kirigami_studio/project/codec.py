@@ -16,7 +16,7 @@ from kirigami_studio.evaluate.score import Score
 from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.evaluate.trimming import Trim, trim
 from kirigami_studio.fabricate.material import Material
-from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions, CutOrder
+from kirigami_studio.fabricate.options import COPY_GAP_MM, ConnectorStyle, CutOptions, CutOrder
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import ProjectError
 from kirigami_studio.lattice.deployment import check_phi, deploy
@@ -160,6 +160,8 @@ def _fabrication_json(settings: FabricationSettings) -> dict[str, object]:
             "tab_mm": options.tab_mm,
             "hinge_mm": [list(pair) for pair in options.hinge_mm],
             "removed": list(options.removed),
+            # Not there for one sheet, so that such projects stay as they were.
+            **({} if _single(options) else {"copies": options.copies, "copy_gap_mm": options.copy_gap_mm}),
         },
         "profile": settings.profile,
         "dxf_version": settings.dxf_version,
@@ -181,11 +183,17 @@ def _fabrication(record: Record) -> FabricationSettings:
             tab_mm=options.number("tab_mm"),
             hinge_mm=tuple(_hinge_width(entry) for entry in options.list("hinge_mm")),
             removed=tuple(_hinge(entry) for entry in options.list("removed")),
+            copies=options.whole("copies") if options.holds("copies") else 1,
+            copy_gap_mm=options.number("copy_gap_mm") if options.holds("copy_gap_mm") else COPY_GAP_MM,
         ),
         profile=record.text("profile"),
         dxf_version=record.text("dxf_version"),
         own=Material(**_plain_fields(record.record("own"), Material)) if record.holds("own") else None,
     )
+
+
+def _single(options: CutOptions) -> bool:
+    return (options.copies, options.copy_gap_mm) == (1, COPY_GAP_MM)
 
 
 def _hinge(entry: object) -> int:

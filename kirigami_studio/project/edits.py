@@ -69,6 +69,8 @@ class OptionsChange(TypedDict, total=False):
     order: CutOrder
     tabs: int
     tab_mm: float
+    copies: int
+    copy_gap_mm: float
 
 
 #: Widths of single connectors are rounded to this many decimals of a millimetre.
@@ -100,6 +102,8 @@ _LABELS = {
     "order": tr("Change the cutting order"),
     "tabs": tr("Change the number of tabs"),
     "tab_mm": tr("Change the tab width"),
+    "copies": tr("Change the number of copies"),
+    "copy_gap_mm": tr("Change the gap between copies"),
 }
 
 

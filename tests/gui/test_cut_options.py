@@ -119,3 +119,52 @@ def test_that_a_short_window_scrolls_the_options_instead_of_squeezing_them(optio
     qtbot.waitUntil(lambda: panel.scrolled.verticalScrollBar().maximum() > 0)
     assert panel.options.style_.height() >= panel.options.style_.sizeHint().height() - 1
     assert panel.export.isVisible() and options.gallery.view.viewport().height() > 100
+
+
+def test_that_copies_are_an_undo_step_fill_the_file_and_are_saved(
+    options: MainWindow, until: Until, files: object, tmp_path: Path, qtbot: QtBot
+) -> None:
+    panel, controller = options.fabrication.options, options.controller
+    assert panel.copies.value() == 1 and not panel.copy_gap.isEnabled()
+    until(lambda: options.fabrication.numbers["pieces"].text() == "1")
+    cuts = int(options.fabrication.numbers["slits"].text())
+    panel.copies.setValue(3)
+    until(lambda: options.fabrication.numbers["pieces"].text() == "3")
+    assert options.commands["undo"].text() == "&Undo: Change the number of copies"
+    assert int(options.fabrication.numbers["slits"].text()) == 3 * cuts
+    assert panel.rows.text().startswith("3 copies") and "3 copies in the file" in panel.rows.toolTip()
+    assert panel.copy_gap.isEnabled()
+    bounds = options.stage.cuts.view.scene_bounds()
+    assert bounds is not None and bounds.right > 200.0 and bounds.top > 160.0
+    with qtbot.waitSignal(controller.cutting.exported, timeout=30_000) as written:
+        controller.export(tmp_path / "three.dxf")
+    (verification,) = written.args[0].verifications
+    assert verification.ok and verification.pieces == 3
+    with qtbot.waitSignal(controller.saved, timeout=30_000):
+        controller.save(tmp_path / "three.kiri")
+    assert store.load(tmp_path / "three.kiri").fabrication.options.copies == 3
+    options.commands["undo"].trigger()
+    assert controller.document.fabrication.options.copies == 1
+    until(lambda: options.fabrication.numbers["pieces"].text() == "1")
+    assert panel.rows.text() == ""
+
+
+def test_that_as_many_copies_as_fit_follow_the_bed_and_the_sheet_is_not_closed_again(
+    options: MainWindow, until: Until
+) -> None:
+    until(lambda: options.controller.as_cut.state.sheet is not None)
+    before = options.controller.as_cut.state.sheet
+    panel = options.fabrication.options
+    panel.copies.setValue(0)
+    assert panel.copies.text() == "Fit bed"
+    until(lambda: panel.rows.text() != "")
+    fitting = int(options.fabrication.numbers["pieces"].text())
+    assert fitting > 1
+    panel.copy_gap.setValue(120.0)
+    until(lambda: int(options.fabrication.numbers["pieces"].text()) < fitting)
+    panel.copy_gap.setValue(5.0)
+    panel.copies.setValue(200)
+    until(lambda: "copies" in options.fabrication.warnings.toolTip())
+    assert "Of 200 copies" in options.fabrication.warnings.toolTip()
+    until(lambda: not options.controller.as_cut.state.busy)
+    assert options.controller.as_cut.state.sheet is before

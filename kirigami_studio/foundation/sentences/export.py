@@ -222,6 +222,9 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
             "x = {x:.2f}, y = {y:.2f} mm. Make sure that they are meant."
         ),
     ),
+    "cut_file.copies_differ": mark(
+        "The file promises {promised:.20} copies of a sheet; those in it are not alike or not apart. Export it again."
+    ),
     "cut_file.joins_differ": (
         mark(
             "{count} cut ends on another cut, where the file promises {promised:.20}: a connector is lost or a slit "
@@ -266,6 +269,12 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "verify.pieces": (
         mark("After cutting with a kerf of {kerf_mm:g} mm, the sheet is {count} piece."),
         mark("After cutting with a kerf of {kerf_mm:g} mm, the sheet is {count} pieces."),
+    ),
+    "verify.copies": mark(
+        "The file holds {count} copies of the sheet, alike and {gap_mm:g} mm apart: cutting it leaves {pieces} pieces."
+    ),
+    "verify.copies_differ": mark(
+        "The file should hold {count} copies of the sheet, alike and {gap_mm:g} mm apart, and does not. Export again."
     ),
     "verify.smallest_ligament": mark(
         "The smallest ligament is {ligament_mm:.3f} mm; the smallest connector is planned with {planned_mm:.3f} mm."

@@ -259,6 +259,30 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "Two cuts leave only {width_mm:.3f} mm of material at x = {x:.2f}, y = {y:.2f} mm, less than the connectors. "
         "Use a larger sheet or a more regular design."
     ),
+    "copies.number": mark(
+        "A file holds 1 to {most} copies of a sheet, or 0 for as many as fit on the bed; got {copies}."
+    ),
+    "copies.gap_not_positive": mark("The gap between copies must be a length above 0 mm, got {value}."),
+    "copies.gap_too_narrow": mark(
+        "A gap of {gap_mm:g} mm between copies is not wider than the kerf of {kerf_mm:g} mm. Make the gap wider."
+    ),
+    "copies.no_bed": mark(
+        "As many copies as fit were asked for, but the material does not know the bed of the machine: the file holds "
+        "one. Set the bed of your machine in the material, or ask for a number."
+    ),
+    "copies.none_fits": mark(
+        "Not one copy fits on the bed of {bed_width_mm:g} x {bed_height_mm:g} mm; the file holds one."
+    ),
+    "copies.fewer_fit": (
+        mark(
+            "Of {asked} copies {count} fits on the bed of {bed_width_mm:g} x {bed_height_mm:g} mm with gaps of "
+            "{gap_mm:g} mm; the file holds {count}."
+        ),
+        mark(
+            "Of {asked} copies {count} fit on the bed of {bed_width_mm:g} x {bed_height_mm:g} mm with gaps of "
+            "{gap_mm:g} mm; the file holds {count}."
+        ),
+    ),
     "plan.larger_than_bed": mark(
         "The cuts cover {width_mm:.1f} x {height_mm:.1f} mm, but the machine reaches {bed_width_mm:g} x "
         "{bed_height_mm:g} mm. Make the sheet less than {largest_mm:.1f} mm wide or set the bed of your machine."

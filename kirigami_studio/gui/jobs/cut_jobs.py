@@ -46,14 +46,14 @@ class Planned:
     report : Report
     removed_share : float, 0..1
         Share of the sheet that was trimmed away.
-    slots : Work or None
-        Length and time where the machine profile makes a closed slot of every slit; ``plan`` has those of open cuts.
+    work : Work or None
+        Length and time where the file holds other cuts than the plan: a closed slot for every slit, or several copies.
     """
 
     plan: CutPlan
     report: Report
     removed_share: float = 0.0
-    slots: Work | None = None
+    work: Work | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -117,16 +117,18 @@ def planned(request: CutRequest) -> Planned:
     report = check_plan(plan, phi=request.candidate.final_phi)
     _ = plan.times  # worked out once and kept: here, so that the window need not
     removed = 0.0 if trim is None else trim.removed_share
-    return Planned(plan, report, removed, _slots(plan, request.settings.profile))
+    return Planned(plan, report, removed, _work(plan, request.settings.profile))
 
 
-def _slots(plan: CutPlan, profile: str) -> Work | None:
-    """What cutting takes if the file holds slots; None where it does not, or cannot, which exporting then explains."""
+def _work(plan: CutPlan, profile: str) -> Work | None:
+    """What cutting takes if the file holds slots or copies; None where it holds the plan, or cannot hold slots, which
+    exporting then explains.
+    """
     from kirigami_studio.export.profile import find_profile
     from kirigami_studio.export.strokes import strokes_of, work_of
 
     found = find_profile(profile)
-    if not found.slots:
+    if not found.slots and len(plan.copies) == 1:
         return None
     try:
         return work_of(strokes_of(plan, found), plan.material)

@@ -18,7 +18,7 @@ from PySide6.QtWidgets import (
 from kirigami_studio.fabricate.findings import Problem, Severity
 from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.gui.look import icons
-from kirigami_studio.gui.look.readable import readable_length, readable_size, readable_time
+from kirigami_studio.gui.look.readable import TIMES, readable_length, readable_size, readable_time
 from kirigami_studio.gui.look.theme import LIGHT, Palette
 from kirigami_studio.gui.panels.card import ToolButton
 from kirigami_studio.gui.panels.hinge_bar import HingeBar
@@ -98,6 +98,8 @@ class CutsPage(QWidget):
         if self._plan is None:
             return ()
         size, count, kerf_mm = readable_size(*self._plan.size_mm), len(self._plan.paths), self._plan.kerf_mm
+        if len(self._plan.copies) > 1:
+            size = f"{len(self._plan.copies)} {TIMES} {size}"
         long = tr_n(
             "{size}  ·  {count} cut  ·  kerf {kerf_mm:g} mm",
             "{size}  ·  {count} cuts  ·  kerf {kerf_mm:g} mm",
@@ -111,7 +113,7 @@ class CutsPage(QWidget):
         """Show another plan, or the empty state; a new picture of one sheet keeps its place."""
         plan = None if planned is None else planned.plan
         problems = () if planned is None else planned.report.problems
-        new_sheet = self._plan is None or plan is None or self._plan.size_mm != plan.size_mm
+        new_sheet = self._plan is None or plan is None or self._plan.copies.spread_mm != plan.copies.spread_mm
         self._plan = plan
         self.view.set_caption("")
         self.view.show_plan(plan, problems)

@@ -43,6 +43,7 @@ from kirigami_studio.project.cutting import stored_material
 from kirigami_studio.project.settings import FabricationSettings
 
 if TYPE_CHECKING:
+    from kirigami_studio.fabricate.cut_plan import CutPlan
     from kirigami_studio.fabricate.timing import CutTimes
     from kirigami_studio.gui.jobs.cut_jobs import Planned
 
@@ -79,6 +80,8 @@ LENGTHS = (
         tr("Full width of the cut, mm; slits are shortened to match. 0 for a blade."),
     ),
 )
+#: Lengths of slots and of open cuts differ by much more than this share.
+SAME_LENGTH = 1e-3
 #: Height (pixels) that unfolded numbers keep in a small window, where they scroll.
 LEAST_DETAILS = 150
 #: Key and label of the live numbers, in reading order.
@@ -306,22 +309,27 @@ class FabricationPanel(Card):
             self._warn(tr("Choose a design to see its cut plan."), calm=True)
             return
         plan, report = planned.plan, planned.report
+        copies = len(plan.copies)
         length, times = plan.cut_length_mm, plan.times
-        if planned.slots is not None:
-            length, times = planned.slots.cut_length_mm, planned.slots.times
+        if planned.work is not None:
+            length, times = planned.work.cut_length_mm, planned.work.times
         texts = {
             "size": readable_size(*plan.size_mm),
-            "slits": f"{len(plan.paths)}",
+            "slits": f"{copies * len(plan.paths)}",
             "length": readable_length(length),
             "time": readable_range(times.low, times.high),
-            "pieces": f"{report.pieces}",
+            "pieces": f"{copies * report.pieces}",
             "ligament": tr("{width_mm:.2f} mm", width_mm=report.min_ligament_mm),
         }
         for key, text in texts.items():
             self.numbers[key].setText(text)
+        self.numbers["size"].setToolTip(format_copies(plan))
+        self.options.rows.setText(*rows_of_copies(plan))
+        self.options.rows.setToolTip(format_copies(plan))
         self.numbers["time"].setToolTip(format_times(times))
         self.numbers["length"].setToolTip(format_slots(planned))
-        self._sum_up(texts["size"], len(plan.paths), planned.removed_share)
+        size = texts["size"] if copies == 1 else f"{copies} {TIMES} {texts['size']}"
+        self._sum_up(size, copies * len(plan.paths), planned.removed_share)
         found = [note.text for note in (*report.problems, *plan.notes)]
         self._warn("\n".join(found) if found else tr("The cut check found no problems."), calm=not found)
 
@@ -423,14 +431,39 @@ class OpenedRow(QWidget):
         self.link.setEnabled(size.drawn is not None and not size.agrees)
 
 
+def format_copies(plan: CutPlan) -> str:
+    """How the copies lie in the file, where it holds more than one."""
+    if len(plan.copies) == 1:
+        return ""
+    rows, columns = plan.copies.rows_and_columns
+    return tr(
+        "{count} copies in the file, in rows of {columns} ({rows} rows), {gap:g} mm apart: {size}.",
+        count=len(plan.copies),
+        columns=columns,
+        rows=rows,
+        gap=plan.copies.gap_mm,
+        size=readable_size(*plan.copies.spread_mm),
+    )
+
+
+def rows_of_copies(plan: CutPlan) -> tuple[str, ...]:
+    """Columns and rows of copies and what they take, longest text first; "" for a single sheet."""
+    if len(plan.copies) == 1:
+        return ("",)
+    rows, columns = plan.copies.rows_and_columns
+    short = tr_n("{count} copy", "{count} copies", len(plan.copies))
+    return f"{short}: {columns} {TIMES} {rows}, {readable_size(*plan.copies.spread_mm)}", short
+
+
 def format_slots(planned: Planned) -> str:
     """What slots cost, where the machine profile asks for them."""
-    if planned.slots is None:
+    open_mm = len(planned.plan.copies) * planned.plan.cut_length_mm
+    # Copies alone leave the length of every cut as it is.
+    if planned.work is None or abs(planned.work.cut_length_mm / open_mm - 1.0) < SAME_LENGTH:
         return ""
-    open_mm = planned.plan.cut_length_mm
     return tr(
         "Closed slots: {factor:.2f} times the open cut length of {length}.",
-        factor=planned.slots.cut_length_mm / open_mm,
+        factor=planned.work.cut_length_mm / open_mm,
         length=readable_length(open_mm),
     )
 

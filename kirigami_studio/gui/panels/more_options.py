@@ -6,9 +6,9 @@ from PySide6.QtCore import QSignalBlocker, Qt, Signal
 from PySide6.QtWidgets import QComboBox, QGridLayout, QSizePolicy, QSpinBox, QVBoxLayout, QWidget
 
 from kirigami_studio.export.profile import PROFILES
-from kirigami_studio.fabricate.options import MOST_TABS, ConnectorStyle, CutOrder
+from kirigami_studio.fabricate.options import AS_MANY_AS_FIT, MOST_COPIES, MOST_TABS, ConnectorStyle, CutOrder
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui.panels.card import ToolButton, captioned, compact
+from kirigami_studio.gui.panels.card import ElidedLabel, ToolButton, captioned, compact
 from kirigami_studio.gui.panels.number_field import LengthField
 from kirigami_studio.project.settings import FabricationSettings
 
@@ -49,7 +49,7 @@ class MoreOptions(QWidget):
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.fold = ToolButton(
-            "moreOptions", "down", tr("More options: connector style, order, tabs, machine, DXF version.")
+            "moreOptions", "down", tr("More options: connector style, order, tabs, copies, machine, DXF version.")
         )
         self.fold.setText(tr("More options"))
         self.fold.setToolButtonStyle(Qt.ToolButtonStyle.ToolButtonTextBesideIcon)
@@ -81,6 +81,28 @@ class MoreOptions(QWidget):
         self.tab_mm.setDecimals(2)
         self.tab_mm.setAccessibleName(tr("Tab width in millimetres"))
         self.tab_mm.setToolTip(tr("Finished width of a tab, mm (0.05 to 20)."))
+        self.copies = QSpinBox()
+        self.copies.setObjectName("copies")
+        self.copies.setRange(AS_MANY_AS_FIT, MOST_COPIES)
+        self.copies.setSpecialValueText(tr("Fit bed"))
+        self.copies.setAccessibleName(tr("Number of copies"))
+        self.copies.setToolTip(
+            tr(
+                "Copies of the sheet in one file, in rows (1 to {most_copies}); below 1: as many as fit on the "
+                "material's bed.",
+                most_copies=MOST_COPIES,
+            )
+        )
+        self.copy_gap = LengthField()
+        self.copy_gap.setObjectName("copyGap")
+        self.copy_gap.setRange(0.1, 500.0)
+        self.copy_gap.setSingleStep(1.0)
+        self.copy_gap.setDecimals(1)
+        self.copy_gap.setAccessibleName(tr("Gap between copies in millimetres"))
+        self.copy_gap.setToolTip(tr("Gap between the cuts of neighbouring copies, mm (0.1 to 500)."))
+        self.rows = ElidedLabel()
+        self.rows.setObjectName("muted")
+        self.rows.setAccessibleName(tr("Rows of copies"))
         self.content = QWidget()
         self.content.setObjectName("plain")
         self._lay_out()
@@ -98,6 +120,9 @@ class MoreOptions(QWidget):
         table.addLayout(captioned(tr("Tab, mm"), self.tab_mm, self.tab_mm), 1, 1)
         table.addLayout(captioned(tr("D&XF version"), self.dxf_version, self.dxf_version), 1, 2, 1, 2)
         table.addLayout(captioned(tr("Machine profile"), self.profile, self.profile), 2, 0, 1, 4)
+        table.addLayout(captioned(tr("Copies"), self.copies, self.copies), 3, 0)
+        table.addLayout(captioned(tr("Gap, mm"), self.copy_gap, self.copy_gap), 3, 1)
+        table.addWidget(self.rows, 3, 2, 1, 2, Qt.AlignmentFlag.AlignBottom)
         for column in range(4):
             table.setColumnStretch(column, 1)
         whole = QVBoxLayout(self)
@@ -114,7 +139,9 @@ class MoreOptions(QWidget):
             box.activated.connect(lambda _, name=name, box=box: self.changed.emit({name: box.currentData()}))
         self.tabs.valueChanged.connect(lambda value: self.options_changed.emit({"tabs": value}))
         self.tab_mm.valueChanged.connect(lambda value: self.options_changed.emit({"tab_mm": value}))
-        for number in (self.tabs, self.tab_mm):
+        self.copies.valueChanged.connect(lambda value: self.options_changed.emit({"copies": value}))
+        self.copy_gap.valueChanged.connect(lambda value: self.options_changed.emit({"copy_gap_mm": value}))
+        for number in (self.tabs, self.tab_mm, self.copies, self.copy_gap):
             number.setKeyboardTracking(False)
             compact(number, 62)
             number.editingFinished.connect(self.edited)
@@ -134,6 +161,10 @@ class MoreOptions(QWidget):
             self.tabs.setValue(options.tabs)
             self.tab_mm.setValue(options.tab_mm)
         self.tab_mm.setEnabled(options.tabs > 0)
+        with QSignalBlocker(self.copies), QSignalBlocker(self.copy_gap):
+            self.copies.setValue(options.copies)
+            self.copy_gap.setValue(options.copy_gap_mm)
+        self.copy_gap.setEnabled(options.copies != 1)
 
     def _show_content(self, shown: bool) -> None:
         self.content.setVisible(shown)

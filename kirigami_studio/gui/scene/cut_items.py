@@ -28,6 +28,8 @@ FAINT = 0.28
 SEEN = 0.25
 #: Edge length (pixels) of the mark where the job starts.
 START = 6.0
+#: Opacity of the copies of a sheet.
+COPY_OPACITY = 0.45
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,7 +82,7 @@ class CutDrawing:
     @cached_property
     def bounds(self) -> Bounds:
         """Everything that is cut, and the origin."""
-        width, height = self.plan.bounds_mm
+        width, height = self.plan.copies.spread_mm
         return Bounds(0.0, 0.0, width, height)
 
     def pen_width(self, transform: ViewTransform) -> float:
@@ -104,7 +106,17 @@ def paint_cut_sheet(painter: QPainter, drawing: CutDrawing, transform: ViewTrans
     painter.setPen(Qt.PenStyle.NoPen)
     painter.setBrush(QColor(palette.cut_sheet))
     painter.drawPath(drawing.sheet)
+    _paint_copies(painter, drawing, transform, palette)
     painter.restore()
+
+
+def _paint_copies(painter: QPainter, drawing: CutDrawing, transform: ViewTransform, palette: Palette) -> None:
+    """Draw the other sheets of the file faintly, by their outlines."""
+    painter.setOpacity(COPY_OPACITY)
+    painter.setPen(round_pen(palette.text, drawing.pen_width(transform) / transform.scale))
+    for x, y in drawing.plan.copies.places[1:].tolist():
+        painter.drawPath(drawing.sheet.translated(x, y))
+    painter.setOpacity(1.0)
 
 
 def paint_cuts(

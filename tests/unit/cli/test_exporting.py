@@ -152,3 +152,37 @@ def test_that_the_project_chooses_the_version_unless_told(
     for more, release in (([], "R2010"), (["--dxf-version", "R12"], "R12")):
         assert run(capsys, "export", project, "--out", tmp_path / "x.dxf", *more)[0] == 0
         assert ezdxf.readfile(tmp_path / "x.dxf").acad_release == release
+
+
+def test_that_copies_fill_one_file_and_are_told(
+    capsys: pytest.CaptureFixture[str], project: Path, tmp_path: Path
+) -> None:
+    def report(*options: object) -> dict[str, object]:
+        words = ("export", project, "--out", tmp_path / "cut.dxf", "--width-mm", 60, *options, "--json")
+        code, out, _ = run(capsys, *words)
+        assert code == 0
+        found: dict[str, object] = json.loads(out)
+        return found
+
+    alone, four = report(), report("--copies", 4, "--copy-gap-mm", 3)
+    assert "copies" not in alone and alone["pieces"] == 1
+    assert four["copies"] == four["pieces"] == 4
+    assert four["cut_length_mm"] == pytest.approx(4 * float(str(alone["cut_length_mm"])), rel=1e-6)
+    modelspace = ezdxf.readfile(tmp_path / "cut.dxf").modelspace()
+    assert sum(entity.closed for entity in modelspace.query("LWPOLYLINE")) == 4
+    many = report("--material", "film-uv", "--copies", "fit")
+    assert int(str(many["copies"])) > 4 and many["pieces"] == many["copies"]
+    few = report("--material", "film-uv", "--copies", 150)
+    assert few["copies"] == many["copies"]
+    assert any("Of 150 copies" in text for text in few["warnings"])  # type: ignore[attr-defined]
+
+
+@pytest.mark.parametrize("number", ["0", "-3", "many", "201"])
+def test_that_a_senseless_number_of_copies_is_wrong_usage(
+    number: str, capsys: pytest.CaptureFixture[str], project: Path, tmp_path: Path
+) -> None:
+    try:
+        code = run(capsys, "export", project, "--out", tmp_path / "cut.dxf", "--copies", number)[0]
+    except SystemExit as left:
+        code = int(str(left.code))
+    assert code == 2 and not (tmp_path / "cut.dxf").exists()
