@@ -78,7 +78,7 @@ def export(arguments: argparse.Namespace) -> int:
         fixes = " ".join(_advice(document, settings, refused(error)).lines)
         raise FabricationError("export.with_fixes", reason=str(error), fixes=fixes) from error
     job = replace(_job(document), plan=plan, dxf_version=settings.dxf_version, profile=settings.profile,
-                  paper=arguments.paper, markers=arguments.markers)  # fmt: skip
+                  paper=settings.paper, markers=settings.markers or arguments.markers)  # fmt: skip
     candidate = _chosen(document)
     as_cut = closed_as_cut(candidate, job.deployment, plan, settings.width_mm, document.target)
 
@@ -91,7 +91,7 @@ def export(arguments: argparse.Namespace) -> int:
     work = _work(job, arguments)
     notes = [*plan.notes, *report.problems, *(note for found in written.verifications for note in found.warnings)]
     if arguments.all or Path(arguments.out).suffix.lower() == ".pdf":
-        notes += page_notes(plan.copies.spread_mm, arguments.paper)
+        notes += page_notes(plan.copies.spread_mm, settings.paper)
     warnings = [note.text for note in notes]
     if left := [path.name for path in written.older if path not in written.removed]:
         names = ", ".join(left)
@@ -305,7 +305,7 @@ def overridden(saved: FabricationSettings, arguments: argparse.Namespace) -> Fab
     """
     given = {name: value for name, value in vars(arguments).items() if value is not None}
     changes: dict[str, Any] = {
-        name: given[name] for name in ("width_mm", "connector_mm", "kerf_mm", "dxf_version") if name in given
+        name: given[name] for name in ("width_mm", "connector_mm", "kerf_mm", "dxf_version", "paper") if name in given
     }
     if arguments.material is not None:
         changes["material"] = find_material(arguments.material).key

@@ -20,6 +20,7 @@ from kirigami_studio.gui.jobs.cut_jobs import (
     ANIMATION,
     CutRequest,
     Exported,
+    ManyPages,
     Motion,
     Planned,
     exporting,
@@ -97,26 +98,24 @@ class CutPlanner(QObject):
     def _refuse(self, request: CutRequest, sentence: str, trace: str) -> None:
         self.refused.emit(sentence if request.candidate.trim is None else f"{sentence} {TRIM_AGAIN}")
 
-    def export(self, request: CutRequest, path: Path) -> None:
-        """Write a cut file or a picture, by the extension."""
+    def export(self, request: CutRequest, path: Path, many_pages: bool = False) -> None:
+        """Write a cut file or a picture, by the extension; a PDF of many pages only after asking."""
         self._session.set_status(tr("Exporting {name} …", name=path.name))
-        self._write(tr("exporting {name}", name=path.name), partial(exporting, request, path))
+        steps = partial(exporting, request, path, many_pages)
+        self._write(tr("exporting {name}", name=path.name), steps, partial(self.export, request, path, True))
 
     def animate(self, request: CutRequest, path: Path, motion: Motion, sheet: SimulatedSheet | None) -> None:
         """Write an animation; ``sheet`` is the design as cut, if it is known already."""
         self._session.set_status(tr("Exporting {name} …", name=path.name))
         steps = partial(animating, request, path, motion, sheet)
-        callbacks = JobCallbacks(self._report_animation, on_failed=self._report_failure)
-        self._session.queue.start(tr("exporting {name}", name=path.name), steps, callbacks)
+        self._write(tr("exporting {name}", name=path.name), steps)
 
-    def _report_animation(self, exported: Exported | None) -> None:
-        if exported is not None:
-            self._report(exported)
-
-    def export_all(self, request: CutRequest, folder: Path, name: str) -> None:
-        """Write everything that there is of a design into a folder."""
+    def export_all(self, request: CutRequest, folder: Path, name: str, many_pages: bool = False) -> None:
+        """Write everything that there is of a design into a folder; a PDF of many pages only after asking."""
         self._session.set_status(tr("Exporting to {name} …", name=folder.name))
-        self._write(tr("exporting to {name}", name=folder.name), partial(exporting_all, request, folder, name))
+        steps = partial(exporting_all, request, folder, name, many_pages)
+        again = partial(self.export_all, request, folder, name, True)
+        self._write(tr("exporting to {name}", name=folder.name), steps, again)
 
     def export_coupon(self, material: Material, path: Path) -> None:
         """Write the calibration coupon of a material."""
@@ -124,8 +123,21 @@ class CutPlanner(QObject):
         steps = partial(exporting_coupon, material, path, self._session.document.fabrication)
         self._write(tr("exporting {name}", name=path.name), steps)
 
-    def _write(self, name: str, steps: Steps[Exported]) -> None:
-        self._session.queue.start(name, steps, JobCallbacks(self._report, on_failed=self._report_failure))
+    def _write(
+        self, name: str, steps: Steps[Exported | ManyPages | None], with_pages: Callable[[], None] | None = None
+    ) -> None:
+        """Start a job; ``with_pages`` starts it once more, for as many pages as it takes."""
+        callbacks = JobCallbacks(partial(self._take_written, with_pages), on_failed=self._report_failure)
+        self._session.queue.start(name, steps, callbacks)
+
+    def _take_written(self, with_pages: Callable[[], None] | None, report: Exported | ManyPages | None) -> None:
+        match report:
+            case Exported():
+                self._report(report)
+            case ManyPages() if with_pages is not None:
+                self._session.set_status(tr("Not exported yet: {count} pages.", count=report.pages))
+                write = (tr("Write all pages"), with_pages)
+                self._session.post(Message(report.note, Tone.WARNING, actions=(write,)))
 
     def _report(self, exported: Exported) -> None:
         path, made = exported.path, exported.planned
@@ -143,11 +155,28 @@ class CutPlanner(QObject):
             )
             message = message_of(path, made)
         self._session.post(message)
+        for about in older_messages(exported):
+            self._session.post(about)
         self.exported.emit(exported)
 
     def _report_failure(self, sentence: str, trace: str) -> None:
         self._session.set_status(tr("Export failed."))
         self._session.post(Message(sentence, Tone.ERROR, trace))
+
+
+def older_messages(exported: Exported) -> list[Message]:
+    """What became of files that an earlier export left in the folder."""
+    found = []
+    if exported.removed:
+        names = ", ".join(exported.removed)
+        sentence = tr("Removed files of an earlier export that this one does not have: {names}.", names=names)
+        found.append(Message(sentence, Tone.HINT))
+    if left := ", ".join(name for name in exported.older if name not in exported.removed):
+        sentence = tr(
+            "The folder has files of an earlier export: {names}. Delete what you do not want to cut.", names=left
+        )
+        found.append(Message(sentence, Tone.WARNING))
+    return found
 
 
 def picture_sentence(exported: Exported) -> str:

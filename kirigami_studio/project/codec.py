@@ -15,6 +15,7 @@ from kirigami_studio.evaluate.feasibility import Contact
 from kirigami_studio.evaluate.score import Score
 from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.evaluate.trimming import Trim, trim
+from kirigami_studio.export.paper import NO_PAPER
 from kirigami_studio.fabricate.material import Material
 from kirigami_studio.fabricate.options import COPY_GAP_MM, ConnectorStyle, CutOptions, CutOrder
 from kirigami_studio.foundation.arrays import FloatArray
@@ -165,6 +166,9 @@ def _fabrication_json(settings: FabricationSettings) -> dict[str, object]:
         },
         "profile": settings.profile,
         "dxf_version": settings.dxf_version,
+        # Not there unless chosen, so that other projects stay as they were.
+        **({} if settings.paper == NO_PAPER else {"paper": settings.paper}),
+        **({"markers": True} if settings.markers else {}),
         "own": None if settings.own is None else asdict(settings.own),
     }
 
@@ -188,6 +192,8 @@ def _fabrication(record: Record) -> FabricationSettings:
         ),
         profile=record.text("profile"),
         dxf_version=record.text("dxf_version"),
+        paper=record.text("paper") if record.holds("paper") else NO_PAPER,
+        markers=record.flag("markers") if record.holds("markers") else False,
         own=Material(**_plain_fields(record.record("own"), Material)) if record.holds("own") else None,
     )
 

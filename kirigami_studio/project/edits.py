@@ -60,6 +60,8 @@ class FabricationChange(TypedDict, total=False):
     options: CutOptions
     profile: str
     dxf_version: str
+    paper: str
+    markers: bool
 
 
 class OptionsChange(TypedDict, total=False):
@@ -98,6 +100,8 @@ _LABELS = {
     "options": tr("Change the cut options"),
     "profile": tr("Change the machine profile"),
     "dxf_version": tr("Change the DXF version"),
+    "paper": tr("Change the paper of PDFs"),
+    "markers": tr("Change the connector markers"),
     "style": tr("Change the connector style"),
     "order": tr("Change the cutting order"),
     "tabs": tr("Change the number of tabs"),

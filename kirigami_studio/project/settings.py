@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass, field
 from functools import partial
 
+from kirigami_studio.export.paper import NO_PAPER
 from kirigami_studio.fabricate.material import DEFAULT_PRESET, Material
 from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions
 from kirigami_studio.foundation.errors import AngleError, GridError, UsageError
@@ -111,6 +112,10 @@ class FabricationSettings:
         Key of the machine profile that cut files are written for.
     dxf_version : str
         DXF dialect of cut files.
+    paper : str
+        Key of the paper that PDFs are spread over; "none" for one page as large as the sheet.
+    markers : bool
+        Whether LightBurn projects mark the connectors, on a layer that LightBurn does not cut.
     own : Material or None
         The numbers of ``material`` where that is a person's own and no preset.  Not a choice, so it takes no part in
         comparisons.
@@ -128,6 +133,8 @@ class FabricationSettings:
     options: CutOptions = field(default_factory=partial(CutOptions, style=ConnectorStyle.CENTRED))
     profile: str = "any"
     dxf_version: str = "R2010"
+    paper: str = NO_PAPER
+    markers: bool = False
     own: Material | None = field(default=None, compare=False)
 
     def __post_init__(self) -> None:
@@ -136,6 +143,9 @@ class FabricationSettings:
         _check_name("settings.material_not_a_name", self.material)
         _check_name("settings.profile_not_a_name", self.profile)
         _check_name("settings.dxf_version_not_a_name", self.dxf_version)
+        _check_name("settings.paper_not_a_name", self.paper)
+        if not isinstance(self.markers, bool):
+            raise UsageError("settings.markers_not_true_or_false", value=self.markers)
         for code, value, zero_allowed in (
             ("settings.connector_width", self.connector_mm, False),
             ("settings.kerf_width", self.kerf_mm, True),

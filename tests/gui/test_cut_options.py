@@ -96,6 +96,8 @@ def test_that_every_control_has_a_name_and_a_tooltip(options: MainWindow) -> Non
         *options.fabrication.options.content.findChildren(QComboBox),
         options.fabrication.options.tabs,
         options.fabrication.options.tab_mm,
+        options.fabrication.options.copies,
+        options.fabrication.options.copy_gap,
         *page.toggles.values(),
         page.hinges.rules,
         page.hinges.width_mm,
@@ -104,7 +106,7 @@ def test_that_every_control_has_a_name_and_a_tooltip(options: MainWindow) -> Non
         page.bar.play,
         page.bar.slider,
     ]
-    assert len(parts) == 15
+    assert len(parts) == 18
     for part in parts:
         assert part.accessibleName() and part.toolTip(), part.objectName()
     for length in (options.fabrication.options.tab_mm, page.hinges.width_mm):

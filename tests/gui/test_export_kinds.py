@@ -10,11 +10,13 @@ from PIL import Image
 from PySide6.QtWidgets import QFileDialog
 from pytestqt.qtbot import QtBot
 
+from kirigami_studio.export.pdf import read_pages
 from kirigami_studio.export.registry import exporters
 from kirigami_studio.gui.dialogs.files import follow_filter
 from kirigami_studio.gui.file_kinds import FILE_KINDS, kind_of
 from kirigami_studio.gui.main_window import MainWindow
 from kirigami_studio.gui.messages import Tone
+from kirigami_studio.project import store
 
 Until = Callable[[Callable[[], bool]], None]
 FIRST_BYTES = {
@@ -106,3 +108,64 @@ def test_that_picking_a_file_type_renames_the_proposal(qtbot: QtBot, tmp_path: P
     follow_filter(dialog, kind_of(".svg").filter)
     assert [Path(name).name for name in dialog.selectedFiles()] == ["heart.svg"]
     assert dialog.defaultSuffix() == "svg"
+
+
+def test_that_a_pdf_of_many_pages_is_written_only_after_asking(
+    designed: MainWindow, qtbot: QtBot, until: Until, tmp_path: Path
+) -> None:
+    controller, cutting = designed.controller, designed.controller.cutting
+    pick = designed.fabrication.options.paper
+    pick.setCurrentIndex(pick.findData("a4"))
+    pick.activated.emit(pick.currentIndex())
+    assert controller.document.fabrication.paper == "a4"
+    with qtbot.waitSignal(cutting.exported, timeout=30_000):
+        controller.export(tmp_path / "small.pdf")
+    controller.fabrication.change(width_mm=1500.0)
+    controller.export(tmp_path / "large.pdf")
+    until(lambda: any(message.actions for message in designed.messages.messages))
+    asked = next(message for message in designed.messages.messages if message.actions)
+    assert asked.tone is Tone.WARNING and "pages of a4" in asked.sentence
+    assert not (tmp_path / "large.pdf").exists()
+    ((words, write),) = asked.actions
+    assert words == "Write all pages"
+    with qtbot.waitSignal(cutting.exported, timeout=60_000):
+        write()
+    assert len(read_pages(tmp_path / "large.pdf")) > 20
+    assert len(read_pages(tmp_path / "small.pdf")) == 1
+    designed.commands["undo"].trigger()
+    designed.commands["undo"].trigger()
+    assert controller.document.fabrication.paper == "none"
+
+
+def test_that_markers_of_connectors_are_a_choice_that_is_saved(
+    designed: MainWindow, qtbot: QtBot, tmp_path: Path
+) -> None:
+    controller = designed.controller
+    for name, marked in (("plain", False), ("marked", True)):
+        if marked:
+            designed.fabrication.options.markers.click()
+        with qtbot.waitSignal(controller.cutting.exported, timeout=30_000):
+            controller.export(tmp_path / f"{name}.lbrn2")
+        assert ("Ellipse" in (tmp_path / f"{name}.lbrn2").read_text()) is marked
+    with qtbot.waitSignal(controller.saved, timeout=30_000):
+        controller.save(tmp_path / "marked.kiri")
+    assert store.load(tmp_path / "marked.kiri").fabrication.markers
+
+
+def test_that_files_of_an_earlier_export_which_are_gone_are_told(
+    designed: MainWindow, qtbot: QtBot, tmp_path: Path
+) -> None:
+    controller = designed.controller
+    for profile in ("any", "slots"):  # no LightBurn project holds slots
+        controller.fabrication.change(profile=profile)
+        with qtbot.waitSignal(controller.cutting.exported, timeout=60_000):
+            controller.export_all(tmp_path, "cut")
+    told = [message.sentence for message in designed.messages.messages]
+    assert "Removed files of an earlier export that this one does not have: cut.lbrn2." in told
+    assert not (tmp_path / "cut.lbrn2").exists()
+    (tmp_path / "cut.lbrn2").write_text("another program's")
+    with qtbot.waitSignal(controller.cutting.exported, timeout=60_000):
+        controller.export_all(tmp_path, "cut")
+    told = [message.sentence for message in designed.messages.messages]
+    assert any("files of an earlier export: cut.lbrn2. Delete" in sentence for sentence in told)
+    assert (tmp_path / "cut.lbrn2").exists()

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QObject, QTimer, Signal
 
 from kirigami_studio.evaluate.candidate import Candidate
-from kirigami_studio.fabricate.options import COPY_GAP_MM, CutOptions
+from kirigami_studio.fabricate.options import COPY_GAP_MM
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.jobs.as_cut_jobs import Estimated, estimating, simulating
 from kirigami_studio.gui.jobs.cut_jobs import CutRequest, Planned
@@ -51,9 +51,17 @@ class AsCutState:
 UNKNOWN, BUSY = AsCutState(), AsCutState(busy=True)
 
 
-def one_sheet(settings: FabricationSettings) -> CutOptions:
-    """The choices about the cuts of one sheet, however many a file holds."""
-    return replace(settings.options, copies=1, copy_gap_mm=COPY_GAP_MM)
+def one_sheet(settings: FabricationSettings) -> FabricationSettings:
+    """What matters of the settings to a sheet, whatever kind of file it is written to and how many times."""
+    plain, options = FabricationSettings(), replace(settings.options, copies=1, copy_gap_mm=COPY_GAP_MM)
+    return replace(
+        settings,
+        options=options,
+        profile=plain.profile,
+        dxf_version=plain.dxf_version,
+        paper=plain.paper,
+        markers=plain.markers,
+    )
 
 
 class AsCutReader(QObject):
@@ -97,7 +105,7 @@ class AsCutReader(QObject):
         self._job.stop()
         self._candidate = request.candidate
         # What files are written for does not matter to the sheet.
-        settings = replace(request.settings, profile="any", dxf_version="R2010", options=one_sheet(request.settings))
+        settings = one_sheet(request.settings)
         key = (request.candidate, settings, request.target)
         if key in self._known:
             self._known.move_to_end(key)
@@ -160,8 +168,7 @@ class AsCutEstimates(QObject):
 
     def _begin(self) -> None:
         self._job.stop()
-        settings = self._session.document.fabrication
-        settings = replace(settings, profile="any", dxf_version="R2010", options=one_sheet(settings))
+        settings = one_sheet(self._session.document.fabrication)
         there = {entry.candidate for entry in self._entries}
         before = self.known
         if settings != self._settings:

@@ -71,6 +71,8 @@ class Exported:
         What an animation shows; None for the ideal motion, and for other kinds of file.
     not_as_cut : str
         Why an animation cannot show the sheet as cut, a sentence, or "".
+    older, removed : tuple of str
+        Names of what an earlier export left in the folder and this one does not have: all of it, and what was removed.
     """
 
     path: Path
@@ -78,6 +80,23 @@ class Exported:
     verifications: tuple[Verification, ...] = ()
     motion: CutMotion | None = None
     not_as_cut: str = ""
+    older: tuple[str, ...] = ()
+    removed: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class ManyPages:
+    """Nothing was written yet: the PDF would have many pages, which a person has to want.
+
+    Attributes
+    ----------
+    pages : int
+    note : str
+        A sentence.
+    """
+
+    pages: int
+    note: str
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -136,20 +155,40 @@ def _work(plan: CutPlan, profile: str) -> Work | None:
         return None
 
 
-def exporting(request: CutRequest, path: Path, cancel: Cancel) -> Iterator[Exported]:
-    """Write one file of the kind that its extension names; cut files are planned, checked and read back."""
+def exporting(request: CutRequest, path: Path, many_pages: bool, cancel: Cancel) -> Iterator[Exported | ManyPages]:
+    """Write one file of the kind that its extension names; cut files are planned, checked and read back.
+
+    A PDF of many pages is written only where ``many_pages`` are wanted.
+    """
     importing.import_exporters()
     from kirigami_studio.export.registry import export, find_exporter
 
     find_exporter(path)  # an unknown kind is refused before anything is planned
     made = planned(request) if kind_of(path.suffix).cuts else None
+    if made is not None and path.suffix.lower() == ".pdf" and not many_pages and (many := _many_pages(request, made)):
+        yield many
+        return
     job = export_job(request, made)
     written = export(job, path)
     yield Exported(written, made, () if made is None else _verified(made.plan, path, request.settings, job.deployment))
 
 
-def exporting_all(request: CutRequest, folder: Path, name: str, cancel: Cancel) -> Iterator[Exported]:
-    """Write everything that there is of a design into a folder; the cut files are read back."""
+def _many_pages(request: CutRequest, made: Planned) -> ManyPages | None:
+    """What to know before a PDF of many pages is written; None for one of few."""
+    from kirigami_studio.export.paper import page_notes, tile
+
+    notes = page_notes(made.plan.copies.spread_mm, request.settings.paper)
+    pages = len(tile(made.plan.copies.spread_mm, request.settings.paper).tiles) if notes else 0
+    return ManyPages(pages, notes[0].text) if notes else None
+
+
+def exporting_all(
+    request: CutRequest, folder: Path, name: str, many_pages: bool, cancel: Cancel
+) -> Iterator[Exported | ManyPages]:
+    """Write everything that there is of a design into a folder; the cut files are read back.
+
+    Where the PDF has many pages, nothing is written unless ``many_pages`` are wanted.
+    """
     importing.import_exporters()
     from kirigami_studio.export.export_set import export_all
 
@@ -158,8 +197,12 @@ def exporting_all(request: CutRequest, folder: Path, name: str, cancel: Cancel) 
             raise Cancelled("export.stopped", folder=folder)
 
     made = planned(request)
+    if not many_pages and (many := _many_pages(request, made)):
+        yield many
+        return
     found = export_all(export_job(request, made), folder, name, on_written=stop_if_asked)
-    yield Exported(folder, made, found.verifications)
+    left, removed = (tuple(path.name for path in paths) for paths in (found.older, found.removed))
+    yield Exported(folder, made, found.verifications, older=left, removed=removed)
 
 
 def export_job(request: CutRequest, made: Planned | None) -> ExportJob:
@@ -169,7 +212,12 @@ def export_job(request: CutRequest, made: Planned | None) -> ExportJob:
     target = None if request.target is None else request.target.points
     job = ExportJob.of(request.candidate, target, None if made is None else made.plan)
     return replace(
-        job, profile=request.settings.profile, dxf_version=request.settings.dxf_version, provenance=request.facts
+        job,
+        profile=request.settings.profile,
+        dxf_version=request.settings.dxf_version,
+        paper=request.settings.paper,
+        markers=request.settings.markers,
+        provenance=request.facts,
     )
 
 

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from PySide6.QtCore import QSignalBlocker, Qt, Signal
-from PySide6.QtWidgets import QComboBox, QGridLayout, QSizePolicy, QSpinBox, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QCheckBox, QComboBox, QGridLayout, QSizePolicy, QSpinBox, QVBoxLayout, QWidget
 
+from kirigami_studio.export.paper import NO_PAPER
 from kirigami_studio.export.profile import PROFILES
 from kirigami_studio.fabricate.options import AS_MANY_AS_FIT, MOST_COPIES, MOST_TABS, ConnectorStyle, CutOrder
 from kirigami_studio.foundation.words import tr
@@ -35,6 +36,15 @@ ORDERS = (
 VERSIONS = (
     ("R2010", "R2010", tr("Recommended. Stores mm as the unit and uses light polylines.")),
     ("R12", "R12", tr("For old software. Stores no unit: import as mm.")),
+)
+PAPER_CHOICES = (
+    (NO_PAPER, tr("One page as large as the sheet"), tr("For plotters and print shops.")),
+    ("a4", tr("A4 pages"), tr("Spread over A4 pages that overlap, with crosses to lay them over.")),
+    (
+        "letter",
+        tr("Letter pages"),
+        tr("Spread over Letter pages that overlap, with crosses to lay them over."),
+    ),
 )
 PROFILE_TIP = tr("Machine profile: the colours and layers your machine's software expects in cut files.")
 
@@ -100,6 +110,12 @@ class MoreOptions(QWidget):
         self.copy_gap.setDecimals(1)
         self.copy_gap.setAccessibleName(tr("Gap between copies in millimetres"))
         self.copy_gap.setToolTip(tr("Gap between the cuts of neighbouring copies, mm (0.1 to 500)."))
+        self.paper = _choice("paper", tr("PDF pages"), PAPER_CHOICES)
+        self.markers = QCheckBox(tr("Mark connectors"))
+        self.markers.setObjectName("markers")
+        self.markers.setToolTip(
+            tr("Mark connectors in LightBurn projects, on a tool layer: MeerK40t would engrave it.")
+        )
         self.rows = ElidedLabel()
         self.rows.setObjectName("muted")
         self.rows.setAccessibleName(tr("Rows of copies"))
@@ -123,6 +139,8 @@ class MoreOptions(QWidget):
         table.addLayout(captioned(tr("Copies"), self.copies, self.copies), 3, 0)
         table.addLayout(captioned(tr("Gap, mm"), self.copy_gap, self.copy_gap), 3, 1)
         table.addWidget(self.rows, 3, 2, 1, 2, Qt.AlignmentFlag.AlignBottom)
+        table.addLayout(captioned(tr("PDF pages"), self.paper, self.paper), 4, 0, 1, 2)
+        table.addWidget(self.markers, 4, 2, 1, 2, Qt.AlignmentFlag.AlignBottom)
         for column in range(4):
             table.setColumnStretch(column, 1)
         whole = QVBoxLayout(self)
@@ -135,7 +153,8 @@ class MoreOptions(QWidget):
         self.fold.toggled.connect(self._show_content)
         for name, box in (("style", self.style_), ("order", self.order)):
             box.activated.connect(lambda _, name=name, box=box: self.options_changed.emit({name: box.currentData()}))
-        for name, box in (("profile", self.profile), ("dxf_version", self.dxf_version)):
+        self.markers.clicked.connect(lambda on: self.changed.emit({"markers": on}))
+        for name, box in (("profile", self.profile), ("dxf_version", self.dxf_version), ("paper", self.paper)):
             box.activated.connect(lambda _, name=name, box=box: self.changed.emit({name: box.currentData()}))
         self.tabs.valueChanged.connect(lambda value: self.options_changed.emit({"tabs": value}))
         self.tab_mm.valueChanged.connect(lambda value: self.options_changed.emit({"tab_mm": value}))
@@ -154,6 +173,7 @@ class MoreOptions(QWidget):
             (self.order, options.order),
             (self.profile, settings.profile),
             (self.dxf_version, settings.dxf_version),
+            (self.paper, settings.paper),
         ):
             with QSignalBlocker(box):
                 _choose(box, value)
@@ -161,6 +181,7 @@ class MoreOptions(QWidget):
             self.tabs.setValue(options.tabs)
             self.tab_mm.setValue(options.tab_mm)
         self.tab_mm.setEnabled(options.tabs > 0)
+        self.markers.setChecked(settings.markers)
         with QSignalBlocker(self.copies), QSignalBlocker(self.copy_gap):
             self.copies.setValue(options.copies)
             self.copy_gap.setValue(options.copy_gap_mm)
