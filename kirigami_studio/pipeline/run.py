@@ -54,6 +54,10 @@ FIRST_ROUND = 5
 #: Candidates that a search starts from: the best that differ.
 SEARCH_STARTS = 3
 
+#: Designs that get the same steps once more in the end: the best that differ.  On the 36 drawn shapes at grid auto the
+#: mean exact IoU of the first designs rises by 0.0004 and the CV of panel areas falls by 0.004, for half a second each.
+FINISHED = 3
+
 #: Designs that are trimmed: the best that differ.
 TRIMMED = 3
 
@@ -85,7 +89,7 @@ def never() -> bool:
 
 
 def run(request: Request, cancel: Callable[[], bool] = never, pool: Pool | None = None) -> Iterator[Event]:
-    """Sample, score, polish, fit from the uniform sheet and search if asked for, and rank.
+    """Sample, score, polish, fit from the uniform sheet, search if asked for, finish the best, trim if asked for, rank.
 
     The result does not depend on who polishes, on the number of workers, or on the order in which they end; only a
     budget makes it depend on the clock.  All samples are returned: a duplicate of a better sample is kept as it was
@@ -127,6 +131,8 @@ def run(request: Request, cancel: Callable[[], bool] = never, pool: Pool | None 
             yield from work.guide()
     if request.search:
         yield from work.search()
+    if request.polish >= 2 * FIRST_ROUND:
+        yield from work.finish()
     if request.trim:
         yield from work.trim()
     candidates = work.ranking.ranked(work.found)
@@ -241,6 +247,7 @@ class Stage:
 GUIDING = Stage(mark("Fitting from the uniform sheet: {done} of {total} done"), "run.stopped_polishing")
 POLISHING = Stage(mark("Polishing: {done} of {total} done"), "run.stopped_polishing")
 SEARCHING = Stage(mark("Searching: {done} of {total} done"), "run.stopped_searching")
+FINISHING = Stage(mark("Finishing the best: {done} of {total} done"), "run.stopped_polishing")
 TRIMMING = Stage(mark("Trimming: {done} of {total} done"), "run.stopped_trimming")
 
 
@@ -320,10 +327,20 @@ class _Work:
     def _next_index(self) -> int:
         return max(self.request.k, len(self.found))
 
+    def finish(self) -> Iterator[Event]:
+        """Fit the best that differ once more, with the weights of the last steps."""
+        chosen = worth_a_fit(self.found, self.ranking)[:FINISHED]
+        tasks = [PolishTask(candidate, self.request.polish) for candidate in chosen]
+        yield from self._replaced(chosen, tasks, FINISHING)
+
     def trim(self) -> Iterator[Event]:
         """Trim the best that differ."""
         chosen = worth_a_fit(self.found, self.ranking)[:TRIMMED]
-        for report in self._carried_out([TrimTask(candidate) for candidate in chosen], TRIMMING, 0, len(chosen)):
+        yield from self._replaced(chosen, [TrimTask(candidate) for candidate in chosen], TRIMMING)
+
+    def _replaced(self, chosen: Sequence[Candidate], tasks: Sequence[Task], stage: Stage) -> Iterator[Event]:
+        """Each chosen candidate as its task makes it."""
+        for report in self._carried_out(tasks, stage, 0, len(tasks)):
             if isinstance(report, Progress):
                 yield report
             elif report[1].candidate is not None:

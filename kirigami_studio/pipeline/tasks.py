@@ -90,7 +90,8 @@ class PolishTask:
             (better,) = scored(request, [fit.sheet], candidate.index, candidate.origin, fitted=True)
             evaluations += fit.evaluations + 1
             if Ranking.of(request).improves(better, candidate, request.prefer):
-                return Answer(replace(better, sampled_sheet=candidate.sampled_sheet or candidate.sheet), evaluations)
+                before = candidate.sampled_sheet if candidate.polished else candidate.sheet
+                return Answer(replace(better, sampled_sheet=before), evaluations)
             prefer = MILDER.get(prefer)
         return Answer(None, evaluations)
 

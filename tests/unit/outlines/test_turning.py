@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.sheet import Rim, Sheet
+from kirigami_studio.lattice.topology import topology
 from kirigami_studio.outlines import turning
 from kirigami_studio.outlines.figures import Box, Figure, figure
 from kirigami_studio.outlines.outline import Outline
@@ -58,6 +59,32 @@ def test_that_closed_layouts_turn_back_by_less_than_half_a_turn(rows, columns, s
     rim = Rim.moved(rows, columns, rng.uniform(-reach, reach, rows + columns))
     sheet = Sheet(field, rim)
     assert every_turn_back(deploy(sheet).outline(0.0)) < turning.LIMIT
+
+
+@given(
+    rows=st.integers(2, 7),
+    columns=st.integers(2, 7),
+    seed=st.integers(0, 10_000),
+    reach=st.floats(0.0, 0.7),
+)
+@settings(max_examples=60, deadline=None)
+def test_that_what_one_side_of_the_sheet_becomes_turns_by_less_than_half_a_turn(rows, columns, seed, reach) -> None:
+    rng = np.random.default_rng(seed)
+    field = RatioField.from_log10(rng.uniform(-1, 1, (rows, columns)))
+    sheet = Sheet(field, Rim.moved(rows, columns, rng.uniform(-reach, reach, rows + columns)))
+    tables, outline = topology(rows, columns), deploy(sheet).outline(0.0)
+    place = tables.uniform_nodes[tables.outline_at_zero]
+    edges = np.roll(outline, -1, axis=0) - outline
+    found = 0
+    for axis, line in ((0, 0), (0, columns + 1), (1, 0), (1, -rows - 1)):
+        # An edge cut opens into one straight side: from a rim node to the cut's inner end and on to a rim node.
+        on_rim = place[:, axis] == line
+        cuts = np.flatnonzero(~on_rim & np.roll(on_rim, 1) & np.roll(on_rim, -1))
+        directions = np.arctan2(edges[cuts, 1], edges[cuts, 0])
+        middle = np.angle(np.exp(1j * directions).sum())
+        assert np.ptp(np.angle(np.exp(1j * (directions - middle)))) < math.pi
+        found += len(cuts)
+    assert found == rows + columns
 
 
 def test_that_rounder_shapes_lead_from_a_circle_to_the_target() -> None:

@@ -213,6 +213,22 @@ def test_that_a_run_has_k_designs_however_few_poses_a_shape_offers(symmetry: str
     assert any(candidate.origin is Origin.GUIDED for candidate in candidates)
 
 
+def test_that_the_best_designs_are_fitted_once_more(monkeypatch: pytest.MonkeyPatch) -> None:
+    wish = Request(load("drop"), grid=(5, 5), k=8, polish=10)
+    finished = best_of(wish, pool=Pool(0)).candidates
+    monkeypatch.setattr("kirigami_studio.pipeline.run.FINISHED", 0)
+    before = {one.index: one for one in best_of(wish, pool=Pool(0)).candidates}
+    better = [one for one in finished if one != before[one.index]]
+    assert 1 <= len(better) <= 3
+    assert all(USUAL.worth(one) > USUAL.worth(before[one.index]) for one in better)
+    # What a design was sampled as stays known; one that was fitted from the uniform sheet never was a sample.
+    assert all(one.sampled_sheet == before[one.index].sampled_sheet for one in better if before[one.index].polished)
+    assert all(one.sampled_sheet is None for one in finished if one.origin is Origin.GUIDED)
+    few = best_of(replace(wish, polish=9), pool=Pool(0)).candidates
+    monkeypatch.undo()
+    assert few == best_of(replace(wish, polish=9), pool=Pool(0)).candidates
+
+
 @pytest.mark.parametrize("phi", [0.0, 0.6])
 def test_that_designs_keep_quarter_turns_at_any_angle(phi: float) -> None:
     result = best_of(Request(load("plus"), grid=(6, 6), phi=phi, k=8, polish=6), pool=Pool(0))
