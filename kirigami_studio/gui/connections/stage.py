@@ -55,6 +55,9 @@ class StageConnections(QObject):
         cuts.reset_wanted.connect(controller.fabrication.reset_hinges)
         cuts.edited.connect(controller.end_drag)
         controller.cutting.planned.connect(self._show_plan)
+        controller.verdict.changed.connect(self._window.stage.verdict.show_state)
+        controller.verdict.changed.connect(self._window.fabrication.show_verdict)
+        self._window.stage.verdict.fix_wanted.connect(controller.apply_fix)
         controller.cutting.refused.connect(self._show_refusal)
         controller.cutting.exported.connect(self._window.dialogs.show_report)
 
