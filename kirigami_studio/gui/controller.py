@@ -22,6 +22,7 @@ from kirigami_studio.gui.designs.chosen_design import Refitter, SampledScores, T
 from kirigami_studio.gui.designs.collection import DesignMarks
 from kirigami_studio.gui.designs.curves import CurveReader
 from kirigami_studio.gui.designs.generation import Generation
+from kirigami_studio.gui.designs.gripping import GripFinder
 from kirigami_studio.gui.designs.hand_editor import HandEditor
 from kirigami_studio.gui.designs.look_alikes import LookAlikes
 from kirigami_studio.gui.designs.regularity import Regularity
@@ -87,6 +88,7 @@ class Controller(QObject):
         self.fabrication = FabricationEditor(session)
         self.cutting = CutPlanner(session, self)
         self.as_cut = AsCutReader(session, self)
+        self.grips = GripFinder(session, self.as_cut, self)
         self.estimates = AsCutEstimates(session, self)
         self.verdict = VerdictKeeper(session, self.as_cut, self)
         self.targeting = Targeting(session, self)

@@ -18,6 +18,7 @@ from kirigami_studio.lattice.deployment import Deployment
 from kirigami_studio.project.settings import FabricationSettings
 
 if TYPE_CHECKING:
+    from kirigami_studio.mechanics.gripping import Gripping
     from kirigami_studio.project.as_cut import AsCut, SimulatedSheet
     from kirigami_studio.project.fixes import Advice
     from kirigami_studio.project.verdict import Verdict
@@ -106,6 +107,26 @@ def fixing(
             next(steps)
         except StopIteration as end:
             yield end.value
+            return
+        yield None
+
+
+def gripping(
+    sheet: SimulatedSheet, deployment: Deployment, width_mm: float, cancel: Cancel
+) -> Iterator[Gripping | None]:
+    """Find where to hold and pull a sheet as far as it comes; None after every step, so that other jobs have turns."""
+    from kirigami_studio.mechanics.closing import CLOSED
+    from kirigami_studio.mechanics.gripping import grip_steps
+
+    end = max(sheet.as_cut.reached, CLOSED)
+    steps = grip_steps(deployment, sheet.closing.sheet, width_mm, end)
+    while True:
+        if cancel():
+            raise Cancelled("run.no_result")
+        try:
+            next(steps)
+        except StopIteration as found:
+            yield found.value
             return
         yield None
 

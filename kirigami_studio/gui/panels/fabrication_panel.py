@@ -329,7 +329,7 @@ class FabricationPanel(Card):
         self.options.rows.setToolTip(format_copies(plan))
         self.numbers["time"].setToolTip(format_times(times))
         self.numbers["length"].setToolTip(format_slots(planned))
-        size = texts["size"] if copies == 1 else f"{copies} {TIMES} {texts['size']}"
+        size = texts["size"] if copies == 1 else sheets_of(plan)
         self._sum_up(size, copies * len(plan.paths), planned.removed_share)
 
     def show_verdict(self, state: VerdictState) -> None:
@@ -452,6 +452,12 @@ def format_copies(plan: CutPlan) -> str:
         gap=plan.copies.gap_mm,
         size=readable_size(*plan.copies.spread_mm),
     )
+
+
+def sheets_of(plan: CutPlan) -> str:
+    """How many sheets of what size the file holds."""
+    count, size = len(plan.copies), readable_size(*plan.size_mm)
+    return tr_n("{count} sheet of {size}", "{count} sheets of {size}", count, size=size)
 
 
 def rows_of_copies(plan: CutPlan) -> tuple[str, ...]:
