@@ -84,20 +84,21 @@ def paint_grips(painter: QPainter, places: GripPlaces, way: FloatArray, palette:
     """
     lengths = np.linalg.norm(way, axis=1)
     longest = float(lengths.max(initial=0.0))
-    for (x, y), (dx, dy), length in zip(places.moved.tolist(), way.tolist(), lengths.tolist(), strict=True):
+    for start, towards, length in zip(places.moved, way, lengths.tolist(), strict=True):
         if longest > 0.0 and length > 1e-6 * longest:
-            reach = max(SHORTEST, LONGEST * length / longest) / length
-            _paint_arrow(painter, QPointF(x, y), QPointF(x + reach * dx, y + reach * dy), palette)
+            reach = max(SHORTEST, LONGEST * length / longest)
+            _paint_arrow(painter, start, start + reach / length * towards, palette)
     _paint_pins(painter, places.moved, palette.good, palette)
     _paint_pins(painter, places.held, palette.text, palette)
 
 
-def _paint_arrow(painter: QPainter, start: QPointF, tip: QPointF, palette: Palette) -> None:
-    line = QLineF(start, tip)
-    line.setLength(line.length() - 0.8 * HEAD)
-    along = (tip - start) / QLineF(start, tip).length()
-    across, foot = QPointF(-along.y(), along.x()), tip - HEAD * along
-    head = QPolygonF([tip, foot + 0.55 * HEAD * across, foot - 0.55 * HEAD * across])
+def _paint_arrow(painter: QPainter, start: FloatArray, tip: FloatArray, palette: Palette) -> None:
+    """An arrow between two points (2,), pixels."""
+    along = (tip - start) / np.linalg.norm(tip - start)
+    across, foot = np.array([-along[1], along[0]]), tip - HEAD * along
+    corners = (tip, foot + 0.55 * HEAD * across, foot - 0.55 * HEAD * across)
+    head = QPolygonF([QPointF(x, y) for x, y in np.array(corners).tolist()])
+    line = QLineF(*start.tolist(), *(foot + 0.2 * HEAD * along).tolist())
     for colour, wider in ((palette.surface, RIM), (palette.good, 0.0)):
         pen = QPen(QColor(colour), SHAFT + 2.0 * wider)
         pen.setCapStyle(Qt.PenCapStyle.RoundCap)
