@@ -18,7 +18,7 @@ from kirigami_studio.export.export_set import ExportSet, export_all
 from kirigami_studio.export.exporter import ExportJob
 from kirigami_studio.export.paper import page_notes
 from kirigami_studio.export.profile import find_profile
-from kirigami_studio.export.provenance import sidecar_path, write_sidecar
+from kirigami_studio.export.provenance import narrowed_json, sidecar_path, write_sidecar
 from kirigami_studio.export.registry import export as export_file
 from kirigami_studio.export.registry import find_exporter
 from kirigami_studio.export.strokes import Work, strokes_of, work_of
@@ -115,6 +115,7 @@ def export(arguments: argparse.Namespace) -> int:
                 "pieces": report.pieces * len(plan.copies),
                 **({} if len(plan.copies) == 1 else {"copies": len(plan.copies)}),
                 "min_connector_mm": plan.min_connector_mm,
+                **({} if not plan.hinges.narrowed.size else {"narrowed_connectors": narrowed_json(plan)}),
                 "void_miss_um": None if not verified else verified[0]["void_miss_um"],
                 "jam_deg": None if not verified else verified[0]["jam_deg"],
                 "warnings": warnings,

@@ -55,7 +55,8 @@ class _Cut:
 
     Attributes
     ----------
-    deployment : Deployment
+    design, deployment : Deployment
+        As designed, and as it is cut.
     sheet : SheetNetwork
     settings : FabricationSettings
     target : Outline or None
@@ -63,6 +64,7 @@ class _Cut:
         At which the sheet is meant to show the target.
     """
 
+    design: Deployment
     deployment: Deployment
     sheet: SheetNetwork
     settings: FabricationSettings
@@ -90,7 +92,8 @@ def _close_sheet(arguments: argparse.Namespace) -> int:
     estimate = math.degrees(estimate_stretch(cut.deployment, cut.sheet, width).jam_phi(tolerated))
     lap = None
     if cut.target is not None:
-        lap = overlap(cut.deployment, found, width, cut.phi, found.jam_phi(tolerated), cut.target)
+        jam_phi = found.jam_phi(tolerated)
+        lap = overlap(cut.deployment, found, width, cut.phi, jam_phi, cut.target, design=cut.design)
     # Against an angle the slope of the energy is a moment: what a lever of one panel's size needs at its end.
     force = found.path.force / (1.0 if gripped else cut.sheet.network.panel_size)
     if arguments.json:
@@ -130,7 +133,7 @@ def _cut(arguments: argparse.Namespace) -> _Cut:
     plan = plan_sheet(deployment, settings, kept)
     on_nodes = arguments.centres == "node"
     sheet = planned_sheet(deployment, plan, settings.width_mm, kept, on_nodes, arguments.young_gpa)
-    return _Cut(deployment, sheet, settings, target, phi)
+    return _Cut(deployment, plan.cut_from(deployment), sheet, settings, target, phi)
 
 
 def _chosen(candidate: Candidate | None, path: Path) -> Candidate:

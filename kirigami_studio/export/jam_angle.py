@@ -44,7 +44,7 @@ def jam_angle_of_file(found: FoundVoids, plan: CutPlan, deployment: Deployment) 
     matched = _matched(found, plan.hinges.position[there])
     if matched is None:
         return None
-    width = plan.size_mm[0]
+    width, deployment = plan.size_mm[0], plan.cut_from(deployment)
     places = junctions(deployment, width, cut_table(*deployment.sheet.grid).hinge_node)
     whole = panels_in_mm(deployment, (), width, np.zeros(2))
     # The corner panel may be trimmed: origins are compared by a panel that is not.

@@ -164,8 +164,25 @@ def _expected(plan: CutPlan, profile: Profile) -> dict[str, Any]:
         "seconds": {"low": work.times.low, "estimate": work.times.total, "high": work.times.high},
         "paths": {layer.value: len(plan.copies) * len(plan.on_layer(layer)) for layer in plan.layers},
         "min_connector_mm": plan.min_connector_mm,
+        **({} if plan.made is None else {"ratio_as_cut": plan.made.field.ratio.tolist()}),
+        **({} if not plan.hinges.narrowed.size else {"narrowed_connectors": narrowed_json(plan)}),
         "notes": [note.text for note in plan.notes],
     }
+
+
+def narrowed_json(plan: CutPlan) -> list[dict[str, float]]:
+    """Number, place, planned and asked width, mm, of every connector that is narrower than asked for."""
+    hinges = plan.hinges
+    return [
+        {
+            "connector": int(hinge),
+            "x_mm": float(hinges.position[hinge, 0]),
+            "y_mm": float(hinges.position[hinge, 1]),
+            "width_mm": float(hinges.requested_mm[hinge]),
+            "asked_mm": float(hinges.asked_mm[hinge]),
+        }
+        for hinge in hinges.narrowed.tolist()
+    ]
 
 
 def _plain(value: Any) -> Any:

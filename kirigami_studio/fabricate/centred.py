@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -21,7 +21,6 @@ import numpy.typing as npt
 import shapely
 from shapely.geometry import Point, Polygon
 
-from kirigami_studio.fabricate.centres import ROUNDS as CENTRE_ROUNDS
 from kirigami_studio.fabricate.centres import Centres, settled_centres
 from kirigami_studio.fabricate.connectors import SHORTEST_CUT_MM
 from kirigami_studio.fabricate.cut_path import measured_line
@@ -39,12 +38,16 @@ from kirigami_studio.foundation.errors import FabricationError
 CLEAR_MM = 5e-4
 #: Chords that stand for each arc, from outside, where conflicts are looked for.
 CHORDS = 24
+#: These chords lie off their arcs by less than this many spans.
+OFF_ARC_SPANS = 2e-3
 #: Slits turn within so many spans at most.
 LONGEST_TURN = 8.0
-#: How often what is in the way of each other is made to give way, and from which time on in one step.
-ROUNDS, HASTY_FROM = 10, 3
-#: Rounds of the centres while things still give way.
-HASTY_ROUNDS = 2
+#: How often what is in the way of each other is made to give way, and from which time on turns are not tried singly.
+ROUNDS, HASTY_FROM = 30, 10
+#: A connector keeps at least this share of the width that was asked for.
+LEAST_SHARE = 0.3
+#: Share of its width that a connector in the way keeps at once.
+NARROWER = 0.8
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -62,6 +65,8 @@ class Arranged:
         Where the connectors turn; None for styles that do not place them.
     off_centre : int
         How many connectors had no room to be centred, so that the voids beside them are no parallelograms.
+    widths : (H,) float or None, mm
+        Finished widths, narrower than asked where there was no room; None for those that were asked for.
     """
 
     cuts: HingedCuts
@@ -69,6 +74,7 @@ class Arranged:
     ring_bulges: FloatArray | None
     centres: FloatArray | None
     off_centre: int = 0
+    widths: FloatArray | None = None
 
     @classmethod
     def without_centres(cls, cuts: HingedCuts, outline: Polygon) -> Arranged:
@@ -98,11 +104,28 @@ def counter_clockwise(outline: Polygon) -> FloatArray:
 Trimming = Callable[[FloatArray], tuple[Polygon, list[CutPiece]]]
 
 
+def least_widths(asked: FloatArray, least_mm: float, chosen: Mapping[int, float]) -> FloatArray:
+    """How narrow (H,), mm, connectors may become where there is no room for the width that was asked for.
+
+    Parameters
+    ----------
+    asked : (H,) float, mm
+    least_mm : float
+        Narrowest connector that the material bears.
+    chosen : mapping of hinge to mm
+        Widths that a person chose one by one, which stay.
+    """
+    least = np.minimum(np.maximum(LEAST_SHARE * asked, least_mm), asked)
+    least[list(chosen)] = asked[list(chosen)]
+    return least
+
+
 def centred_cuts(
     lines: FloatArray,
     table: CutTable,
     sides: FloatArray,
     widths: FloatArray,
+    least: FloatArray,
     kerf_mm: float,
     overcut_mm: float,
     removed: tuple[int, ...],
@@ -117,8 +140,8 @@ def centred_cuts(
     table : CutTable
     sides : (H, 2, 2) float, mm
         Sides of the sheet beside the hinges on its edge.
-    widths : (H,) float, mm
-        Finished width of each hinge, 0 for removed ones.
+    widths, least : (H,) float, mm
+        Finished width of each hinge, 0 for removed ones, and how narrow it may become where there is no room for that.
     kerf_mm, overcut_mm : float
     removed : tuple of int
     trimmed : function
@@ -129,32 +152,84 @@ def centred_cuts(
     arranged : Arranged or None
         None where the cuts do not get out of each other's way, or trimming leaves too little for moved connectors.
     """
-    spans = np.maximum(widths, 0.0) + kerf_mm
-    attempt = np.zeros(table.hinge_count, dtype=np.intp)
-    flat = np.zeros(table.hinge_count, dtype=np.bool_)
-    flat[_facing(table, removed)] = True
-    centres: Centres | None = None
-    settled = False
-    for turn in range(ROUNDS):
-        straight = attempt >= len(TURNS)
-        centres = settled_centres(lines, table, sides, spans, kerf_mm, flat | straight, removed, centres,
-                                  CENTRE_ROUNDS if settled or centres is None else HASTY_ROUNDS)  # fmt: skip
-        try:
-            draft = _Draft(centres, table, attempt, flat | straight, removed, kerf_mm, overcut_mm, trimmed)
-        except FabricationError:
-            # Trimming took the material that a moved connector needs.
-            return None
-        tighter, flatter = draft.in_the_way()
-        flatter -= set(np.flatnonzero(flat).tolist())
-        if not tighter and not flatter:
-            if settled or turn == 0:
-                return draft.arranged()
-            settled = True
-            continue
+    room = _Room(lines, table, sides, widths, least, kerf_mm, overcut_mm, removed, trimmed)
+    return room.arranged()
+
+
+class _Room:
+    """What gives way to what: turns of slits, then widths, then bows."""
+
+    def __init__(
+        self,
+        lines: FloatArray,
+        table: CutTable,
+        sides: FloatArray,
+        widths: FloatArray,
+        least: FloatArray,
+        kerf_mm: float,
+        overcut_mm: float,
+        removed: tuple[int, ...],
+        trimmed: Trimming,
+    ) -> None:
+        self._lines, self._table, self._sides, self._trimmed = lines, table, sides, trimmed
+        self._kerf, self._overcut, self._removed = kerf_mm, overcut_mm, removed
+        self._asked, self._least, self._widths = widths, np.minimum(least, widths), widths.copy()
+        self._attempt = np.zeros(table.hinge_count, dtype=np.intp)
+        self._flat = np.zeros(table.hinge_count, dtype=np.bool_)
+        self._flat[_facing(table, removed)] = True
+
+    @property
+    def _spans(self) -> FloatArray:
+        spans: FloatArray = np.maximum(self._widths, 0.0) + self._kerf
+        return spans
+
+    @property
+    def _straight(self) -> BoolArray:
+        straight: BoolArray = self._attempt >= len(TURNS)
+        return straight
+
+    def arranged(self) -> Arranged | None:
+        """The first arrangement in which nothing is in the way of anything; None without one."""
+        for turn in range(ROUNDS):
+            centres = self._settled()
+            try:
+                draft = _Draft(
+                    centres, self._table, self._attempt, self._flat | self._straight, self._removed, self._kerf,
+                    self._overcut, self._trimmed,
+                )  # fmt: skip
+            except FabricationError:
+                # Trimming took the material that a moved connector needs.
+                return None
+            tighter, flatter = draft.in_the_way()
+            flatter -= set(np.flatnonzero(self._flat).tolist())
+            if not tighter and not flatter:
+                return draft.arranged(self._widths)
+            self._give_way(draft, tighter, flatter, turn)
+        return None
+
+    def _settled(self) -> Centres:
+        return settled_centres(
+            self._lines, self._table, self._sides, self._spans, self._kerf, self._flat | self._straight, self._removed
+        )
+
+    def _give_way(self, draft: _Draft, tighter: set[int], flatter: set[int], turn: int) -> None:
+        hasty = turn >= HASTY_FROM
         for hinge in tighter:
-            attempt[hinge] = draft.next_attempt(hinge) if turn < HASTY_FROM else len(TURNS)
-        flat[list(flatter)] = True
-    return None
+            following = draft.next_attempt(hinge)
+            if following < len(TURNS) and not hasty:
+                self._attempt[hinge] = following
+            elif not self._smaller(hinge):
+                self._attempt[hinge] = len(TURNS)
+        for hinge in flatter:
+            if not self._smaller(hinge):
+                self._flat[hinge] = True
+
+    def _smaller(self, hinge: int) -> bool:
+        """Make a connector narrower, if it may be."""
+        width = max(NARROWER * self._widths[hinge], self._least[hinge])
+        fell = bool(width < self._widths[hinge] - CLEAR_MM)
+        self._widths[hinge] = width
+        return fell
 
 
 def _facing(table: CutTable, removed: tuple[int, ...]) -> IntArray:
@@ -303,6 +378,12 @@ class _Draft:
                 continue
             half = math.sqrt(radius * radius - off * off)
             if place + half <= 0.0 or place - half >= length:
+                # On a turn, unless it is on another piece of a trimmed cut.
+                beyond = -place if place < 0.0 else place - length
+                able = [end for end in turning if self._can_tighten(end)]
+                if able and beyond < LONGEST_TURN * self._centres.span_mm[hinge]:
+                    self._tight.update(able)
+                    self._bowed.add(hinge)
                 continue
             if place - half < 0.0 or place + half > length:
                 # Short of room: slits that end here turn within less, if they do.
@@ -354,13 +435,15 @@ class _Draft:
         one, other = shapely.STRtree(lines).query(lines, "dwithin", float(self._centres.span_mm.max()))
         apart = (one < other) & (cut[one] != cut[other]) & ~(opens[one] & opens[other])
         one, other = one[apart], other[apart]
+        # Chords from outside lie a little off their arcs.
+        reach = NEGLIGIBLE_MM + OFF_ARC_SPANS * float(self._centres.span_mm.max())
         near = np.flatnonzero(shapely.distance(lines[one], lines[other]) < self._needed(cut[one], cut[other]))
         between = shapely.get_coordinates(shapely.shortest_line(lines[one[near]], lines[other[near]])).reshape(-1, 2, 2)
         for (first, second), places in zip(zip(one[near].tolist(), other[near].tolist(), strict=True), between,
                                            strict=True):  # fmt: skip
             guilty = [feature for number, place in zip((first, second), places, strict=True)
                       for feature in features[number]
-                      if shapely.distance(feature.line, Point(place)) < NEGLIGIBLE_MM]  # fmt: skip
+                      if shapely.distance(feature.line, Point(place)) < reach]  # fmt: skip
             bows = {feature.hinge for feature in guilty if not feature.turns}
             turning = {feature.hinge for feature in guilty if feature.turns}
             able = {hinge for hinge in turning if self._can_tighten(hinge)}
@@ -415,8 +498,8 @@ class _Draft:
         needed = np.array([resting.get((a, b), least) for a, b in pairs])
         return needed - CLEAR_MM
 
-    def arranged(self) -> Arranged:
-        """The result."""
+    def arranged(self, widths: FloatArray) -> Arranged:
+        """The result, with connectors of these finished widths (H,), mm."""
         centres = self._centres
         flexure = centres.span_mm.copy()
         tips = self._tips()
@@ -428,4 +511,4 @@ class _Draft:
         bulges = self._ring_bulges if self._ring_bulges.any() else None
         there = ~np.isin(np.arange(len(self._straight)), self._removed)
         where = np.where(self._straight[:, None], straight, turned)
-        return Arranged(cuts, self._ring, bulges, where, int(np.sum(self._straight & there)))
+        return Arranged(cuts, self._ring, bulges, where, int(np.sum(self._straight & there)), widths)

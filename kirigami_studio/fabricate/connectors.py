@@ -22,6 +22,8 @@ from kirigami_studio.foundation.errors import FabricationError
 
 #: A cut shorter than this (mm), or than twice the kerf, is a burned dot and separates nothing.
 SHORTEST_CUT_MM = 0.1
+#: Widths that differ by less than this (mm) are the same.
+NARROWED_MM = 1e-6
 #: How far (mm) edge cuts run beyond the outline's centre line.
 OVERCUT_MM = 0.2
 #: An edge cut flatter to the edge than this (sine) turns square to it for the overcut, which would get long otherwise.
@@ -39,7 +41,10 @@ class Hinges:
     cut, end, through : (H,) int
         Number of the shortened cut, which end of it, and the cut it rests on (or ``SHEET_EDGE``).
     requested_mm, finished_mm : (H,) float
-        Width asked for, and the width measured between the cuts after the kerf; both 0 for a removed connector.
+        Width that the cuts were planned for, and the width measured between the cuts after the kerf; both 0 for a
+        removed connector.
+    asked_mm : (H,) float
+        Width asked for: more than what was planned for where there was no room.
     flexure_mm : (H,) float
         Length over which the connector bends.
     """
@@ -50,6 +55,7 @@ class Hinges:
     through: IntArray
     requested_mm: FloatArray
     finished_mm: FloatArray
+    asked_mm: FloatArray
     flexure_mm: FloatArray
 
     def __post_init__(self) -> None:
@@ -61,6 +67,11 @@ class Hinges:
         """Which connectors were removed on purpose (H,)."""
         gone: BoolArray = self.requested_mm == 0.0
         return gone
+
+    @property
+    def narrowed(self) -> IntArray:
+        """Connectors that were planned narrower than asked for, for want of room."""
+        return np.flatnonzero(self.requested_mm < self.asked_mm - NARROWED_MM)
 
     @classmethod
     def none(cls) -> Hinges:

@@ -14,7 +14,7 @@ import shapely
 from shapely.geometry import LineString, Polygon
 
 from kirigami_studio.fabricate import timing
-from kirigami_studio.fabricate.centred import Arranged, Trimming, centred_cuts
+from kirigami_studio.fabricate.centred import Arranged, Trimming, centred_cuts, least_widths
 from kirigami_studio.fabricate.centres import void_misses
 from kirigami_studio.fabricate.connectors import OVERCUT_MM, Hinges, edge_cut_paths, hinge_widths, outline_path, shorten
 from kirigami_studio.fabricate.copies import Copies, lay_out
@@ -25,6 +25,7 @@ from kirigami_studio.fabricate.endings import seats
 from kirigami_studio.fabricate.findings import Note
 from kirigami_studio.fabricate.fitting import Obstacle
 from kirigami_studio.fabricate.hinged_cuts import HingedCuts, hinged_cuts, relief_radius
+from kirigami_studio.fabricate.making_room import with_room
 from kirigami_studio.fabricate.material import Material, default_material
 from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions
 from kirigami_studio.fabricate.ordering import in_cutting_order
@@ -82,6 +83,8 @@ class CutPlan:
         Where the connectors turn; None for styles that do not place them.
     void_miss_mm : float or None
         By how much a void misses being a parallelogram of its centres, at most; None without centres.
+    made : Deployment or None
+        The sheet that is cut where that is not quite the design: with room for its connectors, the silhouette kept.
     origin : mapping of str to str
         Where the design comes from, repeated in every file of the plan; decides nothing.
     """
@@ -99,6 +102,7 @@ class CutPlan:
     panels: tuple[FloatArray, ...] = ()
     centres: FloatArray | None = None
     void_miss_mm: float | None = None
+    made: Deployment | None = None
     origin: Mapping[str, str] = field(default_factory=lambda: MappingProxyType({}))
 
     @cached_property
@@ -150,6 +154,10 @@ class CutPlan:
         used = {path.layer for path in self.paths}
         return tuple(layer for layer in Layer if layer in used)
 
+    def cut_from(self, design: Deployment) -> Deployment:
+        """The sheet that is cut, of the design that the plan was made from."""
+        return design if self.made is None else self.made
+
     def on_layer(self, layer: Layer) -> tuple[CutPath, ...]:
         """The paths of one layer, in the order of cutting."""
         return tuple(path for path in self.paths if path.layer is layer)
@@ -197,17 +205,23 @@ def plan_cuts(
     kerf = check_length("kerf.negative", material.kerf_mm if kerf_mm is None else kerf_mm, zero_allowed=True)
     overcut = check_length("overcut.not_positive", overcut_mm)
     table = cut_table(*deployment.sheet.grid)
-    lines, size = sheet_lines(deployment, width)
-    _check_size(size)
-    relief_radius(options.style, material)
+    parts = () if kept is None or all(part is None for part in kept) else tuple(kept)
+    design_hash = _design_hash(deployment, parts)
     widths = hinge_widths(table.hinge_count, connector, dict(options.hinge_mm), options.removed)
+    _check_size(sheet_lines(deployment, width)[1])
+    relief_radius(options.style, material)
+    design, made = deployment, None
+    if options.style is ConnectorStyle.CENTRED and not parts:
+        deployment = with_room(design, width, widths + kerf, table, options.removed)
+        made = None if deployment is design else deployment
+    lines, size = sheet_lines(deployment, width)
     sides = edge_sides(deployment, width)
     shortened = shorten(lines, table, sides, widths, kerf)
-    parts = () if kept is None or all(part is None for part in kept) else tuple(kept)
     trimming = _trimming(deployment, parts, table, width, size, kerf, overcut)
     arranged = None
     if options.style is ConnectorStyle.CENTRED:
-        arranged = centred_cuts(lines, table, sides, widths, kerf, overcut, options.removed, trimming)
+        least = least_widths(widths, material.min_ligament_mm, dict(options.hinge_mm))
+        arranged = centred_cuts(lines, table, sides, widths, least, kerf, overcut, options.removed, trimming)
         if arranged is not None and parts and arranged.pieces(kerf) > 1 + len(options.removed):
             arranged = None
     if arranged is None:
@@ -228,7 +242,8 @@ def plan_cuts(
     cuts = arranged.cuts.moved(lambda points: _on_grid(points - origin))
     ring = CutPath(_on_grid(arranged.ring - origin), Layer.OUTLINE, True, bulges=arranged.ring_bulges)
     boundary = Polygon(measured_line(ring.points, ring.bulges, True))
-    hinges = _hinges(cuts, table, widths, cuts.widths(table, options.removed, boundary, kerf))
+    planned = widths if arranged.widths is None else arranged.widths
+    hinges = _hinges(cuts, table, widths, planned, cuts.widths(table, options.removed, boundary, kerf))
     plan = CutPlan(
         paths=in_cutting_order(
             _paths(cuts.pieces, ring, hinges.position[hinges.through == SHEET_EDGE], options, kerf),
@@ -241,15 +256,17 @@ def plan_cuts(
         overcut_mm=overcut,
         hinges=hinges,
         material=material,
-        design_hash=_design_hash(deployment, parts),
+        design_hash=design_hash,
         options=options,
         notes=(
             *plan_notes(hinges, material, connector, kerf, options.style, cuts.straight),
             *_centring_notes(arranged, options, table),
+            *_narrowing_notes(hinges),
         ),
         panels=panels_in_mm(deployment, parts, width, origin),
         centres=None if arranged.centres is None else _frozen(arranged.centres - origin),
         void_miss_mm=_void_miss(arranged, options, table),
+        made=made,
     )
     return replace(plan, notes=(*plan.notes, *plan.copies.notes))
 
@@ -296,9 +313,17 @@ def _plain_cuts(
     return Polygon(outline_path(size, kerf)), pieces
 
 
-def _hinges(cuts: HingedCuts, table: CutTable, requested: FloatArray, finished: FloatArray) -> Hinges:
-    position = np.array([seat.junction for seat in cuts.seats])
-    return Hinges(position, table.hinge_cut, table.hinge_end, table.hinge_through, requested, finished, cuts.flexure_mm)
+def _hinges(cuts: HingedCuts, table: CutTable, asked: FloatArray, planned: FloatArray, finished: FloatArray) -> Hinges:
+    return Hinges(
+        position=np.array([seat.junction for seat in cuts.seats]),
+        cut=table.hinge_cut,
+        end=table.hinge_end,
+        through=table.hinge_through,
+        requested_mm=planned,
+        finished_mm=finished,
+        asked_mm=asked,
+        flexure_mm=cuts.flexure_mm,
+    )
 
 
 def _paths(
@@ -355,6 +380,17 @@ def _centring_notes(arranged: Arranged, options: CutOptions, table: CutTable) ->
         return []
     miss = _void_miss(arranged, options, table)
     return [Note.of("plan.off_centre", count=arranged.off_centre, total=table.hinge_count, miss_mm=miss)]
+
+
+def _narrowing_notes(hinges: Hinges) -> list[Note]:
+    """How many connectors are narrower than asked for; :attr:`Hinges.narrowed` has them all."""
+    narrowed = hinges.narrowed
+    if not narrowed.size:
+        return []
+    narrowest = int(narrowed[np.argmin(hinges.requested_mm[narrowed])])
+    x, y = hinges.position[narrowest]
+    widths = {"width_mm": float(hinges.requested_mm[narrowest]), "asked_mm": float(hinges.asked_mm[narrowest])}
+    return [Note.of("plan.connectors_narrowed", count=int(narrowed.size), total=len(hinges), x=x, y=y, **widths)]
 
 
 def _void_miss(arranged: Arranged, options: CutOptions, table: CutTable) -> float | None:

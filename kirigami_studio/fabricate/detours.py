@@ -17,7 +17,12 @@ from kirigami_studio.foundation.arrays import FloatArray
 SLIGHT = math.radians(25.0)
 #: How a slit may turn, from what is wanted to the tightest: spans along the slit where it is slight; radius of the arc
 #: in spans, and by how much (radians) the straight piece behind it is steeper than the slit.
-TURNS = ((4.0, 1.5, math.radians(20.0)), (2.5, 1.0, math.radians(30.0)), (1.5, 0.7, math.radians(45.0)))
+TURNS = (
+    (4.0, 1.5, math.radians(20.0)),
+    (2.5, 1.0, math.radians(30.0)),
+    (1.5, 0.7, math.radians(45.0)),
+    (1.1, 0.55, math.radians(60.0)),
+)
 #: Off the line by less than this (mm), a tip may stay there; bows less deep than this are none.
 NEGLIGIBLE_MM = 5e-4
 #: Points nearer than this (mm) to a line lie on it.
@@ -80,17 +85,17 @@ def turn_at(centres: Centres, hinge: int, attempt: int) -> Turn | None:
     lean, side = abs(slant), math.copysign(1.0, slant)
     half = 0.5 * span
     reach, radius, steeper = TURNS[attempt]
+    radius *= span
+    angle = min(lean + steeper, 0.5 * math.pi)
+    away, off = half + radius * math.sin(angle), radius * (1.0 - math.cos(angle))
+    # Distance of the arc's end from the slit's line, closed by the straight piece at ``angle - lean`` to it.
+    gap = away * math.sin(lean) - off * math.cos(lean)
     if half * math.sin(lean) < NEGLIGIBLE_MM:
         local, bulges = [(half, 0.0)], []
-    elif lean <= SLIGHT:
+    elif lean <= SLIGHT or gap <= 0.0:
         local, bulges = [(half, 0.0), (reach * span * math.cos(lean), reach * span * math.sin(lean))], [0.0]
     else:
-        radius *= span
-        angle = min(lean + steeper, 0.5 * math.pi)
-        away, off = half + radius * math.sin(angle), radius * (1.0 - math.cos(angle))
-        # Distance of the arc's end from the slit's line, closed by the straight piece at ``angle - lean`` to it.
-        gap = away * math.sin(lean) - off * math.cos(lean)
-        if gap <= 0.0 or angle - lean < math.radians(1.0):
+        if angle - lean < math.radians(1.0):
             return None
         run = gap / math.sin(angle - lean)
         end = (away + run * math.cos(angle), off + run * math.sin(angle))
@@ -99,6 +104,22 @@ def turn_at(centres: Centres, hinge: int, attempt: int) -> Turn | None:
     left = side * np.array([-normal[1], normal[0]])
     points = np.array([centres.position[hinge] + up * normal + across * left for up, across in local])
     return Turn(points, np.array(bulges), attempt)
+
+
+def shortest_turn(lean: FloatArray) -> FloatArray:
+    """How far (N,) along its own line, in spans from the centre, the tightest turn of a slit reaches.
+
+    Parameters
+    ----------
+    lean : (N,) float, radians
+        Slant of the slit.
+    """
+    reach, radius, steeper = TURNS[-1]
+    angle = np.minimum(lean + steeper, 0.5 * math.pi)
+    away, off = 0.5 + radius * np.sin(angle), radius * (1.0 - np.cos(angle))
+    gap = away * np.sin(lean) - off * np.cos(lean)
+    found: FloatArray = away * np.cos(lean) + off * np.sin(lean) + gap / np.tan(angle - lean)
+    return np.where((lean <= SLIGHT) | (gap <= 0.0), reach, found)
 
 
 def first_turn(centres: Centres, hinge: int, attempt: int) -> Turn | None:

@@ -181,7 +181,7 @@ def planned_sheet(
     young_gpa : float, optional
         Young's modulus; the material's unless given.
     """
-    hinges = plan.hinges
+    hinges, deployment = plan.hinges, plan.cut_from(deployment)
     found = junctions(deployment, width_mm, cut_table(*deployment.sheet.grid).hinge_node)
     # A straight slit's connector bends over a span; arcs and bars make it longer.
     longer = np.where(hinges.removed, 0.0, hinges.flexure_mm - hinges.requested_mm - plan.kerf_mm)
@@ -312,6 +312,7 @@ def simulate(
     MechanicsError
         Panels that do not hang together, because too many connectors were removed.
     """
+    design, deployment = deployment, plan.cut_from(deployment)
     sheet = planned_sheet(deployment, plan, width_mm, kept)
     yield
     found = yield from closing_steps(sheet)
@@ -319,7 +320,7 @@ def simulate(
     lap = None
     if target is not None:
         yield
-        lap = overlap(deployment, found, width_mm, phi, jam, target, forced=False)
+        lap = overlap(deployment, found, width_mm, phi, jam, target, False, design)
     table = cut_table(*deployment.sheet.grid)
     node = table.hinge_node[plan.hinges.finished_mm > 0.0]
     return SimulatedSheet(_simulated(sheet, found, jam, phi, lap), found, node)
@@ -385,12 +386,14 @@ def overlap(
     jam: float,
     target: Outline,
     forced: bool = True,
+    design: Deployment | None = None,
 ) -> Overlap:
     """IoU with the target of the sheet as cut, where it comes to, and as designed.
 
     Parameters
     ----------
     deployment : Deployment
+        The sheet that is cut.
     found : Closing
     width_mm : float
     phi, jam : float, radians
@@ -398,6 +401,8 @@ def overlap(
     target : Outline
     forced : bool
         Whether it is also measured where the sheet can be forced to; not a number if not.
+    design : Deployment, optional
+        What it was made from; the sheet that is cut unless given.
     """
     network = found.sheet.network
     # A sheet that came to the last step goes on to the angle that it is meant for.
@@ -408,5 +413,7 @@ def overlap(
     if forced:
         motions.append(carried_on(found, deployment, width_mm, end))
     rings = [silhouette(deployment, network, width_mm, motion) for motion in motions]
+    if design is not None and design is not deployment:
+        rings[1] = design.outline(phi)
     as_cut, ideal, *shut = (siou_of_many([ring], target)[0].iou_exact for ring in rings)
     return Overlap(reached, as_cut, end, shut[0] if shut else math.nan, ideal)

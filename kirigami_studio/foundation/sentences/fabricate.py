@@ -163,6 +163,17 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
             "regular design."
         ),
     ),
+    "plan.connectors_narrowed": (
+        mark(
+            "{count} of {total} connectors is narrower than asked for, {width_mm:.3f} instead of {asked_mm:.3f} mm, at "
+            "x = {x:.1f}, y = {y:.1f} mm: a wider one has no room there. Use a larger sheet or a more regular design."
+        ),
+        mark(
+            "{count} of {total} connectors are narrower than asked for, the narrowest {width_mm:.3f} instead of "
+            "{asked_mm:.3f} mm, at x = {x:.1f}, y = {y:.1f} mm: wider ones have no room there. Use a larger sheet or a "
+            "more regular design."
+        ),
+    ),
     "plan.straight_because_slanted": (
         mark(
             "{count} of {total} slit ends is straight instead of {style}: the slit is too slanted, or the cut it ends "
@@ -208,7 +219,6 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "Switch joining off when importing."
     ),
     # What a check of a plan finds
-    "plan.refused": mark("{reason}"),
     "plan.nothing_left": mark("Nothing is left of the sheet with a kerf of {kerf_mm:g} mm. Use a smaller kerf."),
     "plan.falls_apart": mark(
         "With a kerf of {kerf_mm:g} mm the sheet falls into {pieces} pieces, one of them at x = {x:.2f}, y = {y:.2f} "

@@ -33,7 +33,9 @@ def design() -> Deployment:
 
 def made(design: Deployment, style: ConnectorStyle) -> ExportJob:
     settings = FabricationSettings(WIDTH, connector_mm=0.8, options=CutOptions(style=style))
-    found = closing(planned_sheet(design, plan_sheet(design, settings), WIDTH))
+    plan = plan_sheet(design, settings)
+    found = closing(planned_sheet(design, plan, WIDTH))
+    design = plan.cut_from(design)
     pose, jam = Similarity(0.1, 0.3, (2.0, 1.0)), found.jam_phi()
     return ExportJob(design, 0.0, None, pose.apply(design.outline(0.0)), pose, motion=CutMotion(found, WIDTH, jam, jam))
 

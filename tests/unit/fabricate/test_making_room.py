@@ -1,0 +1,87 @@
+"""Room for centred connectors: ratios move, the closed silhouette stays, and the sheet closes at full width."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from kirigami_studio.evaluate.siou import siou_of_many
+from kirigami_studio.fabricate.centred import LEAST_SHARE
+from kirigami_studio.fabricate.centres import void_hinges
+from kirigami_studio.fabricate.checks import check_plan
+from kirigami_studio.fabricate.cut_plan import CutPlan, plan_cuts
+from kirigami_studio.fabricate.making_room import FACING_SPANS, with_room
+from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions
+from kirigami_studio.fabricate.slits import cut_table
+from kirigami_studio.lattice.deployment import Deployment, deploy
+from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.mechanics.closing import closing
+from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.project.as_cut import planned_sheet
+
+MakeDesign = Callable[..., Deployment]
+WIDTH = 100.0
+
+
+def planned(design: Deployment, connector: float) -> CutPlan:
+    return plan_cuts(design, WIDTH, connector, options=CutOptions(style=ConnectorStyle.CENTRED))
+
+
+def facing_mm(design: Deployment) -> np.ndarray:
+    """Distances of the two connectors on every slit."""
+    table = cut_table(*design.sheet.grid)
+    flat = design.compact * WIDTH / float(np.ptp(design.compact[:, 0]))
+    place = flat[table.hinge_node]
+    pairs = [np.flatnonzero(table.hinge_through == cut) for cut in range(table.slit_count)]
+    return np.array([np.linalg.norm(place[one] - place[other]) for one, other in pairs])
+
+
+def test_that_facing_connectors_get_room_and_the_silhouette_stays(make_design: MakeDesign) -> None:
+    design = make_design(6, 6, seed=1, spread=0.2)
+    table, span = cut_table(6, 6), 0.52
+    made = with_room(design, WIDTH, np.full(table.hinge_count, span), table)
+    assert facing_mm(design).min() < 0.2 and facing_mm(made).min() >= FACING_SPANS * span - 1e-3
+    (score,) = siou_of_many([made.outline(0.0)], Outline.from_points(design.outline(0.0)))
+    assert score.iou_exact > 0.995
+
+
+def test_that_sheets_with_room_are_left_alone(make_design: MakeDesign) -> None:
+    design = make_design(5, 6, seed=1, spread=0.4)
+    table = cut_table(5, 6)
+    assert with_room(design, 300.0, np.full(table.hinge_count, 0.05), table) is design
+    assert planned(deploy(RatioField(np.full((4, 4), 2.0))), 0.2).made is None
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+def test_that_sheets_of_wide_connectors_close_without_stretch(seed: int, make_design: MakeDesign) -> None:
+    design = make_design(5, 5, seed=seed, spread=0.25)
+    plan = planned(design, 0.8)
+    assert plan.made is not None and not plan.hinges.narrowed.size
+    found = closing(planned_sheet(design, plan, WIDTH))
+    assert found.jam_phi() == 0.0 and math.degrees(found.phi.min()) < 2.1
+    assert found.stretch.max() < 0.05
+    assert check_plan(plan).ok
+
+
+def test_that_removed_connectors_need_no_room(make_design: MakeDesign) -> None:
+    design = make_design(4, 4, seed=3, spread=0.05)
+    table = cut_table(4, 4)
+    cut = int(np.argmin(facing_mm(design)))
+    gone = int(np.flatnonzero(table.hinge_through == cut)[0])
+    made = with_room(design, WIDTH, np.full(table.hinge_count, 0.5), table, (gone,))
+    free = ~np.any(void_hinges(table) == gone, axis=1)
+    assert facing_mm(made)[free].min() > FACING_SPANS * 0.5 - 1e-3 > facing_mm(made)[cut]
+
+
+def test_that_what_has_no_room_is_narrower_and_listed(make_design: MakeDesign) -> None:
+    plan = planned(make_design(8, 8, seed=4, spread=0.9), 1.2)
+    narrowed = plan.hinges.narrowed
+    (note,) = (note for note in plan.notes if note.code == "plan.connectors_narrowed")
+    assert narrowed.size == note.fields["count"] > 0
+    assert plan.hinges.requested_mm.min() >= LEAST_SHARE * 1.2 - 1e-9
+    assert (plan.hinges.finished_mm - plan.hinges.requested_mm).min() > -1e-3
+    np.testing.assert_array_equal(plan.hinges.asked_mm, 1.2)
+    assert f"instead of {1.2:.3f} mm" in note.text
