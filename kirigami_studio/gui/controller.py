@@ -6,8 +6,9 @@ what has to stop, save or replace the work of several.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
-from typing import Unpack
+from typing import TYPE_CHECKING, Unpack
 
 from PySide6.QtCore import QObject, Signal
 
@@ -21,15 +22,17 @@ from kirigami_studio.gui.designs.chosen_design import Refitter, SampledScores, T
 from kirigami_studio.gui.designs.collection import DesignMarks
 from kirigami_studio.gui.designs.curves import CurveReader
 from kirigami_studio.gui.designs.generation import Generation
+from kirigami_studio.gui.designs.gripping import GripFinder
 from kirigami_studio.gui.designs.hand_editor import HandEditor
 from kirigami_studio.gui.designs.look_alikes import LookAlikes
 from kirigami_studio.gui.designs.regularity import Regularity
 from kirigami_studio.gui.designs.target_reader import TargetReader
+from kirigami_studio.gui.designs.verdict import VerdictKeeper
 from kirigami_studio.gui.file_kinds import kind_of
 from kirigami_studio.gui.files.filing import Filing
 from kirigami_studio.gui.files.user_preferences import UserPreferences
 from kirigami_studio.gui.jobs import importing
-from kirigami_studio.gui.jobs.cut_jobs import ANIMATION, Motion
+from kirigami_studio.gui.jobs.cut_jobs import ANIMATION, CutRequest, Motion
 from kirigami_studio.gui.jobs.queue import JobCallbacks, JobQueue
 from kirigami_studio.gui.messages import Message, Tone
 from kirigami_studio.gui.session import Entry, Session
@@ -38,6 +41,9 @@ from kirigami_studio.project import edits
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.edits import Edit, SettingsChange
 from kirigami_studio.project.history import History
+
+if TYPE_CHECKING:
+    from kirigami_studio.project.fixes import Fix
 
 
 class Controller(QObject):
@@ -55,8 +61,8 @@ class Controller(QObject):
         What the target's shape says before a run.
     regularity, alikes, estimates
         The balance of match and regularity over the designs, which of them look the same, which close as cut.
-    fabrication, cutting
-        The numbers a design is cut with, and its cut plan and files.
+    fabrication, cutting, verdict
+        The numbers a design is cut with, its cut plan and files, and what is to be expected of the sheet.
     targeting, filing, preferences
         The target, the project's files, the preferences.
     """
@@ -82,7 +88,9 @@ class Controller(QObject):
         self.fabrication = FabricationEditor(session)
         self.cutting = CutPlanner(session, self)
         self.as_cut = AsCutReader(session, self)
+        self.grips = GripFinder(session, self.as_cut, self)
         self.estimates = AsCutEstimates(session, self)
+        self.verdict = VerdictKeeper(session, self.as_cut, self)
         self.targeting = Targeting(session, self)
         self.filing = Filing(session, self.targeting, self)
         self.preferences = UserPreferences(session)
@@ -92,7 +100,9 @@ class Controller(QObject):
         self.session.display.stage_changed.connect(self._stop_work_on_others)
         self.hand.drafted.connect(self._stop_work_on_design)
         self.cutting.answered.connect(self.as_cut.read)
+        self.cutting.answered.connect(self.verdict.take_plan)
         self.cutting.refused.connect(lambda _: self.as_cut.forget())
+        self.cutting.not_planned.connect(self.verdict.take_refusal)
         self.generation.begun.connect(self._stop_work_on_design)
         self.targeting.replaced.connect(self._replace_target)
         self.targeting.adjusted.connect(self._adjust_target)
@@ -233,6 +243,7 @@ class Controller(QObject):
         self.trimming.job.stop()
         self.refitting.job.stop()
         self.as_cut.forget()
+        self.verdict.forget()
 
     # cuts ----------------------------------------------------------------------------------------------------------
 
@@ -249,7 +260,7 @@ class Controller(QObject):
         else:
             if kind_of(path.suffix).cuts:
                 self.preferences.remember(self.document)
-            self.cutting.export(request, path)
+            self.cutting.export(self._with_as_cut(request), path)
 
     def export_all(self, folder: Path, name: str) -> None:
         """Write everything that there is of the chosen design into a folder."""
@@ -257,11 +268,23 @@ class Controller(QObject):
             return
         request = self.cutting.request
         if request is not None:
-            self.cutting.export_all(request, folder, name)
+            self.cutting.export_all(self._with_as_cut(request), folder, name)
+
+    def _with_as_cut(self, request: CutRequest) -> CutRequest:
+        """The request with how the design does as cut, if that is known."""
+        sheet = self.as_cut.state.sheet
+        return request if sheet is None else replace(request, as_cut=sheet.as_cut)
+
+    def apply_fix(self, fix: Fix) -> None:
+        """Make a change that was tried on the chosen design."""
+        if not self.running and not self.hand.postpones(lambda: self.apply_fix(fix)):
+            self.session.apply(fix.edit(self.document))
+            self.end_drag()
 
     def replan(self) -> None:
         """A material has changed on disk."""
         self.session.document_changed.emit(self.document)
+        self.verdict.forget_fixes()
         self.cutting.plan_soon()
 
     # the project ---------------------------------------------------------------------------------------------------

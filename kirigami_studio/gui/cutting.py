@@ -39,6 +39,7 @@ from kirigami_studio.project.edits import Edit, FabricationChange, OptionsChange
 
 if TYPE_CHECKING:
     from kirigami_studio.project.as_cut import SimulatedSheet
+    from kirigami_studio.project.verdict import Verdict
 
 #: Changes that follow each other faster than this (ms) lead to one plan.
 PLAN_DELAY_MS = 120
@@ -51,6 +52,7 @@ class CutPlanner(QObject):
     planned = Signal(object)  #: Planned, or None without a design
     answered = Signal(CutRequest, Planned)  #: what was to be planned, and its plan
     refused = Signal(str)
+    not_planned = Signal(CutRequest, str)  #: what was to be planned, and why it cannot be
     exported = Signal(Exported)
 
     def __init__(self, session: Session, parent: QObject) -> None:
@@ -96,7 +98,9 @@ class CutPlanner(QObject):
         self.answered.emit(request, made)
 
     def _refuse(self, request: CutRequest, sentence: str, trace: str) -> None:
-        self.refused.emit(sentence if request.candidate.trim is None else f"{sentence} {TRIM_AGAIN}")
+        told = sentence if request.candidate.trim is None else f"{sentence} {TRIM_AGAIN}"
+        self.refused.emit(told)
+        self.not_planned.emit(request, told)
 
     def export(self, request: CutRequest, path: Path, many_pages: bool = False) -> None:
         """Write a cut file or a picture, by the extension; a PDF of many pages only after asking."""
@@ -153,7 +157,7 @@ class CutPlanner(QObject):
                     cut_length_mm=len(made.plan.copies) * made.plan.cut_length_mm,
                 )
             )
-            message = message_of(path, made)
+            message = message_of(path, made, exported.verdict)
         self._session.post(message)
         for about in older_messages(exported):
             self._session.post(about)
@@ -193,9 +197,14 @@ def picture_sentence(exported: Exported) -> str:
     return tr("{name} exported: as cut, to {reached:.0f}°.", name=name, reached=math.degrees(motion.reached))
 
 
-def message_of(path: Path, made: Planned) -> Message:
-    """Say what a written cut file holds, and whether cutting it would succeed."""
+def message_of(path: Path, made: Planned, verdict: Verdict | None) -> Message:
+    """Say what a written cut file holds, and whether cutting it would succeed; a coupon has no verdict."""
     plan, check = made.plan, made.report
+    if verdict is not None and verdict.problems:
+        sentence = tr(
+            "{name} exported. {level}: {text}", name=path.name, level=verdict.level.words, text=verdict.problems[0].text
+        )
+        return Message(sentence, Tone.WARNING, "\n".join([str(path), *verdict.lines]))
     details = "\n".join([str(path), *(note.text for note in (*check.problems, *plan.notes))])
     if check.ok:
         name = tr("Folder “{name}”", name=path.name) if path.is_dir() else path.name

@@ -59,7 +59,7 @@ class Dialogs(QObject):
         self.close_report()
         if not exported.verifications:
             return
-        self.report = ExportReport(self._window, exported.verifications, self._window.palette_)
+        self.report = ExportReport(self._window, exported.verifications, self._window.palette_, exported.verdict)
         self.report.folder_wanted.connect(show_in_folder)
         self.report.show()
 

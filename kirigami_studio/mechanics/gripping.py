@@ -8,7 +8,7 @@ to pin.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Generator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,7 +18,7 @@ from scipy.sparse.linalg import eigsh
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import MechanicsError
 from kirigami_studio.lattice.deployment import Deployment
-from kirigami_studio.mechanics.closing import CLOSED, STEPS, Closing, closing, ideal_motion
+from kirigami_studio.mechanics.closing import CLOSED, STEPS, Closing, closing_steps, ideal_motion
 from kirigami_studio.mechanics.drive import Drive, prescribed_places
 from kirigami_studio.mechanics.energy import NetworkEnergy
 from kirigami_studio.mechanics.sheet_network import SheetNetwork
@@ -56,7 +56,22 @@ class Gripping:
 def find_grips(
     deployment: Deployment, sheet: SheetNetwork, width_mm: float, end: float = CLOSED, steps: int = STEPS
 ) -> Gripping:
-    """The fewest pins by which a sheet can be led along its ideal path; the most that are tried if none suffice.
+    """The fewest pins by which a sheet can be led, all in one go; see :func:`grip_steps`."""
+    trials = grip_steps(deployment, sheet, width_mm, end, steps)
+    while True:
+        try:
+            next(trials)
+        except StopIteration as found:
+            gripping: Gripping = found.value
+            return gripping
+
+
+def grip_steps(
+    deployment: Deployment, sheet: SheetNetwork, width_mm: float, end: float = CLOSED, steps: int = STEPS
+) -> Generator[None, None, Gripping]:
+    """Find the fewest pins by which a sheet can be led along its ideal path; the most that are tried if none suffice.
+
+    Yields after every step of every trial.
 
     Parameters
     ----------
@@ -70,7 +85,8 @@ def find_grips(
     order = panels_to_pin(deployment, sheet, width_mm, min(PINS[-1], sheet.network.panel_count))
     for count in PINS:
         held, moved = tuple(order[:1]), tuple(order[1:count])
-        found = closing(sheet, grips(deployment, sheet, width_mm, held, moved, end, steps))
+        yield
+        found = yield from closing_steps(sheet, grips(deployment, sheet, width_mm, held, moved, end, steps))
         off = np.abs(found.phi - angles[: len(found.phi)])
         tried = Gripping(held, moved, found, len(found.phi) == steps and bool(np.all(off <= FOLLOWS)))
         if tried.follows or count >= len(order):

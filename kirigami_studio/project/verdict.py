@@ -122,14 +122,14 @@ class Assessment:
     ----------
     plan : CutPlan
     report : Report
-    as_cut : AsCut or KirigamiError
-        How the sheet does as cut, or why that cannot be told.
+    as_cut : AsCut or str
+        How the sheet does as cut, or a sentence on why that cannot be told.
     verdict : Verdict
     """
 
     plan: CutPlan
     report: Report
-    as_cut: AsCut | KirigamiError
+    as_cut: AsCut | str
     verdict: Verdict
 
 
@@ -172,7 +172,7 @@ def assess(
 
 def closed_as_cut(
     candidate: Candidate, deployment: Deployment, plan: CutPlan, width_mm: float, target: Outline | None = None
-) -> AsCut | KirigamiError:
+) -> AsCut | str:
     """How a planned sheet of a width (mm) does as cut, simulated in one go, or why that cannot be told."""
     kept = None if candidate.trim is None else candidate.trim.kept
     steps = simulate(deployment, plan, width_mm, candidate.final_phi, target, kept)
@@ -183,7 +183,7 @@ def closed_as_cut(
         found: AsCut = end.value.as_cut
         return found
     except KirigamiError as error:
-        return error
+        return str(error)
 
 
 def why_not_cut(candidate: Candidate, settings: FabricationSettings) -> Note | None:
@@ -214,7 +214,7 @@ def judge(
     candidate: Candidate,
     plan: CutPlan,
     report: Report,
-    as_cut: AsCut | KirigamiError | None,
+    as_cut: AsCut | str | None,
     verifications: Sequence[Verification] = (),
 ) -> Verdict:
     """Judge a sheet by everything that is known of it.
@@ -225,8 +225,8 @@ def judge(
         The design.
     plan, report : CutPlan, Report
         Its cuts, and what their check found for the design's angle.
-    as_cut : AsCut, KirigamiError or None
-        How it does as cut; why that cannot be told; None where nobody has looked.
+    as_cut : AsCut, str or None
+        How it does as cut; a sentence on why that cannot be told; None where nobody has looked.
     verifications : sequence of Verification
         Of files that were written of it.
     """
@@ -238,8 +238,8 @@ def judge(
         *([] if known is None else _of_jam(known)),
         *_of_strain(plan, report, known),
     ]
-    if isinstance(as_cut, KirigamiError):
-        problems.append(Problem.warning("as_cut.not_known", reason=str(as_cut)))
+    if isinstance(as_cut, str):
+        problems.append(Problem.warning("as_cut.not_known", reason=as_cut))
     notes: list[Note] = [*plan.notes, *(note for one in verifications for note in one.warnings)]
     if known is not None and known.closes:
         notes = [note for note in notes if note.code not in SIGNS_OF_A_JAM]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
+import numpy as np
 import pytest
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
@@ -12,6 +13,7 @@ from pytestqt.qtbot import QtBot
 
 from kirigami_studio.fabricate.options import ConnectorStyle
 from kirigami_studio.gui.main_window import MainWindow
+from kirigami_studio.gui.scene.grip_items import grip_places
 from kirigami_studio.gui.views.gallery_model import AS_CUT_ROLE
 from kirigami_studio.gui.views.layout_view import Overlay
 from kirigami_studio.gui.views.phi_slider import MarkKind, PhiSlider, TrackPart, track_parts, value_at
@@ -185,3 +187,60 @@ def test_that_every_card_tells_whether_the_design_closes(closed: MainWindow, unt
     until(lambda: not controller.estimates.busy and not any(row.data(AS_CUT_ROLE).closes for row in rows))
     assert all("As cut: jams at " in row.data(Qt.ItemDataRole.AccessibleDescriptionRole) for row in rows)
     assert closed.gallery.view.viewport().grab().toImage() != pictured
+
+
+def test_that_the_drawing_shows_where_to_hold_and_pull(closed: MainWindow, until: Until) -> None:
+    view, grips = closed.stage.view, closed.controller.grips
+    assert view.grips is None and not grips.state.busy
+    closed.stage.deployment.set_phi(1.0)
+    plain = view.grab().toImage()
+    closed.commands["show_grips"].trigger()
+    assert grips.state.busy
+    assert "Looking for where to hold and pull …" in [chip.text for chip, _ in view.legend(view.fontMetrics())]
+    until(lambda: grips.state.found is not None)
+    found = view.grips
+    assert found is not None and found.held and found.moved
+    said = [chip.text for chip, _ in view.legend(view.fontMetrics())]
+    assert "hold 1 panel" in said
+    assert f"pull {len(found.moved)} panel{'s' if len(found.moved) > 1 else ''}" in said
+    shown = view.grab().toImage()
+    assert shown != plain
+    # At the end of the way there is nothing left to pull: pins without arrows.
+    closed.stage.deployment.set_phi(math.pi)
+    assert view.grab().toImage() != shown
+    closed.commands["show_grips"].trigger()
+    closed.stage.deployment.set_phi(1.0)
+    assert view.grips is None and view.grab().toImage() == plain
+
+
+def test_that_grips_belong_to_the_sheet_that_they_were_found_for(closed: MainWindow, until: Until) -> None:
+    grips = closed.controller.grips
+    closed.commands["show_grips"].trigger()
+    until(lambda: grips.state.found is not None)
+    first = grips.state.found
+    closed.controller.fabrication.change(connector_mm=0.5)
+    assert closed.stage.view.grips is None
+    until(lambda: grips.state.found is not None)
+    assert grips.state.found is not first
+    closed.commands["undo"].trigger()
+    until(lambda: grips.state.found is not None and not grips.state.busy)
+    assert grips.state.found is first  # known already
+
+
+def test_that_arrows_point_the_way_that_panels_go_seen_from_those_that_are_held(closed: MainWindow) -> None:
+    stage = closed.controller.stage
+    assert stage is not None
+    design = stage.design
+    last = design.deployment.topology.panel_nodes.reshape(-1, 4).shape[0] - 1
+    places = grip_places(design, (0,), (last,), 2.0, 0.0)
+
+    def apart(phi: float) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
+        middles = design.panels(design.nodes(phi)).mean(axis=1)
+        between: np.ndarray[tuple[int], np.dtype[np.float64]] = middles[last] - middles[0]
+        return between
+
+    way = apart(2.0 - 1e-3) - apart(2.0)
+    cosine = float(way @ places.way[0]) / float(np.linalg.norm(way) * np.linalg.norm(places.way[0]))
+    assert cosine > 0.99
+    np.testing.assert_allclose(places.moved[0] - places.held[0], apart(2.0), atol=1e-12)
+    assert not grip_places(design, (0,), (last,), 0.5, 0.5).way.any()

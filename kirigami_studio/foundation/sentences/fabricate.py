@@ -219,6 +219,7 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "Switch joining off when importing."
     ),
     # What a check of a plan finds
+    "plan.refused": mark("{reason}"),
     "plan.nothing_left": mark("Nothing is left of the sheet with a kerf of {kerf_mm:g} mm. Use a smaller kerf."),
     "plan.falls_apart": mark(
         "With a kerf of {kerf_mm:g} mm the sheet falls into {pieces} pieces, one of them at x = {x:.2f}, y = {y:.2f} "

@@ -27,6 +27,7 @@ OVERLAY_COMMANDS = {
     "show_mismatch": Overlay.MISMATCH,
     "show_faults": Overlay.FAULTS,
     "show_stretch": Overlay.STRETCH,
+    "show_grips": Overlay.GRIPS,
     "show_ratios": Overlay.RATIOS,
     "show_openings": Overlay.OPENINGS,
     "show_small_parts": Overlay.SMALL_PARTS,
@@ -159,12 +160,14 @@ def _overlays(window: MainWindow) -> tuple[Command, ...]:
 
     small = tr("Mark the shortest edges and narrowest necks, in mm between cut centre lines")
     stretch = tr("Colour connectors by their stretch at this angle, as cut")
+    grips = tr("Mark the panels to hold and to pull so that the sheet opens as designed")
     opening = tr("Colour voids by their area at this angle, mm²")
     return (
         overlay("show_target", tr("Tar&get outline"), "T", "target", tr("Show the target's outline"), gap=True),
         overlay("show_mismatch", tr("&Mismatch"), "M", "mismatch", tr("Show missing and extra area")),
         overlay("show_faults", tr("F&aults"), "F", "fault", tr("Mark inverted panels and contacts")),
         overlay("show_stretch", tr("Connector stretch"), "Shift+X", "connector", stretch),
+        overlay("show_grips", tr("Where to hold and pull"), "Shift+G", "grips", grips),
         overlay("show_ratios", tr("&Ratio heat map"), "Shift+H", "heat", tr("Colour voids by their ratio")),
         overlay("show_openings", tr("&Void opening"), "Shift+O", "opening", opening),
         overlay("show_small_parts", tr("&Smallest features"), "Shift+T", "small", small),

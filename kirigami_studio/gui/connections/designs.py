@@ -143,6 +143,9 @@ class DesignConnections(QObject):
         jams = any(ranking.missed(candidate) > 0.0 for candidate in known)
         if jams or self._ranked_as_cut:  # the document's order stays where all designs close
             view.rank_by(ranking)
+            stage = self._controller.stage
+            self._window.stage.set_rank(-1 if stage is None else view.model_.number_of(stage.candidate))
+            self._show_chosen()
         self._ranked_as_cut = jams
 
     def _as_cut(self, ranking: Ranking) -> Ranking:

@@ -15,6 +15,7 @@ from kirigami_studio.gui.reshaping import OpenedSizes
 from kirigami_studio.gui.scene.rim_items import MouthFacts
 from kirigami_studio.gui.scene.void_items import VoidFacts
 from kirigami_studio.gui.session import Entry
+from kirigami_studio.gui.views.layout_view import Overlay
 from kirigami_studio.project.document import Document, Void
 
 if TYPE_CHECKING:
@@ -46,6 +47,8 @@ class StageConnections(QObject):
         controller.sampled.known.connect(stage.show_sample)
         controller.trimming.busy_changed.connect(stage.show_trimming)
         controller.as_cut.changed.connect(stage.show_as_cut)
+        controller.grips.changed.connect(stage.view.show_grips)
+        stage.overlays_changed.connect(lambda shown: controller.grips.want(Overlay.GRIPS in shown))
         controller.curves.grown.connect(stage.plots.show_curves)
 
     def _connect_cuts(self) -> None:
@@ -55,6 +58,9 @@ class StageConnections(QObject):
         cuts.reset_wanted.connect(controller.fabrication.reset_hinges)
         cuts.edited.connect(controller.end_drag)
         controller.cutting.planned.connect(self._show_plan)
+        controller.verdict.changed.connect(self._window.stage.verdict.show_state)
+        controller.verdict.changed.connect(self._window.fabrication.show_verdict)
+        self._window.stage.verdict.fix_wanted.connect(controller.apply_fix)
         controller.cutting.refused.connect(self._show_refusal)
         controller.cutting.exported.connect(self._window.dialogs.show_report)
 

@@ -20,6 +20,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from kirigami_studio.fabricate.findings import Severity
 from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.gui.look import icons
 from kirigami_studio.gui.look.readable import UNKNOWN, readable_length, readable_range
@@ -28,6 +29,7 @@ from kirigami_studio.gui.panels.card import ElidedLabel
 
 if TYPE_CHECKING:
     from kirigami_studio.export.verification import Finding, Verification
+    from kirigami_studio.project.verdict import Verdict
 
 SIZE = QSize(640, 470)
 ICON_EDGE = 30
@@ -38,9 +40,16 @@ class ExportReport(QDialog):
 
     folder_wanted = Signal(Path)  #: of what was written
 
-    def __init__(self, parent: QWidget, verifications: tuple[Verification, ...], palette: Palette) -> None:
+    def __init__(
+        self,
+        parent: QWidget,
+        verifications: tuple[Verification, ...],
+        palette: Palette,
+        judged: Verdict | None = None,
+    ) -> None:
         super().__init__(parent)
         self.verifications = verifications
+        self.judged = judged
         self._palette: Palette = palette
         self.setObjectName("exportReport")
         self.setWindowTitle(tr("Export report"))
@@ -66,7 +75,7 @@ class ExportReport(QDialog):
         self.shut.setDefault(True)
         self._lay_out()
         self.folder.clicked.connect(lambda: self.folder_wanted.emit(self.shown.path))
-        self.copy.clicked.connect(lambda: QGuiApplication.clipboard().setText("\n\n".join(map(as_text, verifications))))
+        self.copy.clicked.connect(lambda: QGuiApplication.clipboard().setText(self.text()))
         self.shut.clicked.connect(self.close)
         self.file.currentIndexChanged.connect(self._show)
         worst = next((row for row, one in enumerate(verifications) if not one.ok), 0)
@@ -79,16 +88,21 @@ class ExportReport(QDialog):
         return self.verifications[max(self.file.currentIndex(), 0)]
 
     def _show(self) -> None:
-        self.verdict.setText(verdict(self.shown))
+        self.verdict.setText(headline(self.shown, self.judged))
         self.path.setText(str(self.shown.path))
         for name, text in format_facts(self.shown).items():
             self.facts[name].setText(text)
         self.findings.clear()
-        for word, icon, text in format_findings(self.shown):
+        for word, icon, text in [*format_problems(self.judged), *format_findings(self.shown)]:
             item = QListWidgetItem(f"{word}: {text}")
             item.setData(Qt.ItemDataRole.UserRole, icon)
             self.findings.addItem(item)
         self._draw_icons()
+
+    def text(self) -> str:
+        """The whole report as plain text: the verdict, then every file."""
+        parts = [] if self.judged is None else ["\n".join(self.judged.lines)]
+        return "\n\n".join([*parts, *map(as_text, self.verifications)])
 
     def _lay_out(self) -> None:
         head = QHBoxLayout()
@@ -136,11 +150,11 @@ class ExportReport(QDialog):
             self._draw_icons()
 
     def _draw_icons(self) -> None:
-        palette, good = self._palette, self.shown.ok
-        colour = palette.good if good else palette.bad
-        self.symbol.setPixmap(icons.pixmap("check" if good else "fault", colour, ICON_EDGE, self.devicePixelRatioF()))
-        self.verdict.setStyleSheet(f"color: {colour}; font-weight: 600; font-size: 12pt;")
+        palette = self._palette
         tints = {"check": palette.good, "warning": palette.warning, "fault": palette.bad}
+        symbol = symbol_of(self.shown, self.judged)
+        self.symbol.setPixmap(icons.pixmap(symbol, tints[symbol], ICON_EDGE, self.devicePixelRatioF()))
+        self.verdict.setStyleSheet(f"color: {tints[symbol]}; font-weight: 600; font-size: 12pt;")
         for row in range(self.findings.count()):
             item = self.findings.item(row)
             name = str(item.data(Qt.ItemDataRole.UserRole))
@@ -167,6 +181,33 @@ def verdict(verification: Verification) -> str:
             notes,
         )
     return tr("Verified: the file matches the plan.")
+
+
+def headline(verification: Verification, judged: Verdict | None) -> str:
+    """What is to be expected of the sheet where it is not ready to cut, else of the file."""
+    if judged is None or judged.ok or not verification.ok:
+        return verdict(verification)
+    return tr("{level}: {text}", level=judged.level.words, text=judged.problems[0].text)
+
+
+def symbol_of(verification: Verification, judged: Verdict | None) -> str:
+    """The icon of the whole report: never a check mark where the sheet is not ready to cut."""
+    if not verification.ok:
+        return "fault"
+    if judged is None or judged.ok:
+        return "check"
+    return "fault" if judged.problems[0].severity is Severity.ERROR else "warning"
+
+
+def format_problems(judged: Verdict | None) -> list[tuple[str, str, str]]:
+    """Word, icon and sentence of each problem of the sheet, in the order of the verdict."""
+    problems = () if judged is None else judged.problems
+    errors = [problem.severity is Severity.ERROR for problem in problems]
+    return [
+        (tr("Bad"), "fault", problem.text) if error else (tr("Care"), "warning", problem.text)
+        for problem, error in zip(problems, errors, strict=True)
+        if problem.code != "verify.in_file"
+    ]
 
 
 def format_facts(verification: Verification) -> dict[str, str]:

@@ -18,7 +18,10 @@ from kirigami_studio.lattice.deployment import Deployment
 from kirigami_studio.project.settings import FabricationSettings
 
 if TYPE_CHECKING:
+    from kirigami_studio.mechanics.gripping import Gripping
     from kirigami_studio.project.as_cut import AsCut, SimulatedSheet
+    from kirigami_studio.project.fixes import Advice
+    from kirigami_studio.project.verdict import Verdict
 
 #: Designs that are estimated between two reports.
 AT_ONCE = 4
@@ -82,6 +85,50 @@ def animating(
     shown = None if sheet is None or motion is Motion.IDEAL else sheet.motion(request.settings.width_mm)
     written = export(replace(export_job(request, None), motion=shown), path)
     yield Exported(written, None, motion=shown, not_as_cut=why)
+
+
+def fixing(
+    request: CutRequest, verdict: Verdict, others: tuple[Candidate, ...], cancel: Cancel
+) -> Iterator[Advice | None]:
+    """Try changes on a design that is not ready to cut; None after every step, so that other jobs have their turn."""
+    from kirigami_studio.project.cutting import plan_of
+    from kirigami_studio.project.fixes import find_fixes
+    from kirigami_studio.project.verdict import refused
+
+    try:
+        plan_of(request.candidate, request.settings, request.deployment)
+    except KirigamiError as error:
+        verdict = refused(error)  # with its numbers, which lead to the first changes
+    steps = find_fixes(request.candidate, request.settings, verdict, others)
+    while True:
+        if cancel():
+            raise Cancelled("run.no_result")
+        try:
+            next(steps)
+        except StopIteration as end:
+            yield end.value
+            return
+        yield None
+
+
+def gripping(
+    sheet: SimulatedSheet, deployment: Deployment, width_mm: float, cancel: Cancel
+) -> Iterator[Gripping | None]:
+    """Find where to hold and pull a sheet as far as it comes; None after every step, so that other jobs have turns."""
+    from kirigami_studio.mechanics.closing import CLOSED
+    from kirigami_studio.mechanics.gripping import grip_steps
+
+    end = max(sheet.as_cut.reached, CLOSED)
+    steps = grip_steps(deployment, sheet.closing.sheet, width_mm, end)
+    while True:
+        if cancel():
+            raise Cancelled("run.no_result")
+        try:
+            next(steps)
+        except StopIteration as found:
+            yield found.value
+            return
+        yield None
 
 
 def estimating(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from enum import Enum
 from pathlib import Path
@@ -25,6 +25,8 @@ if TYPE_CHECKING:
     from kirigami_studio.fabricate.checks import Report
     from kirigami_studio.fabricate.cut_plan import CutPlan
     from kirigami_studio.fabricate.material import Material
+    from kirigami_studio.project.as_cut import AsCut
+    from kirigami_studio.project.verdict import Verdict
 
 ANIMATION = ".gif"
 
@@ -73,6 +75,8 @@ class Exported:
         Why an animation cannot show the sheet as cut, a sentence, or "".
     older, removed : tuple of str
         Names of what an earlier export left in the folder and this one does not have: all of it, and what was removed.
+    verdict : Verdict or None
+        On the sheet that a cut file holds; coupons and pictures have none.
     """
 
     path: Path
@@ -82,6 +86,7 @@ class Exported:
     not_as_cut: str = ""
     older: tuple[str, ...] = ()
     removed: tuple[str, ...] = ()
+    verdict: Verdict | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,6 +117,8 @@ class CutRequest:
     settings : FabricationSettings
     facts : mapping of str to str
         Where the design comes from.
+    as_cut : AsCut or None
+        How it does as cut, if that is known already.
     """
 
     candidate: Candidate
@@ -119,10 +126,12 @@ class CutRequest:
     target: Outline | None
     settings: FabricationSettings
     facts: Mapping[str, str] = field(default_factory=dict)
+    as_cut: AsCut | None = None
 
 
 def planning(request: CutRequest, cancel: Cancel) -> Iterator[Planned]:
     """Plan the cuts and check them."""
+    importing.import_as_cut()  # the plan is judged in the window's thread, which is not to wait for imports
     yield planned(request)
 
 
@@ -156,7 +165,7 @@ def _work(plan: CutPlan, profile: str) -> Work | None:
 
 
 def exporting(request: CutRequest, path: Path, many_pages: bool, cancel: Cancel) -> Iterator[Exported | ManyPages]:
-    """Write one file of the kind that its extension names; cut files are planned, checked and read back.
+    """Write one file of the kind that its extension names; cut files are planned, checked, read back and judged.
 
     A PDF of many pages is written only where ``many_pages`` are wanted.
     """
@@ -164,13 +173,17 @@ def exporting(request: CutRequest, path: Path, many_pages: bool, cancel: Cancel)
     from kirigami_studio.export.registry import export, find_exporter
 
     find_exporter(path)  # an unknown kind is refused before anything is planned
-    made = planned(request) if kind_of(path.suffix).cuts else None
-    if made is not None and path.suffix.lower() == ".pdf" and not many_pages and (many := _many_pages(request, made)):
+    if not kind_of(path.suffix).cuts:
+        yield Exported(export(export_job(request, None), path), None)
+        return
+    made = planned(request)
+    if path.suffix.lower() == ".pdf" and not many_pages and (many := _many_pages(request, made)):
         yield many
         return
     job = export_job(request, made)
     written = export(job, path)
-    yield Exported(written, made, () if made is None else _verified(made.plan, path, request.settings, job.deployment))
+    found = _verified(made.plan, path, request.settings, job.deployment)
+    yield Exported(written, made, found, verdict=_judging(request, made)(found))
 
 
 def _many_pages(request: CutRequest, made: Planned) -> ManyPages | None:
@@ -200,9 +213,26 @@ def exporting_all(
     if not many_pages and (many := _many_pages(request, made)):
         yield many
         return
-    found = export_all(export_job(request, made), folder, name, on_written=stop_if_asked)
+    judge = _judging(request, made)
+    found = export_all(
+        export_job(request, made),
+        folder,
+        name,
+        on_written=stop_if_asked,
+        judged=lambda verifications: judge(verifications).to_json(),
+    )
     left, removed = (tuple(path.name for path in paths) for paths in (found.older, found.removed))
-    yield Exported(folder, made, found.verifications, older=left, removed=removed)
+    verdict = judge(found.verifications)
+    yield Exported(folder, made, found.verifications, older=left, removed=removed, verdict=verdict)
+
+
+def _judging(request: CutRequest, made: Planned) -> Callable[[Sequence[Verification]], Verdict]:
+    """A function that judges a design by its files; it is closed on its connectors here if nobody did that."""
+    from kirigami_studio.project.verdict import closed_as_cut, judge
+
+    candidate, width = request.candidate, request.settings.width_mm
+    known = request.as_cut or closed_as_cut(candidate, request.deployment, made.plan, width)
+    return lambda verifications: judge(candidate, made.plan, made.report, known, verifications)
 
 
 def export_job(request: CutRequest, made: Planned | None) -> ExportJob:

@@ -55,8 +55,18 @@ def import_exporters() -> None:
 
 
 @cache
+def import_as_cut() -> None:
+    """What closes sheets as cut, judges them, and tries fixes."""
+    with quietly():
+        from kirigami_studio.project import fixes as _fixes  # noqa: F401
+
+
+@cache
 def import_generator() -> None:
-    """What draws designs and fits them: torch, and the parts of SciPy that are imported where they are needed."""
+    """What draws designs, fits them and ranks them as cut: torch, and the parts of SciPy that are imported where they
+    are needed.
+    """
+    import_as_cut()
     with quietly():
         from scipy import interpolate as _interpolate  # noqa: F401
         from scipy import optimize as _optimize  # noqa: F401
@@ -76,6 +86,8 @@ def warming(cancel: Cancel) -> Iterator[tuple[str, ...]]:
     import_pictures()
     yield ()
     import_exporters()
+    yield ()
+    import_as_cut()
     yield ()
     import_generator()
     yield ()

@@ -18,9 +18,10 @@ from PySide6.QtWidgets import (
 from kirigami_studio.fabricate.findings import Problem, Severity
 from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.gui.look import icons
-from kirigami_studio.gui.look.readable import TIMES, readable_length, readable_size, readable_time
+from kirigami_studio.gui.look.readable import readable_length, readable_size, readable_time
 from kirigami_studio.gui.look.theme import LIGHT, Palette
 from kirigami_studio.gui.panels.card import ToolButton
+from kirigami_studio.gui.panels.fabrication_panel import sheets_of
 from kirigami_studio.gui.panels.hinge_bar import HingeBar
 from kirigami_studio.gui.scene.cut_items import CutSteps, cut_steps
 from kirigami_studio.gui.views.cut_view import CutOverlay, CutView
@@ -99,7 +100,7 @@ class CutsPage(QWidget):
             return ()
         size, count, kerf_mm = readable_size(*self._plan.size_mm), len(self._plan.paths), self._plan.kerf_mm
         if len(self._plan.copies) > 1:
-            size = f"{len(self._plan.copies)} {TIMES} {size}"
+            size = sheets_of(self._plan)
         long = tr_n(
             "{size}  ·  {count} cut  ·  kerf {kerf_mm:g} mm",
             "{size}  ·  {count} cuts  ·  kerf {kerf_mm:g} mm",

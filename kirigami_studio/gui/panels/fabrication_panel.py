@@ -19,6 +19,7 @@ from PySide6.QtWidgets import (
 from kirigami_studio.evaluate.opened_size import OpenedSize
 from kirigami_studio.fabricate.material import library
 from kirigami_studio.foundation.words import tr, tr_n
+from kirigami_studio.gui.designs.verdict import VerdictState
 from kirigami_studio.gui.look.readable import (
     TIMES,
     UNKNOWN,
@@ -143,7 +144,7 @@ class FabricationPanel(Card):
         self.numbers = {key: QLabel(UNKNOWN) for key, _ in NUMBERS}
         self.warnings = muted_label()
         self.warnings.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
-        self.warnings.setMinimumHeight(2 * self.warnings.fontMetrics().lineSpacing() + 2)
+        self.warnings.setMinimumHeight(3 * self.warnings.fontMetrics().lineSpacing() + 2)
         self.warnings.setAlignment(Qt.AlignmentFlag.AlignTop)
         self.options = MoreOptions()
         self.options.changed.connect(self.changed)
@@ -328,10 +329,17 @@ class FabricationPanel(Card):
         self.options.rows.setToolTip(format_copies(plan))
         self.numbers["time"].setToolTip(format_times(times))
         self.numbers["length"].setToolTip(format_slots(planned))
-        size = texts["size"] if copies == 1 else f"{copies} {TIMES} {texts['size']}"
+        size = texts["size"] if copies == 1 else sheets_of(plan)
         self._sum_up(size, copies * len(plan.paths), planned.removed_share)
-        found = [note.text for note in (*report.problems, *plan.notes)]
-        self._warn("\n".join(found) if found else tr("The cut check found no problems."), calm=not found)
+
+    def show_verdict(self, state: VerdictState) -> None:
+        """Show what is to be expected of the sheet, and why: the same list as in the banner."""
+        if not state.known:
+            return
+        level, *reasons = state.lines
+        weighty = state.verdict is not None and bool(state.verdict.problems)
+        first = f"{level}: {reasons[0]}" if reasons else level
+        self._warn("\n".join([first, *reasons[1:]]), calm=not reasons, muted=not weighty)
 
     def _sum_up(self, size: str, cuts: int, removed_share: float) -> None:
         """The header's words, with and without the live numbers; that a sheet is trimmed is said in both."""
@@ -371,11 +379,11 @@ class FabricationPanel(Card):
         for label in self.numbers.values():
             label.setText(UNKNOWN)
 
-    def _warn(self, text: str, calm: bool) -> None:
+    def _warn(self, text: str, calm: bool, muted: bool | None = None) -> None:
         first, *more = text.split("\n")
         self.warnings.setText(tr("{first}  (+{count} more)", first=first, count=len(more)) if more else first)
         self.warnings.setToolTip(text)
-        self.warnings.setObjectName("muted" if calm else "warning")
+        self.warnings.setObjectName("muted" if (calm if muted is None else muted) else "warning")
         self.warnings.style().unpolish(self.warnings)
         self.warnings.style().polish(self.warnings)
         self._calm = calm
@@ -444,6 +452,12 @@ def format_copies(plan: CutPlan) -> str:
         gap=plan.copies.gap_mm,
         size=readable_size(*plan.copies.spread_mm),
     )
+
+
+def sheets_of(plan: CutPlan) -> str:
+    """How many sheets of what size the file holds."""
+    count, size = len(plan.copies), readable_size(*plan.size_mm)
+    return tr_n("{count} sheet of {size}", "{count} sheets of {size}", count, size=size)
 
 
 def rows_of_copies(plan: CutPlan) -> tuple[str, ...]:

@@ -15,6 +15,7 @@ from kirigami_studio.gui.panels.compare_page import ComparePage
 from kirigami_studio.gui.panels.cuts_page import CutBar, CutsPage
 from kirigami_studio.gui.panels.deployment_bar import DeploymentBar
 from kirigami_studio.gui.panels.plots_panel import PlotsPanel
+from kirigami_studio.gui.panels.verdict_bar import VerdictBar
 from kirigami_studio.gui.panels.void_bar import VoidBar
 from kirigami_studio.gui.session import Entry
 from kirigami_studio.gui.views.gallery_model import described
@@ -152,6 +153,8 @@ class StagePanel(Card):
         self.pages.addWidget(self.cuts)
         self.pages.addWidget(self.compare)
         self.body.addWidget(self.pages, 1)
+        self.verdict = VerdictBar()
+        self.body.addWidget(self.verdict)
 
     @property
     def showing_cuts(self) -> bool:

@@ -16,6 +16,8 @@ from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.evaluate.score import Score
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray
 from kirigami_studio.foundation.words import tr, tr_n
+from kirigami_studio.gui.designs.gripping import UNKNOWN as GRIPS_UNKNOWN
+from kirigami_studio.gui.designs.gripping import GripState
 from kirigami_studio.gui.scene.colour_scale import (
     OPENING_TITLE,
     RATIO_TITLE,
@@ -35,6 +37,7 @@ from kirigami_studio.gui.scene.fault_items import (
     inverted_panels,
     paint_fault,
 )
+from kirigami_studio.gui.scene.grip_items import GripPlaces, grip_places, paint_grips
 from kirigami_studio.gui.scene.layout_items import paint_panels, turning_left
 from kirigami_studio.gui.scene.layout_labels import (
     SmallPart,
@@ -57,6 +60,7 @@ from kirigami_studio.gui.views.void_gestures import VoidGestures
 from kirigami_studio.outlines.outline import Outline
 
 if TYPE_CHECKING:
+    from kirigami_studio.mechanics.gripping import Gripping
     from kirigami_studio.project.as_cut import SimulatedSheet
 
 #: Radians around the target angle within which sheet and target are compared; elsewhere a difference means nothing.
@@ -88,6 +92,7 @@ class Overlay(Enum):
     MISMATCH = "mismatch"
     FAULTS = "faults"
     STRETCH = "stretch"
+    GRIPS = "grips"
     RATIOS = "ratios"
     OPENINGS = "openings"
     PANEL_NUMBERS = "panel_numbers"
@@ -126,6 +131,7 @@ class LayoutView(Canvas):
         self._largest_opening = 0.0
         self._scales: list[ColourScale] = []
         self._cut: SimulatedSheet | None = None
+        self._grips = GRIPS_UNKNOWN
         self._overstretched = 0
         self._areas: Mismatch | None = None
         self._faults: tuple[Fault, ...] = ()
@@ -197,6 +203,11 @@ class LayoutView(Canvas):
     def show_as_cut(self, sheet: SimulatedSheet | None) -> None:
         """Show how much the connectors of the design are stretched; None where that is not known."""
         self._cut = sheet
+        self.update()
+
+    def show_grips(self, state: GripState) -> None:
+        """Show where to hold and to pull the design as cut."""
+        self._grips = state
         self.update()
 
     def _void_shapes(self) -> VoidShapes | None:
@@ -315,6 +326,7 @@ class LayoutView(Canvas):
                 "{count} connector stretched too far", "{count} connectors stretched too far", self.overstretched
             )
             found.append(Chip((self.palette_.fault,), words))
+        found += self._grip_chips()
         chips = found
         if self._areas is not None:
             areas, mm = self._areas, self.mm_per_unit
@@ -338,6 +350,7 @@ class LayoutView(Canvas):
             self._paint_comparison(painter, transform, nodes)
         self._paint_stretch(painter, transform, nodes)
         self._paint_labels(painter, transform, nodes)
+        self._paint_grips(painter, transform)
         self._paint_faults(painter, transform)
         self.voids.paint(painter, self.palette_)
 
@@ -369,6 +382,38 @@ class LayoutView(Canvas):
         stretch = self._cut.stretch_at(self._phi)
         self._overstretched = int(np.sum(stretch > TOLERATED_STRETCH))
         paint_stretch(painter, pixels, stretch, TOLERATED_STRETCH, self._scales[-1], self.palette_)
+
+    @property
+    def grips(self) -> Gripping | None:
+        """The grips that are drawn, if any: those of the design as cut that is shown."""
+        state = self._grips
+        shown = Overlay.GRIPS in self._overlays and self._cut is not None and state.sheet is self._cut
+        return state.found if shown else None
+
+    def _grip_chips(self) -> list[Chip]:
+        """What the legend says of grips: how many panels to hold and to pull, or why none are marked."""
+        state, palette, found = self._grips, self.palette_, self.grips
+        if Overlay.GRIPS not in self._overlays:
+            return []
+        if found is None:
+            if state.busy:
+                return [Chip((), tr("Looking for where to hold and pull …"))]
+            return [Chip((palette.fault,), state.problem)] if state.problem else []
+        chips = [
+            Chip((palette.text,), tr_n("hold {count} panel", "hold {count} panels", len(found.held))),
+            Chip((palette.good,), tr_n("pull {count} panel", "pull {count} panels", len(found.moved))),
+        ]
+        return chips if found.follows else [*chips, Chip((palette.fault,), tr("does not follow all the way"))]
+
+    def _paint_grips(self, painter: QPainter, transform: ViewTransform) -> None:
+        """Pins on the panels to hold and to pull, and the way that the latter go next."""
+        found, design, cut = self.grips, self._design, self._cut
+        if found is None or design is None or cut is None:
+            return
+        places = grip_places(design, found.held, found.moved, self._phi, cut.as_cut.reached)
+        shown = GripPlaces(transform.to_pixels(places.held), transform.to_pixels(places.moved), places.way)
+        # Pixels count downwards.
+        paint_grips(painter, shown, places.way * (transform.scale, -transform.scale), self.palette_)
 
     def _paint_labels(self, painter: QPainter, transform: ViewTransform, nodes: FloatArray) -> None:
         """Numbers of panels and voids where they fit, and sizes of the smallest parts."""

@@ -1,0 +1,135 @@
+"""The verdict in the window: one list in banner, panel, message and report; fixes are one click and one undo each."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from PySide6.QtCore import Qt
+from PySide6.QtWidgets import QApplication
+from pytestqt.qtbot import QtBot
+
+from kirigami_studio.fabricate.options import ConnectorStyle
+from kirigami_studio.gui.main_window import MainWindow
+from kirigami_studio.gui.messages import Tone
+from kirigami_studio.project.verdict import Level
+
+LEFT = Qt.MouseButton.LeftButton
+Until = Callable[[Callable[[], bool]], None]
+
+
+def judged(window: MainWindow) -> bool:
+    keeper = window.controller.verdict
+    return keeper.state.verdict is not None and not keeper.busy
+
+
+@pytest.fixture
+def ready(designed: MainWindow, until: Until) -> MainWindow:
+    """A studio whose chosen design is ready to cut."""
+    designed.resize(1440, 900)
+    until(lambda: judged(designed))
+    return designed
+
+
+@pytest.fixture
+def jamming(ready: MainWindow, until: Until) -> MainWindow:
+    """The same on straight connectors that are too wide to close."""
+    ready.controller.fabrication.change(connector_mm=0.5)
+    ready.controller.fabrication.change_options(style=ConnectorStyle.STRAIGHT)
+    until(lambda: judged(ready))
+    return ready
+
+
+def test_that_a_sheet_that_closes_is_ready_to_cut(ready: MainWindow) -> None:
+    bar, state = ready.stage.verdict, ready.controller.verdict.state
+    assert state.verdict is not None and state.verdict.ok and bar.isVisible()
+    assert bar.headline.text() == "Ready to cut" and bar.property("level") == "ready_to_cut"
+    assert bar.buttons == [] and not bar.more.isVisible()
+    assert bar.toolTip() == "\n".join(state.verdict.lines)
+    assert ready.fabrication.warnings.text().startswith("Ready to cut: ")
+    assert ready.fabrication.warnings.objectName() == "muted"
+
+
+def test_that_a_jamming_sheet_is_never_green_and_one_click_mends_it(
+    jamming: MainWindow, qtbot: QtBot, until: Until
+) -> None:
+    bar, controller = jamming.stage.verdict, jamming.controller
+    verdict, before = controller.verdict.state.verdict, controller.document
+    assert verdict is not None and verdict.level is Level.CARE
+    assert bar.property("level") == "cut_with_care" and bar.headline.text().startswith("Cut with care")
+    assert bar.sentence.text().startswith("As cut, the sheet jams at ")
+    assert jamming.fabrication.warnings.text().startswith(f"Cut with care: {verdict.problems[0].text}")
+    assert jamming.fabrication.warnings.objectName() == "warning"
+    (button,) = [one for one in bar.buttons if one.text() == "Use centred connectors"]
+    assert button.isVisible() and "Ready to cut" in button.toolTip()
+    height = bar.height()
+    qtbot.mouseClick(button, LEFT)
+    assert controller.document.fabrication.options.style is ConnectorStyle.CENTRED
+    assert controller.history.undo_label == "Use centred connectors"
+    until(lambda: judged(jamming))
+    assert bar.headline.text() == "Ready to cut" and bar.buttons == [] and bar.height() == height
+    jamming.commands["undo"].trigger()
+    assert controller.document == before
+    until(lambda: judged(jamming))
+    # What was found is remembered: nothing is tried again.
+    assert [one.text() for one in bar.buttons] and bar.property("level") == "cut_with_care"
+
+
+def test_that_nothing_is_called_ready_before_the_sheet_was_closed(ready: MainWindow) -> None:
+    ready.controller.fabrication.change(connector_mm=0.3)
+    bar = ready.stage.verdict
+    assert ready.controller.verdict.state.pending
+    assert bar.headline.text() == "Checking how the sheet does as cut …" and bar.property("level") == ""
+
+
+def test_that_a_refused_plan_is_told_with_what_has_room(ready: MainWindow, until: Until) -> None:
+    ready.controller.fabrication.change(connector_mm=19.0)
+    until(lambda: judged(ready) and not ready.fabrication.export.isEnabled())
+    bar = ready.stage.verdict
+    assert bar.property("level") == "will_not_work" and "connector" in ready.fabrication.warnings.text()
+    advice = ready.controller.verdict.state.advice
+    assert advice is not None and advice.fixes[0].verdict.ok and bar.buttons
+
+
+def test_that_a_narrow_banner_puts_fixes_into_a_menu(jamming: MainWindow) -> None:
+    bar = jamming.stage.verdict
+    jamming.resize(1000, 640)
+    QApplication.processEvents()
+    shown = [one.text() for one in bar.buttons if one.isVisible()]
+    assert [*shown, *(action.text() for action in bar.menu.actions())] == [one.text() for one in bar.buttons]
+    assert bar.sentence.text().endswith("…") or len(bar.sentence.text()) < 120
+    if bar.menu.actions():
+        assert bar.more.isVisible()
+        wanted = []
+        bar.fix_wanted.connect(wanted.append)
+        bar.menu.actions()[0].trigger()
+        assert len(wanted) == 1
+
+
+def test_that_message_report_and_record_have_the_same_list(
+    jamming: MainWindow, qtbot: QtBot, until: Until, tmp_path: Path
+) -> None:
+    verdict = jamming.controller.verdict.state.verdict
+    assert verdict is not None
+    jamming.controller.export_all(tmp_path / "all", "heart")
+    until(lambda: jamming.dialogs.report is not None)
+    report, message = jamming.dialogs.report, jamming.messages.messages[-1]
+    assert report is not None and report.judged is not None
+    assert report.judged.problems[: len(verdict.problems)] == verdict.problems
+    assert report.verdict.text() == f"Cut with care: {verdict.problems[0].text}"
+    assert report.findings.item(0).text() == f"Care: {verdict.problems[0].text}"
+    assert report.text().startswith("\n".join(report.judged.lines))
+    assert message.tone is Tone.WARNING and message.sentence.endswith(verdict.problems[0].text)
+    record = json.loads((tmp_path / "all" / "heart.json").read_text())
+    assert record["verdict"] == json.loads(json.dumps(report.judged.to_json()))
+
+
+def test_that_a_ready_sheet_is_reported_as_verified(ready: MainWindow, until: Until, tmp_path: Path) -> None:
+    ready.controller.export(tmp_path / "cut.dxf")
+    until(lambda: ready.dialogs.report is not None)
+    report = ready.dialogs.report
+    assert report is not None and report.judged is not None and report.judged.ok
+    assert report.verdict.text().startswith("Verified")
+    assert ready.messages.messages[-1].tone is Tone.DONE
