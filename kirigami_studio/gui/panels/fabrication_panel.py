@@ -466,7 +466,10 @@ def rows_of_copies(plan: CutPlan) -> tuple[str, ...]:
         return ("",)
     rows, columns = plan.copies.rows_and_columns
     short = tr_n("{count} copy", "{count} copies", len(plan.copies))
-    return f"{short}: {columns} {TIMES} {rows}, {readable_size(*plan.copies.spread_mm)}", short
+    middle = tr_n(
+        "{count} copy, rows of {columns}", "{count} copies, rows of {columns}", len(plan.copies), columns=columns
+    )
+    return f"{short}: {columns} {TIMES} {rows}, {readable_size(*plan.copies.spread_mm)}", middle, short
 
 
 def format_slots(planned: Planned) -> str:

@@ -38,7 +38,7 @@ VERSIONS = (
     ("R12", "R12", tr("For old software. Stores no unit: import as mm.")),
 )
 PAPER_CHOICES = (
-    (NO_PAPER, tr("One page as large as the sheet"), tr("For plotters and print shops.")),
+    (NO_PAPER, tr("One page"), tr("As large as the sheet, for plotters and print shops.")),
     ("a4", tr("A4 pages"), tr("Spread over A4 pages that overlap, with crosses to lay them over.")),
     (
         "letter",
@@ -118,6 +118,7 @@ class MoreOptions(QWidget):
         )
         self.rows = ElidedLabel()
         self.rows.setObjectName("muted")
+        self.rows.setFixedHeight(self.copies.sizeHint().height())  # beside the numbers, not beside their captions
         self.rows.setAccessibleName(tr("Rows of copies"))
         self.content = QWidget()
         self.content.setObjectName("plain")

@@ -88,7 +88,7 @@ def bar_boxes(titles: Sequence[str], metrics: QFontMetrics, right: float, top: f
     height = 2 * metrics.height() + BAR_HEIGHT + 14.0
     boxes = []
     for title in titles:
-        wanted = max(BAR_WIDTH, metrics.horizontalAdvance(title)) + 2 * PADDING
+        wanted = max(BAR_WIDTH, metrics.horizontalAdvance(title) + 4.0) + 2 * PADDING  # rounded, and so short of it
         width = min(wanted, right - MARGIN)  # a narrow view gets narrow bars
         boxes.append(QRectF(right - width, top, width, height))
         top += height + 6.0
