@@ -31,6 +31,7 @@ from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions, CutOrd
 from kirigami_studio.fabricate.slits import cut_table
 from kirigami_studio.foundation.errors import ExportError, FabricationError, ProjectError, UsageError
 from kirigami_studio.foundation.words import tr, tr_n
+from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.project.as_cut import simulated
 from kirigami_studio.project.cutting import plan_of
 from kirigami_studio.project.design_facts import design_facts
@@ -227,30 +228,48 @@ def _summary(found: Verification) -> dict[str, object]:
 
 
 def check(arguments: argparse.Namespace) -> int:
-    """Re-read a cut file; exit code 1 when something is wrong with it."""
+    """Re-read a cut file; exit code 1 when something is wrong with it, or with the sheet of its design."""
     report = check_file(Path(arguments.file))
     problems = [problem.text for problem in report.problems]
+    judged = None if arguments.design is None else _judged_by_design(Path(arguments.file), load(arguments.design))
+    ok = report.ok and (judged is None or judged[1].ok)
     if arguments.json:
-        print_json(
-            {
-                "ok": report.ok,
-                "problems": problems,
-                "unit": report.unit,
-                "layers": report.layers,
-                "paths": report.path_count,
-                "size_mm": report.bounds_mm,
-                "cut_length_mm": report.cut_length_mm,
-                "overlap_mm": report.overlap_mm,
-                "pieces": report.pieces,
-                "min_ligament_mm": report.min_ligament_mm,
-            }
-        )
+        answer: dict[str, object] = {
+            "ok": ok,
+            "problems": problems,
+            "unit": report.unit,
+            "layers": report.layers,
+            "paths": report.path_count,
+            "size_mm": report.bounds_mm,
+            "cut_length_mm": report.cut_length_mm,
+            "overlap_mm": report.overlap_mm,
+            "pieces": report.pieces,
+            "min_ligament_mm": report.min_ligament_mm,
+        }
+        if judged is not None:
+            summary = _summary(judged[0])
+            answer |= {name: summary[name] for name in ("void_miss_um", "jam_deg")}
+            answer["verdict"] = judged[1].to_json()
+        print_json(answer)
     else:
         ready = tr("{file}: ready to cut", file=arguments.file)
-        say(ready if report.ok else tr("{file}: not ready to cut", file=arguments.file))
+        say(ready if ok else tr("{file}: not ready to cut", file=arguments.file))
         for problem in problems:
             say(f"  {problem}")
-    return 0 if report.ok else 1
+        if judged is not None:
+            say_verdict(judged[1])
+    return 0 if ok else 1
+
+
+def _judged_by_design(path: Path, document: Document) -> tuple[Verification, Verdict]:
+    """Compare a file with the chosen design of a project as the project would cut it, and judge the sheet."""
+    candidate, settings = _chosen(document), document.fabrication
+    plan = plan_of(candidate, settings)
+    report = check_plan(plan, phi=candidate.final_phi)
+    motion = deploy(candidate.final_sheet)
+    found = verify_export(plan, path, settings.profile, settings.dxf_version, motion)
+    as_cut = closed_as_cut(candidate, motion, plan, settings.width_mm)
+    return found, judge(candidate, plan, report, as_cut, [found])
 
 
 def animate(arguments: argparse.Namespace) -> int:

@@ -300,8 +300,10 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
         "--steps 100")),
     SubCommand("check", "read a DXF cut file and list its problems", "fabrication:check", (
         option("file", help="a .dxf file, or a folder of layer files"),
+        option("--design", default=None, metavar="PROJECT",
+               help="the project that it was exported from: compare the file with its design, and judge the sheet"),
         JSON,
-    ), ("kirigami-studio check heart.dxf",)),
+    ), ("kirigami-studio check heart.dxf", "kirigami-studio check heart.dxf --design heart.kiri")),
     SubCommand("animate", "write an animation of the sheet opening to its target angle", "fabrication:animate", (
         option("project", help="a .kiri project"),
         option("--out", required=True, help=".gif file to write"),

@@ -82,6 +82,24 @@ def test_that_fixes_are_told_where_they_are_asked_for(
     assert code == 1 and "Then: Ready to cut." in said
 
 
+def test_that_a_file_is_checked_against_its_design(
+    capsys: pytest.CaptureFixture[str], document: Document, project: Path, tmp_path: Path
+) -> None:
+    cut = tmp_path / "cut.dxf"
+    answer(capsys, "export", project, "--out", cut, "--json")
+    good = answer(capsys, "check", cut, "--design", project, "--json")
+    assert good["ok"] and good["verdict"]["level"] == "ready_to_cut" and good["void_miss_um"] < 5.0
+    assert good["jam_deg"] == pytest.approx(0.0) and "verdict" not in answer(capsys, "check", cut, "--json")
+    # The same file is not that of a project with other connectors, nor would the sheet of that one close.
+    straight = replace(document.fabrication, connector_mm=0.4, options=CutOptions(style=ConnectorStyle.STRAIGHT))
+    other = tmp_path / "other.kiri"
+    save(replace(document, fabrication=straight), other)
+    assert main(["check", str(cut), "--design", str(other)]) == 1
+    said = capsys.readouterr().out
+    assert "not ready to cut" in said and "verdict: Will not work" in said
+    assert "problem: In cut.dxf: " in said
+
+
 def test_that_the_best_design_that_can_be_cut_comes_first(document: Document) -> None:
     target = document.target
     assert target is not None
