@@ -227,15 +227,27 @@ def _over_edge(tip: FloatArray, heading: FloatArray, outline: Polygon, overcut_m
     """From a tip over the outline by the overcut: straight on, or square to the edge where the slit is flat to it."""
     foot = shapely.get_coordinates(shapely.shortest_line(outline.exterior, Point(tip)))[0]
     height = float(np.linalg.norm(foot - tip))
-    outwards = (foot - tip) / height
+    # Without a kerf the tip may lie on the outline itself.
+    outwards = (foot - tip) / height if height > ON_CUT_MM else _outwards(foot, outline)
     sine = float(np.dot(heading, outwards))
     if sine >= FLATTEST:
+        if height <= ON_CUT_MM:
+            return [tip + heading * (overcut_mm / sine)]
         ahead = LineString([tip, tip + heading * (2.0 * height / FLATTEST)])
         met = shapely.intersection(ahead, outline.exterior)
         if not shapely.is_empty(met):
             first = tip + heading * shapely.distance(met, Point(tip))
             return [first + heading * (overcut_mm / sine)]
     return [tip, foot + outwards * overcut_mm]
+
+
+def _outwards(foot: FloatArray, outline: Polygon) -> FloatArray:
+    """Unit vector (2,) square to an outline, away from its inside, at a place on it."""
+    ring = shapely.get_coordinates(shapely.orient_polygons(outline).exterior)
+    edges = shapely.linestrings(np.stack([ring[:-1], ring[1:]], axis=1))
+    nearest = int(np.argmin(shapely.distance(edges, Point(foot))))
+    x, y = ring[nearest + 1] - ring[nearest]
+    return np.array([y, -x]) / float(np.hypot(x, y))
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -29,7 +29,7 @@ from kirigami_studio.fabricate.centres import BULGE_SPANS, void_hinges
 from kirigami_studio.fabricate.connectors import directions
 from kirigami_studio.fabricate.detours import shortest_turn
 from kirigami_studio.fabricate.slits import SHEET_EDGE, CutTable, edge_sides
-from kirigami_studio.foundation.arrays import FloatArray
+from kirigami_studio.foundation.arrays import BoolArray, FloatArray
 from kirigami_studio.lattice.compact import barycentric_stencil
 from kirigami_studio.lattice.deployment import Deployment, deploy, even_part_of_outline
 from kirigami_studio.lattice.ratio_field import RatioField
@@ -93,6 +93,13 @@ def with_room(
         if found is None or programme.changed_share(found) <= CHANGED_SHARE:
             return deployment if found is None else found
     return deployment
+
+
+def long_enough(slits: FloatArray, spans: FloatArray) -> BoolArray:
+    """Whether slits (S,), mm, are long enough for two connectors and two ends, all of spans (S,), mm."""
+    needed = FACING_SPANS + 2.0 * (HALF_BOW_SPANS + float(shortest_turn(np.zeros(1))[0]))
+    enough: BoolArray = slits >= needed * spans
+    return enough
 
 
 @dataclass(frozen=True, slots=True, eq=False)

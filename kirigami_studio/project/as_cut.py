@@ -20,10 +20,11 @@ from kirigami_studio.export.cut_motion import CutMotion
 from kirigami_studio.fabricate.connectors import hinge_widths
 from kirigami_studio.fabricate.cut_plan import CutPlan
 from kirigami_studio.fabricate.endings import BAR_SPANS, HALF_ANGLES
+from kirigami_studio.fabricate.making_room import long_enough
 from kirigami_studio.fabricate.material import Material
 from kirigami_studio.fabricate.options import ConnectorStyle
 from kirigami_studio.fabricate.panel_sizes import panels_in_mm
-from kirigami_studio.fabricate.slits import cut_table
+from kirigami_studio.fabricate.slits import SHEET_EDGE, cut_table, sheet_lines
 from kirigami_studio.foundation.arrays import FloatArray, IntArray
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.lattice.deployment import Deployment, deploy
@@ -50,8 +51,6 @@ CLOSE_TO = math.radians(1.0)
 LONGER_MM = 1e-3
 #: The estimate's jam angles below this (radians) are those of contacts that close further: the sheet closes.
 ESTIMATE_CLOSES = math.radians(6.0)
-#: Centred in the estimate are connectors beside edges of at least this many spans (finished width and kerf).
-ROOM_SPANS = 2.5
 
 
 class Outcome(Enum):
@@ -218,7 +217,11 @@ def _unplanned_sheet(deployment: Deployment, settings: FabricationSettings, mate
     }.get(options.style, 0.0)
     centres = None
     if options.style is ConnectorStyle.CENTRED:
-        off = np.where(found.reach_mm < ROOM_SPANS * span, 0.5 * span / found.sine, 0.0)
+        # Sheets make room for connectors where slits are long enough.
+        lines, _ = sheet_lines(deployment, settings.width_mm)
+        slits = np.linalg.norm(lines[:, 1] - lines[:, 0], axis=1)
+        crowded = ~long_enough(slits[table.hinge_through], span) & (table.hinge_through != SHEET_EDGE)
+        off = np.where(crowded, 0.5 * span / found.sine, 0.0)
         centres = found.place + off[:, None] * found.along
     connectors = cut_connectors(found, widths, kerf, centres, longer)
     elastic = ElasticSheet(MPA_PER_GPA * material.young_gpa, material.thickness_mm)

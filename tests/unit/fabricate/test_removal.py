@@ -131,3 +131,12 @@ def test_that_all_connectors_can_be_removed_and_the_check_tells_what_that_means(
     report = check_plan(plan)
     assert report.pieces == 4 * 5 and not report.ok
     assert plan.min_connector_mm == 0.0
+
+
+def test_that_a_slit_is_cut_over_the_edge_without_a_kerf(make_design: MakeDesign) -> None:
+    design = make_design(4, 4, seed=2, spread=0.3)
+    on_edge = int(np.flatnonzero(cut_table(4, 4).hinge_through == SHEET_EDGE)[0])
+    with np.errstate(all="raise"):
+        plan = plan_cuts(design, 100.0, 1e-9, 0.0, options=CutOptions(removed=(on_edge,)))
+    assert plan.hinges.finished_mm[on_edge] == 0.0
+    assert all(np.all(np.isfinite(path.points)) for path in plan.paths)
