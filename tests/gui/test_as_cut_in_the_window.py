@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -32,8 +33,9 @@ def closed(designed: MainWindow, until: Until) -> MainWindow:
 
 @pytest.fixture
 def jammed(closed: MainWindow, until: Until) -> MainWindow:
-    """The same with connectors that are too wide."""
-    closed.controller.fabrication.change(connector_mm=2.0)
+    """The same with straight connectors that are too wide."""
+    options = replace(closed.controller.document.fabrication.options, style=ConnectorStyle.STRAIGHT)
+    closed.controller.fabrication.change(connector_mm=2.0, options=options)
     until(lambda: closed.stage.deployment.slider.jam is not None)
     return closed
 
