@@ -50,6 +50,8 @@ SPARE_MM, MET_MM = 4e-3, 2e-3
 ROUNDS, LARGEST_STEP = 12, 0.5
 #: From this round on half steps are taken, so that conditions that take turns settle.
 DAMPED_FROM = 5
+#: Logarithms of ratios below this may grow to either side.
+UNDECIDED = 1e-3
 #: Of the outline's area, what may change at most.  Where more would have to, shorter distances are asked for.
 CHANGED_SHARE = 0.01
 SHARES = (1.0, 0.8, 0.6, 0.4, 0.2)
@@ -139,7 +141,9 @@ class _Programme:
         of_node[table.hinge_node] = np.arange(table.hinge_count)
         self._resting = of_node[np.where(even[:, None], corners[:, [0, 2]], corners[:, [3, 1]])]
         self._z = np.log(design.field.ratio.ravel())
-        self._side = np.where(self._z >= 0.0, 1.0, -1.0)
+        # Ratios of 1 move to both sides in turn, so that what they do to the outline cancels.
+        undecided = np.abs(self._z) < UNDECIDED
+        self._side = np.where(np.where(undecided, even, self._z >= 0.0), 1.0, -1.0)
         self._loop, self._map = tables.outline_nodes, even_part_of_outline(*design.sheet.grid)
         self._kept = np.isin(self._loop, tables.outline_at_zero)
         self._outline = self._closed(design.compact.T)

@@ -48,6 +48,14 @@ def test_that_facing_connectors_get_room_and_the_silhouette_stays(make_design: M
     assert score.iou_exact > 0.995
 
 
+def test_that_an_even_sheet_stays_nearly_a_square() -> None:
+    design, table = deploy(RatioField.uniform(8, 8)), cut_table(8, 8)
+    made = with_room(design, WIDTH, np.full(table.hinge_count, 0.52), table)
+    assert facing_mm(made).min() >= FACING_SPANS * 0.52 - 3e-3
+    (score,) = siou_of_many([made.outline(0.0)], Outline.from_points(design.outline(0.0)))
+    assert score.iou_exact > 0.99
+
+
 def test_that_sheets_with_room_are_left_alone(make_design: MakeDesign) -> None:
     design = make_design(5, 6, seed=1, spread=0.4)
     table = cut_table(5, 6)
