@@ -32,6 +32,8 @@ NAME_PART = 40
 REGISTRATION_LAYER = "REGISTRATION"
 #: Length (mm) of the arms of a registration mark, and distance of the marks' frame from everything that is cut.
 MARK_MM, MARK_GAP_MM = 3.0, 2.0
+#: Marks lie where the sheet ends, which an arc may do between the coordinates of points.
+MARK_DECIMALS = 10
 OWN_NAME = re.compile(r"[1-9]_[A-Z_]+\.dxf")
 
 
@@ -114,7 +116,7 @@ def registration_marks(size: tuple[float, float]) -> tuple[Stroke, ...]:
         [[width - MARK_MM, 0.0], [width, 0.0], [width, MARK_MM]],
         [[0.0, height - MARK_MM], [0.0, height], [MARK_MM, height]],
     )
-    return tuple(Stroke(np.array(arm).round(DECIMALS), False, REGISTRATION_LAYER, BLUE) for arm in arms)
+    return tuple(Stroke(np.array(arm).round(MARK_DECIMALS), False, REGISTRATION_LAYER, BLUE) for arm in arms)
 
 
 def laid_together(contents: Sequence[FileContent], folder: Path) -> FileContent:
