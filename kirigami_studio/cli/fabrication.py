@@ -30,6 +30,7 @@ from kirigami_studio.fabricate.material import default_material, find_material
 from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions, CutOrder
 from kirigami_studio.fabricate.slits import cut_table
 from kirigami_studio.foundation.errors import ExportError, FabricationError, ProjectError, UsageError
+from kirigami_studio.foundation.steps import result_of
 from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.project.as_cut import simulated
@@ -163,13 +164,7 @@ def export(arguments: argparse.Namespace) -> int:
 
 def _advice(document: Document, settings: FabricationSettings, verdict: Verdict) -> Advice:
     """Try changes on the chosen design, all in one go."""
-    search = find_fixes(_chosen(document), settings, verdict, document.candidates)
-    while True:
-        try:
-            next(search)
-        except StopIteration as end:
-            found: Advice = end.value
-            return found
+    return result_of(find_fixes(_chosen(document), settings, verdict, document.candidates))
 
 
 def say_verdict(verdict: Verdict) -> None:

@@ -10,6 +10,7 @@ import numpy as np
 import shapely
 
 from kirigami_studio.foundation.arrays import FloatArray
+from kirigami_studio.foundation.steps import result_of
 from kirigami_studio.lattice.deployment import Deployment, check_phi
 from kirigami_studio.mechanics.drive import Drive, mean_turn
 from kirigami_studio.mechanics.energy import NetworkEnergy
@@ -116,13 +117,7 @@ def jam_angle(phi: FloatArray, stretch: FloatArray, tolerated: float, reached_en
 
 def closing(sheet: SheetNetwork, drive: Drive | None = None) -> Closing:
     """Close a sheet along a drive, as far as it goes, all in one go; see :func:`closing_steps`."""
-    steps = closing_steps(sheet, drive)
-    while True:
-        try:
-            next(steps)
-        except StopIteration as end:
-            found: Closing = end.value
-            return found
+    return result_of(closing_steps(sheet, drive))
 
 
 def closing_steps(sheet: SheetNetwork, drive: Drive | None = None) -> Generator[None, None, Closing]:

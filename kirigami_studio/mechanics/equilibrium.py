@@ -18,6 +18,7 @@ from scipy.sparse.linalg import LinearOperator, eigsh, splu
 
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray
 from kirigami_studio.foundation.errors import MechanicsError
+from kirigami_studio.foundation.steps import result_of
 from kirigami_studio.mechanics.drive import Drive
 from kirigami_studio.mechanics.energy import NetworkEnergy
 from kirigami_studio.mechanics.network import PanelNetwork
@@ -95,13 +96,7 @@ def follow(
     network: PanelNetwork, drive: Drive, start: FloatArray | None = None, until_stuck: bool = False
 ) -> EquilibriumPath:
     """Find the equilibria along a drive, all in one go; see :func:`follow_steps`."""
-    steps = follow_steps(network, drive, start, until_stuck)
-    while True:
-        try:
-            next(steps)
-        except StopIteration as end:
-            path: EquilibriumPath = end.value
-            return path
+    return result_of(follow_steps(network, drive, start, until_stuck))
 
 
 def follow_steps(

@@ -17,6 +17,7 @@ from scipy.sparse.linalg import eigsh
 
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import MechanicsError
+from kirigami_studio.foundation.steps import result_of
 from kirigami_studio.lattice.deployment import Deployment
 from kirigami_studio.mechanics.closing import CLOSED, STEPS, Closing, closing_steps, ideal_motion
 from kirigami_studio.mechanics.drive import Drive, prescribed_places
@@ -57,13 +58,7 @@ def find_grips(
     deployment: Deployment, sheet: SheetNetwork, width_mm: float, end: float = CLOSED, steps: int = STEPS
 ) -> Gripping:
     """The fewest pins by which a sheet can be led, all in one go; see :func:`grip_steps`."""
-    trials = grip_steps(deployment, sheet, width_mm, end, steps)
-    while True:
-        try:
-            next(trials)
-        except StopIteration as found:
-            gripping: Gripping = found.value
-            return gripping
+    return result_of(grip_steps(deployment, sheet, width_mm, end, steps))
 
 
 def grip_steps(

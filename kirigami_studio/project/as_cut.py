@@ -27,6 +27,7 @@ from kirigami_studio.fabricate.panel_sizes import panels_in_mm
 from kirigami_studio.fabricate.slits import SHEET_EDGE, cut_table, sheet_lines
 from kirigami_studio.foundation.arrays import FloatArray, IntArray
 from kirigami_studio.foundation.errors import KirigamiError
+from kirigami_studio.foundation.steps import result_of
 from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.mechanics.closing import (
     CLOSED,
@@ -341,13 +342,7 @@ def simulated(candidate: Candidate, settings: FabricationSettings, target: Outli
     """
     deployment, kept = deploy(candidate.final_sheet), None if candidate.trim is None else candidate.trim.kept
     plan = plan_of(candidate, settings, deployment)
-    steps = simulate(deployment, plan, settings.width_mm, candidate.final_phi, target, kept)
-    while True:
-        try:
-            next(steps)
-        except StopIteration as end:
-            found: SimulatedSheet = end.value
-            return found
+    return result_of(simulate(deployment, plan, settings.width_mm, candidate.final_phi, target, kept))
 
 
 def _simulated(sheet: SheetNetwork, found: Closing, jam: float, phi: float, lap: Overlap | None) -> AsCut:

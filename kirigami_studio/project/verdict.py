@@ -17,6 +17,7 @@ from kirigami_studio.fabricate.checks import Report, check_plan
 from kirigami_studio.fabricate.cut_plan import CutPlan
 from kirigami_studio.fabricate.findings import Note, Problem, Severity
 from kirigami_studio.foundation.errors import KirigamiError
+from kirigami_studio.foundation.steps import result_of
 from kirigami_studio.foundation.words import mark, tr
 from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.outlines.outline import Outline
@@ -175,13 +176,8 @@ def closed_as_cut(
 ) -> AsCut | str:
     """How a planned sheet of a width (mm) does as cut, simulated in one go, or why that cannot be told."""
     kept = None if candidate.trim is None else candidate.trim.kept
-    steps = simulate(deployment, plan, width_mm, candidate.final_phi, target, kept)
     try:
-        while True:
-            next(steps)
-    except StopIteration as end:
-        found: AsCut = end.value.as_cut
-        return found
+        return result_of(simulate(deployment, plan, width_mm, candidate.final_phi, target, kept)).as_cut
     except KirigamiError as error:
         return str(error)
 

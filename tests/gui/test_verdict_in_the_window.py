@@ -81,7 +81,7 @@ def test_that_nothing_is_called_ready_before_the_sheet_was_closed(ready: MainWin
     ready.controller.fabrication.change(connector_mm=0.3)
     bar = ready.stage.verdict
     assert ready.controller.verdict.state.pending
-    assert bar.headline.text() == "Checking how the sheet does as cut …" and bar.property("level") == ""
+    assert bar.headline.text() == "Checking the sheet as cut …" and bar.property("level") == ""
 
 
 def test_that_a_refused_plan_is_told_with_what_has_room(ready: MainWindow, until: Until) -> None:

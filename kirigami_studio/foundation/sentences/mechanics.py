@@ -92,7 +92,7 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "A connector is expected to break: it is strained by {strain_percent:.0f} %, and {material!r} breaks at "
         "{limit_percent:g} %."
     ),
-    "as_cut.not_known": mark("Nobody knows how the sheet does as cut: {reason}"),
+    "as_cut.not_known": mark("The sheet could not be closed as cut, in simulation: {reason}"),
     # The command
     "mechanics.one_source": mark("Name either a project or sheet, or a network with --network."),
     "mechanics.one_sheet": mark("{name} holds {found} sheets. Name a single one."),

@@ -55,7 +55,7 @@ class VerdictState:
     @property
     def lines(self) -> tuple[str, ...]:
         """The list that is shown: the verdict's own, then what was tried."""
-        checking = tr("Checking how the sheet does as cut …")
+        checking = tr("Checking the sheet as cut …")
         if self.verdict is None:
             return (checking,) if self.pending else ()
         level, *reasons = self.verdict.lines

@@ -4,10 +4,10 @@ they close.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Generator, Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.errors import Cancelled, KirigamiError
@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from kirigami_studio.project.fixes import Advice
     from kirigami_studio.project.verdict import Verdict
 
+Found = TypeVar("Found")
 #: Designs that are estimated between two reports.
 AT_ONCE = 4
 
@@ -34,15 +35,8 @@ class Estimated:
     found: tuple[tuple[Candidate, AsCut], ...]
 
 
-def simulating(request: CutRequest, made: Planned, cancel: Cancel) -> Iterator[SimulatedSheet | None]:
-    """Close a sheet on the connectors of its plan; None after every step, so that other jobs have their turn."""
-    from kirigami_studio.project.as_cut import simulate
-
-    candidate = request.candidate
-    kept = None if candidate.trim is None else candidate.trim.kept
-    steps = simulate(
-        request.deployment, made.plan, request.settings.width_mm, candidate.final_phi, request.target, kept
-    )
+def _in_turns(steps: Generator[None, None, Found], cancel: Cancel) -> Iterator[Found | None]:
+    """None after every step, so that other jobs have their turn; at last the result."""
     while True:
         if cancel():
             raise Cancelled("run.no_result")
@@ -52,6 +46,18 @@ def simulating(request: CutRequest, made: Planned, cancel: Cancel) -> Iterator[S
             yield end.value
             return
         yield None
+
+
+def simulating(request: CutRequest, made: Planned, cancel: Cancel) -> Iterator[SimulatedSheet | None]:
+    """Close a sheet on the connectors of its plan; None after every step, so that other jobs have their turn."""
+    from kirigami_studio.project.as_cut import simulate
+
+    candidate = request.candidate
+    kept = None if candidate.trim is None else candidate.trim.kept
+    steps = simulate(
+        request.deployment, made.plan, request.settings.width_mm, candidate.final_phi, request.target, kept
+    )
+    yield from _in_turns(steps, cancel)
 
 
 def animating(
@@ -100,15 +106,7 @@ def fixing(
     except KirigamiError as error:
         verdict = refused(error)  # with its numbers, which lead to the first changes
     steps = find_fixes(request.candidate, request.settings, verdict, others)
-    while True:
-        if cancel():
-            raise Cancelled("run.no_result")
-        try:
-            next(steps)
-        except StopIteration as end:
-            yield end.value
-            return
-        yield None
+    yield from _in_turns(steps, cancel)
 
 
 def gripping(
@@ -120,15 +118,7 @@ def gripping(
 
     end = max(sheet.as_cut.reached, CLOSED)
     steps = grip_steps(deployment, sheet.closing.sheet, width_mm, end)
-    while True:
-        if cancel():
-            raise Cancelled("run.no_result")
-        try:
-            next(steps)
-        except StopIteration as found:
-            yield found.value
-            return
-        yield None
+    yield from _in_turns(steps, cancel)
 
 
 def estimating(

@@ -338,7 +338,7 @@ class FabricationPanel(Card):
             return
         level, *reasons = state.lines
         weighty = state.verdict is not None and bool(state.verdict.problems)
-        first = f"{level}: {reasons[0]}" if reasons else level
+        first = f"{level}: {reasons[0]}" if reasons and not state.pending else "\n".join([level, *reasons[:1]])
         self._warn("\n".join([first, *reasons[1:]]), calm=not reasons, muted=not weighty)
 
     def _sum_up(self, size: str, cuts: int, removed_share: float) -> None:

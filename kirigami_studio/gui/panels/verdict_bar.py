@@ -169,7 +169,7 @@ def headline(state: VerdictState) -> str:
     """The level in words, and what is still being found out."""
     verdict = state.verdict
     if state.pending or verdict is None:
-        return tr("Checking how the sheet does as cut …")
+        return tr("Checking the sheet as cut …")
     words = verdict.level.words
     if state.searching:
         return tr("{level}  ·  trying fixes …", level=words)

@@ -46,32 +46,25 @@ def test_that_a_slit_turns_back_by_half_a_turn_wherever_the_outline_begins(first
     assert area == pytest.approx(12 / 88, rel=0.01)
 
 
-@given(
-    rows=st.integers(2, 7),
-    columns=st.integers(2, 7),
-    seed=st.integers(0, 10_000),
-    reach=st.floats(0.0, 0.7),
-)
-@settings(max_examples=60, deadline=None)
-def test_that_closed_layouts_turn_back_by_less_than_half_a_turn(rows, columns, seed, reach) -> None:
-    rng = np.random.default_rng(seed)
+@st.composite
+def rim_sheets(draw: st.DrawFn) -> Sheet:
+    """Sheets with any ratios and rims."""
+    rows, columns, reach = draw(st.integers(2, 7)), draw(st.integers(2, 7)), draw(st.floats(0.0, 0.7))
+    rng = np.random.default_rng(draw(st.integers(0, 10_000)))
     field = RatioField.from_log10(rng.uniform(-1, 1, (rows, columns)))
-    rim = Rim.moved(rows, columns, rng.uniform(-reach, reach, rows + columns))
-    sheet = Sheet(field, rim)
+    return Sheet(field, Rim.moved(rows, columns, rng.uniform(-reach, reach, rows + columns)))
+
+
+@given(rim_sheets())
+@settings(max_examples=60, deadline=None)
+def test_that_closed_layouts_turn_back_by_less_than_half_a_turn(sheet) -> None:
     assert every_turn_back(deploy(sheet).outline(0.0)) < turning.LIMIT
 
 
-@given(
-    rows=st.integers(2, 7),
-    columns=st.integers(2, 7),
-    seed=st.integers(0, 10_000),
-    reach=st.floats(0.0, 0.7),
-)
+@given(rim_sheets())
 @settings(max_examples=60, deadline=None)
-def test_that_what_one_side_of_the_sheet_becomes_turns_by_less_than_half_a_turn(rows, columns, seed, reach) -> None:
-    rng = np.random.default_rng(seed)
-    field = RatioField.from_log10(rng.uniform(-1, 1, (rows, columns)))
-    sheet = Sheet(field, Rim.moved(rows, columns, rng.uniform(-reach, reach, rows + columns)))
+def test_that_what_one_side_of_the_sheet_becomes_turns_by_less_than_half_a_turn(sheet) -> None:
+    rows, columns = sheet.grid
     tables, outline = topology(rows, columns), deploy(sheet).outline(0.0)
     place = tables.uniform_nodes[tables.outline_at_zero]
     edges = np.roll(outline, -1, axis=0) - outline
