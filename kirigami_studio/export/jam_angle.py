@@ -7,14 +7,12 @@ The centres are given back to the hinges of the design, and the fast estimate of
 from __future__ import annotations
 
 import numpy as np
-from scipy.optimize import linear_sum_assignment
-from scipy.spatial.distance import cdist
 
 from kirigami_studio.export.voids_read import FoundVoids
 from kirigami_studio.fabricate.cut_plan import CutPlan
 from kirigami_studio.fabricate.panel_sizes import panels_in_mm
 from kirigami_studio.fabricate.slits import cut_table
-from kirigami_studio.foundation.arrays import FloatArray, IntArray
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.lattice.deployment import Deployment
 from kirigami_studio.mechanics.connectors import ElasticSheet, cut_connectors, junctions
 from kirigami_studio.mechanics.estimate import estimate_stretch
@@ -41,7 +39,7 @@ def jam_angle_of_file(found: FoundVoids, plan: CutPlan, deployment: Deployment) 
         0 where it closes; None where the connectors of the file are not those of the plan.
     """
     there = np.flatnonzero(~plan.hinges.removed)
-    matched = _matched(found, plan.hinges.position[there])
+    matched = found.nearest_to(plan.hinges.position[there])
     if matched is None:
         return None
     width, deployment = plan.size_mm[0], plan.cut_from(deployment)
@@ -60,11 +58,3 @@ def jam_angle_of_file(found: FoundVoids, plan: CutPlan, deployment: Deployment) 
     elastic = ElasticSheet(MPA_PER_GPA * plan.material.young_gpa, plan.material.thickness_mm)
     rows = polygons_as_rows([part + shift for part in plan.panels])
     return estimate_stretch(deployment, sheet_network(rows, connectors, elastic), width).jam_phi()
-
-
-def _matched(found: FoundVoids, position: FloatArray) -> IntArray | None:
-    """Which connector of the file is at each hinge (T,), by least distances; None where they are not as many."""
-    if len(found.connectors) != len(position) or not len(position):
-        return None
-    centres = np.array([connector.centre for connector in found.connectors])
-    return np.asarray(linear_sum_assignment(cdist(position, centres))[1], dtype=np.intp)

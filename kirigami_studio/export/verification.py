@@ -405,7 +405,8 @@ def void_findings(voids: FoundVoids, plan: CutPlan) -> list[Finding]:
     """Whether the sheet can close, by the connectors that were read from its file.
 
     Of a plan whose connectors are all centred, every one has to be found, as wide as planned, and every void has to
-    be a parallelogram within ``VOID_MISS_UM``; of other plans, a person should know by how much voids miss that.
+    be a parallelogram within ``VOID_MISS_UM``.  As wide as planned is as wide as asked for, but for the connectors that
+    the plan lists as narrowed.  Of other plans, a person should know by how much voids miss that.
     """
     found = {"connectors": len(voids.connectors), "voids": voids.voids, "miss_um": voids.miss_um}
     centred = plan.void_miss_mm is not None and 1e3 * plan.void_miss_mm < VOID_MISS_UM
@@ -414,12 +415,34 @@ def void_findings(voids: FoundVoids, plan: CutPlan) -> list[Finding]:
         if len(voids.connectors) != planned or narrowest < plan.min_connector_mm - 2.0 * WIDTH_TOLERANCE_MM:
             widths = {"narrowest_mm": narrowest, "planned": planned, "planned_mm": plan.min_connector_mm}
             return [Finding.judged(False, "verify.connectors_lost", connectors=len(voids.connectors), **widths)]
+        if narrow := _too_narrow(voids, plan):
+            return narrow
         if voids.miss_um <= VOID_MISS_UM:
             return [Finding.judged(True, "verify.voids_close", narrowest_mm=narrowest, **found)]
     if voids.where is None:
         return []
     x, y = voids.where
     return [Finding("verify.voids_miss", {**found, "x": x, "y": y}, ok=not centred, warning=not centred)]
+
+
+def _too_narrow(voids: FoundVoids, plan: CutPlan) -> list[Finding]:
+    """Connectors of the file that are narrower than asked for, or, of those listed as narrowed, than listed."""
+    hinges = plan.hinges
+    there = np.flatnonzero(~hinges.removed)
+    matched = voids.nearest_to(hinges.position[there])
+    if matched is None:
+        return []
+    least = hinges.asked_mm.copy()
+    least[hinges.narrowed] = hinges.requested_mm[hinges.narrowed]
+    width = np.array([connector.width_mm for connector in voids.connectors])[matched]
+    missing = least[there] - width
+    short = missing > 2.0 * WIDTH_TOLERANCE_MM
+    if not np.any(short):
+        return []
+    worst = int(np.argmax(missing))
+    x, y = hinges.position[there[worst]]
+    widths = {"width_mm": float(width[worst]), "planned_mm": float(least[there[worst]])}
+    return [Finding.judged(False, "verify.connectors_narrower", count=int(short.sum()), x=x, y=y, **widths)]
 
 
 def _jam_findings(jam: float | None) -> list[Finding]:

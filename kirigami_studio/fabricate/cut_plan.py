@@ -25,7 +25,7 @@ from kirigami_studio.fabricate.endings import seats
 from kirigami_studio.fabricate.findings import Note
 from kirigami_studio.fabricate.fitting import Obstacle
 from kirigami_studio.fabricate.hinged_cuts import HingedCuts, hinged_cuts, relief_radius
-from kirigami_studio.fabricate.making_room import with_room
+from kirigami_studio.fabricate.making_room import CHANGED_SHARE, with_room
 from kirigami_studio.fabricate.material import Material, default_material
 from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions
 from kirigami_studio.fabricate.ordering import in_cutting_order
@@ -260,6 +260,7 @@ def plan_cuts(
         options=options,
         notes=(
             *plan_notes(hinges, material, connector, kerf, options.style, cuts.straight),
+            *_room_notes(design, made, width),
             *_centring_notes(arranged, options, table),
             *_narrowing_notes(hinges),
         ),
@@ -380,6 +381,21 @@ def _centring_notes(arranged: Arranged, options: CutOptions, table: CutTable) ->
         return []
     miss = _void_miss(arranged, options, table)
     return [Note.of("plan.off_centre", count=arranged.off_centre, total=table.hinge_count, miss_mm=miss)]
+
+
+def _room_notes(design: Deployment, made: Deployment | None, width_mm: float) -> list[Note]:
+    """By how much the panels that are cut are not quite those of the design."""
+    if made is None:
+        return []
+    moved = largest_move(design, made, width_mm)
+    return [Note.of("plan.room_made", moved_mm=moved, share_percent=100.0 * CHANGED_SHARE)]
+
+
+def largest_move(design: Deployment, made: Deployment, width_mm: float) -> float:
+    """How far (mm) a corner of a panel lies from where the design has it, at most, on flat sheets of one width."""
+    flat = [nodes * (width_mm / float(np.ptp(nodes[:, 0]))) for nodes in (design.compact, made.compact)]
+    one, other = (nodes - nodes.mean(axis=0) for nodes in flat)
+    return float(np.linalg.norm(other - one, axis=1).max())
 
 
 def _narrowing_notes(hinges: Hinges) -> list[Note]:

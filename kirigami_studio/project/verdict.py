@@ -34,6 +34,8 @@ STRAINED = frozenset({"plan.strain_choose_style", "plan.strain_larger_sheet"})
 FATAL = frozenset({"plan.material_does_not_hold"})
 #: Findings about panels smaller than the material needs.
 TOO_SMALL = frozenset({"plan.panel_edge_small", "plan.panel_neck_small", "plan.trimmed_neck_small"})
+#: Notes of a plan that mean that a person does not get what was asked for.
+NOT_AS_ASKED = frozenset({"plan.connectors_narrowed"})
 #: Signs of a jam that count only where nobody has closed the sheet on its connectors.
 SIGNS_OF_A_JAM = frozenset({"plan.off_centre", "plan.no_room_to_centre", "verify.voids_miss", "verify.sheet_jams"})
 #: Of a sheet that comes within a few degrees of its angle.
@@ -231,6 +233,7 @@ def judge(
         *_of_files(verifications, candidate.final_phi, known),
         *_of_design(candidate),
         *(_weighed(problem) for problem in report.problems if problem.code not in STRAINED),
+        *_of_wishes(plan),
         *([] if known is None else _of_jam(known)),
         *_of_strain(plan, report, known),
     ]
@@ -251,6 +254,16 @@ def _once(notes: Iterable[Told]) -> list[Told]:
 
 def _weighed(problem: Problem) -> Problem:
     return replace(problem, severity=Severity.ERROR) if problem.code in FATAL else problem
+
+
+def _of_wishes(plan: CutPlan) -> list[Problem]:
+    """Warnings about what was asked for and is cut otherwise, at the narrowest connector."""
+    found = [note for note in plan.notes if note.code in NOT_AS_ASKED]
+    narrowed = plan.hinges.narrowed
+    if not found or not narrowed.size:
+        return []
+    x, y = plan.hinges.position[narrowed[np.argmin(plan.hinges.requested_mm[narrowed])]]
+    return [Problem(note.code, note.fields, Severity.WARNING, (float(x), float(y))) for note in found]
 
 
 def _of_design(candidate: Candidate) -> list[Problem]:

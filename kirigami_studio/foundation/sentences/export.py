@@ -296,6 +296,16 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "Read back from the file: {connectors} connectors, the narrowest {narrowest_mm:.3f} mm wide; {planned} were "
         "planned, {planned_mm:.3f} mm wide or more."
     ),
+    "verify.connectors_narrower": (
+        mark(
+            "Read back from the file: {count} connector is narrower than planned, {width_mm:.3f} instead of "
+            "{planned_mm:.3f} mm, at x = {x:.1f}, y = {y:.1f} mm."
+        ),
+        mark(
+            "Read back from the file: {count} connectors are narrower than planned, the worst {width_mm:.3f} instead "
+            "of {planned_mm:.3f} mm, at x = {x:.1f}, y = {y:.1f} mm."
+        ),
+    ),
     "verify.tabs_left_out": (
         mark("Contours for a cutting service have no gaps: {count} tab is left out."),
         mark("Contours for a cutting service have no gaps: {count} tabs are left out."),

@@ -163,6 +163,10 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
             "regular design."
         ),
     ),
+    "plan.room_made": mark(
+        "To make room for the connectors, the panels that are cut differ from the design by up to {moved_mm:.2f} mm. "
+        "The closed shape keeps its outline to within {share_percent:g} % of its area."
+    ),
     "plan.connectors_narrowed": (
         mark(
             "{count} of {total} connectors is narrower than asked for, {width_mm:.3f} instead of {asked_mm:.3f} mm, at "

@@ -131,3 +131,20 @@ def test_that_tabs_trimming_and_removed_connectors_are_read_too() -> None:
 def test_that_a_file_without_cuts_has_no_voids(plan: CutPlan) -> None:
     found = read_voids([strokes_of(plan, ANY)[-1]], 1, plan.kerf_mm)
     assert found.connectors == () and found.voids == 0 and found.where is None
+
+
+def test_that_connectors_are_as_wide_as_asked_unless_the_plan_lists_them() -> None:
+    plan = plan_cuts(design(spread=0.6), 60.0, 1.5, options=CutOptions(style=ConnectorStyle.CENTRED))
+    hinges, strokes = plan.hinges, list(strokes_of(plan, ANY))
+    assert 0 < hinges.narrowed.size < len(hinges)
+    assert judged(plan, strokes) == (True, "verify.voids_close")
+    wide = int(np.setdiff1d(np.arange(len(hinges)), hinges.narrowed)[0])
+    for hinge in (int(hinges.narrowed[0]), wide):
+        # One more connector was promised a tenth more than the file gives it.
+        promised, asked = hinges.requested_mm.copy(), hinges.asked_mm.copy()
+        promised[hinge] += 0.1
+        asked[hinge] = max(asked[hinge], promised[hinge])
+        other = replace(plan, hinges=replace(hinges, requested_mm=promised, asked_mm=asked))
+        (finding,) = void_findings(read_voids(strokes, 1, plan.kerf_mm), other)
+        assert (finding.ok, finding.code, finding.fields["count"]) == (False, "verify.connectors_narrower", 1)
+        assert (finding.fields["x"], finding.fields["y"]) == tuple(hinges.position[hinge])

@@ -12,7 +12,7 @@ from kirigami_studio.evaluate.siou import siou_of_many
 from kirigami_studio.fabricate.centred import LEAST_SHARE
 from kirigami_studio.fabricate.centres import void_hinges
 from kirigami_studio.fabricate.checks import check_plan
-from kirigami_studio.fabricate.cut_plan import CutPlan, plan_cuts
+from kirigami_studio.fabricate.cut_plan import CutPlan, largest_move, plan_cuts
 from kirigami_studio.fabricate.making_room import FACING_SPANS, with_room
 from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions
 from kirigami_studio.fabricate.slits import cut_table
@@ -93,3 +93,20 @@ def test_that_what_has_no_room_is_narrower_and_listed(make_design: MakeDesign) -
     assert (plan.hinges.finished_mm - plan.hinges.requested_mm).min() > -1e-3
     np.testing.assert_array_equal(plan.hinges.asked_mm, 1.2)
     assert f"instead of {1.2:.3f} mm" in note.text
+
+
+def test_that_a_plan_tells_by_how_much_the_sheet_is_not_the_design(make_design: MakeDesign) -> None:
+    design = make_design(5, 5, seed=1, spread=0.25)
+    plan = planned(design, 0.8)
+    (note,) = (note for note in plan.notes if note.code == "plan.room_made")
+    made = plan.cut_from(design)
+    panels = [
+        sheet.compact[sheet.topology.panel_nodes.reshape(-1, 4)] * (WIDTH / float(np.ptp(sheet.compact[:, 0])))
+        for sheet in (design, made)
+    ]
+    apart = panels[1] - panels[0]
+    moved = float(str(note.fields["moved_mm"]))
+    # The two sheets may lie anywhere to each other; half of what corners move apart is the least of all largest moves.
+    assert 0.5 * np.ptp(apart.reshape(-1, 2), axis=0).max() <= moved <= 2.0 * np.ptp(apart.reshape(-1, 2), axis=0).max()
+    assert f"up to {moved:.2f} mm" in note.text and moved == largest_move(design, made, WIDTH) > 0.1
+    assert not [note for note in planned(design, 0.05).notes if note.code == "plan.room_made"]

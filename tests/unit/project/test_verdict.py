@@ -138,6 +138,18 @@ def test_that_small_panels_are_cut_with_care(design: Candidate) -> None:
     assert found.level is Level.CARE and set(codes(found)) <= {"plan.panel_edge_small", "plan.panel_neck_small"}
 
 
+def test_that_connectors_narrower_than_asked_for_are_cut_with_care(design: Candidate) -> None:
+    settings = FabricationSettings(width_mm=40.0, connector_mm=1.6)
+    plan = plan_of(design, settings)
+    found = judge(design, plan, check_plan(plan, phi=0.0), CLOSES)
+    narrowed = plan.hinges.narrowed
+    assert found.level is Level.CARE and "plan.connectors_narrowed" in codes(found)
+    (problem,) = [problem for problem in found.problems if problem.code == "plan.connectors_narrowed"]
+    assert problem.fields["count"] == narrowed.size > 0 and problem.severity is Severity.WARNING
+    assert problem.where in [tuple(place) for place in plan.hinges.position[narrowed].tolist()]
+    assert not [note for note in found.notes if note.code == problem.code]
+
+
 def test_that_a_design_which_is_not_feasible_will_not_work(design: Candidate, ready: Assessment) -> None:
     crossed = replace(design, score=replace(design.score, feasible=False))
     found = judge(crossed, ready.plan, ready.report, ready.as_cut)
