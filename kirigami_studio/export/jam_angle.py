@@ -12,7 +12,6 @@ from kirigami_studio.export.voids_read import FoundVoids
 from kirigami_studio.fabricate.cut_plan import CutPlan
 from kirigami_studio.fabricate.panel_sizes import panels_in_mm
 from kirigami_studio.fabricate.slits import cut_table
-from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.lattice.deployment import Deployment
 from kirigami_studio.mechanics.connectors import ElasticSheet, cut_connectors, junctions
 from kirigami_studio.mechanics.estimate import estimate_stretch

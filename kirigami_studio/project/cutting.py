@@ -81,7 +81,8 @@ def least_feature_mm(settings: FabricationSettings) -> float:
         No such material.
     """
     material = material_for(settings)
-    return max(material.min_ligament_mm, material.min_panel_mm) + (material.kerf_mm if settings.kerf_mm is None else settings.kerf_mm)
+    kerf = material.kerf_mm if settings.kerf_mm is None else settings.kerf_mm
+    return max(material.min_ligament_mm, material.min_panel_mm) + kerf
 
 
 def stored_material(settings: FabricationSettings) -> Material | None:

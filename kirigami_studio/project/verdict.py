@@ -259,10 +259,10 @@ def _weighed(problem: Problem) -> Problem:
 def _of_wishes(plan: CutPlan) -> list[Problem]:
     """Warnings about what was asked for and is cut otherwise, at the narrowest connector."""
     found = [note for note in plan.notes if note.code in NOT_AS_ASKED]
-    narrowed = plan.hinges.narrowed
-    if not found or not narrowed.size:
+    if not found:
         return []
-    x, y = plan.hinges.position[narrowed[np.argmin(plan.hinges.requested_mm[narrowed])]]
+    narrowest = min(plan.hinges.narrowed.tolist(), key=plan.hinges.requested_mm.__getitem__)
+    x, y = plan.hinges.position[narrowest]
     return [Problem(note.code, note.fields, Severity.WARNING, (float(x), float(y))) for note in found]
 
 
