@@ -103,6 +103,20 @@ class PosedDesign:
         back: FloatArray = self.pose.inverse().apply(np.asarray(place) - (self._middle() - placed))
         return back
 
+    def laid_over(self, made: Deployment) -> PosedDesign:
+        """Another sheet of the same grid, posed so that its outline at ``phi_target`` is nearest to this one's.
+
+        Nearest by least squares over the outline's nodes, each weighted by the length of outline that is its own.
+        """
+        meant = as_plane(self.outline(self.nodes(self.phi_target), self.phi_target))
+        other = PosedDesign(made, Similarity(), self.phi_target, self.trim)
+        own = as_plane(other.outline(made.nodes(self.phi_target), self.phi_target))
+        length = np.abs(np.roll(meant, -1) - np.roll(meant, 1))
+        there, here = (points - np.average(points, weights=length) for points in (meant, own))
+        factor = complex(np.sum(length * there * np.conj(here)) / np.sum(length * np.abs(here) ** 2))
+        shift = complex(np.average(meant - factor * own, weights=length))
+        return PosedDesign(made, Similarity.from_complex(factor, shift), self.phi_target, self.trim)
+
     def extent(self) -> FloatArray:
         """Lower left and upper right corner of the box around the whole motion from pi to 0: (2, 2) float, world."""
         clouds = [self.nodes(float(phi)) for phi in np.linspace(math.pi, 0.0, EXTENT_SAMPLES)]

@@ -14,6 +14,7 @@ from pathlib import Path
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
+from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.export.cut_motion import CutMotion
 from kirigami_studio.export.exporter import ExportJob
 from kirigami_studio.export.picture import INK, SUPERSAMPLING, Colour, PictureFrame, draw_polygons
@@ -106,7 +107,7 @@ def animation_frames(job: ExportJob, frames: int, longest: int) -> list[Image.Im
     if motion is None:
         pictures = [draw_polygons(panels, box, job.target) for panels in poses]
     else:
-        pictures = [_as_cut(job, motion, angle, box) for angle in angles]
+        pictures = [_as_cut(design, job.target, motion, angle, box) for angle in angles]
     # Open and closed states together show every colour.
     sample = Image.new("RGB", (box.pixels[0], 2 * box.pixels[1] + (0 if motion is None else LETTERS)), OVERSTRETCHED)
     sample.paste(pictures[frames // 2], (0, 0))
@@ -115,13 +116,15 @@ def animation_frames(job: ExportJob, frames: int, longest: int) -> list[Image.Im
     return [picture.quantize(palette=shared, dither=Image.Dither.NONE) for picture in pictures]
 
 
-def _as_cut(job: ExportJob, motion: CutMotion, phi: float, box: PictureFrame) -> Image.Image:
+def _as_cut(
+    design: PosedDesign, target: FloatArray | None, motion: CutMotion, phi: float, box: PictureFrame
+) -> Image.Image:
     """One frame of the sheet as cut: its panels, its connectors, and the caption in the lower left corner."""
-    pose = motion.pose(job.posed, phi)
-    image = draw_polygons(pose.panels, box, job.target)
+    pose = motion.pose(design, phi)
+    image = draw_polygons(pose.panels, box, target)
     large = image.resize((SUPERSAMPLING * box.pixels[0], SUPERSAMPLING * box.pixels[1]))
     draw = ImageDraw.Draw(large)
-    widths = motion.closing.sheet.connectors.width_mm / job.posed.mm_per_world(motion.width_mm)
+    widths = motion.closing.sheet.connectors.width_mm / design.mm_per_world(motion.width_mm)
     radii = SUPERSAMPLING * np.maximum(0.5 * widths * box.scale, DOT)
     spots = box.pixel(pose.connectors.mean(axis=1), SUPERSAMPLING)
     for (x, y), radius, stretch in zip(spots, radii.tolist(), pose.stretch.tolist(), strict=True):

@@ -10,6 +10,7 @@ import numpy as np
 from kirigami_studio.evaluate.boundary import as_plane, as_points
 from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.foundation.arrays import ComplexArray, FloatArray
+from kirigami_studio.lattice.deployment import Deployment
 from kirigami_studio.mechanics.closing import Closing, carried_on, ideal_motion
 
 
@@ -46,12 +47,15 @@ class CutMotion:
         Angle at which it jams; 0 for a sheet that closes.
     reached : float, radians
         The angle nearest to its target angle that it comes to.
+    made : Deployment or None
+        The sheet that is cut where that is not quite the design.
     """
 
     closing: Closing
     width_mm: float
     jam_phi: float
     reached: float
+    made: Deployment | None = None
 
     @property
     def jams(self) -> bool:
@@ -69,7 +73,7 @@ class CutMotion:
         Parameters
         ----------
         design : PosedDesign
-            The same design, over its target.
+            The sheet that is cut, over its target.
         phi : float, radians
             Not below ``reached``.
         """

@@ -60,8 +60,8 @@ def export_all(
     """Write the whole set into a folder; each file appears whole or not at all.
 
     Cut file as DXF R2010 and R12, as SVG and as LightBurn project, PDF on the job's paper, layout and preview, the
-    record of the job and the reference drawing.  What an earlier export of the same name left, and this one does not
-    have, is removed if that one's record names it and nobody changed it.
+    record of the job and the reference drawing.  Layout and preview show the sheet that is cut.  What an earlier export
+    of the same name left, and this one does not have, is removed if that one's record names it and nobody changed it.
 
     Parameters
     ----------

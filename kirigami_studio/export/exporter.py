@@ -86,8 +86,13 @@ class ExportJob:
 
     @property
     def posed(self) -> PosedDesign:
-        """The moving sheet over its target, as the window shows it; ask once for a whole animation."""
-        return PosedDesign(self.deployment, self.transform, self.phi, self.trim)
+        """The moving sheet over its target; ask once for a whole animation.
+
+        With a plan, or a motion as cut, it is the sheet that is cut, else the design, as the window shows it.
+        """
+        design = PosedDesign(self.deployment, self.transform, self.phi, self.trim)
+        made = self.motion.made if self.motion is not None else None if self.plan is None else self.plan.made
+        return design if made is None else design.laid_over(made)
 
 
 class Exporter(Protocol):

@@ -111,10 +111,10 @@ def write_layout_svg(job: ExportJob, path: str | Path, width_mm: float = 100.0) 
     ExportError
         The place cannot be written, or the file did not read back.
     """
-    tables = job.deployment.topology
-    compact_width = float(np.ptp(job.deployment.compact[:, 0]))
-    scale = width_mm / compact_width / job.transform.scale
     design = job.posed
+    tables = design.deployment.topology
+    compact_width = float(np.ptp(design.deployment.compact[:, 0]))
+    scale = width_mm / compact_width / design.pose.scale
     nodes = design.nodes(job.phi) * scale
     panels = [panel * scale for panel in design.parts(job.phi)]
     target = None if job.target is None else np.asarray(job.target, dtype=np.float64) * scale

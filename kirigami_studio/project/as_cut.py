@@ -121,11 +121,14 @@ class SimulatedSheet:
     closing : Closing
     node : (H,) int
         Node of the lattice at which each connector is.
+    made : Deployment or None
+        The sheet that is cut where that is not quite the design.
     """
 
     as_cut: AsCut
     closing: Closing
     node: IntArray
+    made: Deployment | None = None
 
     def stretch_at(self, phi: float) -> FloatArray:
         """Stretch (H,) of the connectors at an angle (radians), in their widths; the last that was found beyond it."""
@@ -140,7 +143,7 @@ class SimulatedSheet:
 
     def motion(self, width_mm: float) -> CutMotion:
         """What an animation shows of it; ``width_mm`` is that of the flat sheet."""
-        return CutMotion(self.closing, width_mm, self.as_cut.jam_phi, self.as_cut.reached)
+        return CutMotion(self.closing, width_mm, self.as_cut.jam_phi, self.as_cut.reached, self.made)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -327,7 +330,7 @@ def simulate(
         lap = overlap(deployment, found, width_mm, phi, jam, target, False, design)
     table = cut_table(*deployment.sheet.grid)
     node = table.hinge_node[plan.hinges.finished_mm > 0.0]
-    return SimulatedSheet(_simulated(sheet, found, jam, phi, lap), found, node)
+    return SimulatedSheet(_simulated(sheet, found, jam, phi, lap), found, node, plan.made)
 
 
 def simulated(candidate: Candidate, settings: FabricationSettings, target: Outline | None = None) -> SimulatedSheet:

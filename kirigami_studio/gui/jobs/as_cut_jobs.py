@@ -117,7 +117,7 @@ def gripping(
     from kirigami_studio.mechanics.gripping import grip_steps
 
     end = max(sheet.as_cut.reached, CLOSED)
-    steps = grip_steps(deployment, sheet.closing.sheet, width_mm, end)
+    steps = grip_steps(sheet.made or deployment, sheet.closing.sheet, width_mm, end)
     yield from _in_turns(steps, cancel)
 
 

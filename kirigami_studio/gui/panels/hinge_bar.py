@@ -140,7 +140,7 @@ class HingeBar(QWidget):
         self._fit()
         if plan is not None:
             there = [hinge for hinge in sorted(hinges) if hinge not in plan.options.removed]
-            asked = plan.hinges.requested_mm[there[0]] if there else plan.connector_mm
+            asked = plan.hinges.asked_mm[there[0]] if there else plan.connector_mm
             with QSignalBlocker(self.width_mm):
                 self.width_mm.setValue(float(asked))
         if plan is not None and hinges:

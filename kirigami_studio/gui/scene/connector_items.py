@@ -76,14 +76,14 @@ class Connectors:
 
     def asked_mm(self, hinge: int) -> float:
         """Finished width that is asked for, mm; not a number where the connector was removed."""
-        return math.nan if self.removed[hinge] else float(self.plan.hinges.requested_mm[hinge])
+        return math.nan if self.removed[hinge] else float(self.plan.hinges.asked_mm[hinge])
 
     def described(self, hinge: int) -> str:
         """Text for one hinge, for tooltips."""
         hinges = self.plan.hinges
         if self.removed[hinge]:
             return tr("Connector {hinge}: cut through", hinge=hinge)
-        asked, finished = hinges.requested_mm[hinge], hinges.finished_mm[hinge]
+        asked, finished = hinges.asked_mm[hinge], hinges.finished_mm[hinge]
         return tr(
             "Connector {hinge}: {asked:.3f} mm requested, {finished:.3f} mm finished",
             hinge=hinge,

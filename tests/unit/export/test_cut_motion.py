@@ -11,6 +11,7 @@ import pytest
 from PIL import Image
 
 from kirigami_studio.evaluate.similarity import Similarity
+from kirigami_studio.evaluate.siou import siou_of_many
 from kirigami_studio.export.animation import LETTERS, OVERSTRETCHED, animation_frames, write_animation
 from kirigami_studio.export.cut_motion import CutMotion
 from kirigami_studio.export.exporter import ExportJob
@@ -19,6 +20,7 @@ from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions
 from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.mechanics.closing import closing
+from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.as_cut import planned_sheet
 from kirigami_studio.project.cutting import plan_sheet
 from kirigami_studio.project.settings import FabricationSettings
@@ -35,9 +37,9 @@ def made(design: Deployment, style: ConnectorStyle) -> ExportJob:
     settings = FabricationSettings(WIDTH, connector_mm=0.8, options=CutOptions(style=style))
     plan = plan_sheet(design, settings)
     found = closing(planned_sheet(design, plan, WIDTH))
-    design = plan.cut_from(design)
     pose, jam = Similarity(0.1, 0.3, (2.0, 1.0)), found.jam_phi()
-    return ExportJob(design, 0.0, None, pose.apply(design.outline(0.0)), pose, motion=CutMotion(found, WIDTH, jam, jam))
+    motion = CutMotion(found, WIDTH, jam, jam, plan.made)
+    return ExportJob(design, 0.0, None, pose.apply(design.outline(0.0)), pose, motion=motion)
 
 
 @pytest.fixture(scope="module")
@@ -114,3 +116,16 @@ def test_that_connectors_which_stop_the_sheet_are_red(straight: ExportJob) -> No
 def test_that_a_sheet_which_closes_has_a_caption_without_a_jam(centred: ExportJob) -> None:
     closes = replace(motion_of(centred), jam_phi=0.0, reached=0.0)
     assert closes.caption == "As cut" and not closes.jams
+
+
+def test_that_the_motion_is_that_of_the_sheet_that_is_cut_to_its_end(design: Deployment, centred: ExportJob) -> None:
+    motion, posed = motion_of(centred), centred.posed
+    assert motion.made is posed.deployment is not design and centred.target is not None
+    last = float(motion.closing.phi.min())
+    assert 0.0 < last < 0.05
+    # Beyond the last step the panels go on as those that are cut do: by what these move, none by more.
+    before, after = (np.array(motion.pose(posed, phi).panels) for phi in (last, 0.0))
+    ideal = np.array(posed.parts(0.0)) - np.array(posed.parts(last))
+    np.testing.assert_allclose(after - before, ideal, atol=0.02 / posed.mm_per_world(WIDTH))
+    (score,) = siou_of_many([posed.outline(posed.nodes(0.0), 0.0)], Outline.from_points(centred.target))
+    assert score.iou_exact > 0.99

@@ -9,12 +9,15 @@ import os
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from xml.etree import ElementTree
 
 import ezdxf
 import numpy as np
 import pytest
+from PIL import Image
 from uneven_sheets import uneven_sheet
 
+from kirigami_studio.export import picture
 from kirigami_studio.export.dxf import write_dxf, write_reference
 from kirigami_studio.export.dxf_check import check_file
 from kirigami_studio.export.export_set import export_all
@@ -241,3 +244,31 @@ def test_that_the_caller_may_stop_the_set(job: ExportJob, tmp_path: Path) -> Non
     with pytest.raises(ExportError, match=r"stopped at cut\.dxf"):
         export_all(job, tmp_path, on_written=stop)
     assert [path.name for path in tmp_path.iterdir()] == ["cut.dxf"]
+
+
+def test_that_layout_and_preview_show_the_sheet_that_is_cut(make_design: MakeDesign, tmp_path: Path) -> None:
+    design = make_design(4, 5, seed=1, spread=0.1)
+    plan = plan_cuts(design, 90.0, 0.8, options=CutOptions(style=ConnectorStyle.CENTRED))
+    assert plan.made is not None
+    job = ExportJob(design, plan=plan, target=design.outline(0.0))
+    export_all(job, tmp_path)
+    group = next(one for one in ElementTree.parse(tmp_path / "layout.svg").iter() if one.get("id") == "PANELS")
+    drawn = []
+    for path in group:
+        words = path.get("d", "").replace("M", "").replace("L", "").replace("Z", "").split()
+        drawn.append(np.array([[float(side) for side in word.split(",")] for word in words]))
+    # Panels are rigid: the sides of the drawn ones are those of the panels that are cut.
+    sides = [np.linalg.norm(np.roll(part, -1, axis=0) - part, axis=1) for part in drawn]
+    meant = [np.linalg.norm(np.roll(part, -1, axis=0) - part, axis=1) for part in plan.panels]
+    np.testing.assert_allclose(sides, meant, atol=3e-4)
+    posed = ExportJob(design).posed
+    whole = [part * posed.mm_per_world(90.0) for part in posed.parts(0.0)]
+    other = [np.linalg.norm(np.roll(part, -1, axis=0) - part, axis=1) for part in whole]
+    assert np.abs(np.array(other) - meant).max() > 0.1
+    pictures = [picture.preview(one, 200).tobytes() for one in (job, replace(job, plan=None))]
+    with Image.open(tmp_path / "preview.png") as read:
+        assert read.convert("RGB").tobytes() == picture.preview(job).tobytes() and pictures[0] != pictures[1]
+    assert any(note.code == "plan.room_made" for note in plan.notes)
+    told = json.loads((tmp_path / "cut.json").read_text())["expected"]
+    assert [note.text for note in plan.notes] == told["notes"]
+    np.testing.assert_array_equal(told["ratio_as_cut"], plan.made.field.ratio)
