@@ -259,6 +259,26 @@ def mechanics(arguments: argparse.Namespace) -> int:
     return 0 if figures.ok else 1
 
 
+def as_cut(arguments: argparse.Namespace) -> int:
+    """Silhouettes cut with several widths, read back from DXF and closed; 1 when a file did not pass."""
+    from kirigami_studio.benchmark.as_cut_suite import measure_as_cut
+
+    line = ProgressLine()
+    named = names() if arguments.targets == ["library"] else arguments.targets
+    outlines = [target.read() for target in read_targets(list(named))]
+    figures = measure_as_cut(
+        outlines,
+        arguments.connectors_mm,
+        ConnectorStyle(arguments.style),
+        parse_grid(arguments.grid),
+        arguments.k,
+        arguments.seed,
+        _shown_on(line, "Sheets"),
+    )
+    _print_figures(arguments, line, {**asdict(figures), "ok": figures.ok}, figures.sentences())
+    return 0 if figures.ok else 1
+
+
 def _on_targets(
     arguments: argparse.Namespace, measure: Callable[[Sequence[Outline], Report], dict[str, object]]
 ) -> int:

@@ -497,6 +497,13 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
     SubCommand("benchmark cut-files", "export random designs and read them back", "benchmarks:cut_files", (
         RANDOM_DESIGNS, SEED, STYLE, *FIGURES,
     ), ("kirigami-studio benchmark cut-files --count 20",)),
+    SubCommand("benchmark as-cut", "cut silhouettes, read the files back and close the sheets", "benchmarks:as_cut", (
+        option("--targets", nargs="+", default=["heart", "hexagon", "star"],
+               help="silhouettes, 'library', files or folders (default: heart hexagon star)"),
+        option("--connectors-mm", type=positive, nargs="+", default=[0.2, 0.5, 1.0], metavar="MM",
+               help="finished widths of the connectors (default 0.2 0.5 1.0)"),
+        GRID, samples(32), SEED, STYLE, *FIGURES,
+    ), ("kirigami-studio benchmark as-cut", "kirigami-studio benchmark as-cut --targets library --connectors-mm 0.2")),
 )  # fmt: skip
 
 #: Groups of sub-commands, and what each is for.

@@ -74,7 +74,8 @@ def test_that_an_unknown_variant_is_wrong_usage_before_anything_is_measured(
         (["regularity", "--k", "2"], "--k"), (["designs", "--variants", "prior"], "--variants"),
         (["generation-speed", "--count", "1"], "--count"), (["speed", "--grid", "4x4"], "--grid"),
         (["lattice", "--seed", "1"], "--seed"), (["fabrication", "--targets", "heart"], "--targets"),
-        (["cut-files", "--grid", "4x4"], "--grid"), (["everything"], "everything"), ([], "COMMAND"),
+        (["cut-files", "--grid", "4x4"], "--grid"), (["as-cut", "--count", "1"], "--count"),
+        (["everything"], "everything"), ([], "COMMAND"),
     ],
 )  # fmt: skip
 def test_that_each_suite_takes_its_own_options_only(
