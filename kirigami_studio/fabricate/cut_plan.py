@@ -25,7 +25,7 @@ from kirigami_studio.fabricate.endings import seats
 from kirigami_studio.fabricate.findings import Note
 from kirigami_studio.fabricate.fitting import Obstacle
 from kirigami_studio.fabricate.hinged_cuts import HingedCuts, hinged_cuts, relief_radius
-from kirigami_studio.fabricate.making_room import CHANGED_SHARE, with_room
+from kirigami_studio.fabricate.making_room import CHANGED_SHARE, has_room, with_room
 from kirigami_studio.fabricate.material import Material, default_material
 from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions
 from kirigami_studio.fabricate.ordering import in_cutting_order
@@ -210,8 +210,11 @@ def plan_cuts(
     widths = hinge_widths(table.hinge_count, connector, dict(options.hinge_mm), options.removed)
     _check_size(sheet_lines(deployment, width)[1])
     relief_radius(options.style, material)
-    design, made = deployment, None
-    if options.style is ConnectorStyle.CENTRED and not parts:
+    design, made, crowded = deployment, None, False
+    if options.style is ConnectorStyle.CENTRED and parts:
+        # What stays of the panels is that of the design's.
+        crowded = not has_room(design, width, widths + kerf, table, options.removed)
+    elif options.style is ConnectorStyle.CENTRED:
         deployment = with_room(design, width, widths + kerf, table, options.removed)
         made = None if deployment is design else deployment
     lines, size = sheet_lines(deployment, width)
@@ -261,6 +264,7 @@ def plan_cuts(
         notes=(
             *plan_notes(hinges, material, connector, kerf, options.style, cuts.straight),
             *_room_notes(design, made, width),
+            *([Note.of("plan.no_room_made_in_trimmed")] if crowded else []),
             *_centring_notes(arranged, options, table),
             *_narrowing_notes(hinges),
         ),

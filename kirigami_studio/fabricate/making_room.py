@@ -84,17 +84,30 @@ def with_room(
     deployment : Deployment
         The design itself where there is room, or where no more than ``CHANGED_SHARE`` of the silhouette would buy any.
     """
-    corners = void_hinges(table)
-    there = ~np.isin(corners, removed)
-    largest = spans[corners].max(axis=1)
-    facing = np.where(there.all(axis=1), largest, 0.0)
-    used = np.where(np.isin(np.arange(table.hinge_count), removed), 0.0, spans)
-    programme = _Programme(deployment, width_mm, facing, used, table)
+    programme = _programme(deployment, width_mm, spans, table, removed)
     for share in SHARES:
         found = programme.solve(share)
         if found is None or programme.changed_share(found) <= CHANGED_SHARE:
             return deployment if found is None else found
     return deployment
+
+
+def has_room(
+    deployment: Deployment, width_mm: float, spans: FloatArray, table: CutTable, removed: tuple[int, ...] = ()
+) -> bool:
+    """Whether a design has room for its connectors as it is; arguments as for :func:`with_room`."""
+    return _programme(deployment, width_mm, spans, table, removed).met
+
+
+def _programme(
+    deployment: Deployment, width_mm: float, spans: FloatArray, table: CutTable, removed: tuple[int, ...]
+) -> _Programme:
+    corners = void_hinges(table)
+    there = ~np.isin(corners, removed)
+    largest = spans[corners].max(axis=1)
+    facing = np.where(there.all(axis=1), largest, 0.0)
+    used = np.where(np.isin(np.arange(table.hinge_count), removed), 0.0, spans)
+    return _Programme(deployment, width_mm, facing, used, table)
 
 
 def long_enough(slits: FloatArray, spans: FloatArray) -> BoolArray:
@@ -176,6 +189,12 @@ class _Programme:
             shape = self._design.field.ratio.shape
             design = deploy(self._design.sheet.with_field(RatioField(np.exp(z).reshape(shape))))
         return design
+
+    @property
+    def met(self) -> bool:
+        """Whether the design has all the room that is wanted."""
+        missing = self._conditions(self._design, self._z, _node_slopes(self._design), 1.0).missing
+        return float(missing.max(initial=0.0)) <= MET_MM
 
     def changed_share(self, design: Deployment) -> float:
         """By how much the closed outline differs from the design's after the best similarity, of its area."""

@@ -37,7 +37,15 @@ TOO_SMALL = frozenset({"plan.panel_edge_small", "plan.panel_neck_small", "plan.t
 #: Notes of a plan that mean that a person does not get what was asked for.
 NOT_AS_ASKED = frozenset({"plan.connectors_narrowed"})
 #: Signs of a jam that count only where nobody has closed the sheet on its connectors.
-SIGNS_OF_A_JAM = frozenset({"plan.off_centre", "plan.no_room_to_centre", "verify.voids_miss", "verify.sheet_jams"})
+SIGNS_OF_A_JAM = frozenset(
+    {
+        "plan.off_centre",
+        "plan.no_room_to_centre",
+        "plan.no_room_made_in_trimmed",
+        "verify.voids_miss",
+        "verify.sheet_jams",
+    }
+)
 #: Of a sheet that comes within a few degrees of its angle.
 NEARLY = "as_cut.nearly"
 #: Warnings about a file that are about importing it, not about the sheet.

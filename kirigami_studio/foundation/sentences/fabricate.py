@@ -167,6 +167,10 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "To make room for the connectors, the panels that are cut differ from the design by up to {moved_mm:.2f} mm. "
         "The closed shape keeps its outline to within {share_percent:g} % of its area."
     ),
+    "plan.no_room_made_in_trimmed": mark(
+        "This sheet is trimmed, so its panels cannot be changed to make room for the connectors, and some are crowded: "
+        "the sheet may jam. Use a larger sheet, narrower connectors or a design that is not trimmed."
+    ),
     "plan.connectors_narrowed": (
         mark(
             "{count} of {total} connectors is narrower than asked for, {width_mm:.3f} instead of {asked_mm:.3f} mm, at "

@@ -7,6 +7,7 @@ import pytest
 import shapely
 
 from kirigami_studio.evaluate.evenness import evenness, evenness_of_many, panel_sizes
+from kirigami_studio.fabricate.slits import cut_table
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.sheet import Rim, Sheet, rim_table
@@ -32,6 +33,17 @@ def test_that_areas_edges_and_necks_are_those_of_the_panels(grid: tuple[int, int
     )
     assert figures.width == pytest.approx(grid[1] + 1)
     assert figures.least_feature_mm(100.0) == pytest.approx(100 * sizes.size.min() / (grid[1] + 1))
+
+
+@pytest.mark.parametrize("grid", [(3, 3), (4, 5), (7, 2)])
+def test_that_edge_cuts_are_sides_of_panels_and_so_no_shorter_than_the_least_edge(grid: tuple[int, int]) -> None:
+    deployment, table = deploy(random_sheet(*grid, seed=7)), cut_table(*grid)
+    ends = deployment.compact[table.ends[table.slit_count :]]
+    cuts = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
+    corners = deployment.compact[deployment.topology.panel_nodes.reshape(-1, 4)]
+    sides = np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2).ravel()
+    assert np.abs(sides[:, None] - cuts).min(axis=0).max() < 1e-12
+    assert evenness(deployment).least_edge <= cuts.min() + 1e-12
 
 
 def test_that_the_uniform_sheet_is_even() -> None:

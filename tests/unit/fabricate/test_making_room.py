@@ -7,6 +7,7 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
+from cut_sheets import bitten, mouths
 
 from kirigami_studio.evaluate.siou import siou_of_many
 from kirigami_studio.fabricate.centred import LEAST_SHARE
@@ -110,3 +111,13 @@ def test_that_a_plan_tells_by_how_much_the_sheet_is_not_the_design(make_design: 
     assert 0.5 * np.ptp(apart.reshape(-1, 2), axis=0).max() <= moved <= 2.0 * np.ptp(apart.reshape(-1, 2), axis=0).max()
     assert f"up to {moved:.2f} mm" in note.text and moved == largest_move(design, made, WIDTH) > 0.1
     assert not [note for note in planned(design, 0.05).notes if note.code == "plan.room_made"]
+
+
+def test_that_crowded_trimmed_sheets_are_cut_as_designed_and_told(make_design: MakeDesign) -> None:
+    design = make_design(5, 5, seed=1, spread=0.25)
+    kept = bitten(design, mouths(design), 0.2)
+    for connector, crowded in ((0.8, True), (0.02, False)):
+        plan = plan_cuts(design, WIDTH, connector, options=CutOptions(style=ConnectorStyle.CENTRED), kept=kept)
+        assert plan.made is None and plan.cut_from(design) is design
+        assert [note.code for note in plan.notes].count("plan.no_room_made_in_trimmed") == crowded
+        assert (planned(design, connector).made is not None) == crowded

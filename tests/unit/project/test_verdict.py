@@ -24,7 +24,7 @@ from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.as_cut import AsCut, Outcome, StrainFigure
-from kirigami_studio.project.cutting import plan_of
+from kirigami_studio.project.cutting import least_feature_mm, plan_of
 from kirigami_studio.project.settings import FabricationSettings
 from kirigami_studio.project.verdict import Assessment, Level, Verdict, assess, judge, refused, why_not_cut
 
@@ -136,6 +136,9 @@ def test_that_small_panels_are_cut_with_care(design: Candidate) -> None:
     settings = FabricationSettings(material=thick.key, own=thick, width_mm=80.0, connector_mm=0.5)
     found = assess(design, settings).verdict
     assert found.level is Level.CARE and set(codes(found)) <= {"plan.panel_edge_small", "plan.panel_neck_small"}
+    # Ranking asks for the same, between centre lines of cuts.
+    assert least_feature_mm(settings) == pytest.approx(8.0 + thick.kerf_mm)
+    assert design.score.evenness.least_feature_mm(80.0) < least_feature_mm(settings)
 
 
 def test_that_connectors_narrower_than_asked_for_are_cut_with_care(design: Candidate) -> None:
