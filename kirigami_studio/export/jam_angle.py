@@ -7,11 +7,14 @@ The centres are given back to the hinges of the design, and the fast estimate of
 from __future__ import annotations
 
 import numpy as np
+from scipy.optimize import linear_sum_assignment
+from scipy.spatial.distance import cdist
 
 from kirigami_studio.export.voids_read import FoundVoids
 from kirigami_studio.fabricate.cut_plan import CutPlan
 from kirigami_studio.fabricate.panel_sizes import panels_in_mm
 from kirigami_studio.fabricate.slits import cut_table
+from kirigami_studio.foundation.arrays import FloatArray, IntArray
 from kirigami_studio.lattice.deployment import Deployment
 from kirigami_studio.mechanics.connectors import ElasticSheet, cut_connectors, junctions
 from kirigami_studio.mechanics.estimate import estimate_stretch
@@ -38,7 +41,7 @@ def jam_angle_of_file(found: FoundVoids, plan: CutPlan, deployment: Deployment) 
         0 where it closes; None where the connectors of the file are not those of the plan.
     """
     there = np.flatnonzero(~plan.hinges.removed)
-    matched = found.nearest_to(plan.hinges.position[there])
+    matched = matched_connectors(found, plan.hinges.position[there])
     if matched is None:
         return None
     width, deployment = plan.size_mm[0], plan.cut_from(deployment)
@@ -57,3 +60,14 @@ def jam_angle_of_file(found: FoundVoids, plan: CutPlan, deployment: Deployment) 
     elastic = ElasticSheet(MPA_PER_GPA * plan.material.young_gpa, plan.material.thickness_mm)
     rows = polygons_as_rows([part + shift for part in plan.panels])
     return estimate_stretch(deployment, sheet_network(rows, connectors, elastic), width).jam_phi()
+
+
+def matched_connectors(found: FoundVoids, position: FloatArray) -> IntArray | None:
+    """Which connector of a file is at each of the hinges at (T, 2), mm, by least distances: (T,).
+
+    None where there are not as many, or none.
+    """
+    if len(found.connectors) != len(position) or not len(position):
+        return None
+    centres = np.array([connector.centre for connector in found.connectors])
+    return np.asarray(linear_sum_assignment(cdist(position, centres))[1], dtype=np.intp)

@@ -15,7 +15,7 @@ from shapely.geometry.base import BaseGeometry
 from kirigami_studio.export.dxf_reading import read_with_ezdxf
 from kirigami_studio.export.file_content import MILLIMETRES, FileContent, bent_otherwise, largest_shift
 from kirigami_studio.export.group_codes import read_group_codes
-from kirigami_studio.export.jam_angle import jam_angle_of_file
+from kirigami_studio.export.jam_angle import jam_angle_of_file, matched_connectors
 from kirigami_studio.export.layer_files import by_layer, laid_together, layer_folder, layer_paths
 from kirigami_studio.export.profile import Profile, find_profile
 from kirigami_studio.export.strokes import Stroke, extent, layer_colours, strokes_of, work_of
@@ -429,7 +429,7 @@ def _too_narrow(voids: FoundVoids, plan: CutPlan) -> list[Finding]:
     """Connectors of the file that are narrower than asked for, or, of those listed as narrowed, than listed."""
     hinges = plan.hinges
     there = np.flatnonzero(~hinges.removed)
-    matched = voids.nearest_to(hinges.position[there])
+    matched = matched_connectors(voids, hinges.position[there])
     if matched is None:
         return []
     least = hinges.asked_mm.copy()

@@ -18,10 +18,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 import shapely
-from scipy.optimize import linear_sum_assignment
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
-from scipy.spatial.distance import cdist
 from shapely.geometry import LineString, MultiLineString, Point, Polygon
 from shapely.geometry.base import BaseGeometry
 
@@ -96,16 +94,6 @@ class FoundVoids:
     def panels(self) -> int:
         """How many panels hang together by these connectors, in a sheet of one piece."""
         return len(self.connectors) - self.voids + 1
-
-    def nearest_to(self, position: FloatArray) -> IntArray | None:
-        """Which connector of the file is at each place (T, 2), mm, by least distances: (T,).
-
-        None where there are not as many, or none.
-        """
-        if len(self.connectors) != len(position) or not len(position):
-            return None
-        centres = np.array([connector.centre for connector in self.connectors])
-        return np.asarray(linear_sum_assignment(cdist(position, centres))[1], dtype=np.intp)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
