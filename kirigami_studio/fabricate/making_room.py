@@ -21,7 +21,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.linalg import cholesky, solve_triangular
-from scipy.optimize import nnls
+from scipy.optimize import brentq
 from scipy.sparse import csc_matrix
 from scipy.sparse.linalg import splu
 
@@ -29,7 +29,7 @@ from kirigami_studio.fabricate.centres import BULGE_SPANS, void_hinges
 from kirigami_studio.fabricate.connectors import directions
 from kirigami_studio.fabricate.detours import shortest_turn
 from kirigami_studio.fabricate.slits import SHEET_EDGE, CutTable, edge_sides
-from kirigami_studio.foundation.arrays import BoolArray, FloatArray
+from kirigami_studio.foundation.arrays import BoolArray, FloatArray, IntArray
 from kirigami_studio.lattice.compact import barycentric_stencil
 from kirigami_studio.lattice.deployment import Deployment, deploy, even_part_of_outline
 from kirigami_studio.lattice.ratio_field import RatioField
@@ -61,6 +61,10 @@ RATIO_WEIGHT = 0.05
 CLOSE_SPANS = 4.0
 #: Weight of what cannot be met against all else.
 UNMET = 300.0
+#: Newton steps at most; shares of the cost and of the promised fall that a step has to bring to be taken whole.
+MOST_STEPS, NO_FALL, LEAST_FALL = 60, 1e-9, 1e-4
+#: Right sides that are solved for at once: longer work would hold up the window, which waits for the lock.
+AT_ONCE = 32
 
 
 def with_room(
@@ -117,22 +121,6 @@ def long_enough(slits: FloatArray, spans: FloatArray) -> BoolArray:
     return enough
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class _Conditions:
-    """What is missing (N,), mm, to the distances that slits need, and its fall (N, V) by the logarithms of ratios."""
-
-    missing: FloatArray
-    falls: FloatArray
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class _Slants:
-    """Slants (K,), radians, of the slits of all hinges with a connector, and their change (K, V)."""
-
-    lean: FloatArray
-    change: FloatArray
-
-
 class _Programme:
     """Ratios with room, and the outline nearest to the design's."""
 
@@ -178,11 +166,10 @@ class _Programme:
         design, z = self._design, self._z
         similar = np.zeros(self._similar.shape[1])
         for turn in range(ROUNDS):
-            slopes = _node_slopes(design)
-            conditions = self._conditions(design, z, slopes, share)
-            if conditions.missing.max(initial=0.0) <= MET_MM:
+            missing = self._missing(design, z, share)
+            if missing.max(initial=0.0) <= MET_MM:
                 return None if turn == 0 else design
-            step = self._step(design, z, similar, slopes, conditions)
+            step = self._step(design, z, similar, share, missing)
             step *= 1.0 if turn < DAMPED_FROM else 0.5
             z = z + np.clip(step[: z.size], -LARGEST_STEP, LARGEST_STEP)
             similar = similar + step[z.size :]
@@ -193,8 +180,7 @@ class _Programme:
     @property
     def met(self) -> bool:
         """Whether the design has all the room that is wanted."""
-        missing = self._conditions(self._design, self._z, _node_slopes(self._design), 1.0).missing
-        return float(missing.max(initial=0.0)) <= MET_MM
+        return float(self._missing(self._design, self._z, 1.0).max(initial=0.0)) <= MET_MM
 
     def changed_share(self, design: Deployment) -> float:
         """By how much the closed outline differs from the design's after the best similarity, of its area."""
@@ -217,26 +203,40 @@ class _Programme:
         closed: FloatArray = self._scale * turned[:, self._kept]
         return closed
 
-    def _conditions(self, design: Deployment, z: FloatArray, slopes: FloatArray, share: float) -> _Conditions:
-        run = (design.compact[self._last] - design.compact[self._first]) * self._scale
+    def _missing(self, design: Deployment, z: FloatArray, share: float) -> FloatArray:
+        """What is missing (N,), mm, to the distances that slits need: facing connectors, their ends, their slants."""
+        length = np.linalg.norm(self._run(design), axis=1)
+        apart, lean = self._side * np.tanh(0.5 * z), self._lean(design)
+        wanted = np.where(self._facing > 0.0, share * self._facing * self._facing_spans(design) + SPARE_MM, -math.inf)
+        needed = np.full(self._table.slit_count, HALF_BOW_SPANS + float(shortest_turn(np.zeros(1))[0]))
+        slits, ends = self._worst_ends(lean)
+        needed[slits] = HALF_BOW_SPANS + shortest_turn(np.minimum(lean[ends], MOST_SLANTED))
+        room = share * self._spans * needed + SPARE_MM - 0.5 * length * (1.0 - apart)
+        return np.concatenate([wanted - length * apart, room, self._hinge_spans[self._there] * (lean - MOST_SLANTED)])
+
+    def _falls(self, design: Deployment, z: FloatArray, slopes: FloatArray, share: float) -> FloatArray:
+        """The fall (N, V) of what is missing by the logarithms of ratios."""
+        run = self._run(design)
         length = np.linalg.norm(run, axis=1)
         change = slopes[:, self._last] - slopes[:, self._first]
         longer = self._scale * np.einsum("dv,dvz->vz", (run / length[:, None]).T, change)
         apart, slope = self._side * np.tanh(0.5 * z), 0.5 * self._side / np.cosh(0.5 * z) ** 2
-        slants = self._slants(design, slopes)
-        spans = self._hinge_spans[self._there]
         own = np.arange(z.size)
         facing, end = longer * apart[:, None], 0.5 * longer * (1.0 - apart)[:, None]
         facing[own, own] += length * slope
         end[own, own] -= 0.5 * length * slope
-        wanted = np.where(self._facing > 0.0, share * self._facing * self._facing_spans(design) + SPARE_MM, -math.inf)
-        needed, changed = self._end_spans(slants)
-        ends = share * self._spans * needed
-        end -= (share * self._spans)[:, None] * changed
-        missing = [wanted - length * apart, ends + SPARE_MM - 0.5 * length * (1.0 - apart)]
-        missing.append(spans * (slants.lean - MOST_SLANTED))
-        squarer = -spans[:, None] * slants.change
-        return _Conditions(np.concatenate(missing), np.concatenate([facing, end, squarer]))
+        lean, slanting = self._lean(design), self._slanting(design, slopes)
+        slits, ends = self._worst_ends(lean)
+        leaning = np.minimum(lean[ends], MOST_SLANTED)
+        turning = (shortest_turn(leaning + LITTLE) - shortest_turn(leaning - LITTLE)) / (2.0 * LITTLE)
+        turning[lean[ends] >= MOST_SLANTED] = 0.0
+        end[slits] -= (share * self._spans[slits] * turning)[:, None] * slanting[ends]
+        return np.concatenate([facing, end, -self._hinge_spans[self._there, None] * slanting])
+
+    def _run(self, design: Deployment) -> FloatArray:
+        """Slits (S, 2), mm, from end to end."""
+        run: FloatArray = (design.compact[self._last] - design.compact[self._first]) * self._scale
+        return run
 
     def _facing_spans(self, design: Deployment) -> FloatArray:
         """How many spans (S,) facing connectors are apart: more where a slit leans over the other one's bow."""
@@ -250,24 +250,16 @@ class _Programme:
         spans: FloatArray = np.maximum(FACING_SPANS, (BULGE_SPANS + 1.0 - sine) / np.sqrt(1.0 - sine**2))
         return np.where(sine > LEANING, spans, FACING_SPANS)
 
-    def _end_spans(self, slants: _Slants) -> tuple[FloatArray, FloatArray]:
-        """How many spans (S,) the connectors on a slit keep from its ends, and their change (S, V)."""
-        count = self._table.slit_count
-        ends = np.flatnonzero(self._table.hinge_cut[self._there] < count)
-        lean = np.minimum(slants.lean[ends], MOST_SLANTED)
-        turns = shortest_turn(lean)
+    def _worst_ends(self, lean: FloatArray) -> tuple[IntArray, IntArray]:
+        """Slits (P,), and of each the end (P,), among hinges with a connector, whose turn needs more room."""
+        ends = np.flatnonzero(self._table.hinge_cut[self._there] < self._table.slit_count)
+        turns = shortest_turn(np.minimum(lean[ends], MOST_SLANTED))
         # Of both ends the one that needs more comes last, and stays.
-        order = np.argsort(turns, kind="stable")
-        worst = np.full(count, -1)
-        worst[self._table.hinge_cut[self._there[ends[order]]]] = order
-        slope = (shortest_turn(lean + LITTLE) - shortest_turn(lean - LITTLE)) / (2.0 * LITTLE)
-        slope[slants.lean[ends] >= MOST_SLANTED] = 0.0
-        found = worst >= 0
-        spans = np.full(count, HALF_BOW_SPANS + float(shortest_turn(np.zeros(1))[0]))
-        change = np.zeros((count, slants.change.shape[1]))
-        spans[found] = HALF_BOW_SPANS + turns[worst[found]]
-        change[found] = slope[worst[found], None] * slants.change[ends[worst[found]]]
-        return spans, change
+        ends = ends[np.argsort(turns, kind="stable")]
+        worst = np.full(self._table.slit_count, -1)
+        worst[self._table.hinge_cut[self._there[ends]]] = ends
+        slits = np.flatnonzero(worst >= 0)
+        return slits, worst[slits]
 
     def _headings(self, design: Deployment) -> tuple[FloatArray, FloatArray]:
         """Unit vectors (K, 2) of the slits of all hinges with a connector, and of what they rest on."""
@@ -277,7 +269,13 @@ class _Programme:
         through = np.where(on_edge, self._rim[there], along[table.hinge_through[there]])
         return along[table.hinge_cut[there]], through
 
-    def _slants(self, design: Deployment, slopes: FloatArray) -> _Slants:
+    def _lean(self, design: Deployment) -> FloatArray:
+        """Slants (K,), radians, of the slits of all hinges with a connector."""
+        lean: FloatArray = np.arccos(np.minimum(np.abs(_crossed(*self._headings(design))), 1.0))
+        return lean
+
+    def _slanting(self, design: Deployment, slopes: FloatArray) -> FloatArray:
+        """Their change (K, V) by the logarithms of ratios."""
         nodes, table, there = design.compact, self._table, self._there
         length = np.linalg.norm(nodes[table.ends[:, 1]] - nodes[table.ends[:, 0]], axis=1)
         own, through = self._headings(design)
@@ -290,21 +288,22 @@ class _Programme:
             normal = np.stack([-here[:, 1], here[:, 0]], axis=1)
             turned = np.einsum("kd,dkz->kz", normal, change) / length[cut, None]
             squarer += (sign * np.sign(sine) * _crossed(normal, other))[:, None] * turned
-        lean = np.arccos(np.minimum(np.abs(sine), 1.0))
-        return _Slants(lean, -squarer / np.maximum(np.sin(lean), SQUARE)[:, None])
+        return -squarer / np.maximum(np.sin(self._lean(design)), SQUARE)[:, None]
 
     def _step(
-        self, design: Deployment, z: FloatArray, similar: FloatArray, slopes: FloatArray, conditions: _Conditions
+        self, design: Deployment, z: FloatArray, similar: FloatArray, share: float, missing: FloatArray
     ) -> FloatArray:
         """Changes (V + 4,) of the logarithms of ratios and of the similarity."""
+        slopes = _node_slopes(design)
         moved = np.einsum("dl,dlz->lz", self._normal, self._closed(slopes))
         table = np.hstack([moved, self._similar])
         weights = np.concatenate([np.full(z.size, RATIO_WEIGHT), np.full(similar.size, 1e-6)])
         pull = table.T @ (self._off(design) + self._similar @ similar)
         pull[: z.size] += RATIO_WEIGHT * (z - self._z)
-        close = conditions.missing > -CLOSE_SPANS * float(np.max(self._spans))
-        falls = np.hstack([conditions.falls[close], np.zeros((int(close.sum()), similar.size))])
-        return _least(table.T @ table + np.diag(weights), pull, falls, conditions.missing[close])
+        close = missing > -CLOSE_SPANS * float(np.max(self._spans))
+        falls = self._falls(design, z, slopes, share)[close]
+        falls = np.hstack([falls, np.zeros((len(falls), similar.size))])
+        return _least(table.T @ table + np.diag(weights), pull, falls, missing[close])
 
 
 def _crossed(one: FloatArray, other: FloatArray) -> FloatArray:
@@ -316,22 +315,56 @@ def _crossed(one: FloatArray, other: FloatArray) -> FloatArray:
 def _least(curvature: FloatArray, pull: FloatArray, falls: FloatArray, missing: FloatArray) -> FloatArray:
     """The y with the least y.curvature.y / 2 + pull.y of those with falls y >= missing, as nearly as that can be.
 
-    By Lawson and Hanson's method for least distances (Solving Least Squares Problems, 1974, chapter 23).
+    In variables that make the curvature 1 it is a problem of least distance (Lawson and Hanson, Solving Least Squares
+    Problems, 1974, chapter 23).
     """
     root = cholesky(curvature, lower=True)
     start = solve_triangular(root, pull, lower=True)
     rows = solve_triangular(root, falls.T, lower=True).T
     wanted = missing + rows @ start
     scale = np.maximum(np.abs(rows).max(axis=1), 1e-12)
-    # What cannot be met is made up for by slack, which is dear.
-    slack = np.eye(len(rows)) / UNMET
-    dual = np.vstack([np.hstack([rows / scale[:, None], slack]).T, (wanted / scale)[None]])
-    target = np.zeros(len(dual))
-    target[-1] = 1.0
-    left = dual @ nnls(dual, target, maxiter=20 * dual.shape[1])[0] - target
-    point = -left[: len(root)] / left[-1]
-    found: FloatArray = solve_triangular(root.T, point - start, lower=False)
+    rows, wanted = rows / scale[:, None], wanted / scale
+    found: FloatArray = solve_triangular(root.T, shortest(rows, wanted) - start, lower=False)
     return found
+
+
+def shortest(rows: FloatArray, wanted: FloatArray) -> FloatArray:
+    """The least u (V,) with rows.u >= wanted, where what is not met counts UNMET^2 times as much.
+
+    Newton's method on a convex cost of quadratic pieces, with the best share of a step where a whole one is too far.
+    """
+
+    u = np.zeros(rows.shape[1])
+    for _ in range(MOST_STEPS):
+        short = wanted - rows @ u
+        own = rows[short > 0.0]
+        step = np.linalg.solve(np.eye(u.size) + UNMET**2 * (own.T @ own), UNMET**2 * (own.T @ wanted[short > 0.0])) - u
+        line = _Line(u, step, short, rows @ step)
+        if line.slope(0.0) >= -NO_FALL * line.cost(0.0):
+            break
+        if line.cost(1.0) <= line.cost(0.0) + LEAST_FALL * line.slope(0.0) or line.slope(1.0) <= 0.0:
+            u = u + step
+        else:
+            u = u + brentq(line.slope, 0.0, 1.0) * step
+    return u
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Line:
+    """The cost from a place (V,) along a step (V,): conditions (N,) are short there, and by ``along`` less after it."""
+
+    place: FloatArray
+    step: FloatArray
+    short: FloatArray
+    along: FloatArray
+
+    def cost(self, share: float) -> float:
+        place, unmet = self.place + share * self.step, np.maximum(self.short - share * self.along, 0.0)
+        return 0.5 * float(place @ place) + 0.5 * UNMET**2 * float(unmet @ unmet)
+
+    def slope(self, share: float) -> float:
+        place, unmet = self.place + share * self.step, np.maximum(self.short - share * self.along, 0.0)
+        return float(place @ self.step) - UNMET**2 * float(unmet @ self.along)
 
 
 def _node_slopes(design: Deployment) -> FloatArray:
@@ -358,5 +391,6 @@ def _node_slopes(design: Deployment) -> FloatArray:
     for axis in (0, 1):
         right = np.zeros((count, slopes.shape[2]))
         right[diagonal, void] = along[:, axis]
-        slopes[axis, node] = factor.solve(right)
+        for first in range(0, right.shape[1], AT_ONCE):
+            slopes[axis, node, first : first + AT_ONCE] = factor.solve(right[:, first : first + AT_ONCE])
     return slopes
