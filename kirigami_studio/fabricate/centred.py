@@ -21,7 +21,7 @@ import numpy.typing as npt
 import shapely
 from shapely.geometry import Point, Polygon
 
-from kirigami_studio.fabricate.centres import Centres, settled_centres
+from kirigami_studio.fabricate.centres import Centres, bending_lengths, settled_centres
 from kirigami_studio.fabricate.connectors import SHORTEST_CUT_MM
 from kirigami_studio.fabricate.cut_path import measured_line
 from kirigami_studio.fabricate.detours import NEGLIGIBLE_MM, ON_LINE_MM, TURNS, Bow, Track, crossings, first_turn
@@ -203,7 +203,7 @@ class _Room:
             tighter, flatter = draft.in_the_way()
             flatter -= set(np.flatnonzero(self._flat).tolist())
             if not tighter and not flatter:
-                return draft.arranged(self._widths)
+                return draft.arranged(self._widths, self._kerf)
             self._give_way(draft, tighter, flatter, turn)
         return None
 
@@ -498,10 +498,11 @@ class _Draft:
         needed = np.array([resting.get((a, b), least) for a, b in pairs])
         return needed - CLEAR_MM
 
-    def arranged(self, widths: FloatArray) -> Arranged:
-        """The result, with connectors of these finished widths (H,), mm."""
+    def arranged(self, widths: FloatArray, kerf_mm: float) -> Arranged:
+        """The result, with connectors of these finished widths (H,) and this kerf, mm."""
         centres = self._centres
-        flexure = centres.span_mm.copy()
+        flexure = bending_lengths(centres.span_mm, kerf_mm, centres.height_mm)
+        flexure[self._straight] = centres.span_mm[self._straight]
         tips = self._tips()
         # A tip that is further from a straight through cut than a span makes a wider neck.
         wider = np.maximum(centres.height_mm - 0.5 * centres.span_mm, 0.0)

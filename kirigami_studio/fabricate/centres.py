@@ -34,6 +34,8 @@ ROUNDS = 12
 SETTLED_MM = 5e-5
 #: Conditions that cannot all hold give way in this order: places of single connectors, then parallelograms.
 GIVING_WAY = (1e-5, 1e-9)
+#: A connector on its node, beside a whole bow, bends over so many widths and kerfs.
+BOWED_WIDTHS, BOWED_KERFS = 1.83, 0.73
 #: A centre this far (mm) from its node is on it.
 ON_NODE_MM = 1e-6
 
@@ -73,6 +75,29 @@ class Centres:
         """Centres (H, 2) and radii (H,), mm, of the circles that through cuts keep out of."""
         radius = BULGE_SPANS * self.span_mm
         return self.position + (radius - 0.5 * self.span_mm)[:, None] * self.normal, radius
+
+
+def bending_lengths(span_mm: FloatArray, kerf_mm: float, height_mm: FloatArray) -> FloatArray:
+    """Length (H,), mm, over which connectors bend beside a through cut that makes way for them.
+
+    A bow leaves less material on both sides of the neck than a straight flank does.  Plane-stress finite elements (a
+    round slit's end of kerf k, a bow of 1.5 spans around a connector of width w, Poisson's ratio 0.35) turn as a strip
+    of 1.83 w + 0.73 k does, within 2 % for k up to w.  Where the centre is off the node by the height q the bow is
+    shallower; between that length and the span of a straight flank it is interpolated linearly, which is up to 20 %
+    too short.
+
+    Parameters
+    ----------
+    span_mm : (H,) float, mm
+        Finished widths and kerf.
+    kerf_mm : float
+    height_mm : (H,) float, mm
+        Of the centres above the through cut, see :class:`Centres`.
+    """
+    share = np.clip(1.0 - 2.0 * height_mm / np.where(span_mm > 0.0, span_mm, 1.0), 0.0, 1.0)
+    bowed = BOWED_WIDTHS * np.maximum(span_mm - kerf_mm, 0.0) + BOWED_KERFS * kerf_mm
+    length: FloatArray = np.where(span_mm > kerf_mm, span_mm + share * (bowed - span_mm), span_mm)
+    return length
 
 
 def void_hinges(table: CutTable) -> IntArray:

@@ -17,6 +17,7 @@ import numpy as np
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.siou import siou_of_many
 from kirigami_studio.export.cut_motion import CutMotion
+from kirigami_studio.fabricate.centres import bending_lengths
 from kirigami_studio.fabricate.connectors import hinge_widths
 from kirigami_studio.fabricate.cut_plan import CutPlan
 from kirigami_studio.fabricate.endings import BAR_SPANS, HALF_ANGLES
@@ -38,7 +39,7 @@ from kirigami_studio.mechanics.closing import (
     ideal_motion,
     silhouette,
 )
-from kirigami_studio.mechanics.connectors import ElasticSheet, cut_connectors, junctions
+from kirigami_studio.mechanics.connectors import ElasticSheet, cut_connectors, flexure_length, junctions
 from kirigami_studio.mechanics.estimate import estimate_stretch
 from kirigami_studio.mechanics.sheet_network import SheetNetwork, polygons_as_rows, sheet_network
 from kirigami_studio.outlines.outline import Outline
@@ -186,8 +187,12 @@ def planned_sheet(
     """
     hinges, deployment = plan.hinges, plan.cut_from(deployment)
     found = junctions(deployment, width_mm, cut_table(*deployment.sheet.grid).hinge_node)
-    # A straight slit's connector bends over a span; arcs and bars make it longer.
-    longer = np.where(hinges.removed, 0.0, hinges.flexure_mm - hinges.requested_mm - plan.kerf_mm)
+    if plan.options.style is ConnectorStyle.CENTRED:
+        finished = np.maximum(hinges.finished_mm, 0.0)
+        longer = np.where(hinges.removed, 0.0, _longer_by_bows(hinges.flexure_mm, finished, plan.kerf_mm))
+    else:
+        # A straight slit's connector bends over a span; arcs and bars make it longer.
+        longer = np.where(hinges.removed, 0.0, hinges.flexure_mm - hinges.requested_mm - plan.kerf_mm)
     polygons = panels_in_mm(deployment, () if kept is None else kept, width_mm, np.zeros(2))
     centres = None
     if on_nodes:
@@ -205,6 +210,14 @@ def planned_sheet(
     young = plan.material.young_gpa if young_gpa is None else young_gpa
     elastic = ElasticSheet(MPA_PER_GPA * young, plan.material.thickness_mm)
     return sheet_network(polygons_as_rows(polygons), connectors, elastic)
+
+
+def _longer_by_bows(flexure_mm: FloatArray, width_mm: FloatArray, kerf_mm: float) -> FloatArray:
+    """By how much (H,), mm, connectors bend over a longer strip than beside a straight flank; 0 where none bows."""
+    longer = flexure_mm - flexure_length(width_mm, kerf_mm)
+    bows = (width_mm > 0.0) & (flexure_mm > width_mm + kerf_mm + LONGER_MM)
+    found: FloatArray = np.where(bows, np.maximum(longer, 0.0), 0.0)
+    return found
 
 
 def _unplanned_sheet(deployment: Deployment, settings: FabricationSettings, material: Material) -> SheetNetwork:
@@ -225,7 +238,9 @@ def _unplanned_sheet(deployment: Deployment, settings: FabricationSettings, mate
         lines, _ = sheet_lines(deployment, settings.width_mm)
         slits = np.linalg.norm(lines[:, 1] - lines[:, 0], axis=1)
         crowded = ~long_enough(slits[table.hinge_through], span) & (table.hinge_through != SHEET_EDGE)
-        off = np.where(crowded, 0.5 * span / found.sine, 0.0)
+        height = np.where(crowded, 0.5 * span, 0.0)
+        longer = _longer_by_bows(bending_lengths(span, kerf, height), widths, kerf)
+        off = height / found.sine
         centres = found.place + off[:, None] * found.along
     connectors = cut_connectors(found, widths, kerf, centres, longer)
     elastic = ElasticSheet(MPA_PER_GPA * material.young_gpa, material.thickness_mm)
