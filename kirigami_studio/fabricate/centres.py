@@ -82,7 +82,7 @@ def bending_lengths(span_mm: FloatArray, kerf_mm: float, height_mm: FloatArray) 
 
     A bow leaves less material on both sides of the neck than a straight flank does.  Plane-stress finite elements (a
     round slit's end of kerf k, a bow of 1.5 spans around a connector of width w, Poisson's ratio 0.35) turn as a strip
-    of 1.83 w + 0.73 k does, within 2 % for k up to w.  Where the centre is off the node by the height q the bow is
+    of 1.83 w + 0.73 k does, within 2.5 % for k up to w.  Where the centre is off the node by the height q the bow is
     shallower; between that length and the span of a straight flank it is interpolated linearly, which is up to 20 %
     too short.
 

@@ -11,7 +11,13 @@ import shapely
 from cut_sheets import bitten, connector_distances, drawn_line, finished_pieces, mouths
 from shapely.geometry import Point, Polygon
 
-from kirigami_studio.fabricate.centres import BULGE_SPANS, settled_centres, void_hinges, void_misses
+from kirigami_studio.fabricate.centres import (
+    BULGE_SPANS,
+    bending_lengths,
+    settled_centres,
+    void_hinges,
+    void_misses,
+)
 from kirigami_studio.fabricate.checks import check_plan
 from kirigami_studio.fabricate.cut_plan import CutPlan, Layer, plan_cuts
 from kirigami_studio.fabricate.material import find_material
@@ -20,6 +26,7 @@ from kirigami_studio.fabricate.slits import SHEET_EDGE, cut_table, edge_sides, s
 from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.sheet import Sheet
+from kirigami_studio.project.as_cut import planned_sheet
 
 MakeDesign = Callable[..., Deployment]
 
@@ -199,3 +206,32 @@ def test_that_crowded_connectors_are_told_and_keep_their_width(make_design: Make
     assert check_plan(plan).pieces == 1
     if told[0].code == "plan.off_centre":
         assert f"by up to {told[0].fields['miss_mm']:.3f} mm" in told[0].text
+
+
+def test_that_bending_lengths_are_those_of_finite_elements() -> None:
+    # Kerf and length in widths; plane stress, quadratic triangles, a panel of 40 widths on either side.
+    for kerf, length in ((0.1, 1.902), (0.25, 2.018), (0.5, 2.193), (1.0, 2.507)):
+        found = bending_lengths(np.array([1.0 + kerf]), kerf, np.zeros(1))
+        assert found == pytest.approx([length], rel=0.025)
+    # Shallower bows, by the height of the centre in spans: never longer than found, the span itself without a bow.
+    for height, length in ((0.125, 1.813), (0.25, 1.707), (0.375, 1.572), (0.5, 1.3585)):
+        (found,) = bending_lengths(np.array([1.1]), 0.1, np.array([1.1 * height]))
+        assert 0.8 * length < found < length
+    assert bending_lengths(np.array([1.1, 0.1]), 0.1, np.array([0.55, 0.0])) == pytest.approx([1.1, 0.1])
+
+
+def test_that_connectors_on_their_nodes_bend_over_a_longer_strip_in_plan_and_simulation(
+    make_design: MakeDesign,
+) -> None:
+    design = make_design(3, 3)
+    plan = centred(design, connector=0.3)
+    length = 1.83 * 0.3 + 0.73 * plan.kerf_mm
+    assert plan.centres is not None
+    on_nodes = np.linalg.norm(plan.centres - nodes_of(plan.cut_from(design), plan), axis=1) < 1e-6
+    on_nodes &= cut_table(3, 3).hinge_through != SHEET_EDGE
+    assert on_nodes.any() and plan.hinges.flexure_mm[on_nodes] == pytest.approx(length, rel=1e-6)
+    assert plan.hinges.flexure_mm.min() >= 0.3 + plan.kerf_mm - 1e-9
+    sheet = planned_sheet(design, plan, 100.0)
+    assert sheet.connectors.flexure_mm[on_nodes] == pytest.approx(length, rel=1e-6)
+    in_plane, _ = sheet.strains(np.full(len(on_nodes), math.pi), np.zeros(len(on_nodes)))
+    assert in_plane[on_nodes] == pytest.approx(0.5 * math.pi * 0.3 / length, rel=1e-6)
