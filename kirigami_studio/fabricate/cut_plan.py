@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from types import MappingProxyType
@@ -49,8 +49,6 @@ LARGEST_SHEET_MM = 3000.0
 DECIMALS = 4
 #: A connector counts as wider than asked above this difference (mm).
 WIDER_MM = 1e-3
-#: Widths, of those asked for, at which connectors on trimmed panels are tried before all are straight.
-TRIMMED_SHARES = (0.8, 0.6, 0.4)
 #: The note about slit ends that an obstacle kept straight.
 WHY_STRAIGHT = {
     Obstacle.SLANT: "plan.straight_because_slanted",
@@ -226,12 +224,9 @@ def plan_cuts(
     arranged = None
     if options.style is ConnectorStyle.CENTRED:
         least = least_widths(widths, material.min_ligament_mm, dict(options.hinge_mm))
-        for tried in _tried_widths(deployment, parts, table, widths, least):
-            arranged = centred_cuts(lines, table, sides, tried, least, kerf, overcut, options.removed, trimming)
-            if arranged is not None and parts and arranged.pieces(kerf) > 1 + len(options.removed):
-                arranged = None
-            if arranged is not None:
-                break
+        arranged = centred_cuts(lines, table, sides, widths, least, kerf, overcut, options.removed, trimming)
+        if arranged is not None and parts and arranged.pieces(kerf) > 1 + len(options.removed):
+            arranged = None
     if arranged is None:
         outline, pieces = trimming(shortened)
         cuts = hinged_cuts(
@@ -312,19 +307,6 @@ def _trimming(
     area = kept_area(deployment, parts or (None,) * len(deployment.topology.panel_nodes.reshape(-1, 4)), width)
     straight = STRAIGHT_MM if parts else UNTRIMMED_STRAIGHT_MM
     return lambda pulled: trimmed_cuts(area, pulled, table, kerf, overcut, straight)
-
-
-def _tried_widths(
-    deployment: Deployment, parts: Sequence[FloatArray | None], table: CutTable, widths: FloatArray, least: FloatArray
-) -> Iterator[FloatArray]:
-    """Finished widths (H,), mm, to centre connectors with: as asked, then narrower ones on the trimmed panels."""
-    yield widths
-    trimmed = [number for number, part in enumerate(parts) if part is not None]
-    if not trimmed:
-        return
-    on_trimmed = np.isin(table.hinge_node, deployment.topology.panel_nodes.reshape(-1, 4)[trimmed])
-    for share in TRIMMED_SHARES:
-        yield np.where(on_trimmed, np.maximum(share * widths, least), widths)
 
 
 def _plain_cuts(

@@ -136,18 +136,3 @@ def test_that_the_least_change_is_that_of_non_negative_least_squares(seed: int) 
     left = table @ nnls(table, target)[0] - target
     expected = -left[: rows.shape[1]] / left[-1]
     assert shortest(rows, wanted) == pytest.approx(expected, rel=1e-5, abs=1e-6)
-
-
-def test_that_connectors_on_trimmed_panels_become_narrower_before_all_are_straight() -> None:
-    ratios = np.random.default_rng(1).uniform(-0.3, 0.3, (4, 4))
-    design = deploy(RatioField.from_log10(ratios))
-    kept = bitten(design, mouths(design), 0.7)
-    plan = plan_cuts(design, WIDTH, 2.0, options=CutOptions(style=ConnectorStyle.CENTRED), kept=kept)
-    hinges = plan.hinges
-    assert plan.centres is not None and 0 < hinges.narrowed.size < len(hinges)
-    panels = design.topology.panel_nodes.reshape(-1, 4)
-    trimmed = panels[[number for number, part in enumerate(kept) if part is not None]]
-    assert np.isin(cut_table(4, 4).hinge_node[hinges.narrowed], trimmed).any()
-    least = np.where(np.isin(np.arange(len(hinges)), hinges.narrowed), hinges.requested_mm, 2.0)
-    assert (hinges.finished_mm - least).min() > -1e-3
-    assert check_plan(plan).ok and check_plan(plan).pieces == 1
