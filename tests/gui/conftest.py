@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from PIL import Image, ImageDraw
-from PySide6.QtCore import QCoreApplication, QEvent, QPoint, QThread, QTimer
+from PySide6.QtCore import QCoreApplication, QEvent, QPoint, Qt, QThread, QTimer
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
@@ -92,12 +92,16 @@ def window(qtbot: QtBot, files: PathAnswers) -> Iterator[MainWindow]:
     unstyled()
     # Off screen, Qt hands a move of the pointer to the first window that holds its place: one that a test has left
     # open would take it.  And it tells of no move to where the pointer is, which is where an earlier test left it.
+    while popup := QApplication.activePopupWidget():
+        popup.close()
     for left in QApplication.topLevelWidgets():
         left.hide()
     made = create_window(LIGHT)
     made.file_dialogs = files
     with qtbot.waitExposed(made):
         made.show()
+    for button in (Qt.MouseButton.LeftButton, Qt.MouseButton.RightButton):
+        QTest.mouseRelease(made, button, pos=QPoint(1, made.height() - 2))  # a test may have kept it pressed
     QTest.mouseMove(made, QPoint(1, made.height() - 2))
     threads = made.findChildren(QThread)
     assert len(threads) == 1
