@@ -30,6 +30,7 @@ from kirigami_studio.fabricate.connectors import directions
 from kirigami_studio.fabricate.detours import shortest_turn
 from kirigami_studio.fabricate.slits import SHEET_EDGE, CutTable, edge_sides
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray, IntArray
+from kirigami_studio.foundation.threads import one_blas_thread
 from kirigami_studio.lattice.compact import barycentric_stencil
 from kirigami_studio.lattice.deployment import Deployment, deploy, even_part_of_outline
 from kirigami_studio.lattice.ratio_field import RatioField
@@ -88,11 +89,12 @@ def with_room(
     deployment : Deployment
         The design itself where there is room, or where no more than ``CHANGED_SHARE`` of the silhouette would buy any.
     """
-    programme = _programme(deployment, width_mm, spans, table, removed)
-    for share in SHARES:
-        found = programme.solve(share)
-        if found is None or programme.changed_share(found) <= CHANGED_SHARE:
-            return deployment if found is None else found
+    with one_blas_thread():
+        programme = _programme(deployment, width_mm, spans, table, removed)
+        for share in SHARES:
+            found = programme.solve(share)
+            if found is None or programme.changed_share(found) <= CHANGED_SHARE:
+                return deployment if found is None else found
     return deployment
 
 
