@@ -7,6 +7,7 @@ edge and positive for an arc to the left (counter-clockwise).
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
 from functools import cached_property
@@ -14,7 +15,7 @@ from functools import cached_property
 import numpy as np
 from shapely.geometry import LineString
 
-from kirigami_studio.foundation.arrays import FloatArray
+from kirigami_studio.foundation.arrays import ComplexArray, FloatArray
 from kirigami_studio.foundation.errors import FabricationError
 
 #: Largest distance (mm) between an arc and the chords that stand for it.
@@ -128,12 +129,16 @@ def flattened(points: FloatArray, bulges: FloatArray, closed: bool, chord_mm: fl
     vertices : (V, 2) float, mm
         The given points and those between; a closed path is not repeated at its first point.
     """
-    following = [*points[1:], points[0]]
-    parts = [points[:1]]
-    for start, stop, bulge in zip(points, following, bulges, strict=True):
-        parts += [_between(start, stop, float(bulge), chord_mm), stop[None]]
     edges = len(points) if closed else len(points) - 1
-    return np.concatenate(parts[: 2 * edges] if closed else parts[: 2 * edges + 1])
+    places = np.ascontiguousarray(points, dtype=np.float64).view(np.complex128).ravel()
+    parts, first = [], 0
+    for edge in np.flatnonzero(bulges[:edges]).tolist():
+        parts += [
+            places[first : edge + 1],
+            _between(points[edge].tolist(), points[(edge + 1) % len(points)].tolist(), float(bulges[edge]), chord_mm),
+        ]
+        first = edge + 1
+    return np.concatenate([*parts, places[first:]]).view(np.float64).reshape(-1, 2)
 
 
 def edge_lengths(points: FloatArray, bulges: FloatArray | None, closed: bool) -> FloatArray:
@@ -155,24 +160,29 @@ def measured_line(points: FloatArray, bulges: FloatArray | None, closed: bool) -
     return LineString(np.concatenate([line, line[:1]]) if closed else line)
 
 
-def arc_of(start: FloatArray, stop: FloatArray, bulge: float) -> tuple[FloatArray, float]:
+def arc_of(
+    start: Sequence[float] | FloatArray, stop: Sequence[float] | FloatArray, bulge: float
+) -> tuple[FloatArray, float]:
     """Centre (2,) and radius of the arc of an edge; the bulge is not 0."""
-    x, y = float(stop[0] - start[0]), float(stop[1] - start[1])
-    height = (1.0 - bulge**2) / (4.0 * bulge)
-    centre = np.array([0.5 * (start[0] + stop[0]) - y * height, 0.5 * (start[1] + stop[1]) + x * height])
-    return centre, math.hypot(x, y) * (1.0 + bulge**2) / (4.0 * abs(bulge))
+    x, y, radius = _centre_and_radius(start, stop, bulge)
+    return np.array([x, y]), radius
 
 
-def _between(start: FloatArray, stop: FloatArray, bulge: float, chord_mm: float) -> FloatArray:
-    """Points on an arc, its ends left out: (V, 2)."""
-    if bulge == 0.0:
-        return np.empty((0, 2))
-    centre, radius = arc_of(start, stop, bulge)
+def _between(start: Sequence[float], stop: Sequence[float], bulge: float, chord_mm: float) -> ComplexArray:
+    """Points x + i y on an arc, its ends left out: (V,)."""
+    x, y, radius = _centre_and_radius(start, stop, bulge)
     angle = 4.0 * math.atan(bulge)
     largest = 2.0 * math.acos(max(0.0, 1.0 - chord_mm / radius))
     count = max(2, math.ceil(abs(angle) / largest))
-    x, y = float(start[0] - centre[0]), float(start[1] - centre[1])
-    turned = complex(x, y) * np.exp(1j * angle / count * np.arange(1, count))
-    points = np.empty((count - 1, 2))
-    points[:, 0], points[:, 1] = centre[0] + turned.real, centre[1] + turned.imag
+    turned = complex(start[0] - x, start[1] - y) * np.exp(1j * angle / count * np.arange(1, count))
+    points: ComplexArray = complex(x, y) + turned
     return points
+
+
+def _centre_and_radius(
+    start: Sequence[float] | FloatArray, stop: Sequence[float] | FloatArray, bulge: float
+) -> tuple[float, float, float]:
+    x, y = float(stop[0] - start[0]), float(stop[1] - start[1])
+    height = (1.0 - bulge**2) / (4.0 * bulge)
+    radius = math.hypot(x, y) * (1.0 + bulge**2) / (4.0 * abs(bulge))
+    return 0.5 * (start[0] + stop[0]) - y * height, 0.5 * (start[1] + stop[1]) + x * height, radius

@@ -22,6 +22,8 @@ TIP_SEGMENTS = 16
 DUST_MM2 = 1e-6
 #: Two cuts nearer than this (mm) side by side are one cut made twice.
 SAME_LINE_MM = 1e-3
+#: Share of a distance by which two ways to measure it may differ.
+ROUNDING = 1e-9
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,7 +105,11 @@ def smallest_ligament(
     if len(lines) > 1:
         found += _nearest_two(lines, joined)
     if outline is not None and len(lines):
-        inside = lines[~shapely.intersects(lines, outline)]
+        shapely.prepare(outline)
+        inside = lines[~shapely.intersects(outline, lines)]
+        if found:
+            # What is farther away than two cuts are is not the narrowest place.
+            inside = inside[shapely.dwithin(outline, inside, found[0][0] * (1.0 + ROUNDING))]
         if len(inside):
             distance = shapely.distance(inside, outline)
             worst = int(np.argmin(distance))
@@ -125,7 +131,13 @@ def _nearest_two(
         order = np.argsort(group, kind="stable")
         united = np.asarray(shapely.multilinestrings(lines[order], indices=group[order]))
     tree = shapely.STRtree(united)
-    (first, second), distance = tree.query_nearest(united, exclusive=True, return_distance=True, all_matches=False)
+    within = _upper_bound(lines, group)
+    if math.isfinite(within):
+        first, second = tree.query(united, "dwithin", within * (1.0 + ROUNDING))
+        first, second = first[first != second], second[first != second]
+        distance = shapely.distance(united[first], united[second])
+    else:
+        (first, second), distance = tree.query_nearest(united, exclusive=True, return_distance=True, all_matches=False)
     worst = int(np.argmin(distance)) if len(distance) else -1
     nearest = [(float(distance[worst]), united[first[worst]], united[second[worst]])] if len(distance) else []
     if not joined:
@@ -139,6 +151,20 @@ def _nearest_two(
         (float(shapely.distance(lines[a], lines[b])), lines[a], lines[b]) for a, b in pairs if group[a] == group[b]
     ]
     return sorted([*nearest, *close], key=lambda entry: entry[0])[:1]
+
+
+def _upper_bound(lines: npt.NDArray[np.object_], group: IntArray) -> float:
+    """What the two nearest lines of different groups are apart at most: an end of one and a line that it is beside.
+
+    Infinite where no end lies within the extent of another line.
+    """
+    places, line = shapely.get_coordinates(lines, return_index=True)
+    numbers = np.arange(len(lines))
+    both = np.stack([np.searchsorted(line, numbers, "left"), np.searchsorted(line, numbers, "right") - 1], axis=1)
+    ends = shapely.points(places[both.ravel()])
+    end, other = shapely.STRtree(lines).query(ends)
+    apart = group[end // 2] != group[other]
+    return float(shapely.distance(ends[end[apart]], lines[other[apart]]).min(initial=math.inf))
 
 
 def _groups(count: int, joined: Collection[tuple[int, int]]) -> IntArray:

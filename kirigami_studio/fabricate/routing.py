@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from kirigami_studio.foundation.arrays import ComplexArray, IntArray
+from kirigami_studio.foundation.arrays import ComplexArray, FloatArray, IntArray
 
 #: A change that saves less (mm) is rounding.
 SAVED_MM = 1e-9
@@ -133,15 +133,12 @@ class _Improvement:
     """
 
     def __init__(self, entries: ComplexArray, exits: ComplexArray, start: complex, turnable: bool) -> None:
-        count = len(entries)
-        self.before = np.concatenate([[start], exits])
-        self.after = np.concatenate([entries, [0.0]])
-        self.weight = np.ones(count + 1)
-        self.weight[-1] = 0.0  # the tour may end anywhere
-        self.place = np.arange(count)
+        # Where the head comes from and where it goes to, at every gap; the tour may end anywhere.
+        self.before, self.after = np.concatenate([[start], exits]), np.concatenate([entries, [0.0]])
+        self.place = np.arange(len(entries))
         self.turnable = turnable
-        self.look = np.ones(count + 1, dtype=np.bool_)
-        self.cost = self.weight * np.abs(self.before - self.after)
+        self.look = np.ones(len(entries) + 1, dtype=np.bool_)
+        self.cost = self._to(self.before)
 
     def run(self, kicks: int) -> list[int]:
         """Improve and kick; returns the paths' former places in their new order."""
@@ -153,81 +150,109 @@ class _Improvement:
 
     def _settle(self) -> None:
         """Improve until no gap offers anything."""
-        while np.any(self.look):
-            for gap in np.flatnonzero(self.look).tolist():
-                while self.look[gap]:
-                    self.look[gap] = self._exchange(gap) or self._move(gap)
+        look = self.look
+        while np.any(look):
+            for gap in np.flatnonzero(look).tolist():
+                while look[gap]:
+                    look[gap] = self._improve(gap)
 
     def _kick(self, generator: np.random.Generator) -> None:
         """Swap two neighbouring blocks at a random place, settle, and go back if the tour is longer than before."""
         before = self.before.copy(), self.after.copy(), self.cost.copy(), self.place.copy()
         span = min(WIDEST_KICK, len(self.place))
         low = int(generator.integers(0, len(self.place) - span + 1))
-        one, two, three = np.sort(generator.choice(span + 1, 3, replace=False)) + low
-        self._rearrange(int(one), (np.arange(two, three), np.arange(one, two)), (False, False))
+        one, two, three = (np.sort(generator.choice(span + 1, 3, replace=False)) + low).tolist()
+        self._swap(one, two, three)
         self._settle()
         if self.cost.sum() > before[2].sum():
             self.before, self.after, self.cost, self.place = before
 
-    def _exchange(self, gap: int) -> bool:
+    def _from(self, place: complex) -> FloatArray:
+        """How far (G,) a place is from where the head comes from at every gap."""
+        distance: FloatArray = np.abs(self.before - place)
+        return distance
+
+    def _to(self, place: complex | ComplexArray) -> FloatArray:
+        """How far (G,) it is from a place to where the head goes to at every gap; nowhere from the last one."""
+        distance: FloatArray = np.abs(place - self.after)
+        distance[-1] = 0.0
+        return distance
+
+    def _improve(self, gap: int) -> bool:
+        """Exchange or move what is at a gap, if that saves anything."""
+        first = self.after[gap]
+        to_first = self._to(first)
+        return (self.turnable and self._exchange(gap, to_first)) or self._move(gap, first, to_first)
+
+    def _exchange(self, gap: int, to_first: FloatArray) -> bool:
         """Cut the paths between this gap and the best other one in reverse."""
-        if not self.turnable:
-            return False
-        joined = np.abs(self.before - self.before[gap])
-        joined += self.weight * (self.weight[gap] * np.abs(self.after - self.after[gap]))
-        saved = self.cost + self.cost[gap] - joined
+        joined = self._from(self.before[gap])
+        if gap < len(self.place):
+            joined += to_first
+        saved = self.cost + self.cost[gap]
+        saved -= joined
         saved[gap] = 0.0
-        other = int(np.argmax(saved))
+        other = int(saved.argmax())
         if saved[other] <= SAVED_MM:
             return False
         low, high = min(gap, other), max(gap, other)
-        self._rearrange(low, (np.arange(low, high),), (True,))
+        self._turn(low, high)
+        self._changed(low, high)
         return True
 
-    def _move(self, gap: int) -> bool:
+    def _move(self, gap: int, first: complex, to_first: FloatArray) -> bool:
         """Lift out a few paths after this gap and put them into the best other gap, turned or not."""
         best, chosen = SAVED_MM, (0, 0, False)
-        count = len(self.place)
+        count, cost, from_first = len(self.place), self.cost, None
         for run in range(1, min(LONGEST_RUN, count - gap) + 1):
             end = gap + run
-            first, last = self.after[gap], self.before[end]
-            closed = self.weight[end] * abs(self.before[gap] - self.after[end])
-            saved_here = self.cost[gap] + self.cost[end] - closed
+            closed = abs(self.before[gap] - self.after[end]) if end < count else 0.0
+            saved_here = cost[gap] + cost[end] - closed
             if saved_here <= best:
                 continue
+            last = self.before[end]
             for turned in (False, True) if self.turnable else (False,):
-                one, two = (last, first) if turned else (first, last)
-                added = np.abs(self.before - one) + self.weight * np.abs(self.after - two) - self.cost
+                if turned:
+                    added = self._from(last)
+                    added += to_first
+                else:
+                    from_first = self._from(first) if from_first is None else from_first
+                    added = from_first + self._to(last)
+                added -= cost
                 added[gap : end + 1] = np.inf
-                other = int(np.argmin(added))
+                other = int(added.argmin())
                 if saved_here - added[other] > best:
                     best, chosen = float(saved_here - added[other]), (run, other, turned)
         run, other, turned = chosen
         if run == 0:
             return False
-        block = np.arange(gap, gap + run)
+        if turned:
+            self._turn(gap, gap + run)
         if other < gap:
-            self._rearrange(other, (block, np.arange(other, gap)), (turned, False))
+            self._swap(other, gap, gap + run)
         else:
-            self._rearrange(gap, (np.arange(gap + run, other), block), (False, turned))
+            self._swap(gap, gap + run, other)
         return True
 
-    def _rearrange(self, low: int, blocks: tuple[IntArray, ...], turned: tuple[bool, ...]) -> None:
-        """Put blocks of paths, some of them turned, one after another from ``low`` on; they are what was there."""
-        entries, exits, look = [], [], []
-        for block, back in zip(blocks, turned, strict=True):
-            start, stop = self.after[block], self.before[block + 1]
-            entries.append(stop[::-1] if back else start)
-            exits.append(start[::-1] if back else stop)
-            # A gap inside a turned block is the one after its path was, before.
-            look.append(self.look[block + 1][::-1] if back else self.look[block])
-        order = [block[::-1] if back else block for block, back in zip(blocks, turned, strict=True)]
-        high = low + sum(len(block) for block in blocks)
-        self.after[low:high] = np.concatenate(entries)
-        self.before[low + 1 : high + 1] = np.concatenate(exits)
-        self.look[low:high] = np.concatenate(look)
-        self.place[low:high] = self.place[np.concatenate(order)]
-        touched = slice(low, high + 1)
-        self.cost[touched] = self.weight[touched] * np.abs(self.before[touched] - self.after[touched])
-        for gap in (low, low + len(blocks[0]), high):
+    def _turn(self, low: int, high: int) -> None:
+        """Turn a block of paths; a gap inside it is the one after its path was, before."""
+        entries = self.after[low:high].copy()
+        self.after[low:high] = self.before[low + 1 : high + 1][::-1]
+        self.before[low + 1 : high + 1] = entries[::-1]
+        self.look[low:high] = self.look[low + 1 : high + 1][::-1].copy()
+        self.place[low:high] = self.place[low:high][::-1].copy()
+
+    def _swap(self, low: int, middle: int, high: int) -> None:
+        """Exchange two neighbouring blocks of paths."""
+        for values, first in ((self.after, 0), (self.before, 1), (self.look, 0), (self.place, 0)):
+            one, two = values[low + first : middle + first], values[middle + first : high + first]
+            values[low + first : high + first] = np.concatenate([two, one])
+        self._changed(low, low + high - middle, high)
+
+    def _changed(self, low: int, *others: int) -> None:
+        """Price the gaps from ``low`` to the last of the others; those near any of them are to be looked at again."""
+        high = others[-1]
+        self.cost[low : high + 1] = np.abs(self.before[low : high + 1] - self.after[low : high + 1])
+        self.cost[len(self.place)] = 0.0
+        for gap in (low, *others):
             self.look[max(gap - 1, 0) : gap + 2] = True
