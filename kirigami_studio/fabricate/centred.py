@@ -120,20 +120,11 @@ def least_widths(asked: FloatArray, least_mm: float, chosen: Mapping[int, float]
     return least
 
 
-def centred_cuts(
-    lines: FloatArray,
-    table: CutTable,
-    sides: FloatArray,
-    widths: FloatArray,
-    least: FloatArray,
-    kerf_mm: float,
-    overcut_mm: float,
-    removed: tuple[int, ...],
-    trimmed: Trimming,
-) -> Arranged | None:
-    """Arrange all cuts so that as many connectors as possible turn on their nodes.
+@dataclass(frozen=True, slots=True, eq=False)
+class StraightSheet:
+    """A sheet whose cuts run straight from node to node, and the connectors that it is to get.
 
-    Parameters
+    Attributes
     ----------
     lines : (C, 2, 2) float, mm
         Cuts from node to node.
@@ -146,41 +137,47 @@ def centred_cuts(
     removed : tuple of int
     trimmed : function
         Makes outline and cuts of the straight cuts.
+    """
+
+    lines: FloatArray
+    table: CutTable
+    sides: FloatArray
+    widths: FloatArray
+    least: FloatArray
+    kerf_mm: float
+    overcut_mm: float
+    removed: tuple[int, ...]
+    trimmed: Trimming
+
+
+def centred_cuts(sheet: StraightSheet) -> Arranged | None:
+    """Arrange all cuts so that as many connectors as possible turn on their nodes.
+
+    Parameters
+    ----------
+    sheet : StraightSheet
 
     Returns
     -------
     arranged : Arranged or None
         None where the cuts do not get out of each other's way, or trimming leaves too little for moved connectors.
     """
-    room = _Room(lines, table, sides, widths, least, kerf_mm, overcut_mm, removed, trimmed)
-    return room.arranged()
+    return _Room(sheet).arranged()
 
 
 class _Room:
     """What gives way to what: turns of slits, then widths, then bows."""
 
-    def __init__(
-        self,
-        lines: FloatArray,
-        table: CutTable,
-        sides: FloatArray,
-        widths: FloatArray,
-        least: FloatArray,
-        kerf_mm: float,
-        overcut_mm: float,
-        removed: tuple[int, ...],
-        trimmed: Trimming,
-    ) -> None:
-        self._lines, self._table, self._sides, self._trimmed = lines, table, sides, trimmed
-        self._kerf, self._overcut, self._removed = kerf_mm, overcut_mm, removed
-        self._asked, self._least, self._widths = widths, np.minimum(least, widths), widths.copy()
-        self._attempt = np.zeros(table.hinge_count, dtype=np.intp)
-        self._flat = np.zeros(table.hinge_count, dtype=np.bool_)
-        self._flat[_facing(table, removed)] = True
+    def __init__(self, sheet: StraightSheet) -> None:
+        self._sheet = sheet
+        self._least, self._widths = np.minimum(sheet.least, sheet.widths), sheet.widths.copy()
+        self._attempt = np.zeros(sheet.table.hinge_count, dtype=np.intp)
+        self._flat = np.zeros(sheet.table.hinge_count, dtype=np.bool_)
+        self._flat[_facing(sheet.table, sheet.removed)] = True
 
     @property
     def _spans(self) -> FloatArray:
-        spans: FloatArray = np.maximum(self._widths, 0.0) + self._kerf
+        spans: FloatArray = np.maximum(self._widths, 0.0) + self._sheet.kerf_mm
         return spans
 
     @property
@@ -193,24 +190,20 @@ class _Room:
         for turn in range(ROUNDS):
             centres = self._settled()
             try:
-                draft = _Draft(
-                    centres, self._table, self._attempt, self._flat | self._straight, self._removed, self._kerf,
-                    self._overcut, self._trimmed,
-                )  # fmt: skip
+                draft = _Draft(self._sheet, centres, self._attempt, self._flat | self._straight)
             except FabricationError:
                 # Trimming took the material that a moved connector needs.
                 return None
             tighter, flatter = draft.in_the_way()
             flatter -= set(np.flatnonzero(self._flat).tolist())
             if not tighter and not flatter:
-                return draft.arranged(self._widths, self._kerf)
+                return draft.arranged(self._widths)
             self._give_way(draft, tighter, flatter, turn)
         return None
 
     def _settled(self) -> Centres:
-        return settled_centres(
-            self._lines, self._table, self._sides, self._spans, self._kerf, self._flat | self._straight, self._removed
-        )
+        sheet, flat = self._sheet, self._flat | self._straight
+        return settled_centres(sheet.lines, sheet.table, sheet.sides, self._spans, sheet.kerf_mm, flat, sheet.removed)
 
     def _give_way(self, draft: _Draft, tighter: set[int], flatter: set[int], turn: int) -> None:
         hasty = turn >= HASTY_FROM
@@ -260,19 +253,11 @@ class _Feature:
 class _Draft:
     """One arrangement, and who is in whose way."""
 
-    def __init__(
-        self,
-        centres: Centres,
-        table: CutTable,
-        attempt: IntArray,
-        flat: BoolArray,
-        removed: tuple[int, ...],
-        kerf_mm: float,
-        overcut_mm: float,
-        trimmed: Trimming,
-    ) -> None:
+    def __init__(self, sheet: StraightSheet, centres: Centres, attempt: IntArray, flat: BoolArray) -> None:
+        table, removed = sheet.table, sheet.removed
         self._centres, self._table, self._flat, self._removed = centres, table, flat, removed
-        self._shortest = max(SHORTEST_CUT_MM, 2.0 * kerf_mm)
+        self._kerf = sheet.kerf_mm
+        self._shortest = max(SHORTEST_CUT_MM, 2.0 * sheet.kerf_mm)
         self._tight: set[int] = set()
         self._crowded: set[int] = set()
         self._turns = [None if hinge in removed else first_turn(centres, hinge, int(attempt[hinge]))
@@ -283,10 +268,10 @@ class _Draft:
         tips = self._tips()
         pulled = centres.bodies.copy()
         pulled[table.hinge_cut, table.hinge_end] = tips
-        self._outline, pieces = trimmed(pulled)
+        self._outline, pieces = sheet.trimmed(pulled)
         self._seats = self._all_seats(left)
         places = places_of_ends(pieces, tips, table)
-        self._pieces, places = cut_through(pieces, removed, places, self._seats, table, self._outline, overcut_mm)
+        self._pieces, places = cut_through(pieces, removed, places, self._seats, table, self._outline, sheet.overcut_mm)
         self._places: list[Place] = places
         self._end_of = {place: hinge for hinge, place in enumerate(self._places)}
         self._resting: dict[int, list[int]] = {}
@@ -432,7 +417,7 @@ class _Draft:
         features = [*self._features, self._outline_features]
         cut = np.array([*(piece.cut for piece in self._made), -1])
         opens = np.array([*(piece.opens for piece in self._made), True])
-        one, other = shapely.STRtree(lines).query(lines, "dwithin", float(self._centres.span_mm.max()))
+        one, other = shapely.STRtree(lines).query(lines, "dwithin", float(self._centres.span_mm.max()) - CLEAR_MM)
         apart = (one < other) & (cut[one] != cut[other]) & ~(opens[one] & opens[other])
         one, other = one[apart], other[apart]
         # Chords from outside lie a little off their arcs.
@@ -498,10 +483,10 @@ class _Draft:
         needed = np.array([resting.get((a, b), least) for a, b in pairs])
         return needed - CLEAR_MM
 
-    def arranged(self, widths: FloatArray, kerf_mm: float) -> Arranged:
-        """The result, with connectors of these finished widths (H,) and this kerf, mm."""
+    def arranged(self, widths: FloatArray) -> Arranged:
+        """The result, with connectors of these finished widths (H,), mm."""
         centres = self._centres
-        flexure = bending_lengths(centres.span_mm, kerf_mm, centres.height_mm)
+        flexure = bending_lengths(centres.span_mm, self._kerf, centres.height_mm)
         flexure[self._straight] = centres.span_mm[self._straight]
         tips = self._tips()
         # A tip that is further from a straight through cut than a span makes a wider neck.

@@ -14,7 +14,7 @@ import shapely
 from shapely.geometry import LineString, Polygon
 
 from kirigami_studio.fabricate import timing
-from kirigami_studio.fabricate.centred import Arranged, Trimming, centred_cuts, least_widths
+from kirigami_studio.fabricate.centred import Arranged, StraightSheet, Trimming, centred_cuts, least_widths
 from kirigami_studio.fabricate.centres import void_misses
 from kirigami_studio.fabricate.connectors import OVERCUT_MM, Hinges, edge_cut_paths, hinge_widths, outline_path, shorten
 from kirigami_studio.fabricate.copies import Copies, lay_out
@@ -224,7 +224,9 @@ def plan_cuts(
     arranged = None
     if options.style is ConnectorStyle.CENTRED:
         least = least_widths(widths, material.min_ligament_mm, dict(options.hinge_mm))
-        arranged = centred_cuts(lines, table, sides, widths, least, kerf, overcut, options.removed, trimming)
+        arranged = centred_cuts(
+            StraightSheet(lines, table, sides, widths, least, kerf, overcut, options.removed, trimming)
+        )
         if arranged is not None and parts and arranged.pieces(kerf) > 1 + len(options.removed):
             arranged = None
     if arranged is None:
