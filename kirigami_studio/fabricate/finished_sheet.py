@@ -161,7 +161,7 @@ def _upper_bound(lines: npt.NDArray[np.object_], group: IntArray) -> float:
     places, line = shapely.get_coordinates(lines, return_index=True)
     numbers = np.arange(len(lines))
     both = np.stack([np.searchsorted(line, numbers, "left"), np.searchsorted(line, numbers, "right") - 1], axis=1)
-    ends = shapely.points(places[both.ravel()])
+    ends: npt.NDArray[np.object_] = np.asarray(shapely.points(places[both.ravel()]))
     end, other = shapely.STRtree(lines).query(ends)
     apart = group[end // 2] != group[other]
     return float(shapely.distance(ends[end[apart]], lines[other[apart]]).min(initial=math.inf))
