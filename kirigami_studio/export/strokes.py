@@ -184,7 +184,7 @@ def _finished_sheet(plan: CutPlan) -> Polygon:
     burned = shapely.union_all(shapely.buffer(lines, half, quad_segs=_quarter_chords(half)))
     inside = [LineString(path.travelled) for path in plan.paths if path.closed and path.layer is not Layer.OUTLINE]
     burned = shapely.union_all([burned, *(Polygon(line) for line in inside)])
-    left = shapely.get_parts(outline.difference(burned))
+    left = shapely.get_parts(shapely.difference(outline, burned))
     pieces = [part for part in left if isinstance(part, Polygon) and part.area > DUST_MM2]
     if len(pieces) != 1:
         raise ExportError("slots.falls_apart", kerf_mm=plan.kerf_mm, pieces=len(pieces))

@@ -146,9 +146,12 @@ def edge_lengths(points: FloatArray, bulges: FloatArray | None, closed: bool) ->
     stops = np.roll(points, -1, axis=0)
     edges = len(points) if closed else len(points) - 1
     chords: FloatArray = np.linalg.norm(stops - points, axis=1)[:edges]
-    if bulges is None:
-        return chords
-    bulge = np.abs(bulges[:edges])
+    return chords if bulges is None else arc_lengths(chords, bulges[:edges])
+
+
+def arc_lengths(chords: FloatArray, bulges: FloatArray) -> FloatArray:
+    """Lengths (E,), mm, of arcs with these chords (E,), mm, and bulges (E,); of straight edges their chords."""
+    bulge = np.abs(bulges)
     # An arc of angle 4 atan(b) has the radius chord (1 + b^2) / (4 b).
     stretch = np.divide((1.0 + bulge**2) * np.arctan(bulge), bulge, out=np.ones_like(bulge), where=bulge > 0.0)
     return chords * stretch

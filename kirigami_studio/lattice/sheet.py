@@ -13,6 +13,7 @@ along the chords between them, the barycentric system of ``compact`` divides tha
 from __future__ import annotations
 
 from dataclasses import dataclass
+from dataclasses import field as attribute
 from functools import cache
 from typing import Literal
 
@@ -221,6 +222,7 @@ class Sheet:
     rim: Rim
     start: FloatArray | None
     cell: tuple[float, float]
+    _hash: int = attribute(repr=False)  # sheets, and candidates that have them, are keys of many tables
 
     def __init__(
         self,
@@ -237,6 +239,8 @@ class Sheet:
         object.__setattr__(self, "rim", rim)
         object.__setattr__(self, "start", None if start is None else _checked_start(start))
         object.__setattr__(self, "cell", _checked_cell(cell))
+        outline = None if self.start is None else self.start.tobytes()
+        object.__setattr__(self, "_hash", hash((self.field, self.rim, self.cell, outline)))
 
     @classmethod
     def of(cls, design: Sheet | RatioField) -> Sheet:
@@ -290,7 +294,7 @@ class Sheet:
         )
 
     def __hash__(self) -> int:
-        return hash((self.field, self.rim, self.cell, None if self.start is None else self.start.tobytes()))
+        return self._hash
 
     def __reduce__(self) -> tuple[type[Sheet], tuple[object, ...]]:
         return Sheet, (self.field, self.rim, self.start, self.cell)

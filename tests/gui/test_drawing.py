@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 from PySide6.QtCore import QPointF, QRectF, QSize
-from PySide6.QtGui import QColor, QImage
+from PySide6.QtGui import QColor, QImage, QPainterPath, QPolygonF
 from PySide6.QtWidgets import QApplication
 
 from kirigami_studio.evaluate.posed_design import PosedDesign
@@ -17,6 +17,7 @@ from kirigami_studio.gui.main_window import MainWindow
 from kirigami_studio.gui.scene.fault_items import FaultKind, contact_place, faults, inverted_panels
 from kirigami_studio.gui.scene.layout_items import candidate_pixmap
 from kirigami_studio.gui.scene.mismatch_items import mismatch
+from kirigami_studio.gui.scene.paths import DOZEN, FEW, dozens_of_quads, line_path
 from kirigami_studio.gui.scene.view_transform import Bounds, ViewTransform
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.project.document import Document
@@ -43,6 +44,26 @@ def contrast(one: str, other: str) -> float:
 def posed(designs: Document) -> PosedDesign:
     candidate = designs.candidates[0]
     return PosedDesign(deploy(candidate.sheet.field), candidate.score.transform, 0.0)
+
+
+@pytest.mark.parametrize("closed", [True, False])
+@pytest.mark.parametrize("count", [0, 1, 3, FEW, FEW + 1, 200])
+def test_that_a_line_has_its_points_whether_qt_reads_it_or_is_called_for_each(count: int, closed: bool) -> None:
+    points = np.random.default_rng(count).normal(size=(count, 2))
+    by_calls = QPainterPath()
+    by_calls.addPolygon(QPolygonF([QPointF(*point) for point in points.tolist()]))
+    if closed and count:
+        by_calls.closeSubpath()
+    assert line_path(points, closed) == by_calls
+
+
+def test_that_dozens_of_quads_have_all_quads_and_fill_where_two_overlap() -> None:
+    places = np.arange(DOZEN + 3)[:, None, None] * (2.0, 0.0)
+    paths = dozens_of_quads(SQUARE + places)
+    assert [path.elementCount() for path in paths] == [5 * DOZEN, 15]
+    assert all(any(path.contains(QPointF(x + 0.5, 0.5)) for path in paths) for x in range(0, 2 * DOZEN + 6, 2))
+    (overlapping,) = dozens_of_quads(np.stack([SQUARE, SQUARE[::-1] + 0.5]))  # one of them inverted
+    assert overlapping.contains(QPointF(0.75, 0.75))
 
 
 def test_that_a_frame_maps_there_and_back_with_y_up() -> None:

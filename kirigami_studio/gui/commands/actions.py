@@ -8,7 +8,7 @@ from functools import partial
 from PySide6.QtGui import QAction, QKeySequence
 from PySide6.QtWidgets import QMainWindow, QMenu
 
-from kirigami_studio.gui.command import Command, WindowState
+from kirigami_studio.gui.command import Command, WindowState, Wording
 from kirigami_studio.gui.look import icons
 from kirigami_studio.gui.look.theme import Palette
 
@@ -21,6 +21,7 @@ class CommandActions:
         self._window = window
         self._state_now = state
         self._state = state()
+        self._worded: dict[str, Wording] = {}  # how each command is shown
         self._menus: dict[str, QMenu] = {}
         self.actions = {command.id: self._action(command) for command in self.records}
         for command in self.records:
@@ -75,6 +76,9 @@ class CommandActions:
         action.setEnabled(command.enabled_when(self._state))
         if command.checked_when is not None:
             action.setChecked(command.checked_when(self._state))
+        if self._worded.get(command.id) == wording:
+            return
+        self._worded[command.id] = wording
         action.setText(wording.text)
         action.setStatusTip(wording.tip)
         action.setToolTip(f"{wording.tip} ({command.shortcuts[0]})" if command.shortcuts else wording.tip)

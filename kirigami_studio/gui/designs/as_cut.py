@@ -87,15 +87,17 @@ class AsCutReader(QObject):
 
     def forget(self) -> None:
         """The design is about to be planned anew: stop, and say that nothing is known."""
+        self._drop()
+        self._say(UNKNOWN)
+
+    def _drop(self) -> None:
         self._job.stop()
         self._candidate = None
-        self._say(UNKNOWN)
 
     def _wait(self) -> None:
         """The design on the stage is about to be planned."""
-        self.forget()
-        if self._session.stage is not None:
-            self._say(BUSY)
+        self._drop()
+        self._say(UNKNOWN if self._session.stage is None else BUSY)
 
     def read(self, request: CutRequest, made: Planned) -> None:
         """Close a sheet whose cuts are planned, unless that was done before."""

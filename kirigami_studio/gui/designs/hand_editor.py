@@ -30,7 +30,7 @@ from kirigami_studio.foundation.paper import LOG_RATIO_LIMIT
 from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.gui.designs.outline_drag import OutlineDrag
 from kirigami_studio.gui.designs.rim_drag import MouthDrag, moved, with_sheet
-from kirigami_studio.gui.jobs.design_jobs import Decoded
+from kirigami_studio.gui.jobs.design_jobs import Decoded, decoded
 from kirigami_studio.gui.jobs.queue import Cancel, JobCallbacks, LatestJob, single
 from kirigami_studio.gui.jobs.vertex_drag import DragStart, DragStep
 from kirigami_studio.gui.scene.rim_items import MouthFacts
@@ -178,8 +178,7 @@ def _rescored(candidate: Candidate, sheet: Sheet, target: Outline, cancel: Cance
     """Score a candidate with another sheet; runs in the worker, which may take its time to import."""
     from kirigami_studio.pipeline.redesign import rescored
 
-    after = rescored(candidate, sheet, target)
-    return Decoded(after, deploy(after.final_sheet))
+    return decoded(rescored(candidate, sheet, target))
 
 
 class HandEditor(QObject):

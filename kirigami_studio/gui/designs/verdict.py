@@ -62,6 +62,9 @@ class VerdictState:
         return (checking if self.pending else level, *reasons, *(() if self.advice is None else self.advice.lines))
 
 
+UNKNOWN, PENDING = VerdictState(), VerdictState(pending=True)
+
+
 class VerdictKeeper(QObject):
     """Judges the design on the stage whenever its plan or its simulation is there; looks for fixes where it is not
     ready to cut.
@@ -75,7 +78,7 @@ class VerdictKeeper(QObject):
         self._job = LatestJob["Advice | None"](session.queue)
         self._known: OrderedDict[tuple[Candidate, FabricationSettings], Advice] = OrderedDict()
         self._planned: tuple[CutRequest, Planned] | None = None
-        self.state = VerdictState()
+        self.state = UNKNOWN
         session.display.stage_changed.connect(self.forget)
         session.display.settled.connect(self._wait)
         session.fabrication_changed.connect(self._wait)
@@ -88,9 +91,12 @@ class VerdictKeeper(QObject):
 
     def forget(self) -> None:
         """The design is about to change, or is not planned: nothing is known."""
+        self._drop()
+        self._say(UNKNOWN)
+
+    def _drop(self) -> None:
         self._job.stop()
         self._planned = None
-        self._say(VerdictState())
 
     def forget_fixes(self) -> None:
         """Materials have changed: what was found with them no longer holds."""
@@ -98,9 +104,8 @@ class VerdictKeeper(QObject):
 
     def _wait(self) -> None:
         """The design on the stage is about to be planned."""
-        self.forget()
-        if self._session.stage is not None:
-            self._say(VerdictState(pending=True))
+        self._drop()
+        self._say(UNKNOWN if self._session.stage is None else PENDING)
 
     def take_plan(self, request: CutRequest, made: Planned) -> None:
         """The cuts of a design are planned and checked."""
@@ -159,5 +164,6 @@ class VerdictKeeper(QObject):
         self._say(VerdictState(verdict))
 
     def _say(self, state: VerdictState) -> None:
-        self.state = state
-        self.changed.emit(state)
+        if state is not self.state:
+            self.state = state
+            self.changed.emit(state)

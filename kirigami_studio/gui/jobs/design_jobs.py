@@ -7,10 +7,13 @@ from dataclasses import dataclass, replace
 from functools import partial
 
 from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.evaluate.posed_design import trimmed_parts
+from kirigami_studio.fabricate.panel_sizes import least_panel_share
 from kirigami_studio.foundation.errors import Cancelled, KirigamiError
 from kirigami_studio.gui.jobs import importing
 from kirigami_studio.gui.jobs.queue import Cancel
 from kirigami_studio.lattice.deployment import Deployment, deploy
+from kirigami_studio.lattice.symmetry import symmetry_of
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.pipeline.events import CandidateFound, CandidateImproved, Event, Finished
 from kirigami_studio.pipeline.rank import Ranking
@@ -119,8 +122,17 @@ def decoding(candidates: tuple[Candidate, ...], cancel: Cancel) -> Iterator[Deco
 
 
 def decoded(candidate: Candidate) -> Decoded:
-    """A candidate with the motion of its final sheet."""
-    return Decoded(candidate, deploy(candidate.final_sheet))
+    """A candidate with the motion of its final sheet.
+
+    What the gallery and the stage ask of every design is found out here and kept by who found it: the window does not
+    wait for it.
+    """
+    deployment = deploy(candidate.final_sheet)
+    least_panel_share(deployment)
+    symmetry_of(candidate.sheet)
+    if candidate.trim is not None:
+        trimmed_parts(deployment, candidate.trim)
+    return Decoded(candidate, deployment)
 
 
 def grouping(candidates: tuple[Candidate, ...], ranking: Ranking, cancel: Cancel) -> Iterator[tuple[int, ...]]:

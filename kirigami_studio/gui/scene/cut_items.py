@@ -213,13 +213,15 @@ def cut_steps(plan: CutPlan) -> CutSteps:
     """
     material = plan.material
     acceleration = material.acceleration_mm_s2
-    runs = [timing.run_lengths(path, timing.FLOWING_TURN) for path in plan.paths]
-    cutting = [timing.run_seconds(lengths, material.speed_mm_s, acceleration).sum() for lengths in runs]
+    edges = timing.Edges.of(plan.paths)
+    path, lengths = edges.runs(timing.FLOWING_TURN)
+    runs = timing.run_seconds(lengths, material.speed_mm_s, acceleration)
+    cutting = np.bincount(path, runs, len(plan.paths))
     moving = timing.run_seconds(timing.travel_lengths(plan.paths), material.travel_mm_s, acceleration)
-    seconds = np.concatenate([[0.0], np.cumsum(np.array(cutting) + moving)])
+    seconds = np.concatenate([[0.0], np.cumsum(cutting + moving)])
     if seconds[-1] > 0.0:
         seconds = seconds * (plan.seconds_estimate / seconds[-1])
-    return CutSteps(seconds, np.concatenate([[0.0], np.cumsum([path.length for path in plan.paths])]))
+    return CutSteps(seconds, np.concatenate([[0.0], np.cumsum(np.bincount(edges.path, edges.length, len(plan.paths)))]))
 
 
 def _stroke(painter: QPainter, cuts: list[QPainterPath], thin: bool) -> None:

@@ -13,7 +13,7 @@ from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray
 from kirigami_studio.gui.look.theme import Palette
-from kirigami_studio.gui.scene.paths import line_path, quad_paths
+from kirigami_studio.gui.scene.paths import dozens_of_quads, line_path
 from kirigami_studio.gui.scene.target_items import paint_target_line, paint_target_shape
 from kirigami_studio.gui.scene.view_transform import Bounds, ViewTransform
 from kirigami_studio.outlines.outline import Outline
@@ -55,7 +55,7 @@ def paint_panels(
         # A pen in the fill's colour keeps hairline gaps of antialiasing from showing between closed panels.
         painter.setPen(line if line.style() != Qt.PenStyle.NoPen else QPen(QColor(colour), 0.5))
         painter.setBrush(QColor(colour))
-        for path in quad_paths(panels[chosen & whole]):
+        for path in dozens_of_quads(panels[chosen & whole]):
             painter.drawPath(path)
         for row, part in trimmed.items():
             if chosen[row]:

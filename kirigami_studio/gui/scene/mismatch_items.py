@@ -12,6 +12,7 @@ import numpy.typing as npt
 from PySide6.QtCore import QPointF, Qt
 from PySide6.QtGui import QBrush, QColor, QPainter, QPen, QPixmap
 
+from kirigami_studio.evaluate.posed_design import PosedDesign, polygons_of
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.look.readable import readable_area
@@ -19,6 +20,7 @@ from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.scene.legends import Chip
 from kirigami_studio.gui.scene.paths import area_path
 from kirigami_studio.gui.scene.view_transform import ViewTransform
+from kirigami_studio.outlines.outline import Outline
 
 if TYPE_CHECKING:
     from shapely.geometry.base import BaseGeometry
@@ -67,13 +69,20 @@ def mismatch(target: FloatArray, sheet: FloatArray, removed: Sequence[FloatArray
     if not covered.is_valid:
         covered = shapely.make_valid(covered)
     if removed:
-        off = shapely.union_all([shapely.Polygon(ring) for ring in removed], grid_size=GRID)
+        off = shapely.union_all(polygons_of(removed), grid_size=GRID)
         parts = shapely.get_parts(covered)  # of a sheet that touches itself lines may be left over
         areas = shapely.union_all(parts[shapely.area(parts) > 0.0], grid_size=GRID)
         covered = shapely.difference(areas, off, grid_size=GRID)
     missing, extra = wanted.difference(covered), covered.difference(wanted)
     gap = boundary_gap(wanted, covered)
     return Mismatch(missing, extra, missing.area / wanted.area, extra.area / wanted.area, wanted.area, gap)
+
+
+@lru_cache(maxsize=32)
+def design_mismatch(design: PosedDesign, target: Outline, phi: float) -> Mismatch:
+    """Compare a design at an angle with its target; kept, as a view is painted more often than it turns."""
+    nodes = design.nodes(phi)
+    return mismatch(target.points, design.outline(nodes, phi), design.removed(nodes, phi))
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from enum import Enum
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -51,7 +52,13 @@ from kirigami_studio.gui.scene.layout_labels import (
     smallest_parts,
 )
 from kirigami_studio.gui.scene.legends import Chip, clear_box, legend_boxes, paint_caption, paint_legend
-from kirigami_studio.gui.scene.mismatch_items import Mismatch, difference_chips, mismatch, paint_mismatch, usual_chips
+from kirigami_studio.gui.scene.mismatch_items import (
+    Mismatch,
+    design_mismatch,
+    difference_chips,
+    paint_mismatch,
+    usual_chips,
+)
 from kirigami_studio.gui.scene.target_items import paint_target_line
 from kirigami_studio.gui.scene.view_transform import Bounds, ViewTransform
 from kirigami_studio.gui.scene.void_items import VoidShapes, steady
@@ -81,6 +88,8 @@ NARROW = 440
 CAPTION_HEIGHT = 44.0
 #: How much a fault is enlarged over the fitted picture.
 CLOSE_UP = 5.0
+#: Designs whose facts are kept: a step back in the history shows one of them again.
+KEPT_FACTS = 64
 #: A mouse that moves less than this (pixels) between press and release has clicked.
 STILL = 4.0
 
@@ -112,13 +121,48 @@ FAULT_SENTENCES = {
 BAR_TITLES = {Overlay.RATIOS: RATIO_TITLE, Overlay.OPENINGS: OPENING_TITLE, Overlay.STRETCH: STRETCH_TITLE}
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class RigidFacts:
+    """What is the same of a design at every angle, because its panels are rigid.
+
+    Attributes
+    ----------
+    inverted : (K,) bool
+        Panels that are inverted or collapsed.
+    small : tuple of SmallPart
+        Its smallest parts; panels that were trimmed are left out.
+    largest_opening : float, world
+        Area of the void that opens widest.
+    """
+
+    inverted: BoolArray
+    small: tuple[SmallPart, ...]
+    largest_opening: float
+
+    @classmethod
+    @lru_cache(maxsize=KEPT_FACTS)
+    def of(cls, design: PosedDesign) -> RigidFacts:
+        """Measure a design, once."""
+        panels, trim = design.panels(design.nodes(design.phi_target)), design.trim
+        trimmed = () if trim is None else (row for row, part in enumerate(trim.kept) if part is not None)
+        small = tuple(smallest_parts(panels, frozenset(trimmed)))
+        opened = quad_areas(design.voids(design.nodes(0.5 * math.pi)))
+        return cls(inverted_panels(panels), small, float(opened.max()))
+
+
+@lru_cache(maxsize=KEPT_FACTS)
+def _extent(design: PosedDesign) -> FloatArray:
+    """The box around the motion of a design: 2 ms for 24 x 24 voids."""
+    return design.extent()
+
+
 class LayoutView(Canvas):
     """Draws one design at the current angle; all is computed while painting, so slider storms cost nothing."""
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self._design: PosedDesign | None = None
-        self._inverted: BoolArray = np.zeros(0, dtype=np.bool_)
+        self._rigid = RigidFacts(np.zeros(0, dtype=np.bool_), (), 0.0)
         self._contact: FloatArray | None = None
         self._contact_phi: float | None = None
         self._target: Outline | None = None
@@ -127,8 +171,6 @@ class LayoutView(Canvas):
         self._overlays: frozenset[Overlay] = USUAL
         self._wanted = USUAL  #: what was asked for, also while a plain picture is taken
         self._width_mm = USUAL_WIDTH_MM
-        self._small: list[SmallPart] = []
-        self._largest_opening = 0.0
         self._scales: list[ColourScale] = []
         self._cut: SimulatedSheet | None = None
         self._grips = GRIPS_UNKNOWN
@@ -137,6 +179,7 @@ class LayoutView(Canvas):
         self._faults: tuple[Fault, ...] = ()
         self._hint = ("generate", tr("No design yet"), tr("Choose a target on the left, then press Generate (Ctrl+G)."))
         self._caption = ""
+        self._box: tuple[tuple[object, ...], QRectF] | None = None  #: what it depends on, and the scene's box
         self.voids = VoidGestures(self, self._void_shapes)
         self.setObjectName("layoutView")
         self.setAccessibleName(tr("Layout of the chosen design"))
@@ -172,11 +215,10 @@ class LayoutView(Canvas):
         self._areas, self._faults = None, ()
         before, self._bounds = self._bounds, None
         if design is not None:
-            self._bounds = Bounds.of(design.extent())
-            self._inverted = inverted_panels(design.panels(design.nodes(design.phi_target)))
+            self._rigid = RigidFacts.of(design)
+            self._bounds = Bounds.of(_extent(design))
             self._contact = None if score is None else contact_place(design, score)
             self._contact_phi = None if score is None or score.contact is None else score.contact.phi
-            self._measure(design)
             if target is not None:
                 self._bounds = self._bounds.united(Bounds.of(target.points))
             if self.voids.on and before is not None:
@@ -184,20 +226,11 @@ class LayoutView(Canvas):
         self.voids.follow()
         self.update()
 
-    def _measure(self, design: PosedDesign) -> None:
-        """Find what is the same at every angle: the smallest parts, and how wide the voids open."""
-        panels = design.panels(design.nodes(design.phi_target))
-        trim = design.trim
-        trimmed = () if trim is None else (row for row, part in enumerate(trim.kept) if part is not None)
-        self._small = smallest_parts(panels, frozenset(trimmed))
-        self._largest_opening = float(quad_areas(design.voids(design.nodes(0.5 * math.pi))).max())
-
     def show_draft(self, design: PosedDesign) -> None:
         """Show a design that is being edited by hand, without fitting the view again."""
         self._design, self._cut = design, None
         self._areas, self._faults, self._contact = None, (), None
-        self._inverted = inverted_panels(design.panels(design.nodes(design.phi_target)))
-        self._measure(design)
+        self._rigid = RigidFacts.of(design)
         self.update()
 
     def show_as_cut(self, sheet: SimulatedSheet | None) -> None:
@@ -245,7 +278,7 @@ class LayoutView(Canvas):
         design = self._design
         if design is None:
             return ()
-        found = list(faults(design.panels(design.nodes(self._phi)), self._inverted, self._contact))
+        found = list(faults(design.panels(design.nodes(self._phi)), self._rigid.inverted, self._contact))
         found = [replace(one, phi=self._contact_phi) if one.kind is FaultKind.CONTACT else one for one in found]
         beyond = self._contact_phi if self._contact_phi is not None else design.phi_target
         if self._phi < beyond - NEAR_CONTACT:  # the way there is known to be free
@@ -288,13 +321,21 @@ class LayoutView(Canvas):
 
     def scene_box(self) -> QRectF:
         """Beside the legends that are on, at every angle alike, so that the picture rests while the sheet moves."""
+        legend = Overlay.MISMATCH in self._wanted and self._target is not None
+        size, font = (self.width(), self.height()), self.font().key()
+        key = (self.scene_bounds(), size, font, self._wanted, legend, self._bars_top())
+        if self._box is None or self._box[0] != key:  # asked for several times in every paint event
+            self._box = (key, self._find_box(legend))
+        return self._box[1]
+
+    def _find_box(self, legend: bool) -> QRectF:
         view, bounds = QRectF(self.rect()), self.scene_bounds()
         if bounds is None:
             return view
         metrics = self.fontMetrics()
         titles = [title for overlay, title in BAR_TITLES.items() if overlay in self._wanted]
         legends = bar_boxes(titles, metrics, self.width() - 10.0, self._bars_top())
-        if Overlay.MISMATCH in self._wanted and self._target is not None:
+        if legend:
             chips = self._fitting([usual_chips(self.palette_, short) for short in (False, True)], metrics)
             legends += legend_boxes(chips, metrics, self.width(), self.height())
         return clear_box(bounds, view, self.margin(), legends)
@@ -347,7 +388,7 @@ class LayoutView(Canvas):
         paint_panels(painter, panels, turning_left(field.rows, field.columns), palette, trimmed)
         self._paint_voids(painter, transform, nodes)
         if self._target is not None:
-            self._paint_comparison(painter, transform, nodes)
+            self._paint_comparison(painter, transform)
         self._paint_stretch(painter, transform, nodes)
         self._paint_labels(painter, transform, nodes)
         self._paint_grips(painter, transform)
@@ -366,7 +407,7 @@ class LayoutView(Canvas):
             paint_heat(painter, transform.to_pixels(design.panels(nodes)), field.ratio, self._scales[-1], self.palette_)
         if Overlay.OPENINGS in self._overlays:
             voids, mm2 = design.voids(nodes), self.mm_per_unit**2
-            self._scales.append(opening_scale(self._largest_opening * mm2, self.palette_))
+            self._scales.append(opening_scale(self._rigid.largest_opening * mm2, self.palette_))
             areas = quad_areas(voids).ravel() * mm2
             paint_shaded(painter, transform.to_pixels(voids).reshape(-1, 4, 2), areas, self._scales[-1])
 
@@ -434,7 +475,7 @@ class LayoutView(Canvas):
             if np.linalg.norm(gap[1] - gap[0]) >= SHORTEST_GAP:
                 lengths.append((self._areas.gap.greatest, gap))
         if Overlay.SMALL_PARTS in self._overlays:
-            lengths += [(part.size, transform.to_pixels(part.ends(panels))) for part in self._small]
+            lengths += [(part.size, transform.to_pixels(part.ends(panels))) for part in self._rigid.small]
         occupied: list[QRectF] = []
         for length, ends in lengths:
             paint_dimension(
@@ -445,14 +486,13 @@ class LayoutView(Canvas):
                 occupied,
             )
 
-    def _paint_comparison(self, painter: QPainter, transform: ViewTransform, nodes: FloatArray) -> None:
+    def _paint_comparison(self, painter: QPainter, transform: ViewTransform) -> None:
         self._areas = None
         if self._design is None or self._target is None:
             return
         nearness = 1.0 - abs(self._phi - self._design.phi_target) / COMPARED_WITHIN
         if Overlay.MISMATCH in self._overlays and nearness > 0.0:
-            outline, removed = self._design.outline(nodes, self._phi), self._design.removed(nodes, self._phi)
-            self._areas = mismatch(self._target.points, outline, removed)
+            self._areas = design_mismatch(self._design, self._target, self._phi)
             painter.setOpacity(min(1.0, 2.0 * nearness))
             paint_mismatch(painter, self._areas, transform, self.palette_)
             painter.setOpacity(1.0)

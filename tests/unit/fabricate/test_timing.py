@@ -13,7 +13,8 @@ from shapely.geometry import LineString
 from kirigami_studio.fabricate.cut_path import CutPath, Layer
 from kirigami_studio.fabricate.cut_plan import plan_cuts
 from kirigami_studio.fabricate.material import Material, find_material
-from kirigami_studio.fabricate.timing import DOUBT, cut_times, run_lengths, run_seconds, travel_lengths
+from kirigami_studio.fabricate.timing import DOUBT, Edges, cut_times, run_seconds, travel_lengths
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.lattice.deployment import Deployment
 
 MakeDesign = Callable[..., Deployment]
@@ -28,6 +29,11 @@ def machine() -> Material:
 def slit(*points: tuple[float, float], bulges: tuple[float, ...] | None = None, closed: bool = False) -> CutPath:
     arcs = None if bulges is None else np.array(bulges)
     return CutPath(np.array(points), Layer.SLITS, closed, 0, arcs)
+
+
+def runs_of(path: CutPath, flowing_turn: float) -> FloatArray:
+    """The runs of one path."""
+    return Edges.of([path]).runs(flowing_turn)[1]
 
 
 def test_that_a_short_run_never_reaches_the_speed() -> None:
@@ -64,27 +70,36 @@ def test_that_the_slow_end_stops_at_every_vertex_and_the_fast_end_only_at_sharp_
     turn = math.radians(30.0)
     corner, end = (50.0, 0.0), (50.0 + 50.0 * math.cos(turn), 50.0 * math.sin(turn))
     bent = slit((0.0, 0.0), corner, end)
-    np.testing.assert_allclose(run_lengths(bent, math.radians(45.0)), [100.0])
-    np.testing.assert_allclose(run_lengths(bent, math.radians(10.0)), [50.0, 50.0])
+    np.testing.assert_allclose(runs_of(bent, math.radians(45.0)), [100.0])
+    np.testing.assert_allclose(runs_of(bent, math.radians(10.0)), [50.0, 50.0])
     times = cut_times([bent], machine)
     assert times.low == pytest.approx(1.0 + 0.1 / DOUBT)
     assert times.cut == pytest.approx(2 * (0.5 + 0.1))
     assert times.high == pytest.approx(2 * (0.5 + 0.1 * DOUBT))
     square = slit((0.0, 0.0), (50.0, 0.0), (50.0, 50.0))
-    assert len(run_lengths(square, math.radians(45.0))) == 2
+    assert len(runs_of(square, math.radians(45.0))) == 2
 
 
 def test_that_an_arc_is_one_run_as_long_as_the_arc() -> None:
     circle = slit((-2.0, 0.0), (2.0, 0.0), bulges=(1.0, 1.0), closed=True)
-    np.testing.assert_allclose(run_lengths(circle, 1e-6), [4.0 * math.pi])
+    np.testing.assert_allclose(runs_of(circle, 1e-6), [4.0 * math.pi])
     quarter = math.tan(math.radians(90.0) / 4.0)
     # Straight on, a quarter circle to the left of radius 3, straight on: smooth; the same to the right has two corners.
     for bulge, runs in ((quarter, 1), (-quarter, 3)):
         hook = slit((-5.0, 0.0), (0.0, 0.0), (3.0, 3.0), (3.0, 9.0), bulges=(0.0, bulge, 0.0, 0.0))
-        found = run_lengths(hook, math.radians(10.0))
+        found = runs_of(hook, math.radians(10.0))
         assert len(found) == runs
         assert found.sum() == pytest.approx(5.0 + 1.5 * math.pi + 6.0)
         assert found.sum() == pytest.approx(hook.length, rel=1e-3)
+
+
+def test_that_the_runs_of_a_job_are_those_of_its_paths_one_after_the_other() -> None:
+    bent = slit((0.0, 0.0), (4.0, 0.0), (4.0, 3.0))
+    ring = slit((-2.0, 0.0), (2.0, 0.0), bulges=(1.0, 1.0), closed=True)
+    on = slit((4.0, 3.0), (9.0, 3.0))
+    path, lengths = Edges.of([bent, ring, on]).runs(math.radians(10.0))
+    assert path.tolist() == [0, 0, 1, 2]
+    np.testing.assert_allclose(lengths, [4.0, 3.0, 4.0 * math.pi, 5.0])
 
 
 def test_that_travel_goes_from_the_end_of_one_cut_to_the_start_of_the_next() -> None:
