@@ -19,6 +19,7 @@ from kirigami_studio.pipeline.rank import EVENNESS, MILDER, SYMMETRY, Ranking
 from kirigami_studio.pipeline.redesign import kept_symmetry, trimmed
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.polish.continuation import FAIR_LOSS, Way, fit_from_uniform, fit_shape
+from kirigami_studio.polish.junctions import junction_weight
 from kirigami_studio.polish.levenberg import polish
 from kirigami_studio.polish.objective import CONVERGED, Stage
 from kirigami_studio.polish.preferences import PREFERENCES
@@ -99,7 +100,8 @@ class PolishTask:
         if not even:
             return (Stage(self.steps, least_gain=CONVERGED),)
         if self.last:
-            return (Stage(self.steps, LAST_TRUST, LAST_SHARE * even, least_gain=CONVERGED),)
+            weights = {"even": LAST_SHARE * even, "junctions": junction_weight(even)}
+            return (Stage(self.steps, LAST_TRUST, least_gain=CONVERGED, **weights),)
         return (Stage(self.steps, FIRST_TRUST, FIRST_SHARE * even),)
 
 

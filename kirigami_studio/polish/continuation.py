@@ -37,6 +37,7 @@ from kirigami_studio.outlines.rounding import rounded
 from kirigami_studio.outlines.turning import turn_back
 from kirigami_studio.polish.bounds import RIM_REACH
 from kirigami_studio.polish.guide import TransportMap
+from kirigami_studio.polish.junctions import junction_weight
 from kirigami_studio.polish.levenberg import Fit, check_fit, polish
 from kirigami_studio.polish.objective import Stage
 from kirigami_studio.polish.panel_size import check_least
@@ -95,7 +96,7 @@ def cooled(even: float) -> tuple[Stage, ...]:
         Stage(8, 0.1, max(3e-2, even)),
         Stage(8, 0.05, max(1e-2, even)),
         Stage(8, 0.02, max(1e-3, even)),
-        Stage(16, FINE, even),
+        Stage(16, FINE, even, junctions=junction_weight(even)),
     )
 
 
@@ -106,7 +107,7 @@ def guided(even: float) -> tuple[Stage, ...]:
         Stage(7, 0.06, max(3e-3, even), 0.03),
         Stage(7, 0.03, max(1e-3, even), 0.01),
         Stage(7, 0.015, max(5e-4, even), 0.003),
-        Stage(14, FINE, even),
+        Stage(14, FINE, even, junctions=junction_weight(even)),
     )
 
 
@@ -250,9 +251,12 @@ def fit_from_uniform(
         case Way.GUIDED:
             stages = guided(even)
         case Way.GROWN:
-            stages = (Stage(LOOK_STEPS, FAR, max(LAST_GROWN_EVEN, even)), Stage(LAST_STEPS, FINE, even))
+            stages = (
+                Stage(LOOK_STEPS, FAR, max(LAST_GROWN_EVEN, even)),
+                Stage(LAST_STEPS, FINE, even, junctions=junction_weight(even)),
+            )
         case Way.THICKENED:
-            stages = (Stage(LOOK_STEPS, FAR, even), Stage(LAST_STEPS, FINE, even))
+            stages = (Stage(LOOK_STEPS, FAR, even), Stage(LAST_STEPS, FINE, even, junctions=junction_weight(even)))
     fit = polish(
         sheet,
         target,

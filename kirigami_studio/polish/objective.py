@@ -7,7 +7,8 @@ Residuals, all in unit-area lengths and weighted by the boundary length that the
 
 down-weighted beyond a trusted distance so that their sum grows like an area and not like its square.  Beside them:
 terms on z, see ``preferences``; a penalty on panels too small to cut, see ``panel_size``; and, where a stage of the fit
-asks for them, even panels, see ``even_panels``, and a guide for the inside, see ``guide``.
+asks for them, even panels, see ``even_panels``, a guide for the inside, see ``guide``, and open junctions, see
+``junctions``.
 """
 
 from __future__ import annotations
@@ -25,6 +26,7 @@ from kirigami_studio.polish.basis import Basis
 from kirigami_studio.polish.boundary_target import BoundaryTarget
 from kirigami_studio.polish.even_panels import EvenPanels
 from kirigami_studio.polish.guide import Guide
+from kirigami_studio.polish.junctions import OPEN, Junctions, junctions
 from kirigami_studio.polish.matching import EDGE_SHARES, Matching, OneSided, check_excess, matched, outer_hinges
 from kirigami_studio.polish.normal_equations import Quadratic
 from kirigami_studio.polish.panel_size import PENALTY, shortage
@@ -43,6 +45,7 @@ CONVERGED, SETTLED = 1e-4, 2e-3
 #: Number of pose parameters: log scale, angle, shift.
 POSE = 4
 NO_SIZES = panel_sizes(topology(2, 2).uniform_nodes, 2, 2).below(0.0)
+NO_JUNCTIONS = junctions(topology(2, 2).uniform_nodes, 2, 2).shallower(0.0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,6 +65,8 @@ class Stage:
         Weight of the guide for the inside, see ``guide``.
     least_gain : float
         The stage ends with a step that lowers the cost by no more than this share.
+    junctions : float
+        Weight of cuts that meet at shallow angles, see ``junctions``.
     """
 
     steps: int
@@ -69,6 +74,7 @@ class Stage:
     even: float = 0.0
     guide: float = 0.0
     least_gain: float = SETTLED
+    junctions: float = 0.0
 
 
 #: Nothing but the match and what the ratios prefer.
@@ -111,6 +117,7 @@ class Objective:
         self.model, self.target, self.terms, self.stage, self.least = model, target, terms, stage, least
         self.even = even if stage.even else None
         self.guide = guide if stage.guide else None
+        self._each_junction = stage.junctions / (2 * model.voids)
         self.one_sided = None
         if check_excess(excess) < 1.0:
             self.one_sided = OneSided(excess, outer_hinges(model.rows, model.columns, model.phi))
@@ -136,7 +143,11 @@ class Objective:
         if self.least:
             small = panel_sizes(nodes, self.model.rows, self.model.columns).below(self.least)
             cost += shortage(small, self.least)
-        return Look(state, decoded, outline, matching, small, gaps, cost)
+        shallow = NO_JUNCTIONS
+        if self.stage.junctions:
+            shallow = junctions(nodes, self.model.rows, self.model.columns).shallower(OPEN)
+            cost += self._each_junction * float(np.square(shallow.sine - OPEN).sum())
+        return Look(state, decoded, outline, matching, small, shallow, gaps, cost)
 
     def slopes(self, look: Look, basis: Basis | None = None, stiffness: FloatArray | None = None) -> Slopes:
         """Derivatives at a state, by the variables of ``basis``; by the shape's own numbers if missing.
@@ -166,6 +177,9 @@ class Objective:
         if len(look.small.size):
             grown = basis.reduced(slopes.motion.slopes(*look.small.reach(self.model.node_count)))
             own += 2.0 * PENALTY * (grown.T @ grown)
+        if len(look.shallow):
+            opened = basis.reduced(slopes.motion.slopes(*look.shallow.reach(self.model.node_count)))
+            own += 2.0 * self._each_junction * (opened.T @ opened)
         if look.gaps is not None and slopes.centroids is not None:
             inner += 2.0 * self.stage.guide / len(look.gaps) * (slopes.centroids.T @ slopes.centroids)
         return Quadratic(self.gradient(look, slopes), inner, slopes.outline, self.spread(look))
@@ -200,6 +214,10 @@ class Objective:
             lack = 2.0 * PENALTY * (look.small.size - self.least)
             grown = np.stack([lack @ along for along in look.small.reach(len(nodes))], axis=1)
             force = grown if force is None else force + grown
+        if len(look.shallow):
+            lack = 2.0 * self._each_junction * (look.shallow.sine - OPEN)
+            opened = np.stack([lack @ along for along in look.shallow.reach(len(nodes))], axis=1)
+            force = opened if force is None else force + opened
         return force
 
 
@@ -242,6 +260,8 @@ class Look:
     matching : Matching
     small : PanelSizes
         Edges and necks below the least size.
+    shallow : Junctions
+        Where cuts meet at shallow angles, if the stage asks for open junctions.
     gaps : (P, 2) float or None
         From each panel centroid's image to the centroid, where there is a guide.
     cost : float
@@ -252,6 +272,7 @@ class Look:
     outline: FloatArray
     matching: Matching
     small: PanelSizes
+    shallow: Junctions
     gaps: FloatArray | None
     cost: float
 
