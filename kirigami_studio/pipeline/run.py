@@ -191,7 +191,7 @@ def fits_from_uniform(request: Request) -> list[GuidedTask]:
     """
     if not request.fitted_starts:
         return []
-    angles = first_angles(request.target, request.chosen_grid, 1, request.symmetry)
+    angles = first_angles(request.target, request.chosen_grid, 1, request.symmetry, request.start)
     if request.symmetry in ("mirror", "turn"):
         angles = [one for one in angles if one[1] is not None] or angles
     ways: dict[Symmetry | None, list[tuple[float, Symmetry | None, Way]]] = {}
@@ -208,7 +208,7 @@ def fits_from_uniform(request: Request) -> list[GuidedTask]:
 
 def symmetric_shares(request: Request, count: int) -> list[tuple[SymmetricPose, int]]:
     """Symmetries that ``count`` samples keep, and how many of them keep each."""
-    poses = shared_symmetries(request.target, request.chosen_grid, request.symmetry)
+    poses = shared_symmetries(request.target, request.chosen_grid, request.symmetry, request.start)
     poses = poses[:MOST_SYMMETRIES]
     together = count if request.symmetry in ("mirror", "turn") and poses else count // 2
     each = [together // len(poses) + (place < together % len(poses)) for place in range(len(poses))]
@@ -216,8 +216,9 @@ def symmetric_shares(request: Request, count: int) -> list[tuple[SymmetricPose, 
 
 
 def on_sheet(request: Request, field: RatioField) -> Sheet:
-    """The sheet of a sample: that of the design that samples are near, with other ratios, else the paper's."""
-    return Sheet(field) if request.near is None or request.rim == "even" else request.near.with_field(field)
+    """The sheet of a sample: that of the design that samples are near, with other ratios, else the uniform sheet."""
+    flat = request.uniform if request.near is None or request.rim == "even" else request.near
+    return flat.with_field(field)
 
 
 def rotation_of_target(sheet: Sheet, target: Outline, phi: float) -> float:

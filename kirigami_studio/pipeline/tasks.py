@@ -15,6 +15,7 @@ from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.lattice.symmetry import Symmetry
 from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.outlines.starts import StartShape
 from kirigami_studio.pipeline.rank import EVENNESS, MILDER, SYMMETRY, Ranking
 from kirigami_studio.pipeline.redesign import kept_symmetry, trimmed
 from kirigami_studio.pipeline.request import Request
@@ -171,12 +172,12 @@ def fit_target(request: Request, symmetry: Symmetry | None) -> Outline:
     """What a fit is to match: the target, or the symmetric shape that it is meant to be, where that is asked for."""
     if symmetry is None or request.symmetry not in ("mirror", "turn"):
         return request.target
-    return _meant(request.target, request.chosen_grid, request.wishes.symmetry, symmetry)
+    return _meant(request.target, request.chosen_grid, request.start, request.symmetry, symmetry)
 
 
 @lru_cache(maxsize=16)
-def _meant(target: Outline, grid: tuple[int, int], setting: str, symmetry: Symmetry) -> Outline:
-    for pose in shared_symmetries(target, grid, setting):
+def _meant(target: Outline, grid: tuple[int, int], start: StartShape, setting: str, symmetry: Symmetry) -> Outline:
+    for pose in shared_symmetries(target, grid, setting, start):
         if pose.symmetry is symmetry:
             return symmetric_target(target, pose)
     return target

@@ -6,9 +6,9 @@ Residuals, all in unit-area lengths and weighted by the boundary length that the
 * from even samples of the target boundary to the layout (nothing may be missed),
 
 down-weighted beyond a trusted distance so that their sum grows like an area and not like its square.  Beside them:
-terms on z, see ``preferences``; a penalty on panels too small to cut, see ``panel_size``; and, where a stage of the fit
-asks for them, even panels, see ``even_panels``, a guide for the inside, see ``guide``, and open junctions, see
-``junctions``.
+terms on z, see ``preferences``; penalties on panels too small to cut, see ``panel_size``, and on long chords of a round
+start, see ``chords``; and, where a stage of the fit asks for them, even panels, see ``even_panels``, a guide for the
+inside, see ``guide``, and open junctions, see ``junctions``.
 """
 
 from __future__ import annotations
@@ -24,6 +24,7 @@ from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.lattice.topology import topology
 from kirigami_studio.polish.basis import Basis
 from kirigami_studio.polish.boundary_target import BoundaryTarget
+from kirigami_studio.polish.chords import WEIGHT as CHORDS
 from kirigami_studio.polish.even_panels import EvenPanels
 from kirigami_studio.polish.guide import Guide
 from kirigami_studio.polish.junctions import OPEN, Junctions, junctions
@@ -135,6 +136,8 @@ class Objective:
         cost += self.terms.value(shape[: self.model.voids])
         if self.even is not None:
             cost += self.stage.even * self.even.value(nodes)
+        if self.model.chords is not None:
+            cost += CHORDS * self.model.chords.excess(self.model.positions(shape)) ** 2
         gaps = None
         if self.guide is not None:
             gaps = self.guide.gaps(nodes, _similarity(state[-POSE:]))
@@ -180,6 +183,10 @@ class Objective:
         if len(look.shallow):
             opened = basis.reduced(slopes.motion.slopes(*look.shallow.reach(self.model.node_count)))
             own += 2.0 * self._each_junction * (opened.T @ opened)
+        cut = self._cut_by_chords(shape)
+        if cut is not None:
+            slope = basis.reduced(cut[1])
+            own += 2.0 * CHORDS * np.outer(slope, slope)
         if look.gaps is not None and slopes.centroids is not None:
             inner += 2.0 * self.stage.guide / len(look.gaps) * (slopes.centroids.T @ slopes.centroids)
         return Quadratic(self.gradient(look, slopes), inner, slopes.outline, self.spread(look))
@@ -197,8 +204,19 @@ class Objective:
         by_nodes = self._force(look)
         if by_nodes is not None:
             by_shape += slopes.motion.gradient(by_nodes)
+        cut = self._cut_by_chords(shape)
+        if cut is not None:
+            by_shape += 2.0 * CHORDS * cut[0] * cut[1]
         gradient[:-POSE] += slopes.basis.reduced(by_shape)
         return gradient
+
+    def _cut_by_chords(self, shape: FloatArray) -> tuple[float, FloatArray] | None:
+        """What chords cut off beyond what is allowed, and its derivative (S,) by the shape; None for nothing."""
+        model = self.model
+        excess = 0.0 if model.chords is None else model.chords.excess(model.positions(shape))
+        if model.chords is None or not excess:
+            return None
+        return excess, np.append(np.zeros(model.voids), model.chords.slopes(model.positions(shape)))
 
     def spread(self, look: Look) -> FloatArray:
         """Gauss-Newton approximation of the second derivative of the match by the outline's vertices: (2 L, 2 L)."""

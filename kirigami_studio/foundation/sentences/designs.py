@@ -40,6 +40,14 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "start.size_out_of_range": mark(
         "A start outline must be {least:g} to {most:g} cells across, got {width:g} x {height:g}. Scale it."
     ),
+    "start.wrong_numbers": mark(
+        "Got the start '{text:.60}'. Give rectangle:W:H or ellipse:W:H with sides that differ by at most {longest:g} "
+        "times, as in ellipse:3:2, or polygon:N with 3 to {most} sides."
+    ),
+    "start.hollow": mark(
+        "The start '{name:.60}' is hollow: {percent:.0f} % of its hull is missing, deepest at {across:.0f} % of its "
+        "width from the left and {up:.0f} % of its height from below. Fill the hollow, or start from another shape."
+    ),
     "start.too_far_away": mark("A start outline must lie within {most:g} cells of the origin. Move it there."),
     "cell.not_positive": mark("A cell needs a width and a height above 0, got {cell!r:.80}."),
     "cell.out_of_range": mark(
