@@ -109,7 +109,8 @@ def turns(points: FloatArray) -> FloatArray:
     after = np.roll(points, -1, axis=0) - points
     before = np.roll(after, 1, axis=0)
     cross = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
-    return np.abs(np.arctan2(cross, np.einsum("ij,ij->i", before, after)))
+    turned: FloatArray = np.abs(np.arctan2(cross, np.einsum("ij,ij->i", before, after)))
+    return turned
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -124,7 +124,7 @@ def convex_start(outline: Outline) -> StartShape:
         It has larger hollows; the sentence says where the deepest one is.
     """
     hull = outline.polygon.convex_hull
-    edge = shapely.get_exterior_ring(hull)
+    edge = shapely.boundary(hull)
     if hull.area > 1.0 + FILLED:
         deepest = int(np.argmax(shapely.distance(edge, shapely.points(outline.points))))
         low, high = outline.points.min(axis=0), outline.points.max(axis=0)
