@@ -21,9 +21,11 @@ from kirigami_studio.fabricate.findings import Note
 from kirigami_studio.foundation.errors import Cancelled, FabricationError
 from kirigami_studio.foundation.files import check_folder, write_atomically
 from kirigami_studio.foundation.words import tr, tr_n
+from kirigami_studio.lattice.laying import lost_to_chords, start_error
 from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.lattice.sheet_files import sheet_json
 from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.outlines.starts import start_shape
 from kirigami_studio.pipeline.auto_grid import chosen_for
 from kirigami_studio.pipeline.events import Finished, Progress, Result
 from kirigami_studio.pipeline.rank import Ranking
@@ -31,6 +33,7 @@ from kirigami_studio.pipeline.redesign import keep_for_connectors
 from kirigami_studio.pipeline.request import POLISH_STEPS, REGULAR, Request, provenance
 from kirigami_studio.pipeline.run import run, with_grid
 from kirigami_studio.pipeline.variety import look_alikes
+from kirigami_studio.polish.flat_sheet import width_in_cells
 from kirigami_studio.project.as_cut import jam_angles
 from kirigami_studio.project.cutting import least_feature_mm, material_for
 from kirigami_studio.project.design_facts import design_facts, with_run
@@ -46,6 +49,7 @@ MOST_LOOKED_AT = 32
 def design(arguments: argparse.Namespace) -> int:
     """Design every target; one JSON object a line for many, files only where --out is given."""
     grid = parse_grid_or_auto(arguments.grid)
+    start = start_shape(arguments.start)
     fabrication = material_settings(arguments)
     regular = REGULAR[arguments.prefer] if arguments.regular is None else arguments.regular
     batch = are_many_targets(arguments.targets)
@@ -74,6 +78,7 @@ def design(arguments: argparse.Namespace) -> int:
                 regular=regular,
                 width_mm=fabrication.width_mm,
                 least_feature_mm=max(least_feature_mm(fabrication), arguments.least_panel_mm),
+                start=start,
             ),
             fabrication,
             arguments.least_panel_mm,
@@ -149,6 +154,13 @@ def summary(result: Result) -> dict[str, object]:
     }
     if result.request.grid_chosen:
         answer["grid"], answer["grid_reason"] = list(result.request.chosen_grid), chosen_for(result.request).reason
+    if not result.request.start.is_plain:
+        sheet = result.best.sheet
+        answer["start"] = {
+            "name": result.request.start.name,
+            "lost_to_chords": lost_to_chords(sheet),
+            "error": start_error(sheet),
+        }
     if result.best.trim is not None:
         answer["trimmed_iou"] = result.best.trim.iou
     if result.request.budget_seconds is not None:
@@ -232,6 +244,7 @@ def document_of(result: Result, fabrication: FabricationSettings) -> Document:
         request.symmetry,
         request.rim,
         request.regular,
+        request.start,
     )
     source = provenance(request, digest_of(request.variant))
     candidates = tuple(with_run(result.candidates, source))
@@ -252,19 +265,16 @@ def _on_its_grid(request: Request, fabrication: FabricationSettings, least_panel
     """The request with its grid chosen, and with what depends on the size of its cells."""
     request = with_grid(request)
     grid = request.chosen_grid
-    least = _in_cells(least_panel_mm, fabrication, grid)
-    return replace(request, least_panel=least, keep=_keep(fabrication, grid) if request.trim else request.keep)
+    least = least_panel_mm * width_in_cells(grid, request.start) / fabrication.width_mm
+    return replace(
+        request, least_panel=least, keep=_keep(fabrication, request.uniform) if request.trim else request.keep
+    )
 
 
-def _in_cells(length_mm: float, fabrication: FabricationSettings, grid: tuple[int, int]) -> float:
-    """A length on the finished sheet in unit cells."""
-    return length_mm * (grid[1] + 1) / fabrication.width_mm
-
-
-def _keep(fabrication: FabricationSettings, grid: tuple[int, int]) -> float:
+def _keep(fabrication: FabricationSettings, sheet: Sheet) -> float:
     """How deep (unit cells) material has to stay at the hinges of a trimmed sheet so that its connectors hold."""
     material, numbers = material_for(fabrication), (fabrication.connector_mm, fabrication.kerf_mm)
-    return keep_for_connectors(Sheet.uniform(*grid), material, fabrication.width_mm, *numbers)
+    return keep_for_connectors(sheet, material, fabrication.width_mm, *numbers)
 
 
 def _folder_name(name: str, used: set[str]) -> str:
@@ -296,6 +306,17 @@ def _say_result(target: Outline, result: Result, files: dict[str, str], verdict:
         tv=score.tv,
         seconds=result.seconds,
     )
+    if not result.request.start.is_plain:
+        say(
+            tr(
+                "{name}: the flat sheet starts as '{start}'; chords between its cuts take {lost:.2f} % off it, and it "
+                "is within {error:.2f} % of that shape.",
+                name=target.name,
+                start=result.request.start.name,
+                lost=100.0 * abs(lost_to_chords(result.best.sheet)),
+                error=100.0 * start_error(result.best.sheet),
+            )
+        )
     feasible = tr("It is feasible at {angle:.0f} degrees.", angle=angle)
     if not score.feasible:
         feasible = tr("It is not feasible at {angle:.0f} degrees.", angle=angle)

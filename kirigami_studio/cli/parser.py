@@ -195,6 +195,9 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
         option("--grid", default="auto",
                help="voids, ROWSxCOLUMNS, or auto: as coarse as the shape allows (default auto)"),
         PHI,
+        option("--start", default="rectangle", metavar="SHAPE",
+               help="shape of the flat sheet: rectangle, square, rectangle:W:H, circle, ellipse:W:H, triangle, hexagon,"
+                    " polygon:N, a file or library name of a shape without hollows (default rectangle)"),
         *SHEETS,
         option("--variant", default="balanced",
                help="generator variant, see 'kirigami-studio variants' (default balanced)"),
@@ -219,6 +222,7 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
         "kirigami-studio design drawing.svg --k 8 --grid 12x12 --json",
         "kirigami-studio design butterfly --symmetry mirror --regular 0.8 --out out/butterfly",
         "kirigami-studio design star --grid 10x10 --symmetry none --rim even --regular 0 --json",
+        "kirigami-studio design heart --start circle --out out/disk-to-heart",
         "kirigami-studio design masks.npz --k 1 --json",
     )),
     SubCommand("decode", "print the exact layouts of sheets", "geometry:decode", (

@@ -111,14 +111,20 @@ class Session:
         self.until(lambda: not self.window.controller.running, "the run did not end")
         if len(self.window.controller.document.candidates) != DESIGNS:
             raise SessionError(f"Expected {DESIGNS} designs, got {len(self.window.controller.document.candidates)}.")
-        self.until(lambda: self.window.fabrication.export.isEnabled(), "no cut plan was made")
+        self._judged()
         self.picture("4-designs")
 
     def choose_second(self) -> None:
         """Go from the best design to the next card."""
         press_key(self.window.gallery.view, Qt.Key.Key_Right)
         self.until(lambda: bool(self.window.controller.document.chosen), "the second card was not chosen")
+        self._judged()
+
+    def _judged(self) -> None:
+        """Wait for the cut plan and for the verdict on the sheet as cut, fixes included."""
         self.until(lambda: self.window.fabrication.export.isEnabled(), "no cut plan was made")
+        verdict = self.window.controller.verdict
+        self.until(lambda: verdict.state.verdict is not None and not verdict.busy, "the verdict did not come")
 
     def scrub(self) -> None:
         """Move the slider from flat to half open, there in the dark theme, then to the target."""

@@ -8,6 +8,7 @@ compact node is a fixed combination of the rim's, all nodes are linear in them.
 
 Nor does the flat sheet have to be a rectangle: with mouths and corners on any convex outline and edge hinges halfway
 along the chords between them, the barycentric system of ``compact`` divides that polygon into panels all the same.
+``start_outline`` decides which places along the rim the outline's points have.
 """
 
 from __future__ import annotations
@@ -19,12 +20,12 @@ from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
-import shapely
 
-from kirigami_studio.foundation.arrays import FloatArray, IntArray
+from kirigami_studio.foundation.arrays import BoolArray, FloatArray, IntArray
 from kirigami_studio.foundation.errors import SheetError, UsageError
 from kirigami_studio.lattice.ratio_field import RatioField, check_grid, frozen
 from kirigami_studio.lattice.resize import resize_fields
+from kirigami_studio.lattice.start_outline import checked_start, vertex_places
 from kirigami_studio.lattice.topology import topology
 
 Side = Literal["top", "right", "bottom", "left"]
@@ -32,14 +33,8 @@ SIDES: tuple[Side, ...] = ("top", "right", "bottom", "left")
 
 #: Mouths, corners and hinges may not come nearer to each other than this (unit cells): what is exact needs room.
 LEAST_GAP = 1e-3
-#: Sides of a cell, width and height of a start outline and its distance from the origin (unit cells): within these
-#: bounds tolerances in cells mean something.
+#: Sides of a cell (unit cells): within these bounds tolerances in cells mean something.
 CELL_SIDES = (0.05, 20.0)
-START_SIDES = (0.5, 1000.0)
-FARTHEST_START = 1e4
-MOST_START_POINTS = 10_000
-#: A start outline is convex when its hull is larger by no more than this share of it.
-CONVEX = 1e-6
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -212,8 +207,9 @@ class Sheet:
         Evenly spaced unless given.
     start : (P, 2) float or None, unit cells
         Outline of the flat sheet, convex, clockwise (y up) from the place of the top left corner panel's corner; the
-        other three corners follow at the shares of its length that they have on the rectangle.  None for the rectangle
-        of (n + 1) x (m + 1) cells.
+        other three corners and the even places of the mouths follow at the shares of its length that they have on the
+        rectangle, moved so that its sharp corners are among them, see ``start_outline``.  None for the rectangle of
+        (n + 1) x (m + 1) cells.
     cell : (width, height), unit cells
         Scales the flat sheet; other than (1, 1) gives a rectangle of another aspect.
     """
@@ -237,7 +233,7 @@ class Sheet:
             rim.check(field.rows, field.columns)
         object.__setattr__(self, "field", field)
         object.__setattr__(self, "rim", rim)
-        object.__setattr__(self, "start", None if start is None else _checked_start(start))
+        object.__setattr__(self, "start", None if start is None else checked_start(start))
         object.__setattr__(self, "cell", _checked_cell(cell))
         outline = None if self.start is None else self.start.tobytes()
         object.__setattr__(self, "_hash", hash((self.field, self.rim, self.cell, outline)))
@@ -339,14 +335,30 @@ class RimPath:
         return self._points(place)
 
     def slopes(self, positions: FloatArray) -> FloatArray:
-        """Derivative of each mouth's own point by its position: (R, 2) float; one-sided at vertices of the start."""
+        """Derivative of each mouth's own point by its position: (R, 2) float; at a vertex of the start, that of the
+        part behind it, clockwise.
+        """
         table = rim_table(self.rows, self.columns)
         if self.start is None:
             along = np.array([[1.0, 0.0], [0.0, -1.0], [1.0, 0.0], [0.0, -1.0]])[table.side]
             return np.asarray(along * self.cell)
-        step = 1e-6
-        ahead, behind = self._points(self._around(positions + step)), self._points(self._around(positions - step))
-        return np.asarray((ahead - behind) / (2.0 * step))
+        corners, corner_place = self._corners()
+        part = np.searchsorted(corner_place, self._around(positions), side="right") - 1
+        slope = np.diff(corners, axis=0) / np.diff(corner_place)[:, None]
+        clockwise = np.where(table.side < 2, 1.0, -1.0)
+        return np.asarray(clockwise[:, None] * slope[np.clip(part, 0, len(slope) - 1)] * self.cell)
+
+    def outline(self) -> FloatArray:
+        """The path itself: (P, 2), unit cells, clockwise."""
+        return np.asarray(self._corners()[0][:-1] * self.cell)
+
+    @property
+    def held(self) -> BoolArray:
+        """Which mouths belong at sharp corners of the start outline, where fits leave them: (R,) bool."""
+        table = rim_table(self.rows, self.columns)
+        if self.start is None:
+            return np.zeros(table.mouths.size, dtype=np.bool_)
+        return vertex_places(self.start, self.rows, self.columns, table.anchor_place)[1][table.mouths]
 
     def _around(self, positions: FloatArray) -> FloatArray:
         """Places of the mouths along the whole rim, clockwise from the top left corner: (R,) unit cells."""
@@ -357,17 +369,20 @@ class RimPath:
 
     def _points(self, place: FloatArray) -> FloatArray:
         """Points of the outline at places along it, clockwise from the top left corner: (K, 2)."""
-        width, height = float(self.columns + 1), float(self.rows + 1)
-        around = 2.0 * (width + height)
-        if self.start is None:
-            corner_place = np.array([0.0, width, width + height, 2 * width + height, around])
-            corners = np.array([[0.0, 0.0], [width, 0.0], [width, -height], [0.0, -height], [0.0, 0.0]])
-        else:
-            corners = np.concatenate([self.start, self.start[:1]])
-            corner_place = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(corners, axis=0).T))])
-            corner_place *= around / corner_place[-1]
+        corners, corner_place = self._corners()
         points = np.stack([np.interp(place, corner_place, corners[:, axis]) for axis in (0, 1)], axis=1)
         return np.asarray(points * self.cell)
+
+    def _corners(self) -> tuple[FloatArray, FloatArray]:
+        """Vertices of the outline, the first again at the end, and their places."""
+        width, height = float(self.columns + 1), float(self.rows + 1)
+        if self.start is None:
+            corner_place = np.array([0.0, width, width + height, 2 * width + height, 2.0 * (width + height)])
+            corners = np.array([[0.0, 0.0], [width, 0.0], [width, -height], [0.0, -height], [0.0, 0.0]])
+            return corners, corner_place
+        anchors = rim_table(self.rows, self.columns).anchor_place
+        places, _ = vertex_places(self.start, self.rows, self.columns, anchors)
+        return np.concatenate([self.start, self.start[:1]]), places
 
 
 def _numbers(values: npt.ArrayLike) -> FloatArray:
@@ -389,31 +404,6 @@ def _checked_cell(cell: tuple[float, float]) -> tuple[float, float]:
     if size.min() < least or size.max() > most:
         raise UsageError("cell.out_of_range", width=size[0], height=size[1], least=least, most=most)
     return float(size[0]), float(size[1])
-
-
-def _checked_start(start: npt.ArrayLike) -> FloatArray:
-    """A convex polygon, clockwise; its first vertex stays the first."""
-    try:
-        points = _numbers(start)
-    except (TypeError, ValueError, OverflowError):
-        raise SheetError("start.not_points") from None
-    if points.ndim != 2 or points.shape[1:] != (2,) or len(points) < 3 or not np.all(np.isfinite(points)):
-        raise SheetError("start.not_points")
-    if len(points) > MOST_START_POINTS:
-        raise SheetError("start.too_many_points", most=MOST_START_POINTS, count=len(points))
-    (width, height), (least, most) = np.ptp(points, axis=0).tolist(), START_SIDES
-    if max(width, height) < least or max(width, height) > most:
-        raise SheetError("start.size_out_of_range", width=width, height=height, least=least, most=most)
-    if np.abs(points).max() > FARTHEST_START:
-        raise SheetError("start.too_far_away", most=FARTHEST_START)
-    polygon = shapely.Polygon(points)
-    if not polygon.is_valid or polygon.area <= 0.0:
-        raise SheetError("start.crosses_itself")
-    if polygon.convex_hull.area > (1.0 + CONVEX) * polygon.area:
-        raise SheetError("start.not_convex")
-    if polygon.exterior.is_ccw:
-        points = np.concatenate([points[:1], points[:0:-1]])
-    return frozen(points)
 
 
 def resized_sheet(sheet: Sheet, rows: int, columns: int) -> Sheet:

@@ -192,17 +192,18 @@ SAME = 1e-6
 @lru_cache(maxsize=4096)
 def symmetry_of(sheet: Sheet) -> Symmetry | None:
     """The largest symmetry that a sheet has, with its rim and start outline; None without any."""
-    z = sheet.field.log10
-    points = anchor_points(sheet)
+    return next((symmetry for symmetry in MOST_FIRST if has_symmetry(sheet, symmetry)), None)
+
+
+def has_symmetry(sheet: Sheet, symmetry: Symmetry) -> bool:
+    """Whether a sheet has a symmetry, with its rim and start outline."""
+    if not symmetry.fits(*sheet.grid):
+        return False
+    z, points = sheet.field.log10, anchor_points(sheet)
     points = points - 0.5 * (points.min(axis=0) + points.max(axis=0))
-    for symmetry in MOST_FIRST:
-        if (
-            symmetry.fits(*sheet.grid)
-            and all(np.abs(image - z).max() < SAME for image in symmetry.images(z))
-            and all(_same_points(points @ move.matrix, points) for move in symmetry.moves)
-        ):
-            return symmetry
-    return None
+    return all(np.abs(image - z).max() < SAME for image in symmetry.images(z)) and all(
+        _same_points(points @ move.matrix, points) for move in symmetry.moves
+    )
 
 
 def _same_points(some: FloatArray, others: FloatArray) -> bool:

@@ -19,17 +19,21 @@ import shapely
 
 from kirigami_studio.evaluate.evenness import evenness
 from kirigami_studio.evaluate.siou import exact_iou
+from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.foundation.sentences import sentence
 from kirigami_studio.foundation.threads import one_blas_thread
 from kirigami_studio.lattice.deployment import deploy
+from kirigami_studio.lattice.laying import start_error
 from kirigami_studio.lattice.symmetry import Symmetry
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.proportions import Proportions
 from kirigami_studio.outlines.reach import share_of_arms
+from kirigami_studio.outlines.starts import RECTANGLE, StartShape
 from kirigami_studio.outlines.symmetry import TOLERANCE
 from kirigami_studio.pipeline.rank import EVENNESS
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.polish.continuation import first_angles, fit_by_stages
+from kirigami_studio.polish.flat_sheet import uniform_sheet, width_in_cells
 from kirigami_studio.polish.objective import Stage
 from kirigami_studio.polish.symmetry import SymmetricPose, shared_symmetries, symmetric_poses
 
@@ -52,6 +56,12 @@ TRIAL = (Stage(3, 0.1, 3e-2), Stage(3, 0.04, 3e-3), Stage(3, 0.01, 1e-3))
 SMALLEST_SHARE = 0.25
 #: Proportions of sheets (logarithm of height over width) lie between the square and the shape's own, give or take this.
 PROPORTION_ROOM = 0.12
+#: The same between the grid of another start than a rectangle of square cells and that start.
+START_ROOM = 0.2
+#: Most of a start's area that its flat sheet may cover beside it or leave out; moved mouths take a little more.
+MOST_START_ERROR = 0.0042
+#: What a start that is symmetric is symmetric on: a corner on an axis needs a mouth in the middle of a side.
+SYMMETRIC_GRIDS = ((11, 11), (12, 12), (9, 9), (13, 11), (9, 11))
 #: Details below this (unit-area lengths) do not count as bends.
 COARSENESS = 0.01
 #: Parts narrower than twice this (unit-area lengths) are limbs.
@@ -142,7 +152,9 @@ class ShapeFigures:
         )
 
 
-def predicted_match(figures: ShapeFigures, grid: tuple[int, int], proportion: float) -> float:
+def predicted_match(
+    figures: ShapeFigures, grid: tuple[int, int], proportion: float, start: StartShape = RECTANGLE
+) -> float:
     """Expected exact IoU of the best design on a grid without a search.
 
     The logarithm of what is missed is linear in a few figures.  Fitted to fits from the uniform sheet, led by the
@@ -155,6 +167,7 @@ def predicted_match(figures: ShapeFigures, grid: tuple[int, int], proportion: fl
     grid : (rows, columns) voids
     proportion : float
         Logarithm of the shape's height over its width, as it will lie on the sheet.
+    start : StartShape
     """
     rows, columns = grid
     panels = (rows + 1) * (columns + 1)
@@ -165,7 +178,7 @@ def predicted_match(figures: ShapeFigures, grid: tuple[int, int], proportion: fl
         + BENDS * figures.bends
         + LIMBS * figures.limbs
         + ARMS * float(np.interp(panels, MEASURED_PANELS, figures.arms))
-        + PROPORTIONS * (math.log((rows + 1) / (columns + 1)) - BEST_PROPORTIONS * proportion) ** 2
+        + PROPORTIONS * (start.proportion(rows, columns) - BEST_PROPORTIONS * proportion) ** 2
     )
     return 1.0 - min(math.exp(missing), 0.5)
 
@@ -177,6 +190,7 @@ def choose_grid(
     width_mm: float = 100.0,
     least_feature_mm: float = 0.0,
     limit: int = FINEST,
+    start: StartShape = RECTANGLE,
 ) -> GridChoice:
     """The coarsest grid that is expected to match a target, or the one that is expected to match it best.
 
@@ -191,19 +205,25 @@ def choose_grid(
         Least panel edge and neck that the material allows; 0 where that is not known.
     limit : int
         Most rows and columns.
+    start : StartShape
+        What the sheets look like while they are flat: its symmetry has to be kept too, its corners need mouths, and a
+        round one needs enough chords.
 
     Raises
     ------
     TargetError
         A symmetry is asked for and the target is far from any.
     UsageError
-        There is no such symmetry setting.
+        There is no such symmetry setting, or the start cannot have the symmetry that is asked for.
     """
-    poses = symmetric_poses(target, symmetry)
+    poses = _poses(target, symmetry, start)
     figures = ShapeFigures.of(target)
     smallest = SMALLEST_SHARE * width_mm / least_feature_mm if least_feature_mm > 0.0 else math.inf
-    found = list(_candidates(target, figures, poses, limit))
-    cuttable = [one for one in found if one.grid[1] + 1 <= smallest] or [min(found, key=lambda one: one.grid[1])]
+    found = list(_candidates(target, figures, poses, limit, start))
+    found = [one for one in found if one.start_error <= MOST_START_ERROR] or [
+        min(found, key=lambda one: one.start_error)
+    ]
+    cuttable = [one for one in found if one.width <= smallest] or [min(found, key=lambda one: one.width)]
     best = _coarsest([one for one in cuttable if one.grid[0] * one.grid[1] >= FEWEST_VOIDS] or cuttable)
     finer = [one for one in found if one.panels > best.panels and one.match > best.match]
     held_back = best.match < GOAL and len(cuttable) < len(found) and bool(finer)
@@ -219,14 +239,16 @@ def choose_grid(
         code = "grid.best_expected"
     else:
         code = COARSEST_CODES[best.pose.symmetry if best.pose else None]
-    kept = shared_symmetries(target, best.grid, symmetry)
+    kept = shared_symmetries(target, best.grid, symmetry, start)
     kept.sort(key=lambda pose: pose != best.pose)
     return GridChoice(best.grid, tuple(kept), match, code, tuple(fields.items()))
 
 
 def predicted_for(request: Request) -> GridChoice:
     """What :func:`choose_grid` says for a request, at once."""
-    return choose_grid(request.target, request.symmetry, request.width_mm, request.least_feature_mm)
+    return choose_grid(
+        request.target, request.symmetry, request.width_mm, request.least_feature_mm, FINEST, request.start
+    )
 
 
 def chosen_for(request: Request) -> GridChoice:
@@ -236,25 +258,37 @@ def chosen_for(request: Request) -> GridChoice:
     """
     wishes = request.wishes
     return _tried(
-        request.target, request.phi, request.symmetry, request.width_mm, request.least_feature_mm, wishes.free_rim
+        request.target,
+        request.phi,
+        request.symmetry,
+        request.width_mm,
+        request.least_feature_mm,
+        wishes.free_rim,
+        request.start,
     )
 
 
 @lru_cache(maxsize=64)
 def _tried(
-    target: Outline, phi: float, symmetry: str, width_mm: float, least_feature_mm: float, free_rim: bool
+    target: Outline,
+    phi: float,
+    symmetry: str,
+    width_mm: float,
+    least_feature_mm: float,
+    free_rim: bool,
+    start: StartShape,
 ) -> GridChoice:
-    choice = choose_grid(target, symmetry, width_mm, least_feature_mm)
+    choice = choose_grid(target, symmetry, width_mm, least_feature_mm, FINEST, start)
     hard = choice.code == "grid.best_expected" and choice.predicted_match < TRIED_BELOW
     if not hard or not choice.poses or choice.poses[0].angle is None:
         return choice
-    poses = symmetric_poses(target, symmetry)
+    poses = _poses(target, symmetry, start)
     figures = ShapeFigures.of(target)
     smallest = SMALLEST_SHARE * width_mm / least_feature_mm if least_feature_mm > 0.0 else math.inf
     near = [
         one
-        for one in _candidates(target, figures, poses, FINEST, TRIED_ROOM)
-        if 1.0 - one.match <= TRIED_MISSING * (1.0 - choice.predicted_match) and one.grid[1] + 1 <= smallest
+        for one in _candidates(target, figures, poses, FINEST, start, TRIED_ROOM)
+        if 1.0 - one.match <= TRIED_MISSING * (1.0 - choice.predicted_match) and one.width <= smallest
     ]
     picked: list[_Candidate] = []
     for one in sorted(near, key=lambda one: -one.match):
@@ -262,19 +296,21 @@ def _tried(
             picked.append(one)
     if len(picked) < 2:
         return choice
-    best = max(picked, key=lambda one: _trial(target, one.grid, phi, symmetry, free_rim))
+    best = max(picked, key=lambda one: _trial(target, one.grid, phi, symmetry, free_rim, start))
     rows, columns = best.grid
-    kept = shared_symmetries(target, best.grid, symmetry)
+    kept = shared_symmetries(target, best.grid, symmetry, start)
     fields = {"rows": rows, "columns": columns, "count": len(picked), "percent": 100.0 * best.match}
     return GridChoice(best.grid, tuple(kept), best.match, "grid.best_tried", tuple(fields.items()))
 
 
-def _trial(target: Outline, grid: tuple[int, int], phi: float, symmetry: str, free_rim: bool) -> float:
+def _trial(
+    target: Outline, grid: tuple[int, int], phi: float, symmetry: str, free_rim: bool, start: StartShape
+) -> float:
     """What short symmetric fits on a grid reach: the best exact IoU, less the price of uneven panels."""
     worth = []
-    for angle, kept in first_angles(target, grid, 1, symmetry)[:2]:
+    for angle, kept in first_angles(target, grid, 1, symmetry, start)[:2]:
         with one_blas_thread():
-            fit = fit_by_stages(target, grid, phi, angle, TRIAL, free_rim, kept)
+            fit = fit_by_stages(target, grid, phi, angle, TRIAL, free_rim, kept, start)
         deployment = deploy(fit.sheet)
         iou = exact_iou(fit.pose.apply(deployment.outline(phi)), target)
         worth.append(iou - EVENNESS * evenness(deployment).area_cv)
@@ -286,6 +322,8 @@ class _Candidate:
     grid: tuple[int, int]
     pose: SymmetricPose | None
     match: float
+    width: float
+    start_error: float
 
     @property
     def proportion(self) -> float:
@@ -311,9 +349,13 @@ def _candidates(
     figures: ShapeFigures,
     poses: tuple[SymmetricPose, ...],
     limit: int,
+    start: StartShape,
     room: float = PROPORTION_ROOM,
 ) -> Iterator[_Candidate]:
-    """Grids with the parities of the most specific symmetries, of proportions between the square and the shape's."""
+    """Grids with the parities of the most specific symmetries.
+
+    Rectangles of square cells have proportions between the square and the shape's; others those of the start.
+    """
     coarsest = min(COARSEST, limit - 1)
     sizes = range(coarsest, limit + 1)
     # A sheet on its side is the same for the eye: a single axis is laid upright.
@@ -324,10 +366,36 @@ def _candidates(
         along = proportions.direction + 0.5 * math.pi if pose is None or pose.angle is None else pose.angle
         proportion = proportions.along(along)
         low, high = min(0.0, proportion) - room, max(0.0, proportion) + room
+        if not start.is_plain:
+            low, high = start.proportion(1, 1) - START_ROOM, start.proportion(1, 1) + START_ROOM
         for rows in sizes:
             for columns in sizes:
                 grid = rows, columns
                 if pose is None and (rows % 2 or columns % 2):
                     continue
-                if (pose is None or pose.fits(grid)) and low <= math.log((rows + 1) / (columns + 1)) <= high:
-                    yield _Candidate(grid, pose, predicted_match(figures, grid, proportion))
+                if not low <= math.log((rows + 1) / (columns + 1)) <= high:
+                    continue
+                if pose is None or pose.fits(grid, start):
+                    match = predicted_match(figures, grid, proportion, start)
+                    error = start_error(uniform_sheet(grid, start))
+                    yield _Candidate(grid, pose, match, width_in_cells(grid, start), error)
+
+
+def _poses(target: Outline, symmetry: str, start: StartShape) -> tuple[SymmetricPose, ...]:
+    """The symmetric set-ups of a target that sheets of a start can have on some grid.
+
+    Raises
+    ------
+    TargetError
+        A symmetry is asked for and the target is far from any.
+    UsageError
+        There is no such symmetry setting, or the start cannot have the symmetry that is asked for.
+    """
+    poses = symmetric_poses(target, symmetry)
+    if start.is_plain:
+        return poses
+    kept = tuple(pose for pose in poses if any(pose.fits(grid, start) for grid in SYMMETRIC_GRIDS))
+    if poses and not kept and symmetry in ("mirror", "turn"):
+        rows, columns = SYMMETRIC_GRIDS[0]
+        raise UsageError("symmetry.not_of_start", name=start.name, rows=rows, columns=columns, symmetry=symmetry)
+    return kept

@@ -228,7 +228,7 @@ def refitted(
     ratios = np.where(table, candidate.final_sheet.field.ratio, candidate.sheet.field.ratio)
     start = candidate.sheet.with_field(RatioField(ratios))
     score, preference = candidate.score, PREFERENCES[prefer]
-    least = least_in_cells(least_feature_mm, width_mm, start.columns)
+    least = least_in_cells(least_feature_mm, width_mm, score.evenness.width)
     with one_blas_thread():
         fit = polish(
             start,

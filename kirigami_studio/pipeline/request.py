@@ -12,8 +12,10 @@ from kirigami_studio.foundation.errors import AngleError, UsageError
 from kirigami_studio.lattice.ratio_field import check_grid
 from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.outlines.starts import RECTANGLE, StartShape
 from kirigami_studio.polish.continuation import Wishes
 from kirigami_studio.polish.even_panels import even_weight
+from kirigami_studio.polish.flat_sheet import uniform_sheet, width_in_cells
 from kirigami_studio.polish.panel_size import check_least, least_in_cells
 from kirigami_studio.polish.preferences import PREFERENCES
 from kirigami_studio.polish.symmetry import SYMMETRIES
@@ -90,6 +92,8 @@ class Request:
     guided : int, 0..64
         Designs that are fitted from the uniform sheet instead of sampled, in several poses: at most a quarter of all,
         and none without ``polish``, near another design, or on a budget.
+    start : StartShape
+        What the sheets look like while they are flat.
     """
 
     target: Outline
@@ -115,6 +119,7 @@ class Request:
     least_feature_mm: float = 0.0
     grid_chosen: bool = False
     guided: int = GUIDED_STARTS
+    start: StartShape = RECTANGLE
 
     def __post_init__(self) -> None:
         if self.grid is not None:
@@ -185,12 +190,20 @@ class Request:
         """
         if self.grid is None:
             return self.least_panel
-        return max(self.least_panel, least_in_cells(self.least_feature_mm, self.width_mm, self.grid[1]))
+        cells = width_in_cells(self.grid, self.start)
+        return max(self.least_panel, least_in_cells(self.least_feature_mm, self.width_mm, cells))
 
     @property
     def wishes(self) -> Wishes:
         """What fits ask for beside the match."""
-        return Wishes(PREFERENCES[self.prefer], self.kept_size, self.rim == "free", self.even, self.symmetry)
+        return Wishes(
+            PREFERENCES[self.prefer], self.kept_size, self.rim == "free", self.even, self.symmetry, start=self.start
+        )
+
+    @property
+    def uniform(self) -> Sheet:
+        """The uniform sheet of the chosen grid and the start."""
+        return uniform_sheet(self.chosen_grid, self.start)
 
     def resolved(self, grid: tuple[int, int]) -> Request:
         """The same request on the grid that was chosen for it; a grid that it has already stays."""
@@ -238,6 +251,10 @@ def provenance(request: Request, digest: str) -> dict[str, str]:
     if request.polish or request.search:
         known["prefer"] = request.prefer
     known |= {"symmetry": request.symmetry, "rim": request.rim, "regular": f"{request.regular:g}"}
+    if not request.start.is_plain:
+        known["start"] = request.start.name
+    if request.start.outline is not None:
+        known["start_sha256"] = request.start.digest
     if request.grid_chosen:
         known["grid_choice"] = "auto"
     if request.kept_size:

@@ -5,10 +5,10 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Generator, Iterator, Sequence
 from contextlib import closing
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import zip_longest
 
-from kirigami_studio.evaluate.candidate import Candidate, Origin
+from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.foundation.errors import Cancelled
 from kirigami_studio.foundation.words import mark, tr
@@ -42,7 +42,6 @@ from kirigami_studio.pipeline.tasks import (
 )
 from kirigami_studio.pipeline.variety import worth_a_fit
 from kirigami_studio.polish.continuation import Way, first_angles
-from kirigami_studio.polish.covering import notches_filled
 from kirigami_studio.polish.symmetry import SymmetricPose, shared_symmetries
 
 #: Candidates scored in one batch.
@@ -136,7 +135,6 @@ def run(request: Request, cancel: Callable[[], bool] = never, pool: Pool | None 
         yield from work.finish()
     if request.trim:
         yield from work.trim()
-        yield from work.cover()
     candidates = work.ranking.ranked(work.found)
     yield Finished(Result(request, candidates, work.evaluations, watch.seconds, work.cut_short))
 
@@ -193,7 +191,7 @@ def fits_from_uniform(request: Request) -> list[GuidedTask]:
     """
     if not request.fitted_starts:
         return []
-    angles = first_angles(request.target, request.chosen_grid, 1, request.symmetry)
+    angles = first_angles(request.target, request.chosen_grid, 1, request.symmetry, request.start)
     if request.symmetry in ("mirror", "turn"):
         angles = [one for one in angles if one[1] is not None] or angles
     ways: dict[Symmetry | None, list[tuple[float, Symmetry | None, Way]]] = {}
@@ -210,7 +208,7 @@ def fits_from_uniform(request: Request) -> list[GuidedTask]:
 
 def symmetric_shares(request: Request, count: int) -> list[tuple[SymmetricPose, int]]:
     """Symmetries that ``count`` samples keep, and how many of them keep each."""
-    poses = shared_symmetries(request.target, request.chosen_grid, request.symmetry)
+    poses = shared_symmetries(request.target, request.chosen_grid, request.symmetry, request.start)
     poses = poses[:MOST_SYMMETRIES]
     together = count if request.symmetry in ("mirror", "turn") and poses else count // 2
     each = [together // len(poses) + (place < together % len(poses)) for place in range(len(poses))]
@@ -218,8 +216,9 @@ def symmetric_shares(request: Request, count: int) -> list[tuple[SymmetricPose, 
 
 
 def on_sheet(request: Request, field: RatioField) -> Sheet:
-    """The sheet of a sample: that of the design that samples are near, with other ratios, else the paper's."""
-    return Sheet(field) if request.near is None or request.rim == "even" else request.near.with_field(field)
+    """The sheet of a sample: that of the design that samples are near, with other ratios, else the uniform sheet."""
+    flat = request.uniform if request.near is None or request.rim == "even" else request.near
+    return flat.with_field(field)
 
 
 def rotation_of_target(sheet: Sheet, target: Outline, phi: float) -> float:
@@ -340,27 +339,6 @@ class _Work:
         chosen = worth_a_fit(self.found, self.ranking)[:TRIMMED]
         yield from self._replaced(chosen, [TrimTask(candidate) for candidate in chosen], TRIMMING)
 
-    def cover(self) -> Iterator[Event]:
-        """Fit sheets that cover the target with its notches filled, where no closed sheet shows them, and cut these."""
-        filled = notches_filled(self.request.target)
-        if filled is None or not self.request.fitted_starts:
-            return
-        covering = replace(self.request, target=filled.outline, trim=False)
-        fits, found = fits_from_uniform(covering), []
-        for report in self._carried_out(fits, GUIDING, 0, len(fits), covering):
-            if isinstance(report, Progress):
-                yield report
-            elif report[1].candidate is not None:
-                found.append(report[1].candidate)
-        sheets = [candidate.sheet for candidate in worth_a_fit(found, self.ranking)[:TRIMMED]]
-        covers = scored(self.request, sheets, self._next_index(), Origin.GUIDED, fitted=True)
-        for report in self._carried_out([TrimTask(one) for one in covers], TRIMMING, 0, len(covers)):
-            if isinstance(report, Progress):
-                yield report
-            elif report[1].candidate is not None:
-                self.found.append(report[1].candidate)
-                yield CandidateFound(report[1].candidate.index, report[1].candidate)
-
     def _replaced(self, chosen: Sequence[Candidate], tasks: Sequence[Task], stage: Stage) -> Iterator[Event]:
         """Each chosen candidate as its task makes it."""
         for report in self._carried_out(tasks, stage, 0, len(tasks)):
@@ -372,12 +350,12 @@ class _Work:
                 yield CandidateImproved(report[1].candidate.index, report[1].candidate)
 
     def _carried_out(
-        self, tasks: Sequence[Task], stage: Stage, done: int, total: int, request: Request | None = None
+        self, tasks: Sequence[Task], stage: Stage, done: int, total: int
     ) -> Iterator[Progress | tuple[int, Answer]]:
-        """Answers as they come, with signs of life in between; those of another request where one is given."""
+        """Answers as they come, with signs of life in between."""
         reported = time.perf_counter()
         yield stage.progress(done, total)
-        with closing(answers(self.pool, request or self.request, tasks, self.watch)) as reports:
+        with closing(answers(self.pool, self.request, tasks, self.watch)) as reports:
             for report in reports:
                 self.watch.check(stage.stopped, done, total)
                 now = time.perf_counter()

@@ -15,10 +15,12 @@ from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.lattice.symmetry import Symmetry
 from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.outlines.starts import StartShape
 from kirigami_studio.pipeline.rank import EVENNESS, MILDER, SYMMETRY, Ranking
 from kirigami_studio.pipeline.redesign import kept_symmetry, trimmed
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.polish.continuation import FAIR_LOSS, Way, fit_from_uniform, fit_shape
+from kirigami_studio.polish.junctions import junction_weight
 from kirigami_studio.polish.levenberg import polish
 from kirigami_studio.polish.objective import CONVERGED, Stage
 from kirigami_studio.polish.preferences import PREFERENCES
@@ -99,7 +101,8 @@ class PolishTask:
         if not even:
             return (Stage(self.steps, least_gain=CONVERGED),)
         if self.last:
-            return (Stage(self.steps, LAST_TRUST, LAST_SHARE * even, least_gain=CONVERGED),)
+            weights = {"even": LAST_SHARE * even, "junctions": junction_weight(even)}
+            return (Stage(self.steps, LAST_TRUST, least_gain=CONVERGED, **weights),)
         return (Stage(self.steps, FIRST_TRUST, FIRST_SHARE * even),)
 
 
@@ -169,12 +172,12 @@ def fit_target(request: Request, symmetry: Symmetry | None) -> Outline:
     """What a fit is to match: the target, or the symmetric shape that it is meant to be, where that is asked for."""
     if symmetry is None or request.symmetry not in ("mirror", "turn"):
         return request.target
-    return _meant(request.target, request.chosen_grid, request.wishes.symmetry, symmetry)
+    return _meant(request.target, request.chosen_grid, request.start, request.symmetry, symmetry)
 
 
 @lru_cache(maxsize=16)
-def _meant(target: Outline, grid: tuple[int, int], setting: str, symmetry: Symmetry) -> Outline:
-    for pose in shared_symmetries(target, grid, setting):
+def _meant(target: Outline, grid: tuple[int, int], start: StartShape, setting: str, symmetry: Symmetry) -> Outline:
+    for pose in shared_symmetries(target, grid, setting, start):
         if pose.symmetry is symmetry:
             return symmetric_target(target, pose)
     return target

@@ -31,7 +31,7 @@ class Bounds:
     start : (S,) float
         Its shape.
     low, high : (S,) float
-        The limits; both are the start's own value for what is locked.
+        The limits; both are the start's own value for what is locked, and for mouths at corners of the start outline.
     basis : Basis
         The variables that move it.
     """
@@ -51,7 +51,7 @@ class Bounds:
         if model.free_rim:
             start = np.concatenate([z, sheet.rim.offsets(*sheet.grid)])
             reach = np.concatenate([reach, np.full(start.size - z.size, RIM_REACH)])
-            fixed = np.concatenate([fixed, np.zeros(start.size - z.size, dtype=np.bool_)])
+            fixed = np.concatenate([fixed, model.held_mouths])
         low, high = np.where(fixed, start, -reach), np.where(fixed, start, reach)
         return cls(sheet, start, low, high, Basis.of(start.size, symmetry), locked)
 

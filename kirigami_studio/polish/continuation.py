@@ -34,9 +34,12 @@ from kirigami_studio.lattice.symmetry import Symmetry, symmetry_of
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.proportions import Proportions
 from kirigami_studio.outlines.rounding import rounded
+from kirigami_studio.outlines.starts import RECTANGLE, StartShape
 from kirigami_studio.outlines.turning import turn_back
 from kirigami_studio.polish.bounds import RIM_REACH
+from kirigami_studio.polish.flat_sheet import can_have, uniform_sheet
 from kirigami_studio.polish.guide import TransportMap
+from kirigami_studio.polish.junctions import junction_weight
 from kirigami_studio.polish.levenberg import Fit, check_fit, polish
 from kirigami_studio.polish.objective import Stage
 from kirigami_studio.polish.panel_size import check_least
@@ -72,8 +75,8 @@ FAR, NEAR, FINE = 0.03, 0.01, 0.005
 #: Rotations tried per effort when quarter turns, half turns, or no turns carry reachable shapes to reachable shapes.
 QUARTER, HALF, WHOLE = 4, 6, 8
 
-#: A target is long when the logarithm of its length over its width is above this.
-LONG = 0.15
+#: A target is long when the logarithm of its length over its width is above the first, a sheet above the second.
+LONG, SHORT = 0.15, 1e-6
 
 #: Fits that are carried to the end, per effort.
 KEPT = 3
@@ -95,7 +98,7 @@ def cooled(even: float) -> tuple[Stage, ...]:
         Stage(8, 0.1, max(3e-2, even)),
         Stage(8, 0.05, max(1e-2, even)),
         Stage(8, 0.02, max(1e-3, even)),
-        Stage(16, FINE, even),
+        Stage(16, FINE, even, junctions=junction_weight(even)),
     )
 
 
@@ -106,7 +109,7 @@ def guided(even: float) -> tuple[Stage, ...]:
         Stage(7, 0.06, max(3e-3, even), 0.03),
         Stage(7, 0.03, max(1e-3, even), 0.01),
         Stage(7, 0.015, max(5e-4, even), 0.003),
-        Stage(14, FINE, even),
+        Stage(14, FINE, even, junctions=junction_weight(even)),
     )
 
 
@@ -142,6 +145,8 @@ class Wishes:
         IoU that a coefficient of variation of panel areas lower by 1 is worth.
     symmetry_price : float
         IoU that a symmetric sheet may lack and still wins.
+    start : StartShape
+        What the sheets look like while they are flat.
     """
 
     preference: Preference = field(default_factory=Preference)
@@ -151,6 +156,7 @@ class Wishes:
     symmetry: str = "auto"
     evenness_price: float = 0.0
     symmetry_price: float = FAIR_LOSS
+    start: StartShape = RECTANGLE
 
 
 def fit_shape(
@@ -201,11 +207,11 @@ def fit_shape(
     coarse = _coarser(grid)
     found = search.first_looks(coarse, effort)
     if coarse == grid:
-        found += [search.from_guess(lifted(start, grid)) for start in guesses]
+        found += [search.from_guess(lifted(guess, grid, wishes.start)) for guess in guesses]
     best = search.completed(_best(found, KEPT * effort))
     if coarse != grid:
         raised = [look for one in best for look in search.lifted(one, grid)]
-        raised += [search.from_guess(lifted(start, grid)) for start in guesses]
+        raised += [search.from_guess(lifted(guess, grid, wishes.start)) for guess in guesses]
         best = search.completed(_best(raised, KEPT * effort))
     best = search.completed(best, FINE)
     best = _best([search.aligned(one) for one in (*best, search.plain(grid))], len(best))
@@ -225,7 +231,7 @@ def fit_from_uniform(
     """One fit from the uniform sheet, turned by ``angle`` (radians): stiff and even first, led by the transport map of
     the inside, growing out of a round shape, or shrinking from a thickened one.
     """
-    sheet, even = Sheet.uniform(*grid), wishes.even
+    sheet, even = uniform_sheet(grid, wishes.start), wishes.even
     pose, evaluations = _centred(sheet, phi, angle), 0
     route = _route(target, way, even)
     if route:
@@ -250,9 +256,12 @@ def fit_from_uniform(
         case Way.GUIDED:
             stages = guided(even)
         case Way.GROWN:
-            stages = (Stage(LOOK_STEPS, FAR, max(LAST_GROWN_EVEN, even)), Stage(LAST_STEPS, FINE, even))
+            stages = (
+                Stage(LOOK_STEPS, FAR, max(LAST_GROWN_EVEN, even)),
+                Stage(LAST_STEPS, FINE, even, junctions=junction_weight(even)),
+            )
         case Way.THICKENED:
-            stages = (Stage(LOOK_STEPS, FAR, even), Stage(LAST_STEPS, FINE, even))
+            stages = (Stage(LOOK_STEPS, FAR, even), Stage(LAST_STEPS, FINE, even, junctions=junction_weight(even)))
     fit = polish(
         sheet,
         target,
@@ -293,29 +302,34 @@ def fit_by_stages(
     stages: Sequence[Stage],
     free_rim: bool,
     symmetry: Symmetry | None,
+    start: StartShape = RECTANGLE,
 ) -> Fit:
     """One fit from the uniform sheet, turned by ``angle`` (radians), through ``stages`` that need no guide."""
-    sheet = Sheet.uniform(*grid)
+    sheet = uniform_sheet(grid, start)
     pose = _centred(sheet, phi, angle)
     return polish(sheet, target, phi, 0, pose=pose, stages=stages, free_rim=free_rim, symmetry=symmetry)
 
 
 def first_angles(
-    target: Outline, grid: tuple[int, int], effort: int = 1, setting: str = "auto"
+    target: Outline,
+    grid: tuple[int, int],
+    effort: int = 1,
+    setting: str = "auto",
+    start: StartShape = RECTANGLE,
 ) -> list[tuple[float, Symmetry | None]]:
     """Rotations to begin with, those that keep a symmetry first: both ways up for a mirror axis.
 
-    On a long grid they count from the one that lays the sheet along a long target, and those near it come first.
+    A long sheet counts them from the one that lays it along a long target, and those near that one come first.
     """
-    angles = _rotations(grid, effort)
-    rows, columns = grid
+    angles = _rotations(grid, effort, start)
+    upright = start.proportion(*grid)
     proportions = Proportions.of(target)
     along = proportions.direction
-    if rows != columns and proportions.along(along) > LONG:
-        first = along if columns > rows else along - 0.5 * math.pi
+    if abs(upright) > SHORT and proportions.along(along) > LONG:
+        first = along if upright < 0.0 else along - 0.5 * math.pi
         angles = sorted((first + angle for angle in angles), key=lambda angle: abs(math.sin(angle - first)))
     looks: list[tuple[float, Symmetry | None]] = []
-    for pose in shared_symmetries(target, grid, setting):
+    for pose in shared_symmetries(target, grid, setting, start):
         looks += [(angle, pose.symmetry) for angle in _own_angles(pose, angles)]
     return looks + [(angle, None) for angle in angles]
 
@@ -325,12 +339,14 @@ def _own_angles(pose: SymmetricPose, angles: list[float]) -> list[float]:
     return angles if pose.angle is None else [pose.angle - 0.5 * math.pi, pose.angle + 0.5 * math.pi]
 
 
-def lifted(sheet: Sheet, grid: tuple[int, int]) -> Sheet:
-    """The sheet carried to another grid, within the bounds of a fit."""
+def lifted(sheet: Sheet, grid: tuple[int, int], start: StartShape = RECTANGLE) -> Sheet:
+    """The sheet carried to another grid, within the bounds of a fit; another start shape is laid under it anew."""
     carried = resized_sheet(sheet, *grid)
     z = np.clip(carried.field.log10, -LOG_RATIO_LIMIT, LOG_RATIO_LIMIT)
     offsets = np.clip(carried.rim.offsets(*grid), -RIM_REACH, RIM_REACH)
-    return Sheet(RatioField.from_log10(z), Rim.moved(*grid, offsets), sheet.start, sheet.cell)
+    field, rim = RatioField.from_log10(z), Rim.moved(*grid, offsets)
+    flat = sheet if start.is_plain else uniform_sheet(grid, start)
+    return Sheet(field, rim, flat.start, flat.cell)
 
 
 @dataclass(frozen=True, slots=True)
@@ -361,12 +377,12 @@ class _Search:
         thick = thickened(self.target, MARGINS)
         ways = Way.suited_to(self.target)
         found: list[_Found] = []
-        for angle, symmetry in first_angles(self.target, grid, effort, self.wishes.symmetry):
+        for angle, symmetry in first_angles(self.target, grid, effort, self.wishes.symmetry, self.wishes.start):
             for way in ways:
                 if found and self.cancel():
                     return found
                 found.append(self._from_uniform(grid, angle, way, symmetry))
-            sheet = Sheet.uniform(*grid)
+            sheet = uniform_sheet(grid, self.wishes.start)
             first = thick[0].frame.compose(_centred(sheet, self.phi, angle))
             if found and self.cancel():
                 return found
@@ -392,7 +408,7 @@ class _Search:
 
     def plain(self, grid: tuple[int, int]) -> _Found:
         """The fit without a search, so that a search never ends with less."""
-        sheet = Sheet.uniform(*grid)
+        sheet = uniform_sheet(grid, self.wishes.start)
         pose = align(deploy(sheet).outline(self.phi), self.target.points)
         return self._fit(sheet, pose, PLAIN_STEPS, FINE, None)
 
@@ -407,10 +423,13 @@ class _Search:
 
     def lifted(self, coarse: _Found, grid: tuple[int, int]) -> list[_Found]:
         """Looks on a finer grid from a fit on a coarse one; grids of equal parities have the same symmetries."""
-        sheet = lifted(coarse.fit.sheet, grid)
+        sheet = lifted(coarse.fit.sheet, grid, self.wishes.start)
         pose = align(deploy(sheet).outline(self.phi), self.target.points)
         routes = [[], thickened(self.target, LIFTED_MARGINS)]
-        return [self._along(route, sheet, pose, coarse.symmetry) for route in routes]
+        kept = coarse.symmetry
+        if kept is not None and not can_have(grid, self.wishes.start, kept):
+            kept = None
+        return [self._along(route, sheet, pose, kept) for route in routes]
 
     def completed(self, found: list[_Found], trust: float = NEAR) -> list[_Found]:
         """The fits carried to the end, best first."""
@@ -473,15 +492,14 @@ def _best(found: list[_Found], count: int) -> list[_Found]:
     return sorted(found, key=key)[:count]
 
 
-def _rotations(grid: tuple[int, int], effort: int) -> list[float]:
-    """Angles to start from, evenly over the part of a turn that symmetry leaves: see the grid's exact symmetries."""
-    rows, columns = grid
-    if rows % 2 != columns % 2:
-        turn, count = 2.0 * math.pi, WHOLE
-    elif rows % 2 == 0 and rows == columns:
+def _rotations(grid: tuple[int, int], effort: int, start: StartShape) -> list[float]:
+    """Angles to start from, evenly over the part of a turn that symmetry leaves: see the sheet's exact symmetries."""
+    if can_have(grid, start, Symmetry.QUARTER_TURN):
         turn, count = 0.5 * math.pi, QUARTER
-    else:
+    elif can_have(grid, start, Symmetry.HALF_TURN):
         turn, count = math.pi, HALF
+    else:
+        turn, count = 2.0 * math.pi, WHOLE
     return [turn * index / (count * effort) for index in range(count * effort)]
 
 
@@ -520,19 +538,18 @@ class EasyShape:
     outline: Outline
     frame: Similarity
 
-    @classmethod
-    def of(cls, shape: shapely.geometry.base.BaseGeometry) -> EasyShape:
-        """A shape in the target's frame, holes filled."""
-        solid = shapely.Polygon(shapely.get_exterior_ring(shape)).simplify(ACCURACY)
-        frame = Similarity(math.sqrt(solid.area), 0.0, (solid.centroid.x, solid.centroid.y))
-        return cls(Outline.from_points(shapely.get_coordinates(solid)[:-1]), frame)
-
 
 @lru_cache(maxsize=8)
 def _rounder(target: Outline) -> list[EasyShape]:
-    return [EasyShape.of(shape) for shape in rounded(target, ROUNDER)]
+    return [_shape(shape) for shape in rounded(target, ROUNDER)]
 
 
 def thickened(target: Outline, margins: Sequence[float]) -> list[EasyShape]:
     """``target`` with its boundary moved outwards by each margin (unit-area lengths, > 0), holes filled."""
-    return [EasyShape.of(target.polygon.buffer(margin)) for margin in margins]
+    return [_shape(target.polygon.buffer(margin)) for margin in margins]
+
+
+def _shape(thick: shapely.geometry.base.BaseGeometry) -> EasyShape:
+    solid = shapely.Polygon(shapely.get_exterior_ring(thick)).simplify(ACCURACY)
+    frame = Similarity(math.sqrt(solid.area), 0.0, (solid.centroid.x, solid.centroid.y))
+    return EasyShape(Outline.from_points(shapely.get_coordinates(solid)[:-1]), frame)

@@ -6,8 +6,9 @@ Residuals, all in unit-area lengths and weighted by the boundary length that the
 * from even samples of the target boundary to the layout (nothing may be missed),
 
 down-weighted beyond a trusted distance so that their sum grows like an area and not like its square.  Beside them:
-terms on z, see ``preferences``; a penalty on panels too small to cut, see ``panel_size``; and, where a stage of the fit
-asks for them, even panels, see ``even_panels``, and a guide for the inside, see ``guide``.
+terms on z, see ``preferences``; penalties on panels too small to cut, see ``panel_size``, and on long chords of a round
+start, see ``chords``; and, where a stage of the fit asks for them, even panels, see ``even_panels``, a guide for the
+inside, see ``guide``, and open junctions, see ``junctions``.
 """
 
 from __future__ import annotations
@@ -23,8 +24,10 @@ from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.lattice.topology import topology
 from kirigami_studio.polish.basis import Basis
 from kirigami_studio.polish.boundary_target import BoundaryTarget
+from kirigami_studio.polish.chords import WEIGHT as CHORDS
 from kirigami_studio.polish.even_panels import EvenPanels
 from kirigami_studio.polish.guide import Guide
+from kirigami_studio.polish.junctions import OPEN, Junctions, junctions
 from kirigami_studio.polish.matching import EDGE_SHARES, Matching, OneSided, check_excess, matched, outer_hinges
 from kirigami_studio.polish.normal_equations import Quadratic
 from kirigami_studio.polish.panel_size import PENALTY, shortage
@@ -43,6 +46,7 @@ CONVERGED, SETTLED = 1e-4, 2e-3
 #: Number of pose parameters: log scale, angle, shift.
 POSE = 4
 NO_SIZES = panel_sizes(topology(2, 2).uniform_nodes, 2, 2).below(0.0)
+NO_JUNCTIONS = junctions(topology(2, 2).uniform_nodes, 2, 2).shallower(0.0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,6 +66,8 @@ class Stage:
         Weight of the guide for the inside, see ``guide``.
     least_gain : float
         The stage ends with a step that lowers the cost by no more than this share.
+    junctions : float
+        Weight of cuts that meet at shallow angles, see ``junctions``.
     """
 
     steps: int
@@ -69,6 +75,7 @@ class Stage:
     even: float = 0.0
     guide: float = 0.0
     least_gain: float = SETTLED
+    junctions: float = 0.0
 
 
 #: Nothing but the match and what the ratios prefer.
@@ -111,6 +118,7 @@ class Objective:
         self.model, self.target, self.terms, self.stage, self.least = model, target, terms, stage, least
         self.even = even if stage.even else None
         self.guide = guide if stage.guide else None
+        self._each_junction = stage.junctions / (2 * model.voids)
         self.one_sided = None
         if check_excess(excess) < 1.0:
             self.one_sided = OneSided(excess, outer_hinges(model.rows, model.columns, model.phi))
@@ -128,6 +136,8 @@ class Objective:
         cost += self.terms.value(shape[: self.model.voids])
         if self.even is not None:
             cost += self.stage.even * self.even.value(nodes)
+        if self.model.chords is not None:
+            cost += CHORDS * self.model.chords.excess(self.model.positions(shape)) ** 2
         gaps = None
         if self.guide is not None:
             gaps = self.guide.gaps(nodes, _similarity(state[-POSE:]))
@@ -136,7 +146,11 @@ class Objective:
         if self.least:
             small = panel_sizes(nodes, self.model.rows, self.model.columns).below(self.least)
             cost += shortage(small, self.least)
-        return Look(state, decoded, outline, matching, small, gaps, cost)
+        shallow = NO_JUNCTIONS
+        if self.stage.junctions:
+            shallow = junctions(nodes, self.model.rows, self.model.columns).shallower(OPEN)
+            cost += self._each_junction * float(np.square(shallow.sine - OPEN).sum())
+        return Look(state, decoded, outline, matching, small, shallow, gaps, cost)
 
     def slopes(self, look: Look, basis: Basis | None = None, stiffness: FloatArray | None = None) -> Slopes:
         """Derivatives at a state, by the variables of ``basis``; by the shape's own numbers if missing.
@@ -166,6 +180,13 @@ class Objective:
         if len(look.small.size):
             grown = basis.reduced(slopes.motion.slopes(*look.small.reach(self.model.node_count)))
             own += 2.0 * PENALTY * (grown.T @ grown)
+        if len(look.shallow):
+            opened = basis.reduced(slopes.motion.slopes(*look.shallow.reach(self.model.node_count)))
+            own += 2.0 * self._each_junction * (opened.T @ opened)
+        cut = self._cut_by_chords(shape)
+        if cut is not None:
+            slope = basis.reduced(cut[1])
+            own += 2.0 * CHORDS * np.outer(slope, slope)
         if look.gaps is not None and slopes.centroids is not None:
             inner += 2.0 * self.stage.guide / len(look.gaps) * (slopes.centroids.T @ slopes.centroids)
         return Quadratic(self.gradient(look, slopes), inner, slopes.outline, self.spread(look))
@@ -183,8 +204,19 @@ class Objective:
         by_nodes = self._force(look)
         if by_nodes is not None:
             by_shape += slopes.motion.gradient(by_nodes)
+        cut = self._cut_by_chords(shape)
+        if cut is not None:
+            by_shape += 2.0 * CHORDS * cut[0] * cut[1]
         gradient[:-POSE] += slopes.basis.reduced(by_shape)
         return gradient
+
+    def _cut_by_chords(self, shape: FloatArray) -> tuple[float, FloatArray] | None:
+        """What chords cut off beyond what is allowed, and its derivative (S,) by the shape; None for nothing."""
+        model = self.model
+        excess = 0.0 if model.chords is None else model.chords.excess(model.positions(shape))
+        if model.chords is None or not excess:
+            return None
+        return excess, np.append(np.zeros(model.voids), model.chords.slopes(model.positions(shape)))
 
     def spread(self, look: Look) -> FloatArray:
         """Gauss-Newton approximation of the second derivative of the match by the outline's vertices: (2 L, 2 L)."""
@@ -200,6 +232,10 @@ class Objective:
             lack = 2.0 * PENALTY * (look.small.size - self.least)
             grown = np.stack([lack @ along for along in look.small.reach(len(nodes))], axis=1)
             force = grown if force is None else force + grown
+        if len(look.shallow):
+            lack = 2.0 * self._each_junction * (look.shallow.sine - OPEN)
+            opened = np.stack([lack @ along for along in look.shallow.reach(len(nodes))], axis=1)
+            force = opened if force is None else force + opened
         return force
 
 
@@ -242,6 +278,8 @@ class Look:
     matching : Matching
     small : PanelSizes
         Edges and necks below the least size.
+    shallow : Junctions
+        Where cuts meet at shallow angles, if the stage asks for open junctions.
     gaps : (P, 2) float or None
         From each panel centroid's image to the centroid, where there is a guide.
     cost : float
@@ -252,6 +290,7 @@ class Look:
     outline: FloatArray
     matching: Matching
     small: PanelSizes
+    shallow: Junctions
     gaps: FloatArray | None
     cost: float
 

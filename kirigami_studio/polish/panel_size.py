@@ -32,12 +32,12 @@ def check_least(least: float) -> float:
     return float(least)
 
 
-def least_in_cells(least_mm: float, width_mm: float, columns: int) -> float:
-    """A least size in unit cells, for sheets of so many columns of voids that are ``width_mm`` wide.
+def least_in_cells(least_mm: float, width_mm: float, width_cells: float) -> float:
+    """A least size in unit cells, for sheets that are ``width_mm`` and so many unit cells wide.
 
     0 where it would be nearly a cell or more: no sheet has such panels, and fits need not try.
     """
-    cells = least_mm * (columns + 1) / width_mm
+    cells = least_mm * width_cells / width_mm
     return cells if cells <= LARGEST_LEAST else 0.0
 
 

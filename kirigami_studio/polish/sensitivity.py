@@ -21,6 +21,7 @@ from kirigami_studio.lattice.deployment import ZIPPED_BELOW, even_part_of_outlin
 from kirigami_studio.lattice.sheet import Rim, RimPath, Sheet, rim_table
 from kirigami_studio.lattice.topology import topology
 from kirigami_studio.polish.basis import Basis
+from kirigami_studio.polish.chords import Chords
 from kirigami_studio.polish.factor import Band, Factor, factored
 
 LN10 = math.log(10.0)
@@ -202,6 +203,8 @@ class OutlineModel:
         self.voids = rows * columns
         self.size = self.voids + (self._table.even.size if free_rim else 0)
         self._given = self._given_nodes(self._rim.positions)
+        #: What long chords of a round start cost, where the rim is free.
+        self.chords = Chords.of(self._path) if free_rim else None
 
     @classmethod
     def of(cls, sheet: Sheet, phi: float, free_rim: bool = False) -> OutlineModel:
@@ -211,6 +214,11 @@ class OutlineModel:
     @property
     def node_count(self) -> int:
         return topology(self.rows, self.columns).node_count
+
+    @property
+    def held_mouths(self) -> BoolArray:
+        """Which mouths belong at sharp corners of the start outline: (R,) bool."""
+        return self._path.held
 
     def positions(self, shape: FloatArray) -> FloatArray:
         """The mouths' positions (R,) of a shape, unit cells."""

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from kirigami_studio.foundation.errors import TargetError, UsageError
 from kirigami_studio.lattice.symmetry import Symmetry
 from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.outlines.starts import RECTANGLE, StartShape
 from kirigami_studio.outlines.symmetry import (
     AS_GOOD_AS_EXACT,
     LEAST_MEANT,
@@ -18,6 +19,7 @@ from kirigami_studio.outlines.symmetry import (
     symmetry_of,
     turned_mean,
 )
+from kirigami_studio.polish.flat_sheet import can_have
 
 #: What designs may have to keep: the symmetries that a target shows within a tolerance, none, or the mirror axis or
 #: the turn that a rough sketch may have meant.
@@ -48,9 +50,9 @@ class SymmetricPose:
     overlap: float = 1.0
     axes: tuple[MirrorAxis, ...] = ()
 
-    def fits(self, grid: tuple[int, int]) -> bool:
-        """Whether sheets of a grid can have it; one that has, has it at every angle of deployment."""
-        return self.symmetry.fits(*grid)
+    def fits(self, grid: tuple[int, int], start: StartShape = RECTANGLE) -> bool:
+        """Whether sheets of a grid and start can have it; one that has, has it at every angle of deployment."""
+        return can_have(grid, start, self.symmetry)
 
     def is_part_of(self, other: SymmetricPose) -> bool:
         """Whether every sheet that keeps the other keeps this one too, and lies as freely."""
@@ -58,8 +60,10 @@ class SymmetricPose:
         return part and (other.angle is None or self.angle is not None)
 
 
-def shared_symmetries(target: Outline, grid: tuple[int, int], setting: str = "auto") -> list[SymmetricPose]:
-    """Symmetries of ``target`` that the lattice of ``grid`` has too, at every angle, the most specific first.
+def shared_symmetries(
+    target: Outline, grid: tuple[int, int], setting: str = "auto", start: StartShape = RECTANGLE
+) -> list[SymmetricPose]:
+    """Symmetries of ``target`` that sheets of ``grid`` and ``start`` have too, at every angle, the most specific first.
 
     What is only a part of another one in the list is left out, unless it lets the sheet lie at other angles: beside two
     mirrors the half turn stays, with which a diamond may lie on its corner.
@@ -69,14 +73,16 @@ def shared_symmetries(target: Outline, grid: tuple[int, int], setting: str = "au
     TargetError
         A symmetry is asked for and the target is far from any.
     UsageError
-        A symmetry is asked for that the grid does not have, or there is no such setting.
+        A symmetry is asked for that the grid or the start does not have, or there is no such setting.
     """
     found: list[SymmetricPose] = []
     for pose in symmetric_poses(target, setting):
-        if pose.fits(grid) and not any(pose.is_part_of(other) for other in found):
+        if pose.fits(grid, start) and not any(pose.is_part_of(other) for other in found):
             found.append(pose)
     if not found and setting in ("mirror", "turn"):
         rows, columns = grid
+        if not start.is_plain:
+            raise UsageError("symmetry.not_of_start", name=start.name, rows=rows, columns=columns, symmetry=setting)
         code = "symmetry.no_mirror_on_grid" if setting == "mirror" else "symmetry.no_turn_on_grid"
         raise UsageError(code, rows=rows, columns=columns, more=columns + 1)
     return found

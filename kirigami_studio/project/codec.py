@@ -26,6 +26,7 @@ from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.lattice.sheet_files import rim_json, sheet_json, sheet_of_json
 from kirigami_studio.outlines.nodes import Kind, Nodes
 from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.outlines.starts import RECTANGLE, StartShape
 from kirigami_studio.project.document import Document, Mark, Void
 from kirigami_studio.project.json_record import Record, one_of, read_json
 from kirigami_studio.project.migrations import Members
@@ -42,7 +43,7 @@ def encode(document: Document) -> dict[str, bytes]:
     runs = list(dict.fromkeys(entry.made_with for entry in document.candidates if entry.made_with))
     design = {
         "target": None if document.target is None else _outline_json(document.target),
-        "settings": asdict(document.settings),
+        "settings": _settings_json(document.settings),
         "fabrication": _fabrication_json(document.fabrication),
         "candidates": [_candidate_json(entry, runs) for entry in document.candidates],
         "runs": [dict(run) for run in runs],
@@ -83,7 +84,9 @@ def decode(members: Members) -> Document:
     target = _outline(design.record("target")) if design.holds("target") else None
     return Document(
         target=target,
-        settings=DesignSettings(**_plain_fields(settings, DesignSettings), grid=(rows, columns)),
+        settings=DesignSettings(
+            **_plain_fields(settings, DesignSettings), grid=(rows, columns), start=_start(settings)
+        ),
         candidates=tuple(
             replace(
                 _candidate(record, field, next(sampled) if record.flag("sampled") else None, target),
@@ -96,6 +99,28 @@ def decode(members: Members) -> Document:
         provenance=design.texts("provenance"),
         marks=tuple(one_of(Mark, name) for name in design.list("marks")),
         locked=frozenset(_void(entry) for entry in design.list("locked")),
+    )
+
+
+def _settings_json(settings: DesignSettings) -> dict[str, object]:
+    """The settings; no start where it is the paper's rectangle, so that such projects stay as they were."""
+    start = settings.start
+    entries = asdict(replace(settings, start=RECTANGLE))
+    del entries["start"]
+    if not start.is_plain:
+        outline = None if start.outline is None else _outline_json(start.outline)
+        entries["start"] = {"name": start.name, "aspect": start.aspect, "outline": outline}
+    return entries
+
+
+def _start(settings: Record) -> StartShape:
+    if not settings.holds("start"):
+        return RECTANGLE
+    record = settings.record("start")
+    return StartShape(
+        record.text("name"),
+        _outline(record.record("outline")) if record.holds("outline") else None,
+        record.number("aspect") if record.holds("aspect") else None,
     )
 
 
@@ -239,13 +264,7 @@ def _candidate_json(entry: Candidate, runs: list[tuple[tuple[str, str], ...]]) -
         # What was cut off follows from these; it is cut again on reading.
         "trim": None
         if cut is None
-        else {
-            **sheet_json(cut.sheet),
-            "pose": cut.pose.to_json(),
-            "phi": cut.phi,
-            "keep": cut.keep,
-            **({"deep": True} if cut.deep else {}),
-        },
+        else {**sheet_json(cut.sheet), "pose": cut.pose.to_json(), "phi": cut.phi, "keep": cut.keep},
     }
 
 
@@ -276,9 +295,7 @@ def _candidate(record: Record, field: RatioField, sampled: RatioField | None, ta
 
 def _trim(record: Record, target: Outline) -> Trim:
     sheet = sheet_of_json(record.entries, RatioField(_table(record.list("ratio"), "trim.ratio")))
-    deep = record.holds("deep") and record.flag("deep")
-    pose = _pose(record.record("pose"))
-    return trim(deploy(sheet), target, record.number("phi"), pose, record.number("keep"), deep)
+    return trim(deploy(sheet), target, record.number("phi"), _pose(record.record("pose")), record.number("keep"))
 
 
 def _pose(record: Record) -> Similarity:

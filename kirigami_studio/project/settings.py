@@ -11,6 +11,7 @@ from kirigami_studio.fabricate.material import DEFAULT_PRESET, Material
 from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions
 from kirigami_studio.foundation.errors import AngleError, GridError, UsageError
 from kirigami_studio.lattice.ratio_field import check_grid
+from kirigami_studio.outlines.starts import RECTANGLE, StartShape
 
 LARGEST_SHEET_MM = 10_000.0
 
@@ -46,6 +47,8 @@ class DesignSettings:
         "free" or "even".
     regular : float, 0..1
         What ranking prefers, from the best match (0) to even panels (1).
+    start : StartShape
+        What sheets look like while they are flat.
 
     Raises
     ------
@@ -66,6 +69,7 @@ class DesignSettings:
     symmetry: str = "auto"
     rim: str = "free"
     regular: float = 0.5
+    start: StartShape = RECTANGLE
 
     def __post_init__(self) -> None:
         grid = tuple(self.grid)

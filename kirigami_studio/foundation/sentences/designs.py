@@ -40,6 +40,14 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "start.size_out_of_range": mark(
         "A start outline must be {least:g} to {most:g} cells across, got {width:g} x {height:g}. Scale it."
     ),
+    "start.wrong_numbers": mark(
+        "Got the start '{text:.60}'. Give rectangle:W:H or ellipse:W:H with sides that differ by at most {longest:g} "
+        "times, as in ellipse:3:2, or polygon:N with 3 to {most} sides."
+    ),
+    "start.hollow": mark(
+        "The start '{name:.60}' is hollow: {percent:.0f} % of its hull is missing, deepest at {across:.0f} % of its "
+        "width from the left and {up:.0f} % of its height from below. Fill the hollow, or start from another shape."
+    ),
     "start.too_far_away": mark("A start outline must lie within {most:g} cells of the origin. Move it there."),
     "cell.not_positive": mark("A cell needs a width and a height above 0, got {cell!r:.80}."),
     "cell.out_of_range": mark(
@@ -66,7 +74,6 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "trim.crosses_itself": mark(
         "This design crosses itself at the target angle, so it cannot be trimmed. Choose another design."
     ),
-    "trim.nothing_left": mark("No part of the sheet lies mostly on the target. Lay the sheet over the target first."),
     "trim.keep_out_of_range": mark(
         "The material kept at hinges must be {least:g} to {most:g} cells deep, got {keep!r:.80}."
     ),
@@ -155,9 +162,6 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     ),
     "rank.best_match": mark("Best match: {match:.1f} %, panel sizes vary by {variation:.0f} %."),
     "rank.best_match_symmetric": mark("Best match: {match:.1f} %, panel sizes vary by {variation:.0f} %, symmetric."),
-    "rank.best_balance_trimmed": mark(
-        "Best balance: match once trimmed {match:.1f} %, panel sizes vary by {variation:.0f} %."
-    ),
     "rank.best_trimmed": mark("Best match once trimmed: {match:.1f} %."),
     "rank.equal": mark("As good as the first design."),
     "rank.jams": mark("As cut, it is estimated to jam at {own:.0f} degrees."),
@@ -172,16 +176,6 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     ),
     "rank.not_symmetric": mark("The first design is symmetric, this one is not."),
     "rank.not_trimmed": mark("It is not trimmed."),
-    "rank.notch_cut_out": (
-        mark(
-            "Match once trimmed: {match:.1f} %. No closed sheet shows such notches; this one covers them, and they "
-            "are cut out of it with {count} panel."
-        ),
-        mark(
-            "Match once trimmed: {match:.1f} %. No closed sheet shows such notches; this one covers them, and they "
-            "are cut out of it with {count} panels."
-        ),
-    ),
     "rank.thinner": mark("Its narrowest panel measures {own:.2f} mm, in the first design {first:.2f} mm."),
     "rank.too_thin": mark("Its narrowest panel measures {smallest_mm:.2f} mm; the material needs {least_mm:.2f} mm."),
     "request.angle_out_of_range": mark(

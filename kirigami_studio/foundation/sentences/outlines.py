@@ -205,6 +205,10 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "No sheet of {rows} x {columns} voids is its own mirror image: rows or columns must be odd. Choose "
         "{rows} x {more}, or set the grid to auto."
     ),
+    "symmetry.not_of_start": mark(
+        "Sheets of {rows} x {columns} voids that start as '{name:.60}' cannot have the symmetry '{symmetry}' with this "
+        "target. Choose another start, or grid auto and symmetry auto."
+    ),
     "symmetry.no_turn_on_grid": mark(
         "No sheet of {rows} x {columns} voids can be turned onto itself: rows and columns must be both even or both "
         "odd. Choose {rows} x {more}, or set the grid to auto."

@@ -308,6 +308,7 @@ def request_of(target: Outline, settings: DesignSettings, cut: FabricationSettin
         symmetry=settings.symmetry,
         rim=settings.rim,
         regular=settings.regular,
+        start=settings.start,
         width_mm=cut.width_mm,
         least_feature_mm=least_feature_mm(cut),
     )

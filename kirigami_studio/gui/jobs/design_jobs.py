@@ -193,7 +193,7 @@ def trimming(candidate: Candidate, target: Outline, settings: FabricationSetting
     from kirigami_studio.pipeline.redesign import trimmed
     from kirigami_studio.polish.panel_size import least_in_cells
 
-    least = least_in_cells(least_of(settings), settings.width_mm, candidate.sheet.columns)
+    least = least_in_cells(least_of(settings), settings.width_mm, candidate.score.evenness.width)
     found = trimmed(candidate, target, keep_for(candidate, settings), cancel, least_panel=least)
     if cancel():
         raise Cancelled("trim.stopped")

@@ -380,6 +380,8 @@ class StagePanel(Card):
         self._fit_numbers()
         super().resizeEvent(event)
         self._place_plots()
+        self.verdict.set_panel_height(self.height())
+        self.body.activate()
 
     def set_overlay(self, overlay: Overlay, on: bool) -> None:
         """Draw something over the layout, or no longer."""

@@ -20,8 +20,8 @@ if TYPE_CHECKING:
 SHARE = 0.62
 #: Pixels beside headline and fixes: margins, icon, gaps.
 BESIDE = 64
-#: A banner at least this wide (pixels) tells the worst problem in one line.
-WIDE = 560
+#: A banner at least this wide (pixels) tells the worst problem in one line, and so does one in a panel lower than this.
+WIDE, LOW = 560, 600
 LINE_USED = 0.9
 ICON_EDGE = 20
 #: Icon of each level, by its name in JSON, and of a verdict that is not known yet.
@@ -38,6 +38,7 @@ class VerdictBar(QFrame):
         self.setObjectName("verdictBar")
         self._palette: Palette = LIGHT
         self._state = VerdictState()
+        self._low = False
         self.icon = QLabel()
         self.icon.setFixedSize(ICON_EDGE, ICON_EDGE)
         self.headline = QLabel()
@@ -61,7 +62,7 @@ class VerdictBar(QFrame):
         self._row = QHBoxLayout()
         self._row.setSpacing(6)
         self._row.addWidget(self.more)
-        grid = QGridLayout(self)
+        self._grid = grid = QGridLayout(self)
         grid.setContentsMargins(10, 4, 6, 4)
         grid.setHorizontalSpacing(8)
         grid.setVerticalSpacing(2)
@@ -101,9 +102,9 @@ class VerdictBar(QFrame):
         self.style().polish(self)
 
     def _fit_sentence(self) -> None:
-        """Show the worst problem, or the first note, in one line of a wide banner or two of a narrow one."""
+        """Show the worst problem, or the first note, in one line of a wide or low banner or two of a narrow one."""
         said, metrics, width = self._state.lines[1:2], self.sentence.fontMetrics(), max(self.width() - 16, 1)
-        lines = 1 if width >= WIDE else 2
+        lines = 1 if width >= WIDE or self._low else 2
         # What is left of a line when words wrap is lost.
         room = width if lines == 1 else round(LINE_USED * lines * width)
         self.sentence.setText(metrics.elidedText(said[0], Qt.TextElideMode.ElideRight, room) if said else "")
@@ -150,6 +151,13 @@ class VerdictBar(QFrame):
             action.triggered.connect(lambda _=False, fix=fix: self.fix_wanted.emit(fix))
         self.more.setText(tr("Fixes") if len(hidden) == len(fixes) else tr("More fixes"))
         self.more.setVisible(bool(hidden))
+
+    def set_panel_height(self, pixels: int) -> None:
+        """Leave room to the drawing in a low panel: one line less, at once."""
+        if self._low != (pixels < LOW):
+            self._low = not self._low
+            self._fit_sentence()
+            self._grid.activate()
 
     def minimumSizeHint(self) -> QSize:  # noqa: N802 - Qt's name
         return QSize(0, super().minimumSizeHint().height())

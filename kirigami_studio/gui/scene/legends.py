@@ -21,7 +21,7 @@ SWATCH = 10.0
 #: Pixels that stay between the picture and a legend.
 AWAY = 8.0
 #: Less of the view's height or width than this is not worth a free legend.
-LEAST_SHARE = 0.33
+LEAST_SHARE = 0.4
 #: The bar is as long as this (pixels) at most.
 LONGEST = 90.0
 ENDS = 4.0

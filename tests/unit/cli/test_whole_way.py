@@ -10,6 +10,7 @@ import pytest
 from ezdxf import bbox
 
 from kirigami_studio.cli import main
+from kirigami_studio.outlines.starts import start_shape
 from kirigami_studio.project.store import load
 
 pytestmark = pytest.mark.torch
@@ -96,3 +97,23 @@ def test_that_a_grid_left_to_the_program_is_stored_as_such(tmp_path: Path, capsy
     project = load(tmp_path / "design.kiri")
     assert project.settings.auto_grid and list(project.settings.grid) == best["grid"]
     assert project.provenance["grid_choice"] == "auto"
+
+
+@pytest.mark.parametrize(("start", "name", "grid"), [("circle", "square", "7x7"), ("triangle", "circle", "6x7")])
+def test_that_a_sheet_starts_in_the_shape_that_was_asked_for(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path, start: str, name: str, grid: str
+) -> None:
+    wish = ["design", name, "--start", start, "--grid", grid, "--k", "2", "--out", str(tmp_path), "--json"]
+    assert main(wish) == 0
+    design = json.loads(capsys.readouterr().out)
+    assert design["best"]["iou_exact"] > 0.97 and design["best"]["feasible"]
+    assert design["start"]["name"] == start and len(design["best"]["start"]) >= 3
+    assert design["start"]["error"] < 0.012 and design["start"]["lost_to_chords"] < 0.03
+    assert main(["check", str(tmp_path / "cut.dxf"), "--json"]) == 0
+    report = json.loads(capsys.readouterr().out)
+    assert report["ok"] and report["pieces"] == 1
+
+    project = load(tmp_path / "design.kiri")
+    assert project.settings.start == start_shape(start)
+    assert (project.provenance["start"], project.provenance["start_sha256"]) == (start, start_shape(start).digest)
+    assert project.candidate is not None and project.candidate.sheet.start is not None

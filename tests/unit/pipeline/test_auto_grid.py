@@ -172,7 +172,7 @@ def test_that_a_hard_shape_with_an_axis_takes_the_grid_that_short_fits_rank_firs
     star = load("star")
     tried: list[tuple[int, int]] = []
 
-    def trial(target, grid, phi, symmetry, free_rim) -> float:
+    def trial(target, grid, phi, symmetry, free_rim, start) -> float:
         tried.append(grid)
         return 0.9 if grid == max(tried) else 0.5 + 0.001 * len(tried)
 

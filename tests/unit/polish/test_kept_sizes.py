@@ -128,7 +128,7 @@ def test_that_the_material_asks_for_a_size_in_cells() -> None:
     assert Request(target, (10, 11)).kept_size == 0.0
     without_grid = Request(target, None, least_panel=0.3, width_mm=10.0, least_feature_mm=2.0)
     assert without_grid.kept_size == without_grid.wishes.least_panel == 0.3
-    assert least_in_cells(1.0, 10.0, 3) == pytest.approx(0.4)
+    assert least_in_cells(1.0, 10.0, 4.0) == pytest.approx(0.4)
 
 
 def test_that_distinct_sizes_leave_out_edges_told_twice() -> None:

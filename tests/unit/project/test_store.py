@@ -24,6 +24,7 @@ from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.silhouettes import load
+from kirigami_studio.outlines.starts import start_shape
 from kirigami_studio.polish.covering import fit_cover
 from kirigami_studio.polish.levenberg import polish
 from kirigami_studio.project import migrations, store
@@ -430,6 +431,16 @@ def test_that_every_design_setting_and_score_field_survives(document: Document, 
     for before, after in zip(changed.candidates, again.candidates, strict=True):
         assert after.score == before.score
         assert np.array_equal(after.sheet.field.ratio, before.sheet.field.ratio)
+
+
+@pytest.mark.parametrize("name", ["circle", "rectangle:3:2", "egg"])
+def test_that_the_start_of_the_settings_comes_back(name: str, document: Document, tmp_path: Path) -> None:
+    settings = replace(document.settings, start=start_shape(name))
+    store.save(replace(document, settings=settings), tmp_path / "start.kiri")
+    again = store.load(tmp_path / "start.kiri").settings
+    assert again == settings and again.start.digest == settings.start.digest
+    plain = json.loads(members_of(document)["design.json"])["settings"]
+    assert "start" not in plain, "projects of rectangles stay as they were"
 
 
 def test_that_migrations_run_one_after_the_other(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,0 +1,172 @@
+"""The shape that a sheet has while it is flat: a rectangle, a circle, a polygon, or any convex silhouette."""
+
+from __future__ import annotations
+
+import hashlib
+import math
+import re
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+
+from kirigami_studio.foundation.errors import SheetError, UsageError
+from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.outlines.proportions import Proportions
+from kirigami_studio.outlines.read import read_target
+from kirigami_studio.outlines.symmetry import TOLERANCE, symmetry_of, turned
+
+#: Vertices of circles and ellipses: their areas are within 0.002 % of the true ones.
+ROUND_VERTICES = 720
+FEWEST_SIDES, MOST_SIDES = 3, 64
+#: Longest start over its width, for shapes that are named by their proportions.
+LONGEST = 5.0
+#: Proportions of an ellipse without any.
+USUAL_ELLIPSE = 1.5
+#: Hollows of a loaded shape up to this share of its hull are filled: traced pictures have such edges.
+FILLED = 0.01
+#: Points of a loaded shape may move by this (unit-area lengths).
+ACCURACY = 1e-4
+#: A mirror axis within this (radians) of upright or level stays where it is.
+UPRIGHT = 1e-3
+#: What :func:`start_shape` reads beside files and library names.
+KINDS = ("rectangle", "square", "circle", "ellipse", "triangle", "hexagon")
+
+
+@dataclass(frozen=True, slots=True)
+class StartShape:
+    """What flat sheets look like, whatever their grid.
+
+    Attributes
+    ----------
+    name : str
+        As the command line takes it, e.g. "ellipse:3:2", or the name of a file or of a library silhouette.
+    outline : Outline or None
+        A convex shape, its mirror axis upright if it has one; None for a rectangle.
+    aspect : float or None
+        Width over height of a rectangle; None for square cells, whatever the grid.
+    """
+
+    name: str = "rectangle"
+    outline: Outline | None = None
+    aspect: float | None = None
+
+    @property
+    def is_plain(self) -> bool:
+        """Whether it is the paper's: a rectangle of square cells."""
+        return self.outline is None and self.aspect is None
+
+    def proportion(self, rows: int, columns: int) -> float:
+        """Logarithm of height over width of a sheet of so many voids; of other shapes than rectangles by moments."""
+        if self.outline is not None:
+            return Proportions.of(self.outline).along(0.5 * math.pi)
+        return math.log((rows + 1) / (columns + 1)) if self.aspect is None else -math.log(self.aspect)
+
+    @property
+    def digest(self) -> str:
+        """The start of the SHA-256 of its points, or nothing for a rectangle: names of files say little."""
+        return "" if self.outline is None else hashlib.sha256(self.outline.points.tobytes()).hexdigest()[:16]
+
+
+RECTANGLE = StartShape()
+
+
+def start_shape(text: str) -> StartShape:
+    """The shape that a text names.
+
+    Parameters
+    ----------
+    text : str
+        ``rectangle`` (of square cells), ``rectangle:W:H``, ``square``, ``circle``, ``ellipse`` (3:2), ``ellipse:W:H``,
+        ``triangle``, ``hexagon``, ``polygon:N``, a file that holds a shape, or the name of a library silhouette.
+
+    Raises
+    ------
+    UsageError
+        Numbers that no such shape has.
+    SheetError
+        A shape with hollows.
+    TargetError
+        Neither such a name nor a file or silhouette that can be read.
+    """
+    kind, *numbers = text.strip().lower().split(":")
+    match (kind, len(numbers)):
+        case ("rectangle", 0):
+            return RECTANGLE
+        case ("square", 0):
+            return StartShape("square", None, 1.0)
+        case ("rectangle", 2):
+            return StartShape(f"rectangle:{numbers[0]}:{numbers[1]}", None, _aspect(text, numbers))
+        case ("circle", 0):
+            return _round("circle", 1.0)
+        case ("ellipse", 0):
+            return _round("ellipse", USUAL_ELLIPSE)
+        case ("ellipse", 2):
+            return _round(f"ellipse:{numbers[0]}:{numbers[1]}", _aspect(text, numbers))
+        case ("triangle", 0):
+            return _polygon("triangle", 3)
+        case ("hexagon", 0):
+            return _polygon("hexagon", 6)
+        case ("polygon", 1):
+            return _polygon(f"polygon:{numbers[0]}", _sides(text, numbers[0]))
+        case ("rectangle" | "ellipse" | "polygon", _):
+            raise UsageError("start.wrong_numbers", text=text, longest=LONGEST, most=MOST_SIDES)
+        case _:
+            return convex_start(read_target(text.strip()))
+
+
+def convex_start(outline: Outline) -> StartShape:
+    """A shape that was drawn, loaded or taken from the library as a start; small hollows are filled.
+
+    Raises
+    ------
+    SheetError
+        It has larger hollows; the sentence says where the deepest one is.
+    """
+    hull = outline.polygon.convex_hull
+    edge = shapely.boundary(hull)
+    if hull.area > 1.0 + FILLED:
+        deepest = int(np.argmax(shapely.distance(edge, shapely.points(outline.points))))
+        low, high = outline.points.min(axis=0), outline.points.max(axis=0)
+        across, up = 100.0 * (outline.points[deepest] - low) / (high - low)
+        raise SheetError(
+            "start.hollow", name=outline.name, percent=100.0 * (1.0 - 1.0 / hull.area), across=across, up=up
+        )
+    points = shapely.get_coordinates(edge.simplify(ACCURACY))[:-1]
+    return StartShape(outline.name, _upright(Outline.from_points(points, outline.name)))
+
+
+def _upright(outline: Outline) -> Outline:
+    """The shape turned so that its best mirror axis is upright, unless it has one that is upright or level."""
+    axes = symmetry_of(outline).mirrors(TOLERANCE)
+    if not axes or any(abs(math.remainder(axis.angle, 0.5 * math.pi)) < UPRIGHT for axis in axes):
+        return outline
+    return Outline.from_points(turned(outline.points, 0.5 * math.pi - axes[0].angle), outline.name)
+
+
+def _round(name: str, aspect: float) -> StartShape:
+    """An ellipse; no vertex lies on an axis, so that both halves have the same."""
+    angle = 2.0 * math.pi * (np.arange(ROUND_VERTICES) + 0.5) / ROUND_VERTICES
+    return StartShape(name, Outline.from_points(np.column_stack([aspect * np.cos(angle), np.sin(angle)]), name))
+
+
+def _polygon(name: str, sides: int) -> StartShape:
+    """A regular polygon: a corner on top, or a side where there is one below it too."""
+    first = 0.5 * math.pi + (math.pi / sides if sides % 4 == 0 else 0.0)
+    angle = first + 2.0 * math.pi * np.arange(sides) / sides
+    return StartShape(name, Outline.from_points(np.column_stack([np.cos(angle), np.sin(angle)]), name))
+
+
+def _aspect(text: str, numbers: list[str]) -> float:
+    """Width over height of two positive numbers."""
+    if all(re.fullmatch(r"\d+(\.\d+)?", number) for number in numbers):
+        width, height = (float(number) for number in numbers)
+        if min(width, height) > 0.0 and 1.0 / LONGEST <= width / height <= LONGEST:
+            return width / height
+    raise UsageError("start.wrong_numbers", text=text, longest=LONGEST, most=MOST_SIDES)
+
+
+def _sides(text: str, number: str) -> int:
+    if re.fullmatch(r"\d{1,3}", number) and FEWEST_SIDES <= int(number) <= MOST_SIDES:
+        return int(number)
+    raise UsageError("start.wrong_numbers", text=text, longest=LONGEST, most=MOST_SIDES)

@@ -1,0 +1,73 @@
+"""A round start kept round: what the chords between mouths cut off may not grow much when mouths move.
+
+Evenly spaced mouths cut off least; a fit that gathers them would leave long chords elsewhere.  The term is the square
+of what is cut off beyond that and a little more, as a share of the start's area.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from kirigami_studio.foundation.arrays import FloatArray
+from kirigami_studio.lattice.sheet import RimPath, rim_table
+
+#: Weight of the square of the share that is cut off beyond what is allowed: a thousandth of the area then weighs as
+#: much as the whole mismatch of a good fit.
+WEIGHT = 100.0
+#: What may be cut off, relative to even mouths, and in any case, as a share of the area.
+ALLOWED_GROWTH, ALLOWED = 1.05, 0.008
+#: A start that loses no more than this (share of its area) has straight sides and its corners at mouths.
+STRAIGHT = 1e-4
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Chords:
+    """The term for one grid and start outline.
+
+    Attributes
+    ----------
+    path : RimPath
+    area : float, unit cells squared
+        Of the start outline.
+    allowed : float
+        Share of it that may be cut off.
+    """
+
+    path: RimPath
+    area: float
+    allowed: float
+
+    @classmethod
+    def of(cls, path: RimPath) -> Chords | None:
+        """The term; None for a start that chords do not cut, such as a rectangle."""
+        if path.start is None:
+            return None
+        area = _area(path.outline())
+        even = 1.0 - _area(path.anchors(rim_table(path.rows, path.columns).even)) / area
+        return cls(path, area, max(ALLOWED_GROWTH * even, ALLOWED)) if even > STRAIGHT else None
+
+    def excess(self, positions: FloatArray) -> float:
+        """Share of the area that is cut off beyond what is allowed, with the mouths at ``positions`` (R,)."""
+        return max(0.0, 1.0 - _area(self.path.anchors(positions)) / self.area - self.allowed)
+
+    def slopes(self, positions: FloatArray) -> FloatArray:
+        """Derivative (R,) of the share that is cut off by the mouths' positions."""
+        points = self.path.anchors(positions)
+        across = (np.roll(points, -1, axis=0) - np.roll(points, 1, axis=0))[rim_table(*self.grid).mouths]
+        along = self.path.slopes(positions)
+        # Clockwise, the area grows by half of what each vertex moves to the left of the line between its neighbours.
+        grown = 0.5 * (across[:, 0] * along[:, 1] - across[:, 1] * along[:, 0])
+        return np.asarray(-grown / self.area)
+
+    @property
+    def grid(self) -> tuple[int, int]:
+        """(rows, columns) of voids."""
+        return self.path.rows, self.path.columns
+
+
+def _area(points: FloatArray) -> float:
+    """Area of a polygon (P, 2) that runs clockwise."""
+    after = np.roll(points, -1, axis=0)
+    return 0.5 * float(np.sum(points[:, 1] * after[:, 0] - points[:, 0] * after[:, 1]))
