@@ -157,8 +157,8 @@ class PlotsPanel(QWidget):
 
     def show_as_cut(self, sheet: SimulatedSheet | None) -> None:
         """Draw what the sheet does as cut; None where that is not known."""
-        self._closing = None if sheet is None else sheet.closing
-        if self._built:
+        before, self._closing = self._closing, None if sheet is None else sheet.closing
+        if self._built and before is not self._closing:
             self._draw_as_cut()
             self._share_room()
 

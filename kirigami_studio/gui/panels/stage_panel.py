@@ -247,10 +247,11 @@ class StagePanel(Card):
         state = UNKNOWN if self._sample is not None else self._as_cut
         jam = 0.0 if state.sheet is None else state.sheet.as_cut.jam_phi
         self.as_cut.show_state(state)
-        self.deployment.set_jam(jam or None)
         self.view.show_as_cut(state.sheet)
         self.plots.show_as_cut(state.sheet)
-        self.switches_changed.emit()
+        if (jam or None) != self.deployment.slider.jam:
+            self.deployment.set_jam(jam or None)
+            self.switches_changed.emit()
 
     def show_trimming(self, busy: bool) -> None:
         """The design is being trimmed, or no longer."""

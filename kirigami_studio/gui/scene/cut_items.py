@@ -14,7 +14,7 @@ from PySide6.QtCore import QLineF, QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QPainter, QPainterPath, QPen
 
 from kirigami_studio.fabricate import timing
-from kirigami_studio.fabricate.cut_plan import CutPath, CutPlan, Layer
+from kirigami_studio.fabricate.cut_plan import CutPlan, Layer
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray
 from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.scene.paths import line_path, round_pen
@@ -51,14 +51,21 @@ class CutDrawing:
     @cached_property
     def largest_arc(self) -> float:
         """How far an arc of the plan lies beside its chord at most, mm."""
-        return max((_sagitta(path) for path in self.plan.paths if path.bulges is not None), default=0.0)
+        arcs = [(path, path.bulges) for path in self.plan.paths if path.bulges is not None]
+        if not arcs:
+            return 0.0
+        # After the last point of an open path comes no edge, whatever its bulge says.
+        bulge = np.concatenate([bulges if path.closed else np.append(bulges[:-1], 0.0) for path, bulges in arcs])
+        points = np.concatenate([path.points for path, _ in arcs])
+        following = np.concatenate([part for path, _ in arcs for part in (path.points[1:], path.points[:1])])
+        return float((0.5 * np.abs(bulge) * np.linalg.norm(following - points, axis=1)).max())
 
     @cached_property
     def boxes(self) -> FloatArray:
         """Left, bottom, right, top of every cut: (P, 4)."""
-        corners = [(path.flattened.min(axis=0), path.flattened.max(axis=0)) for path in self.plan.paths]
-        boxes: FloatArray = np.array([[*low, *high] for low, high in corners])
-        return boxes
+        lines = [path.flattened for path in self.plan.paths]
+        points, starts = np.concatenate(lines), np.cumsum([0, *(len(line) for line in lines[:-1])])
+        return np.hstack([np.minimum.reduceat(points, starts), np.maximum.reduceat(points, starts)])
 
     @cached_property
     def on_layer(self) -> dict[Layer, BoolArray]:
@@ -131,7 +138,7 @@ def paint_cuts(
     view : QRectF, pixels
         What lies outside is left out.
     """
-    last, seen = len(drawing.cuts), _in_view(drawing, transform, view)
+    last, seen = len(drawing.plan.paths), _in_view(drawing, transform, view)
     width = drawing.pen_width(transform) / transform.scale
     thin = width * transform.scale * painter.device().devicePixelRatio() <= THINNEST
     done = np.arange(last) < (step if step == last else step - 1)
@@ -248,14 +255,6 @@ def _in_view(drawing: CutDrawing, transform: ViewTransform, view: QRectF) -> Boo
         & (boxes[:, 3] >= bottom - margin)
     )
     return seen
-
-
-def _sagitta(path: CutPath) -> float:
-    """Largest distance (mm) between the arcs of a path and their chords."""
-    bulges = np.zeros(len(path.points)) if path.bulges is None else path.bulges
-    chords = np.linalg.norm(np.roll(path.points, -1, axis=0) - path.points, axis=1)
-    counted = len(bulges) if path.closed else len(bulges) - 1
-    return float((0.5 * np.abs(bulges) * chords)[:counted].max(initial=0.0))
 
 
 def _ring(pieces: list[FloatArray]) -> FloatArray:

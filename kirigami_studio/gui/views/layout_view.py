@@ -235,8 +235,9 @@ class LayoutView(Canvas):
 
     def show_as_cut(self, sheet: SimulatedSheet | None) -> None:
         """Show how much the connectors of the design are stretched; None where that is not known."""
-        self._cut = sheet
-        self.update()
+        if sheet is not self._cut:
+            self._cut = sheet
+            self.update()
 
     def show_grips(self, state: GripState) -> None:
         """Show where to hold and to pull the design as cut."""
@@ -260,8 +261,9 @@ class LayoutView(Canvas):
 
     def set_sheet_width(self, width_mm: float) -> None:
         """Set the width of the flat sheet, mm: all lengths on the drawing follow from it."""
-        self._width_mm = width_mm
-        self.update()
+        if width_mm != self._width_mm:
+            self._width_mm = width_mm
+            self.update()
 
     @property
     def mm_per_unit(self) -> float:
