@@ -43,11 +43,12 @@ OFF_ARC_SPANS = 2e-3
 #: Slits turn within so many spans at most.
 LONGEST_TURN = 8.0
 #: How often what is in the way of each other is made to give way, and from which time on turns are not tried singly.
-ROUNDS, HASTY_FROM = 30, 10
+ROUNDS, HASTY_FROM = 40, 10
 #: A connector keeps at least this share of the width that was asked for.
 LEAST_SHARE = 0.3
-#: Share of its width that a connector in the way keeps at once.
-NARROWER = 0.8
+#: Share of its width that a connector in the way keeps at once: little is lost above a share of what was asked for,
+#: below it more, so that the end is reached soon.
+SLIGHTLY_NARROWER, SLIGHT_DOWN_TO, NARROWER = 0.95, 0.75, 0.8
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -219,7 +220,8 @@ class _Room:
 
     def _smaller(self, hinge: int) -> bool:
         """Make a connector narrower, if it may be."""
-        width = max(NARROWER * self._widths[hinge], self._least[hinge])
+        slight = self._widths[hinge] > SLIGHT_DOWN_TO * self._sheet.widths[hinge]
+        width = max((SLIGHTLY_NARROWER if slight else NARROWER) * self._widths[hinge], self._least[hinge])
         fell = bool(width < self._widths[hinge] - CLEAR_MM)
         self._widths[hinge] = width
         return fell

@@ -8,7 +8,8 @@ at the slit's end have no room.  For a slit of length l and a ratio x, with span
     l |x - 1| / (x + 1) >= FACING_SPANS R        l min(1, x) / (x + 1) >= E R
 
 The first is what bows on both sides need to stay apart (see ``centres``), the second what half a bow and the turn at
-the slit's end need, which is the longer the more slanted the slit arrives there (see ``detours``).  Nodes depend on the
+the slit's end need, which is the longer the more slanted the slit arrives there (see ``detours``).  What would come too
+near across a panel is found in ``clearances``.  Nodes depend on the
 ratios by the barycentric system of ``lattice.compact``, whose derivative is exact; so does the closed outline.  Of all
 ratios that meet the conditions those are taken whose closed outline, after the best similarity, is nearest to that of
 the design: a small quadratic programme, made linear a few times.  The sheet that comes out is exact like any other.
@@ -26,6 +27,7 @@ from scipy.sparse import csc_matrix
 from scipy.sparse.linalg import splu
 
 from kirigami_studio.fabricate.centres import BULGE_SPANS, void_hinges
+from kirigami_studio.fabricate.clearances import Clearances, clearances
 from kirigami_studio.fabricate.connectors import directions
 from kirigami_studio.fabricate.detours import shortest_turn
 from kirigami_studio.fabricate.slits import SHEET_EDGE, CutTable, edge_sides
@@ -168,10 +170,11 @@ class _Programme:
         design, z = self._design, self._z
         similar = np.zeros(self._similar.shape[1])
         for turn in range(ROUNDS):
-            missing = self._missing(design, z, share)
+            near = self._near(design, share)
+            missing = np.concatenate([self._missing(design, z, share), near.missing])
             if missing.max(initial=0.0) <= MET_MM:
                 return None if turn == 0 else design
-            step = self._step(design, z, similar, share, missing)
+            step = self._step(design, z, similar, share, missing, near)
             step *= 1.0 if turn < DAMPED_FROM else 0.5
             z = z + np.clip(step[: z.size], -LARGEST_STEP, LARGEST_STEP)
             similar = similar + step[z.size :]
@@ -204,6 +207,11 @@ class _Programme:
         turned = np.stack([even[1] - odd[1], odd[0] - even[0]])
         closed: FloatArray = self._scale * turned[:, self._kept]
         return closed
+
+    def _near(self, design: Deployment, share: float) -> Clearances:
+        """What comes too near to what across a panel."""
+        spans = share * self._hinge_spans
+        return clearances(self._scale * design.compact, self._table, spans, self._rim, self._loop, SPARE_MM)
 
     def _missing(self, design: Deployment, z: FloatArray, share: float) -> FloatArray:
         """What is missing (N,), mm, to the distances that slits need: facing connectors, their ends, their slants."""
@@ -293,7 +301,13 @@ class _Programme:
         return -squarer / np.maximum(np.sin(self._lean(design)), SQUARE)[:, None]
 
     def _step(
-        self, design: Deployment, z: FloatArray, similar: FloatArray, share: float, missing: FloatArray
+        self,
+        design: Deployment,
+        z: FloatArray,
+        similar: FloatArray,
+        share: float,
+        missing: FloatArray,
+        near: Clearances,
     ) -> FloatArray:
         """Changes (V + 4,) of the logarithms of ratios and of the similarity."""
         slopes = _node_slopes(design)
@@ -303,7 +317,7 @@ class _Programme:
         pull = table.T @ (self._off(design) + self._similar @ similar)
         pull[: z.size] += RATIO_WEIGHT * (z - self._z)
         close = missing > -CLOSE_SPANS * float(np.max(self._spans))
-        falls = self._falls(design, z, slopes, share)[close]
+        falls = np.concatenate([self._falls(design, z, slopes, share), near.falls(self._scale * slopes)])[close]
         falls = np.hstack([falls, np.zeros((len(falls), similar.size))])
         return _least(table.T @ table + np.diag(weights), pull, falls, missing[close])
 

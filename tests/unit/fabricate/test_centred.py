@@ -191,7 +191,7 @@ def test_that_single_widths_are_kept(make_design: MakeDesign) -> None:
 def test_that_crowded_connectors_are_told_and_keep_their_width(make_design: MakeDesign) -> None:
     plan = plan_cuts(
         make_design(8, 8, seed=4, spread=0.9),
-        130.0,
+        80.0,
         material=find_material("card-co2"),
         options=CutOptions(style=ConnectorStyle.CENTRED),
     )
