@@ -1,4 +1,4 @@
-"""What stays of each edge panel when the sheet is trimmed: the target's part, and material around every hinge.
+"""What stays of each trimmed panel: the target's part, and material around every hinge.
 
 All panels are looked at together, each in the compact sheet's own frame (the target is carried there by the panel's
 rigid motion), so that the sides of untouched panels stay exactly where the cuts are.
@@ -6,6 +6,7 @@ rigid motion), so that the sides of untouched panels stay exactly where the cuts
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 from itertools import combinations
@@ -35,8 +36,8 @@ FARTHEST = 4.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class EdgePanels:
-    """The panels along the sheet's edge, row by row.
+class PanelTable:
+    """Panels of a grid, row by row.
 
     Attributes
     ----------
@@ -57,23 +58,30 @@ class EdgePanels:
 
 
 @cache
-def edge_panels(rows: int, columns: int) -> EdgePanels:
-    """The (cached) edge panels of an m x n grid."""
+def all_panels(rows: int, columns: int) -> PanelTable:
+    """The (cached) panels of an m x n grid."""
     line, place = (axis.ravel() for axis in np.indices((rows + 1, columns + 1)))
     hinged = np.stack([line > 0, place > 0, line < rows, place < columns], axis=1)
-    index = np.flatnonzero(~hinged.all(axis=1))
-    corners = topology(rows, columns).panel_nodes.reshape(-1, 4)[index]
-    return EdgePanels(index, corners, hinged[index], (line + place)[index] % 2 == 0)
+    corners = topology(rows, columns).panel_nodes.reshape(-1, 4)
+    return PanelTable(np.arange(line.size), corners, hinged, (line + place) % 2 == 0)
+
+
+@cache
+def edge_panels(rows: int, columns: int) -> PanelTable:
+    """The (cached) panels along the edge of an m x n grid."""
+    every = all_panels(rows, columns)
+    index = np.flatnonzero(~every.hinged.all(axis=1))
+    return PanelTable(index, every.corners[index], every.hinged[index], every.even[index])
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class KeptPanels:
-    """What stays of the edge panels, in the compact sheet's frame.
+    """What stays of some panels, in the compact sheet's frame.
 
     Attributes
     ----------
     shapes : (E,) Polygon or None
-        None where a panel stays whole.
+        None where a panel stays whole, an empty one where nothing of it stays.
     removed : (E,) float, unit cells squared
     lost : (E,) float, unit cells squared
         Removed area that lies on the target: pieces without a hinge.
@@ -97,18 +105,24 @@ def kept_panels(corners: FloatArray, hinged: BoolArray, targets: GeometryArray, 
         Depth of the material that stays at every hinge.
     """
     panels = polygons(corners)
-    common = _common(panels, targets)
-    area, inside = shapely.area(panels), shapely.area(common)
+    common = shared_parts(panels, targets)
     shapes = np.full(len(panels), None, dtype=object)
-    for k in np.flatnonzero(inside < area - SLIVER * SLIVER):
-        around = _around_hinges(panels[k], corners[k], hinged[k], keep)
-        wanted = _without_slivers(panels[k], _united(common[k], around.all))
-        if wanted is not None:
-            shapes[k] = _in_one_piece(panels[k], wanted, around, keep)
-    return _measured(panels, common, shapes)
+    for k in np.flatnonzero(shapely.area(common) < shapely.area(panels) - SLIVER * SLIVER):
+        shapes[k] = kept_part(panels[k], common[k], corners[k], hinged[k], keep)
+    return measured(panels, common, shapes)
 
 
-def _measured(panels: GeometryArray, common: GeometryArray, shapes: GeometryArray) -> KeptPanels:
+def kept_part(
+    panel: Polygon, common: BaseGeometry, corners: FloatArray, hinged: BoolArray, keep: float
+) -> Polygon | None:
+    """What stays of one panel, of which ``common`` is the target's part; None where it stays whole."""
+    around = _around_hinges(panel, corners, hinged, keep)
+    wanted = _without_slivers(panel, _united(common, around.all))
+    return None if wanted is None else _in_one_piece(panel, wanted, around, keep)
+
+
+def measured(panels: GeometryArray, common: GeometryArray, shapes: GeometryArray) -> KeptPanels:
+    """What stays of panels (E,), with the areas that are cut off; ``common`` (E,) are the target's parts of them."""
     area, inside = shapely.area(panels), shapely.area(common)
     removed, lost = np.zeros(len(panels)), np.zeros(len(panels))
     cut = np.flatnonzero([shape is not None for shape in shapes])
@@ -133,23 +147,33 @@ def with_pockets(kept: KeptPanels, corners: FloatArray, targets: GeometryArray, 
     corners, targets
         As for :func:`kept_panels`.
     whole : geometry
-        The sheet without its edge panels.
+        The rest of the sheet.
     """
     panels = polygons(corners)
     present = [shape if shape is not None else panel for shape, panel in zip(kept.shapes, panels, strict=True)]
-    sheet = _united(*present, whole)
-    outer = max(shapely.get_parts(sheet), key=lambda part: float(part.area))
-    pockets = [Polygon(ring) for ring in outer.interiors if Polygon(ring).area > GRID]
+    pockets = enclosed([*present, whole])
     if not pockets:
         return kept
     filling = _united(*pockets)
     shapes = kept.shapes.copy()
     for k in np.flatnonzero([shape is not None and shape.distance(filling) < GRID for shape in shapes]):
         shapes[k] = _solid(_united(shapes[k], _shared(panels[k], filling)))
-    return _measured(panels, _common(panels, targets), shapes)
+    return measured(panels, shared_parts(panels, targets), shapes)
 
 
-def _common(panels: GeometryArray, targets: GeometryArray) -> GeometryArray:
+def enclosed(parts: Sequence[BaseGeometry] | GeometryArray) -> list[Polygon]:
+    """Places that parts of one sheet enclose."""
+    outer = max(shapely.get_parts(_united(*parts)), key=lambda part: float(part.area))
+    return [Polygon(ring) for ring in outer.interiors if Polygon(ring).area > GRID]
+
+
+def largest_part(shape: BaseGeometry, other: BaseGeometry) -> Polygon:
+    """The largest part of a shape without another."""
+    return _solid(_less(shape, other))
+
+
+def shared_parts(panels: GeometryArray, targets: GeometryArray) -> GeometryArray:
+    """Each panel's part in its own target (E,)."""
     common = shapely.intersection(panels, targets, grid_size=GRID)
     areas: GeometryArray = np.array([_areas(shape) for shape in common], dtype=object)
     return areas
@@ -191,7 +215,7 @@ def _around_hinges(panel: Polygon, corners: FloatArray, hinged: BoolArray, keep:
     reach = keep * np.minimum(FARTHEST, 1.0 / np.maximum(sine, GRID))
     points = corners[hinged]
     discs = shapely.buffer(shapely.points(points), reach[hinged])
-    parts = _common(discs, np.full(len(discs), panel))
+    parts = shared_parts(discs, np.full(len(discs), panel))
     return _Around(points, parts, _united(*parts))
 
 

@@ -63,7 +63,10 @@ class PosedDesign:
         return width_mm / (float(np.ptp(self.deployment.compact[:, 0])) * self.pose.scale)
 
     def kept(self, nodes: FloatArray, phi: float) -> dict[int, FloatArray]:
-        """What stays of the trimmed panels, (P, 2) each by its row in :meth:`panels`, out of :meth:`nodes`."""
+        """What stays of the trimmed panels, (P, 2) each by its row in :meth:`panels`, out of :meth:`nodes`.
+
+        No points of those of which nothing stays.
+        """
         if self.trim is None:
             return {}
         rings = trimmed_parts(self.deployment, self.trim).kept
@@ -75,7 +78,7 @@ class PosedDesign:
         parts = list(self.panels(nodes))
         for row, part in self.kept(nodes, phi).items():
             parts[row] = part
-        return parts
+        return [part for part in parts if len(part)]
 
     def removed(self, nodes: FloatArray, phi: float) -> list[FloatArray]:
         """What trimming cut off: list of (P, 2), out of :meth:`nodes`."""
@@ -144,10 +147,14 @@ def trimmed_parts(deployment: Deployment, trim: Trim) -> TrimmedParts:
 
 
 def polygons_of(rings: Sequence[FloatArray]) -> npt.NDArray[np.object_]:
-    """Shapely polygons inside of closed lines (L, 2), all made in one call."""
-    numbers = np.repeat(np.arange(len(rings)), [len(ring) for ring in rings])
-    points = np.concatenate(rings) if rings else np.zeros((0, 2))
-    return np.asarray(shapely.polygons(shapely.linearrings(points, indices=numbers)))
+    """Shapely polygons inside of closed lines (L, 2), all made in one call; empty ones for lines without points."""
+    made = np.full(len(rings), shapely.Polygon(), dtype=object)
+    drawn = [place for place, ring in enumerate(rings) if len(ring)]
+    if drawn:
+        numbers = np.repeat(np.arange(len(drawn)), [len(rings[place]) for place in drawn])
+        points = np.concatenate([rings[place] for place in drawn])
+        made[drawn] = shapely.polygons(shapely.linearrings(points, indices=numbers))
+    return made
 
 
 @dataclass(frozen=True, slots=True, eq=False)

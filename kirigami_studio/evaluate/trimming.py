@@ -2,7 +2,8 @@
 
 Panels are rigid, so a cut along the target at the target angle is a cut in the compact sheet.  Hinges cannot be cut:
 around each of them material stays, and a panel stays in one piece with all its hinges.  Panels inside the sheet are
-never touched.  A trimmed score is another number than an untrimmed one; both are kept apart.
+never touched, unless the trim is a deep one: then notches go through them, and panels and hinges in a notch are given
+up, see ``notches``.  A trimmed score is another number than an untrimmed one; both are kept apart.
 """
 
 from __future__ import annotations
@@ -19,19 +20,22 @@ from shapely.geometry.base import BaseGeometry
 from kirigami_studio.evaluate.boundary import as_plane, as_points
 from kirigami_studio.evaluate.kept_panels import (
     GRID,
-    EdgePanels,
     KeptPanels,
+    PanelTable,
+    all_panels,
     edge_panels,
     kept_panels,
     polygons,
     with_pockets,
 )
+from kirigami_studio.evaluate.notches import STICKING_OUT, deep_cut
 from kirigami_studio.evaluate.similarity import Similarity
-from kirigami_studio.foundation.arrays import BoolArray, ComplexArray, FloatArray
+from kirigami_studio.foundation.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from kirigami_studio.foundation.errors import KirigamiError, UsageError
 from kirigami_studio.lattice.deployment import Deployment, check_phi
 from kirigami_studio.lattice.ratio_field import frozen
 from kirigami_studio.lattice.sheet import Sheet
+from kirigami_studio.lattice.symmetry import symmetry_of
 from kirigami_studio.outlines.outline import Outline
 
 #: Depth (unit cells) of the material that stays at every hinge unless something else is asked for.
@@ -53,8 +57,11 @@ class Trim:
         Layout frame at ``phi`` to target frame.
     keep : float, unit cells
         Depth of the material that stays at every hinge.
+    deep : bool
+        Whether panels inside the sheet were cut too, and panels and hinges given up.
     kept : tuple of (P, 2) float or None, unit cells
-        What stays of every panel, row by row, in the compact sheet's frame, counter-clockwise; None for a whole one.
+        What stays of every panel, row by row, in the compact sheet's frame, counter-clockwise; None for a whole one, no
+        points for one that was given up.
     iou : float, 0..1
         Exact IoU of the trimmed silhouette with the target.
     untrimmed_iou : float, 0..1
@@ -67,10 +74,16 @@ class Trim:
     phi: float
     pose: Similarity
     keep: float
+    deep: bool
     kept: tuple[FloatArray | None, ...] = attribute(compare=False, repr=False)
     iou: float = attribute(compare=False)
     untrimmed_iou: float = attribute(compare=False)
     removed_share: float = attribute(compare=False)
+
+    @property
+    def given_up(self) -> int:
+        """Number of panels of which nothing stays."""
+        return sum(part is not None and not len(part) for part in self.kept)
 
 
 def trim(
@@ -79,6 +92,7 @@ def trim(
     phi: float,
     pose: Similarity,
     keep: float = KEEP,
+    deep: bool = False,
 ) -> Trim:
     """Trim a design to a target.
 
@@ -91,38 +105,79 @@ def trim(
         Layout frame at ``phi`` to target frame.
     keep : float, unit cells, 0.02 to 0.4
         Depth of the material that stays at every hinge, square to the cut that the hinge rests on.
+    deep : bool
+        Whether notches may go through panels inside the sheet.
 
     Raises
     ------
     AngleError, UsageError
         The angle or the depth is out of range.
     KirigamiError
-        The outline crosses itself at ``phi``, so that it has no outside.
+        The outline crosses itself at ``phi``, so that it has no outside; or nothing is left of a deep cut.
     """
     phi, keep = check_phi(phi), check_keep(keep)
     silhouette = Polygon(deployment.outline(phi))
     if not silhouette.is_valid:
         raise KirigamiError("trim.crosses_itself")
     place = Polygon(pose.inverse().apply(target.points))
-    panels = edge_panels(deployment.field.rows, deployment.field.columns)
-    corners = deployment.compact[panels.corners]
-    targets = polygons(as_points(_brought_back(deployment, panels, phi, shapely.get_coordinates(place)[:-1])))
-    kept = kept_panels(corners, panels.hinged, targets, keep)
-    kept = with_pockets(kept, corners, targets, _inside(deployment, panels))
-    shared = silhouette.intersection(place).area
-    parts: list[FloatArray | None] = [None] * deployment.topology.panel_nodes[..., 0].size
-    for index, shape in zip(panels.index, kept.shapes, strict=True):
-        parts[index] = None if shape is None else frozen(_ring(shape))
+    shared, parts = silhouette.intersection(place).area, _deep_parts if deep else _edge_parts
+    cut = parts(deployment, place, phi, keep)
+    kept: list[FloatArray | None] = [None] * deployment.topology.panel_nodes[..., 0].size
+    for index, shape in zip(cut.index, cut.kept.shapes, strict=True):
+        kept[index] = None if shape is None else frozen(_ring(shape))
+    removed = float(cut.kept.removed.sum())
+    both = shared - float(cut.kept.lost.sum()) - cut.open_shared
     return Trim(
         sheet=deployment.sheet,
         phi=phi,
         pose=pose,
         keep=keep,
-        kept=tuple(parts),
-        iou=_iou(shared, silhouette.area, place.area, kept),
+        deep=deep,
+        kept=tuple(kept),
+        # Of the outline less what was removed: interior voids count as filled, as in every silhouette.
+        iou=float(both / (place.area + silhouette.area - removed - cut.open_area - both)),
         untrimmed_iou=float(shared / (silhouette.area + place.area - shared)),
-        removed_share=float(kept.removed.sum()) / deployment.area(math.pi),
+        removed_share=removed / deployment.area(math.pi),
     )
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Parts:
+    """What stays of some panels, numbered ``index`` (E,), and area of the voids that now lie open, and on the target.
+
+    Unit cells squared.
+    """
+
+    index: IntArray
+    kept: KeptPanels
+    open_area: float = 0.0
+    open_shared: float = 0.0
+
+
+def _edge_parts(deployment: Deployment, place: Polygon, phi: float, keep: float) -> _Parts:
+    """The panels at the edge cut along the target, all hinges kept."""
+    panels = edge_panels(deployment.field.rows, deployment.field.columns)
+    corners = deployment.compact[panels.corners]
+    targets = polygons(as_points(_brought_back(deployment, panels, phi, shapely.get_coordinates(place)[:-1])))
+    kept = kept_panels(corners, panels.hinged, targets, keep)
+    return _Parts(panels.index, with_pockets(kept, corners, targets, _inside(deployment, panels)))
+
+
+def _deep_parts(deployment: Deployment, place: Polygon, phi: float, keep: float) -> _Parts:
+    """All panels cut along the target, those in its notches given up."""
+    grid = deployment.field.rows, deployment.field.columns
+    panels = all_panels(*grid)
+    targets = polygons(as_points(_brought_back(deployment, panels, phi, shapely.get_coordinates(place)[:-1])))
+    tables = deployment.topology
+    voids = polygons(deployment.nodes(phi)[tables.void_nodes].reshape(-1, 4, 2))
+    ends = np.where(tables.even_void[..., None], tables.void_nodes[..., [3, 1]], tables.void_nodes[..., [0, 2]])
+    area, shared = shapely.area(voids).reshape(grid), shapely.area(shapely.intersection(voids, place)).reshape(grid)
+    symmetry = symmetry_of(deployment.sheet)
+    images = None if symmetry is None else symmetry.on(*grid).source[:, : area.size]
+    gain = shared - STICKING_OUT * (area - shared)
+    cut = deep_cut(deployment.compact[panels.corners], targets, deployment.compact[ends], gain, keep, images)
+    left_out = ~cut.voids
+    return _Parts(panels.index, cut.kept, float(area[left_out].sum()), float(shared[left_out].sum()))
 
 
 def check_keep(keep: float) -> float:
@@ -142,12 +197,6 @@ def check_keep(keep: float) -> float:
     return depth
 
 
-def _iou(shared: float, sheet: float, target: float, kept: KeptPanels) -> float:
-    """Of the outline less what was removed: interior voids count as filled, as in every silhouette."""
-    both = shared - float(kept.lost.sum())
-    return float(both / (target + sheet - float(kept.removed.sum()) - both))
-
-
 def _turn(even: BoolArray, phi: float) -> ComplexArray:
     """By what panels turn on the way from the compact sheet, as complex factors."""
     half = 0.5 * (math.pi - phi)
@@ -155,7 +204,7 @@ def _turn(even: BoolArray, phi: float) -> ComplexArray:
     return turn
 
 
-def _brought_back(deployment: Deployment, panels: EdgePanels, phi: float, points: FloatArray) -> ComplexArray:
+def _brought_back(deployment: Deployment, panels: PanelTable, phi: float, points: FloatArray) -> ComplexArray:
     """Points (T, 2) of the layout's frame at ``phi``, carried to the compact sheet with each edge panel: (E, T)."""
     anchors = panels.corners[:, 0]
     start, end = as_plane(deployment.nodes(phi))[anchors], as_plane(deployment.compact)[anchors]
@@ -164,7 +213,7 @@ def _brought_back(deployment: Deployment, panels: EdgePanels, phi: float, points
     return carried
 
 
-def _inside(deployment: Deployment, panels: EdgePanels) -> BaseGeometry:
+def _inside(deployment: Deployment, panels: PanelTable) -> BaseGeometry:
     """All panels that are not at the edge, as one area of the compact sheet."""
     corners = deployment.compact[deployment.topology.panel_nodes.reshape(-1, 4)]
     rest = np.delete(corners, panels.index, axis=0)
@@ -173,5 +222,5 @@ def _inside(deployment: Deployment, panels: EdgePanels) -> BaseGeometry:
 
 
 def _ring(shape: Polygon) -> FloatArray:
-    """Vertices (P, 2), counter-clockwise, first not repeated."""
-    return shapely.get_coordinates(shapely.orient_polygons(shape).exterior)[:-1]
+    """Vertices (P, 2), counter-clockwise, first not repeated; none of an empty shape."""
+    return np.zeros((0, 2)) if shape.is_empty else shapely.get_coordinates(shapely.orient_polygons(shape).exterior)[:-1]

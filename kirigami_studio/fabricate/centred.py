@@ -272,7 +272,7 @@ class _Draft:
         pulled[table.hinge_cut, table.hinge_end] = tips
         self._outline, pieces = sheet.trimmed(pulled)
         self._seats = self._all_seats(left)
-        places = places_of_ends(pieces, tips, table)
+        places = places_of_ends(pieces, tips, table, removed)
         self._pieces, places = cut_through(pieces, removed, places, self._seats, table, self._outline, sheet.overcut_mm)
         self._places: list[Place] = places
         self._end_of = {place: hinge for hinge, place in enumerate(self._places)}

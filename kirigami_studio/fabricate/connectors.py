@@ -47,6 +47,8 @@ class Hinges:
         Width asked for: more than what was planned for where there was no room.
     flexure_mm : (H,) float
         Length over which the connector bends.
+    lost : (H,) bool
+        Connectors that went with what trimming cut off; they count as removed.
     """
 
     position: FloatArray
@@ -57,6 +59,7 @@ class Hinges:
     finished_mm: FloatArray
     asked_mm: FloatArray
     flexure_mm: FloatArray
+    lost: BoolArray
 
     def __post_init__(self) -> None:
         for name in self.__slots__:
@@ -64,7 +67,7 @@ class Hinges:
 
     @property
     def removed(self) -> BoolArray:
-        """Which connectors were removed on purpose (H,)."""
+        """Which connectors were removed on purpose, or with what trimming cut off (H,)."""
         gone: BoolArray = self.requested_mm == 0.0
         return gone
 
@@ -78,7 +81,7 @@ class Hinges:
         """For a plan that has no hinges."""
         shapes: dict[str, Any] = {field.name: np.empty(0) for field in fields(cls)}
         shapes |= {name: np.empty(0, dtype=np.intp) for name in ("cut", "end", "through")}
-        return cls(**(shapes | {"position": np.empty((0, 2))}))
+        return cls(**(shapes | {"position": np.empty((0, 2)), "lost": np.empty(0, dtype=np.bool_)}))
 
     def __len__(self) -> int:
         return int(self.position.shape[0])

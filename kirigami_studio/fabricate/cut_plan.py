@@ -37,6 +37,7 @@ from kirigami_studio.fabricate.trimmed_sheet import (
     UNTRIMMED_STRAIGHT_MM,
     CutPiece,
     kept_area,
+    lost_hinges,
     trimmed_cuts,
 )
 from kirigami_studio.foundation.arrays import FloatArray
@@ -207,25 +208,27 @@ def plan_cuts(
     table = cut_table(*deployment.sheet.grid)
     parts = () if kept is None or all(part is None for part in kept) else tuple(kept)
     design_hash = _design_hash(deployment, parts)
-    widths = hinge_widths(table.hinge_count, connector, dict(options.hinge_mm), options.removed)
+    lost = lost_hinges(deployment, parts, table) if parts else ()
+    left = _without(options, lost)
+    widths = hinge_widths(table.hinge_count, connector, dict(left.hinge_mm), left.removed)
     _check_size(sheet_lines(deployment, width)[1])
     relief_radius(options.style, material)
     design, made, crowded = deployment, None, False
     if options.style is ConnectorStyle.CENTRED and parts:
         # What stays of the panels is that of the design's.
-        crowded = not has_room(design, width, widths + kerf, table, options.removed)
+        crowded = not has_room(design, width, widths + kerf, table, left.removed)
     elif options.style is ConnectorStyle.CENTRED:
         deployment = with_room(design, width, widths + kerf, table, options.removed)
         made = None if deployment is design else deployment
     lines, size = sheet_lines(deployment, width)
     sides = edge_sides(deployment, width)
     shortened = shorten(lines, table, sides, widths, kerf)
-    trimming = _trimming(deployment, parts, table, width, size, kerf, overcut)
+    trimming = _trimming(deployment, parts, table, width, size, kerf, overcut, lost)
     arranged = None
     if options.style is ConnectorStyle.CENTRED:
-        least = least_widths(widths, material.min_ligament_mm, dict(options.hinge_mm))
+        least = least_widths(widths, material.min_ligament_mm, dict(left.hinge_mm))
         arranged = centred_cuts(
-            StraightSheet(lines, table, sides, widths, least, kerf, overcut, options.removed, trimming)
+            StraightSheet(lines, table, sides, widths, least, kerf, overcut, left.removed, trimming)
         )
         if arranged is not None and parts and arranged.pieces(kerf) > 1 + len(options.removed):
             arranged = None
@@ -237,7 +240,7 @@ def plan_cuts(
             seats(lines, shortened, table, sides, widths, kerf),
             table,
             outline,
-            options,
+            left,
             material,
             kerf,
             overcut,
@@ -248,7 +251,7 @@ def plan_cuts(
     ring = CutPath(_on_grid(arranged.ring - origin), Layer.OUTLINE, True, bulges=arranged.ring_bulges)
     boundary = Polygon(measured_line(ring.points, ring.bulges, True))
     planned = widths if arranged.widths is None else arranged.widths
-    hinges = _hinges(cuts, table, widths, planned, cuts.widths(table, options.removed, boundary, kerf))
+    hinges = _hinges(cuts, table, widths, planned, cuts.widths(table, left.removed, boundary, kerf), lost)
     plan = CutPlan(
         paths=in_cutting_order(
             _paths(cuts.pieces, ring, hinges.position[hinges.through == SHEET_EDGE], options, kerf),
@@ -267,12 +270,12 @@ def plan_cuts(
             *plan_notes(hinges, material, connector, kerf, options.style, cuts.straight),
             *_room_notes(design, made, width),
             *([Note.of("plan.no_room_made_in_trimmed")] if crowded else []),
-            *_centring_notes(arranged, options, table),
+            *_centring_notes(arranged, left, table),
             *_narrowing_notes(hinges),
         ),
         panels=panels_in_mm(deployment, parts, width, origin),
         centres=None if arranged.centres is None else _frozen(arranged.centres - origin),
-        void_miss_mm=_void_miss(arranged, options, table),
+        void_miss_mm=_void_miss(arranged, left, table),
         made=made,
     )
     return replace(plan, notes=(*plan.notes, *plan.copies.notes))
@@ -302,13 +305,22 @@ def _trimming(
     size: tuple[float, float],
     kerf: float,
     overcut: float,
+    lost: Sequence[int],
 ) -> Trimming:
     """How straight cuts become outline and remaining cuts of this sheet."""
     if not parts and deployment.sheet.start is None:
         return lambda pulled: _plain_cuts(pulled, table, size, kerf, overcut)
     area = kept_area(deployment, parts or (None,) * len(deployment.topology.panel_nodes.reshape(-1, 4)), width)
     straight = STRAIGHT_MM if parts else UNTRIMMED_STRAIGHT_MM
-    return lambda pulled: trimmed_cuts(area, pulled, table, kerf, overcut, straight)
+    return lambda pulled: trimmed_cuts(area, pulled, table, kerf, overcut, straight, lost)
+
+
+def _without(options: CutOptions, lost: Sequence[int]) -> CutOptions:
+    """The options with the hinges that trimming took removed, whatever width was asked for them."""
+    if not lost:
+        return options
+    widths = tuple((hinge, width) for hinge, width in options.hinge_mm if hinge not in lost)
+    return replace(options, hinge_mm=widths, removed=tuple(sorted({*options.removed, *lost})))
 
 
 def _plain_cuts(
@@ -320,7 +332,14 @@ def _plain_cuts(
     return Polygon(outline_path(size, kerf)), pieces
 
 
-def _hinges(cuts: HingedCuts, table: CutTable, asked: FloatArray, planned: FloatArray, finished: FloatArray) -> Hinges:
+def _hinges(
+    cuts: HingedCuts,
+    table: CutTable,
+    asked: FloatArray,
+    planned: FloatArray,
+    finished: FloatArray,
+    lost: Sequence[int],
+) -> Hinges:
     return Hinges(
         position=np.array([seat.junction for seat in cuts.seats]),
         cut=table.hinge_cut,
@@ -330,6 +349,7 @@ def _hinges(cuts: HingedCuts, table: CutTable, asked: FloatArray, planned: Float
         finished_mm=finished,
         asked_mm=asked,
         flexure_mm=cuts.flexure_mm,
+        lost=np.isin(np.arange(table.hinge_count), lost),
     )
 
 

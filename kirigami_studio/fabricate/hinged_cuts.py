@@ -6,6 +6,7 @@ of the connector style, and :meth:`HingedCuts.widths` measures every connector b
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -31,6 +32,8 @@ HOLED = (ConnectorStyle.ROUND, ConnectorStyle.TEARDROP)
 GONE_MM = 1e-3
 #: A junction nearer than this (mm) to the through cut lies on it.
 ON_CUT_MM = 1e-6
+#: The place of a hinge that trimming took.
+NOWHERE: Place = (-1, False)
 #: A slit flatter to the edge than this (sine) turns square to it.
 FLATTEST = 0.5
 #: The outline counts as the far side of a connector up to so many gaps beside it.
@@ -48,7 +51,7 @@ class HingedCuts:
     seats : tuple of Seat
         Of every hinge.
     places : tuple of Place
-        Where the slit of each hinge ends.
+        Where the slit of each hinge ends, ``NOWHERE`` for hinges that trimming took.
     shapes : mapping of hinge to int
         Number of the piece that is the shape at a hinge, for those that have one.
     flexure_mm : (H,) float
@@ -77,6 +80,7 @@ class HingedCuts:
         finished = measured_widths(ends, self.seats, table, self.pieces, outline, kerf_mm)
         gone = np.array(removed, dtype=np.intp)
         finished[gone] = np.where(finished[gone] < GONE_MM, 0.0, finished[gone])
+        finished[[place == NOWHERE for place in self.places]] = 0.0
         return finished
 
     def _end(self, hinge: int, removed: bool) -> SlitEnd:
@@ -84,6 +88,9 @@ class HingedCuts:
             shape = self.pieces[self.shapes[hinge]]
             return SlitEnd(shape.line, shape.points)
         index, last = self.places[hinge]
+        if (index, last) == NOWHERE:
+            junction = self.seats[hinge].junction
+            return SlitEnd(LineString([junction, junction]), junction[None])
         piece = self.pieces[index]
         return SlitEnd(piece.line, piece.points) if removed else straight_end(piece, last)
 
@@ -135,7 +142,7 @@ def hinged_cuts(
         A style that the material does not allow.
     """
     radius = relief_radius(options.style, material)
-    places = places_of_ends(pieces, tips, table)
+    places = places_of_ends(pieces, tips, table, options.removed)
     made, places = cut_through(pieces, options.removed, places, hinge_seats, table, outline, overcut_mm)
     flexure = np.array([seat.span_mm for seat in hinge_seats])
     if options.style in (ConnectorStyle.STRAIGHT, ConnectorStyle.CENTRED):
@@ -155,8 +162,12 @@ def hinged_cuts(
     return HingedCuts(tuple(made), tuple(hinge_seats), tuple(places), shapes, flexure, fitting.obstacles())
 
 
-def places_of_ends(pieces: Sequence[CutPiece], tips: FloatArray, table: CutTable) -> list[Place]:
+def places_of_ends(
+    pieces: Sequence[CutPiece], tips: FloatArray, table: CutTable, removed: Sequence[int]
+) -> list[Place]:
     """Find the piece and the end that stops at every hinge's tip (H, 2).
+
+    Removed hinges that no piece ends at went with the material around them: they are ``NOWHERE``.
 
     Raises
     ------
@@ -166,13 +177,16 @@ def places_of_ends(pieces: Sequence[CutPiece], tips: FloatArray, table: CutTable
     by_cut: dict[int, list[int]] = {}
     for index, piece in enumerate(pieces):
         by_cut.setdefault(piece.cut, []).append(index)
-    places = []
+    places, gone = [], set(removed)
     for hinge, cut in enumerate(table.hinge_cut.tolist()):
         found = [
             (float(np.linalg.norm(pieces[index].points[-1 if last else 0] - tips[hinge])), index, last)
             for index in by_cut.get(cut, [])
             for last in (False, True)
         ]
+        if hinge in gone and min((away for away, _, _ in found), default=math.inf) > ON_CUT_MM:
+            places.append(NOWHERE)
+            continue
         if not found:
             x, y = tips[hinge]
             raise FabricationError("hinge.no_cut_left", x=x, y=y)
@@ -204,6 +218,8 @@ def cut_through(
     groups = lines_by_cut(pieces)
     for hinge in removed:
         index, last = now[hinge]
+        if (index, last) == NOWHERE:
+            continue
         piece, seat = changed[index], hinge_seats[hinge]
         tip = piece.points[-1 if last else 0]
         cut = groups.get(int(table.hinge_through[hinge]))

@@ -19,15 +19,16 @@ Pair = tuple[int, int]
 
 
 def joined_pairs(plan: CutPlan, paths: Sequence[CutPath], lines: Sequence[LineString]) -> set[Pair]:
-    """Pairs of a plan's paths that meet on purpose: of one slit, or of two whose connector was removed."""
+    """Pairs of a plan's paths that meet on purpose: of one slit, or of two whose connector was removed.
+
+    Two parts of one slit between which a notch of the outline ends count as meeting within a kerf.
+    """
     removed = plan.hinges.removed
     through = plan.hinges.through
     meant = {frozenset(pair) for pair in zip(plan.hinges.cut[removed].tolist(), through[removed].tolist(), strict=True)}
     return {
-        pair
-        for pair in touching(lines)
-        if paths[pair[0]].cut == paths[pair[1]].cut or frozenset(paths[index].cut for index in pair) in meant
-    }
+        pair for pair in touching(lines, max(TOUCH_MM, plan.kerf_mm)) if paths[pair[0]].cut == paths[pair[1]].cut
+    } | {pair for pair in touching(lines) if frozenset(paths[index].cut for index in pair) in meant}
 
 
 def joint_count(plan: CutPlan) -> int:
@@ -36,10 +37,10 @@ def joint_count(plan: CutPlan) -> int:
     return len(ending_on_others([measured_line(path.points, path.bulges, path.closed) for path in inner]))
 
 
-def touching(lines: Sequence[LineString]) -> set[Pair]:
-    """All pairs of lines (mm) that touch or cross."""
+def touching(lines: Sequence[LineString], within_mm: float = TOUCH_MM) -> set[Pair]:
+    """All pairs of lines (mm) that touch or cross, or come as near to each other as that."""
     shapes = np.array(lines, dtype=object)
-    one, other = shapely.STRtree(shapes).query(shapes, "dwithin", TOUCH_MM)
+    one, other = shapely.STRtree(shapes).query(shapes, "dwithin", within_mm)
     return {(first, second) for first, second in zip(one.tolist(), other.tolist(), strict=True) if first < second}
 
 

@@ -45,7 +45,7 @@ def panels_in_mm(
     ----------
     deployment : Deployment
     kept : sequence of (P, 2) float or None, unit cells
-        What stays of every panel; empty for an untrimmed sheet.
+        What stays of every panel, no points where nothing does; empty for an untrimmed sheet.
     width_mm : float
         Width of the untrimmed sheet.
     origin : (2,) float, mm
@@ -115,7 +115,7 @@ def trimmed_neck_below(panels: Sequence[FloatArray], kerf_mm: float, least_mm: f
 
     The panel is shrunk by half the least width and half a kerf on all sides; where it falls apart, it had a neck.
     """
-    trimmed = [Polygon(panel) for panel in panels if len(panel) != 4]
+    trimmed = [Polygon(panel) for panel in panels if len(panel) not in (0, 4)]
     for panel, shrunk in zip(trimmed, shapely.buffer(trimmed, -0.5 * (least_mm + kerf_mm)), strict=True):
         parts = [part for part in shapely.get_parts(shrunk) if part.area > PART_SHARE * panel.area]
         if len(parts) > 1:

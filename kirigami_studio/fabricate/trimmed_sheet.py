@@ -51,6 +51,8 @@ ROUND_SHARE = 1.01
 CRUMB_MM2 = 5e-3
 #: How often crumbs are trimmed away; more than one round is rare.
 CRUMB_ROUNDS = 4
+#: Nearer than this (unit cells) what stays of a panel reaches its corner; deep trims leave more or nothing.
+AT_HINGE = 0.02
 #: Directions in which a notch is longer than so many kerfs (and the overcut) are no way out of it.
 LONGEST_NOTCH = 15.0
 
@@ -106,7 +108,7 @@ def kept_area(deployment: Deployment, kept: Sequence[FloatArray | None], width_m
     low, high = deployment.compact.min(axis=0), deployment.compact.max(axis=0)
     scale = width_mm / (high[0] - low[0])
     parts = [whole if part is None else part for part, whole in zip(kept, corners, strict=True)]
-    panels = [Polygon((part - low) * scale) for part in parts]
+    panels = [Polygon((part - low) * scale) for part in parts if len(part)]
     # Snapping may leave a gap of about one grid step between panels that share a side.
     snapped = shapely.buffer(shapely.union_all(panels, grid_size=GRID_MM), 3.0 * GRID_MM, join_style="mitre")
     united = shapely.get_parts(shapely.buffer(snapped, -3.0 * GRID_MM, join_style="mitre"))
@@ -116,6 +118,25 @@ def kept_area(deployment: Deployment, kept: Sequence[FloatArray | None], width_m
     return areas[0]
 
 
+def lost_hinges(deployment: Deployment, kept: Sequence[FloatArray | None], table: CutTable) -> tuple[int, ...]:
+    """Hinges that a trimmed sheet has given up: one of their two panels does not reach them any more.
+
+    Parameters
+    ----------
+    deployment, kept
+        As for :func:`kept_area`.
+    table : CutTable
+    """
+    nodes = deployment.topology.panel_nodes.reshape(-1, 4)
+    reached = np.ones(nodes.shape, dtype=np.bool_)
+    for number, part in enumerate(kept):
+        if part is not None:
+            corners = shapely.points(deployment.compact[nodes[number]])
+            reached[number] = shapely.distance(corners, Polygon(part)) < AT_HINGE if len(part) else False
+    holding = np.bincount(nodes.ravel(), reached.ravel())[table.hinge_node]
+    return tuple(np.flatnonzero(holding < 2).tolist())
+
+
 def trimmed_cuts(
     area: Polygon,
     lines: FloatArray,
@@ -123,6 +144,7 @@ def trimmed_cuts(
     kerf_mm: float,
     overcut_mm: float,
     straight_mm: float = STRAIGHT_MM,
+    lost: Sequence[int] = (),
 ) -> tuple[Polygon, list[CutPiece]]:
     """Outline and remaining cuts of a trimmed sheet that fall into no crumbs.
 
@@ -136,6 +158,8 @@ def trimmed_cuts(
         As for :func:`remaining_cuts`.
     straight_mm : float
         As for :func:`outline_around`.
+    lost : sequence of int
+        Hinges that were given up, see :func:`lost_hinges`.
 
     Raises
     ------
@@ -144,7 +168,7 @@ def trimmed_cuts(
     """
     for _ in range(CRUMB_ROUNDS):
         outline = outline_around(area, kerf_mm, straight_mm)
-        pieces = remaining_cuts(lines, table, outline, kerf_mm, overcut_mm)
+        pieces = remaining_cuts(lines, table, outline, kerf_mm, overcut_mm, lost)
         loose = remaining_pieces(outline, [LineString(piece.points) for piece in pieces], kerf_mm)[1:]
         crumbs = [piece for piece in loose if piece.area < CRUMB_MM2]
         if not crumbs:
@@ -169,7 +193,12 @@ def _grown(area: Polygon, width_mm: float) -> Polygon:
 
 
 def remaining_cuts(
-    lines: FloatArray, table: CutTable, outline: Polygon, kerf_mm: float, overcut_mm: float
+    lines: FloatArray,
+    table: CutTable,
+    outline: Polygon,
+    kerf_mm: float,
+    overcut_mm: float,
+    lost: Sequence[int] = (),
 ) -> list[CutPiece]:
     """What remains of the cuts of the whole sheet.
 
@@ -181,16 +210,19 @@ def remaining_cuts(
     outline : Polygon, mm
         As returned by :func:`outline_around`.
     kerf_mm, overcut_mm : float
+    lost : sequence of int
+        Hinges that were given up.
 
     Raises
     ------
     FabricationError
-        A hinge has lost the material that its connector needs.
+        Another hinge has lost the material that its connector needs.
     """
     inside = shapely.buffer(outline, -(0.5 * kerf_mm + INSIDE_MM))
     shapely.prepare(inside)
     tips = np.zeros((table.cut_count, 2), dtype=np.bool_)
     tips[table.hinge_cut, table.hinge_end] = True
+    tips[table.hinge_cut[list(lost)], table.hinge_end[list(lost)]] = False
     pieces: list[CutPiece] = []
     for cut, line in enumerate(lines):
         held = np.zeros(2, dtype=np.bool_)

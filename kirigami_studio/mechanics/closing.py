@@ -24,6 +24,8 @@ CLOSED = math.radians(2.0)
 STEPS = 31
 #: A panel that has lost more than this share of its area was trimmed.
 TRIMMED = 1e-6
+#: Gaps narrower than twice this share of a panel are closed in the silhouette of a sheet that has lost panels.
+BRIDGED = 0.03
 #: Stretch (in connector widths) that a connector is taken to bear: what a neck of ductile film yields by.
 TOLERATED_STRETCH = 0.45
 
@@ -171,6 +173,8 @@ def ideal_motion(deployment: Deployment, network: PanelNetwork, width_mm: float,
     row, column = np.indices((tables.rows + 1, tables.columns + 1))
     theta = np.where((row + column) % 2 == 0, -half, half).ravel()
     first = tables.panel_nodes.reshape(-1, 4)[:, 0]
+    if network.numbers is not None:
+        theta, first = theta[network.numbers], first[network.numbers]
     moved = _turned(network.centroids - flat[first], theta) + nodes[first]
     return np.column_stack([moved - network.centroids, theta])
 
@@ -203,17 +207,23 @@ def silhouette(deployment: Deployment, network: PanelNetwork, width_mm: float, m
     """
     tables = deployment.topology
     flat, _ = _flat_nodes(deployment, width_mm)
-    table = tables.panel_nodes.reshape(-1, 4)
+    numbers = np.arange(network.panel_count) if network.numbers is None else network.numbers
+    table = tables.panel_nodes.reshape(-1, 4)[numbers]
     corners = _turned(flat[table] - network.centroids[:, None], np.repeat(motion[:, 2, None], 4, axis=1))
     corners += (network.centroids + motion[:, :2])[:, None]
     sums = [np.bincount(table.ravel(), corners[..., axis].ravel(), tables.node_count) for axis in (0, 1)]
-    nodes = np.stack(sums, axis=1) / np.bincount(table.ravel())[:, None]
+    nodes = np.stack(sums, axis=1) / np.maximum(np.bincount(table.ravel(), minlength=tables.node_count), 1)[:, None]
     panels = shapely.polygons(network.moved_outlines(motion))
     lost = shapely.area(shapely.polygons(corners)) - shapely.area(panels)
-    whole = (lost <= TRIMMED * shapely.area(panels)).reshape(tables.rows + 1, tables.columns + 1)
+    whole = np.zeros((tables.rows + 1, tables.columns + 1), dtype=np.bool_)
+    whole.flat[numbers] = lost <= TRIMMED * shapely.area(panels)
     closed_in = whole[:-1, :-1] & whole[:-1, 1:] & whole[1:, :-1] & whole[1:, 1:]
     voids = shapely.polygons(nodes[tables.void_nodes[closed_in]])
-    united = shapely.union_all(shapely.make_valid(np.concatenate([panels, voids])), grid_size=1e-6 * width_mm)
+    parts = shapely.make_valid(np.concatenate([panels, voids]))
+    # Along notches panels hang together by hinges alone, without voids between them.
+    bridge = 0.0 if network.numbers is None else BRIDGED * network.panel_size
+    united = shapely.union_all(shapely.buffer(parts, bridge) if bridge else parts, grid_size=1e-6 * width_mm)
+    united = shapely.buffer(united, -bridge) if bridge else united
     largest = max(shapely.get_parts(united), key=lambda part: float(part.area))
     return np.asarray(shapely.get_coordinates(shapely.get_exterior_ring(largest))[:-1], dtype=np.float64)
 

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import cho_solve_banded, cholesky_banded
 
-from kirigami_studio.foundation.arrays import FloatArray
+from kirigami_studio.foundation.arrays import FloatArray, IntArray
 from kirigami_studio.lattice.deployment import Deployment
 from kirigami_studio.mechanics.closing import CLOSED, TOLERATED_STRETCH, ideal_motion, jam_angle
 from kirigami_studio.mechanics.energy import SIX, NetworkEnergy
@@ -72,7 +72,7 @@ def estimate_stretch(
     """
     network, energy = sheet.network, NetworkEnergy(sheet.network)
     tables = deployment.topology
-    layout = _Bands.of(energy, tables.rows + 1, tables.columns + 1)
+    layout = _Bands.of(energy, tables.rows + 1, tables.columns + 1, network.numbers)
     springs = np.stack([network.ligaments.stretching, network.ligaments.shearing], axis=1)
     phis, motions, stretch, room = np.radians(angles_deg), [], [], []
     correction = np.zeros((network.panel_count, 3))
@@ -105,9 +105,11 @@ class _Bands:
     size: int
 
     @classmethod
-    def of(cls, energy: NetworkEnergy, rows: int, columns: int) -> _Bands:
+    def of(cls, energy: NetworkEnergy, rows: int, columns: int, numbers: IntArray | None = None) -> _Bands:
         number = np.arange(rows * columns).reshape(rows, columns)
         rank = np.argsort((number if rows >= columns else number.T).ravel(), kind="stable")
+        if numbers is not None:
+            rank = np.argsort(np.argsort(rank[numbers]))
         order = (3 * rank[:, None] + np.arange(3)).ravel()
         freedoms = order[energy.freedoms]
         row, column = np.repeat(freedoms, SIX, axis=1), np.tile(freedoms, (1, SIX))

@@ -114,7 +114,7 @@ def panels_to_pin(deployment: Deployment, sheet: SheetNetwork, width_mm: float, 
         chosen.append(panel)
         basis, _ = np.linalg.qr(left[panel].T)
         left = left - (left @ basis) @ basis.T
-    return list(dict.fromkeys(chosen))
+    return [network.number_of(panel) for panel in dict.fromkeys(chosen)]
 
 
 def grips(
@@ -146,19 +146,17 @@ def grips(
     Raises
     ------
     MechanicsError
-        Unknown panels, fewer than two altogether, or none to move.
+        Unknown panels, panels that trimming took, fewer than two altogether, or none to move.
     """
     network = sheet.network
-    panels = [*held, *moved]
-    for panel in panels:
-        if not 0 <= panel < network.panel_count:
-            raise MechanicsError("drive.unknown_panel", panel=panel, last=network.panel_count - 1)
+    here, there = ([network.place_of(panel) for panel in panels] for panels in (held, moved))
+    panels = [*here, *there]
     if not held or not moved:
         raise MechanicsError("drive.no_grips")
     angles = np.linspace(math.pi, end, FINER * (steps - 1) + 1)
     places = np.stack([network.centroids + ideal_motion(deployment, network, width_mm, phi)[:, :2] for phi in angles])
     # Seen from the held panels, whose middle stays.
-    places -= places[:, list(held)].mean(axis=1, keepdims=True) - places[0, list(held)].mean(axis=0)
-    middle = places[:, list(moved)].mean(axis=1)
+    places -= places[:, here].mean(axis=1, keepdims=True) - places[0, here].mean(axis=0)
+    middle = places[:, there].mean(axis=1)
     way = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(middle, axis=0), axis=1))])
     return prescribed_places(panels, (places - network.centroids)[:, panels], way, FINER)

@@ -97,6 +97,8 @@ class PanelNetwork:
     contacts : Contacts
     outlines : (P, Q, 2) float, mm
         Corners of the panels at rest, for pictures and silhouettes; may be empty, (P, 0, 2).
+    numbers : (P,) int or None
+        Which panels of a sheet they are, row by row, where trimming took others; None for all.
 
     Raises
     ------
@@ -109,6 +111,7 @@ class PanelNetwork:
     ligaments: Ligaments
     contacts: Contacts
     outlines: FloatArray
+    numbers: IntArray | None = None
 
     def __post_init__(self) -> None:
         count, joints = len(self.centroids), self.ligaments
@@ -183,6 +186,24 @@ class PanelNetwork:
         """Mean distance between the centroids of joined panels, mm: the length by which turns are compared to moves."""
         ends = self.centroids[self.ligaments.panels]
         return float(np.mean(np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)))
+
+    def number_of(self, place: int) -> int:
+        """The number in its sheet, row by row, of the panel at a place in the network."""
+        return place if self.numbers is None else int(self.numbers[place])
+
+    def place_of(self, number: int) -> int:
+        """The place in the network of a panel of the sheet.
+
+        Raises
+        ------
+        MechanicsError
+            The sheet has no such panel, or trimming took it.
+        """
+        known = np.arange(self.panel_count) if self.numbers is None else self.numbers
+        found = np.flatnonzero(known == number)
+        if not found.size:
+            raise MechanicsError("drive.unknown_panel", panel=number, last=int(known[-1]))
+        return int(found[0])
 
     def turns(self, motion: FloatArray) -> FloatArray:
         """Turn of B relative to A at every ligament, (..., L) radians, out of motions (..., P, 3)."""

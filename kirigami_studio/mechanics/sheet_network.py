@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from kirigami_studio.foundation.arrays import FloatArray
+from kirigami_studio.foundation.arrays import FloatArray, IntArray
 from kirigami_studio.foundation.errors import MechanicsError
 from kirigami_studio.mechanics.connectors import (
     Connectors,
@@ -69,7 +69,8 @@ def sheet_network(panels: FloatArray, connectors: Connectors, sheet: ElasticShee
     Parameters
     ----------
     panels : (P, Q, 2) float, mm
-        Their corners; where they have different numbers of corners, the last one is repeated.
+        Their corners; where they have different numbers of corners, the last one is repeated.  Those that trimming took
+        are not numbers (NaN).
     connectors : Connectors
     sheet : ElasticSheet
 
@@ -84,13 +85,15 @@ def sheet_network(panels: FloatArray, connectors: Connectors, sheet: ElasticShee
     numbers = connectors.panels
     if numbers.size and not 0 <= numbers.min() <= numbers.max() < len(panels):
         raise MechanicsError("network.number_out_of_range", number=int(numbers.max()), last=len(panels) - 1)
+    numbers, kept = _without_lost(panels, numbers)
+    panels = panels if kept is None else panels[kept]
     centroids, sizes = _middles(panels)
     between = np.sqrt(sizes[numbers[:, 0]] * sizes[numbers[:, 1]])
     turning = turning_stiffness(sheet, connectors.width_mm, connectors.flexure_mm)
     stretching, shearing = plane_stiffness(sheet, connectors.width_mm, between, connectors.longer_mm)
     axis = np.arctan2(connectors.along[:, 1], connectors.along[:, 0]) + 0.5 * math.pi
     ligaments = Ligaments(
-        panels=numbers.copy(),
+        panels=numbers,
         points=connectors.centres.copy(),
         slender=np.zeros(count, dtype=np.bool_),
         axis=axis,
@@ -105,13 +108,28 @@ def sheet_network(panels: FloatArray, connectors: Connectors, sheet: ElasticShee
         rest=np.concatenate([math.pi - connectors.touch, np.full(count, CONTACT_BELOW)]),
         stiffness=np.tile(CONTACT_STIFFNESS * turning, 2),
     )
-    return SheetNetwork(PanelNetwork(centroids, ligaments, contacts, panels.copy()), connectors, sheet)
+    return SheetNetwork(PanelNetwork(centroids, ligaments, contacts, panels.copy(), kept), connectors, sheet)
+
+
+def _without_lost(panels: FloatArray, numbers: IntArray) -> tuple[IntArray, IntArray | None]:
+    """Pairs of panels (L, 2) counted among those that are there, and which these are; None where all are."""
+    there = np.flatnonzero(~np.isnan(panels[:, 0, 0]))
+    if len(there) == len(panels):
+        return numbers.copy(), None
+    place = np.full(len(panels), -1)
+    place[there] = np.arange(len(there))
+    return place[numbers], there
 
 
 def polygons_as_rows(polygons: Sequence[FloatArray]) -> FloatArray:
-    """Polygons (Q_p, 2) as one array (P, Q, 2): those with fewer corners repeat their last one."""
+    """Polygons (Q_p, 2) as one array (P, Q, 2): those with fewer corners repeat their last one; NaN for no corners."""
     most = max((len(polygon) for polygon in polygons), default=0)
-    rows = [np.concatenate([polygon, np.repeat(polygon[-1:], most - len(polygon), axis=0)]) for polygon in polygons]
+    nothing = np.full((1, 2), np.nan)
+    ends = [polygon[-1:] if len(polygon) else nothing for polygon in polygons]
+    rows = [
+        np.concatenate([polygon, np.repeat(end, most - len(polygon), axis=0)])
+        for polygon, end in zip(polygons, ends, strict=True)
+    ]
     return np.stack(rows)
 
 

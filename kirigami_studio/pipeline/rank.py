@@ -10,8 +10,8 @@ The *worth* of a design is its exact IoU less a price for what eyes and cutters 
 necks all measure :data:`SLENDER` cells or more, and 1 for a panel without any width.  All figures are those that a
 score has, so that ranking again needs no geometry.  Where it is known at which angle designs jam as cut, the share of
 its way that a design does not come costs :data:`JAMMING`, whatever ``regular`` is: the match is missed as well.  Where
-a run trims its best designs these come first, by their trimmed IoU.  Ties keep the lower total variation, then the
-sampling order.
+a run trims its best designs these come first, by their worth with the trimmed IoU.  Ties keep the lower total
+variation, then the sampling order.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ MOST_LOST = 0.003
 MILDER = {"calm": "regularity"}
 
 #: Sorting key of a candidate; smaller is better.
-Key = tuple[bool, bool, float, bool, float, bool, float, int]
+Key = tuple[bool, bool, bool, bool, float, bool, float, int]
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,15 +112,19 @@ class Ranking:
         """IoU less all prices."""
         return candidate.score.iou_exact - sum(self.prices(candidate).values())
 
+    def worth_as_made(self, candidate: Candidate) -> float:
+        """The same with the trimmed IoU of a design that is trimmed."""
+        return _match(candidate) - sum(self.prices(candidate).values())
+
     def key(self, candidate: Candidate) -> Key:
         """Sorting key; smaller is better."""
-        score, trim = candidate.score, candidate.trim
+        score = candidate.score
         return (
             not score.feasible,
             candidate in self.refusals,
-            0.0 if trim is None else -trim.iou,
+            candidate.trim is None,
             not self.wide_enough(candidate),
-            -self.worth(candidate),
+            -self.worth_as_made(candidate),
             candidate.symmetry is None,
             score.tv,
             candidate.index,
@@ -153,15 +157,18 @@ class Ranking:
         if not candidates:
             return []
         first = candidates[0]
-        most = max(one.score.iou_exact for one in candidates)
+        most = max(_match(one) for one in candidates if (one.trim is None) is (first.trim is None))
         return [self._why_first(first, most), *(self._why_later(one, first) for one in candidates[1:])]
 
     def _why_first(self, first: Candidate, most: float) -> Note:
         score, even = first.score, first.score.evenness
         if not self.cuttable(first):
             return self._why_not(first)
+        if first.trim is not None and first.trim.given_up:
+            return Note.of("rank.notch_cut_out", match=100 * first.trim.iou, count=first.trim.given_up)
         if first.trim is not None:
-            return Note.of("rank.best_trimmed", match=100 * first.trim.iou)
+            code = "rank.best_trimmed" if first.trim.iou >= most else "rank.best_balance_trimmed"
+            return Note.of(code, match=100 * first.trim.iou, variation=100 * even.area_cv)
         plain, symmetric = "rank.best_balance", "rank.best_balance_symmetric"
         if score.iou_exact >= most:
             plain, symmetric = "rank.best_match", "rank.best_match_symmetric"
@@ -171,16 +178,16 @@ class Ranking:
     def _why_later(self, one: Candidate, first: Candidate) -> Note:
         if not self.cuttable(one):
             return self._why_not(one)
-        if first.trim is not None:
-            if one.trim is None:
-                return Note.of("rank.not_trimmed")
-            return Note.of("rank.less_trimmed_match", match=100 * one.trim.iou, first=100 * first.trim.iou)
+        if first.trim is not None and one.trim is None:
+            return Note.of("rank.not_trimmed")
         own, others = self.prices(one), self.prices(first)
         behind = {code: own[code] - others[code] for code in own}
-        behind["rank.less_match"] = first.score.iou_exact - one.score.iou_exact
+        behind["rank.less_match"] = _match(first) - _match(one)
         code = max(behind, key=behind.__getitem__)
         if behind[code] < 5e-5:
             return Note.of("rank.equal")
+        if code == "rank.less_match" and first.trim is not None:
+            return Note.of("rank.less_trimmed_match", match=100 * _match(one), first=100 * _match(first))
         even, best = one.score.evenness, first.score.evenness
         mine, theirs = {
             "rank.less_match": (100 * one.score.iou_exact, 100 * first.score.iou_exact),
@@ -200,6 +207,11 @@ class Ranking:
             return self.refusals[one]
         smallest_mm = one.score.evenness.least_feature_mm(self.width_mm)
         return Note.of("rank.too_thin", smallest_mm=smallest_mm, least_mm=self.least_feature_mm)
+
+
+def _match(candidate: Candidate) -> float:
+    """Exact IoU of what is made of a design: trimmed, if it is."""
+    return candidate.score.iou_exact if candidate.trim is None else candidate.trim.iou
 
 
 #: What a run wants first unless it is asked for something else.

@@ -5,10 +5,10 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Generator, Iterator, Sequence
 from contextlib import closing
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import zip_longest
 
-from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.evaluate.candidate import Candidate, Origin
 from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.foundation.errors import Cancelled
 from kirigami_studio.foundation.words import mark, tr
@@ -42,6 +42,7 @@ from kirigami_studio.pipeline.tasks import (
 )
 from kirigami_studio.pipeline.variety import worth_a_fit
 from kirigami_studio.polish.continuation import Way, first_angles
+from kirigami_studio.polish.covering import notches_filled
 from kirigami_studio.polish.symmetry import SymmetricPose, shared_symmetries
 
 #: Candidates scored in one batch.
@@ -135,6 +136,7 @@ def run(request: Request, cancel: Callable[[], bool] = never, pool: Pool | None 
         yield from work.finish()
     if request.trim:
         yield from work.trim()
+        yield from work.cover()
     candidates = work.ranking.ranked(work.found)
     yield Finished(Result(request, candidates, work.evaluations, watch.seconds, work.cut_short))
 
@@ -339,6 +341,27 @@ class _Work:
         chosen = worth_a_fit(self.found, self.ranking)[:TRIMMED]
         yield from self._replaced(chosen, [TrimTask(candidate) for candidate in chosen], TRIMMING)
 
+    def cover(self) -> Iterator[Event]:
+        """Fit sheets that cover the target with its notches filled, where no closed sheet shows them, and cut these."""
+        filled = notches_filled(self.request.target)
+        if filled is None or not self.request.fitted_starts:
+            return
+        covering = replace(self.request, target=filled.outline, trim=False)
+        fits, found = fits_from_uniform(covering), []
+        for report in self._carried_out(fits, GUIDING, 0, len(fits), covering):
+            if isinstance(report, Progress):
+                yield report
+            elif report[1].candidate is not None:
+                found.append(report[1].candidate)
+        sheets = [candidate.sheet for candidate in worth_a_fit(found, self.ranking)[:TRIMMED]]
+        covers = scored(self.request, sheets, self._next_index(), Origin.GUIDED, fitted=True)
+        for report in self._carried_out([TrimTask(one) for one in covers], TRIMMING, 0, len(covers)):
+            if isinstance(report, Progress):
+                yield report
+            elif report[1].candidate is not None:
+                self.found.append(report[1].candidate)
+                yield CandidateFound(report[1].candidate.index, report[1].candidate)
+
     def _replaced(self, chosen: Sequence[Candidate], tasks: Sequence[Task], stage: Stage) -> Iterator[Event]:
         """Each chosen candidate as its task makes it."""
         for report in self._carried_out(tasks, stage, 0, len(tasks)):
@@ -350,12 +373,12 @@ class _Work:
                 yield CandidateImproved(report[1].candidate.index, report[1].candidate)
 
     def _carried_out(
-        self, tasks: Sequence[Task], stage: Stage, done: int, total: int
+        self, tasks: Sequence[Task], stage: Stage, done: int, total: int, request: Request | None = None
     ) -> Iterator[Progress | tuple[int, Answer]]:
-        """Answers as they come, with signs of life in between."""
+        """Answers as they come, with signs of life in between; those of another request where one is given."""
         reported = time.perf_counter()
         yield stage.progress(done, total)
-        with closing(answers(self.pool, self.request, tasks, self.watch)) as reports:
+        with closing(answers(self.pool, request or self.request, tasks, self.watch)) as reports:
             for report in reports:
                 self.watch.check(stage.stopped, done, total)
                 now = time.perf_counter()

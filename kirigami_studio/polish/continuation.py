@@ -538,18 +538,19 @@ class EasyShape:
     outline: Outline
     frame: Similarity
 
+    @classmethod
+    def of(cls, shape: shapely.geometry.base.BaseGeometry) -> EasyShape:
+        """A shape in the target's frame, holes filled."""
+        solid = shapely.Polygon(shapely.get_exterior_ring(shape)).simplify(ACCURACY)
+        frame = Similarity(math.sqrt(solid.area), 0.0, (solid.centroid.x, solid.centroid.y))
+        return cls(Outline.from_points(shapely.get_coordinates(solid)[:-1]), frame)
+
 
 @lru_cache(maxsize=8)
 def _rounder(target: Outline) -> list[EasyShape]:
-    return [_shape(shape) for shape in rounded(target, ROUNDER)]
+    return [EasyShape.of(shape) for shape in rounded(target, ROUNDER)]
 
 
 def thickened(target: Outline, margins: Sequence[float]) -> list[EasyShape]:
     """``target`` with its boundary moved outwards by each margin (unit-area lengths, > 0), holes filled."""
-    return [_shape(target.polygon.buffer(margin)) for margin in margins]
-
-
-def _shape(thick: shapely.geometry.base.BaseGeometry) -> EasyShape:
-    solid = shapely.Polygon(shapely.get_exterior_ring(thick)).simplify(ACCURACY)
-    frame = Similarity(math.sqrt(solid.area), 0.0, (solid.centroid.x, solid.centroid.y))
-    return EasyShape(Outline.from_points(shapely.get_coordinates(solid)[:-1]), frame)
+    return [EasyShape.of(target.polygon.buffer(margin)) for margin in margins]

@@ -2,6 +2,9 @@
 
 The fit weighs what is missed fully and what sticks out a little, except at the outline's hinges, which trimming has to
 leave.  Then the pose is moved to where a quick estimate of the trimmed IoU is best, and the layout is trimmed there.
+
+No closed sheet shows a notch that turns back far (``outlines.turning``).  A sheet can cover the target with such
+notches filled; one that does is fitted to that shape, and the notches are cut out of it by a deep trim.
 """
 
 from __future__ import annotations
@@ -9,6 +12,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 import shapely
@@ -18,6 +22,7 @@ from kirigami_studio.evaluate.alignment import align
 from kirigami_studio.evaluate.feasibility import path_contact
 from kirigami_studio.evaluate.kept_panels import GRID, edge_panels
 from kirigami_studio.evaluate.similarity import Similarity
+from kirigami_studio.evaluate.siou import exact_iou
 from kirigami_studio.evaluate.trimming import KEEP, Trim, check_keep, trim
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray
 from kirigami_studio.foundation.errors import KirigamiError
@@ -26,6 +31,8 @@ from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.lattice.symmetry import Symmetry
 from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.outlines.turning import turn_back
+from kirigami_studio.polish.continuation import EasyShape
 from kirigami_studio.polish.levenberg import Fit, check_fit, polish
 
 #: Weight of what sticks out.  Found on 12 drawn shapes at 10 x 10: 0.1 covers better than 0.03 or 0.01, which let the
@@ -35,6 +42,11 @@ EXCESS = 0.1
 GROWN = 1.005
 #: Trusted distance (unit-area lengths) of the fit.
 TRUST = 0.005
+#: A target that turns back from this angle on is better covered with its notches filled: a spade (160 degrees) is not.
+#: They are filled until the shape turns back by no more than the second angle, with discs of one of these radii
+#: (unit-area lengths), rolled along its outside.
+DEEP_FROM, EASY_TURN = math.radians(170.0), math.radians(105.0)
+DISCS = (0.05, 0.07, 0.1, 0.14, 0.2, 0.3, 0.45)
 #: First moves of the search on the pose: log scale, turn (radians), shift (unit-area lengths); and how many poses are
 #: looked at.
 FIRST_MOVES = (0.006, 0.006, 0.006, 0.006)
@@ -100,14 +112,22 @@ def fit_cover(
     """
     phi, keep = check_fit(phi, steps, TRUST), check_keep(keep)
     sheet = Sheet.of(design)
-    pose = pose or align(deploy(sheet).outline(phi), target.points)
-    best = _trimmed(Fit(sheet, pose, 0.0, 0, 0), target, phi, keep, cancel)
+    outline = deploy(sheet).outline(phi)
+    pose = pose or align(outline, target.points)
+    wanted, place, trimmed = target, Similarity(), _trimmed
+    filled = notches_filled(target)
+    if filled is not None:
+        laid = align(outline, filled.outline.points)
+        if exact_iou(laid.apply(outline), filled.outline) > exact_iou(pose.apply(outline), target):
+            wanted, place, trimmed = filled.outline, filled.frame, _trimmed_deep
+            pose = place.compose(laid)
+    best = trimmed(Fit(sheet, pose, 0.0, 0, 0), target, phi, keep, cancel)
     fit = polish(
         sheet,
-        target,
+        wanted,
         phi,
         steps,
-        pose=_grown(pose, GROWN),
+        pose=place.inverse().compose(_grown(pose, GROWN)),
         cancel=cancel,
         trust=TRUST,
         even=even,
@@ -117,11 +137,33 @@ def fit_cover(
         excess=EXCESS,
         locked=locked,
     )
+    fit = replace(fit, pose=place.compose(fit.pose))
     if fit.steps and path_contact(deploy(fit.sheet), phi) is None and not cancel():
-        other = _trimmed(fit, target, phi, keep, cancel)
+        other = trimmed(fit, target, phi, keep, cancel)
         if other.trim.iou > best.trim.iou:
             best = other
     return best
+
+
+@lru_cache(maxsize=16)
+def notches_filled(target: Outline) -> EasyShape | None:
+    """A target with its narrowest notches filled until a sheet can show it closed; None where one can anyway."""
+    if turn_back(target).angle < DEEP_FROM:
+        return None
+    for radius in DISCS:
+        shape = EasyShape.of(target.polygon.buffer(radius).buffer(-radius))
+        if turn_back(shape.outline).angle <= EASY_TURN:
+            return shape
+    return EasyShape.of(target.polygon.convex_hull)
+
+
+def _trimmed_deep(fit: Fit, target: Outline, phi: float, keep: float, cancel: Callable[[], bool]) -> Cover:
+    """Trim a layout with its notches in its own pose; along its edge where nothing would be left of it."""
+    deployment = deploy(fit.sheet)
+    try:
+        return Cover(fit, trim(deployment, target, phi, fit.pose, keep, deep=True))
+    except KirigamiError:
+        return Cover(fit, trim(deployment, target, phi, fit.pose, keep))
 
 
 def _trimmed(fit: Fit, target: Outline, phi: float, keep: float, cancel: Callable[[], bool]) -> Cover:

@@ -199,7 +199,8 @@ def planned_sheet(
         centres = found.place
     elif plan.centres is not None:
         # The plan has its own origin.
-        centres = plan.centres + (polygons[0][0] - plan.panels[0][0])
+        shift = next(one[0] - other[0] for one, other in zip(polygons, plan.panels, strict=True) if len(one))
+        centres = plan.centres + shift
     connectors = cut_connectors(
         found,
         np.maximum(hinges.finished_mm, 0.0),

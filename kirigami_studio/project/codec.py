@@ -264,7 +264,13 @@ def _candidate_json(entry: Candidate, runs: list[tuple[tuple[str, str], ...]]) -
         # What was cut off follows from these; it is cut again on reading.
         "trim": None
         if cut is None
-        else {**sheet_json(cut.sheet), "pose": cut.pose.to_json(), "phi": cut.phi, "keep": cut.keep},
+        else {
+            **sheet_json(cut.sheet),
+            "pose": cut.pose.to_json(),
+            "phi": cut.phi,
+            "keep": cut.keep,
+            **({"deep": True} if cut.deep else {}),
+        },
     }
 
 
@@ -295,7 +301,9 @@ def _candidate(record: Record, field: RatioField, sampled: RatioField | None, ta
 
 def _trim(record: Record, target: Outline) -> Trim:
     sheet = sheet_of_json(record.entries, RatioField(_table(record.list("ratio"), "trim.ratio")))
-    return trim(deploy(sheet), target, record.number("phi"), _pose(record.record("pose")), record.number("keep"))
+    deep = record.holds("deep") and record.flag("deep")
+    pose = _pose(record.record("pose"))
+    return trim(deploy(sheet), target, record.number("phi"), pose, record.number("keep"), deep)
 
 
 def _pose(record: Record) -> Similarity:

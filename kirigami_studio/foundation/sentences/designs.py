@@ -74,6 +74,7 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "trim.crosses_itself": mark(
         "This design crosses itself at the target angle, so it cannot be trimmed. Choose another design."
     ),
+    "trim.nothing_left": mark("No part of the sheet lies mostly on the target. Lay the sheet over the target first."),
     "trim.keep_out_of_range": mark(
         "The material kept at hinges must be {least:g} to {most:g} cells deep, got {keep!r:.80}."
     ),
@@ -162,6 +163,9 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     ),
     "rank.best_match": mark("Best match: {match:.1f} %, panel sizes vary by {variation:.0f} %."),
     "rank.best_match_symmetric": mark("Best match: {match:.1f} %, panel sizes vary by {variation:.0f} %, symmetric."),
+    "rank.best_balance_trimmed": mark(
+        "Best balance: match once trimmed {match:.1f} %, panel sizes vary by {variation:.0f} %."
+    ),
     "rank.best_trimmed": mark("Best match once trimmed: {match:.1f} %."),
     "rank.equal": mark("As good as the first design."),
     "rank.jams": mark("As cut, it is estimated to jam at {own:.0f} degrees."),
@@ -176,6 +180,16 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     ),
     "rank.not_symmetric": mark("The first design is symmetric, this one is not."),
     "rank.not_trimmed": mark("It is not trimmed."),
+    "rank.notch_cut_out": (
+        mark(
+            "Match once trimmed: {match:.1f} %. No closed sheet shows such notches; this one covers them, and they "
+            "are cut out of it with {count} panel."
+        ),
+        mark(
+            "Match once trimmed: {match:.1f} %. No closed sheet shows such notches; this one covers them, and they "
+            "are cut out of it with {count} panels."
+        ),
+    ),
     "rank.thinner": mark("Its narrowest panel measures {own:.2f} mm, in the first design {first:.2f} mm."),
     "rank.too_thin": mark("Its narrowest panel measures {smallest_mm:.2f} mm; the material needs {least_mm:.2f} mm."),
     "request.angle_out_of_range": mark(

@@ -43,7 +43,7 @@ class Connectors:
     @cached_property
     def removed(self) -> BoolArray:
         """Which hinges have no connector: (H,) bool."""
-        removed = np.zeros(len(self), dtype=np.bool_)
+        removed = self.plan.hinges.lost.copy()
         removed[[hinge for hinge in self.plan.options.removed if hinge < len(self)]] = True
         return removed
 
@@ -81,6 +81,8 @@ class Connectors:
     def described(self, hinge: int) -> str:
         """Text for one hinge, for tooltips."""
         hinges = self.plan.hinges
+        if hinges.lost[hinge]:
+            return tr("Connector {hinge}: trimmed off", hinge=hinge)
         if self.removed[hinge]:
             return tr("Connector {hinge}: cut through", hinge=hinge)
         asked, finished = hinges.asked_mm[hinge], hinges.finished_mm[hinge]
@@ -116,7 +118,7 @@ def paint_connectors(
     for index, colour in enumerate(colours):
         _paint_dots(painter, pixels[(shade == index) & ~connectors.removed], colour, 2.0 * radius)
     painter.setPen(QPen(QColor(palette.text), 1.6))
-    painter.drawLines(_crosses(pixels[connectors.removed], radius + 1.0))
+    painter.drawLines(_crosses(pixels[connectors.removed & ~connectors.plan.hinges.lost], radius + 1.0))
     painter.setBrush(Qt.BrushStyle.NoBrush)
     for colour, width in ((palette.surface, 4.4), (palette.accent, 2.2)):
         painter.setPen(QPen(QColor(colour), width))

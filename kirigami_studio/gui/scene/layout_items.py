@@ -58,7 +58,7 @@ def paint_panels(
         for path in dozens_of_quads(panels[chosen & whole]):
             painter.drawPath(path)
         for row, part in trimmed.items():
-            if chosen[row]:
+            if chosen[row] and len(part):
                 painter.drawPath(line_path(part, closed=True))
 
 

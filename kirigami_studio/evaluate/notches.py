@@ -1,0 +1,324 @@
+"""Deep trimming: notches that are cut through panels inside the sheet, and whose panels and hinges are given up.
+
+A sheet stays one mechanism without some of its panels as long as the others still form voids that hang together.  The
+four panels around a void open by one angle, and two voids that share a hinge share its two panels, so they open by the
+same one.  What stays is therefore a set of voids, connected from hinge to hinge, each with its four panels and its four
+hinges; a panel that belongs to none of them goes.  All that stays moves as it does in the whole sheet.
+
+While the sheet is flat, slits are closed and may cut a part of a notch off from the outside.  Along slits of voids that
+went, such a notch gets a way out, for the sheet has one outline.
+
+Which voids stay is found by trying: those that mostly lie on the target at first, then every void along the boundary is
+left out or taken back as long as the trimmed silhouette gains from it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+from scipy.ndimage import label
+from shapely.geometry import Polygon
+from shapely.geometry.base import BaseGeometry
+
+from kirigami_studio.evaluate.kept_panels import (
+    SLIVER,
+    GeometryArray,
+    KeptPanels,
+    all_panels,
+    enclosed,
+    kept_part,
+    largest_part,
+    measured,
+    polygons,
+    shared_parts,
+    with_pockets,
+)
+from kirigami_studio.foundation.arrays import BoolArray, FloatArray, IntArray
+from kirigami_studio.foundation.errors import KirigamiError
+
+#: What sticks out counts so much more than what is missed: strips around hinges look worse than a short edge.
+STICKING_OUT = 1.5
+#: Voids whose panels lie on the target by this share stay at first.
+MOSTLY = 0.5
+#: A change has to gain this (unit cells squared), and so often all voids along the boundary are looked at.
+LEAST_GAIN, ROUNDS = 1e-3, 4
+#: A symmetric sheet keeps its symmetry where shares on the target differ by no more than this from their image's.
+ALIKE = 0.1
+#: Nearer than this (unit cells) a part reaches a hinge; and how often hinges that two parts reach are given back.
+AT_HINGE, GIVEN_BACK = 0.03, 4
+#: Nearer than this (unit cells) shapes touch.
+TOUCH = 1e-7
+#: Width of a way out of a notch as a share of ``keep``: wider than the kerf, for connectors need more than that.
+WAY_OUT = 0.5
+#: Enclosed parts of notches larger than this (unit cells squared) are worth leaving out more voids.
+WORTH_OPENING = 0.04
+#: Void (row, column), counted from a panel's: above left, above right, below left, below right; and which of them have
+#: the panel's top, left, bottom and right corner.
+AROUND = ((-1, -1), (-1, 0), (0, -1), (0, 0))
+AT_CORNER = ((0, 1), (0, 2), (2, 3), (1, 3))
+NOTHING = Polygon()
+#: Voids that touch at a corner enclose what lies between them.
+EIGHT_WAYS = np.ones((3, 3), dtype=np.intp)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class DeepCut:
+    """What stays of all panels.
+
+    Attributes
+    ----------
+    kept : KeptPanels
+        Of every panel of the sheet, row by row.
+    voids : (m, n) bool
+        The voids that stay.
+    """
+
+    kept: KeptPanels
+    voids: BoolArray
+
+
+def deep_cut(
+    corners: FloatArray,
+    targets: GeometryArray,
+    slits: FloatArray,
+    void_gain: FloatArray,
+    keep: float,
+    images: IntArray | None = None,
+) -> DeepCut:
+    """Trim all panels of a sheet to a target, and give up those that lie in its notches.
+
+    Parameters
+    ----------
+    corners : ((m + 1) (n + 1), 4, 2) float, unit cells
+        Of the compact sheet: top, left, bottom, right.
+    targets : ((m + 1) (n + 1),) Polygon
+        The target in each panel's frame.
+    slits : (m, n, 2, 2) float, unit cells
+        Both ends of every void in the compact sheet.
+    void_gain : (m, n) float, unit cells squared
+        What a void that stays adds to the silhouette: its part on the target, less ``STICKING_OUT`` times the rest.
+    keep : float, unit cells
+        Depth of the material that stays at every hinge that does.
+    images : (G, m n) int, optional
+        For each move of the sheet's symmetry, the void that each void is the image of.
+
+    Raises
+    ------
+    KirigamiError
+        No void lies mostly on the target.
+    """
+    cut = _Cut(corners, targets, slits, void_gain, keep)
+    voids = cut.first()
+    if not voids.any():
+        raise KirigamiError("trim.nothing_left")
+    voids = cut.opened(cut.improved(voids, images), images)
+    return DeepCut(cut.parts(voids), voids)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Draft:
+    """Parts of all panels for a set of voids, notches that they still enclose, and what all that is worth."""
+
+    voids: BoolArray
+    shapes: GeometryArray
+    enclosed: list[Polygon]
+    worth: float
+
+
+class _Cut:
+    """One sheet over its target: what every panel is worth with some of its hinges."""
+
+    def __init__(
+        self, corners: FloatArray, targets: GeometryArray, slits: FloatArray, void_gain: FloatArray, keep: float
+    ) -> None:
+        self._rows, self._columns = void_gain.shape
+        self._corners, self._targets, self._void_gain, self._keep = corners, targets, void_gain, keep
+        self._slits = slits
+        self._panels = polygons(corners)
+        self._common = shared_parts(self._panels, targets)
+        self._area, self._inside = shapely.area(self._panels), shapely.area(self._common)
+        self._known: dict[tuple[int, bytes], tuple[float, BaseGeometry | None]] = {}
+
+    def first(self) -> BoolArray:
+        """The largest set of voids that mostly lie on the target, without holes."""
+        mostly = _largest(self._shares() >= MOSTLY)
+        outside = np.asarray(label(np.pad(~mostly, 1, constant_values=True), structure=EIGHT_WAYS)[0])
+        whole: BoolArray = outside[1:-1, 1:-1] != outside[0, 0]
+        return whole
+
+    def _shares(self) -> FloatArray:
+        """Part of the panels around each void that lies on the target: (m, n)."""
+        share = (self._inside / self._area).reshape(self._rows + 1, self._columns + 1)
+        return np.asarray(0.25 * (share[:-1, :-1] + share[1:, :-1] + share[:-1, 1:] + share[1:, 1:]))
+
+    def improved(self, voids: BoolArray, images: IntArray | None) -> BoolArray:
+        """Voids left out and taken back, one after the other or with their images, as long as that gains."""
+        orbits = self._orbits(images)
+        crossed = (self._inside < self._area - SLIVER * SLIVER).reshape(self._rows + 1, self._columns + 1)
+        near = crossed[:-1, :-1] | crossed[1:, :-1] | crossed[:-1, 1:] | crossed[1:, 1:]
+        for _ in range(ROUNDS):
+            changed = False
+            for void in np.flatnonzero(near):
+                other = voids.copy()
+                other.flat[orbits[void]] = not voids.flat[void]
+                if _is_one(other) and self._gain(voids, other, orbits[void]) > LEAST_GAIN:
+                    voids, changed = other, True
+            if not changed:
+                break
+        return voids
+
+    def opened(self, voids: BoolArray, images: IntArray | None) -> BoolArray:
+        """Leave out more voids as long as that lets a notch out that the parts would enclose."""
+        orbits, best = self._orbits(images), self._draft(voids, _hinges_of(voids))
+        tried: set[int] = set()
+        while more := [void for void in self._that_enclose(best) if void not in tried]:
+            tried.add(more[0])
+            other = best.voids.copy()
+            other.flat[orbits[more[0]]] = False
+            if _is_one(other):
+                draft = self._draft(other, _hinges_of(other))
+                best = draft if draft.worth > best.worth + LEAST_GAIN else best
+        return best.voids
+
+    def _that_enclose(self, draft: _Draft) -> list[int]:
+        """Voids whose hinges bar the way out of the enclosed parts of notches, along slits of those that went."""
+        if not draft.enclosed:
+            return []
+        slits: GeometryArray = np.asarray(shapely.linestrings(self._slits), dtype=object)
+        went = slits[~draft.voids]
+        bars = went[shapely.distance(went, shapely.union_all(draft.enclosed)) < TOUCH]
+        beside = draft.voids & (shapely.distance(slits, shapely.union_all(bars)) < TOUCH)
+        return [int(void) for void in np.flatnonzero(beside)]
+
+    def _draft(self, voids: BoolArray, hinged: BoolArray) -> _Draft:
+        """The parts with these voids and hinges before enclosed places are filled."""
+        shapes = np.empty(len(self._panels), dtype=object)
+        shapes[:] = [self._part(k, hinged[k])[1] for k in range(len(hinged))]
+        worth = sum(self._part(k, hinged[k])[0] for k in range(len(hinged))) + float(self._void_gain[voids].sum())
+        notches = enclosed(self._present(shapes))
+        if notches:
+            self._open_ways_out(shapes, hinged, ~voids, notches)
+            notches = [notch for notch in enclosed(self._present(shapes)) if notch.area > WORTH_OPENING]
+        filled = STICKING_OUT * sum(float(notch.area) for notch in notches)
+        return _Draft(voids, shapes, notches, worth - filled)
+
+    def _orbits(self, images: IntArray | None) -> IntArray:
+        """Each void with its images, (m n, G + 1), if the target has the sheet's symmetry; else alone."""
+        alone = np.arange(self._rows * self._columns)[:, None]
+        share = self._shares().ravel()
+        if images is None or np.abs(share[images] - share).max() > ALIKE:
+            return alone
+        return np.concatenate([alone, images.T], axis=1)
+
+    def _gain(self, before: BoolArray, after: BoolArray, orbit: IntArray) -> float:
+        """By how much the trimmed sheet is worth more with other voids, those of one orbit."""
+        row, column = np.divmod(orbit, self._columns)
+        beside = [(row + down) * (self._columns + 1) + column + right for down in (0, 1) for right in (0, 1)]
+        panels = np.unique(np.concatenate(beside))
+        changes = self._void_gain.flat[np.unique(orbit)].sum() * (1.0 if after.flat[orbit[0]] else -1.0)
+        old, new = _hinges_of(before), _hinges_of(after)
+        changes += sum(self._part(k, new[k])[0] - self._part(k, old[k])[0] for k in panels.tolist())
+        return float(changes)
+
+    def _part(self, k: int, hinged: BoolArray) -> tuple[float, BaseGeometry | None]:
+        """What a panel with these hinges adds to the silhouette's worth, and what stays of it."""
+        key = k, hinged.tobytes()
+        if key not in self._known:
+            self._known[key] = self._looked_at(k, hinged)
+        return self._known[key]
+
+    def _looked_at(self, k: int, hinged: BoolArray) -> tuple[float, BaseGeometry | None]:
+        if not hinged.any():
+            return 0.0, NOTHING
+        shape, area, shared = None, float(self._area[k]), float(self._inside[k])
+        if shared < area - SLIVER * SLIVER:
+            shape = kept_part(self._panels[k], self._common[k], self._corners[k], hinged, self._keep)
+        if shape is not None:
+            area, shared = float(shape.area), float(shape.intersection(self._common[k]).area)
+        return shared - STICKING_OUT * (area - shared), shape
+
+    def parts(self, voids: BoolArray) -> KeptPanels:
+        """What stays of all panels with these voids.
+
+        Where both panels of a hinge that was given up reach it all the same, it stays: with its material.
+        """
+        hinged = _hinges_of(voids)
+        one, other = _hinge_pairs(self._rows, self._columns)
+        there: BoolArray = np.asarray(hinged.any(axis=1))
+        reached = self._reached(self._common)
+        for _ in range(GIVEN_BACK):
+            back = reached[one] & reached[other] & there[one[0]] & there[other[0]] & ~hinged[one]
+            hinged[one] |= back
+            hinged[other] |= back
+            shapes = self._draft(voids, hinged).shapes
+            kept = with_pockets(measured(self._panels, self._common, shapes), self._corners, self._targets, NOTHING)
+            reached = self._reached(self._present(kept.shapes))
+            if not np.any(reached[one] & reached[other] & ~hinged[one]):
+                break
+        return kept
+
+    def _present(self, shapes: GeometryArray) -> GeometryArray:
+        """The parts of all panels, whole ones included."""
+        present = shapes.copy()
+        whole = np.array([shape is None for shape in shapes])
+        present[whole] = self._panels[whole]
+        return present
+
+    def _open_ways_out(
+        self, shapes: GeometryArray, hinged: BoolArray, left_out: BoolArray, notches: list[Polygon]
+    ) -> None:
+        """Widen slits of voids that were left out, where they end in a notch that the parts enclose."""
+        lines = shapely.linestrings(self._slits[left_out])
+        wide = np.asarray(shapely.buffer(lines, 0.5 * WAY_OUT * self._keep, cap_style="square"), dtype=object)
+        ways = shapely.union_all(wide[shapely.distance(shapely.union_all(notches), wide) < TOUCH])
+        hinges = np.asarray(shapely.points(self._corners[hinged]), dtype=object)
+        held = shapely.buffer(hinges[shapely.distance(hinges, ways) < self._keep], 1.02 * self._keep, quad_segs=8)
+        way_out = shapely.difference(ways, shapely.union_all(held))
+        beside = np.flatnonzero(shapely.intersects(way_out, self._panels) & hinged.any(axis=1))
+        for k in beside.tolist():
+            part = self._panels[k] if shapes[k] is None else shapes[k]
+            rest = largest_part(part, way_out)
+            if np.all(self._reached(np.array([rest], dtype=object), k)[0][hinged[k]]):
+                shapes[k] = rest
+
+    def _reached(self, shapes: GeometryArray, first: int = 0) -> BoolArray:
+        """Which corners the part of each panel, from number ``first`` on, reaches: (P, 4)."""
+        corners = shapely.points(self._corners[first : first + len(shapes)])
+        reached: BoolArray = shapely.distance(corners, shapes[:, None]) < AT_HINGE
+        return reached
+
+
+def _hinges_of(voids: BoolArray) -> BoolArray:
+    """Which corners of every panel are hinges of voids that stay: ((m + 1) (n + 1), 4)."""
+    rows, columns = voids.shape
+    padded = np.pad(voids, 1)
+    around = [padded[1 + down : 2 + down + rows, 1 + right : 2 + right + columns] for down, right in AROUND]
+    hinged = np.stack([around[one] | around[other] for one, other in AT_CORNER], axis=-1)
+    return hinged.reshape(-1, 4)
+
+
+def _hinge_pairs(rows: int, columns: int) -> tuple[tuple[IntArray, IntArray], tuple[IntArray, IntArray]]:
+    """Every hinge as the (panel, corner) of both its panels: the lower or right one, then its neighbour."""
+    hinged = all_panels(rows, columns).hinged
+    above, left = np.flatnonzero(hinged[:, 0]), np.flatnonzero(hinged[:, 1])
+    corner = np.repeat([0, 1], [len(above), len(left)])
+    panel = np.concatenate([above, left])
+    neighbour = np.concatenate([above - columns - 1, left - 1])
+    return (panel, corner), (neighbour, corner + 2)
+
+
+def _is_one(voids: BoolArray) -> bool:
+    """Whether voids are connected from hinge to hinge, and so is what lies around them: one outline."""
+    around = label(np.pad(~voids, 1, constant_values=True), structure=EIGHT_WAYS)[1]
+    return bool(label(voids)[1] == 1 and around == 1)
+
+
+def _largest(voids: BoolArray) -> BoolArray:
+    """The largest connected set of voids."""
+    numbers, count = label(voids)
+    if count == 0:
+        return voids
+    largest: BoolArray = numbers == 1 + int(np.argmax(np.bincount(numbers.ravel())[1:]))
+    return largest
