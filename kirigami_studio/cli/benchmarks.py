@@ -19,6 +19,7 @@ from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.read_image import outline_of_mask
 from kirigami_studio.outlines.silhouettes import load, names
+from kirigami_studio.outlines.starts import start_shape
 
 Report = Callable[[int, int], None]
 
@@ -164,6 +165,7 @@ def designs(arguments: argparse.Namespace) -> int:
     from kirigami_studio.pipeline.request import REGULAR, Request
 
     regular = REGULAR[arguments.prefer] if arguments.regular is None else arguments.regular
+    start = start_shape(arguments.start)
 
     def measure(outlines: Sequence[Outline], report: Report) -> dict[str, object]:
         requests = [
@@ -182,6 +184,7 @@ def designs(arguments: argparse.Namespace) -> int:
                     symmetry=arguments.symmetry,
                     rim=arguments.rim,
                     regular=regular,
+                    start=start,
                 )
                 for grid in arguments.grid.split(",")
             ]
@@ -194,6 +197,30 @@ def designs(arguments: argparse.Namespace) -> int:
         return design_figures(made)
 
     return _on_targets(arguments, measure)
+
+
+def starts(arguments: argparse.Namespace) -> int:
+    """Targets designed from other sheets than rectangles, and random sheets of the same starts; 1 when one is off."""
+    from kirigami_studio.benchmark.start_suite import design_pairs, pair_figures, random_sheets
+
+    line = ProgressLine()
+    shapes = [start_shape(name) for name in arguments.starts]
+    outlines = [target.read() for target in read_targets(arguments.targets)]
+    report = _shown_on(line, "Pairs")
+    grid = parse_grid_or_auto(arguments.grid)
+    pairs = design_pairs(shapes, outlines, grid, arguments.k, arguments.polish, arguments.seed, report)
+    fields = [
+        random_sheets(shape, grid or (12, 12), arguments.fields, arguments.seed, _shown_on(line, shape.name))
+        for shape in shapes
+        if arguments.fields
+    ]
+    figures = {
+        **pair_figures(pairs),
+        "each": [asdict(pair) for pair in pairs],
+        "random_sheets": [asdict(one) | {"ok": one.ok} for one in fields],
+    }
+    _print_figures(arguments, line, figures)
+    return 0 if all(one.ok for one in fields) else 1
 
 
 def generation_speed(arguments: argparse.Namespace) -> int:

@@ -102,6 +102,15 @@ COPIES = (
     option("--copy-gap-mm", type=positive, default=None, help="gap between copies (default: the project's, or 5)"),
 )
 
+#: What flat sheets look like.
+START = option(
+    "--start",
+    default="rectangle",
+    metavar="SHAPE",
+    help="shape of the flat sheet: rectangle, square, rectangle:W:H, circle, ellipse:W:H, triangle, hexagon, "
+    "polygon:N, a file or library name of a shape without hollows (default rectangle)",
+)
+
 #: What sheets may be like, and which of them come first.
 SHEETS = (
     option(
@@ -195,9 +204,7 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
         option("--grid", default="auto",
                help="voids, ROWSxCOLUMNS, or auto: as coarse as the shape allows (default auto)"),
         PHI,
-        option("--start", default="rectangle", metavar="SHAPE",
-               help="shape of the flat sheet: rectangle, square, rectangle:W:H, circle, ellipse:W:H, triangle, hexagon,"
-                    " polygon:N, a file or library name of a shape without hollows (default rectangle)"),
+        START,
         *SHEETS,
         option("--variant", default="balanced",
                help="generator variant, see 'kirigami-studio variants' (default balanced)"),
@@ -472,7 +479,7 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
         *targets_of_a_suite(500), EXACT,
         option("--grid", default="10x10",
                help="voids, ROWSxCOLUMNS or auto, or several separated by commas (default 10x10)"),
-        VARIANT, samples(1), STEPS, POLISH, SEED, *SHEETS,
+        VARIANT, samples(1), STEPS, POLISH, SEED, START, *SHEETS,
         option("--prefer", choices=tuple(PREFERENCES), default="balanced",
                help="what polishing prefers (default balanced)"),
         option("--effort", "--search", type=whole, default=0, help="search with this effort (default 0: no search)"),
@@ -486,6 +493,20 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
         "kirigami-studio benchmark designs --targets library --k 8 --polish 15 --effort 1 --trim --picture all.png",
         "kirigami-studio benchmark designs --targets library --grid auto --k 32 --polish 15 --picture all.png --states",
     )),
+    SubCommand("benchmark starts", "design targets from other sheets than rectangles", "benchmarks:starts", (
+        option("--starts", nargs="+", default=["circle", "triangle", "hexagon", "ellipse", "square"], metavar="SHAPE",
+               help="shapes of the flat sheet, as for 'design --start' "
+                    "(default: circle triangle hexagon ellipse square)"),
+        option("--targets", nargs="+", default=["square", "circle", "heart", "star", "drop"],
+               help="silhouettes, files or folders (default: square circle heart star drop)"),
+        option("--grid", default="auto", help="voids, ROWSxCOLUMNS or auto (default auto)"),
+        samples(32),
+        option("--polish", type=whole, default=15, help="polishing steps (default 15)"),
+        option("--fields", type=whole, default=0,
+               help="random sheets of each start that are measured too, of 12 x 12 voids where the grid is auto "
+                    "(default 0)"),
+        SEED, *FIGURES,
+    ), ("kirigami-studio benchmark starts --fields 1000",)),
     SubCommand("benchmark generation-speed", "time loading and sampling", "benchmarks:generation_speed", (
         VARIANTS, GRID, STEPS, *FIGURES,
     ), ("kirigami-studio benchmark generation-speed",)),

@@ -9,10 +9,12 @@ import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from lattice_strategies import angles, grids, local_rule_residual, polygon_areas, sheets
+from uneven_sheets import random_start
 
 from kirigami_studio.evaluate.feasibility import path_contact
 from kirigami_studio.foundation.arrays import IntArray
 from kirigami_studio.lattice.deployment import deploy
+from kirigami_studio.lattice.laying import laid_sheet
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.sheet import Rim, RimPath, Sheet, anchor_points, rim_table
 
@@ -71,6 +73,30 @@ def test_that_panels_overlap_only_where_the_outline_crosses_itself(sheet: Sheet,
         assert lost < 1e-6
     else:
         assert not shapely.LinearRing(design.outline(contact.phi)).is_simple
+
+
+@settings(deadline=None, max_examples=40)
+@given(sheets(7, narrowest=0.4), st.integers(0, 2**32 - 1))
+def test_that_any_outline_laid_under_a_grid_makes_sheets_without_inverted_panels(sheet: Sheet, seed: int) -> None:
+    """Random convex outline, ratios and mouths: the partition, Eq. 2, the zip, and crossings that are told."""
+    random = np.random.default_rng(seed)
+    outline = random_start(random)
+    if outline is None:
+        return
+    flat = laid_sheet(outline, *sheet.grid)
+    held = RimPath(*sheet.grid, flat.start).held
+    rim = Rim.moved(*sheet.grid, np.where(held, 0.0, random.uniform(-0.6, 0.6, held.size)))
+    laid = Sheet(sheet.field, rim, flat.start)
+    design, whole = deploy(laid), rim_polygon(laid).area
+    areas = polygon_areas(design.panels(math.pi))
+    assert areas.min() > -1e-9 * whole and abs(areas.sum() - whole) < 1e-9 * whole
+    assert local_rule_residual(laid.field, design.voids(0.7), 0.7) < 1e-9
+    loop, outer = design.topology.outline_nodes, design.nodes(0.0)[design.topology.outline_nodes]
+    place = np.flatnonzero(np.isin(loop, edge_hinges(laid)))
+    assert np.abs(outer[place - 1] - outer[(place + 1) % loop.size]).max() < 1e-9
+    closed = shapely.polygons(design.panels(0.0).reshape(-1, 4, 2))
+    lost = 1.0 - shapely.union_all(shapely.buffer(closed, 0.0)).area / shapely.area(closed).sum()
+    assert lost < 1e-6 or path_contact(design, 0.0) is not None
 
 
 @given(grids(9))
