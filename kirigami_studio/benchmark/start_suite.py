@@ -184,7 +184,8 @@ def random_sheets(start: StartShape, grid: tuple[int, int], count: int, seed: in
         told = path_contact(deployment, 0.0) is not None
         crossings += told
         unreported += not told and _overlap(deployment) > OVERLAP
-    return RandomSheets(start.name, count, inverted, *misses.tolist(), crossings, unreported)
+    rule, zipped, partition = (float(miss) for miss in misses)
+    return RandomSheets(start.name, count, inverted, rule, zipped, partition, crossings, unreported)
 
 
 def _areas(panels: FloatArray) -> FloatArray:
