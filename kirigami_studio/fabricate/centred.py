@@ -208,13 +208,16 @@ class _Room:
 
     def _give_way(self, draft: _Draft, tighter: set[int], flatter: set[int], turn: int) -> None:
         hasty = turn >= HASTY_FROM
+        turned = set()
         for hinge in tighter:
             following = draft.next_attempt(hinge)
             if following < len(TURNS) and not hasty:
                 self._attempt[hinge] = following
+                turned.add(hinge)
             elif not self._smaller(hinge):
                 self._attempt[hinge] = len(TURNS)
-        for hinge in flatter:
+        # Where a slit turns otherwise, it may leave its bow alone.
+        for hinge in flatter - turned:
             if not self._smaller(hinge):
                 self._flat[hinge] = True
 

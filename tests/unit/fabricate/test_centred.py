@@ -191,7 +191,7 @@ def test_that_single_widths_are_kept(make_design: MakeDesign) -> None:
 def test_that_crowded_connectors_are_told_and_keep_their_width(make_design: MakeDesign) -> None:
     plan = plan_cuts(
         make_design(8, 8, seed=4, spread=0.9),
-        80.0,
+        60.0,
         material=find_material("card-co2"),
         options=CutOptions(style=ConnectorStyle.CENTRED),
     )
@@ -206,6 +206,13 @@ def test_that_crowded_connectors_are_told_and_keep_their_width(make_design: Make
     assert check_plan(plan).pieces == 1
     if told[0].code == "plan.off_centre":
         assert f"by up to {told[0].fields['miss_mm']:.3f} mm" in told[0].text
+
+
+def test_that_slits_turn_tightly_before_connectors_become_narrower(make_design: MakeDesign) -> None:
+    design, material = make_design(8, 8, seed=4, spread=0.9), find_material("card-co2")
+    plan = plan_cuts(design, 80.0, material=material, options=CutOptions(style=ConnectorStyle.CENTRED))
+    assert not plan.hinges.narrowed.size
+    assert check_plan(plan).pieces == 1
 
 
 def test_that_bending_lengths_are_those_of_finite_elements() -> None:

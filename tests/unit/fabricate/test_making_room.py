@@ -87,14 +87,14 @@ def test_that_removed_connectors_need_no_room(make_design: MakeDesign) -> None:
 
 
 def test_that_what_has_no_room_is_narrower_and_listed(make_design: MakeDesign) -> None:
-    plan = planned(make_design(8, 8, seed=4, spread=0.9), 1.6)
+    plan = planned(make_design(8, 8, seed=4, spread=0.9), 2.2)
     narrowed = plan.hinges.narrowed
     (note,) = (note for note in plan.notes if note.code == "plan.connectors_narrowed")
     assert narrowed.size == note.fields["count"] > 0
-    assert plan.hinges.requested_mm.min() >= LEAST_SHARE * 1.6 - 1e-9
+    assert plan.hinges.requested_mm.min() >= LEAST_SHARE * 2.2 - 1e-9
     assert (plan.hinges.finished_mm - plan.hinges.requested_mm).min() > -1e-3
-    np.testing.assert_array_equal(plan.hinges.asked_mm, 1.6)
-    assert f"instead of {1.6:.3f} mm" in note.text
+    np.testing.assert_array_equal(plan.hinges.asked_mm, 2.2)
+    assert f"instead of {2.2:.3f} mm" in note.text
 
 
 def test_that_a_plan_tells_by_how_much_the_sheet_is_not_the_design(make_design: MakeDesign) -> None:
