@@ -11,7 +11,7 @@ import numpy as np
 import shapely
 
 from kirigami_studio.evaluate.candidate import Candidate, Origin
-from kirigami_studio.evaluate.feasibility import path_contact
+from kirigami_studio.evaluate.feasibility import UNION_GRID, path_contact
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.lattice.deployment import Deployment, deploy, rotate
 from kirigami_studio.lattice.laying import lost_to_chords, start_error
@@ -216,4 +216,4 @@ def _zip_gap(deployment: Deployment) -> float:
 def _overlap(deployment: Deployment) -> float:
     """Share of the panels' area that is lost in their union at phi = 0."""
     panels = shapely.polygons(deployment.panels(0.0).reshape(-1, 4, 2))
-    return 1.0 - float(shapely.union_all(shapely.buffer(panels, 0.0)).area / shapely.area(panels).sum())
+    return 1.0 - float(shapely.union_all(panels, grid_size=UNION_GRID).area / shapely.area(panels).sum())
