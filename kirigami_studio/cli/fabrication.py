@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -33,8 +33,10 @@ from kirigami_studio.foundation.errors import ExportError, FabricationError, Pro
 from kirigami_studio.foundation.steps import result_of
 from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.lattice.deployment import deploy
+from kirigami_studio.pipeline.coarser import coarser_designs
+from kirigami_studio.pipeline.request import Request
 from kirigami_studio.project.as_cut import simulated
-from kirigami_studio.project.cutting import plan_of
+from kirigami_studio.project.cutting import least_feature_mm, plan_of
 from kirigami_studio.project.design_facts import design_facts
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.fixes import Advice, find_fixes
@@ -164,7 +166,23 @@ def export(arguments: argparse.Namespace) -> int:
 
 def _advice(document: Document, settings: FabricationSettings, verdict: Verdict) -> Advice:
     """Try changes on the chosen design, all in one go."""
-    return result_of(find_fixes(_chosen(document), settings, verdict, document.candidates))
+    candidate, wishes = _chosen(document), document.settings
+    coarser: Iterable[tuple[Candidate, ...]] = ()
+    if document.target is not None:
+        request = Request(
+            document.target,
+            phi=wishes.phi,
+            seed=wishes.seed,
+            variant=wishes.variant,
+            symmetry=wishes.symmetry,
+            rim=wishes.rim,
+            regular=wishes.regular,
+            width_mm=settings.width_mm,
+            least_feature_mm=least_feature_mm(settings),
+            start=wishes.start,
+        )
+        coarser = coarser_designs(candidate, request)
+    return result_of(find_fixes(candidate, settings, verdict, document.candidates, coarser))
 
 
 def say_verdict(verdict: Verdict) -> None:

@@ -1,6 +1,7 @@
 """Fixes for a sheet that is not ready to cut: changes that were tried on this very design and found to work.
 
-Styles, connector widths, sheet widths, other designs, combinations and other materials are tried, small changes first.
+Styles, connector widths, sheet widths, other designs, coarser grids, combinations and other materials are tried, small
+changes first.
 Each is planned and checked; what passes is closed on its connectors and judged.  Fast estimates leave out at once what
 would jam or break.
 """
@@ -25,7 +26,7 @@ from kirigami_studio.project.cutting import material_for, plan_of
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.edits import Edit
 from kirigami_studio.project.settings import FabricationSettings
-from kirigami_studio.project.verdict import Level, Verdict, closed_as_cut, judge
+from kirigami_studio.project.verdict import TOO_SMALL, Level, Verdict, closed_as_cut, judge
 
 #: Fixes that are offered at most.
 MOST_FIXES = 3
@@ -37,6 +38,8 @@ MOST_JAMMING, MOST_MATERIALS = 6, 2
 MOST_DESIGNS = 4
 #: Connector and sheet widths that are tried, as multiples of the present ones.
 CONNECTORS, WIDTHS = (0.5, 0.75, 1.5, 2.0, 3.0), (1.25, 1.5, 2.0, 3.0)
+#: Problems of sheets whose panels leave connectors no room: a coarser grid has larger ones.
+CROWDED = frozenset({"slit.no_room", "edge_cut.no_room", "plan.connectors_narrowed"}) | TOO_SMALL
 #: Styles that are tried together with widths.
 COMBINED = (ConnectorStyle.CENTRED, ConnectorStyle.DOUBLE, ConnectorStyle.ARC)
 #: Sheets wider than this (mm) are not tried where the machine's bed is not known.
@@ -58,6 +61,8 @@ class Fix:
     verdict : Verdict
         What is then to be expected.
     as_cut : AsCut
+    instead : tuple of Candidate
+        Designs on another grid, best first, that take the place of all there are; empty where those stay.
     """
 
     change: Note
@@ -65,10 +70,13 @@ class Fix:
     settings: FabricationSettings
     verdict: Verdict
     as_cut: AsCut
+    instead: tuple[Candidate, ...] = ()
 
     def edit(self, document: Document) -> Edit:
         """Make the change, as one step that can be undone; a design that is gone leaves the choice as it is."""
         label = self.change.text.rstrip(".")
+        if self.instead:
+            return replace(edits.set_candidates(document, self.instead, document.provenance), label=label)
         if self.candidate != document.candidate and self.candidate in document.candidates:
             return replace(edits.choose(document, document.candidates.index(self.candidate)), label=label)
         profile, version = document.fabrication.profile, document.fabrication.dxf_version
@@ -87,6 +95,7 @@ class Fix:
             "connector_mm": settings.connector_mm,
             "width_mm": settings.width_mm,
             "material": settings.material,
+            "grid": list(self.candidate.sheet.grid),
             "max_strain": self.as_cut.strain,
         }
 
@@ -123,6 +132,7 @@ class _Change:
     note: Note
     candidate: Candidate
     settings: FabricationSettings
+    instead: tuple[Candidate, ...] = ()
 
 
 def find_fixes(
@@ -130,6 +140,7 @@ def find_fixes(
     settings: FabricationSettings,
     verdict: Verdict,
     others: Sequence[Candidate] = (),
+    coarser: Iterable[tuple[Candidate, ...]] = (),
 ) -> Generator[None, None, Advice]:
     """Look for changes that help; yields between them, for others to have their turn.
 
@@ -143,6 +154,8 @@ def find_fixes(
         On that; a change helps if it leads to a better one.
     others : sequence of Candidate
         Other designs of the document, by their numbers.
+    coarser : iterable of tuple of Candidate
+        Designs for the same target on coarser grids, best first; made when they are asked for.
 
     Raises
     ------
@@ -154,14 +167,23 @@ def find_fixes(
         # However it is cut, its panels overlap.
         yield from search.try_all(_other_designs(candidate, settings, others), MOST_FIXES)
         return search.advice()
+    single = _single_changes(candidate, settings, search.material, verdict)
+    grids = _coarser_grids(candidate, settings, coarser)
+    if any(problem.code in CROWDED for problem in verdict.problems):
+        yield from search.try_all(single, MOST_FIXES - 1)
+        yield from search.try_all(grids, MOST_FIXES)
+    else:
+        yield from search.try_all(single, MOST_FIXES)
     for changes in (
-        _single_changes(candidate, settings, search.material, verdict),
         _other_designs(candidate, settings, others),
+        grids,
         _combinations(candidate, settings, search.material),
     ):
-        yield from search.try_all(changes, MOST_FIXES)
         if search.ready:
             return search.advice()
+        yield from search.try_all(changes, MOST_FIXES)
+    if search.ready:
+        return search.advice()
     yield from search.try_jamming()
     yield from search.try_all(_other_materials(candidate, settings), MOST_MATERIALS)
     return search.advice()
@@ -246,7 +268,8 @@ class _Search:
         if isinstance(as_cut, AsCut) and after.better_than(self.verdict):
             if after.ok and change.note.code != "fix.material":
                 self.kinds.add(change.note.code)
-            self.found.append(Fix(_told(change.note, self.verdict, as_cut), candidate, settings, after, as_cut))
+            note = _told(change.note, self.verdict, as_cut)
+            self.found.append(Fix(note, candidate, settings, after, as_cut, change.instead))
 
     def _hopeless(self, change: _Change, motion: Deployment) -> bool:
         """Whether its connectors break or the sheet jams, as estimated; thin sheets that jam are kept for later."""
@@ -268,7 +291,7 @@ class _Search:
 def _told(note: Note, verdict: Verdict, as_cut: AsCut) -> Note:
     """The change with the strain that it leads to, where strain is what is wrong."""
     codes = {problem.code for problem in verdict.problems}
-    if "as_cut.breaks" not in codes or note.code in ("fix.design", "fix.material"):
+    if "as_cut.breaks" not in codes or note.code in ("fix.design", "fix.grid", "fix.material"):
         return note
     return Note.of("fix.strain", change=note.text.rstrip("."), strain_percent=100.0 * as_cut.strain)
 
@@ -347,6 +370,20 @@ def _other_designs(
     hopeful = [(number, one) for number, one in enumerate(others, start=1) if one.score.feasible and one != candidate]
     for number, one in hopeful[:MOST_DESIGNS]:
         yield _Change(Note.of("fix.design", number=number), one, settings)
+
+
+def _coarser_grids(
+    candidate: Candidate, settings: FabricationSettings, coarser: Iterable[tuple[Candidate, ...]]
+) -> Iterator[_Change]:
+    """Coarser grids, without choices for single connectors; a trimmed design has no counterpart there."""
+    if candidate.trim is not None:
+        return
+    there = replace(settings, options=replace(settings.options, hinge_mm=(), removed=()))
+    for designs in coarser:
+        rows, columns = designs[0].sheet.grid
+        match = 100.0 * designs[0].score.iou_exact
+        note = Note.of("fix.grid", rows=rows, columns=columns, match_percent=match)
+        yield _Change(note, designs[0], there, designs)
 
 
 def _combinations(candidate: Candidate, settings: FabricationSettings, material: Material) -> Iterator[_Change]:

@@ -12,6 +12,7 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "fix.combined": mark("Use {style} connectors of {connector_mm:g} mm on a sheet {width_mm:.1f} mm wide."),
     "fix.material": mark("Cut {material}."),
     "fix.design": mark("Choose design {number}."),
+    "fix.grid": mark("Use {rows} x {columns} voids: match {match_percent:.1f} %."),
     "fix.removed": mark("Put the removed connectors back."),
     "fix.hinges": mark("Give all connectors the same width."),
     "fix.strain": mark("{change}: strain {strain_percent:.1f} %."),

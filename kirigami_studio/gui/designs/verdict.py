@@ -12,6 +12,7 @@ from PySide6.QtCore import QObject, Signal
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.designs.as_cut import AsCutReader
+from kirigami_studio.gui.designs.generation import request_of
 from kirigami_studio.gui.jobs.as_cut_jobs import fixing
 from kirigami_studio.gui.jobs.cut_jobs import CutRequest, Planned
 from kirigami_studio.gui.jobs.queue import JobCallbacks, LatestJob
@@ -147,9 +148,10 @@ class VerdictKeeper(QObject):
             self._known.move_to_end(key)
             self._say(VerdictState(verdict, advice=self._known[key]))
             return
-        others = self._session.document.candidates
+        document = self._session.document
+        run = None if document.target is None else request_of(document.target, document.settings, request.settings)
         callbacks = JobCallbacks(partial(self._take_advice, key, verdict), on_failed=partial(self._fail, verdict))
-        self._job.start(tr("trying fixes"), partial(fixing, request, verdict, others), callbacks)
+        self._job.start(tr("trying fixes"), partial(fixing, request, verdict, document.candidates, run), callbacks)
         self._say(VerdictState(verdict, searching=True))
 
     def _take_advice(self, key: tuple[Candidate, FabricationSettings], verdict: Verdict, advice: Advice | None) -> None:

@@ -19,6 +19,7 @@ from kirigami_studio.project.settings import FabricationSettings
 
 if TYPE_CHECKING:
     from kirigami_studio.mechanics.gripping import Gripping
+    from kirigami_studio.pipeline.request import Request
     from kirigami_studio.project.as_cut import AsCut, SimulatedSheet
     from kirigami_studio.project.fixes import Advice
     from kirigami_studio.project.verdict import Verdict
@@ -94,9 +95,13 @@ def animating(
 
 
 def fixing(
-    request: CutRequest, verdict: Verdict, others: tuple[Candidate, ...], cancel: Cancel
+    request: CutRequest, verdict: Verdict, others: tuple[Candidate, ...], run: Request | None, cancel: Cancel
 ) -> Iterator[Advice | None]:
-    """Try changes on a design that is not ready to cut; None after every step, so that other jobs have their turn."""
+    """Try changes on a design that is not ready to cut; None after every step, so that other jobs have their turn.
+
+    ``run`` is what designs on coarser grids are asked for by; without one there are none.
+    """
+    from kirigami_studio.pipeline.coarser import coarser_designs
     from kirigami_studio.project.cutting import plan_of
     from kirigami_studio.project.fixes import find_fixes
     from kirigami_studio.project.verdict import refused
@@ -105,7 +110,8 @@ def fixing(
         plan_of(request.candidate, request.settings, request.deployment)
     except KirigamiError as error:
         verdict = refused(error)  # with its numbers, which lead to the first changes
-    steps = find_fixes(request.candidate, request.settings, verdict, others)
+    coarser = () if run is None else coarser_designs(request.candidate, run)
+    steps = find_fixes(request.candidate, request.settings, verdict, others, coarser)
     yield from _in_turns(steps, cancel)
 
 

@@ -191,7 +191,10 @@ def headline(state: VerdictState) -> str:
 def tip(fix: Fix) -> str:
     """What was found when a fix was tried."""
     lines = [tr("Tried on this design: {level}.", level=fix.verdict.level.words)]
-    return "\n".join([*lines, *(problem.text for problem in fix.verdict.problems), tr("Ctrl+Z takes it back.")])
+    lines += [problem.text for problem in fix.verdict.problems]
+    if fix.instead:
+        lines.append(tr("The designs on this grid go."))
+    return "\n".join([*lines, tr("Ctrl+Z takes it back.")])
 
 
 def _label(fix: Fix) -> str:

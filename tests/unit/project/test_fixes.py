@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator
+from collections.abc import Generator, Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -150,3 +150,34 @@ def test_that_a_fix_is_one_step_that_can_be_undone_and_leaves_the_files_alone(
     history.restart(document)
     assert history.apply(edit) and history.undo_label == "Use centred connectors"
     assert history.undo() and history.document == document
+
+
+def test_that_a_coarser_grid_is_offered_where_panels_leave_no_room_and_takes_the_place_of_all_designs(
+    design: Candidate, target: Outline
+) -> None:
+    crowded = replace(FILM, connector_mm=5.0, options=replace(FILM.options, hinge_mm=((3, 5.0),)))
+    assert verdict_on(design, crowded).problems[0].code == "plan.connectors_narrowed"
+    motion = deploy(RatioField.from_log10(np.random.default_rng(2).uniform(-0.4, 0.4, (2, 2))))
+    coarse = Candidate(motion.sheet, evaluate(motion, target, 0.0), seed=3, index=0)
+    made = []
+
+    def coarser() -> Iterator[tuple[Candidate, ...]]:
+        made.append(coarse)
+        yield (coarse, replace(coarse, index=1))
+
+    found = ended(find_fixes(design, crowded, verdict_on(design, crowded), (), coarser()))
+    assert made == [coarse]
+    (fix,) = [fix for fix in found.fixes if fix.instead]
+    match = 100.0 * coarse.score.iou_exact
+    assert fix.change.text == f"Use 2 x 2 voids: match {match:.1f} %." and fix.settings.options.hinge_mm == ()
+    assert fix.verdict == verdict_on(coarse, fix.settings) and fix.to_json()["grid"] == [2, 2]
+    document = Document(target, DesignSettings((4, 4)), (design,), 0, crowded)
+    history = History()
+    history.restart(document)
+    assert history.apply(fix.edit(document)) and history.document.candidates == (coarse, replace(coarse, index=1))
+    assert history.document.candidate == coarse and history.document.fabrication.options.hinge_mm == ()
+    assert history.undo_label == f"Use 2 x 2 voids: match {match:.1f} %"
+    assert history.undo() and history.document == document
+    # A sheet that jams, but has room, asks for no other grid while anything else helps.
+    ended(find_fixes(design, STRAIGHT, verdict_on(design, STRAIGHT), (), coarser()))
+    assert made == [coarse]
