@@ -18,7 +18,6 @@ from dataclasses import dataclass
 
 import numpy as np
 import shapely
-from scipy.ndimage import label
 from shapely.geometry import Polygon
 from shapely.geometry.base import BaseGeometry
 
@@ -144,7 +143,7 @@ class _Cut:
     def first(self) -> BoolArray:
         """The largest set of voids that mostly lie on the target, without holes."""
         mostly = _largest(self._shares() >= MOSTLY)
-        outside = np.asarray(label(np.pad(~mostly, 1, constant_values=True), structure=EIGHT_WAYS)[0])
+        outside, _ = _labelled(np.pad(~mostly, 1, constant_values=True), EIGHT_WAYS)
         whole: BoolArray = outside[1:-1, 1:-1] != outside[0, 0]
         return whole
 
@@ -311,13 +310,22 @@ def _hinge_pairs(rows: int, columns: int) -> tuple[tuple[IntArray, IntArray], tu
 
 def _is_one(voids: BoolArray) -> bool:
     """Whether voids are connected from hinge to hinge, and so is what lies around them: one outline."""
-    around = label(np.pad(~voids, 1, constant_values=True), structure=EIGHT_WAYS)[1]
-    return bool(label(voids)[1] == 1 and around == 1)
+    _, around = _labelled(np.pad(~voids, 1, constant_values=True), EIGHT_WAYS)
+    return _labelled(voids)[1] == 1 and around == 1
+
+
+def _labelled(voids: BoolArray, touching: IntArray | None = None) -> tuple[IntArray, int]:
+    """Numbers of the connected sets of voids, and how many there are."""
+    # Imported when it is needed: it takes long, and the window starts without it.
+    from scipy.ndimage import label
+
+    numbers, count = label(voids, structure=touching)
+    return np.asarray(numbers, dtype=np.intp), int(count)
 
 
 def _largest(voids: BoolArray) -> BoolArray:
     """The largest connected set of voids."""
-    numbers, count = label(voids)
+    numbers, count = _labelled(voids)
     if count == 0:
         return voids
     largest: BoolArray = numbers == 1 + int(np.argmax(np.bincount(numbers.ravel())[1:]))

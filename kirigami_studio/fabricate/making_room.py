@@ -22,7 +22,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.linalg import cholesky, solve_triangular
-from scipy.optimize import brentq
 from scipy.sparse import csc_matrix
 from scipy.sparse.linalg import splu
 
@@ -349,6 +348,8 @@ def shortest(rows: FloatArray, wanted: FloatArray) -> FloatArray:
 
     Newton's method on a convex cost of quadratic pieces, with the best share of a step where a whole one is too far.
     """
+    # Imported when it is needed: it takes long, and the window starts without it.
+    from scipy.optimize import brentq
 
     u = np.zeros(rows.shape[1])
     for _ in range(MOST_STEPS):

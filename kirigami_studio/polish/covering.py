@@ -16,7 +16,6 @@ from functools import lru_cache
 
 import numpy as np
 import shapely
-from scipy.optimize import fmin
 
 from kirigami_studio.evaluate.alignment import align
 from kirigami_studio.evaluate.feasibility import path_contact
@@ -205,6 +204,8 @@ class _Promise:
 
     def best_pose(self, pose: Similarity, cancel: Callable[[], bool]) -> Similarity:
         """The pose near the given one that promises most, by a simplex over shift, turn and scale."""
+        # Imported when it is needed: it takes long, and the window starts without it.
+        from scipy.optimize import fmin
 
         def moved(move: FloatArray) -> Similarity:
             return Similarity(math.exp(move[0]), move[1], (move[2], move[3])).compose(pose)

@@ -19,7 +19,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve, cholesky, solve_triangular
-from scipy.optimize import nnls
 
 from kirigami_studio.evaluate.evenness import panel_sizes
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray
@@ -273,6 +272,9 @@ class _Problem:
 
 def _multipliers(compliance: FloatArray, asked: FloatArray) -> FloatArray:
     """The multipliers l >= 0 (C,) with l M l / 2 - asked l least, M the compliance (C, C) of the conditions."""
+    # Imported when it is needed: it takes long, and the window starts without it.
+    from scipy.optimize import nnls
+
     if not len(asked):
         return np.zeros(0)
     softened = compliance.copy()
