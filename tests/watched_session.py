@@ -50,6 +50,9 @@ class Places:
     def target(self) -> Path | None:
         return None
 
+    def start(self) -> Path | None:
+        return None
+
     def project(self) -> Path | None:
         return self.project_
 

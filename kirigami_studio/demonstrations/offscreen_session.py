@@ -41,6 +41,9 @@ class PresetFiles:
     def target(self) -> Path | None:
         return None
 
+    def start(self) -> Path | None:
+        return None
+
     def project(self) -> Path | None:
         return self._out / "session.kiri"
 

@@ -36,7 +36,7 @@ from kirigami_studio.gui.jobs.cut_jobs import ANIMATION, CutRequest, Motion
 from kirigami_studio.gui.jobs.queue import JobCallbacks, JobQueue
 from kirigami_studio.gui.messages import Message, Tone
 from kirigami_studio.gui.session import Entry, Session
-from kirigami_studio.gui.targeting import Targeting
+from kirigami_studio.gui.targeting import StartReader, Targeting
 from kirigami_studio.project import edits
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.edits import Edit, SettingsChange
@@ -65,6 +65,8 @@ class Controller(QObject):
         The numbers a design is cut with, its cut plan and files, and what is to be expected of the sheet.
     targeting, filing, preferences
         The target, the project's files, the preferences.
+    start
+        Reads start outlines from files and the library.
     """
 
     saved = Signal(Path)
@@ -92,6 +94,7 @@ class Controller(QObject):
         self.estimates = AsCutEstimates(session, self)
         self.verdict = VerdictKeeper(session, self.as_cut, self)
         self.targeting = Targeting(session, self)
+        self.start = StartReader(session, self)
         self.filing = Filing(session, self.targeting, self)
         self.preferences = UserPreferences(session)
         self._connect()
@@ -176,6 +179,8 @@ class Controller(QObject):
 
     def change_settings(self, **changes: Unpack[SettingsChange]) -> None:
         """Change how the next run searches."""
+        if "start" in changes:
+            self.start.stop()
         try:
             self.session.apply(edits.set_settings(self.document, **changes))
         except KirigamiError as error:
@@ -352,6 +357,7 @@ class Controller(QObject):
     def _stop_all(self) -> None:
         """Another document comes: what is on its way belongs to the old one."""
         self.targeting.stop()
+        self.start.stop()
         self.hand.stop()
         self._stop_work_on_design()
         self.run.abandon()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -87,13 +88,20 @@ class Dialogs(QObject):
             self.history.show_history(self._controller.history, self._window.palette_)
 
     def show_library(self) -> None:
-        """Open the popup with the library's silhouettes."""
+        """Open the popup with the library's silhouettes, for the target."""
+        self._pick_silhouette(self._controller.targeting.open, self._window.target.buttons["library"])
+
+    def show_start_library(self) -> None:
+        """Open it for the start outline."""
+        self._pick_silhouette(self._controller.start.open, self._window.settings.start)
+
+    def _pick_silhouette(self, take: Callable[[str], None], below: QWidget) -> None:
         from kirigami_studio.gui.dialogs.silhouette_picker import SilhouettePicker
 
         self.picker = SilhouettePicker(self._window, self._window.palette_)
         self.picker.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
-        self.picker.chosen.connect(self._controller.targeting.open)
-        self.picker.show_below(self._window.target.buttons["library"])
+        self.picker.chosen.connect(take)
+        self.picker.show_below(below)
 
     def show_guide(self) -> None:
         """Open the guide, or bring it to the front."""

@@ -1,4 +1,4 @@
-"""The target that is designed for: read from a file, traced from a picture, drawn, cleared; each becomes an edit."""
+"""The target: read from a file, traced, drawn, cleared; and the start outline that is read. Each becomes an edit."""
 
 from __future__ import annotations
 
@@ -12,9 +12,10 @@ from PySide6.QtCore import QObject, Signal
 
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.jobs.queue import JobCallbacks, LatestJob
-from kirigami_studio.gui.jobs.target_jobs import Picture, TargetRead, reading_target, tracing
+from kirigami_studio.gui.jobs.target_jobs import Picture, TargetRead, reading_start, reading_target, tracing
 from kirigami_studio.gui.session import Session
 from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.outlines.starts import StartShape
 from kirigami_studio.project import edits
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.edits import Edit
@@ -120,6 +121,29 @@ class TargetReader(QObject):
             self._tracer.remember(found.outline, found.picture)
         self.source = source
         self.read.emit(found.outline, first)
+
+
+class StartReader(QObject):
+    """Reads the outline that sheets are to have while they are flat; the newest wish wins."""
+
+    def __init__(self, session: Session, parent: QObject) -> None:
+        super().__init__(parent)
+        self._session = session
+        self._job = LatestJob[StartShape](session.queue)
+
+    def open(self, source: str) -> None:
+        """Read a file, or a silhouette of the library by name; a shape that cannot be a start changes nothing."""
+        callbacks = JobCallbacks(self._take, on_failed=self._session.report_failure)
+        self._job.start(tr("reading {name}", name=Path(source).name), partial(reading_start, source), callbacks)
+
+    def stop(self) -> None:
+        """Forget what is still being read: something else took its place."""
+        self._job.stop()
+
+    def _take(self, start: StartShape) -> None:
+        self._session.apply(edits.set_settings(self._session.document, start=start))
+        self._session.history.end_drag()
+        self._session.set_status(tr("Sheets start as {name}. Press Generate (Ctrl+G).", name=start.name))
 
 
 class Targeting(QObject):

@@ -10,6 +10,7 @@ from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions, CutOrder
 from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.outlines.starts import StartShape
 from kirigami_studio.project.document import Document, Void
 from kirigami_studio.project.settings import FabricationSettings
 
@@ -40,6 +41,7 @@ class SettingsChange(TypedDict, total=False):
     symmetry: str
     rim: str
     regular: float
+    start: StartShape
     phi: float
     k: int
     seed: int
@@ -85,6 +87,7 @@ _LABELS = {
     "symmetry": tr("Change the symmetry"),
     "rim": tr("Change the rim"),
     "regular": tr("Change match or regular"),
+    "start": tr("Change the start outline"),
     "phi": tr("Change the target angle"),
     "k": tr("Change the number of designs"),
     "seed": tr("Change the seed"),

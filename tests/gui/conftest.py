@@ -52,6 +52,9 @@ class PathAnswers:
     def target(self) -> Path | None:
         return self.answer
 
+    def start(self) -> Path | None:
+        return self.answer
+
     def project(self) -> Path | None:
         return self.answer
 

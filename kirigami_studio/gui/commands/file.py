@@ -49,6 +49,12 @@ class FileCommands(QObject):
         if path is not None:
             self._controller.targeting.open(str(path))
 
+    def ask_start(self) -> None:
+        """Read a file of the user's choice as the start outline."""
+        path = self._window.file_dialogs.start()
+        if path is not None:
+            self._controller.start.open(str(path))
+
     def open(self, name: str) -> None:
         """Open a dropped, pasted or recent file: a project or a target."""
         if Path(name).suffix.lower() == ".kiri":

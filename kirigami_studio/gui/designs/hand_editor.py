@@ -29,7 +29,7 @@ from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.paper import LOG_RATIO_LIMIT
 from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.gui.designs.outline_drag import OutlineDrag
-from kirigami_studio.gui.designs.rim_drag import MouthDrag, moved, with_sheet
+from kirigami_studio.gui.designs.rim_drag import MouthDrag, holds_corner, moved, with_sheet
 from kirigami_studio.gui.jobs.design_jobs import Decoded, decoded
 from kirigami_studio.gui.jobs.queue import Cancel, JobCallbacks, LatestJob, single
 from kirigami_studio.gui.jobs.vertex_drag import DragStart, DragStep
@@ -341,7 +341,9 @@ class HandEditor(QObject):
 
     def _place_mouth(self, mouth: int, position: float, merge_key: str | None = None) -> None:
         sheet = self.sheet
-        if sheet is not None:
+        if sheet is not None and holds_corner(sheet, mouth):
+            self._session.set_status(tr("This edge cut stays where it is: it holds a corner of the flat sheet."))
+        elif sheet is not None:
             placed = moved(sheet, mouth, position)
             self._draft(placed, tr("Move edge cut"), merge_key)
             facts = MouthFacts.of(placed, mouth, self._session.document.fabrication.width_mm)
@@ -378,7 +380,7 @@ class HandEditor(QObject):
         self._prepare_drag()
         design, document = self._design(), self._session.document
         if design is None or phi >= math.pi:
-            self._session.set_status(tr("The flat sheet is always a rectangle. Open it to move its outline."))
+            self._session.set_status(tr("The flat sheet keeps its outline. Open it to move the outline."))
             return
         locked = np.zeros(design.deployment.sheet.grid, dtype=np.bool_)
         for void in document.locked:

@@ -10,7 +10,7 @@ from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.gui.scene.rim_items import mouth_places
 from kirigami_studio.lattice.deployment import deploy
-from kirigami_studio.lattice.sheet import Rim, Sheet, replace_sheet, rim_table
+from kirigami_studio.lattice.sheet import Rim, RimPath, Sheet, replace_sheet, rim_table
 
 #: Two neighbours on a side keep at least this distance (unit cells): half of it is an edge of a panel.
 LEAST_GAP = 0.3
@@ -21,7 +21,10 @@ LEAST_MOTION = 0.25
 
 
 def room_of(sheet: Sheet, mouth: int) -> tuple[float, float]:
-    """Lowest and highest position that an edge cut may take, unit cells; it may stay where it is."""
+    """Lowest and highest position that an edge cut may take, unit cells; it may stay where it is.
+
+    One that holds a sharp corner of the start outline has to, so that its neighbours stay between such corners, too.
+    """
     table, positions = rim_table(*sheet.grid), sheet.rim.positions
     side = int(table.side[mouth])
     length = float(sheet.columns + 1 if side % 2 == 0 else sheet.rows + 1)
@@ -29,7 +32,14 @@ def room_of(sheet: Sheet, mouth: int) -> tuple[float, float]:
     before = 0.0 if mouth == same[0] else float(positions[mouth - 1])
     after = length if mouth == same[-1] else float(positions[mouth + 1])
     here = float(positions[mouth])
+    if holds_corner(sheet, mouth):
+        return here, here
     return min(before + LEAST_GAP, here), max(after - LEAST_GAP, here)
+
+
+def holds_corner(sheet: Sheet, mouth: int) -> bool:
+    """Whether an edge cut belongs at a sharp corner of the start outline: moved, the flat sheet would lose it."""
+    return bool(RimPath(*sheet.grid, sheet.start, sheet.cell).held[mouth])
 
 
 def moved(sheet: Sheet, mouth: int, position: float) -> Sheet:

@@ -20,7 +20,7 @@ PAUSE_MS = 250
 
 
 class TargetReader(QObject):
-    """Reads the document's target in the worker whenever target, angle, symmetry, sheet or material have changed."""
+    """Reads the target in the worker whenever target, angle, symmetry, start, sheet or material have changed."""
 
     known = Signal(object)  #: TargetReading, or None while there is none
 
@@ -44,7 +44,7 @@ class TargetReader(QObject):
         asked = None
         if request is not None:
             sheet = (request.width_mm, request.least_feature_mm)
-            asked = (request.target, request.phi, request.symmetry, *sheet)
+            asked = (request.target, request.phi, request.symmetry, request.start, *sheet)
         if asked == self._asked:
             return
         self._asked, self._request = asked, request

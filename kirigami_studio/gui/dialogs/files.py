@@ -11,6 +11,7 @@ from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.file_kinds import FILE_KINDS, kind_of
 
 TARGET_FILTER = tr("Targets (*.png *.jpg *.jpeg *.bmp *.svg *.dxf *.json);;All files (*)")
+START_FILTER = tr("Shapes (*.png *.jpg *.jpeg *.bmp *.svg *.dxf *.json);;All files (*)")
 PROJECT_FILTER = tr("Kirigami Studio projects (*.kiri)")
 
 
@@ -19,6 +20,9 @@ class FileDialogs(Protocol):
 
     def target(self) -> Path | None:
         """A target to open."""
+
+    def start(self) -> Path | None:
+        """A shape to open as the start outline."""
 
     def project(self) -> Path | None:
         """A project to open."""
@@ -45,6 +49,10 @@ class SystemFileDialogs:
 
     def target(self) -> Path | None:
         name, _ = QFileDialog.getOpenFileName(self._window, tr("Open target"), self._folder, TARGET_FILTER)
+        return self._remembered(name)
+
+    def start(self) -> Path | None:
+        name, _ = QFileDialog.getOpenFileName(self._window, tr("Open start outline"), self._folder, START_FILTER)
         return self._remembered(name)
 
     def project(self) -> Path | None:

@@ -14,6 +14,7 @@ from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.jobs.queue import Cancel
 from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.outlines.starts import StartShape, convex_start
 from kirigami_studio.pipeline.request import Request
 
 if TYPE_CHECKING:
@@ -69,6 +70,13 @@ def reading_target(source: str, cancel: Cancel) -> Iterator[TargetRead]:
         yield TargetRead(traced.outline, Picture(path, level, level, traced, reduced_picture(path)))
     else:
         yield TargetRead(read_target(source))
+
+
+def reading_start(source: str, cancel: Cancel) -> Iterator[StartShape]:
+    """Read a file or a library silhouette as a start outline; one with hollows is refused."""
+    from kirigami_studio.outlines.read import read_target
+
+    yield convex_start(read_target(source))
 
 
 def tracing(picture: Picture, cancel: Cancel) -> Iterator[Traced]:

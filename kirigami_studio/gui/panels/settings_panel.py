@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import secrets
 from collections.abc import Sequence
+from functools import cache
 
 from PySide6.QtCore import QEvent, QObject, QSettings, QSignalBlocker, Qt, QTimer, Signal
 from PySide6.QtWidgets import (
@@ -24,6 +25,7 @@ from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.gui.panels.card import Card, ScrolledWhenShort, ToolButton, captioned, compact
 from kirigami_studio.gui.panels.number_field import DecimalField
 from kirigami_studio.lattice.ratio_field import LARGEST_GRID, SMALLEST_GRID
+from kirigami_studio.outlines.starts import RECTANGLE, StartShape, start_shape
 from kirigami_studio.pipeline.request import LARGEST_K
 from kirigami_studio.project.settings import DesignSettings
 
@@ -66,6 +68,24 @@ RIMS = (
     ("free", tr("Free"), tr("Cuts meet the sheet's sides where that helps the match.")),
     ("even", tr("Even"), tr("Cuts meet the sheet's sides at even distances.")),
 )
+#: What sheets look like while they are flat: name of the start, label, what it means.
+STARTS = (
+    (RECTANGLE.name, tr("Rectangle"), tr("As many square cells as the grid has: the paper's sheet.")),
+    ("square", tr("Square"), tr("A square, whatever the grid.")),
+    ("circle", tr("Circle"), tr("A disk. Its rim is a polygon with corners where cuts meet it.")),
+    ("ellipse:3:2", tr("Ellipse 3:2"), tr("An ellipse, half as wide again as high.")),
+    ("triangle", tr("Triangle"), tr("A triangle with equal sides.")),
+    ("hexagon", tr("Hexagon"), tr("A hexagon with equal sides.")),
+)
+#: Entries below them: value, label, what it does.
+LIBRARY_START, FILE_START = "library", "file"
+OTHER_STARTS = (
+    (LIBRARY_START, tr("Library …"), tr("Choose a library silhouette without hollows.")),
+    (FILE_START, tr("File …"), tr("Open a file with a shape without hollows. PNG, JPG, BMP, SVG, DXF or JSON.")),
+)
+#: Value of the entry for a shape that was loaded.
+LOADED_START = "loaded"
+START = tr("What the sheet looks like while it is flat.")
 AUTO_GRID = tr("Choose the grid for each target: as coarse as its shape allows.")
 REGULAR = tr(
     "What comes first: the closest match on the left, even panels on the right. Moving the slider ranks the designs "
@@ -82,21 +102,26 @@ SEARCH = tr(
     "notches."
 )
 KEEP_SEED = tr("Keep this seed. On: Generate repeats the same designs. Off: each run uses the next seed.")
+#: Starts of the list, made when they are first compared with.
+_listed_start = cache(start_shape)
 
 
 class SettingsPanel(Card):
     """Reports each changed field by name; shows whatever the document holds."""
 
     changed = Signal(dict)  #: field of DesignSettings -> value
-    edited = Signal()  #: a field was left
+    edited = Signal()  #: a field was left, or its change is complete
     keep_changed = Signal(bool)  #: whether Generate draws from the seed that is shown
     regular_moved = Signal(float)  #: 0 match .. 1 regular, while the slider is dragged
     regular_chosen = Signal(float)  #: the slider was let go
+    library_start_wanted = Signal()
+    file_start_wanted = Signal()
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(tr("Design"), parent)
         self._symmetry_found = ""
         self._chosen_grid: tuple[int, int] | None = None
+        self._start = RECTANGLE
         self.auto = QToolButton()
         self.auto.setObjectName("autoGrid")
         self.auto.setText(tr("Auto"))
@@ -162,6 +187,10 @@ class SettingsPanel(Card):
         _fill(self.symmetry, SYMMETRIES)
         self.rim = _choice("rim", tr("Rim: where cuts meet the sheet's sides"))
         _fill(self.rim, RIMS)
+        self.start = _choice("start", tr("Start as: outline of the flat sheet"))
+        _fill(self.start, STARTS)
+        self.start.insertSeparator(self.start.count())
+        _fill(self.start, OTHER_STARTS)
         self.regular = QSlider(Qt.Orientation.Horizontal)
         self.regular.setObjectName("regular")
         self.regular.setRange(0, POSITIONS)
@@ -228,8 +257,9 @@ class SettingsPanel(Card):
         slider.addWidget(match)
         slider.addWidget(self.regular, 1)
         slider.addWidget(even)
-        second.addLayout(captioned(tr("Ang&le"), self.angle, self.angle), 1)
-        second.addLayout(captioned(tr("Desig&ns"), self.candidates, self.candidates), 1)
+        second.addLayout(captioned(tr("S&tart as"), self.start, self.start), 14)
+        second.addLayout(captioned(tr("Ang&le"), self.angle, self.angle), 9)
+        second.addLayout(captioned(tr("Desig&ns"), self.candidates, self.candidates), 7)
         third.addLayout(captioned(tr("&Seed"), self.seed, seed), 4)
         third.addLayout(captioned(tr("&Model"), self.variant, self.variant), 3)
         fourth.addLayout(captioned(tr("Pol&ish"), self.polish, self.polish), 1)
@@ -247,11 +277,12 @@ class SettingsPanel(Card):
             choice.activated.connect(
                 lambda _, name=name, choice=choice: self.changed.emit({name: choice.currentData()})
             )
+        self.start.activated.connect(self._choose_start)
         self.regular.valueChanged.connect(self._move_regular)
         self.regular.sliderReleased.connect(self._choose_regular)
         self._let_go.timeout.connect(self._choose_regular)
         self.more.toggled.connect(self._fold)
-        for widget in (self.regular, self.symmetry, self.rim):
+        for widget in (self.regular, self.symmetry, self.rim, self.start):
             widget.installEventFilter(_WheelStays(widget))
         self.angle.valueChanged.connect(lambda value: self.changed.emit({"phi": math.radians(value)}))
         self.candidates.valueChanged.connect(lambda value: self.changed.emit({"k": value}))
@@ -270,6 +301,16 @@ class SettingsPanel(Card):
         """Leave the grid to the run, or keep the one that is shown."""
         shown = (self.rows.value(), self.columns.value())
         self.changed.emit({"auto_grid": True} if on else {"auto_grid": False, "grid": shown})
+
+    def _choose_start(self) -> None:
+        """Report the start that was chosen; the box keeps the present one until a shape has been loaded."""
+        chosen = self.start.currentData()
+        if chosen in (LIBRARY_START, FILE_START):
+            self._show_start(self._start)
+            (self.library_start_wanted if chosen == LIBRARY_START else self.file_start_wanted).emit()
+        elif chosen != LOADED_START:
+            self.changed.emit({"start": _listed_start(chosen)})
+            self.edited.emit()
 
     def _move_regular(self) -> None:
         self.regular_moved.emit(self.regular.value() / POSITIONS)
@@ -348,6 +389,7 @@ class SettingsPanel(Card):
         for choice, name in ((self.symmetry, settings.symmetry), (self.rim, settings.rim)):
             with QSignalBlocker(choice):
                 _choose(choice, name)
+        self._show_start(settings.start)
         self._show_symmetry_tip()
         self.rim.setToolTip(self.rim.itemData(self.rim.currentIndex(), TOOLTIP))
         with QSignalBlocker(self.variant):
@@ -358,6 +400,22 @@ class SettingsPanel(Card):
             self._choose_preference(settings.prefer, settings.polish > 0 or settings.search > 0)
         with QSignalBlocker(self.search):
             self.search.setChecked(settings.search > 0)
+
+    def _show_start(self, start: StartShape) -> None:
+        """Choose a start; one that was loaded has an entry with its own name as long as it is the present one."""
+        self._start = start
+        listed = self.start.findData(start.name)
+        is_listed = 0 <= listed < len(STARTS) and start == _listed_start(start.name)
+        with QSignalBlocker(self.start):
+            loaded = self.start.findData(LOADED_START)
+            if loaded >= 0:
+                self.start.removeItem(loaded)
+            if not is_listed:
+                listed = len(STARTS)
+                self.start.insertItem(listed, start.name, LOADED_START)
+                self.start.setItemData(listed, start.name, TOOLTIP)
+            self.start.setCurrentIndex(listed)
+        self.start.setToolTip("\n".join((START, self.start.itemData(listed, TOOLTIP))))
 
     def _choose_polish(self, steps: int) -> None:
         index = self.polish.findData(steps)
