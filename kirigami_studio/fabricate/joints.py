@@ -21,14 +21,24 @@ Pair = tuple[int, int]
 def joined_pairs(plan: CutPlan, paths: Sequence[CutPath], lines: Sequence[LineString]) -> set[Pair]:
     """Pairs of a plan's paths that meet on purpose: of one slit, or of two whose connector was removed.
 
-    Two parts of one slit between which a notch of the outline ends count as meeting within a kerf.
+    Two parts of a slit that has lost a connector to a notch meet within a kerf: the notch may end between them.
     """
-    removed = plan.hinges.removed
-    through = plan.hinges.through
-    meant = {frozenset(pair) for pair in zip(plan.hinges.cut[removed].tolist(), through[removed].tolist(), strict=True)}
-    return {
-        pair for pair in touching(lines, max(TOUCH_MM, plan.kerf_mm)) if paths[pair[0]].cut == paths[pair[1]].cut
-    } | {pair for pair in touching(lines) if frozenset(paths[index].cut for index in pair) in meant}
+    hinges = plan.hinges
+    meant = {
+        frozenset(pair)
+        for pair in zip(hinges.cut[hinges.removed].tolist(), hinges.through[hinges.removed].tolist(), strict=True)
+    }
+    notched = {*hinges.cut[hinges.lost].tolist(), *hinges.through[hinges.lost].tolist()}
+    cuts = [path.cut for path in paths]
+    pairs = {
+        (one, other)
+        for one, other in touching(lines)
+        if cuts[one] == cuts[other] or frozenset((cuts[one], cuts[other])) in meant
+    }
+    if notched:
+        near = touching(lines, max(TOUCH_MM, plan.kerf_mm))
+        pairs |= {(one, other) for one, other in near if cuts[one] == cuts[other] and cuts[one] in notched}
+    return pairs
 
 
 def joint_count(plan: CutPlan) -> int:

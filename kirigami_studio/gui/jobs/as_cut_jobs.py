@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, TypeVar
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.errors import Cancelled, KirigamiError
+from kirigami_studio.foundation.threads import one_blas_thread
 from kirigami_studio.gui.jobs import importing
 from kirigami_studio.gui.jobs.cut_jobs import CutRequest, Exported, Motion, Planned, export_job, planned
 from kirigami_studio.gui.jobs.queue import Cancel
@@ -139,7 +140,9 @@ def estimating(
         found = []
         for candidate, deployment in designs[start : start + AT_ONCE]:
             try:
-                found.append((candidate, estimate(deployment, settings, candidate.final_phi, material)))
+                # On several threads, narrow matrices wait for each other, and the window for them.
+                with one_blas_thread():
+                    found.append((candidate, estimate(deployment, settings, candidate.final_phi, material)))
             except KirigamiError:
                 continue  # its cuts cannot be planned, which planning explains once it is chosen
         yield Estimated(tuple(found))
