@@ -13,6 +13,7 @@ from PySide6.QtCore import QObject, Signal
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.jobs.queue import JobCallbacks, LatestJob
 from kirigami_studio.gui.jobs.target_jobs import Picture, TargetRead, reading_start, reading_target, tracing
+from kirigami_studio.gui.messages import Message, Tone
 from kirigami_studio.gui.session import Session
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.starts import StartShape
@@ -130,15 +131,24 @@ class StartReader(QObject):
         super().__init__(parent)
         self._session = session
         self._job = LatestJob[StartShape](session.queue)
+        self._refusal: Message | None = None
 
     def open(self, source: str) -> None:
         """Read a file, or a silhouette of the library by name; a shape that cannot be a start changes nothing."""
-        callbacks = JobCallbacks(self._take, on_failed=self._session.report_failure)
+        self.stop()
+        callbacks = JobCallbacks(self._take, on_failed=self._refuse)
         self._job.start(tr("reading {name}", name=Path(source).name), partial(reading_start, source), callbacks)
 
     def stop(self) -> None:
-        """Forget what is still being read: something else took its place."""
+        """Forget what is still being read, and why the last one was refused: something else took its place."""
         self._job.stop()
+        if self._refusal is not None:
+            self._session.withdraw(self._refusal)
+            self._refusal = None
+
+    def _refuse(self, sentence: str, trace: str) -> None:
+        self._refusal = Message(sentence, Tone.ERROR, trace)
+        self._session.report_failure(sentence, trace)
 
     def _take(self, start: StartShape) -> None:
         self._session.apply(edits.set_settings(self._session.document, start=start))
