@@ -181,8 +181,11 @@ def exporting(request: CutRequest, path: Path, many_pages: bool, cancel: Cancel)
         yield many
         return
     job = export_job(request, made)
-    written = export(job, path)
-    found = _verified(made.plan, path, request.settings, job.deployment)
+    with importing.collecting_between() as collect:
+        written = export(job, path)
+        collect()
+        found = _verified(made.plan, path, request.settings, job.deployment)
+        collect()
     yield Exported(written, made, found, verdict=_judging(request, made)(found))
 
 
@@ -206,6 +209,7 @@ def exporting_all(
     from kirigami_studio.export.export_set import export_all
 
     def stop_if_asked(_: Path) -> None:
+        collect()
         if cancel():
             raise Cancelled("export.stopped", folder=folder)
 
@@ -214,13 +218,15 @@ def exporting_all(
         yield many
         return
     judge = _judging(request, made)
-    found = export_all(
-        export_job(request, made),
-        folder,
-        name,
-        on_written=stop_if_asked,
-        judged=lambda verifications: judge(verifications).to_json(),
-    )
+    with importing.collecting_between() as collect:
+        found = export_all(
+            export_job(request, made),
+            folder,
+            name,
+            on_written=stop_if_asked,
+            judged=lambda verifications: judge(verifications).to_json(),
+        )
+        collect()
     left, removed = (tuple(path.name for path in paths) for paths in (found.older, found.removed))
     verdict = judge(found.verifications)
     yield Exported(folder, made, found.verifications, older=left, removed=removed, verdict=verdict)
