@@ -17,7 +17,7 @@ from kirigami_studio.gui.main_window import MainWindow
 from kirigami_studio.gui.scene.fault_items import FaultKind, contact_place, faults, inverted_panels
 from kirigami_studio.gui.scene.layout_items import candidate_pixmap
 from kirigami_studio.gui.scene.mismatch_items import mismatch
-from kirigami_studio.gui.scene.paths import DOZEN, FEW, dozens_of_quads, line_path
+from kirigami_studio.gui.scene.paths import DOZEN, FEW, line_path, paths_of_quads
 from kirigami_studio.gui.scene.view_transform import Bounds, ViewTransform
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.project.document import Document
@@ -59,10 +59,10 @@ def test_that_a_line_has_its_points_whether_qt_reads_it_or_is_called_for_each(co
 
 def test_that_dozens_of_quads_have_all_quads_and_fill_where_two_overlap() -> None:
     places = np.arange(DOZEN + 3)[:, None, None] * (2.0, 0.0)
-    paths = dozens_of_quads(SQUARE + places)
+    paths = paths_of_quads(SQUARE + places)
     assert [path.elementCount() for path in paths] == [5 * DOZEN, 15]
     assert all(any(path.contains(QPointF(x + 0.5, 0.5)) for path in paths) for x in range(0, 2 * DOZEN + 6, 2))
-    (overlapping,) = dozens_of_quads(np.stack([SQUARE, SQUARE[::-1] + 0.5]))  # one of them inverted
+    (overlapping,) = paths_of_quads(np.stack([SQUARE, SQUARE[::-1] + 0.5]))  # one of them inverted
     assert overlapping.contains(QPointF(0.75, 0.75))
 
 

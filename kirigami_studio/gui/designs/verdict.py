@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QObject, Signal
 
 from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.designs.as_cut import AsCutReader
 from kirigami_studio.gui.designs.generation import request_of
@@ -149,7 +150,10 @@ class VerdictKeeper(QObject):
             self._say(VerdictState(verdict, advice=self._known[key]))
             return
         document = self._session.document
-        run = None if document.target is None else request_of(document.target, document.settings, request.settings)
+        try:
+            run = None if document.target is None else request_of(document.target, document.settings, request.settings)
+        except KirigamiError:  # its material is gone, which the verdict tells
+            run = None
         callbacks = JobCallbacks(partial(self._take_advice, key, verdict), on_failed=partial(self._fail, verdict))
         self._job.start(tr("trying fixes"), partial(fixing, request, verdict, document.candidates, run), callbacks)
         self._say(VerdictState(verdict, searching=True))

@@ -7,13 +7,13 @@ from collections.abc import Mapping
 
 import numpy as np
 from PySide6.QtCore import QRectF, QSize, Qt
-from PySide6.QtGui import QColor, QPainter, QPen, QPixmap
+from PySide6.QtGui import QColor, QPaintEngine, QPainter, QPen, QPixmap
 
 from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray
 from kirigami_studio.gui.look.theme import Palette
-from kirigami_studio.gui.scene.paths import dozens_of_quads, line_path
+from kirigami_studio.gui.scene.paths import DOZEN, line_path, paths_of_quads
 from kirigami_studio.gui.scene.target_items import paint_target_line, paint_target_shape
 from kirigami_studio.gui.scene.view_transform import Bounds, ViewTransform
 from kirigami_studio.outlines.outline import Outline
@@ -51,11 +51,13 @@ def paint_panels(
     if size >= SMALLEST_LINED_PANEL:
         line = QPen(QColor(palette.panel_line), 1.0 if size > 14 else 0.6 if size > 6 else 0.4)
         line.setJoinStyle(Qt.PenJoinStyle.MiterJoin)
+    # In a drawing that is saved, every panel is a shape of its own.
+    together = 1 if painter.paintEngine().type() is QPaintEngine.Type.SVG else DOZEN
     for chosen, colour in ((~turns_left, palette.panel_even), (turns_left, palette.panel_odd)):
         # A pen in the fill's colour keeps hairline gaps of antialiasing from showing between closed panels.
         painter.setPen(line if line.style() != Qt.PenStyle.NoPen else QPen(QColor(colour), 0.5))
         painter.setBrush(QColor(colour))
-        for path in dozens_of_quads(panels[chosen & whole]):
+        for path in paths_of_quads(panels[chosen & whole], together):
             painter.drawPath(path)
         for row, part in trimmed.items():
             if chosen[row] and len(part):

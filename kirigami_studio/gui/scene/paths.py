@@ -63,16 +63,16 @@ def quad_paths(quads: FloatArray) -> list[QPainterPath]:
     return paths
 
 
-def dozens_of_quads(quads: FloatArray) -> list[QPainterPath]:
-    """Quadrilaterals (K, 4, 2), pixels, that look alike, a dozen in each path; where they overlap, all is filled."""
+def paths_of_quads(quads: FloatArray, together: int = DOZEN) -> list[QPainterPath]:
+    """Quadrilaterals (K, 4, 2), pixels, that look alike, so many in each path; where they overlap, all is filled."""
     quads = quads.reshape(-1, 4, 2)
     first, second = quads[:, 2] - quads[:, 0], quads[:, 3] - quads[:, 1]
     backwards = first[:, 0] * second[:, 1] < first[:, 1] * second[:, 0]
     # All go round the same way, so that no two of them cancel each other.
     quads = np.where(backwards[:, None, None], quads[:, ::-1], quads)
     rings = np.concatenate([quads, quads[:, :1]], axis=1)
-    dozens = (rings[place : place + DOZEN] for place in range(0, len(rings), DOZEN))
-    return [_path(dozen.reshape(-1, 2), 5 * np.arange(len(dozen)), Qt.FillRule.WindingFill) for dozen in dozens]
+    parts = (rings[place : place + together] for place in range(0, len(rings), together))
+    return [_path(part.reshape(-1, 2), 5 * np.arange(len(part)), Qt.FillRule.WindingFill) for part in parts]
 
 
 def area_path(area: BaseGeometry, transform: ViewTransform) -> QPainterPath:
