@@ -40,8 +40,8 @@ class Connections(QObject):
         window, controller = self._window, self._controller
         window.settings.changed.connect(lambda changes: controller.change_settings(**changes))
         window.settings.edited.connect(controller.end_drag)
-        window.settings.library_start_wanted.connect(window.dialogs.show_start_library)
-        window.settings.file_start_wanted.connect(window.files.ask_start)
+        window.settings.start_library_wanted.connect(window.dialogs.show_start_library)
+        window.settings.start_file_wanted.connect(window.files.ask_start)
         window.settings.keep_changed.connect(self._keep_seed)
         controller.variants_known.connect(window.settings.set_variants)
         controller.reader.known.connect(self._show_reading)

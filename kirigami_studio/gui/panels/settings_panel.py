@@ -114,8 +114,8 @@ class SettingsPanel(Card):
     keep_changed = Signal(bool)  #: whether Generate draws from the seed that is shown
     regular_moved = Signal(float)  #: 0 match .. 1 regular, while the slider is dragged
     regular_chosen = Signal(float)  #: the slider was let go
-    library_start_wanted = Signal()
-    file_start_wanted = Signal()
+    start_library_wanted = Signal()
+    start_file_wanted = Signal()
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(tr("Design"), parent)
@@ -307,7 +307,7 @@ class SettingsPanel(Card):
         chosen = self.start.currentData()
         if chosen in (LIBRARY_START, FILE_START):
             self._show_start(self._start)
-            (self.library_start_wanted if chosen == LIBRARY_START else self.file_start_wanted).emit()
+            (self.start_library_wanted if chosen == LIBRARY_START else self.start_file_wanted).emit()
         elif chosen != LOADED_START:
             self.changed.emit({"start": _listed_start(chosen)})
             self.edited.emit()
