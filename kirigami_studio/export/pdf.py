@@ -131,8 +131,11 @@ def _draw_lines(canvas: Any, lines: Sequence[Line], part: Tile, whole: bool) -> 
         if colour != current:
             _stroke_colour(canvas, colour)
             current = colour
+        if whole:
+            _draw(canvas, to_page(points), closed)
+            continue
         line = LineString([*points, points[0]] if closed else points)
-        if whole or line.within(window):
+        if line.within(window):
             _draw(canvas, to_page(points), closed)
             continue
         for piece in shapely.get_parts(line.intersection(window)):
