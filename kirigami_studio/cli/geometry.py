@@ -1,11 +1,16 @@
-"""``decode``, ``score`` and ``siou``: one stage each, on any number of inputs."""
+"""``decode``, ``porosity``, ``score`` and ``siou``: one stage each, on any number of inputs."""
 
 from __future__ import annotations
 
 import argparse
+import csv
+import io
 import json
 import math
+from collections.abc import Mapping
 from pathlib import Path
+
+import numpy as np
 
 from kirigami_studio.cli.console import plain, print_json, say
 from kirigami_studio.cli.inputs import (
@@ -20,6 +25,7 @@ from kirigami_studio.cli.inputs import (
 from kirigami_studio.cli.option_types import parse_grid
 from kirigami_studio.evaluate.feasibility import invalid_quads, overlap_ratio, path_contact
 from kirigami_studio.evaluate.mask_siou import mask_siou
+from kirigami_studio.evaluate.porosity import Porosity
 from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.foundation.errors import AngleError, RatioError, UsageError
 from kirigami_studio.foundation.files import write_atomically
@@ -71,6 +77,91 @@ def decoded(sheet: Sheet, phi: float) -> dict[str, object]:
         "overlap_ratio": overlap_ratio(deployment, phi),
         "contact": None if contact is None else contact.to_json(),
     }
+
+
+def porosity(arguments: argparse.Namespace) -> int:
+    """Print area and porosity of each sheet at even angles, and the angles of a porosity that is asked for."""
+    batch = is_batch(arguments.sheets)
+    degrees = [float(value) for value in np.linspace(180.0, 0.0, arguments.angles)]
+
+    def one(name: str, sheet: Sheet) -> None:
+        answer = areas(sheet, degrees, arguments.width_mm, arguments.find)
+        if arguments.out is not None and Path(arguments.out).suffix.lower() == ".csv" and not batch:
+            write_atomically(Path(arguments.out), _csv(answer).encode())
+            if arguments.json:
+                print_json(answer)
+        else:
+            _deliver(arguments, {"source": name} | answer if batch else answer, name, batch, "porosity")
+        if not arguments.json and not batch:
+            _say_areas(answer)
+
+    return for_each(read_sheets(arguments.sheets), batch, one)
+
+
+def areas(sheet: Sheet, degrees: list[float], width_mm: float | None, wanted: float | None) -> dict[str, object]:
+    """The JSON answer of ``porosity`` for one sheet: in square mm where its width is given, else in square unit cells.
+
+    Raises
+    ------
+    SheetError
+        It is never so open as ``wanted``.
+    """
+    deployment = deploy(sheet)
+    figures = Porosity.of(deployment)
+    cell = 1.0 if width_mm is None else width_mm / float(np.ptp(deployment.compact[:, 0]))
+    angles = [math.radians(value) for value in degrees]
+    answer: dict[str, object] = {
+        "unit": "unit cells^2" if width_mm is None else "mm^2",
+        "panel_area": figures.panels * cell**2,
+        "phi_deg": degrees,
+        "area": [figures.area(phi) * cell**2 for phi in angles],
+        "void_area": [figures.voids(phi) * cell**2 for phi in angles],
+        "porosity": [figures.at(phi) for phi in angles],
+        "largest_porosity": figures.largest,
+    }
+    if wanted is not None:
+        answer["found"] = {"porosity": wanted, "phi_deg": [math.degrees(phi) for phi in figures.angles(wanted)]}
+    return answer
+
+
+def _columns(answer: Mapping[str, object]) -> list[tuple[float, ...]]:
+    """Angle, area, area of the voids and porosity, angle by angle."""
+    names = ("phi_deg", "area", "void_area", "porosity")
+    return list(zip(*(np.asarray(answer[name]).tolist() for name in names), strict=True))
+
+
+def _csv(answer: Mapping[str, object]) -> str:
+    """The table with its heads and units."""
+    text = io.StringIO()
+    lines = csv.writer(text, lineterminator="\n")
+    lines.writerow(["phi (deg)", f"area ({answer['unit']})", f"void area ({answer['unit']})", "porosity"])
+    lines.writerows([f"{value:.9g}" for value in row] for row in _columns(answer))
+    return text.getvalue()
+
+
+def _say_areas(answer: Mapping[str, object]) -> None:
+    for degrees, area, voids, share in _columns(answer):
+        say(
+            tr(
+                "{degrees:6.1f} degrees: area {area:.4f} {unit}, voids {voids:.4f}, porosity {percent:.2f} %",
+                degrees=degrees,
+                area=area,
+                unit=answer["unit"],
+                voids=voids,
+                percent=100.0 * share,
+            )
+        )
+    found = answer.get("found")
+    if isinstance(found, dict):
+        nearer, farther = found["phi_deg"]
+        say(
+            tr(
+                "Porosity {percent:.2f} % at {nearer:.2f} and {farther:.2f} degrees.",
+                percent=100.0 * found["porosity"],
+                nearer=nearer,
+                farther=farther,
+            )
+        )
 
 
 def score(arguments: argparse.Namespace) -> int:

@@ -54,6 +54,8 @@ def test_that_the_curves_meet_the_score_at_the_target_angle(phi: float) -> None:
     at_target = {reading.phi: reading for reading in read(PosedDesign(sheet, score.transform, phi))}[phi]
     assert (at_target.siou, at_target.iou) == (score.siou, score.iou_exact)
     assert at_target.area == pytest.approx(shapely.Polygon(sheet.outline(phi)).area)
+    voids = shapely.area(shapely.polygons(sheet.voids(phi).reshape(-1, 4, 2))).sum()
+    assert at_target.porosity == pytest.approx(voids / at_target.area, abs=1e-12)
     posed = score.transform.apply(sheet.outline(phi)) / score.transform.scale
     assert (at_target.width, at_target.height) == pytest.approx(tuple(np.ptp(posed, axis=0)))
 
@@ -101,7 +103,7 @@ def test_that_charts_are_made_one_in_each_turn_and_then_drawn(designed: MainWind
     designed.resize(1440, 1000)
     designed.commands["plots"].trigger()
     until(lambda: plots.complete)
-    assert made[:4] == [1, 2, 3, 4] and set(made[4:]) == {4}
+    assert made[:5] == [1, 2, 3, 4, 5] and set(made[5:]) == {5}
     for chart in plots.charts:
         assert len(chart.curves[0].getData()[0]) >= ANGLES and chart.nearest is not None
 
@@ -187,7 +189,7 @@ def test_that_a_narrow_stage_shows_one_chart_of_choice_below(plotted: MainWindow
     QApplication.processEvents()
     assert stage.split.orientation() is Qt.Orientation.Vertical and stage.plots.choice.isVisible()
     stage.plots.buttons.button(2).click()
-    assert [chart.isVisible() for chart in stage.plots.charts] == [False, False, True, False]
+    assert [chart.isVisible() for chart in stage.plots.charts] == [False, False, True, False, False]
 
 
 def test_that_the_charts_follow_the_theme_and_open_plots_are_remembered(plotted: MainWindow, tmp_path: Path) -> None:

@@ -23,6 +23,11 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     ),
     "angle.not_a_number": mark("The deployment angle must be a number in radians, got {phi!r:.80}."),
     "angle.out_of_range": mark("The deployment angle must be 0 to pi radians (pi is the compact sheet), got {phi:g}."),
+    "porosity.not_a_share": mark("A porosity must be a share from 0 to below 1, got {value!r:.40}."),
+    "porosity.never_so_open": mark(
+        "Voids are never {wanted:.1%} of this sheet's area: at most {largest:.1%}, at 90 degrees. Ask for less, or use "
+        "a sheet whose panels are closer to squares."
+    ),
     "rim.not_numbers": mark("The rim's {side} side must be a list of finite numbers: positions of mouths in cells."),
     "rim.not_four_sides": mark('A rim must be {{"top": [...], "right": [...], "bottom": [...], "left": [...]}}.'),
     "rim.wrong_count": mark(

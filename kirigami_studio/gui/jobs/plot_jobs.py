@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from kirigami_studio.evaluate.porosity import Porosity
 from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.gui.jobs.queue import Cancel
 from kirigami_studio.lattice.deployment import ZIPPED_BELOW, rotate
@@ -32,6 +33,8 @@ class Reading:
         As scored, in the pose that suits this angle best; not a number without a target.
     area : float, unit cells squared
         Inside the outline, voids included.
+    porosity : float, 0..1
+        Share of that area that is voids.
     width, height : float, unit cells
         Of the box around the sheet as it lies on the screen.
     gap : float, unit cells
@@ -42,6 +45,7 @@ class Reading:
     siou: float
     iou: float
     area: float
+    porosity: float
     width: float
     height: float
     gap: float
@@ -76,12 +80,12 @@ def readings(design: PosedDesign, target: Outline | None, angles: list[float]) -
     from kirigami_studio.pipeline.redesign import matched
 
     sheet, found = design.deployment, []
-    outlines = [sheet.outline(phi) for phi in angles]
+    outlines, openness = [sheet.outline(phi) for phi in angles], Porosity.of(sheet)
     matches = [None] * len(angles) if target is None else matched(outlines, target)
     for phi, outline, match in zip(angles, outlines, matches, strict=True):
         gap = outline_gap(sheet, phi)
         width, height = np.ptp(rotate(outline, design.pose.angle), axis=0).tolist()
         siou, iou = (math.nan, math.nan) if match is None else (match.siou, match.iou_exact)
         size = math.nan if gap is None else gap.size
-        found.append(Reading(phi, siou, iou, sheet.area(phi), width, height, size))
+        found.append(Reading(phi, siou, iou, openness.area(phi), openness.at(phi), width, height, size))
     return tuple(found)

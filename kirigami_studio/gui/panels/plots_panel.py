@@ -1,4 +1,4 @@
-"""Curves of one design over the deployment angle: match, area, size, gaps; force and energy as cut."""
+"""Curves of one design over the deployment angle: match, area, porosity, size, gaps; force and energy as cut."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ if TYPE_CHECKING:
     from kirigami_studio.mechanics.closing import Closing
     from kirigami_studio.project.as_cut import SimulatedSheet
 
-#: A chart needs this height (pixels); with less for all of them one is shown at a time.
-CHART_HEIGHT = 132
+#: Height of a chart that is alone (pixels), and with which all are shown; with less they are shown one at a time.
+CHART_HEIGHT, ALL_CHARTS_HEIGHT = 132, 528
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,6 +47,9 @@ def _rows() -> tuple[_Row, ...]:
         _Row(tr("Area"), tr("Area inside the sheet's outline, voids included, mm²"), "mm²", (
             (tr("area"), lambda reading, mm: reading.area * mm * mm),
         )),
+        _Row(tr("Porosity"), tr("Share of the area inside the sheet's outline that is voids, %"), "%", (
+            (tr("porosity"), lambda reading, mm: 100.0 * reading.porosity),
+        ), True),
         _Row(tr("Size"), tr("Width and height of the sheet as shown, mm"), "mm", (
             (tr("width"), lambda reading, mm: reading.width * mm),
             (tr("height"), lambda reading, mm: reading.height * mm),
@@ -259,7 +262,7 @@ class PlotsPanel(QWidget):
 
     def _share_room(self) -> None:
         """All charts where they fit; one of them, and the choice, where they do not."""
-        everything = self.height() >= len(self._rows) * CHART_HEIGHT
+        everything = self.height() >= ALL_CHARTS_HEIGHT
         self.choice.setVisible(not everything)
         known = self._built and self._curves is not None and bool(self._curves.readings)
         closed = self._closing is not None

@@ -55,6 +55,28 @@ def test_that_decode_answers_with_the_exact_layout(capsys: pytest.CaptureFixture
     assert layout["contact"] is None
 
 
+def test_that_porosity_tells_areas_at_every_angle_and_finds_one(
+    capsys: pytest.CaptureFixture[str], ratios: Path, tmp_path: Path
+) -> None:
+    table = answer(
+        capsys, "porosity", ratios, "--angles", "5", "--find", "0.2", "--out", tmp_path / "areas.csv", "--json"
+    )
+    deployment = deploy(RatioField(FIELD))
+    assert table["phi_deg"] == [180.0, 135.0, 90.0, 45.0, 0.0]
+    assert table["area"] == pytest.approx([deployment.area(math.radians(phi)) for phi in table["phi_deg"]])
+    assert table["porosity"][2] == table["largest_porosity"]
+    for phi in table["found"]["phi_deg"]:
+        area = deployment.area(math.radians(phi))
+        assert (area - table["panel_area"]) / area == pytest.approx(0.2)
+    heads, *rows = (tmp_path / "areas.csv").read_text().splitlines()
+    assert heads == "phi (deg),area (unit cells^2),void area (unit cells^2),porosity"
+    assert [float(row.split(",")[1]) for row in rows] == pytest.approx(table["area"])
+    in_mm = answer(capsys, "porosity", ratios, "--angles", "5", "--width-mm", "40", "--json")
+    assert in_mm["panel_area"] == pytest.approx(table["panel_area"] * 100.0)  # four cells across: 10 mm each
+    code, sentence = refusal(capsys, "porosity", ratios, "--find", "0.9", "--json")
+    assert code == 1 and "90 degrees" in sentence
+
+
 def test_that_the_compact_sheet_starts_at_the_origin(capsys: pytest.CaptureFixture[str], ratios: Path) -> None:
     corners = np.array(answer(capsys, "decode", ratios, "--phi", "pi", "--json")["outline"])
     assert np.allclose(corners.min(axis=0), (0, -3))
