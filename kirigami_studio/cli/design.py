@@ -13,18 +13,20 @@ from kirigami_studio.cli.fabrication import checked_plan, material_settings, say
 from kirigami_studio.cli.inputs import are_many_targets, for_each, read_targets
 from kirigami_studio.cli.option_types import parse_grid_or_auto
 from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.evaluate.second_target import SecondTarget
 from kirigami_studio.export.exporter import ExportJob
 from kirigami_studio.export.picture import write_png
 from kirigami_studio.export.registry import export
 from kirigami_studio.export.svg import write_layout_svg
 from kirigami_studio.fabricate.findings import Note
-from kirigami_studio.foundation.errors import Cancelled, FabricationError
+from kirigami_studio.foundation.errors import Cancelled, FabricationError, UsageError
 from kirigami_studio.foundation.files import check_folder, write_atomically
 from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.lattice.laying import lost_to_chords, start_error
 from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.lattice.sheet_files import sheet_json
 from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.outlines.read import read_target
 from kirigami_studio.outlines.starts import start_shape
 from kirigami_studio.pipeline.auto_grid import chosen_for
 from kirigami_studio.pipeline.events import Finished, Progress, Result
@@ -42,6 +44,8 @@ from kirigami_studio.project.settings import DesignSettings, FabricationSettings
 from kirigami_studio.project.store import save
 from kirigami_studio.project.verdict import Verdict, assess, refused, why_not_cut
 
+#: Angle (degrees) and weight of a second target unless others are asked for.
+ALSO_DEG, ALSO_WEIGHT = 45.0, 0.3
 #: Designs that are looked at closely, cuts and all, for one that can be cut.
 MOST_LOOKED_AT = 32
 
@@ -50,6 +54,7 @@ def design(arguments: argparse.Namespace) -> int:
     """Design every target; one JSON object a line for many, files only where --out is given."""
     grid = parse_grid_or_auto(arguments.grid)
     start = start_shape(arguments.start)
+    second = second_target(arguments)
     fabrication = material_settings(arguments)
     regular = REGULAR[arguments.prefer] if arguments.regular is None else arguments.regular
     batch = are_many_targets(arguments.targets)
@@ -79,6 +84,7 @@ def design(arguments: argparse.Namespace) -> int:
                 width_mm=fabrication.width_mm,
                 least_feature_mm=max(least_feature_mm(fabrication), arguments.least_panel_mm),
                 start=start,
+                second=second,
             ),
             fabrication,
             arguments.least_panel_mm,
@@ -105,6 +111,25 @@ def design(arguments: argparse.Namespace) -> int:
             _say_result(target, result, files, verdict)
 
     return for_each(read_targets(arguments.targets, arguments.threshold), batch, one)
+
+
+def second_target(arguments: argparse.Namespace) -> SecondTarget | None:
+    """The second target that options ask for, None without one.
+
+    Raises
+    ------
+    UsageError
+        An angle or a weight without a target.
+    TargetError
+        The target cannot be read.
+    """
+    if arguments.also is None:
+        if arguments.at_deg is not None or arguments.weight is not None:
+            raise UsageError("second_target.not_named")
+        return None
+    degrees = ALSO_DEG if arguments.at_deg is None else arguments.at_deg
+    weight = ALSO_WEIGHT if arguments.weight is None else arguments.weight
+    return SecondTarget(read_target(arguments.also), math.radians(degrees), weight)
 
 
 def cuttable_first(result: Result, fabrication: FabricationSettings, line: ProgressLine) -> Result:
@@ -161,6 +186,14 @@ def summary(result: Result) -> dict[str, object]:
             "lost_to_chords": lost_to_chords(sheet),
             "error": start_error(sheet),
         }
+    second = result.request.second
+    if second is not None and result.best.second is not None:
+        answer["second_target"] = {
+            "name": second.outline.name,
+            "phi": second.phi,
+            "weight": second.weight,
+            "iou_exact": result.best.second.match.iou_exact,
+        }
     if result.best.trim is not None:
         answer["trimmed_iou"] = result.best.trim.iou
     if result.request.budget_seconds is not None:
@@ -194,6 +227,9 @@ def candidate_json(candidate: Candidate, ranking: Ranking) -> dict[str, object]:
         "at_limit": even.at_limit,
         "cuttable": ranking.cuttable(candidate),
     }
+    if candidate.second is not None:
+        match = candidate.second.match
+        entry["second"] = {"siou": match.siou, "iou_exact": match.iou_exact, "transform": match.transform.to_json()}
     if candidate.trim is not None:
         cut = sheet_json(candidate.trim.sheet)
         entry |= {"trimmed_iou": candidate.trim.iou, "trimmed_ratio": cut["ratio"], "trimmed_rim": cut["rim"]}
@@ -245,6 +281,7 @@ def document_of(result: Result, fabrication: FabricationSettings) -> Document:
         request.rim,
         request.regular,
         request.start,
+        request.second,
     )
     source = provenance(request, digest_of(request.variant))
     candidates = tuple(with_run(result.candidates, source))
@@ -315,6 +352,17 @@ def _say_result(target: Outline, result: Result, files: dict[str, str], verdict:
                 start=result.request.start.name,
                 lost=100.0 * abs(lost_to_chords(result.best.sheet)),
                 error=100.0 * start_error(result.best.sheet),
+            )
+        )
+    shown = result.best.second
+    if shown is not None:
+        say(
+            tr(
+                "{name}: at {angle:.0f} degrees it matches '{second}' with IoU {iou:.4f}.",
+                name=target.name,
+                angle=math.degrees(shown.target.phi),
+                second=shown.target.outline.name,
+                iou=shown.match.iou_exact,
             )
         )
     feasible = tr("It is feasible at {angle:.0f} degrees.", angle=angle)

@@ -7,6 +7,7 @@ from dataclasses import field as attribute
 from enum import Enum
 
 from kirigami_studio.evaluate.score import Score
+from kirigami_studio.evaluate.second_target import SecondMatch
 from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.evaluate.trimming import Trim
 from kirigami_studio.lattice.sheet import Sheet
@@ -45,6 +46,8 @@ class Candidate:
     variant : str
         Generator that sampled it, "" where that is not known.
     origin : Origin
+    second : SecondMatch or None
+        How well its sheet, untrimmed, shows a second target on its way, where one was asked for.
     made_with : tuple of (name, text)
         Settings of the run that sampled it, by their names in a provenance; empty where they are not known.  The same
         design is the same whatever is known of its run: this takes no part in comparisons.
@@ -59,6 +62,7 @@ class Candidate:
     trim: Trim | None = None
     variant: str = ""
     origin: Origin = Origin.SAMPLED
+    second: SecondMatch | None = None
     made_with: tuple[tuple[str, str], ...] = attribute(default=(), compare=False)
 
     @property

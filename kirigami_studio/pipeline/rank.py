@@ -3,15 +3,16 @@
 The *worth* of a design is its exact IoU less a price for what eyes and cutters mind:
 
     worth = IoU - JAMMING * share of its way that it misses as cut
+                - weight * (1 - IoU at the second target's angle)
                 - s * (EVENNESS * CV of panel areas + THIN * thinness + AT_LIMIT * share of ratios at a limit
                        - SYMMETRY if the sheet is symmetric),        s = (2 * regular) ** 2
 
 ``regular`` runs from 0 (s = 0: match alone) over 0.5 (s = 1) to 1 (s = 4).  Thinness is 0 for panels whose edges and
 necks all measure :data:`SLENDER` cells or more, and 1 for a panel without any width.  All figures are those that a
-score has, so that ranking again needs no geometry.  Where it is known at which angle designs jam as cut, the share of
-its way that a design does not come costs :data:`JAMMING`, whatever ``regular`` is: the match is missed as well.  Where
-a run trims its best designs these come first, by their worth with the trimmed IoU.  Ties keep the lower total
-variation, then the sampling order.
+score has, so that ranking again needs no geometry.  A second target counts where designs were made for one.  Where it
+is known at which angle designs jam as cut, the share of its way that a design does not come costs :data:`JAMMING`,
+whatever ``regular`` is: the match is missed as well.  Where a run trims its best designs these come first, by their
+worth with the trimmed IoU.  Ties keep the lower total variation, then the sampling order.
 """
 
 from __future__ import annotations
@@ -106,6 +107,7 @@ class Ranking:
             "rank.more_at_limit": scale * AT_LIMIT * figures.at_limit,
             "rank.not_symmetric": scale * SYMMETRY * (candidate.symmetry is None),
             "rank.jams": JAMMING * self.missed(candidate),
+            "rank.less_second": 0.0 if candidate.second is None else candidate.second.price,
         }
 
     def worth(self, candidate: Candidate) -> float:
@@ -173,6 +175,9 @@ class Ranking:
         if score.iou_exact >= most:
             plain, symmetric = "rank.best_match", "rank.best_match_symmetric"
         code = plain if first.symmetry is None else symmetric
+        if first.second is not None:
+            angle, second = math.degrees(first.second.target.phi), 100 * first.second.match.iou_exact
+            return Note.of("rank.best_of_both", match=100 * score.iou_exact, second=second, angle=angle)
         return Note.of(code, match=100 * score.iou_exact, variation=100 * even.area_cv)
 
     def _why_later(self, one: Candidate, first: Candidate) -> Note:
@@ -196,6 +201,7 @@ class Ranking:
             "rank.more_at_limit": (100 * even.at_limit, 100 * best.at_limit),
             "rank.not_symmetric": (0.0, 0.0),
             "rank.jams": (math.degrees(self.jam_phi.get(one, 0.0)), math.degrees(self.jam_phi.get(first, 0.0))),
+            "rank.less_second": (_second(one), _second(first)),
         }[code]
         return Note.of(code, own=mine, first=theirs)
 
@@ -212,6 +218,11 @@ class Ranking:
 def _match(candidate: Candidate) -> float:
     """Exact IoU of what is made of a design: trimmed, if it is."""
     return candidate.score.iou_exact if candidate.trim is None else candidate.trim.iou
+
+
+def _second(candidate: Candidate) -> float:
+    """Match with the second target, %; 100 where there is none."""
+    return 100.0 if candidate.second is None else 100.0 * candidate.second.match.iou_exact
 
 
 #: What a run wants first unless it is asked for something else.

@@ -13,6 +13,7 @@ import numpy as np
 
 from kirigami_studio.evaluate.candidate import Candidate, Origin
 from kirigami_studio.evaluate.score import evaluate, evaluate_near
+from kirigami_studio.evaluate.second_target import matched_again
 from kirigami_studio.evaluate.siou import ShapeMatch, siou_of_many
 from kirigami_studio.evaluate.trimming import KEEP, LARGEST_KEEP
 from kirigami_studio.fabricate.material import Material
@@ -81,15 +82,20 @@ def sampled(candidate: Candidate, target: Outline) -> Candidate | None:
     if sheet is None:
         return None
     with one_blas_thread():
-        score = evaluate(deploy(sheet), target, candidate.score.phi)
-    return replace(candidate, sheet=sheet, score=score, polished=False, sampled_sheet=None, trim=None)
+        deployment = deploy(sheet)
+        score = evaluate(deployment, target, candidate.score.phi)
+        second = matched_again(deployment, candidate.second)
+    return replace(candidate, sheet=sheet, score=score, polished=False, sampled_sheet=None, trim=None, second=second)
 
 
 def rescored(candidate: Candidate, sheet: Sheet, target: Outline) -> Candidate:
     """The candidate with another sheet, changed by hand, near its present pose; a trim belonged to the old sheet."""
     with one_blas_thread():
-        score = evaluate_near(deploy(sheet), target, candidate.score.phi, candidate.final_pose)
-    return replace(candidate, sheet=sheet, score=score, polished=False, trim=None, origin=Origin.EDITED)
+        deployment = deploy(sheet)
+        score = evaluate_near(deployment, target, candidate.score.phi, candidate.final_pose)
+        second = matched_again(deployment, candidate.second)
+    changed = replace(candidate, sheet=sheet, score=score, polished=False, trim=None, second=second)
+    return replace(changed, origin=Origin.EDITED)
 
 
 def keep_for_connectors(
@@ -243,11 +249,16 @@ def refitted(
             symmetry=None if table.any() else kept_symmetry(start),
             locked=table,
             least_panel=least,
+            second=None if candidate.second is None else candidate.second.target,
         )
         _stop_if(cancel)
-        found = evaluate_near(deploy(fit.sheet), target, score.phi, fit.pose)
+        deployment = deploy(fit.sheet)
+        found = evaluate_near(deployment, target, score.phi, fit.pose)
+        second = matched_again(deployment, candidate.second)
     first = candidate.sampled_sheet or candidate.sheet
-    fitted = replace(candidate, sheet=fit.sheet, score=found, polished=True, sampled_sheet=first, trim=None)
+    fitted = replace(
+        candidate, sheet=fit.sheet, score=found, polished=True, sampled_sheet=first, trim=None, second=second
+    )
     better = Ranking(regular, width_mm, least_feature_mm).improves(fitted, candidate, prefer)
     if candidate.trim is None:
         return Refit(fitted, better)

@@ -7,6 +7,7 @@ import math
 from dataclasses import dataclass, replace
 
 from kirigami_studio import __version__
+from kirigami_studio.evaluate.second_target import SecondTarget
 from kirigami_studio.evaluate.trimming import KEEP, check_keep
 from kirigami_studio.foundation.errors import AngleError, UsageError
 from kirigami_studio.lattice.ratio_field import check_grid
@@ -94,6 +95,8 @@ class Request:
         and none without ``polish``, near another design, or on a budget.
     start : StartShape
         What the sheets look like while they are flat.
+    second : SecondTarget, optional
+        What they should also show on their way to ``phi``.
     """
 
     target: Outline
@@ -120,6 +123,7 @@ class Request:
     grid_chosen: bool = False
     guided: int = GUIDED_STARTS
     start: StartShape = RECTANGLE
+    second: SecondTarget | None = None
 
     def __post_init__(self) -> None:
         if self.grid is not None:
@@ -148,6 +152,8 @@ class Request:
             raise UsageError("request.width_not_positive", width_mm=self.width_mm)
         if not _is_number(self.least_feature_mm) or not 0.0 <= self.least_feature_mm < math.inf:
             raise UsageError("request.least_feature_out_of_range", least_mm=self.least_feature_mm)
+        if self.second is not None:
+            self.second.check_on_the_way_to(self.phi)
         check_least(self.least_panel)
         check_keep(self.keep)
         self._check_near()
@@ -197,7 +203,13 @@ class Request:
     def wishes(self) -> Wishes:
         """What fits ask for beside the match."""
         return Wishes(
-            PREFERENCES[self.prefer], self.kept_size, self.rim == "free", self.even, self.symmetry, start=self.start
+            PREFERENCES[self.prefer],
+            self.kept_size,
+            self.rim == "free",
+            self.even,
+            self.symmetry,
+            start=self.start,
+            second=self.second,
         )
 
     @property
@@ -255,6 +267,13 @@ def provenance(request: Request, digest: str) -> dict[str, str]:
         known["start"] = request.start.name
     if request.start.outline is not None:
         known["start_sha256"] = request.start.digest
+    if request.second is not None:
+        known |= {
+            "second_target": request.second.outline.name,
+            "second_target_sha256": request.second.digest,
+            "second_target_deg": f"{math.degrees(request.second.phi):g}",
+            "second_target_weight": f"{request.second.weight:g}",
+        }
     if request.grid_chosen:
         known["grid_choice"] = "auto"
     if request.kept_size:

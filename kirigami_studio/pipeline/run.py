@@ -346,7 +346,7 @@ class _Work:
         filled = notches_filled(self.request.target)
         if filled is None or not self.request.fitted_starts:
             return
-        covering = replace(self.request, target=filled.outline, trim=False)
+        covering = replace(self.request, target=filled.outline, trim=False, second=None)
         fits, found = fits_from_uniform(covering), []
         for report in self._carried_out(fits, GUIDING, 0, len(fits), covering):
             if isinstance(report, Progress):

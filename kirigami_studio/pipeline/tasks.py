@@ -9,6 +9,7 @@ from typing import Protocol
 
 from kirigami_studio.evaluate.candidate import Candidate, Origin
 from kirigami_studio.evaluate.score import evaluate_many
+from kirigami_studio.evaluate.second_target import second_matches
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.foundation.threads import one_blas_thread
 from kirigami_studio.lattice.deployment import deploy
@@ -88,6 +89,7 @@ class PolishTask:
                     least_panel=request.kept_size,
                     free_rim=request.rim == "free",
                     symmetry=symmetry,
+                    second=request.second,
                 )
             (better,) = scored(request, [fit.sheet], candidate.index, candidate.origin, fitted=True)
             evaluations += fit.evaluations + 1
@@ -198,8 +200,19 @@ def scored(
     if origin is None:
         origin = Origin.SAMPLED if request.near is None else Origin.RESAMPLED
     with one_blas_thread():
-        scores = evaluate_many([deploy(sheet) for sheet in sheets], request.target, request.phi)
+        deployments = [deploy(sheet) for sheet in sheets]
+        scores = evaluate_many(deployments, request.target, request.phi)
+        seconds = second_matches(deployments, request.second)
     return [
-        Candidate(sheet, score, request.seed, first + place, polished=fitted, variant=request.variant, origin=origin)
-        for place, (sheet, score) in enumerate(zip(sheets, scores, strict=True))
+        Candidate(
+            sheet,
+            score,
+            request.seed,
+            first + place,
+            polished=fitted,
+            variant=request.variant,
+            origin=origin,
+            second=second,
+        )
+        for place, (sheet, score, second) in enumerate(zip(sheets, scores, seconds, strict=True))
     ]

@@ -23,6 +23,7 @@ import shapely
 from kirigami_studio.evaluate.alignment import align
 from kirigami_studio.evaluate.evenness import evenness
 from kirigami_studio.evaluate.feasibility import path_contact
+from kirigami_studio.evaluate.second_target import SecondTarget
 from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.evaluate.siou import exact_iou
 from kirigami_studio.foundation.errors import UsageError
@@ -147,6 +148,8 @@ class Wishes:
         IoU that a symmetric sheet may lack and still wins.
     start : StartShape
         What the sheets look like while they are flat.
+    second : SecondTarget, optional
+        What they should also show on their way.
     """
 
     preference: Preference = field(default_factory=Preference)
@@ -157,6 +160,7 @@ class Wishes:
     evenness_price: float = 0.0
     symmetry_price: float = FAIR_LOSS
     start: StartShape = RECTANGLE
+    second: SecondTarget | None = None
 
 
 def fit_shape(
@@ -275,6 +279,7 @@ def fit_from_uniform(
         least_panel=wishes.least_panel,
         free_rim=wishes.free_rim,
         symmetry=symmetry,
+        second=wishes.second,
     )
     return replace(fit, evaluations=evaluations + fit.evaluations)
 
@@ -353,8 +358,8 @@ def lifted(sheet: Sheet, grid: tuple[int, int], start: StartShape = RECTANGLE) -
 class _Found:
     """A fit, its exact IoU in its own pose, whether the sheet gets there untouched, and what symmetry it has.
 
-    ``small`` says that a panel is smaller than asked for; ``worth`` is the IoU less the price of uneven panels, plus
-    what a symmetry is worth.
+    ``small`` says that a panel is smaller than asked for; ``worth`` is the IoU less the price of uneven panels and what
+    the second target lacks, plus what a symmetry is worth.
     """
 
     fit: Fit
@@ -447,6 +452,9 @@ class _Search:
         figures = evenness(deployment)
         small = min(figures.least_edge, figures.least_neck) < wishes.least_panel
         worth = iou - wishes.evenness_price * figures.area_cv
+        if wishes.second is not None and fit.second_pose is not None:
+            laid = fit.second_pose.apply(deployment.outline(wishes.second.phi))
+            worth -= wishes.second.weight * (1.0 - exact_iou(laid, wishes.second.outline))
         if symmetry is not None:
             worth += wishes.symmetry_price
         return _Found(fit, iou, path_contact(deployment, self.phi) is None, small, worth, symmetry)
@@ -475,6 +483,7 @@ class _Search:
             least_panel=least_panel,
             free_rim=wishes.free_rim,
             symmetry=symmetry,
+            second=wishes.second,
         )
         self.evaluations += fit.evaluations
         return fit

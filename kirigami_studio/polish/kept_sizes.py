@@ -24,7 +24,7 @@ from kirigami_studio.evaluate.evenness import panel_sizes
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray
 from kirigami_studio.polish.bounds import Bounds
 from kirigami_studio.polish.normal_equations import FLOOR
-from kirigami_studio.polish.objective import POSE, SETTLED, Look, Objective, Slopes
+from kirigami_studio.polish.objective import SETTLED, Look, Objective, Slopes
 
 #: How far above the least size (unit cells) steps aim, and what counts as kept: rounding a sheet takes less.
 AIM, KEPT = 2e-6, 5e-7
@@ -79,7 +79,7 @@ def with_kept_sizes(
     ----------
     objective : Objective
         Without a least size of its own.
-    state : (S + 4,) float
+    state : (S + P,) float
         Of a fit with a penalty on small sizes, or of any other sheet.
     bounds : Bounds
     least : float, unit cells
@@ -165,8 +165,9 @@ class _Descent:
 
     def _moved(self, step: FloatArray) -> Look:
         state = self.here.state.copy()
-        state[:-POSE] = self.bounds.allowed(state[:-POSE] + self.bounds.basis.moved(step[:-POSE]))
-        state[-POSE:] += step[-POSE:]
+        poses = self.objective.poses
+        state[:-poses] = self.bounds.allowed(state[:-poses] + self.bounds.basis.moved(step[:-poses]))
+        state[-poses:] += step[-poses:]
         self.evaluations += 1
         return self.objective.look(state)
 
@@ -176,13 +177,13 @@ class _Descent:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Problem:
-    """The quadratic problem at one state, by V variables and the pose.
+    """The quadratic problem at one state, by V variables and the P numbers of the poses.
 
     Attributes
     ----------
-    gradient : (V + 4,) float
-    hessian : (V + 4, V + 4) float
-    slopes : (F, V + 4) float
+    gradient : (V + P,) float
+    hessian : (V + P, V + P) float
+    slopes : (F, V + P) float
         Of the sizes near the least one.
     added : (F,) float
         What a step has to add to them.
@@ -201,16 +202,16 @@ class _Problem:
     def of(cls, descent: _Descent, sizes_alone: bool) -> _Problem:
         """The problem where a descent is; with ``sizes_alone`` that of the shortest step."""
         objective, here, bounds = descent.objective, descent.here, descent.bounds
-        model, basis = objective.model, bounds.basis
+        model, basis, poses = objective.model, bounds.basis, objective.poses
         derivatives = None if sizes_alone else descent.slopes()
         motion = model.node_motion(here.decoded) if derivatives is None else derivatives.motion
         near = panel_sizes(here.decoded.nodes, model.rows, model.columns).distinct().below(descent.least + NEAR)
-        slopes = np.zeros((len(near.size), basis.size + POSE))
-        slopes[:, :-POSE] = basis.reduced(motion.slopes(*near.reach(model.node_count)))
+        slopes = np.zeros((len(near.size), basis.size + poses))
+        slopes[:, :-poses] = basis.reduced(motion.slopes(*near.reach(model.node_count)))
         added = np.minimum(descent.least + AIM - near.size, MOST_ADDED)
-        shape = here.state[:-POSE]
+        shape = here.state[:-poses]
         if derivatives is None:
-            count = basis.size + POSE
+            count = basis.size + poses
             return cls(np.zeros(count), np.eye(count), slopes, added, shape, bounds)._without_locked()
         model_here = objective.quadratic(here, derivatives)
         return cls(model_here.gradient, model_here.hessian, slopes, added, shape, bounds)._without_locked()
@@ -221,7 +222,7 @@ class _Problem:
         if not fixed.any():
             return self
         basis = self.bounds.basis
-        held = np.zeros(basis.size + POSE, dtype=np.bool_)
+        held = np.zeros(self.gradient.size, dtype=np.bool_)
         held[basis.variable[fixed & (basis.variable < basis.size)]] = True
         gradient, hessian, slopes = self.gradient.copy(), self.hessian.copy(), self.slopes.copy()
         gradient[held], slopes[:, held], hessian[held], hessian[:, held] = 0.0, 0.0, 0.0, 0.0
@@ -229,7 +230,7 @@ class _Problem:
         return replace(self, gradient=gradient, hessian=hessian, slopes=slopes)
 
     def step(self, damping: float) -> tuple[FloatArray, float]:
-        """The step (V + 4,) for a damping, and the largest multiplier of a size."""
+        """The step (V + P,) for a damping, and the largest multiplier of a size."""
         hessian, diagonal = self.hessian.copy(), np.diagonal(self.hessian)
         hessian[np.diag_indices_from(hessian)] += damping * (diagonal + FLOOR * diagonal.mean())
         factor = cho_factor(hessian, overwrite_a=True, check_finite=False)
@@ -255,9 +256,9 @@ class _Problem:
         return step, largest
 
     def _passed(self, step: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """The limits that a step passes, as conditions (C, V + 4) and what they ask for (C,)."""
+        """The limits that a step passes, as conditions (C, V + P) and what they ask for (C,)."""
         bounds, basis = self.bounds, self.bounds.basis
-        moved = self.shape + basis.moved(step[:-POSE])
+        moved = self.shape + basis.moved(step[: basis.size])
         over, under = moved > bounds.high + VIOLATED, moved < bounds.low - VIOLATED
         passed: BoolArray = (over | under) & (basis.variable < basis.size) & (bounds.low < bounds.high)
         # One number stands for all that follow the same variable.

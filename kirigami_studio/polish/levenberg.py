@@ -16,6 +16,7 @@ import numpy as np
 import shapely
 
 from kirigami_studio.evaluate.alignment import align
+from kirigami_studio.evaluate.second_target import SecondTarget
 from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray
 from kirigami_studio.foundation.errors import AngleError, UsageError
@@ -31,7 +32,7 @@ from kirigami_studio.polish.guide import Guide, TransportMap
 from kirigami_studio.polish.kept_sizes import with_kept_sizes
 from kirigami_studio.polish.matching import check_excess
 from kirigami_studio.polish.normal_equations import Damped
-from kirigami_studio.polish.objective import CONVERGED, POSE, TRUST, Look, Objective, Slopes, Stage
+from kirigami_studio.polish.objective import CONVERGED, POSE, TRUST, Look, Objective, SecondTerm, Slopes, Stage
 from kirigami_studio.polish.panel_size import check_least
 from kirigami_studio.polish.preferences import Preference, PreferenceTerms
 from kirigami_studio.polish.sensitivity import OutlineModel
@@ -66,6 +67,8 @@ class Fit:
         Accepted steps.
     evaluations : int
         Decodings of a layout, each with or without derivative: comparable with the paper's #F.
+    second_pose : Similarity or None
+        The same at the second target's angle, where there is one.
     """
 
     sheet: Sheet
@@ -73,6 +76,7 @@ class Fit:
     cost: float
     steps: int
     evaluations: int
+    second_pose: Similarity | None = None
 
     @property
     def field(self) -> RatioField:
@@ -98,6 +102,7 @@ def polish(
     symmetry: Symmetry | None = None,
     excess: float = 1.0,
     locked: BoolArray | None = None,
+    second: SecondTarget | None = None,
 ) -> Fit:
     """Fit a sheet to ``target`` by at most ``steps`` accepted steps.
 
@@ -129,11 +134,14 @@ def polish(
         Weight of what sticks out of the target, relative to what is missed; below 1 for a layout that will be trimmed.
     locked : (m, n) bool, optional
         Voids whose ratio stays exactly as it is, even outside [0.1, 10].
+    second : SecondTarget, optional
+        What the sheet should also show on its way to ``phi``; it begins in the pose that suits the sheet best.
 
     Raises
     ------
     AngleError
-        ``phi`` is not in [0, pi): the closed sheet is a rectangle whatever the ratios.
+        ``phi`` is not in [0, pi): the closed sheet is a rectangle whatever the ratios; or the second target's angle is
+        not larger.
     UsageError
         ``steps``, ``trust``, ``least_panel`` or ``excess`` is not a number that a fit can have, ``locked`` is not a
         table of the field's shape, or voids are locked and a symmetry is asked for.
@@ -152,10 +160,15 @@ def polish(
     even_panels = EvenPanels.of(sheet) if any(stage.even for stage in stages) else None
     term = Guide(sheet, phi, guide) if guide is not None else None
     boundary, least, excess = BoundaryTarget.of(target, SAMPLES), check_least(least_panel), check_excess(excess)
-    state = np.concatenate([start, [math.log(pose.scale), pose.angle, *pose.shift]])
+    state = np.concatenate([start, _numbers(pose)])
+    also: SecondTerm | None = None
+    if second is not None:
+        second.check_on_the_way_to(phi)
+        also = SecondTerm(model.at(second.phi), BoundaryTarget.of(second.outline, SAMPLES), second.weight)
+        state = np.append(state, _numbers(align(also.model.outline(start), second.outline.points)))
     descent: _Descent | None = None
     for stage in stages:
-        objective = Objective(model, boundary, terms, stage, least, excess, even_panels, term)
+        objective = Objective(model, boundary, terms, stage, least, excess, even_panels, term, also)
         descent = _Descent(objective, state, bounds) if descent is None else descent.turned_to(objective)
         until = descent.steps + stage.steps
         # Where panels are too small, the last half of the last stage is left for their bound.
@@ -165,17 +178,27 @@ def polish(
     assert descent is not None
     here, taken, evaluations = descent.here, descent.steps, descent.evaluations
     if least and any(stage.steps for stage in stages):
-        bare, left = Objective(model, boundary, terms, stages[-1], 0.0, excess, even_panels, term), until - taken
+        bare, left = Objective(model, boundary, terms, stages[-1], 0.0, excess, even_panels, term, also), until - taken
         sized = with_kept_sizes(bare, here.state, bounds, least, left, cancel, descent.stiffness)
         here, taken, evaluations = sized.look, taken + sized.steps, evaluations + sized.evaluations
-    last = here.state[-POSE:]
+    poses = here.state[start.size :]
     return Fit(
-        bounds.sheet_of(here.state[:-POSE]),
-        Similarity(math.exp(last[0]), last[1], (last[2], last[3])),
+        bounds.sheet_of(here.state[: start.size]),
+        _similarity(poses[:POSE]),
         here.cost,
         taken,
         evaluations,
+        None if second is None else _similarity(poses[POSE:]),
     )
+
+
+def _numbers(pose: Similarity) -> FloatArray:
+    """A pose as a state has it: log scale, angle, shift."""
+    return np.array([math.log(pose.scale), pose.angle, *pose.shift])
+
+
+def _similarity(numbers: FloatArray) -> Similarity:
+    return Similarity(math.exp(numbers[0]), numbers[1], (numbers[2], numbers[3]))
 
 
 def check_locked(locked: BoolArray | None, field: RatioField) -> BoolArray:
@@ -210,7 +233,7 @@ class _Descent:
     """The moving state of one fit."""
 
     def __init__(self, objective: Objective, state: FloatArray, bounds: Bounds) -> None:
-        self.objective, self._bounds = objective, bounds
+        self.objective, self._bounds, self._poses = objective, bounds, objective.poses
         self.here = objective.look(state)
         # A start that touches itself is free to move until it no longer does.
         self._guarded = self._is_clear(self.here)
@@ -241,7 +264,7 @@ class _Descent:
             self.stiffness, self._uses = slopes.stiffness, 0
         model = self.objective.quadratic(self.here, slopes)
         self.evaluations += 1
-        damped = Damped.of(model, self.damping, self._held(self.here.state[:-POSE], model.gradient))
+        damped = Damped.of(model, self.damping, self._held(self.here.state[: -self._poses], model.gradient))
         stiffer, harden = 1.0, HARDEN
         while self.damping <= LARGEST_DAMPING:
             trial, step = self._moved(self.here, damped.step(model.gradient, model.spread, stiffer))
@@ -287,20 +310,20 @@ class _Descent:
 
     def _moved(self, look: Look, step: FloatArray) -> tuple[Look, FloatArray]:
         """What a step of the variables leads to within the bounds, and the step as far as it was taken."""
-        basis, state = self._bounds.basis, look.state.copy()
-        state[:-POSE] += basis.moved(step[:-POSE])
-        state[-POSE:] += step[-POSE:]
-        state[:-POSE] = self._bounds.allowed(state[:-POSE])
+        basis, state, poses = self._bounds.basis, look.state.copy(), self._poses
+        state[:-poses] += basis.moved(step[:-poses])
+        state[-poses:] += step[-poses:]
+        state[:-poses] = self._bounds.allowed(state[:-poses])
         if basis.is_whole:
-            step[:-POSE] = state[:-POSE] - look.state[:-POSE]
+            step[:-poses] = state[:-poses] - look.state[:-poses]
         self.evaluations += 1
         return self.objective.look(state), step
 
     def _held(self, shape: FloatArray, gradient: FloatArray) -> BoolArray:
-        """Which variables are at a bound that the gradient pushes them beyond: (V + 4,)."""
+        """Which variables are at a bound that the gradient pushes them beyond, none of the poses': (V + P,)."""
         bounds, basis = self._bounds, self._bounds.basis
-        way = -basis.moved(gradient[:-POSE])
+        way = -basis.moved(gradient[: -self._poses])
         stuck = ((shape >= bounds.high) & (way > 0.0)) | ((shape <= bounds.low) & (way < 0.0))
         held = np.zeros(gradient.size + 1, dtype=np.bool_)
         held[np.where(basis.variable[stuck] < basis.size, basis.variable[stuck], -1)] = True
-        return np.append(held[: basis.size], np.zeros(POSE, dtype=np.bool_))
+        return np.append(held[: basis.size], np.zeros(self._poses, dtype=np.bool_))

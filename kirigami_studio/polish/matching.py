@@ -43,6 +43,30 @@ class Matching:
     distance: FloatArray
     weight: FloatArray
 
+    def cost(self, trust: float) -> float:
+        """Sum of the residuals, each counted linearly beyond the distance ``trust`` (unit-area lengths)."""
+        return float((self.weight * _robust(self.distance, trust)).sum())
+
+    def slope(self, outline: FloatArray, trust: float) -> FloatArray:
+        """Derivative (2 L,) of the cost by the vertices of the outline (L, 2) that was matched."""
+        force = 2.0 * self.weight * self.distance / np.sqrt(1.0 + np.square(self.distance / trust))
+        slope: FloatArray = self.pull(force, len(outline)) + self._stretching(outline, trust)
+        return slope
+
+    def curvature(self, count: int, trust: float) -> FloatArray:
+        """Gauss-Newton approximation (2 count, 2 count) of the cost's second derivative by the vertices."""
+        return self.spread(2.0 * self.weight / np.sqrt(1.0 + np.square(self.distance / trust)), count)
+
+    def _stretching(self, outline: FloatArray, trust: float) -> FloatArray:
+        """Derivative (2 L,) of the cost by vertices through the edge lengths that weight the outward distances."""
+        edge = np.roll(outline, -1, axis=0) - outline
+        length = np.maximum(np.hypot(*edge.T), 1e-12)
+        outward = slice(0, len(outline) * EDGE_SHARES.size)
+        cost = (self.weight[outward] * _robust(self.distance[outward], trust)).reshape(len(outline), -1)
+        pull = (cost.sum(axis=1) / length)[:, None] * (edge / length[:, None])
+        slope: FloatArray = (np.roll(pull, 1, axis=0) - pull).ravel()
+        return slope
+
     def pull(self, force: FloatArray, count: int) -> FloatArray:
         """Derivative (2 count,) by the outline's vertices, x and y in turn, from that by the distances (R,)."""
         column, share = self._reader(count)
@@ -67,6 +91,12 @@ class Matching:
         column = np.stack([2 * self.edge, 2 * self.edge + 1, 2 * following, 2 * following + 1], axis=1)
         share = np.concatenate([direction * (1.0 - self.share)[:, None], direction * self.share[:, None]], axis=1)
         return column, share
+
+
+def _robust(distance: FloatArray, trust: float) -> FloatArray:
+    """Squared distance near the target, linear far from it (pseudo-Huber), with derivative 2 d / sqrt(1 + (d/c)^2)."""
+    cost: FloatArray = 2.0 * trust**2 * (np.sqrt(1.0 + np.square(distance / trust)) - 1.0)
+    return cost
 
 
 def matched(outline: FloatArray, target: BoundaryTarget) -> Matching:

@@ -8,7 +8,8 @@ Residuals, all in unit-area lengths and weighted by the boundary length that the
 down-weighted beyond a trusted distance so that their sum grows like an area and not like its square.  Beside them:
 terms on z, see ``preferences``; penalties on panels too small to cut, see ``panel_size``, and on long chords of a round
 start, see ``chords``; and, where a stage of the fit asks for them, even panels, see ``even_panels``, a guide for the
-inside, see ``guide``, and open junctions, see ``junctions``.
+inside, see ``guide``, and open junctions, see ``junctions``.  A second target has residuals of the same kind at its
+own angle, in a pose of its own, times its weight.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.linalg import block_diag
 
 from kirigami_studio.evaluate.evenness import PanelSizes, panel_sizes
 from kirigami_studio.evaluate.similarity import Similarity
@@ -28,7 +30,7 @@ from kirigami_studio.polish.chords import WEIGHT as CHORDS
 from kirigami_studio.polish.even_panels import EvenPanels
 from kirigami_studio.polish.guide import Guide
 from kirigami_studio.polish.junctions import OPEN, Junctions, junctions
-from kirigami_studio.polish.matching import EDGE_SHARES, Matching, OneSided, check_excess, matched, outer_hinges
+from kirigami_studio.polish.matching import Matching, OneSided, check_excess, matched, outer_hinges
 from kirigami_studio.polish.normal_equations import Quadratic
 from kirigami_studio.polish.panel_size import PENALTY, shortage
 from kirigami_studio.polish.preferences import PreferenceTerms
@@ -47,6 +49,23 @@ CONVERGED, SETTLED = 1e-4, 2e-3
 POSE = 4
 NO_SIZES = panel_sizes(topology(2, 2).uniform_nodes, 2, 2).below(0.0)
 NO_JUNCTIONS = junctions(topology(2, 2).uniform_nodes, 2, 2).shallower(0.0)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SecondTerm:
+    """What a second target adds to the cost.
+
+    Attributes
+    ----------
+    model : OutlineModel
+        Of the same sheets at its angle.
+    target : BoundaryTarget
+    weight : float
+    """
+
+    model: OutlineModel
+    target: BoundaryTarget
+    weight: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,7 +105,8 @@ class Objective:
     """Cost of states (shape, pose) for one target.
 
     A state is a vector: the shape (z of all voids row by row, then offsets of the mouths where the rim is free), then
-    log scale, angle, shift x, shift y of the pose that carries the layout to the target's unit-area frame.
+    log scale, angle, shift x, shift y of the pose that carries the layout to the target's unit-area frame; and the same
+    of the layout at the second target's angle, where there is one.
 
     Parameters
     ----------
@@ -102,6 +122,12 @@ class Objective:
         Needed where the stage asks for even panels.
     guide : Guide, optional
         Needed where the stage asks for a guide.
+    second : SecondTerm, optional
+
+    Attributes
+    ----------
+    poses : int
+        How many numbers of a state are its poses.
     """
 
     def __init__(
@@ -114,10 +140,12 @@ class Objective:
         excess: float = 1.0,
         even: EvenPanels | None = None,
         guide: Guide | None = None,
+        second: SecondTerm | None = None,
     ) -> None:
         self.model, self.target, self.terms, self.stage, self.least = model, target, terms, stage, least
         self.even = even if stage.even else None
         self.guide = guide if stage.guide else None
+        self.second, self.poses = second, POSE if second is None else 2 * POSE
         self._each_junction = stage.junctions / (2 * model.voids)
         self.one_sided = None
         if check_excess(excess) < 1.0:
@@ -125,14 +153,19 @@ class Objective:
 
     def look(self, state: FloatArray) -> Look:
         """Decode a state, match it with the target and count the cost."""
-        shape = state[:-POSE]
+        shape, pose, second_pose = self._parts(state)
         decoded = self.model.decoded(shape)
         nodes = decoded.nodes
-        outline = _posed(self.model.outline_of(nodes), state[-POSE:])
+        outline = _posed(self.model.outline_of(nodes), pose)
         matching = matched(outline, self.target)
         if self.one_sided is not None:
             matching = self.one_sided.weighed(matching, outline, self.target)
-        cost = float((matching.weight * _robust(matching.distance, self.stage.trust)).sum())
+        cost = matching.cost(self.stage.trust)
+        second = None
+        if self.second is not None:
+            placed = _posed(self.second.model.outline_of(nodes), second_pose)
+            second = SecondLook(placed, matched(placed, self.second.target))
+            cost += self.second.weight * second.matching.cost(self.stage.trust)
         cost += self.terms.value(shape[: self.model.voids])
         if self.even is not None:
             cost += self.stage.even * self.even.value(nodes)
@@ -140,7 +173,7 @@ class Objective:
             cost += CHORDS * self.model.chords.excess(self.model.positions(shape)) ** 2
         gaps = None
         if self.guide is not None:
-            gaps = self.guide.gaps(nodes, _similarity(state[-POSE:]))
+            gaps = self.guide.gaps(nodes, _similarity(pose))
             cost += self.stage.guide * float(np.square(gaps).sum()) / len(gaps)
         small = NO_SIZES
         if self.least:
@@ -150,15 +183,20 @@ class Objective:
         if self.stage.junctions:
             shallow = junctions(nodes, self.model.rows, self.model.columns).shallower(OPEN)
             cost += self._each_junction * float(np.square(shallow.sine - OPEN).sum())
-        return Look(state, decoded, outline, matching, small, shallow, gaps, cost)
+        return Look(state, decoded, outline, matching, second, small, shallow, gaps, cost)
+
+    def _parts(self, state: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Shape, pose, and the second target's pose, empty where there is none."""
+        shape, poses = state[: -self.poses], state[-self.poses :]
+        return shape, poses[:POSE], poses[POSE:]
 
     def slopes(self, look: Look, basis: Basis | None = None, stiffness: FloatArray | None = None) -> Slopes:
         """Derivatives at a state, by the variables of ``basis``; by the shape's own numbers if missing.
 
         ``stiffness`` (V, V) is the even panels' of a state nearby, to be used again.
         """
-        basis = basis or Basis.of(look.state.size - POSE, None)
-        pose = look.state[-POSE:]
+        basis = basis or Basis.of(look.state.size - self.poses, None)
+        _, pose, second_pose = self._parts(look.state)
         motion = self.model.node_motion(look.decoded)
         if self.even is not None and stiffness is None:
             stiffness = motion.curvature(self.even.stiffness, basis)
@@ -166,14 +204,18 @@ class Objective:
         if self.guide is not None:
             posed = _posed(self.guide.centroids(look.decoded.nodes), pose)
             moved = self.guide.slopes(motion.derivative(basis))
-            centroids = _state_derivative(posed, moved, pose).reshape(-1, basis.size + POSE)
-        outline = _state_derivative(look.outline, basis.reduced(motion.outline()), pose)
-        return Slopes(basis, outline.reshape(-1, basis.size + POSE), motion, stiffness, centroids)
+            centroids = _state_derivative(posed, moved, pose, 0, self.poses)
+        outline = _state_derivative(look.outline, basis.reduced(motion.outline()), pose, 0, self.poses)
+        if self.second is not None and look.second is not None:
+            moved = basis.reduced(motion.outline_in(self.second.model))
+            other = _state_derivative(look.second.outline, moved, second_pose, POSE, self.poses)
+            outline = np.concatenate([outline, other])
+        return Slopes(basis, outline, motion, stiffness, centroids)
 
     def quadratic(self, look: Look, slopes: Slopes) -> Quadratic:
         """Gradient and Gauss-Newton approximation at a state, from the derivatives there or nearby."""
         inner = np.zeros((slopes.outline.shape[1],) * 2)
-        shape, basis, own = look.state[:-POSE], slopes.basis, inner[:-POSE, :-POSE]
+        shape, basis, own = self._parts(look.state)[0], slopes.basis, inner[: -self.poses, : -self.poses]
         own += basis.matrix(*self.terms.curvature(shape[: self.model.voids]))
         if self.even is not None and slopes.stiffness is not None:
             own += self.stage.even * slopes.stiffness
@@ -192,10 +234,12 @@ class Objective:
         return Quadratic(self.gradient(look, slopes), inner, slopes.outline, self.spread(look))
 
     def gradient(self, look: Look, slopes: Slopes) -> FloatArray:
-        """Derivative (V + 4,) of the cost, from the derivatives at the state or nearby."""
-        matching, trust, shape = look.matching, self.stage.trust, look.state[:-POSE]
-        force = 2.0 * matching.weight * matching.distance / np.sqrt(1.0 + np.square(matching.distance / trust))
-        pull = matching.pull(force, len(look.outline)) + _stretching(look.outline, matching, trust)
+        """Derivative (V + P,) of the cost, P numbers of poses, from the derivatives at the state or nearby."""
+        trust, shape = self.stage.trust, self._parts(look.state)[0]
+        pull = look.matching.slope(look.outline, trust)
+        if self.second is not None and look.second is not None:
+            second = look.second.matching.slope(look.second.outline, trust)
+            pull = np.concatenate([pull, self.second.weight * second])
         gradient: FloatArray = pull @ slopes.outline
         if look.gaps is not None and slopes.centroids is not None:
             gradient += 2.0 * self.stage.guide / len(look.gaps) * (look.gaps.ravel() @ slopes.centroids)
@@ -207,7 +251,7 @@ class Objective:
         cut = self._cut_by_chords(shape)
         if cut is not None:
             by_shape += 2.0 * CHORDS * cut[0] * cut[1]
-        gradient[:-POSE] += slopes.basis.reduced(by_shape)
+        gradient[: -self.poses] += slopes.basis.reduced(by_shape)
         return gradient
 
     def _cut_by_chords(self, shape: FloatArray) -> tuple[float, FloatArray] | None:
@@ -219,10 +263,15 @@ class Objective:
         return excess, np.append(np.zeros(model.voids), model.chords.slopes(model.positions(shape)))
 
     def spread(self, look: Look) -> FloatArray:
-        """Gauss-Newton approximation of the second derivative of the match by the outline's vertices: (2 L, 2 L)."""
-        matching = look.matching
-        stiffness = 2.0 * matching.weight / np.sqrt(1.0 + np.square(matching.distance / self.stage.trust))
-        return matching.spread(stiffness, len(look.outline))
+        """Gauss-Newton approximation of the second derivative of the match by the outline's vertices: (2 L, 2 L); those
+        at the second target's angle follow the first.
+        """
+        trust = self.stage.trust
+        spread = look.matching.curvature(len(look.outline), trust)
+        if self.second is None or look.second is None:
+            return spread
+        second = self.second.weight * look.second.matching.curvature(len(look.second.outline), trust)
+        return np.asarray(block_diag(spread, second))
 
     def _force(self, look: Look) -> FloatArray | None:
         """Derivative (N, 2) of the terms on panels by the compact nodes; None where there are none."""
@@ -248,7 +297,7 @@ class Slopes:
     basis : Basis
         How the variables move the shape.
     outline : (2 L, V + 4) float
-        Of the outline in the target's frame.
+        Of the outline in the target's frame; of that at the second target's angle below it, in 4 columns more.
     motion : NodeMotion
         Of the compact nodes.
     stiffness : (V, V) float or None
@@ -265,17 +314,27 @@ class Slopes:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class SecondLook:
+    """The layout at the second target's angle, in that target's frame: its outline (L, 2), and what matches."""
+
+    outline: FloatArray
+    matching: Matching
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class Look:
     """The objective at one state.
 
     Attributes
     ----------
-    state : (S + 4,) float
+    state : (S + P,) float
+        P is 4, or 8 where there is a second target.
     decoded : Decoded
         The compact sheet.
     outline : (L, 2) float
         The layout's outline in the target's frame.
     matching : Matching
+    second : SecondLook or None
     small : PanelSizes
         Edges and necks below the least size.
     shallow : Junctions
@@ -289,16 +348,11 @@ class Look:
     decoded: Decoded
     outline: FloatArray
     matching: Matching
+    second: SecondLook | None
     small: PanelSizes
     shallow: Junctions
     gaps: FloatArray | None
     cost: float
-
-
-def _robust(distance: FloatArray, trust: float) -> FloatArray:
-    """Squared distance near the target, linear far from it (pseudo-Huber), with derivative 2 d / sqrt(1 + (d/c)^2)."""
-    cost: FloatArray = 2.0 * trust**2 * (np.sqrt(1.0 + np.square(distance / trust)) - 1.0)
-    return cost
 
 
 def _posed(points: FloatArray, pose: FloatArray) -> FloatArray:
@@ -312,25 +366,19 @@ def _similarity(pose: FloatArray) -> Similarity:
     return Similarity(math.exp(pose[0]), pose[1], (pose[2], pose[3]))
 
 
-def _state_derivative(outline: FloatArray, derivative: FloatArray, pose: FloatArray) -> FloatArray:
-    """Derivative (L, 2, V + 4) of posed points (L, 2) by variables and pose, from theirs in the layout's own frame."""
+def _state_derivative(
+    outline: FloatArray, derivative: FloatArray, pose: FloatArray, first: int, poses: int
+) -> FloatArray:
+    """Derivative (2 L, V + P) of posed points (L, 2) by V variables and P numbers of poses, from that in the layout's
+    own frame (L, 2, V); the points' own pose begins at number ``first``.
+    """
     c, s = math.exp(pose[0]) * math.cos(pose[1]), math.exp(pose[0]) * math.sin(pose[1])
-    full = np.zeros((*outline.shape, derivative.shape[2] + POSE))
-    full[:, 0, :-POSE] = c * derivative[:, 0] - s * derivative[:, 1]
-    full[:, 1, :-POSE] = s * derivative[:, 0] + c * derivative[:, 1]
-    about = outline - pose[2:]
-    full[:, :, -4] = about
-    full[:, 0, -3], full[:, 1, -3] = -about[:, 1], about[:, 0]
-    full[:, 0, -2] = full[:, 1, -1] = 1.0
-    return full
-
-
-def _stretching(outline: FloatArray, matching: Matching, trust: float) -> FloatArray:
-    """Derivative (2 L,) of the cost by vertices through the edge lengths that weight the outward distances."""
-    edge = np.roll(outline, -1, axis=0) - outline
-    length = np.maximum(np.hypot(*edge.T), 1e-12)
-    outward = slice(0, len(outline) * EDGE_SHARES.size)
-    cost = (matching.weight[outward] * _robust(matching.distance[outward], trust)).reshape(len(outline), -1)
-    pull = (cost.sum(axis=1) / length)[:, None] * (edge / length[:, None])
-    slope: FloatArray = (np.roll(pull, 1, axis=0) - pull).ravel()
-    return slope
+    size = derivative.shape[2]
+    full = np.zeros((*outline.shape, size + poses))
+    full[:, 0, :size] = c * derivative[:, 0] - s * derivative[:, 1]
+    full[:, 1, :size] = s * derivative[:, 0] + c * derivative[:, 1]
+    own, about = full[:, :, size + first : size + first + POSE], outline - pose[2:]
+    own[:, :, 0] = about
+    own[:, 0, 1], own[:, 1, 1] = -about[:, 1], about[:, 0]
+    own[:, 0, 2] = own[:, 1, 3] = 1.0
+    return full.reshape(-1, size + poses)

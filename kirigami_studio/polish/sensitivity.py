@@ -9,7 +9,7 @@ The outline is a constant matrix times P, hence one adjoint solve with the outli
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
@@ -211,6 +211,10 @@ class OutlineModel:
         """The model in which a sheet moves."""
         return cls(sheet.rows, sheet.columns, phi, sheet.rim, sheet.start, sheet.cell, free_rim)
 
+    def at(self, phi: float) -> OutlineModel:
+        """The model of the same sheets at another angle, radians."""
+        return OutlineModel(self.rows, self.columns, phi, self._rim, self._start, self._cell, self.free_rim)
+
     @property
     def node_count(self) -> int:
         return topology(self.rows, self.columns).node_count
@@ -363,6 +367,10 @@ class NodeMotion:
         """Derivative (L, 2, S) of the deployed outline by the shape."""
         plan = self.model._plan
         return self.deployed(plan.even, plan.whole)
+
+    def outline_in(self, model: OutlineModel) -> FloatArray:
+        """The same at the angle of another model of the same sheets."""
+        return replace(self, model=model).outline()
 
     def deployed(self, even: FloatArray, whole: FloatArray) -> FloatArray:
         """Derivative (F, 2, S) by the shape of F places whose U and U + V are these matrices (F, N) times the nodes."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import json
+from collections.abc import Iterator
 from dataclasses import asdict, fields, replace
 from typing import Any
 
@@ -13,7 +14,9 @@ from kirigami_studio.evaluate.candidate import Candidate, Origin
 from kirigami_studio.evaluate.evenness import Evenness, evenness
 from kirigami_studio.evaluate.feasibility import Contact
 from kirigami_studio.evaluate.score import Score
+from kirigami_studio.evaluate.second_target import SecondMatch, SecondTarget
 from kirigami_studio.evaluate.similarity import Similarity
+from kirigami_studio.evaluate.siou import ShapeMatch
 from kirigami_studio.evaluate.trimming import Trim, trim
 from kirigami_studio.export.paper import NO_PAPER
 from kirigami_studio.fabricate.material import Material
@@ -41,12 +44,15 @@ SAMPLED = "sampled.npy"
 def encode(document: Document) -> dict[str, bytes]:
     """Return the members of the current format; equal documents give equal bytes."""
     runs = list(dict.fromkeys(entry.made_with for entry in document.candidates if entry.made_with))
+    seconds = list(dict.fromkeys(_second_targets(document)))
     design = {
         "target": None if document.target is None else _outline_json(document.target),
-        "settings": _settings_json(document.settings),
+        "settings": _settings_json(document.settings, seconds),
         "fabrication": _fabrication_json(document.fabrication),
-        "candidates": [_candidate_json(entry, runs) for entry in document.candidates],
+        "candidates": [_candidate_json(entry, runs, seconds) for entry in document.candidates],
         "runs": [dict(run) for run in runs],
+        # Not there without any, so that such projects stay as they were.
+        **({"second_targets": [_second_target_json(entry) for entry in seconds]} if seconds else {}),
         "chosen": document.chosen,
         "provenance": dict(sorted(document.provenance.items())),
         "marks": [mark.value for mark in document.marks],
@@ -80,17 +86,22 @@ def decode(members: Members) -> Document:
     fields = _read_ratios(members, RATIOS, len(records))
     sampled = iter(_read_ratios(members, SAMPLED, sum(record.flag("sampled") for record in records)))
     runs = _runs(design.list("runs"))
+    seconds = _second_targets_of(design)
     rows, columns = _whole_pair(settings, "grid")
     target = _outline(design.record("target")) if design.holds("target") else None
     return Document(
         target=target,
         settings=DesignSettings(
-            **_plain_fields(settings, DesignSettings), grid=(rows, columns), start=_start(settings)
+            **_plain_fields(settings, DesignSettings),
+            grid=(rows, columns),
+            start=_start(settings),
+            second=_second_target(settings, seconds),
         ),
         candidates=tuple(
             replace(
                 _candidate(record, field, next(sampled) if record.flag("sampled") else None, target),
                 made_with=_run(record, runs),
+                second=_second(record, seconds),
             )
             for record, field in zip(records, fields, strict=True)
         ),
@@ -102,11 +113,15 @@ def decode(members: Members) -> Document:
     )
 
 
-def _settings_json(settings: DesignSettings) -> dict[str, object]:
-    """The settings; no start where it is the paper's rectangle, so that such projects stay as they were."""
+def _settings_json(settings: DesignSettings, seconds: list[SecondTarget]) -> dict[str, object]:
+    """The settings; no start where it is the paper's rectangle and no second target where there is none, so that such
+    projects stay as they were.
+    """
     start = settings.start
-    entries = asdict(replace(settings, start=RECTANGLE))
-    del entries["start"]
+    entries = asdict(replace(settings, start=RECTANGLE, second=None))
+    del entries["start"], entries["second"]
+    if settings.second is not None:
+        entries["second"] = {"number": seconds.index(settings.second)}
     if not start.is_plain:
         outline = None if start.outline is None else _outline_json(start.outline)
         entries["start"] = {"name": start.name, "aspect": start.aspect, "outline": outline}
@@ -122,6 +137,48 @@ def _start(settings: Record) -> StartShape:
         _outline(record.record("outline")) if record.holds("outline") else None,
         record.number("aspect") if record.holds("aspect") else None,
     )
+
+
+def _second_targets(document: Document) -> Iterator[SecondTarget]:
+    """All second targets that a document knows of, some more than once."""
+    if document.settings.second is not None:
+        yield document.settings.second
+    for candidate in document.candidates:
+        if candidate.second is not None:
+            yield candidate.second.target
+
+
+def _second_target_json(second: SecondTarget) -> dict[str, object]:
+    return {"outline": _outline_json(second.outline), "phi": second.phi, "weight": second.weight}
+
+
+def _second_targets_of(design: Record) -> list[SecondTarget]:
+    if not design.holds("second_targets"):
+        return []
+    place = f"{DESIGN}.second_targets"
+    records = [Record(entry, f"{place}[{k}]") for k, entry in enumerate(design.list("second_targets"))]
+    return [
+        SecondTarget(_outline(record.record("outline")), record.number("phi"), record.number("weight"))
+        for record in records
+    ]
+
+
+def _second_target(record: Record, seconds: list[SecondTarget]) -> SecondTarget | None:
+    if not record.holds("second"):
+        return None
+    number = record.record("second").whole("number")
+    if not 0 <= number < len(seconds):
+        raise ProjectError("project.no_such_second_target", number=number, targets=len(seconds))
+    return seconds[number]
+
+
+def _second(record: Record, seconds: list[SecondTarget]) -> SecondMatch | None:
+    target = _second_target(record, seconds)
+    if target is None:
+        return None
+    match = record.record("second")
+    pose = _pose(match.record("transform"))
+    return SecondMatch(target, ShapeMatch(match.number("siou"), match.number("iou_exact"), pose))
 
 
 def _outline_json(outline: Outline) -> dict[str, object]:
@@ -248,8 +305,10 @@ def _plain_fields(record: Record, kind: type[DesignSettings | Material | Score |
     return {entry.name: read[str(entry.type)](entry.name) for entry in fields(kind) if entry.type in read}
 
 
-def _candidate_json(entry: Candidate, runs: list[tuple[tuple[str, str], ...]]) -> dict[str, object]:
-    cut = entry.trim
+def _candidate_json(
+    entry: Candidate, runs: list[tuple[tuple[str, str], ...]], seconds: list[SecondTarget]
+) -> dict[str, object]:
+    cut, second = entry.trim, entry.second
     return {
         "seed": entry.seed,
         "index": entry.index,
@@ -261,6 +320,18 @@ def _candidate_json(entry: Candidate, runs: list[tuple[tuple[str, str], ...]]) -
         "sampled": entry.sampled_sheet is not None,
         "sampled_sheet": None if entry.sampled_sheet is None else _unless_default(entry.sampled_sheet),
         "score": entry.score.to_json(),
+        **(
+            {}
+            if second is None
+            else {
+                "second": {
+                    "number": seconds.index(second.target),
+                    "siou": second.match.siou,
+                    "iou_exact": second.match.iou_exact,
+                    "transform": second.match.transform.to_json(),
+                }
+            }
+        ),
         # What was cut off follows from these; it is cut again on reading.
         "trim": None
         if cut is None

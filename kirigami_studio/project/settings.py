@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass, field
 from functools import partial
 
+from kirigami_studio.evaluate.second_target import SecondTarget
 from kirigami_studio.export.paper import NO_PAPER
 from kirigami_studio.fabricate.material import DEFAULT_PRESET, Material
 from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions
@@ -49,6 +50,8 @@ class DesignSettings:
         What ranking prefers, from the best match (0) to even panels (1).
     start : StartShape
         What sheets look like while they are flat.
+    second : SecondTarget or None
+        What they should also show on their way to ``phi``.
 
     Raises
     ------
@@ -70,6 +73,7 @@ class DesignSettings:
     rim: str = "free"
     regular: float = 0.5
     start: StartShape = RECTANGLE
+    second: SecondTarget | None = None
 
     def __post_init__(self) -> None:
         grid = tuple(self.grid)

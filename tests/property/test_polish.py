@@ -15,7 +15,7 @@ from kirigami_studio.outlines.silhouettes import load
 from kirigami_studio.polish.boundary_target import BoundaryTarget
 from kirigami_studio.polish.even_panels import EvenPanels
 from kirigami_studio.polish.levenberg import SAMPLES, polish
-from kirigami_studio.polish.objective import Objective, Stage
+from kirigami_studio.polish.objective import Objective, SecondTerm, Stage
 from kirigami_studio.polish.preferences import Preference, PreferenceTerms
 from kirigami_studio.polish.sensitivity import OutlineModel
 
@@ -23,16 +23,20 @@ STEP = 1e-6
 
 
 @settings(max_examples=15)
-@given(ratio_fields(grids(6)), st.sampled_from([0.0, 0.7, 2.2]), st.integers(0, 999))
-def test_that_the_gradient_is_the_slope_of_the_cost(field: RatioField, phi: float, seed: int) -> None:
+@given(ratio_fields(grids(6)), st.sampled_from([0.0, 0.7, 2.2]), st.integers(0, 999), st.booleans())
+def test_that_the_gradient_is_the_slope_of_the_cost(field: RatioField, phi: float, seed: int, twice: bool) -> None:
     model = OutlineModel(field.rows, field.columns, phi, free_rim=True)
     z = field.log10.ravel()
     terms = PreferenceTerms(Preference(1e-3, 1e-3, 1e-3), np.zeros_like(z), field.rows, field.columns)
     stage, even = Stage(0, even=1e-2), EvenPanels.of(Sheet(field))
-    objective = Objective(model, BoundaryTarget.of(load("heart"), SAMPLES), terms, stage, 0.1, even=even)
+    second = SecondTerm(model.at(phi + 0.4), BoundaryTarget.of(load("star"), SAMPLES), 0.7) if twice else None
+    heart = BoundaryTarget.of(load("heart"), SAMPLES)
+    objective = Objective(model, heart, terms, stage, 0.1, even=even, second=second)
     rng = np.random.default_rng(seed)
     offsets = rng.uniform(-0.4, 0.4, field.rows + field.columns)
-    state = np.concatenate([z, offsets, [-np.log(field.rows + field.columns), *rng.uniform(-0.5, 0.5, 3)]])
+    scale = -np.log(field.rows + field.columns)
+    poses = [[scale, *rng.uniform(-0.5, 0.5, 3)] for _ in range(2 if twice else 1)]
+    state = np.concatenate([z, offsets, *poses])
     look = objective.look(state)
     gradient = objective.gradient(look, objective.slopes(look))
     direction = rng.normal(size=state.size)

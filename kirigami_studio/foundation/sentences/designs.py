@@ -23,6 +23,18 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     ),
     "angle.not_a_number": mark("The deployment angle must be a number in radians, got {phi!r:.80}."),
     "angle.out_of_range": mark("The deployment angle must be 0 to pi radians (pi is the compact sheet), got {phi:g}."),
+    "second_target.angle_out_of_range": mark(
+        "A second target needs an angle between 0 and pi radians, got {phi:g}. The flat sheet's own outline is its "
+        "start: give that instead."
+    ),
+    "second_target.not_named": mark("Name the second target that the angle and the weight are for: --also TARGET."),
+    "second_target.not_on_the_way": mark(
+        "The sheet is not at {second:.1f} degrees on its way from flat to {first:.1f} degrees. Ask for the second "
+        "target at a larger angle."
+    ),
+    "second_target.weight_out_of_range": mark(
+        "The weight of a second target must be above 0 and at most {most:g}, got {weight:g}."
+    ),
     "porosity.not_a_share": mark("A porosity must be a share from 0 to below 1, got {value!r:.40}."),
     "porosity.never_so_open": mark(
         "Voids are never {wanted:.1%} of this sheet's area: at most {largest:.1%}, at 90 degrees. Ask for less, or use "
@@ -172,10 +184,14 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "Best balance: match once trimmed {match:.1f} %, panel sizes vary by {variation:.0f} %."
     ),
     "rank.best_trimmed": mark("Best match once trimmed: {match:.1f} %."),
+    "rank.best_of_both": mark(
+        "Best of both targets: match {match:.1f} %, and {second:.1f} % with the second one at {angle:.0f} degrees."
+    ),
     "rank.equal": mark("As good as the first design."),
     "rank.jams": mark("As cut, it is estimated to jam at {own:.0f} degrees."),
     "rank.less_even": mark("Panel sizes vary by {own:.0f} %, in the first design by {first:.0f} %."),
     "rank.less_match": mark("It matches {own:.1f} %, the first design {first:.1f} %."),
+    "rank.less_second": mark("It matches the second target {own:.1f} %, the first design {first:.1f} %."),
     "rank.less_trimmed_match": mark("Trimmed, it matches {match:.1f} %, the first design {first:.1f} %."),
     "rank.more_at_limit": mark("Ratios at a limit: {own:.0f} %, in the first design {first:.0f} %."),
     "rank.not_feasible": mark("Panels touch, overlap or collapse before the sheet reaches its angle."),

@@ -66,6 +66,7 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "settings.preference_not_a_name": mark("The preference of the polish must be a name, got {value!r:.40}."),
     "settings.symmetry_not_a_name": mark("The symmetry of designs must be a name, got {value!r:.40}."),
     "settings.rim_not_a_name": mark("The rim must be a name, got {value!r:.40}."),
+    "project.no_such_second_target": mark("Second target {number} is not among the {targets} that the project has."),
     "settings.regular_out_of_range": mark(
         "The balance must be a number from 0 (the closest match) to 1 (even panels), got {value!r:.40}."
     ),

@@ -29,7 +29,6 @@ from kirigami_studio.pipeline.variety import distinct
 from kirigami_studio.project import candidate_edits
 from kirigami_studio.project.candidate_edits import NewDesigns
 from kirigami_studio.project.cutting import least_feature_mm
-from kirigami_studio.project.design_facts import with_run
 from kirigami_studio.project.document import Document, Mark
 from kirigami_studio.project.edits import Edit
 from kirigami_studio.project.settings import DesignSettings, FabricationSettings
@@ -310,6 +309,7 @@ def request_of(target: Outline, settings: DesignSettings, cut: FabricationSettin
         rim=settings.rim,
         regular=settings.regular,
         start=settings.start,
+        second=settings.second,
         width_mm=cut.width_mm,
         least_feature_mm=least_feature_mm(cut),
     )
@@ -419,8 +419,6 @@ class DesignRun(QObject):
             case CandidateFound() | CandidateImproved():
                 self._note(report.candidate)
             case Decoded(candidate, deployment):
-                if self._request is not None:  # so that its card can name its start while the run goes on
-                    (candidate,) = with_run((candidate,), provenance(self._request, self._digest))
                 self._session.cache.put(candidate, deployment)
                 entry = self._session.cache.entry(candidate)
                 self.found.emit(replace(entry, rise=candidate.score.siou - self._sampled[candidate.index]))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from pathlib import Path
 
 import ezdxf
@@ -67,6 +68,21 @@ def test_that_a_trimmed_design_tells_both_scores_and_writes_a_trimmed_cut_file(
     outline = next(iter(ezdxf.readfile(tmp_path / "cut.dxf").modelspace().query('LWPOLYLINE[layer=="OUTLINE"]')))
     assert outline.closed
     assert len(outline) > 4
+
+
+def test_that_a_second_target_is_told_and_kept(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    wish = ["design", "drop", "--also", "circle", "--at-deg", "60", "--weight", "0.5", "--grid", "6x7", "--k", "2"]
+    assert main([*wish, "--out", str(tmp_path), "--json"]) == 0
+    design = json.loads(capsys.readouterr().out)
+    told = design["second_target"]
+    assert (told["name"], told["weight"], told["phi"]) == ("circle", 0.5, pytest.approx(math.pi / 3))
+    assert all(0.5 < entry["second"]["iou_exact"] < 1.0 for entry in design["candidates"])
+    assert told["iou_exact"] == design["best"]["second"]["iou_exact"]
+    project = load(tmp_path / "design.kiri")
+    assert project.settings.second is not None and project.settings.second.outline.name == "circle"
+    assert project.candidates[0].second is not None and project.provenance["second_target_deg"] == "60"
+    assert main(["design", "drop", "--weight", "0.5"]) == 2
+    assert "--also" in capsys.readouterr().err
 
 
 def test_that_a_design_tells_what_its_sheet_is_like_and_why_it_comes_first(

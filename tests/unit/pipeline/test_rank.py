@@ -10,6 +10,8 @@ import pytest
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.score import evaluate
+from kirigami_studio.evaluate.second_target import SecondMatch, SecondTarget
+from kirigami_studio.evaluate.siou import ShapeMatch
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.sheet import Sheet
@@ -125,6 +127,21 @@ def test_that_jamming_as_cut_costs_match_for_the_way_that_is_missed(design: Cand
     told = ranking.reasons([closes, jams])
     assert [reason.code for reason in told] == ["rank.best_balance", "rank.jams"]
     assert told[1].text == "As cut, it is estimated to jam at 36 degrees."
+
+
+def test_that_a_second_target_counts_by_its_weight(design: Candidate) -> None:
+    second = SecondTarget(silhouettes.load("circle"), math.radians(45.0), 0.5)
+
+    def shows(iou: float, other: float, index: int = 0) -> Candidate:
+        match = ShapeMatch(other, other, design.score.transform)
+        return replace(with_figures(design, iou, index=index), second=SecondMatch(second, match))
+
+    better, worse = shows(0.95, 0.90), shows(0.96, 0.87, 1)
+    assert USUAL.worth(better) - USUAL.worth(worse) == pytest.approx(0.5 * 0.03 - 0.01)
+    assert USUAL.ranked([worse, better]) == (better, worse) and USUAL.improves(better, worse, "balanced")
+    first, later = USUAL.reasons([better, worse])
+    assert first.text == "Best of both targets: match 95.0 %, and 90.0 % with the second one at 45 degrees."
+    assert later.code == "rank.less_second"
 
 
 def test_that_a_sheet_which_jams_beyond_its_angle_misses_nothing(design: Candidate) -> None:

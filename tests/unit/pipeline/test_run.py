@@ -11,6 +11,7 @@ import pytest
 from scipy.spatial.distance import cdist
 
 from kirigami_studio.evaluate.candidate import Candidate, Origin
+from kirigami_studio.evaluate.second_target import SecondTarget, second_matches
 from kirigami_studio.foundation.errors import AngleError, Cancelled, GridError, KirigamiError, UsageError
 from kirigami_studio.generator.weights import load_model
 from kirigami_studio.lattice.deployment import deploy
@@ -19,6 +20,7 @@ from kirigami_studio.outlines.silhouettes import load
 from kirigami_studio.pipeline.events import CandidateFound, CandidateImproved, Finished, Progress, Started
 from kirigami_studio.pipeline.pool import Pool
 from kirigami_studio.pipeline.rank import USUAL, Ranking
+from kirigami_studio.pipeline.redesign import refitted, rescored
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.pipeline.run import best_of, decodings, run
 from kirigami_studio.polish import continuation
@@ -51,6 +53,27 @@ def test_that_looks_at_the_geometry_while_drawing_are_counted(request_for_heart:
 def test_that_the_same_request_gives_the_same_candidates(request_for_heart: Request) -> None:
     first, second = best_of(request_for_heart), best_of(request_for_heart)
     assert first.candidates == second.candidates
+
+
+def test_that_every_design_of_a_run_tells_how_it_shows_a_second_target() -> None:
+    second = SecondTarget(load("circle"), math.radians(50.0), 1.0)
+    asked = Request(load("heart"), (6, 7), k=4, seed=3, polish=10, search=1, second=second)
+    with_it, without = best_of(asked), best_of(replace(asked, second=None))
+    assert all(one.second is not None and one.second.target == second for one in with_it.candidates)
+    assert all(one.second is None for one in without.candidates)
+    (plain,) = second_matches([deploy(without.best.sheet)], second)
+    assert plain is not None and with_it.best.second is not None
+    assert with_it.best.second.match.iou_exact > plain.match.iou_exact
+    again = rescored(with_it.best, without.best.sheet, asked.target)
+    assert again.second == plain
+    refit = refitted(again, asked.target, "balanced", (), lambda: 0.1, lambda: False).candidate
+    assert refit.second is not None and refit.second.target == second
+
+
+def test_that_a_second_target_before_the_first_is_refused() -> None:
+    with pytest.raises(AngleError) as problem:
+        Request(load("heart"), phi=1.0, second=SecondTarget(load("circle"), 0.9, 1.0))
+    assert problem.value.code == "second_target.not_on_the_way"
 
 
 def test_that_candidates_are_ranked_best_first(request_for_heart: Request) -> None:

@@ -16,6 +16,9 @@ from uneven_sheets import uneven_sheet
 
 from kirigami_studio.evaluate.candidate import Candidate, Origin
 from kirigami_studio.evaluate.score import evaluate
+from kirigami_studio.evaluate.second_target import SecondMatch, SecondTarget
+from kirigami_studio.evaluate.similarity import Similarity
+from kirigami_studio.evaluate.siou import ShapeMatch
 from kirigami_studio.evaluate.trimming import trim
 from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions, CutOrder
 from kirigami_studio.foundation.errors import ExportError, ProjectError
@@ -28,6 +31,7 @@ from kirigami_studio.outlines.starts import start_shape
 from kirigami_studio.polish.covering import fit_cover
 from kirigami_studio.polish.levenberg import polish
 from kirigami_studio.project import migrations, store
+from kirigami_studio.project.codec import encode
 from kirigami_studio.project.document import Document, Mark
 from kirigami_studio.project.migrations import Members, migrate
 from kirigami_studio.project.settings import FabricationSettings
@@ -95,6 +99,22 @@ def test_that_rim_start_outline_and_cell_come_back(pentagon: Outline, tmp_path: 
     assert again == document
     assert again.candidates[0].sheet == sheet != again.candidates[1].sheet
     assert again.candidates[0].sampled_sheet == sampled and again.candidates[0].final_sheet == sheet
+
+
+def test_that_second_targets_and_how_designs_show_them_come_back(document: Document, tmp_path: Path) -> None:
+    before, after = SecondTarget(load("circle"), 0.8, 0.3), SecondTarget(load("drop"), 1.1, 2.0)
+    match = ShapeMatch(0.81, 0.82, Similarity(0.2, -0.3, (0.1, 0.4)))
+    first = replace(document.candidates[0], second=SecondMatch(before, match))
+    wished = replace(
+        document,
+        candidates=(first, *document.candidates[1:]),
+        settings=replace(document.settings, phi=0.5, second=after),
+    )
+    store.save(wished, tmp_path / "wished.kiri")
+    again = store.load(tmp_path / "wished.kiri")
+    assert again == wished and again.settings.second == after and again.candidates[0].second == first.second
+    assert again.candidates[1].second is None
+    assert b"second" not in encode(document)["design.json"]
 
 
 @pytest.mark.parametrize(

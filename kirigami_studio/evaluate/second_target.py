@@ -1,0 +1,98 @@
+"""A second target, for an angle between the flat sheet and the one at which the first is shown.
+
+The flat sheet itself needs none: its outline is the start, and is met exactly.  What a second target asks for has its
+own size, place and rotation, and a weight: the design loses so much worth for each share of match that it lacks there.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from kirigami_studio.evaluate.siou import ShapeMatch, siou_of_many
+from kirigami_studio.foundation.errors import AngleError, UsageError
+from kirigami_studio.lattice.deployment import Deployment
+from kirigami_studio.outlines.outline import Outline
+
+#: Largest weight: a second target that counts four times as much as the first.
+HEAVIEST = 4.0
+
+
+@dataclass(frozen=True, slots=True)
+class SecondTarget:
+    """What the sheet should also show, on its way.
+
+    Attributes
+    ----------
+    outline : Outline
+    phi : float, radians
+        Between 0 and pi, both excluded.
+    weight : float, above 0, up to :data:`HEAVIEST`
+        Of its match, where that of the first target has 1.
+
+    Raises
+    ------
+    AngleError, UsageError
+        An angle or a weight out of range.
+    """
+
+    outline: Outline
+    phi: float
+    weight: float
+
+    def __post_init__(self) -> None:
+        if not 0.0 < self.phi < math.pi:
+            raise AngleError("second_target.angle_out_of_range", phi=self.phi)
+        if not 0.0 < self.weight <= HEAVIEST:
+            raise UsageError("second_target.weight_out_of_range", weight=self.weight, most=HEAVIEST)
+
+    def check_on_the_way_to(self, phi: float) -> None:
+        """Refuse a second target that the sheet does not pass before it is at ``phi`` (radians).
+
+        Raises
+        ------
+        AngleError
+            Its angle is not larger.
+        """
+        if self.phi <= phi:
+            raise AngleError("second_target.not_on_the_way", second=math.degrees(self.phi), first=math.degrees(phi))
+
+    @property
+    def digest(self) -> str:
+        """The start of the SHA-256 of its points: names of files say little."""
+        return hashlib.sha256(self.outline.points.tobytes()).hexdigest()[:16]
+
+
+@dataclass(frozen=True, slots=True)
+class SecondMatch:
+    """How well a design shows its second target.
+
+    Attributes
+    ----------
+    target : SecondTarget
+    match : ShapeMatch
+        Under the similarity that suits that angle best.
+    """
+
+    target: SecondTarget
+    match: ShapeMatch
+
+    @property
+    def price(self) -> float:
+        """What the design lacks there, times the weight: IoU."""
+        return self.target.weight * (1.0 - self.match.iou_exact)
+
+
+def matched_again(deployment: Deployment, before: SecondMatch | None) -> SecondMatch | None:
+    """How well a changed design shows the second target that it had, if it had one."""
+    return second_matches([deployment], None if before is None else before.target)[0]
+
+
+def second_matches(deployments: Sequence[Deployment], target: SecondTarget | None) -> list[SecondMatch] | list[None]:
+    """How well designs of one grid show a second target; None for each where there is none."""
+    if target is None:
+        return [None] * len(deployments)
+    outlines = [deployment.outline(target.phi) for deployment in deployments]
+    return [SecondMatch(target, match) for match in siou_of_many(outlines, target.outline)]
