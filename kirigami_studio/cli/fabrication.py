@@ -73,17 +73,16 @@ def export(arguments: argparse.Namespace) -> int:
         find_exporter(arguments.out)
     document = load(arguments.project)
     settings = overridden(document.fabrication, arguments)
-    _check_hinges(_chosen(document), settings.options)
+    _check_hinges(chosen_candidate(document), settings.options)
     try:
-        plan, report = checked_plan(_chosen(document), settings)
+        plan, report = checked_plan(chosen_candidate(document), settings)
     except FabricationError as error:
         if not arguments.fixes:
             raise
         fixes = " ".join(_advice(document, settings, refused(error)).lines)
         raise FabricationError("export.with_fixes", reason=str(error), fixes=fixes) from error
-    job = replace(_job(document), plan=plan, dxf_version=settings.dxf_version, profile=settings.profile,
-                  paper=settings.paper, markers=settings.markers or arguments.markers)  # fmt: skip
-    candidate = _chosen(document)
+    job = replace(design_job(document, plan, settings), markers=settings.markers or arguments.markers)
+    candidate = chosen_candidate(document)
     as_cut = closed_as_cut(candidate, job.deployment, plan, settings.width_mm, document.target)
 
     def judged(verifications: Sequence[Verification]) -> Verdict:
@@ -166,7 +165,7 @@ def export(arguments: argparse.Namespace) -> int:
 
 def _advice(document: Document, settings: FabricationSettings, verdict: Verdict) -> Advice:
     """Try changes on the chosen design, all in one go."""
-    candidate, wishes = _chosen(document), document.settings
+    candidate, wishes = chosen_candidate(document), document.settings
     coarser: Iterable[tuple[Candidate, ...]] = ()
     if document.target is not None:
         request = Request(
@@ -277,7 +276,7 @@ def check(arguments: argparse.Namespace) -> int:
 
 def _judged_by_design(path: Path, document: Document) -> tuple[Verification, Verdict]:
     """Compare a file with the chosen design of a project as the project would cut it, and judge the sheet."""
-    candidate, settings = _chosen(document), document.fabrication
+    candidate, settings = chosen_candidate(document), document.fabrication
     plan = plan_of(candidate, settings)
     report = check_plan(plan, phi=candidate.final_phi)
     motion = deploy(candidate.final_sheet)
@@ -311,20 +310,33 @@ def animate(arguments: argparse.Namespace) -> int:
 
 def _cut_motion(document: Document, settings: FabricationSettings) -> CutMotion:
     """How the chosen design moves as cut, simulated on its planned cuts."""
-    chosen = _chosen(document)
+    chosen = chosen_candidate(document)
     _check_hinges(chosen, settings.options)
     return simulated(chosen, settings, document.target).motion(settings.width_mm)
 
 
-def _chosen(document: Document) -> Candidate:
+def chosen_candidate(document: Document) -> Candidate:
+    """The project's design.
+
+    Raises
+    ------
+    ProjectError
+        It has none.
+    """
     candidate = document.candidate
     if candidate is None or document.target is None:
         raise ProjectError("export.no_chosen_design")
     return candidate
 
 
+def design_job(document: Document, plan: CutPlan, settings: FabricationSettings) -> ExportJob:
+    """What files of the chosen design are made of, cut by this plan."""
+    return replace(_job(document), plan=plan, dxf_version=settings.dxf_version, profile=settings.profile,
+                   paper=settings.paper, markers=settings.markers)  # fmt: skip
+
+
 def _job(document: Document) -> ExportJob:
-    chosen = _chosen(document)
+    chosen = chosen_candidate(document)
     job = ExportJob.of(chosen, None if document.target is None else document.target.points)
     return replace(job, provenance=design_facts(document, chosen))
 

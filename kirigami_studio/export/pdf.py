@@ -303,17 +303,22 @@ def read_pages(path: Path) -> list[Page]:
     content = path.read_bytes()
     if not content.startswith(b"%PDF-") or not content.rstrip().endswith(b"%%EOF"):
         raise ExportError("pdf.not_whole", path=path)
-    boxes = [tuple(float(side) * MM_PER_POINT for side in match) for match in _BOX.findall(content)]
+    boxes = page_boxes(content)
     streams = _STREAM.findall(content)
     if len(boxes) != len(streams):
         raise ExportError("pdf.pages_without_drawing", path=path, pages=len(boxes), drawings=len(streams))
     try:
         return [
-            Page((box[0], box[1]), tuple(_lines(_TEXT.sub(b"", stream).decode("latin-1"))))
+            Page(box, tuple(_lines(_TEXT.sub(b"", stream).decode("latin-1"))))
             for box, stream in zip(boxes, streams, strict=True)
         ]
     except (ValueError, IndexError) as error:
         raise ExportError("pdf.drawing_not_readable", path=path, reason=str(error)) from error
+
+
+def page_boxes(content: bytes) -> list[tuple[float, float]]:
+    """Width and height (mm) of all pages of a PDF that reportlab wrote, in order."""
+    return [(float(width) * MM_PER_POINT, float(height) * MM_PER_POINT) for width, height in _BOX.findall(content)]
 
 
 def _lines(stream: str) -> Iterator[PageLine]:

@@ -176,6 +176,22 @@ def slot_contours(plan: CutPlan) -> list[tuple[Layer, FloatArray]]:
     return list(zip(layers, placed, strict=True))
 
 
+def frame_origin(plan: CutPlan, profile: Profile) -> FloatArray:
+    """The place (2,) of the plan, mm, that is (0, 0) in a file of this profile.
+
+    Raises
+    ------
+    ExportError
+        The profile wants slots and the plan has no kerf, or the sheet would not stay in one piece.
+    """
+    if not profile.slots:
+        return np.zeros(2)
+    if plan.kerf_mm <= 0.0:
+        raise ExportError("slots.no_kerf")
+    lowest: FloatArray = shapely.get_coordinates(_finished_sheet(plan).exterior).min(axis=0)
+    return lowest
+
+
 def _finished_sheet(plan: CutPlan) -> Polygon:
     """What is left of the sheet: area between its slots."""
     half = 0.5 * plan.kerf_mm

@@ -62,14 +62,14 @@ def cut_svg_bytes(job: ExportJob) -> bytes:
         The job has no plan, or names an unknown profile.
     """
     root, _, _ = _cut_drawing(job.required_plan, find_profile(job.profile))
-    return _content(root)
+    return svg_content(root)
 
 
 def _cut_drawing(plan: CutPlan, profile: Profile) -> tuple[ElementTree.Element, int, tuple[float, float]]:
     """The drawing, the number of its paths and its size (mm)."""
     strokes = strokes_of(plan, profile)
     width, height = extent(strokes)
-    root = _root(width, height, f"Kirigami cut plan, sheet {plan.size_mm[0]:g} x {plan.size_mm[1]:g} mm")
+    root = root_element(width, height, f"Kirigami cut plan, sheet {plan.size_mm[0]:g} x {plan.size_mm[1]:g} mm")
     facts = facts_of(plan, profile)
     _describe(root, facts)
     for number, ((name, colour), run) in enumerate(groupby(strokes, lambda stroke: (stroke.layer, stroke.colour))):
@@ -86,13 +86,13 @@ def _cut_drawing(plan: CutPlan, profile: Profile) -> tuple[ElementTree.Element, 
 def _stroke_data(stroke: Stroke, height: float) -> str:
     """SVG path data of lines and arcs; y is turned over, and a turn to the left stays one."""
     if stroke.bulges is None:
-        return _path_data(stroke.points, height, stroke.closed)
+        return path_data(stroke.points, height, stroke.closed)
     points = np.stack([stroke.points[:, 0], height - stroke.points[:, 1]], axis=1).round(DECIMALS)
     stops = np.roll(points, -1, axis=0)
     edges = len(points) if stroke.closed else len(points) - 1
-    words = [f"M {_number(points[0, 0])},{_number(points[0, 1])}"]
+    words = [f"M {decimals(points[0, 0])},{decimals(points[0, 1])}"]
     for start, (x, y), bulge in zip(points[:edges], stops, stroke.bulges, strict=False):
-        goal = f"{_number(x)},{_number(y)}"
+        goal = f"{decimals(x)},{decimals(y)}"
         if bulge == 0.0:
             words.append(f"L {goal}")
             continue
@@ -121,7 +121,7 @@ def write_layout_svg(job: ExportJob, path: str | Path, width_mm: float = 100.0) 
     everything = nodes if target is None else np.concatenate([nodes, target])
     low = everything.min(axis=0) - LAYOUT_MARGIN_MM
     width, height = (float(side) for side in everything.max(axis=0) + LAYOUT_MARGIN_MM - low)
-    root = _root(width, height, f"Kirigami layout at {np.degrees(job.phi):g} degrees")
+    root = root_element(width, height, f"Kirigami layout at {np.degrees(job.phi):g} degrees")
     _describe(root, origin_facts(job.provenance))
     groups: list[tuple[str, dict[str, str], list[FloatArray]]] = [
         ("TARGET_AREA", {"fill": hexadecimal(picture.TARGET_FILL)}, [] if target is None else [target]),
@@ -136,14 +136,16 @@ def write_layout_svg(job: ExportJob, path: str | Path, width_mm: float = 100.0) 
     for name, attributes, polygons in groups:
         group = ElementTree.SubElement(root, "g", {"id": name, **attributes})
         for polygon in polygons:
-            ElementTree.SubElement(group, "path", {"d": _path_data(polygon - low, height, closed=True)})
+            ElementTree.SubElement(group, "path", {"d": path_data(polygon - low, height, closed=True)})
             count += 1
     _write(root, Path(path), count, (width, height))
 
 
-def _root(width: float, height: float, title: str) -> ElementTree.Element:
-    size = {"width": f"{_number(width)}mm", "height": f"{_number(height)}mm"}
-    view = f"0 0 {_number(width)} {_number(height)}"
+def root_element(width: float, height: float, title: str, margin: float = 0.0) -> ElementTree.Element:
+    """An empty drawing of a frame (mm), whose upper left corner is (0, 0), with a margin around it."""
+    page_width, page_height = width + 2.0 * margin, height + 2.0 * margin
+    size = {"width": f"{decimals(page_width)}mm", "height": f"{decimals(page_height)}mm"}
+    view = f"{decimals(-margin)} {decimals(-margin)} {decimals(page_width)} {decimals(page_height)}"
     root = ElementTree.Element("svg", {"xmlns": NAMESPACE, "version": "1.1", **size, "viewBox": view})
     ElementTree.SubElement(root, "title").text = title
     return root
@@ -155,30 +157,31 @@ def _describe(root: ElementTree.Element, facts: Mapping[str, str]) -> None:
         ElementTree.SubElement(root, "desc").text = "; ".join(f"{key} {value}" for key, value in facts.items())
 
 
-def _number(value: float) -> str:
+def decimals(value: float) -> str:
     """Shortest text with four decimals at most."""
     return f"{value + 0.0:.4f}".rstrip("0").rstrip(".")
 
 
-def _path_data(points: FloatArray, height: float, closed: bool) -> str:
+def path_data(points: FloatArray, height: float, closed: bool) -> str:
     """SVG path data; y is turned over because SVG counts it downwards."""
-    pairs = [f"{_number(x)},{_number(height - y)}" for x, y in points.tolist()]
+    pairs = [f"{decimals(x)},{decimals(height - y)}" for x, y in points.tolist()]
     return "M " + " L ".join(pairs) + (" Z" if closed else "")
 
 
 def _write(root: ElementTree.Element, path: Path, paths: int, size: tuple[float, float]) -> None:
-    content = _content(root)
+    content = svg_content(root)
 
     def verify(written: Path) -> None:
         read = ElementTree.parse(written).getroot()
         found = len(read.findall(f".//{{{NAMESPACE}}}path"))
-        if found != paths or read.get("width") != f"{_number(size[0])}mm":
+        if found != paths or read.get("width") != f"{decimals(size[0])}mm":
             raise ExportError("svg.not_as_written", found=found, planned=paths)
 
     write_atomically(path, content, verify)
 
 
-def _content(root: ElementTree.Element) -> bytes:
+def svg_content(root: ElementTree.Element) -> bytes:
+    """The bytes of a file with this drawing, indented."""
     ElementTree.indent(root)
     content: bytes = ElementTree.tostring(root, encoding="utf-8", xml_declaration=True)
     return content

@@ -12,6 +12,7 @@ from PySide6.QtWidgets import QWidget
 
 from kirigami_studio.gui.controller import Controller
 from kirigami_studio.gui.jobs.cut_jobs import Exported
+from kirigami_studio.gui.look import theme
 
 if TYPE_CHECKING:
     from kirigami_studio.gui.dialogs.export_report import ExportReport
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
     from kirigami_studio.gui.dialogs.history_list import HistoryList
     from kirigami_studio.gui.dialogs.material_editor import MaterialEditor
     from kirigami_studio.gui.dialogs.silhouette_picker import SilhouettePicker
+    from kirigami_studio.gui.dialogs.start_board import StartBoard
     from kirigami_studio.gui.main_window import MainWindow
 
 
@@ -35,6 +37,7 @@ class Dialogs(QObject):
         self.materials: MaterialEditor | None = None
         self.history: HistoryList | None = None
         self.shortcuts: ShortcutSheet | None = None
+        self.start_board: StartBoard | None = None
 
     def show_materials(self) -> None:
         """Open the material editor, or bring it to the front."""
@@ -91,9 +94,25 @@ class Dialogs(QObject):
         """Open the popup with the library's silhouettes, for the target."""
         self._pick_silhouette(self._controller.targeting.open, self._window.target.buttons["library"])
 
-    def show_start_library(self) -> None:
-        """Open it for the start outline."""
-        self._pick_silhouette(self._controller.start.open, self._window.settings.start)
+    def show_start_library(self, below: QWidget) -> None:
+        """Open it for the start outline, below what was clicked."""
+        self._pick_silhouette(self._controller.start.open, below)
+
+    def show_start_board(self) -> None:
+        """Open the board that the start is drawn on, with the present start."""
+        from kirigami_studio.gui.dialogs.start_board import StartBoard
+
+        if self.start_board is None:
+            self.start_board = StartBoard(self._window)
+            self.start_board.taken.connect(self._controller.start.draw)
+            self._colour(self.start_board)
+        self.start_board.begin(self._controller.document.settings.start)
+        bring_to_front(self.start_board)
+
+    def _colour(self, dialog: QWidget) -> None:
+        """Give the parts of a new dialog the colours of the theme."""
+        for part in theme.themed(dialog.findChildren(QWidget)):
+            part.set_palette(self._window.palette_)
 
     def _pick_silhouette(self, take: Callable[[str], None], below: QWidget) -> None:
         from kirigami_studio.gui.dialogs.silhouette_picker import SilhouettePicker
@@ -123,7 +142,7 @@ class Dialogs(QObject):
     def close(self) -> None:
         """The window is closing, and its dialogs with it."""
         self.close_report()
-        for dialog in (self.materials, self.guide, self.history, self.shortcuts):
+        for dialog in (self.materials, self.guide, self.history, self.shortcuts, self.start_board):
             if dialog is not None:
                 dialog.close()
 

@@ -11,8 +11,15 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QObject, Signal
 
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui.jobs.queue import JobCallbacks, LatestJob
-from kirigami_studio.gui.jobs.target_jobs import Picture, TargetRead, reading_start, reading_target, tracing
+from kirigami_studio.gui.jobs.queue import JobCallbacks, LatestJob, Steps
+from kirigami_studio.gui.jobs.target_jobs import (
+    Picture,
+    TargetRead,
+    making_start,
+    reading_start,
+    reading_target,
+    tracing,
+)
 from kirigami_studio.gui.messages import Message, Tone
 from kirigami_studio.gui.session import Session
 from kirigami_studio.outlines.outline import Outline
@@ -135,9 +142,15 @@ class StartReader(QObject):
 
     def open(self, source: str) -> None:
         """Read a file, or a silhouette of the library by name; a shape that cannot be a start changes nothing."""
+        self._start(tr("reading {name}", name=Path(source).name), partial(reading_start, source))
+
+    def draw(self, outline: Outline) -> None:
+        """Take a shape that was drawn."""
+        self._start(tr("reading the start"), partial(making_start, outline))
+
+    def _start(self, name: str, steps: Steps[StartShape]) -> None:
         self.stop()
-        callbacks = JobCallbacks(self._take, on_failed=self._refuse)
-        self._job.start(tr("reading {name}", name=Path(source).name), partial(reading_start, source), callbacks)
+        self._job.start(name, steps, JobCallbacks(self._take, on_failed=self._refuse))
 
     def stop(self) -> None:
         """Forget what is still being read, and why the last one was refused: something else took its place."""

@@ -83,6 +83,12 @@ def start_error(sheet: Sheet) -> float:
     return float(shapes[0].symmetric_difference(shapes[1]).area)
 
 
+def start_match(sheet: Sheet) -> float:
+    """IoU of the flat sheet with its start outline, both of the same area and centroid: 1 for a rectangle."""
+    half = 0.5 * start_error(sheet)
+    return (1.0 - half) / (1.0 + half)
+
+
 def _evened(rim: RimPlaces, path: _Path, start: FloatArray, first: float) -> FloatArray | None:
     """The start moved along the outline to where its first place is even between the nearest sharp corners."""
     assigned = rim.assigned(start)

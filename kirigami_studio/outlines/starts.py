@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 import shapely
 
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import SheetError, UsageError
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.proportions import Proportions
@@ -123,17 +124,38 @@ def convex_start(outline: Outline) -> StartShape:
     SheetError
         It has larger hollows; the sentence says where the deepest one is.
     """
+    check_convex(outline)
+    edge = shapely.boundary(outline.polygon.convex_hull)
+    points = shapely.get_coordinates(edge.simplify(ACCURACY))[:-1]
+    return StartShape(outline.name, _upright(Outline.from_points(points, outline.name)))
+
+
+def check_convex(outline: Outline) -> None:
+    """Refuse a shape with hollows that are too large to be filled.
+
+    Raises
+    ------
+    SheetError
+        The sentence says where the deepest one is.
+    """
     hull = outline.polygon.convex_hull
-    edge = shapely.boundary(hull)
     if hull.area > 1.0 + FILLED:
-        deepest = int(np.argmax(shapely.distance(edge, shapely.points(outline.points))))
+        deepest = int(np.argmax(shapely.distance(shapely.boundary(hull), shapely.points(outline.points))))
         low, high = outline.points.min(axis=0), outline.points.max(axis=0)
         across, up = 100.0 * (outline.points[deepest] - low) / (high - low)
         raise SheetError(
             "start.hollow", name=outline.name, percent=100.0 * (1.0 - 1.0 / hull.area), across=across, up=up
         )
-    points = shapely.get_coordinates(edge.simplify(ACCURACY))[:-1]
-    return StartShape(outline.name, _upright(Outline.from_points(points, outline.name)))
+
+
+def hollows(outline: Outline) -> tuple[FloatArray, ...]:
+    """What is missing to a convex shape, (P, 2) each; nothing where so little is missing that it will be filled."""
+    shape = outline.polygon
+    hull = shape.convex_hull
+    if hull.area <= 1.0 + FILLED:
+        return ()
+    parts = shapely.get_parts(hull.difference(shape))
+    return tuple(shapely.get_coordinates(part.exterior)[:-1] for part in parts if part.area > 0.1 * FILLED)
 
 
 def _upright(outline: Outline) -> Outline:

@@ -43,6 +43,26 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "The folder {folder} holds the export of {other:.80}, whose pictures this one would replace. Choose another "
         "folder."
     ),
+    # Pictures printed on a sheet
+    "artwork.picture_damaged": mark(
+        "{name} is damaged or not a picture (PNG, JPG, BMP, TIFF, WebP or SVG): {reason:.100}. Open it in the program "
+        "that made it and save it again."
+    ),
+    "artwork.picture_too_large": mark(
+        "The picture {name:.80} has {megabytes:.0f} MB, more than {limit} MB. Save it with fewer pixels, or as JPG."
+    ),
+    "artwork.no_svg_here": mark("{name} cannot be drawn here. Save it as PNG."),
+    "artwork.svg_not_drawn": mark("Nothing in it can be drawn. Save it as PNG from the program that made it."),
+    "artwork.impossible_place": mark(
+        "A picture cannot be laid with the scale {scale:g}. Choose a scale from {smallest:g} to {largest:g}, and "
+        "finite numbers for turn and shift."
+    ),
+    "artwork.impossible_bleed": mark("The bleed must be 0 to {most:g} mm, got {bleed_mm:g} mm."),
+    "artwork.impossible_margin": mark("The margin must be 0 to {most:g} mm, got {margin_mm:g} mm."),
+    "artwork.impossible_dpi": mark("The resolution must be above 0 dpi, got {dpi:g}."),
+    "artwork.too_many_pixels": mark(
+        "At {dpi:g} dpi the printed sheet would have {width} x {height} pixels. Choose {most_dpi} dpi or less."
+    ),
     # Folders of layer files
     "layers.file_in_the_way": mark("Cannot write the folder {folder}: a file has that name. Choose another name."),
     "layers.not_a_folder": mark("{folder} is not a folder of layer files. Export it again."),

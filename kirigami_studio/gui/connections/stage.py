@@ -10,6 +10,7 @@ from PySide6.QtWidgets import QMenu
 from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.controller import Controller
+from kirigami_studio.gui.designs.two_states import match_of_start, start_of
 from kirigami_studio.gui.jobs.cut_jobs import Motion, Planned
 from kirigami_studio.gui.reshaping import OpenedSizes
 from kirigami_studio.gui.scene.rim_items import MouthFacts
@@ -110,6 +111,9 @@ def _facts(entry: Entry) -> list[str]:
         tr("even rim") if entry.candidate.final_sheet.has_even_rim else tr("free rim"),
         tr("exact IoU {iou_exact:.1f} %", iou_exact=100 * score.iou_exact),
     ]
+    if entry.candidate.sheet.start is not None and trim is None:
+        share = 100 * match_of_start(entry.candidate.sheet)
+        facts.append(tr("{start} {share:.1f} % when flat", start=start_of(entry.candidate), share=share))
     if entry.candidate.symmetry is not None:
         facts.insert(1, tr("symmetric"))
     if trim is not None:

@@ -1,4 +1,4 @@
-"""The target: its sources, its drawing board, and the designs that a change of it discards."""
+"""The target: its sources, its drawing board, the designs that a change of it discards; and the start beside it."""
 
 from __future__ import annotations
 
@@ -10,7 +10,9 @@ from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.gui.controller import Controller
 from kirigami_studio.gui.designs.collection import DiscardedDesigns
 from kirigami_studio.gui.messages import Message, Tone
+from kirigami_studio.gui.panels.start_tile import DRAWN_START, FILE_START, LIBRARY_START
 from kirigami_studio.gui.reshaping import TargetReshaper
+from kirigami_studio.outlines.starts import StartShape
 from kirigami_studio.project.document import Document
 
 if TYPE_CHECKING:
@@ -92,3 +94,38 @@ class TargetConnections(QObject):
         panel.show_target(document.target, self._controller.targeting.tracer.picture_of(document.target))
         self.reshaping.follow()
         panel.show_reach(document.settings.grid)
+
+
+class StartConnections(QObject):
+    """Connects the tile beside the target and the settings' list of starts with the controller."""
+
+    def __init__(self, window: MainWindow, controller: Controller) -> None:
+        super().__init__(window)
+        self._window = window
+        self._controller = controller
+        self._open = {
+            LIBRARY_START: lambda: window.dialogs.show_start_library(window.settings.start),
+            FILE_START: lambda: window.files.ask_start(),
+            DRAWN_START: lambda: window.dialogs.show_start_board(),
+        }
+        tile = window.target.start
+        tile.chosen.connect(self._choose)
+        tile.file_dropped.connect(controller.start.open)
+        tile.other_wanted.connect(self.open_other)
+        window.settings.other_start_wanted.connect(self.open_other)
+        controller.reader.known.connect(lambda _: self._show(controller.document))
+        controller.session.document_changed.connect(self._show)
+        self._show(controller.document)
+
+    def open_other(self, kind: str) -> None:
+        """Open the library, a file or the board."""
+        self._open[kind]()
+
+    def _choose(self, start: StartShape) -> None:
+        self._controller.change_settings(start=start)
+        self._controller.end_drag()
+
+    def _show(self, document: Document) -> None:
+        settings = self._window.settings
+        grid = (settings.rows.value(), settings.columns.value())  # the one that the next run will choose, too
+        self._window.target.start.show_start(document.settings.start, grid, document.fabrication.width_mm)

@@ -10,7 +10,7 @@ from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.connections.designs import DesignConnections
 from kirigami_studio.gui.connections.side_by_side import SideBySide
 from kirigami_studio.gui.connections.stage import StageConnections, VoidConnections
-from kirigami_studio.gui.connections.target import TargetConnections
+from kirigami_studio.gui.connections.target import StartConnections, TargetConnections
 from kirigami_studio.gui.controller import Controller
 from kirigami_studio.gui.jobs.target_jobs import TargetReading
 from kirigami_studio.project.document import Document
@@ -31,6 +31,7 @@ class Connections(QObject):
         self.target = TargetConnections(window, controller)
         self.stage = StageConnections(window, controller)
         self._connect_settings()
+        self.start = StartConnections(window, controller)
         self._connect_messages()
         self.voids = VoidConnections(window, controller)
         self._show_title()
@@ -40,8 +41,6 @@ class Connections(QObject):
         window, controller = self._window, self._controller
         window.settings.changed.connect(lambda changes: controller.change_settings(**changes))
         window.settings.edited.connect(controller.end_drag)
-        window.settings.start_library_wanted.connect(window.dialogs.show_start_library)
-        window.settings.start_file_wanted.connect(window.files.ask_start)
         window.settings.keep_changed.connect(self._keep_seed)
         controller.variants_known.connect(window.settings.set_variants)
         controller.reader.known.connect(self._show_reading)

@@ -29,6 +29,7 @@ from kirigami_studio.pipeline.variety import distinct
 from kirigami_studio.project import candidate_edits
 from kirigami_studio.project.candidate_edits import NewDesigns
 from kirigami_studio.project.cutting import least_feature_mm
+from kirigami_studio.project.design_facts import with_run
 from kirigami_studio.project.document import Document, Mark
 from kirigami_studio.project.edits import Edit
 from kirigami_studio.project.settings import DesignSettings, FabricationSettings
@@ -419,6 +420,8 @@ class DesignRun(QObject):
             case CandidateFound() | CandidateImproved():
                 self._note(report.candidate)
             case Decoded(candidate, deployment):
+                if self._request is not None:  # so that its card can name its start while the run goes on
+                    (candidate,) = with_run((candidate,), provenance(self._request, self._digest))
                 self._session.cache.put(candidate, deployment)
                 entry = self._session.cache.entry(candidate)
                 self.found.emit(replace(entry, rise=candidate.score.siou - self._sampled[candidate.index]))

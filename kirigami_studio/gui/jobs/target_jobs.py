@@ -79,6 +79,11 @@ def reading_start(source: str, cancel: Cancel) -> Iterator[StartShape]:
     yield convex_start(read_target(source))
 
 
+def making_start(outline: Outline, cancel: Cancel) -> Iterator[StartShape]:
+    """Make a drawn shape a start outline; one with hollows is refused."""
+    yield convex_start(outline)
+
+
 def tracing(picture: Picture, cancel: Cancel) -> Iterator[Traced]:
     """Trace a picture at its threshold."""
     from kirigami_studio.outlines.read_image import trace_image

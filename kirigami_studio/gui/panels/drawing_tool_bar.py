@@ -23,7 +23,7 @@ from kirigami_studio.outlines.combining import Combine
 #: Tool, icon, tooltip; None for a gap.
 TOOLS: tuple[tuple[Tool, str, str] | None, ...] = (
     (Tool.POINTS, "points", tr("Move points (N). Select, drag, Delete; handles bend the lines.")),
-    (Tool.POSE, "pose", tr("Move, resize and rotate (V). Drag the target or the handles around it.")),
+    (Tool.POSE, "pose", tr("Move, resize and rotate (V). Drag the shape or the handles around it.")),
     None,
     (Tool.FREEHAND, "draw", tr("Draw freehand (D). One stroke, smoothed and closed.")),
     (Tool.POLYGON, "polygon", tr("Draw a polygon (P). Click corners; Enter closes it.")),
@@ -35,9 +35,9 @@ TOOLS: tuple[tuple[Tool, str, str] | None, ...] = (
 )
 #: Mode, icon, tooltip.
 MODES = (
-    (Combine.REPLACE, "replace", tr("New (=). What you draw replaces the target.")),
-    (Combine.ADD, "add", tr("Add (+). What you draw is added to the target.")),
-    (Combine.SUBTRACT, "subtract", tr("Subtract (-). What you draw is cut out of the target.")),
+    (Combine.REPLACE, "replace", tr("New (=). What you draw replaces the shape.")),
+    (Combine.ADD, "add", tr("Add (+). What you draw is added to the shape.")),
+    (Combine.SUBTRACT, "subtract", tr("Subtract (-). What you draw is cut out of the shape.")),
 )
 MIRRORS = (
     ("left", tr("Keep &left half")),

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 import secrets
 from collections.abc import Sequence
-from functools import cache
 
 from PySide6.QtCore import QEvent, QObject, QSettings, QSignalBlocker, Qt, QTimer, Signal
 from PySide6.QtWidgets import (
@@ -24,8 +23,9 @@ from PySide6.QtWidgets import (
 from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.gui.panels.card import Card, ScrolledWhenShort, ToolButton, captioned, compact
 from kirigami_studio.gui.panels.number_field import DecimalField
+from kirigami_studio.gui.panels.start_tile import OTHER_STARTS, STARTS, listed_start
 from kirigami_studio.lattice.ratio_field import LARGEST_GRID, SMALLEST_GRID
-from kirigami_studio.outlines.starts import RECTANGLE, StartShape, start_shape
+from kirigami_studio.outlines.starts import RECTANGLE, StartShape
 from kirigami_studio.pipeline.request import LARGEST_K
 from kirigami_studio.project.settings import DesignSettings
 
@@ -68,21 +68,6 @@ RIMS = (
     ("free", tr("Free"), tr("Cuts meet the sheet's sides where that helps the match.")),
     ("even", tr("Even"), tr("Cuts meet the sheet's sides at even distances.")),
 )
-#: What sheets look like while they are flat: name of the start, label, what it means.
-STARTS = (
-    (RECTANGLE.name, tr("Rectangle"), tr("As many square cells as the grid has: the paper's sheet.")),
-    ("square", tr("Square"), tr("A square, whatever the grid.")),
-    ("circle", tr("Circle"), tr("A disk. Its rim is a polygon with corners where cuts meet it.")),
-    ("ellipse:3:2", tr("Ellipse 3:2"), tr("An ellipse, half as wide again as high.")),
-    ("triangle", tr("Triangle"), tr("A triangle with equal sides.")),
-    ("hexagon", tr("Hexagon"), tr("A hexagon with equal sides.")),
-)
-#: Entries below them: value, label, what it does.
-LIBRARY_START, FILE_START = "library", "file"
-OTHER_STARTS = (
-    (LIBRARY_START, tr("Library …"), tr("Choose a library silhouette without hollows.")),
-    (FILE_START, tr("File …"), tr("Open a file with a shape without hollows. PNG, JPG, BMP, SVG, DXF or JSON.")),
-)
 #: Value of the entry for a shape that was loaded.
 LOADED_START = "loaded"
 START = tr("What the sheet looks like while it is flat.")
@@ -102,8 +87,6 @@ SEARCH = tr(
     "notches."
 )
 KEEP_SEED = tr("Keep this seed. On: Generate repeats the same designs. Off: each run uses the next seed.")
-#: Starts of the list, made when they are first compared with.
-_listed_start = cache(start_shape)
 
 
 class SettingsPanel(Card):
@@ -114,8 +97,7 @@ class SettingsPanel(Card):
     keep_changed = Signal(bool)  #: whether Generate draws from the seed that is shown
     regular_moved = Signal(float)  #: 0 match .. 1 regular, while the slider is dragged
     regular_chosen = Signal(float)  #: the slider was let go
-    start_library_wanted = Signal()
-    start_file_wanted = Signal()
+    other_start_wanted = Signal(str)  #: one of OTHER_STARTS
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(tr("Design"), parent)
@@ -305,11 +287,11 @@ class SettingsPanel(Card):
     def _choose_start(self) -> None:
         """Report the start that was chosen; the box keeps the present one until a shape has been loaded."""
         chosen = self.start.currentData()
-        if chosen in (LIBRARY_START, FILE_START):
+        if chosen in (value for value, _, _ in OTHER_STARTS):
             self._show_start(self._start)
-            (self.start_library_wanted if chosen == LIBRARY_START else self.start_file_wanted).emit()
+            self.other_start_wanted.emit(chosen)
         elif chosen != LOADED_START:
-            self.changed.emit({"start": _listed_start(chosen)})
+            self.changed.emit({"start": listed_start(chosen)})
             self.edited.emit()
 
     def _move_regular(self) -> None:
@@ -405,7 +387,7 @@ class SettingsPanel(Card):
         """Choose a start; one that was loaded has an entry with its own name as long as it is the present one."""
         self._start = start
         listed = self.start.findData(start.name)
-        is_listed = 0 <= listed < len(STARTS) and start == _listed_start(start.name)
+        is_listed = 0 <= listed < len(STARTS) and start == listed_start(start.name)
         with QSignalBlocker(self.start):
             loaded = self.start.findData(LOADED_START)
             if loaded >= 0:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 from PySide6.QtCore import QByteArray, QSettings, QSignalBlocker, Qt, Signal
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QMenu, QSplitter, QStackedWidget, QToolButton, QVBoxLayout, QWidget
@@ -9,11 +11,13 @@ from PySide6.QtWidgets import QMenu, QSplitter, QStackedWidget, QToolButton, QVB
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.designs.as_cut import UNKNOWN, AsCutState
+from kirigami_studio.gui.designs.two_states import TwoStates
 from kirigami_studio.gui.panels.as_cut_line import AsCutLine
 from kirigami_studio.gui.panels.card import INSET, Card, FittingLabel, ToolButton
 from kirigami_studio.gui.panels.compare_page import ComparePage
 from kirigami_studio.gui.panels.cuts_page import CutBar, CutsPage
 from kirigami_studio.gui.panels.deployment_bar import DeploymentBar
+from kirigami_studio.gui.panels.ends_line import EndsLine
 from kirigami_studio.gui.panels.plots_panel import PlotsPanel
 from kirigami_studio.gui.panels.verdict_bar import VerdictBar
 from kirigami_studio.gui.panels.void_bar import VoidBar
@@ -68,6 +72,7 @@ class StagePanel(Card):
         self.view = LayoutView()
         self.tour = FaultTour(self.view)
         self.deployment = DeploymentBar()
+        self.ends = EndsLine()
         self.cuts = CutsPage()
         self.as_cut = AsCutLine()
         self.plots = PlotsPanel()
@@ -93,6 +98,8 @@ class StagePanel(Card):
         self._add_overlays()
         self._add_pages()
         self.deployment.phi_changed.connect(self.view.set_phi)
+        self.ends.flat_wanted.connect(lambda: self.deployment.set_phi(math.pi))
+        self.ends.open_wanted.connect(self._open)
         self.deployment.ideal.toggled.connect(lambda _: self.switches_changed.emit())
         self.deployment.phi_changed.connect(self.plots.set_phi)
         self.plots.phi_wanted.connect(self.deployment.set_phi)
@@ -147,6 +154,7 @@ class StagePanel(Card):
         self.voids.hide()
         column.addWidget(self.voids)
         column.addWidget(self.deployment)
+        column.addWidget(self.ends)
         column.addWidget(self.as_cut)
         self.pages = QStackedWidget()
         self.pages.addWidget(layout)
@@ -288,10 +296,25 @@ class StagePanel(Card):
         self.trim.setChecked(trimmed or self._trimming)
         self.switches_changed.emit()
 
+    def _open(self) -> None:
+        """Open the sheet to its target angle."""
+        entry = self._sample or self._entry
+        if entry is not None:
+            self.deployment.set_phi(entry.design.phi_target)
+
+    def _show_ends(self) -> None:
+        """Say what the design starts as and what it opens into, on a sheet as wide as it is cut."""
+        entry, target = self._sample or self._entry, self._target
+        if entry is None or target is None:
+            self.ends.show_states(None)
+        else:
+            self.ends.show_states(TwoStates.of(entry, target, self._width_mm))
+
     def _show(self) -> None:
         """Show the present design, or its sample."""
         entry = self._entry
         self.show_title()
+        self._show_ends()
         if entry is None:
             self.view.show_design(None, None, None)
             return
@@ -347,6 +370,7 @@ class StagePanel(Card):
         self.view.set_sheet_width(width_mm)
         self.plots.set_sheet_width(width_mm)
         self.show_title()
+        self._show_ends()
 
     def _toggle_plots(self, on: bool) -> None:
         self.plots.setVisible(on)

@@ -1,4 +1,4 @@
-"""The target: file, library, drawing board, its size, simplify and smooth, the threshold of a traced picture."""
+"""The target beside its start: file, library, board, size, simplify and smooth, a traced picture's threshold."""
 
 from __future__ import annotations
 
@@ -20,6 +20,7 @@ from kirigami_studio.gui.jobs.target_jobs import Picture
 from kirigami_studio.gui.panels.card import Card, ElidedLabel, ToolButton, muted_label
 from kirigami_studio.gui.panels.drawing_tool_bar import DrawingToolBar
 from kirigami_studio.gui.panels.number_field import LengthField, number_field
+from kirigami_studio.gui.panels.start_tile import StartTile
 from kirigami_studio.gui.views.target_view import TargetView, Tool
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.placed import LARGEST_MM, Placed
@@ -80,7 +81,12 @@ class TargetPanel(Card):
         self.reach.setVisible(False)
         self.threshold = ThresholdBar()
         self.body.addWidget(self.tools)
-        self.body.addWidget(self.view, 1)
+        self.start = StartTile()
+        boards = QHBoxLayout()
+        boards.setSpacing(8)
+        boards.addWidget(self.start)
+        boards.addWidget(self.view, 1)
+        self.body.addLayout(boards, 1)
         self.body.addLayout(line)
         self.body.addWidget(self.reach)
         self.body.addWidget(self.refine)
@@ -115,6 +121,7 @@ class TargetPanel(Card):
         self.buttons["edit"].setChecked(on)
         for part in (self.tools, self.refine):
             part.setVisible(on)
+        self.start.setVisible(not on)
         if on != self.editing:
             self.editing = on
             self._show_reach_text()

@@ -1,4 +1,4 @@
-"""Paint the target: a filled shape when it stands alone, a line when it lies over a sheet."""
+"""Paint the target: a filled shape when it stands alone, a line when it lies over a sheet; and the start beside it."""
 
 from __future__ import annotations
 
@@ -18,10 +18,17 @@ from kirigami_studio.gui.scene.view_transform import ViewTransform
 from kirigami_studio.outlines.mirroring import Axis, Mirror
 
 
-def paint_target_shape(painter: QPainter, points: FloatArray, palette: Palette) -> None:
+def paint_target_shape(painter: QPainter, points: FloatArray, palette: Palette, width: float = 2.0) -> None:
     """Fill the target: (L, 2) pixels."""
-    painter.setPen(round_pen(palette.target, 2.0))
+    painter.setPen(round_pen(palette.target, width))
     painter.setBrush(QColor(palette.target_fill))
+    painter.drawPath(line_path(points, closed=True))
+
+
+def paint_start_shape(painter: QPainter, points: FloatArray, palette: Palette, width: float = 2.0) -> None:
+    """Fill what the sheet looks like while it is flat, in the sheet's colours: (L, 2) pixels."""
+    painter.setPen(round_pen(palette.panel_line, width))
+    painter.setBrush(QColor(palette.panel_odd))
     painter.drawPath(line_path(points, closed=True))
 
 

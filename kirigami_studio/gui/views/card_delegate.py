@@ -30,6 +30,7 @@ from kirigami_studio.gui.views.gallery_model import (
     NUMBER_ROLE,
     OPEN_ROLE,
     RISE_ROLE,
+    START_ROLE,
     VALUE_ROLE,
     alike_tip,
 )
@@ -146,7 +147,8 @@ class CardDelegate(QStyledItemDelegate):
             self._paint_chip(painter, card, f"{100 * rise:+.1f}")
         else:
             self._paint_as_cut(painter, card, left, index.data(AS_CUT_ROLE))
-        self._paint_numbers(painter, card, candidate, index.data(VALUE_ROLE), index.data(GRID_ROLE))
+        told_apart: str = index.data(START_ROLE) or index.data(GRID_ROLE)
+        self._paint_numbers(painter, card, candidate, index.data(VALUE_ROLE), told_apart)
         self._paint_badge(painter, card, index.data(CUTTABLE_ROLE))
         if alike:
             self._paint_alike(painter, alike_box(rect), alike, index.data(OPEN_ROLE))
@@ -271,7 +273,8 @@ class CardDelegate(QStyledItemDelegate):
             chip.adjusted(0, 0, -5, 0), int(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter), text
         )
 
-    def _paint_numbers(self, painter: QPainter, card: QRect, candidate: Candidate, value: str, grid: str) -> None:
+    def _paint_numbers(self, painter: QPainter, card: QRect, candidate: Candidate, value: str, apart: str) -> None:
+        """Match and sort value; ``apart`` tells designs of several grids or starts apart."""
         score = candidate.score
         text = _text_of(card)
         left, right = int(Qt.AlignmentFlag.AlignLeft), int(Qt.AlignmentFlag.AlignRight)
@@ -285,8 +288,10 @@ class CardDelegate(QStyledItemDelegate):
         painter.drawText(text, left | top, f"{100 * score.iou_exact:.1f} %")
         painter.setFont(plain)
         painter.setPen(QColor(self.palette_.muted))
-        painter.drawText(text.adjusted(0, 0, -22, 0), right | bottom, grid)
-        painter.drawText(text, left | bottom, value)
+        metrics, line = painter.fontMetrics(), text.adjusted(0, 0, -22, 0)
+        painter.drawText(line, right | bottom, apart)
+        room = line.width() - (metrics.horizontalAdvance(apart) + 6 if apart else -22)
+        painter.drawText(text, left | bottom, metrics.elidedText(value, Qt.TextElideMode.ElideRight, room))
 
     def _paint_badge(self, painter: QPainter, card: QRect, cuttable: bool) -> None:
         name, colour = ("check", self.palette_.accent) if cuttable else ("warning", self.palette_.warning)

@@ -15,8 +15,10 @@ from kirigami_studio.fabricate.panel_sizes import least_panel_share
 from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.gui.designs.gallery_selection import GalleryItem, Selection, format_value, places_in_order
 from kirigami_studio.gui.designs.look_alikes import Stacks
+from kirigami_studio.gui.designs.two_states import TwoStates, start_of
 from kirigami_studio.gui.session import Entry, same_sample
 from kirigami_studio.lattice.symmetry import Symmetry
+from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.pipeline.rank import Ranking
 from kirigami_studio.project.document import Mark
 
@@ -35,6 +37,7 @@ CUTTABLE_ROLE = Qt.ItemDataRole.UserRole + 11  #: whether it is feasible and its
 OPEN_ROLE = Qt.ItemDataRole.UserRole + 10  #: whether those are shown
 AS_CUT_ROLE = Qt.ItemDataRole.UserRole + 12  #: AsCut, as estimated, or None while that is not known
 GRID_ROLE = Qt.ItemDataRole.UserRole + 8  #: words for the grid where designs of several grids are there, else ""
+START_ROLE = Qt.ItemDataRole.UserRole + 13  #: what it starts as where designs of several starts are there, else ""
 
 Index = QModelIndex | QPersistentModelIndex
 
@@ -60,6 +63,8 @@ class GalleryModel(QAbstractListModel):
         self._selection = Selection()
         self.ranking = Ranking()  #: puts designs that are inserted into their places
         self._width_mm = 100.0
+        self._target: Outline | None = None
+        self._starts_differ: bool | None = None  # once it is asked for
         self._as_cut: Mapping[Candidate, AsCut] = {}
 
     @property
@@ -112,12 +117,19 @@ class GalleryModel(QAbstractListModel):
         if role == GRID_ROLE:
             sheet = entry.candidate.sheet
             return f"{sheet.rows} \N{MULTIPLICATION SIGN} {sheet.columns}" if self._several_grids() else ""
+        if role == START_ROLE:
+            return start_of(entry.candidate) if self._several_starts() else ""
         if role == FRESH_ROLE:
             return entry.candidate in self._fresh
         return simple.get(role)
 
     def _several_grids(self) -> bool:
         return any(entry.candidate.sheet.grid != self._all[0].candidate.sheet.grid for entry in self._all)
+
+    def _several_starts(self) -> bool:
+        if self._starts_differ is None:
+            self._starts_differ = len({start_of(entry.candidate) for entry in self._all}) > 1
+        return self._starts_differ
 
     def _described(self, entry: Entry) -> str:
         lines = [described(entry.candidate, self.number_of(entry.candidate))]
@@ -132,7 +144,7 @@ class GalleryModel(QAbstractListModel):
 
     def _placed(self, entry: Entry) -> str:
         """How small its panels are, why it has its rank, and what lies under its card."""
-        lines, reason = [self._size(entry)], self._rank_reason(entry)
+        lines, reason = [*self._states(entry), self._size(entry)], self._rank_reason(entry)
         if reason:
             lines.append(tr("Rank: {reason}", reason=reason))
         as_cut = self._as_cut.get(entry.candidate)
@@ -151,6 +163,14 @@ class GalleryModel(QAbstractListModel):
             self._reasons = {id(one): note for one, note in zip(ranked, notes, strict=True)}
         note = self._reasons.get(id(entry.candidate))
         return "" if note is None else note.text
+
+    def _states(self, entry: Entry) -> tuple[str, ...]:
+        """What it starts as and what it opens into, how large, and how well it matches both."""
+        return () if self._target is None else TwoStates.of(entry, self._target, self._width_mm).lines()
+
+    def set_target(self, target: Outline | None) -> None:
+        """Set what the designs open into, for their tooltips."""
+        self._target = target
 
     def _size(self, entry: Entry) -> str:
         size = self._width_mm * least_panel_share(entry.design.deployment)
@@ -270,7 +290,7 @@ class GalleryModel(QAbstractListModel):
         return _place_of(self._shown, candidate)
 
     def _arranged(self) -> list[Entry]:
-        self._reasons = None
+        self._reasons = self._starts_differ = None
         designs = [self._as_item(entry, place) for place, entry in enumerate(self._all)]
         self._taken = [self._all[place] for place in places_in_order(designs, self._selection)]
         if self._selection.grouped:

@@ -89,6 +89,7 @@ class GalleryView(QListView):
         """Show other candidates; those that were there keep their pictures, unless the target is another one."""
         same = target == self.cards.target
         self.cards.target = target
+        self.model_.set_target(target)
         self.cards.forget_pictures([entry.design for entry in entries] if same else ())
         self._reporting = False
         self.model_.replace(entries)

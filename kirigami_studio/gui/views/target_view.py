@@ -17,6 +17,7 @@ from PySide6.QtGui import (
 )
 from PySide6.QtWidgets import QWidget
 
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.jobs.target_jobs import Picture
 from kirigami_studio.gui.scene.target_items import (
@@ -175,7 +176,7 @@ class TargetView(Canvas):
 
     def minimumSizeHint(self) -> QSize:  # noqa: N802 - Qt's name
         """Lower than other canvases: in a low window with a message the settings below need the room."""
-        return QSize(180, 56)
+        return QSize(150, 56)
 
     def scene_bounds(self) -> Bounds | None:
         if self._editing:
@@ -194,8 +195,7 @@ class TargetView(Canvas):
         if self.context.placed is not None:
             replacing = self.context.combine is Combine.REPLACE and self._tool in DRAWING
             painter.setOpacity(0.25 if replacing else 1.0)
-            paint = paint_target_shape if self.underlay is None else paint_target_line
-            paint(painter, transform.to_pixels(self.context.placed.ring), self.palette_)
+            self.paint_outline(painter, transform.to_pixels(self.context.placed.ring))
             self._paint_reach(painter, transform, self.context.placed)
             painter.setOpacity(1.0)
         if self._preview is not None:
@@ -203,6 +203,11 @@ class TargetView(Canvas):
         if self._editing:
             paint_axes(painter, transform, self.context.mirror, QRectF(self.rect()), self.palette_)
         self.active.paint(painter, transform, self.palette_)
+
+    def paint_outline(self, painter: QPainter, points: FloatArray) -> None:
+        """Draw the outline on the board: (L, 2) pixels."""
+        paint = paint_target_shape if self.underlay is None else paint_target_line
+        paint(painter, points, self.palette_)
 
     def _paint_reach(self, painter: QPainter, transform: ViewTransform, placed: Placed) -> None:
         if self.reach is None or self._preview is not None:

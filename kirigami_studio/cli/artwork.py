@@ -1,0 +1,114 @@
+"""``artwork``: print a picture on the sheet of a project, in register with its cuts."""
+
+from __future__ import annotations
+
+import argparse
+import math
+
+from kirigami_studio.cli.console import print_json, say
+from kirigami_studio.cli.fabrication import chosen_candidate, design_job, overridden
+from kirigami_studio.export.artwork import Artwork, Fitting, Laid, State
+from kirigami_studio.export.artwork_files import ArtworkJob, write_artwork
+from kirigami_studio.export.artwork_picture import ArtPicture, read_picture
+from kirigami_studio.foundation.errors import ExportError, UsageError
+from kirigami_studio.foundation.words import tr
+from kirigami_studio.project.cutting import plan_of
+from kirigami_studio.project.store import load
+
+#: Below this resolution (dpi) a print looks coarse at arm's length.
+COARSE_DPI = 150.0
+#: A picture that leaves more than this share of the sheet bare is told.
+BARE_SHARE = 0.005
+
+
+def artwork(arguments: argparse.Namespace) -> int:
+    """Write SVG, PDF and PNG of the printed sheet of a project's chosen design, and a picture of it opened."""
+    document = load(arguments.project)
+    settings = overridden(document.fabrication, arguments)
+    candidate = chosen_candidate(document)
+    laid = _laid(arguments)
+    job = design_job(document, plan_of(candidate, settings), settings)
+    try:
+        work = ArtworkJob(Artwork(laid), job, arguments.dpi, arguments.bleed_mm, arguments.margin_mm)
+        files = write_artwork(work, arguments.out)
+    except ExportError as error:
+        if error.code.startswith("artwork.impossible"):
+            raise UsageError(error.code, **error.fields) from error
+        raise
+    warnings = _warnings(work)
+    if arguments.json:
+        print_json(
+            {
+                "files": [str(path) for path in files],
+                "frame_mm": work.frame_mm,
+                "page_mm": work.page_mm,
+                "pixels": work.page.pixels,
+                "dpi": work.dpi,
+                "bleed_mm": work.bleed_mm,
+                "margin_mm": work.margin_mm,
+                "on": laid.state.value,
+                "picture_dpi": work.picture_dpi,
+                "covered": work.covered,
+                "copies": len(work.places),
+                "warnings": warnings,
+            }
+        )
+        return 0
+    say(
+        tr(
+            "{files}: page {width:.2f} x {height:.2f} mm, cut file {frame_width:.2f} x {frame_height:.2f} mm with its "
+            "lower left corner {margin:g} mm from the page's, the picture has {dpi:.0f} dpi",
+            files=", ".join(str(path) for path in files),
+            width=work.page_mm[0],
+            height=work.page_mm[1],
+            frame_width=work.frame_mm[0],
+            frame_height=work.frame_mm[1],
+            margin=work.margin_mm,
+            dpi=work.picture_dpi,
+        )
+    )
+    for warning in warnings:
+        say("  " + tr("note: {text}", text=warning))
+    return 0
+
+
+def _laid(arguments: argparse.Namespace) -> Laid:
+    """The picture that was named, and where it lies."""
+    try:
+        return Laid(
+            _picture(arguments.picture),
+            State(arguments.on),
+            Fitting(arguments.place),
+            arguments.scale,
+            math.radians(arguments.turn_deg),
+            (arguments.shift[0], arguments.shift[1]),
+        )
+    except ExportError as error:
+        raise UsageError(error.code, **error.fields) from error
+
+
+def _picture(path: str) -> ArtPicture:
+    """Read a picture; only for an SVG Qt is loaded, which draws it."""
+
+    def draw(content: bytes, side: int) -> bytes:
+        from kirigami_studio.gui.files.svg_drawing import svg_to_png
+
+        return svg_to_png(content, side)
+
+    return read_picture(path, draw)
+
+
+def _warnings(work: ArtworkJob) -> list[str]:
+    found = [note.text for note in work.job.required_plan.copies.notes]
+    if work.picture_dpi < COARSE_DPI:
+        found.append(
+            tr("The picture has only {dpi:.0f} dpi on the sheet: use one with more pixels.", dpi=work.picture_dpi)
+        )
+    if work.covered < 1.0 - BARE_SHARE:
+        found.append(
+            tr(
+                "{percent:.0f} % of the sheet gets no picture. Use --place fill or a larger --scale to cover it.",
+                percent=100.0 * (1.0 - work.covered),
+            )
+        )
+    return found

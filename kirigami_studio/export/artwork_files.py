@@ -1,0 +1,356 @@
+"""A printed sheet -> SVG, PDF and PNG in true millimetres, in register with the cut file, and a picture of it opened.
+
+All three files have the frame of the cut file of the same plan and profile: the same origin and unit, a margin around
+it, and marks in the margin on the lines of the frame's edges.  In SVG and PDF the picture keeps its own pixels; in PNG
+it has the resolution asked for.
+"""
+
+from __future__ import annotations
+
+import base64
+import io
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from io import BytesIO
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree
+
+import numpy as np
+import shapely
+from PIL import Image, ImageDraw
+from reportlab.lib.units import mm
+from reportlab.lib.utils import ImageReader
+from reportlab.pdfgen.canvas import Canvas
+
+from kirigami_studio import __version__
+from kirigami_studio.export.artwork import Artwork, Patch, PrintedSheet, opened_patches, printed_patches, rings_of
+from kirigami_studio.export.artwork_picture import ArtPicture
+from kirigami_studio.export.artwork_raster import Page, paint
+from kirigami_studio.export.exporter import ExportJob
+from kirigami_studio.export.pdf import SAME_SIZE_MM, page_boxes
+from kirigami_studio.export.picture import INK, PAPER, TARGET_EDGE, text_chunks
+from kirigami_studio.export.profile import find_profile
+from kirigami_studio.export.provenance import facts_of
+from kirigami_studio.export.strokes import extent, frame_origin, strokes_of
+from kirigami_studio.export.svg import NAMESPACE, decimals, path_data, root_element, svg_content
+from kirigami_studio.foundation.arrays import FloatArray
+from kirigami_studio.foundation.errors import ExportError
+from kirigami_studio.foundation.files import write_atomically
+from kirigami_studio.foundation.units import MM_PER_INCH
+
+XLINK = "http://www.w3.org/1999/xlink"
+USUAL_DPI = 300.0
+USUAL_BLEED_MM = 1.0
+USUAL_MARGIN_MM = 8.0
+MOST_MARGIN_MM = 100.0
+#: Marks begin this far (mm) beyond the bleed and are this thick; shorter ones are left out.
+MARK_GAP_MM = 1.0
+MARK_LINE_MM = 0.1
+SHORTEST_MARK_MM = 1.0
+#: Pixels along the longer side of the picture of the opened sheet, and its margin (mm).
+OPENED_SIDE = 1200
+OPENED_MARGIN_MM = 3.0
+#: There panels grow by this share of the sheet's width, about half a pixel: no white shines through where they touch.
+OPENED_OVERLAP = 4e-4
+#: Bitmaps tell whole pixels a metre: 300 dpi become 299.9994.
+SAME_DPI = 0.02
+
+
+@dataclass(frozen=True, eq=False)
+class ArtworkJob:
+    """What the files of a printed sheet are made of.
+
+    Attributes
+    ----------
+    artwork : Artwork
+    job : ExportJob
+        With its plan.
+    dpi : float
+        Of the PNG.
+    bleed_mm : float
+        How far panels at the sheet's edge are printed beyond it.
+    margin_mm : float
+        Around the frame of the cut file; 0 for pages that are exactly that frame.
+
+    Raises
+    ------
+    ExportError
+        A margin that no page has.
+    """
+
+    artwork: Artwork
+    job: ExportJob
+    dpi: float = USUAL_DPI
+    bleed_mm: float = USUAL_BLEED_MM
+    margin_mm: float = USUAL_MARGIN_MM
+
+    def __post_init__(self) -> None:
+        if not 0.0 <= self.margin_mm <= MOST_MARGIN_MM:
+            raise ExportError("artwork.impossible_margin", margin_mm=self.margin_mm, most=MOST_MARGIN_MM)
+
+    @cached_property
+    def sheet(self) -> PrintedSheet:
+        return PrintedSheet.of(self.job)
+
+    @cached_property
+    def patches(self) -> tuple[Patch, ...]:
+        """Those of the first copy, in the frame of the cut file."""
+        plan = self.job.required_plan
+        origin = frame_origin(plan, find_profile(self.job.profile))
+        found = printed_patches(self.artwork, self.sheet, self.bleed_mm, plan.kerf_mm)
+        return tuple(patch.moved(1.0, -complex(*origin)) for patch in found)
+
+    @property
+    def places(self) -> FloatArray:
+        """Where the copies lie: (C, 2) mm."""
+        return self.job.required_plan.copies.places
+
+    @cached_property
+    def frame_mm(self) -> tuple[float, float]:
+        """Width and height of the cut file; its lower left corner is (0, 0)."""
+        return extent(strokes_of(self.job.required_plan, find_profile(self.job.profile)))
+
+    @property
+    def page_mm(self) -> tuple[float, float]:
+        """Width and height of the printed page."""
+        return self.frame_mm[0] + 2.0 * self.margin_mm, self.frame_mm[1] + 2.0 * self.margin_mm
+
+    @property
+    def page(self) -> Page:
+        """The page as a bitmap.
+
+        Raises
+        ------
+        ExportError
+            It would have too many pixels.
+        """
+        low, high = (-self.margin_mm, -self.margin_mm), (np.array(self.frame_mm) + self.margin_mm).tolist()
+        return Page(low, (high[0], high[1]), self.dpi)
+
+    @property
+    def marks(self) -> FloatArray:
+        """Lines (M, 2, 2) in the margin, mm: their extensions are the edges of the frame."""
+        near, far = self.bleed_mm + MARK_GAP_MM, self.margin_mm
+        if far - near < SHORTEST_MARK_MM:
+            return np.zeros((0, 2, 2))
+        width, height = self.frame_mm
+        reach = np.array([[near, near], [far, far]])
+        lines = [
+            np.array([x, y]) + reach * along
+            for x, side in ((0.0, -1.0), (width, 1.0))
+            for y, up in ((0.0, -1.0), (height, 1.0))
+            for along in ((side, 0.0), (0.0, up))
+        ]
+        return np.array(lines)
+
+    @property
+    def picture_dpi(self) -> float:
+        """Pixels of the picture on an inch of the sheet; the fewest where there are two."""
+        return min(patch.dots_per_mm for patch in self.patches) * MM_PER_INCH
+
+    @cached_property
+    def covered(self) -> float:
+        """Share of the sheet that gets a picture: the rest lies beside it."""
+        shown = total = 0.0
+        for patch in self.patches:
+            width, height = patch.picture.size
+            corners = patch.shift + patch.factor * np.conj(np.array([0.0, width, width + 1j * height, 1j * height]))
+            picture = shapely.Polygon(np.column_stack([corners.real, corners.imag]))
+            shown += patch.region.intersection(picture).area
+            total += patch.region.area
+        return shown / total
+
+    @property
+    def facts(self) -> Mapping[str, str]:
+        """How the files were made."""
+        return facts_of(self.job.required_plan, find_profile(self.job.profile))
+
+
+def write_artwork(work: ArtworkJob, folder: str | Path, name: str = "artwork") -> tuple[Path, ...]:
+    """Write SVG, PDF and PNG of the printed sheet, and a PNG of the sheet opened to its target.
+
+    Returns
+    -------
+    files : tuple of Path
+        ``NAME.svg``, ``NAME.pdf``, ``NAME.png`` and ``NAME_opened.png``.
+
+    Raises
+    ------
+    ExportError
+        No plan, too many pixels, an unwritable place, or a file that did not read back as it was meant.
+    """
+    home = Path(folder)
+    page = work.page  # too many pixels are refused before anything is written
+    svg, pdf, png, opened = (home / f"{name}{end}" for end in (".svg", ".pdf", ".png", "_opened.png"))
+    write_atomically(svg, _svg_bytes(work), lambda written: _verify_svg(written, work))
+    write_atomically(pdf, _pdf_bytes(work), lambda written: _verify_pdf(written, work))
+    _write_png(printed_image(work, page), png, work.facts, work.dpi)
+    _write_png(opened_image(work), opened, work.facts, None)
+    return svg, pdf, png, opened
+
+
+def printed_image(work: ArtworkJob, page: Page) -> Image.Image:
+    """The printed page: RGBA, nothing where nothing is printed."""
+    copies = [patch.moved(1.0, complex(*place)) for place in work.places.tolist() for patch in work.patches]
+    image = paint(copies, page)
+    draw = ImageDraw.Draw(image)
+    for line in work.marks:
+        ends = [tuple(end) for end in (page.to_pixels(line) - 0.5).tolist()]
+        draw.line(ends, fill=(*INK, 255), width=max(1, round(MARK_LINE_MM * page.dots_per_mm)))
+    return image
+
+
+def opened_image(work: ArtworkJob) -> Image.Image:
+    """The printed sheet opened to its target angle, over the target's outline, on white."""
+    sheet = work.sheet
+    width = float(np.ptp(sheet.corners[..., 0]))
+    patches = opened_patches(work.artwork, sheet, sheet.design.phi_target, OPENED_OVERLAP * width)
+    clouds = [np.array(patch.region.bounds).reshape(2, 2) for patch in patches]
+    target = None
+    if sheet.target is not None:
+        target = np.asarray(sheet.target) * sheet.design.mm_per_world(width)
+        clouds.append(target)
+    points = np.concatenate(clouds)
+    low, high = points.min(axis=0) - OPENED_MARGIN_MM, points.max(axis=0) + OPENED_MARGIN_MM
+    dpi = OPENED_SIDE / float((high - low).max()) * MM_PER_INCH
+    page = Page((float(low[0]), float(low[1])), (float(high[0]), float(high[1])), dpi)
+    image = paint(patches, page, (*PAPER, 255))
+    if target is not None:
+        ring = page.to_pixels(np.concatenate([target, target[:1]])) - 0.5
+        ImageDraw.Draw(image).line([tuple(point) for point in ring.tolist()], fill=(*TARGET_EDGE, 255), width=2)
+    return image.convert("RGB")
+
+
+def _write_png(image: Image.Image, path: Path, facts: Mapping[str, str], dpi: float | None) -> None:
+    stream = BytesIO()
+    resolution = {} if dpi is None else {"dpi": (dpi, dpi)}
+    image.save(stream, format="PNG", pnginfo=text_chunks(facts), **resolution)
+
+    def verify(written: Path) -> None:
+        with Image.open(written) as read:
+            read.load()
+            found = read.info.get("dpi", (0.0, 0.0))[0]
+            if read.size != image.size or (dpi is not None and abs(found - dpi) > SAME_DPI):
+                raise ExportError(
+                    "png.other_size",
+                    width=read.width,
+                    height=read.height,
+                    planned_width=image.width,
+                    planned_height=image.height,
+                )
+
+    write_atomically(path, stream.getvalue(), verify)
+
+
+def _pictures(work: ArtworkJob) -> dict[ArtPicture, str]:
+    """A name for every picture that is used."""
+    used = dict.fromkeys(patch.picture for patch in work.patches)
+    return {picture: f"picture{place}" for place, picture in enumerate(used, start=1)}
+
+
+def _svg_bytes(work: ArtworkJob) -> bytes:
+    (width, height), margin = work.frame_mm, work.margin_mm
+    root = root_element(width, height, "Kirigami artwork", margin)
+    root.set("xmlns:xlink", XLINK)
+    ElementTree.SubElement(root, "desc").text = "; ".join(f"{key} {value}" for key, value in work.facts.items())
+    definitions = ElementTree.SubElement(root, "defs")
+    names = _pictures(work)
+    for picture, name in names.items():
+        kind = "jpeg" if picture.is_jpeg else "png"
+        content = f"data:image/{kind};base64,{base64.b64encode(picture.content).decode('ascii')}"
+        size = {"width": f"{picture.size[0]}", "height": f"{picture.size[1]}", "preserveAspectRatio": "none"}
+        ElementTree.SubElement(definitions, "image", {"id": name, **size, "xlink:href": content})
+    sheet = ElementTree.SubElement(root, "g", {"id": "ARTWORK"})
+    first = ElementTree.SubElement(sheet, "g", {"id": "SHEET"})
+    for place, patch in enumerate(work.patches):
+        clip = ElementTree.SubElement(definitions, "clipPath", {"id": f"panel{place}"})
+        rings = " ".join(path_data(ring, height, closed=True) for ring in rings_of(patch.region))
+        ElementTree.SubElement(clip, "path", {"d": rings, "clip-rule": "evenodd"})
+        a, b = patch.factor, patch.shift
+        matrix = (a.real, -a.imag, a.imag, a.real, b.real, height - b.imag)
+        words = " ".join(f"{value:.9f}" for value in matrix)
+        group = ElementTree.SubElement(first, "g", {"clip-path": f"url(#panel{place})"})
+        link = f"#{names[patch.picture]}"
+        ElementTree.SubElement(group, "use", {"xlink:href": link, "transform": f"matrix({words})"})
+    for x, y in work.places[1:].tolist():
+        move = {"transform": f"translate({decimals(x)} {decimals(-y)})"}
+        ElementTree.SubElement(sheet, "use", {"xlink:href": "#SHEET", **move})
+    look = {"id": "MARKS", "fill": "none", "stroke": "#000000", "stroke-width": f"{MARK_LINE_MM:g}"}
+    marks = ElementTree.SubElement(root, "g", look)
+    for line in work.marks:
+        ElementTree.SubElement(marks, "path", {"d": path_data(line, height, closed=False)})
+    return svg_content(root)
+
+
+def _verify_svg(path: Path, work: ArtworkJob) -> None:
+    read = ElementTree.parse(path).getroot()
+    found = len(read.findall(f".//{{{NAMESPACE}}}clipPath"))
+    if found != len(work.patches) or read.get("width") != f"{decimals(work.page_mm[0])}mm":
+        raise ExportError("svg.not_as_written", found=found, planned=len(work.patches))
+
+
+def _pdf_bytes(work: ArtworkJob) -> bytes:
+    stream = BytesIO()
+    # reportlab carries no types; invariant: the same plan gives the same bytes.
+    make_canvas: Any = Canvas
+    make_reader: Any = ImageReader
+    canvas = make_canvas(stream, pagesize=tuple(side * mm for side in work.page_mm), invariant=1)
+    canvas.setTitle(f"Kirigami artwork {work.job.required_plan.design_hash}")
+    canvas.setCreator(f"Kirigami Studio {__version__}")
+    canvas.setSubject("; ".join(f"{key} {value}" for key, value in work.facts.items()))
+    names = _pictures(work)
+    for picture, name in names.items():
+        width, height = picture.size
+        canvas.beginForm(name, 0, 0, width, height)
+        canvas.drawImage(make_reader(io.BytesIO(picture.content)), 0, 0, width, height, mask="auto")
+        canvas.endForm()
+    page_width, page_height = work.page_mm
+    canvas.beginForm("sheet", -work.margin_mm, -work.margin_mm, page_width, page_height)
+    for patch in work.patches:
+        canvas.saveState()
+        _clip(canvas, rings_of(patch.region))
+        a, b, height = patch.factor, patch.shift, patch.picture.size[1]
+        canvas.transform(a.real, a.imag, -a.imag, a.real, b.real + a.imag * height, b.imag - a.real * height)
+        canvas.doForm(names[patch.picture])
+        canvas.restoreState()
+    canvas.endForm()
+    canvas.scale(mm, mm)
+    canvas.translate(work.margin_mm, work.margin_mm)
+    for x, y in work.places.tolist():
+        canvas.saveState()
+        canvas.translate(x, y)
+        canvas.doForm("sheet")
+        canvas.restoreState()
+    canvas.setLineWidth(MARK_LINE_MM)
+    for (x, y), (end_x, end_y) in work.marks.tolist():
+        canvas.line(x, y, end_x, end_y)
+    canvas.showPage()
+    canvas.save()
+    return stream.getvalue()
+
+
+def _clip(canvas: Any, rings: Sequence[FloatArray]) -> None:
+    path = canvas.beginPath()
+    for ring in rings:
+        path.moveTo(*ring[0].tolist())
+        for point in ring[1:].tolist():
+            path.lineTo(*point)
+        path.close()
+    canvas.clipPath(path, stroke=0, fill=0, fillMode=0)
+
+
+def _verify_pdf(path: Path, work: ArtworkJob) -> None:
+    boxes = page_boxes(path.read_bytes())
+    for box in boxes:
+        if max(abs(a - b) for a, b in zip(box, work.page_mm, strict=True)) > SAME_SIZE_MM:
+            raise ExportError(
+                "pdf.other_page_size",
+                width_mm=box[0],
+                height_mm=box[1],
+                planned_width_mm=work.page_mm[0],
+                planned_height_mm=work.page_mm[1],
+            )
+    if len(boxes) != 1:
+        raise ExportError("pdf.other_page_count", pages=len(boxes), parts=1)

@@ -1,0 +1,178 @@
+"""Picture files -> pictures that can be printed on a sheet: upright, 8 bits a channel, RGB or RGBA, PNG or JPEG."""
+
+from __future__ import annotations
+
+import io
+import math
+import warnings
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+
+import numpy as np
+from PIL import Image, ImageOps, UnidentifiedImageError
+
+from kirigami_studio.foundation.errors import TargetError
+from kirigami_studio.outlines.read_image import MOST_MEGABYTES, MOST_PIXELS
+from kirigami_studio.outlines.source_file import decoding, read_bytes
+from kirigami_studio.outlines.svg_safety import checked_svg
+
+FORMATS = ("PNG", "JPEG", "BMP", "TIFF", "WEBP")
+#: What a file dialog offers.
+EXTENSIONS = (".png", ".jpg", ".jpeg", ".bmp", ".tif", ".tiff", ".webp", ".svg")
+#: Larger pictures are averaged down: a sheet of 300 x 200 mm is printed at 500 dpi from so many pixels.
+KEPT_PIXELS = 24_000_000
+#: An SVG is drawn once, with so many pixels along its longer side.
+SVG_SIDE = 3000
+#: Larger pictures (bytes) without transparency are kept as JPEG, others refused above the second limit.
+LARGEST_PNG = 8 * 2**20
+LARGEST_PICTURE = 32 * 2**20
+JPEG_QUALITY = 95
+#: The EXIF entry that says which way is up; 1 is upright.
+ORIENTATION = 0x0112
+#: Draws an SVG document, with so many pixels along its longer side, as PNG.
+DrawSvg = Callable[[bytes, int], bytes]
+
+
+@dataclass(frozen=True, slots=True)
+class ArtPicture:
+    """A picture to be printed.
+
+    Attributes
+    ----------
+    name : str
+        Of the file it was read from.
+    content : bytes
+        PNG or JPEG, upright, 8 bits a channel, RGB or RGBA.
+    size : (width, height) int, pixels
+
+    Raises
+    ------
+    TargetError
+        Too many bytes for a project to keep, or no pixels.
+    """
+
+    name: str
+    content: bytes
+    size: tuple[int, int]
+
+    def __post_init__(self) -> None:
+        if len(self.content) > LARGEST_PICTURE or min(self.size) < 1:
+            megabytes, limit = len(self.content) / 2**20, LARGEST_PICTURE // 2**20
+            raise TargetError("artwork.picture_too_large", name=self.name, megabytes=megabytes, limit=limit)
+
+    @property
+    def is_jpeg(self) -> bool:
+        """Whether its bytes are a JPEG's; they are a PNG's else."""
+        return self.content.startswith(b"\xff\xd8")
+
+    @property
+    def extension(self) -> str:
+        """Of a file with these bytes, with the dot."""
+        return ".jpg" if self.is_jpeg else ".png"
+
+    @property
+    def image(self) -> Image.Image:
+        """Its pixels as RGBA, not to be written to."""
+        return _decoded(self.content)
+
+
+@lru_cache(maxsize=2)
+def _decoded(content: bytes) -> Image.Image:
+    with Image.open(io.BytesIO(content)) as image:
+        return image.convert("RGBA")
+
+
+def read_picture(path: str | Path, draw_svg: DrawSvg | None = None) -> ArtPicture:
+    """Read a picture file for printing.
+
+    Parameters
+    ----------
+    path : str or Path
+        PNG, JPEG, BMP, TIFF, WebP or SVG, any colour mode, at most 100 million pixels.  Pictures of more than
+        24 million pixels are averaged down to that.
+    draw_svg : callable, optional
+        Draws SVG documents; they are refused without.
+
+    Raises
+    ------
+    TargetError
+        No such file, no picture, a damaged one, or far too large.
+    """
+    path = Path(path)
+    content = read_bytes(path, MOST_MEGABYTES)
+    if path.suffix.lower() == ".svg":
+        if draw_svg is None:
+            raise TargetError("artwork.no_svg_here", name=path.name)
+        with decoding(path, "artwork.picture_damaged"):
+            checked_svg(content)
+            content = draw_svg(content, SVG_SIDE)
+    with decoding(path, "artwork.picture_damaged"):
+        return picture_of(path.name, content)
+
+
+def picture_of(name: str, content: bytes) -> ArtPicture:
+    """The picture that the bytes of a file hold; bytes that can be printed as they are stay the same.
+
+    Parameters
+    ----------
+    name : str
+        Of the file.
+    content : bytes
+        PNG, JPEG, BMP, TIFF or WebP.
+
+    Raises
+    ------
+    TargetError
+        Too many pixels.
+    Exception
+        Whatever Pillow raises on damaged files.
+    """
+    with warnings.catch_warnings():
+        # Pillow warns from 89 Mpixel on; the limit here is the sentence below.
+        warnings.simplefilter("ignore", Image.DecompressionBombWarning)
+        try:
+            opened = Image.open(io.BytesIO(content), formats=FORMATS)
+        except Image.DecompressionBombError:
+            raise TargetError("image.far_too_many_pixels") from None
+        except UnidentifiedImageError:
+            # Pillow's own words name the object in memory and not the file.
+            raise ValueError("it does not begin like one") from None
+        width, height = opened.size
+        if width * height > MOST_PIXELS:
+            raise TargetError("image.too_many_pixels", width=width, height=height, limit=MOST_PIXELS // 10**6)
+        opened.load()
+    upright = ImageOps.exif_transpose(opened)
+    image = _eight_bits(upright)
+    reduction = math.ceil(math.sqrt(width * height / KEPT_PIXELS))
+    if reduction > 1:
+        image = image.reduce(reduction)
+    plain = opened.format in ("PNG", "JPEG") and upright.size == opened.size and opened.mode == image.mode
+    if plain and reduction == 1 and opened.getexif().get(ORIENTATION, 1) == 1:
+        return ArtPicture(name, content, image.size)
+    profile = opened.info.get("icc_profile") if opened.mode.startswith("RGB") else None
+    return ArtPicture(name, _encoded(image, opened.format == "JPEG", profile), image.size)
+
+
+def _eight_bits(image: Image.Image) -> Image.Image:
+    """RGB, or RGBA where something is transparent; 16- and 32-bit greys from their darkest to their lightest."""
+    if image.mode.startswith(("I", "F")):
+        grey = np.asarray(image, dtype=np.float64)
+        low, high = float(grey.min()), float(grey.max())
+        if image.mode.startswith("I;16"):
+            low, high = 0.0, 65535.0
+        return Image.fromarray(np.uint8(np.round(255.0 * (grey - low) / max(high - low, 1e-12)))).convert("RGB")
+    return image.convert("RGBA" if image.has_transparency_data else "RGB")
+
+
+def _encoded(image: Image.Image, photo: bool, profile: bytes | None) -> bytes:
+    """As PNG, or as JPEG where it was one or would be large and has no transparency; with its colour profile."""
+    stream = io.BytesIO()
+    if not photo:
+        image.save(stream, format="PNG", icc_profile=profile)
+        if stream.tell() <= LARGEST_PNG or image.mode == "RGBA":
+            return stream.getvalue()
+        stream = io.BytesIO()
+    image.save(stream, format="JPEG", quality=JPEG_QUALITY, subsampling=0, icc_profile=profile)
+    return stream.getvalue()

@@ -1,0 +1,152 @@
+"""The two states that a design runs between: what its sheet starts as while it is flat, and what it opens into."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+
+from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.evaluate.opened_size import opened_size
+from kirigami_studio.foundation.arrays import FloatArray
+from kirigami_studio.foundation.words import tr
+from kirigami_studio.gui.session import Entry
+from kirigami_studio.lattice.laying import start_match
+from kirigami_studio.lattice.sheet import RimPath, Sheet
+from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.outlines.starts import RECTANGLE, StartShape
+
+#: Starts that are no silhouettes, by what their names begin with.
+START_NAMES = {
+    "rectangle": tr("rectangle"),
+    "square": tr("square"),
+    "circle": tr("circle"),
+    "ellipse": tr("ellipse"),
+    "triangle": tr("triangle"),
+    "hexagon": tr("hexagon"),
+    "polygon": tr("polygon"),
+}
+
+
+def start_words(name: str) -> str:
+    """A start's name as people read it: "ellipse 3:2" for "ellipse:3:2"."""
+    kind, _, numbers = name.partition(":")
+    return f"{START_NAMES[kind]} {numbers}".strip() if kind in START_NAMES else name
+
+
+def start_of(candidate: Candidate) -> str:
+    """What a design starts as, in words; a design keeps its own start, whatever the settings say now."""
+    sheet, name = candidate.sheet, dict(candidate.made_with).get("start", "")
+    if name:
+        return start_words(name)
+    return start_words(RECTANGLE.name) if sheet.start is None else tr("own shape")
+
+
+@lru_cache(maxsize=1024)
+def match_of_start(sheet: Sheet) -> float:
+    """IoU of a flat sheet with its start outline, kept: shown with every card."""
+    return start_match(sheet)
+
+
+def start_outline(start: StartShape, grid: tuple[int, int]) -> FloatArray:
+    """Outline of a start (P, 2), y up, of any size; a plain rectangle has as many square cells as its grid."""
+    if start.outline is not None:
+        return start.outline.points
+    rows, columns = grid
+    width = (columns + 1) / (rows + 1) if start.aspect is None else start.aspect
+    return np.array([(0.0, 0.0), (width, 0.0), (width, 1.0), (0.0, 1.0)])
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class State:
+    """One end of the motion.
+
+    Attributes
+    ----------
+    name : str
+        Of the start, or of the target.
+    outline : (P, 2) float
+        What the sheet is to look like, y up, of any size.
+    size_mm : (width, height) float, mm
+        Of the flat sheet; of the target as the opened sheet shows it.
+    match : float, 0..1, or None
+        IoU of the sheet with that outline; None where the sheet is trimmed: its edge is cut off.
+    """
+
+    name: str
+    outline: FloatArray
+    size_mm: tuple[float, float]
+    match: float | None
+
+    @property
+    def size_text(self) -> str:
+        """Width and height in mm."""
+        width, height = self.size_mm
+        return tr("{width:.4g} \N{MULTIPLICATION SIGN} {height:.4g} mm", width=width, height=height)
+
+    def texts(self) -> tuple[str, ...]:
+        """What is known of it, longest text first."""
+        if self.match is None:
+            return (
+                tr("{name}  ·  {size}  ·  trimmed", name=self.name, size=self.size_text),
+                tr("{name}  ·  {size}", name=self.name, size=self.size_text),
+                self.name,
+            )
+        percent = 100.0 * self.match
+        return (
+            tr("{name}  ·  {size}  ·  match {percent:.1f} %", name=self.name, size=self.size_text, percent=percent),
+            tr("{name}  ·  {size}  ·  {percent:.1f} %", name=self.name, size=self.size_text, percent=percent),
+            tr("{name}  ·  {percent:.1f} %", name=self.name, percent=percent),
+            self.name,
+        )
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class TwoStates:
+    """Both ends of a design's motion: the flat sheet, and the sheet at the target angle.
+
+    Attributes
+    ----------
+    start, target : State
+    phi : float, radians
+        The target angle.
+    """
+
+    start: State
+    target: State
+    phi: float
+
+    @classmethod
+    def of(cls, entry: Entry, target: Outline, width_mm: float) -> TwoStates:
+        """Those of a design whose flat sheet is ``width_mm`` wide."""
+        candidate, deployment = entry.candidate, entry.design.deployment
+        sheet, trim = candidate.final_sheet, candidate.trim
+        outline = RimPath(*sheet.grid, sheet.start, sheet.cell).outline()
+        across, up = np.ptp(deployment.compact, axis=0).tolist()
+        flat = (width_mm, up * width_mm / across)
+        opened = opened_size(deployment, entry.design.pose, target, width_mm).opened
+        return cls(
+            State(start_of(candidate), outline, flat, match_of_start(sheet) if trim is None else None),
+            State(target.name, target.points, opened, candidate.score.iou_exact if trim is None else trim.iou),
+            candidate.final_phi,
+        )
+
+    def lines(self) -> tuple[str, str]:
+        """Both in sentences, for tooltips."""
+        start, target = self.start, self.target
+        names = {"name": start.name, "size": start.size_text}
+        flat = (
+            tr("Flat: {name}, {size}; its edge is trimmed", **names)
+            if start.match is None
+            else tr("Flat: {name}, {size}; match {percent:.2f} %", percent=100.0 * start.match, **names)
+        )
+        opened = tr(
+            "Open at {phi:.0f}°: {name}, {size}; match {percent:.2f} %",
+            phi=math.degrees(self.phi),
+            name=target.name,
+            size=target.size_text,
+            percent=100.0 * (target.match or 0.0),
+        )
+        return flat, opened

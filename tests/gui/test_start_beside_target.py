@@ -1,0 +1,204 @@
+"""The start beside the target: its tile, the board it is drawn on, and the two ends that the slider runs between."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+import shapely
+from PySide6.QtCore import QMimeData, QPointF, Qt, QUrl
+from PySide6.QtGui import QDropEvent
+from PySide6.QtTest import QTest
+
+from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.evaluate.score import evaluate
+from kirigami_studio.gui.designs.two_states import start_words
+from kirigami_studio.gui.dialogs.start_board import StartBoard
+from kirigami_studio.gui.look.readable import TIMES
+from kirigami_studio.gui.main_window import MainWindow
+from kirigami_studio.gui.messages import Tone
+from kirigami_studio.gui.sketching.sketch_context import Change
+from kirigami_studio.gui.views.gallery_model import START_ROLE
+from kirigami_studio.gui.views.target_view import Tool
+from kirigami_studio.lattice.deployment import deploy
+from kirigami_studio.outlines import silhouettes
+from kirigami_studio.outlines.placed import Placed
+from kirigami_studio.outlines.starts import RECTANGLE, start_shape
+from kirigami_studio.polish.flat_sheet import uniform_sheet
+from kirigami_studio.project import edits
+from kirigami_studio.project.document import Document
+
+Until = Callable[[Callable[[], bool]], None]
+HOLLOW = [(-40.0, -30.0), (40.0, -30.0), (40.0, 30.0), (0.0, 0.0), (-40.0, 30.0)]
+HOUSE = [(-40.0, -30.0), (40.0, -30.0), (40.0, 30.0), (0.0, 50.0), (-40.0, 30.0)]
+
+
+def draw(board: StartBoard, ring: list[tuple[float, float]]) -> None:
+    """Draw a polygon as its tool does once it is closed."""
+    board.view.context.changed.emit(Change("Draw polygon", lambda: Placed.from_ring(ring, "polygon")))
+
+
+def drop(window: MainWindow, path: Path) -> None:
+    """Let a file fall on the tile."""
+    content = QMimeData()
+    content.setUrls([QUrl.fromLocalFile(str(path))])
+    left, none = Qt.MouseButton.LeftButton, Qt.KeyboardModifier.NoModifier
+    window.target.start.dropEvent(QDropEvent(QPointF(20, 20), Qt.DropAction.CopyAction, content, left, none))
+
+
+@pytest.fixture(scope="module")
+def of_two_starts() -> Document:
+    """Uniform sheets of 5 x 6 voids for the heart: one of a circle, one of a rectangle; the settings say hexagon."""
+    target, found = silhouettes.load("heart"), []
+    for number, name in enumerate(("circle", "rectangle")):
+        sheet = uniform_sheet((5, 6), start_shape(name))
+        run = () if name == "rectangle" else (("start", name),)
+        found.append(Candidate(sheet, evaluate(deploy(sheet), target, 0.0), 0, number, made_with=run))
+    begun = edits.set_target(Document(), target).document
+    document = edits.set_candidates(begun, found, {}).document
+    return edits.set_settings(replace(document, chosen=0), start=start_shape("hexagon")).document
+
+
+def test_that_the_tile_names_the_start_and_its_size_and_goes_back_in_one_click(window: MainWindow) -> None:
+    tile, controller = window.target.start, window.controller
+    assert tile.isVisible() and tile.name == "rectangle" and not tile.back.isVisible()
+    tile.entries["ellipse:3:2"].trigger()
+    assert controller.document.settings.start == start_shape("ellipse:3:2")
+    assert (tile.name, tile.size_text) == ("ellipse 3:2", f"100 {TIMES} 66.7 mm")
+    assert window.settings.start.currentText() == "Ellipse 3:2" and tile.back.isVisible()
+    controller.fabrication.change(width_mm=60.0)
+    assert tile.size_text == f"60 {TIMES} 40 mm" and f"60 {TIMES} 40 mm" in tile.accessibleName()
+    tile.back.click()
+    assert controller.document.settings.start == RECTANGLE and controller.history.undo_label == (
+        "Change the start outline"
+    )
+    window.commands["undo"].trigger()
+    assert tile.name == "ellipse 3:2"
+    tile.setFocus()
+    QTest.keyClick(tile, Qt.Key.Key_Delete)
+    assert tile.name == "rectangle" and not tile.back.isVisible()
+    window.settings.rows.setValue(9)
+    window.settings.columns.setValue(19)
+    assert tile.size_text == f"60 {TIMES} 30 mm"  # ten cells by twenty
+
+
+def test_that_the_tile_opens_its_list_by_mouse_and_keys_and_makes_room_for_the_board(window: MainWindow) -> None:
+    tile = window.target.start
+    tile.click()
+    assert tile.menu.isVisible()
+    tile.menu.close()
+    tile.setFocus()
+    QTest.keyClick(tile, Qt.Key.Key_Return)
+    assert tile.menu.isVisible() and not tile.entries["circle"].icon().isNull()
+    tile.menu.close()
+    window.target.set_editing(True)
+    assert not tile.isVisible()
+    window.target.set_editing(False)
+    assert tile.isVisible()
+
+
+def test_that_a_file_that_falls_on_the_tile_is_the_start_and_a_hollow_one_is_refused(
+    window: MainWindow, until: Until, tmp_path: Path
+) -> None:
+    drawn = tmp_path / "lens.svg"
+    text = '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 4 4"><path d="{}"/></svg>'
+    drawn.write_text(text.format("M0 0H4V4H3V1H0Z"), encoding="utf-8")
+    drop(window, drawn)
+    until(lambda: bool(window.messages.messages))
+    assert "'lens' is hollow" in window.messages.messages[-1].sentence
+    assert window.messages.messages[-1].tone is Tone.ERROR and window.target.start.name == "rectangle"
+    drawn.write_text(text.format("M0 0H4V2H0Z"), encoding="utf-8")
+    drop(window, drawn)
+    until(lambda: window.target.start.name == "lens")
+    assert window.target.start.size_text == f"100 {TIMES} 50 mm" and window.target.view.outline is None
+
+
+def test_that_a_start_is_drawn_on_its_own_board_which_says_where_it_is_hollow(window: MainWindow, until: Until) -> None:
+    window.target.start.entries["draw"].trigger()
+    board = window.dialogs.start_board
+    assert board is not None and board.isVisible() and not board.take.isEnabled()
+    assert board.view.tool is Tool.POLYGON and not board.tools.buttons[Tool.STAR].isVisible()
+    draw(board, HOLLOW)
+    assert not board.take.isEnabled()
+    assert "deepest at 50 % of its width from the left and 50 % of its height from below" in board.about.text()
+    (hollow,) = board.view.hollows
+    assert shapely.Polygon(hollow).area == pytest.approx(1.0 / 3.0)  # of the area of what was drawn
+    draw(board, HOUSE)
+    assert board.take.isEnabled() and board.view.hollows == ()
+    board.undo.click()
+    assert not board.take.isEnabled() and window.controller.history.steps == ()
+    board.redo.click()
+    board.take.click()
+    until(lambda: window.target.start.name == "polygon")
+    assert window.target.start.size_text == f"100 {TIMES} 100 mm" and not board.isVisible()
+    assert window.controller.history.steps == ("Change the start outline",)
+    assert window.controller.document.target is None  # the target's board is another one
+
+    window.settings.other_start_wanted.emit("draw")
+    assert board.placed is not None and len(board.placed.outline.points) == 5  # to go on from
+    board.cancel.click()
+    assert window.target.start.name == "polygon"
+    window.commands["undo"].trigger()
+    assert window.target.start.name == "rectangle"
+
+
+def test_that_the_ends_of_the_slider_name_both_states_with_size_and_match(
+    window: MainWindow, until: Until, of_two_starts: Document
+) -> None:
+    controller, ends = window.controller, window.stage.ends
+    assert not ends.isVisible()
+    window.resize(1600, 900)
+    controller.session.restart(of_two_starts, None)
+    until(lambda: controller.stage is not None)
+    assert controller.stage is not None and ends.isVisible()
+    deployment, score = controller.stage.design.deployment, controller.stage.candidate.score
+
+    flat = shapely.Polygon(deployment.compact[deployment.topology.outline_nodes])
+    disk = shapely.Point(flat.centroid).buffer(math.sqrt(flat.area / math.pi), quad_segs=720)
+    match = 100.0 * flat.intersection(disk).area / flat.union(disk).area
+    low_x, low_y, high_x, high_y = flat.bounds
+    height = 100.0 * (high_y - low_y) / (high_x - low_x)
+    assert ends.start.drawn_text() == f"circle  ·  100 {TIMES} {height:.4g} mm  ·  match {match:.1f} %"
+    opened = np.ptp(deployment.nodes(0.0), axis=0) * 100.0 / (high_x - low_x)
+    said = ends.target.accessibleName()
+    assert said.startswith("heart") and said.endswith(f"match {100 * score.iou_exact:.1f} %")
+    width_mm = float(said.split()[2])
+    assert width_mm == pytest.approx(opened[0], rel=0.15)  # the heart's, which an unfitted sheet is near to
+    assert "circle 9" in window.facts.text()
+
+    ends.start.click()
+    assert window.stage.deployment.slider.phi == math.pi
+    ends.target.click()
+    assert window.stage.deployment.slider.phi == 0.0
+    controller.fabrication.change(width_mm=50.0)
+    assert f"50 {TIMES} {0.5 * height:.4g} mm" in ends.start.accessibleName()
+
+
+def test_that_a_design_keeps_its_own_start_whatever_the_settings_say(
+    window: MainWindow, until: Until, of_two_starts: Document
+) -> None:
+    controller, model = window.controller, window.gallery.view.model_
+    controller.session.restart(of_two_starts, None)
+    until(lambda: controller.stage is not None)
+    assert window.target.start.name == "hexagon"  # of the next run
+    for place, name in enumerate(("circle", "rectangle")):
+        controller.choose(of_two_starts.candidates[place])
+        assert window.stage.ends.start.accessibleName().startswith(f"{name}  ·  ")
+        row = model.index(model.row_of(of_two_starts.candidates[place]), 0)
+        assert row.data(START_ROLE) == name
+        assert f"Flat: {name}, 100 {TIMES} " in row.data(Qt.ItemDataRole.ToolTipRole)
+    controller.session.restart(replace(of_two_starts, candidates=of_two_starts.candidates[:1], marks=()), None)
+    until(lambda: len(model.entries) == 1)
+    assert model.index(0, 0).data(START_ROLE) == ""  # nothing to tell apart
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [("ellipse:3:2", "ellipse 3:2"), ("polygon:5", "polygon 5"), ("egg", "egg")],
+)
+def test_that_names_of_starts_are_words(name: str, words: str) -> None:
+    assert start_words(name) == words

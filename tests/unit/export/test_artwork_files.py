@@ -1,0 +1,155 @@
+"""SVG, PDF and PNG of a printed sheet: in register with the cut file, at true size, and what they say."""
+
+from __future__ import annotations
+
+import base64
+import io
+import re
+from dataclasses import replace
+from pathlib import Path
+from xml.etree import ElementTree
+
+import numpy as np
+import pypdf
+import pytest
+from PIL import Image
+
+from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.evaluate.score import evaluate
+from kirigami_studio.export.artwork import Artwork, Laid, State
+from kirigami_studio.export.artwork_files import ArtworkJob, write_artwork
+from kirigami_studio.export.artwork_picture import ArtPicture, picture_of
+from kirigami_studio.export.exporter import ExportJob
+from kirigami_studio.export.profile import find_profile
+from kirigami_studio.export.svg import write_cut_svg
+from kirigami_studio.fabricate.cut_plan import plan_cuts
+from kirigami_studio.fabricate.options import CutOptions
+from kirigami_studio.foundation.errors import ExportError
+from kirigami_studio.lattice.deployment import deploy
+from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.lattice.sheet import Sheet
+from kirigami_studio.outlines import silhouettes
+
+SVG = "{http://www.w3.org/2000/svg}"
+
+
+@pytest.fixture(scope="module")
+def picture() -> ArtPicture:
+    """Four coloured quarters: red, green over blue, white."""
+    quarters = np.array([[(255, 0, 0), (0, 255, 0)], [(0, 0, 255), (255, 255, 255)]], dtype=np.uint8)
+    stream = io.BytesIO()
+    Image.fromarray(np.repeat(np.repeat(quarters, 60, axis=0), 60, axis=1)).save(stream, format="PNG")
+    return picture_of("quarters.png", stream.getvalue())
+
+
+@pytest.fixture(scope="module")
+def job() -> ExportJob:
+    field = RatioField.from_log10(np.random.default_rng(2).uniform(-0.2, 0.2, (3, 4)))
+    heart, deployment = silhouettes.load("heart"), deploy(field)
+    candidate = Candidate(Sheet(field), evaluate(deployment, heart, 0.0), 0, 0)
+    return ExportJob.of(candidate, heart.points, plan_cuts(deployment, width_mm=50.0))
+
+
+def view_box(path: Path) -> list[float]:
+    return [float(number) for number in ElementTree.parse(path).getroot().get("viewBox", "").split()]
+
+
+@pytest.mark.parametrize("profile", ["any", "slots"])
+@pytest.mark.parametrize("copies", [1, 3])
+def test_that_the_print_has_the_frame_of_the_cut_file(
+    profile: str, copies: int, picture: ArtPicture, job: ExportJob, tmp_path: Path
+) -> None:
+    plan = plan_cuts(job.deployment, width_mm=50.0, options=CutOptions(copies=copies))
+    job = replace(job, plan=plan, profile=profile)
+    write_cut_svg(plan, tmp_path / "cut.svg", find_profile(profile))
+    artwork = Artwork(Laid(picture))
+    svg, pdf, png, _ = write_artwork(ArtworkJob(artwork, job, 100.0, margin_mm=0.0), tmp_path / "bare")
+    frame = view_box(tmp_path / "cut.svg")
+    assert view_box(svg) == frame
+    assert ElementTree.parse(svg).getroot().get("width") == ElementTree.parse(tmp_path / "cut.svg").getroot().get(
+        "width"
+    )
+    page = pypdf.PdfReader(pdf).pages[0].mediabox
+    assert [float(page.width) * 25.4 / 72.0, float(page.height) * 25.4 / 72.0] == pytest.approx(frame[2:], abs=1e-3)
+    with Image.open(png) as image:
+        assert np.array(image.size) == pytest.approx(np.array(frame[2:]) / 25.4 * 100.0, abs=1.0)
+        assert image.info["dpi"][0] == pytest.approx(100.0, abs=0.02)
+    svg = write_artwork(ArtworkJob(artwork, job, 100.0, margin_mm=8.0), tmp_path / "margin")[0]
+    assert view_box(svg) == pytest.approx([-8.0, -8.0, frame[2] + 16.0, frame[3] + 16.0])
+
+
+def test_that_the_svg_shows_what_the_bitmap_shows(picture: ArtPicture, job: ExportJob, tmp_path: Path) -> None:
+    work = ArtworkJob(Artwork(Laid(picture, State.TARGET)), job, 254.0, margin_mm=5.0)
+    svg, _, png, _ = write_artwork(work, tmp_path)
+    root = ElementTree.parse(svg).getroot()
+    (image,) = root.iter(f"{SVG}image")
+    content = image.get("{http://www.w3.org/1999/xlink}href", "").split(",")[1]
+    assert base64.b64decode(content) == picture.content
+    with Image.open(png) as opened:
+        pixels = np.asarray(opened.convert("RGB"), dtype=int)
+    left, top, _, _ = view_box(svg)
+    source = np.asarray(picture.image.convert("RGB"), dtype=int)
+    uses = [use.get("transform", "") for use in root.iter(f"{SVG}use")]
+    paths = [path.get("d", "") for path in root.iter(f"{SVG}path") if path.get("clip-rule")]
+    assert len(uses) == len(paths) == 4 * 5
+    agreeing = 0
+    for words, data in zip(uses, paths, strict=True):
+        a, b, c, d, e, f = (float(number) for number in re.findall(r"-?\d+\.\d+", words))
+        ring = np.array(
+            [[float(number) for number in pair.split(",")] for pair in re.findall(r"[-\d.]+,[-\d.]+", data)]
+        )
+        place = ring.mean(axis=0)
+        u, v = np.linalg.solve([[a, c], [b, d]], place - (e, f))
+        meant = source[int(v), int(u)]
+        x, y = ((place - (left, top)) * 10.0).astype(int)
+        agreeing += bool(np.abs(pixels[y, x] - meant).max() < 30)
+    assert agreeing >= 17  # the middle of a panel may lie on an edge of the picture's squares
+
+
+def test_that_the_opened_sheet_shows_the_picture_as_it_was(picture: ArtPicture, job: ExportJob, tmp_path: Path) -> None:
+    opened = write_artwork(ArtworkJob(Artwork(Laid(picture)), job), tmp_path)[3]
+    with Image.open(opened) as image:
+        colours = np.asarray(image, dtype=int)
+    height, width, _ = colours.shape
+    for x, y, meant in ((0.35, 0.35, (255, 0, 0)), (0.65, 0.35, (0, 255, 0)), (0.35, 0.6, (0, 0, 255))):
+        area = colours[
+            int((y - 0.02) * height) : int((y + 0.02) * height), int((x - 0.02) * width) : int((x + 0.02) * width)
+        ]
+        assert np.median(area.reshape(-1, 3), axis=0).tolist() == list(meant)
+
+
+def test_that_marks_point_at_the_corners_of_the_frame(picture: ArtPicture, job: ExportJob) -> None:
+    work = ArtworkJob(Artwork(Laid(picture)), job, bleed_mm=1.0, margin_mm=6.0)
+    width, height = work.frame_mm
+    assert len(work.marks) == 8
+    for start, end in work.marks.tolist():
+        along = np.array(end) - start
+        corner = np.array([round(start[0] / width) * width, round(start[1] / height) * height])
+        reach = np.array(start) - corner
+        assert abs(along[0] * reach[1] - along[1] * reach[0]) < 1e-9
+        assert np.linalg.norm(reach) == pytest.approx(2.0)
+        assert np.linalg.norm(np.array(end) - corner) == pytest.approx(6.0)
+    assert len(ArtworkJob(Artwork(Laid(picture)), job, bleed_mm=1.0, margin_mm=2.0).marks) == 0
+
+
+def test_that_the_same_picture_gives_the_same_bytes_and_names_its_design(
+    picture: ArtPicture, job: ExportJob, tmp_path: Path
+) -> None:
+    work = ArtworkJob(Artwork(Laid(picture)), job, 100.0)
+    first, second = (write_artwork(work, tmp_path / name) for name in ("one", "two"))
+    assert [path.read_bytes() for path in first] == [path.read_bytes() for path in second]
+    assert job.required_plan.design_hash.encode() in first[0].read_bytes()
+    with Image.open(first[2]) as image:
+        assert image.info["DESIGN"] == job.required_plan.design_hash
+
+
+def test_that_too_many_pixels_and_odd_margins_are_refused_before_anything_is_written(
+    picture: ArtPicture, job: ExportJob, tmp_path: Path
+) -> None:
+    with pytest.raises(ExportError) as caught:
+        write_artwork(ArtworkJob(Artwork(Laid(picture)), job, 20000.0), tmp_path / "none")
+    assert caught.value.code == "artwork.too_many_pixels"
+    assert not (tmp_path / "none").exists()
+    with pytest.raises(ExportError) as caught:
+        ArtworkJob(Artwork(Laid(picture)), job, margin_mm=-1.0)
+    assert caught.value.code == "artwork.impossible_margin"
