@@ -10,6 +10,7 @@ import math
 import tempfile
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from itertools import product
 from pathlib import Path
 
 from kirigami_studio.evaluate.candidate import Candidate
@@ -27,7 +28,7 @@ from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.pipeline.request import POLISH_STEPS, Request
 from kirigami_studio.pipeline.run import best_of
 from kirigami_studio.project.as_cut import simulate
-from kirigami_studio.project.cutting import least_feature_mm, plan_of
+from kirigami_studio.project.cutting import least_feature_mm, plan_of, room_mm
 from kirigami_studio.project.settings import FabricationSettings
 
 #: A connector counts as narrower than asked for from here on (mm); files hold a tenth of it.
@@ -130,7 +131,7 @@ def measure_as_cut(
     seed: int = 0,
     report: Report = lambda done, total: None,
 ) -> AsCutFigures:
-    """Design every target as ``design`` does, untrimmed in the usual material, and cut it with every width.
+    """Design every target for every width as ``design`` does, untrimmed in the usual material, and cut it.
 
     Parameters
     ----------
@@ -144,25 +145,23 @@ def measure_as_cut(
     report : callable
         Gets the sheets done and their number.
     """
-    usual = FabricationSettings()
     sheets: list[SheetAsCut] = []
     refused: list[str] = []
     total = len(targets) * len(connectors_mm)
     with tempfile.TemporaryDirectory() as folder:
-        for target in targets:
+        for target, width in product(targets, connectors_mm):
+            settings = FabricationSettings(connector_mm=width, options=CutOptions(style=style))
             best = best_of(
                 Request(
-                    target=target, grid=grid, k=k, seed=seed, polish=POLISH_STEPS, width_mm=usual.width_mm,
-                    least_feature_mm=least_feature_mm(usual),
+                    target=target, grid=grid, k=k, seed=seed, polish=POLISH_STEPS, width_mm=settings.width_mm,
+                    least_feature_mm=least_feature_mm(settings), room_mm=room_mm(settings),
                 )
             ).best  # fmt: skip
-            for width in connectors_mm:
-                settings = FabricationSettings(connector_mm=width, options=CutOptions(style=style))
-                try:
-                    sheets.append(cut_sheet(target, best, settings, width, Path(folder) / "cut.dxf"))
-                except KirigamiError as error:
-                    refused.append(f"{target.name} at {width:g} mm: {error}")
-                report(len(sheets) + len(refused), total)
+            try:
+                sheets.append(cut_sheet(target, best, settings, width, Path(folder) / "cut.dxf"))
+            except KirigamiError as error:
+                refused.append(f"{target.name} at {width:g} mm: {error}")
+            report(len(sheets) + len(refused), total)
     return AsCutFigures(tuple(sheets), tuple(refused))
 
 

@@ -37,7 +37,7 @@ from kirigami_studio.pipeline.run import run, with_grid
 from kirigami_studio.pipeline.variety import look_alikes
 from kirigami_studio.polish.flat_sheet import width_in_cells
 from kirigami_studio.project.as_cut import jam_angles
-from kirigami_studio.project.cutting import least_feature_mm, material_for
+from kirigami_studio.project.cutting import least_feature_mm, material_for, room_mm
 from kirigami_studio.project.design_facts import design_facts, with_run
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.settings import DesignSettings, FabricationSettings
@@ -83,6 +83,7 @@ def design(arguments: argparse.Namespace) -> int:
                 regular=regular,
                 width_mm=fabrication.width_mm,
                 least_feature_mm=max(least_feature_mm(fabrication), arguments.least_panel_mm),
+                room_mm=room_mm(fabrication),
                 start=start,
                 second=second,
             ),

@@ -36,7 +36,7 @@ from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.pipeline.coarser import coarser_designs
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.project.as_cut import simulated
-from kirigami_studio.project.cutting import least_feature_mm, plan_of
+from kirigami_studio.project.cutting import least_feature_mm, plan_of, room_mm
 from kirigami_studio.project.design_facts import design_facts
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.fixes import Advice, find_fixes
@@ -178,6 +178,7 @@ def _advice(document: Document, settings: FabricationSettings, verdict: Verdict)
             regular=wishes.regular,
             width_mm=settings.width_mm,
             least_feature_mm=least_feature_mm(settings),
+            room_mm=room_mm(settings),
             start=wishes.start,
             second=wishes.second,
         )

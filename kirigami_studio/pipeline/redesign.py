@@ -199,6 +199,7 @@ def refitted(
     free_rim: bool = False,
     width_mm: float = 100.0,
     least_feature_mm: float = 0.0,
+    room_mm: float = 0.0,
 ) -> Refit:
     """Fit a candidate on the exact geometry from its present sheet, and trim it again if it is trimmed.
 
@@ -222,6 +223,8 @@ def refitted(
         Whether the mouths may move.
     width_mm, least_feature_mm : float
         Width of the flat sheet, and the least panel edge and neck that the material allows, 0 where that is not known.
+    room_mm : float
+        Panel edge and neck that leaves connectors their full width.
 
     Raises
     ------
@@ -234,7 +237,7 @@ def refitted(
     ratios = np.where(table, candidate.final_sheet.field.ratio, candidate.sheet.field.ratio)
     start = candidate.sheet.with_field(RatioField(ratios))
     score, preference = candidate.score, PREFERENCES[prefer]
-    least = least_in_cells(least_feature_mm, width_mm, score.evenness.width)
+    least = max(least_in_cells(size, width_mm, score.evenness.width) for size in (least_feature_mm, room_mm))
     with one_blas_thread():
         fit = polish(
             start,

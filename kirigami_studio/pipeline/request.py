@@ -88,6 +88,8 @@ class Request:
         Width of the flat sheet.
     least_feature_mm : float, >= 0
         Least panel edge and neck, between centre lines of cuts, that the material allows; 0 where that is not known.
+    room_mm : float, >= 0
+        Panel edge and neck that fits leave, so that connectors have their full width; smaller ones can still be cut.
     grid_chosen : bool
         Whether the run chose the grid.
     guided : int, 0..64
@@ -120,6 +122,7 @@ class Request:
     regular: float = 0.5
     width_mm: float = 100.0
     least_feature_mm: float = 0.0
+    room_mm: float = 0.0
     grid_chosen: bool = False
     guided: int = GUIDED_STARTS
     start: StartShape = RECTANGLE
@@ -150,8 +153,9 @@ class Request:
             raise UsageError("request.regular_out_of_range", regular=self.regular)
         if not _is_number(self.width_mm) or not 0.0 < self.width_mm < math.inf:
             raise UsageError("request.width_not_positive", width_mm=self.width_mm)
-        if not _is_number(self.least_feature_mm) or not 0.0 <= self.least_feature_mm < math.inf:
-            raise UsageError("request.least_feature_out_of_range", least_mm=self.least_feature_mm)
+        for size in (self.least_feature_mm, self.room_mm):
+            if not _is_number(size) or not 0.0 <= size < math.inf:
+                raise UsageError("request.least_feature_out_of_range", least_mm=size)
         if self.second is not None:
             self.second.check_on_the_way_to(self.phi)
         check_least(self.least_panel)
@@ -189,15 +193,17 @@ class Request:
 
     @property
     def kept_size(self) -> float:
-        """Edges and necks (unit cells) that fits do not fall below: ``least_panel``, or more if the material needs it.
+        """Edges and necks (unit cells) that fits do not fall below: ``least_panel``, or more if the material or its
+        connectors need it.
 
-        Where that is nearly a cell or more, no design can be cut, and only ``least_panel`` counts; so it does while the
-        grid is left to the run.
+        Where one of these is nearly a cell or more, no design has it, and it does not count; while the grid is left to
+        the run, only ``least_panel`` does.
         """
         if self.grid is None:
             return self.least_panel
         cells = width_in_cells(self.grid, self.start)
-        return max(self.least_panel, least_in_cells(self.least_feature_mm, self.width_mm, cells))
+        needed = (self.least_feature_mm, self.room_mm)
+        return max(self.least_panel, *(least_in_cells(size, self.width_mm, cells) for size in needed))
 
     @property
     def wishes(self) -> Wishes:

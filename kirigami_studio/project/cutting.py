@@ -72,6 +72,12 @@ def material_for(settings: FabricationSettings) -> Material:
     return find_material(settings.material)
 
 
+#: Edges and necks that fits leave to panels, in widths of their connectors.  Connectors on shorter edges get narrower
+#: or stretch: at 1 mm on sheets of 100 mm, designs of a heart, a butterfly and a gear cannot be cut without this room,
+#: and close with it.
+ROOM_IN_WIDTHS = 2.75
+
+
 def least_feature_mm(settings: FabricationSettings) -> float:
     """Least panel edge and neck, between centre lines of cuts, that the settings' material allows.
 
@@ -83,6 +89,20 @@ def least_feature_mm(settings: FabricationSettings) -> float:
     material = material_for(settings)
     kerf = material.kerf_mm if settings.kerf_mm is None else settings.kerf_mm
     return max(material.min_ligament_mm, material.min_panel_mm) + kerf
+
+
+def room_mm(settings: FabricationSettings) -> float:
+    """Panel edge and neck, between centre lines of cuts, that leaves connectors their full width.
+
+    Raises
+    ------
+    FabricationError
+        No such material.
+    """
+    material = material_for(settings)
+    kerf = material.kerf_mm if settings.kerf_mm is None else settings.kerf_mm
+    connector = material.connector_mm if settings.connector_mm is None else settings.connector_mm
+    return ROOM_IN_WIDTHS * connector + kerf
 
 
 def stored_material(settings: FabricationSettings) -> Material | None:

@@ -17,7 +17,7 @@ from kirigami_studio.evaluate.candidate import Candidate, Origin
 from kirigami_studio.foundation.errors import KirigamiError, UsageError
 from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.gui.designs.hand_editor import HandEditor
-from kirigami_studio.gui.jobs.design_jobs import Decoded, GridChosen, ModelFound, RunReport, generating, least_of
+from kirigami_studio.gui.jobs.design_jobs import Decoded, GridChosen, ModelFound, RunReport, generating, sizes_of
 from kirigami_studio.gui.jobs.queue import JobCallbacks, LatestJob
 from kirigami_studio.gui.messages import Message, Tone
 from kirigami_studio.gui.session import Entry, Session
@@ -28,7 +28,7 @@ from kirigami_studio.pipeline.request import Request, provenance
 from kirigami_studio.pipeline.variety import distinct
 from kirigami_studio.project import candidate_edits
 from kirigami_studio.project.candidate_edits import NewDesigns
-from kirigami_studio.project.cutting import least_feature_mm
+from kirigami_studio.project.cutting import least_feature_mm, room_mm
 from kirigami_studio.project.design_facts import with_run
 from kirigami_studio.project.document import Document, Mark
 from kirigami_studio.project.edits import Edit
@@ -284,7 +284,8 @@ def next_seed(document: Document) -> int:
 def ranking_of(document: Document, jam_phi: Mapping[Candidate, float] = MappingProxyType({})) -> Ranking:
     """What the document's settings, sheet and material put first, and where designs jam (radians) if that is known."""
     settings, cut = document.settings, document.fabrication
-    return Ranking(settings.regular, cut.width_mm, least_of(cut), jam_phi)
+    least_mm, _ = sizes_of(cut)
+    return Ranking(settings.regular, cut.width_mm, least_mm, jam_phi)
 
 
 def request_of(target: Outline, settings: DesignSettings, cut: FabricationSettings) -> Request:
@@ -313,6 +314,7 @@ def request_of(target: Outline, settings: DesignSettings, cut: FabricationSettin
         second=settings.second,
         width_mm=cut.width_mm,
         least_feature_mm=least_feature_mm(cut),
+        room_mm=room_mm(cut),
     )
 
 

@@ -160,6 +160,7 @@ def refitting(
     """Fit a candidate on the exact geometry from its present sheet, and trim it again if it is trimmed."""
     from kirigami_studio.pipeline.redesign import refitted
 
+    least_mm, room_mm = sizes_of(settings)
     refit = refitted(
         candidate,
         target,
@@ -170,7 +171,8 @@ def refitting(
         regular=wanted.regular,
         free_rim=wanted.rim == "free",
         width_mm=settings.width_mm,
-        least_feature_mm=least_of(settings),
+        least_feature_mm=least_mm,
+        room_mm=room_mm,
     )
     untrimmed = "" if refit.trim_problem is None else str(refit.trim_problem)
     yield Refitted(decoded(refit.candidate), refit.better, untrimmed)
@@ -193,21 +195,25 @@ def trimming(candidate: Candidate, target: Outline, settings: FabricationSetting
     from kirigami_studio.pipeline.redesign import trimmed
     from kirigami_studio.polish.panel_size import least_in_cells
 
-    least = least_in_cells(least_of(settings), settings.width_mm, candidate.score.evenness.width)
+    cells = candidate.score.evenness.width
+    least = max(least_in_cells(size, settings.width_mm, cells) for size in sizes_of(settings))
     found = trimmed(candidate, target, keep_for(candidate, settings), cancel, least_panel=least)
     if cancel():
         raise Cancelled("trim.stopped")
     yield decoded(found.candidate)
 
 
-def least_of(settings: FabricationSettings) -> float:
-    """Least panel edge and neck (mm) that the settings' material allows; 0 for a material that is not known here."""
-    from kirigami_studio.project.cutting import least_feature_mm
+def sizes_of(settings: FabricationSettings) -> tuple[float, float]:
+    """Panel edge and neck (mm) that the material allows at least, and that leaves connectors their full width.
+
+    Zeros for a material that is not known here.
+    """
+    from kirigami_studio.project.cutting import least_feature_mm, room_mm
 
     try:
-        return least_feature_mm(settings)
+        return least_feature_mm(settings), room_mm(settings)
     except KirigamiError:
-        return 0.0
+        return 0.0, 0.0
 
 
 def keep_for(candidate: Candidate, settings: FabricationSettings) -> float:

@@ -10,6 +10,7 @@ import pytest
 from kirigami_studio.evaluate.candidate import Origin
 from kirigami_studio.evaluate.evenness import evenness, panel_sizes
 from kirigami_studio.evaluate.siou import exact_iou
+from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.sheet import Rim, Sheet
@@ -17,13 +18,16 @@ from kirigami_studio.lattice.symmetry import Symmetry, symmetry_of
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.silhouettes import load
 from kirigami_studio.pipeline.rank import Ranking
-from kirigami_studio.pipeline.request import Request
+from kirigami_studio.pipeline.request import POLISH_STEPS, Request
+from kirigami_studio.pipeline.run import best_of
 from kirigami_studio.pipeline.tasks import GuidedTask, PolishTask, SearchTask, TrimTask, scored
 from kirigami_studio.polish.continuation import Way, Wishes, fit_from_uniform
 from kirigami_studio.polish.levenberg import polish
 from kirigami_studio.polish.objective import Stage
 from kirigami_studio.polish.panel_size import least_in_cells
 from kirigami_studio.polish.symmetry import shared_symmetries
+from kirigami_studio.project.cutting import plan_of, room_mm
+from kirigami_studio.project.settings import FabricationSettings
 
 
 def smallest(sheet: Sheet | RatioField) -> float:
@@ -129,6 +133,33 @@ def test_that_the_material_asks_for_a_size_in_cells() -> None:
     without_grid = Request(target, None, least_panel=0.3, width_mm=10.0, least_feature_mm=2.0)
     assert without_grid.kept_size == without_grid.wishes.least_panel == 0.3
     assert least_in_cells(1.0, 10.0, 4.0) == pytest.approx(0.4)
+
+
+def test_that_connectors_ask_for_room_beside_them() -> None:
+    target = load("heart")
+    room = Request(target, (10, 11), width_mm=120.0, least_feature_mm=1.0, room_mm=2.0)
+    assert room.kept_size == pytest.approx(0.2)
+    # Where no sheet has so much room, what the material needs is kept still.
+    assert Request(target, (10, 11), width_mm=120.0, least_feature_mm=1.0, room_mm=9.5).kept_size == pytest.approx(0.1)
+    for size in (-1.0, float("nan"), float("inf")):
+        with pytest.raises(UsageError) as caught:
+            Request(target, (10, 11), room_mm=size)
+        assert caught.value.code == "request.least_feature_out_of_range"
+    # A sheet of 100 mm in film, and wide connectors on it.
+    narrow, wide = FabricationSettings(connector_mm=0.2), FabricationSettings(connector_mm=1.0)
+    assert room_mm(narrow) == pytest.approx(0.57) and room_mm(wide) == pytest.approx(2.77)
+    assert room_mm(FabricationSettings(material="card-co2", kerf_mm=0.1)) == pytest.approx(2.85)
+
+
+def test_that_wide_connectors_keep_their_width_on_a_design_that_was_made_for_them() -> None:
+    settings = FabricationSettings(connector_mm=1.4, width_mm=60.0)
+    made = {}
+    for room in (0.0, room_mm(settings)):
+        wanted = Request(load("star"), (6, 6), k=2, polish=POLISH_STEPS, width_mm=settings.width_mm, room_mm=room)
+        made[room] = plan_of(best_of(wanted).best, settings)
+    without, with_room = made.values()
+    assert without.hinges.narrowed.size > 0
+    assert with_room.hinges.narrowed.size == 0
 
 
 def test_that_distinct_sizes_leave_out_edges_told_twice() -> None:
