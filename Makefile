@@ -14,7 +14,7 @@ unexport PYTHONDONTWRITEBYTECODE
 QUICK_TESTS := tests/architecture tests/property $(wildcard $(addprefix tests/unit/,foundation lattice evaluate fabricate project)) \
   --ignore=tests/unit/evaluate/test_siou.py
 
-.PHONY: help setup run test quick lint bench consumers demo states pictures shapes messages clean
+.PHONY: help setup run test quick lint bench consumers demo states pairs pictures shapes messages clean
 .DEFAULT_GOAL := help
 
 help:
@@ -27,6 +27,7 @@ help:
 	@echo "make consumers  check cut files with MeerK40t, installed in an environment of its own"
 	@echo "make demo    design a heart on the command line into out/heart"
 	@echo "make states  save pictures of every state of the window to out/states, at 200 % to out/states-200"
+	@echo "make pairs   make the bundled designs from one shape to another: resources/pairs"
 	@echo "make pictures  make the README's pictures with the program"
 	@echo "make shapes  make docs/pictures/shapes.png: three states of the first design for every library silhouette"
 	@echo "make messages  collect all sentences for translators in resources/locale"
@@ -86,10 +87,16 @@ states: setup
 	QT_QPA_PLATFORM=offscreen $(BIN)/python -m kirigami_studio.demonstrations.state_sheet --out out/states
 	QT_QPA_PLATFORM=offscreen $(BIN)/python -m kirigami_studio.demonstrations.state_sheet --out out/states-200 --scale 2
 
+pairs: setup
+	$(BIN)/python packaging/make_pairs.py
+
 pictures: setup
 	QT_QPA_PLATFORM=offscreen $(BIN)/python -m kirigami_studio.demonstrations.offscreen_session --out out/pictures
 	cp out/pictures/4-designs.png docs/pictures/window.png
 	$(BIN)/kirigami-studio animate resources/examples/heart.kiri --out docs/pictures/heart.gif
+	QT_QPA_PLATFORM=offscreen $(BIN)/python -m kirigami_studio.demonstrations.offscreen_session --pairs --scale 2 --out out/pictures
+	cp out/pictures/pairs.png docs/pictures/pairs.png
+	cp out/pictures/pairs-small.png resources/guide/pairs.png
 
 shapes: setup
 	@mkdir -p out

@@ -13,8 +13,9 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
-from PySide6.QtCore import QEvent, QEventLoop, QObject, QPoint, QPointF, Qt
-from PySide6.QtGui import QKeyEvent, QMouseEvent
+from PIL import Image
+from PySide6.QtCore import QEvent, QEventLoop, QObject, QPoint, QPointF, QRect, Qt
+from PySide6.QtGui import QImage, QKeyEvent, QMouseEvent
 from PySide6.QtWidgets import QApplication, QWidget
 
 from kirigami_studio.foundation.errors import KirigamiError
@@ -26,6 +27,8 @@ from kirigami_studio.gui.messages import Tone
 DESIGNS = 8
 #: Timeout of a step in seconds; the first run loads the generator.
 PATIENCE = 180.0
+#: Width of the guide's text, pixels.
+GUIDE_WIDTH = 620
 
 
 class SessionError(RuntimeError):
@@ -179,6 +182,38 @@ class Session:
         self.files.append(path)
 
 
+class PairPictures(Session):
+    """Pictures the bundled pairs for README and guide: the gallery that the window shows of them."""
+
+    def play(self) -> list[Path]:
+        """Save it as large as it is drawn, and as wide as the guide's text."""
+        self.window.commands["pairs"].trigger()
+        gallery = self.window.dialogs.pairs
+        if gallery is None:
+            raise SessionError("The examples did not open.")
+        self.until(lambda: gallery.complete, "the examples were not drawn")
+        gallery.list.clearSelection()
+        used = gallery.list.visualItemRect(gallery.list.item(gallery.list.count() - 1)).bottom()
+        picture = (
+            gallery.list.viewport()
+            .grab(QRect(0, 0, gallery.list.viewport().width(), used))
+            .toImage()
+            .convertToFormat(QImage.Format.Format_RGB888)
+        )
+        whole = Image.frombytes(
+            "RGB", (picture.width(), picture.height()), bytes(picture.constBits()), "raw", "RGB", picture.bytesPerLine()
+        )
+        small = whole.copy()
+        small.thumbnail((GUIDE_WIDTH, GUIDE_WIDTH), Image.Resampling.LANCZOS)
+        for name, image, colours in (("pairs", whole, 128), ("pairs-small", small, 128)):
+            path = self.out / f"{name}.png"
+            image.quantize(colours).save(path, optimize=True)
+            self.files.append(path)
+        self.window.dialogs.close()
+        self.window.close()
+        return self.files
+
+
 def click(widget: QWidget) -> None:
     """Press and release the left button on a widget's middle."""
     place = QPointF(QPoint(widget.width() // 2, widget.height() // 2))
@@ -216,6 +251,7 @@ def main(argv: list[str] | None = None, kind: type[Session] = Session) -> int:
     """Play the session, or another one made like it; 0 when every step succeeded."""
     parser = argparse.ArgumentParser(description="Play one studio session without a display.")
     parser.add_argument("--out", type=Path, default=Path("out"), help="folder for screenshots, DXF and project")
+    parser.add_argument("--pairs", action="store_true", help="picture the bundled pairs instead")
     parser.add_argument("--scale", type=float, default=1.0, help="device pixels per pixel, such as 2 (default 1)")
     chosen = parser.parse_args(argv)
     os.environ.setdefault("QT_QPA_PLATFORM", "offscreen")
@@ -224,7 +260,7 @@ def main(argv: list[str] | None = None, kind: type[Session] = Session) -> int:
     session: Session | None = None
     try:
         chosen.out.mkdir(parents=True, exist_ok=True)
-        session = kind(chosen.out)
+        session = PairPictures(chosen.out) if chosen.pairs else kind(chosen.out)
         files = session.play()
     except (SessionError, KirigamiError, OSError) as error:
         sys.stderr.write(f"The session failed: {error}\n")

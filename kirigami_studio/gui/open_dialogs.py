@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from kirigami_studio.gui.dialogs.help import GuideWindow, ShortcutSheet
     from kirigami_studio.gui.dialogs.history_list import HistoryList
     from kirigami_studio.gui.dialogs.material_editor import MaterialEditor
+    from kirigami_studio.gui.dialogs.pairs import PairGallery
     from kirigami_studio.gui.dialogs.silhouette_picker import SilhouettePicker
     from kirigami_studio.gui.dialogs.start_board import StartBoard
     from kirigami_studio.gui.main_window import MainWindow
@@ -38,6 +39,7 @@ class Dialogs(QObject):
         self.history: HistoryList | None = None
         self.shortcuts: ShortcutSheet | None = None
         self.start_board: StartBoard | None = None
+        self.pairs: PairGallery | None = None
 
     def show_materials(self) -> None:
         """Open the material editor, or bring it to the front."""
@@ -109,9 +111,20 @@ class Dialogs(QObject):
         self.start_board.begin(self._controller.document.settings.start)
         bring_to_front(self.start_board)
 
+    def show_pairs(self) -> None:
+        """Open the gallery of pairs, or bring it to the front."""
+        from kirigami_studio.gui.dialogs.pairs import PairGallery
+
+        if self.pairs is None:
+            self.pairs = PairGallery(self._window, self._controller.queue)
+            self.pairs.chosen.connect(self._window.files.open_pair)
+        self._colour(self.pairs)
+        self.pairs.read()
+        bring_to_front(self.pairs)
+
     def _colour(self, dialog: QWidget) -> None:
         """Give the parts of a new dialog the colours of the theme."""
-        for part in theme.themed(dialog.findChildren(QWidget)):
+        for part in theme.themed((dialog, *dialog.findChildren(QWidget))):
             part.set_palette(self._window.palette_)
 
     def _pick_silhouette(self, take: Callable[[str], None], below: QWidget) -> None:
@@ -142,7 +155,7 @@ class Dialogs(QObject):
     def close(self) -> None:
         """The window is closing, and its dialogs with it."""
         self.close_report()
-        for dialog in (self.materials, self.guide, self.history, self.shortcuts, self.start_board):
+        for dialog in (self.materials, self.guide, self.history, self.shortcuts, self.start_board, self.pairs):
             if dialog is not None:
                 dialog.close()
 

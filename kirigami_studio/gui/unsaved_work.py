@@ -44,6 +44,10 @@ SAMPLE = Replacement(
     tr("This project has unsaved changes. Save before you open the sample project?"),
     tr("Open the sample project without saving"),
 )
+PAIR = Replacement(
+    tr("This project has unsaved changes. Save before you open an example?"),
+    tr("Open the example without saving"),
+)
 RECOVERED = Replacement(
     tr("This project has unsaved changes. Save before you recover another project?"),
     tr("Recover another project without saving"),

@@ -16,6 +16,7 @@ from PySide6.QtTest import QTest
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.score import evaluate
+from kirigami_studio.gui.designs.generation import own_start
 from kirigami_studio.gui.designs.two_states import start_words
 from kirigami_studio.gui.dialogs.start_board import StartBoard
 from kirigami_studio.gui.look.readable import TIMES
@@ -194,6 +195,23 @@ def test_that_a_design_keeps_its_own_start_whatever_the_settings_say(
     controller.session.restart(replace(of_two_starts, candidates=of_two_starts.candidates[:1], marks=()), None)
     until(lambda: len(model.entries) == 1)
     assert model.index(0, 0).data(START_ROLE) == ""  # nothing to tell apart
+
+
+@pytest.mark.parametrize("name", ["circle", "rectangle", "rectangle:2:1", "hexagon"])
+def test_that_designs_like_another_start_as_that_one(name: str) -> None:
+    """They lie near its sheet, so that the settings' start would be a wrong name for theirs."""
+    target, start = silhouettes.load("heart"), start_shape(name)
+    sheet = uniform_sheet((5, 6), start)
+    candidate = Candidate(sheet, evaluate(deploy(sheet), target, 0.0), 0, 0, made_with=(("start", name),))
+    assert own_start(candidate, start) is start
+    other = own_start(candidate, start_shape("triangle"))
+    assert other.name == name
+    again = uniform_sheet((5, 6), other)
+    assert again.cell == pytest.approx(sheet.cell)
+    assert (again.start is None) == (sheet.start is None)
+    if sheet.start is not None and again.start is not None:
+        one, two = (shapely.Polygon(points - points.mean(axis=0)) for points in (sheet.start, again.start))
+        assert one.symmetric_difference(two).area < 1e-3 * one.area
 
 
 @pytest.mark.parametrize(

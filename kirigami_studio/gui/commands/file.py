@@ -16,7 +16,7 @@ from kirigami_studio.gui.controller import Controller
 from kirigami_studio.gui.jobs.cut_jobs import Motion
 from kirigami_studio.gui.jobs.project_jobs import Leftover
 from kirigami_studio.gui.messages import Message, Tone
-from kirigami_studio.gui.unsaved_work import NEW_PROJECT, OTHER_PROJECT, RECOVERED, SAMPLE
+from kirigami_studio.gui.unsaved_work import NEW_PROJECT, OTHER_PROJECT, PAIR, RECOVERED, SAMPLE
 
 if TYPE_CHECKING:
     from kirigami_studio.gui.main_window import MainWindow
@@ -68,6 +68,10 @@ class FileCommands(QObject):
 
     def _open_sample(self) -> None:
         self._controller.open_project(resource("examples", "heart.kiri"))
+
+    def open_pair(self, path: Path) -> None:
+        """Open one of the bundled pairs; it is saved elsewhere."""
+        self._window.unsaved.guard(PAIR, lambda: self._controller.open_project(path))
 
     def recover(self, leftover: Leftover) -> None:
         """Open what a session that ended unexpectedly has left."""
@@ -154,6 +158,13 @@ def commands(window: MainWindow) -> tuple[Command, ...]:
             window.dialogs.show_library,
             shortcuts=("Ctrl+L",),
             icon="library",
+        ),
+        Command(
+            "pairs",
+            menu,
+            tr("E&xamples of pairs …"),
+            tr("Open one of twelve finished designs that lead from one shape to another"),
+            window.dialogs.show_pairs,
         ),
         Command(
             "export",

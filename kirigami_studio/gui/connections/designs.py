@@ -103,7 +103,10 @@ class DesignConnections(QObject):
         if document.target is not None:
             window.stage.view.set_hint("generate", tr("Ready to design"), tr("Press Generate (Ctrl+G)."))
         else:
-            hint = tr("Open a file (Ctrl+O), choose from the library (Ctrl+L), or draw a silhouette on the left.")
+            hint = tr(
+                "Open a file (Ctrl+O), choose from the library (Ctrl+L), or draw a silhouette on the left. "
+                "File > Examples of pairs has finished designs."
+            )
             window.stage.view.set_hint("target", tr("Start with a target"), hint)
 
     def _move_balance(self, regular: float) -> None:

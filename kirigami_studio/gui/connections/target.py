@@ -10,7 +10,7 @@ from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.gui.controller import Controller
 from kirigami_studio.gui.designs.collection import DiscardedDesigns
 from kirigami_studio.gui.messages import Message, Tone
-from kirigami_studio.gui.panels.start_tile import DRAWN_START, FILE_START, LIBRARY_START
+from kirigami_studio.gui.panels.start_tile import DRAWN_START, FILE_START, LIBRARY_START, PAIRS
 from kirigami_studio.gui.reshaping import TargetReshaper
 from kirigami_studio.outlines.starts import StartShape
 from kirigami_studio.project.document import Document
@@ -107,6 +107,7 @@ class StartConnections(QObject):
             LIBRARY_START: lambda: window.dialogs.show_start_library(window.settings.start),
             FILE_START: lambda: window.files.ask_start(),
             DRAWN_START: lambda: window.dialogs.show_start_board(),
+            PAIRS: lambda: window.dialogs.show_pairs(),
         }
         tile = window.target.start
         tile.chosen.connect(self._choose)
@@ -118,7 +119,7 @@ class StartConnections(QObject):
         self._show(controller.document)
 
     def open_other(self, kind: str) -> None:
-        """Open the library, a file or the board."""
+        """Open the library, a file, the board or the pairs."""
         self._open[kind]()
 
     def _choose(self, start: StartShape) -> None:

@@ -21,11 +21,14 @@ from kirigami_studio.gui.jobs.design_jobs import Decoded, GridChosen, ModelFound
 from kirigami_studio.gui.jobs.queue import JobCallbacks, LatestJob
 from kirigami_studio.gui.messages import Message, Tone
 from kirigami_studio.gui.session import Entry, Session
+from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.outlines.starts import RECTANGLE, StartShape
 from kirigami_studio.pipeline.events import CandidateFound, CandidateImproved, Finished, Progress, Result, Started
 from kirigami_studio.pipeline.rank import Ranking
 from kirigami_studio.pipeline.request import Request, provenance
 from kirigami_studio.pipeline.variety import distinct
+from kirigami_studio.polish.flat_sheet import uniform_sheet
 from kirigami_studio.project import candidate_edits
 from kirigami_studio.project.candidate_edits import NewDesigns
 from kirigami_studio.project.cutting import least_feature_mm, room_mm
@@ -195,7 +198,8 @@ class RunPlanner:
         chosen = document.candidate
         if chosen is None:
             raise UsageError("designs.none_chosen")
-        request = replace(self._joining(target), near=chosen.sheet, nearness=nearness, search=0)
+        start = own_start(chosen, document.settings.start)
+        request = replace(self._joining(target), near=chosen.sheet, nearness=nearness, search=0, start=start)
         number = (document.chosen or 0) + 1
         status = tr("Generating {count} designs like design {number} …", count=request.k, number=number)
         return self._joined(request, status)
@@ -279,6 +283,21 @@ def next_seed(document: Document) -> int:
     while seed in used:
         seed += 1
     return seed
+
+
+def own_start(candidate: Candidate, present: StartShape) -> StartShape:
+    """What a design starts as: the ``present`` start where it is that one, else one that is made of its sheet."""
+    sheet = candidate.sheet
+    laid = uniform_sheet(sheet.grid, present)
+    if Sheet(laid.field, laid.rim, sheet.start, sheet.cell) == laid:
+        return present
+    name = dict(candidate.made_with).get("start", RECTANGLE.name)
+    if sheet.start is not None:
+        return StartShape(name, Outline.from_points(sheet.start, name))
+    if sheet.cell == (1.0, 1.0):
+        return RECTANGLE
+    (rows, columns), (width, height) = sheet.grid, sheet.cell
+    return StartShape(name, None, (columns + 1) * width / ((rows + 1) * height))
 
 
 def ranking_of(document: Document, jam_phi: Mapping[Candidate, float] = MappingProxyType({})) -> Ranking:

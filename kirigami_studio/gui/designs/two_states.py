@@ -10,9 +10,9 @@ import numpy as np
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.opened_size import opened_size
+from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui.session import Entry
 from kirigami_studio.lattice.laying import start_match
 from kirigami_studio.lattice.sheet import RimPath, Sheet
 from kirigami_studio.outlines.outline import Outline
@@ -119,14 +119,13 @@ class TwoStates:
     phi: float
 
     @classmethod
-    def of(cls, entry: Entry, target: Outline, width_mm: float) -> TwoStates:
+    def of(cls, candidate: Candidate, design: PosedDesign, target: Outline, width_mm: float) -> TwoStates:
         """Those of a design whose flat sheet is ``width_mm`` wide."""
-        candidate, deployment = entry.candidate, entry.design.deployment
-        sheet, trim = candidate.final_sheet, candidate.trim
+        sheet, trim, deployment = candidate.final_sheet, candidate.trim, design.deployment
         outline = RimPath(*sheet.grid, sheet.start, sheet.cell).outline()
         across, up = np.ptp(deployment.compact, axis=0).tolist()
         flat = (width_mm, up * width_mm / across)
-        opened = opened_size(deployment, entry.design.pose, target, width_mm).opened
+        opened = opened_size(deployment, design.pose, target, width_mm).opened
         return cls(
             State(start_of(candidate), outline, flat, match_of_start(sheet) if trim is None else None),
             State(target.name, target.points, opened, candidate.score.iou_exact if trim is None else trim.iou),

@@ -33,6 +33,7 @@ class GuideWindow(QWidget):
         self.text.setObjectName("guideText")
         self.text.setAccessibleName(tr("User guide"))
         self.text.setOpenExternalLinks(True)
+        self.text.setSearchPaths([str(resource("guide"))])  # for its pictures
         self.text.setMarkdown(resource("guide", "guide.md").read_text(encoding="utf-8"))
         column = QVBoxLayout(self)
         column.setContentsMargins(0, 0, 0, 0)

@@ -8,10 +8,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.foundation.errors import KirigamiError, ProjectError
+from kirigami_studio.foundation.resources import resource
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.jobs.queue import Cancel
 from kirigami_studio.gui.jobs.target_jobs import Picture, reduced_picture
+from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project import recovery
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.picture_record import LARGEST_PICTURE, TracedPicture
@@ -45,6 +49,41 @@ class Project:
     document: Document
     picture: Picture | None
     notes: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Pair:
+    """A bundled project from one shape to another.
+
+    Attributes
+    ----------
+    path : Path
+    target : Outline
+    candidate : Candidate
+    design : PosedDesign
+    """
+
+    path: Path
+    target: Outline
+    candidate: Candidate
+    design: PosedDesign
+
+
+def reading_pairs(cancel: Cancel) -> Iterator[Pair]:
+    """Read the bundled pairs one by one, in the order of their names."""
+    from kirigami_studio.lattice.deployment import deploy
+    from kirigami_studio.project import store
+
+    for path in sorted(resource("pairs").glob("*.kiri")):
+        if cancel():
+            return
+        document = store.load(path)
+        candidate, target = document.candidate, document.target
+        if candidate is not None and target is not None:
+            design = PosedDesign(
+                deploy(candidate.final_sheet), candidate.final_pose, candidate.final_phi, candidate.trim
+            )
+            yield Pair(path, target, candidate, design)
 
 
 def saving(document: Document, picture: Picture | None, path: Path, cancel: Cancel) -> Iterator[Saved]:

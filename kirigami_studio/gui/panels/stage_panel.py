@@ -308,7 +308,7 @@ class StagePanel(Card):
         if entry is None or target is None:
             self.ends.show_states(None)
         else:
-            self.ends.show_states(TwoStates.of(entry, target, self._width_mm))
+            self.ends.show_states(TwoStates.of(entry.candidate, entry.design, target, self._width_mm))
 
     def _show(self) -> None:
         """Show the present design, or its sample."""

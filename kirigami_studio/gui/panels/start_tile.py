@@ -40,7 +40,7 @@ STARTS = (
 )
 #: Starts of the list, made when they are first wanted.
 listed_start = cache(start_shape)
-LIBRARY_START, FILE_START, DRAWN_START = "library", "file", "draw"
+LIBRARY_START, FILE_START, DRAWN_START, PAIRS = "library", "file", "draw", "pairs"
 #: Entries below them: value, label, what it does.
 OTHER_STARTS = (
     (LIBRARY_START, tr("Library …"), tr("Choose a library silhouette without hollows.")),
@@ -59,7 +59,7 @@ class StartTile(QAbstractButton):
     """A small board with the start; a click opens the menu, Delete goes back to the rectangle."""
 
     chosen = Signal(StartShape)
-    other_wanted = Signal(str)  #: one of OTHER_STARTS
+    other_wanted = Signal(str)  #: one of OTHER_STARTS, or PAIRS
     file_dropped = Signal(str)
 
     def __init__(self, parent: QWidget | None = None) -> None:
@@ -98,6 +98,8 @@ class StartTile(QAbstractButton):
         self.menu.addSeparator()
         for name, label, about in OTHER_STARTS:
             self._add_other(name, label, about)
+        self.menu.addSeparator()
+        self._add_other(PAIRS, tr("Examples of pairs …"), tr("Twelve finished designs from one shape to another."))
 
     def _add_other(self, name: str, label: str, about: str) -> None:
         action = self.menu.addAction(label)

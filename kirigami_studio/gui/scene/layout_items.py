@@ -6,14 +6,14 @@ import math
 from collections.abc import Mapping
 
 import numpy as np
-from PySide6.QtCore import QRectF, QSize, Qt
+from PySide6.QtCore import QPointF, QRectF, QSize, QSizeF, Qt
 from PySide6.QtGui import QColor, QPaintEngine, QPainter, QPen, QPixmap
 
 from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray
 from kirigami_studio.gui.look.theme import Palette
-from kirigami_studio.gui.scene.paths import DOZEN, line_path, paths_of_quads
+from kirigami_studio.gui.scene.paths import DOZEN, line_path, paths_of_quads, round_pen
 from kirigami_studio.gui.scene.target_items import paint_target_line, paint_target_shape
 from kirigami_studio.gui.scene.view_transform import Bounds, ViewTransform
 from kirigami_studio.outlines.outline import Outline
@@ -106,6 +106,29 @@ def candidate_pixmap(
     width, height = TARGET_SHARE * size.width(), float(size.height())
     paint_candidate(painter, QRectF(0.0, 0.0, width, height), design, target, palette)
     paint_flat(painter, QRectF(width, 0.0, size.width() - width, height), design, palette)
+    painter.end()
+    return pixmap
+
+
+def states_pixmap(design: PosedDesign, target: Outline, size: QSize, ratio: float, palette: Palette) -> QPixmap:
+    """Return a design flat, half way and over its target side by side, to one scale; ``size`` in logical pixels."""
+    pixmap = _blank(size, ratio)
+    painter = _painter(pixmap)
+    angles = (math.pi, 0.5 * (math.pi + design.phi_target), design.phi_target)
+    shown = [design.nodes(phi) for phi in angles]
+    boxes = [Bounds.of(nodes) for nodes in shown]
+    boxes[-1] = boxes[-1].united(Bounds.of(target.points))
+    spans = [max(box.right - box.left, box.top - box.bottom) for box in boxes]
+    side, turning = size.width() / len(angles), turning_left(*design.deployment.sheet.grid)
+    for number, (phi, nodes, box, span) in enumerate(zip(angles, shown, boxes, spans, strict=True)):
+        edge = (min(side, size.height()) - 2 * CARD_MARGIN) * span / max(spans)
+        middle = QPointF((number + 0.5) * side, 0.5 * size.height())
+        transform = ViewTransform.fitting(box, QRectF(middle - QPointF(edge, edge) / 2, QSizeF(edge, edge)))
+        trimmed = {row: transform.to_pixels(part) for row, part in design.kept(nodes, phi).items()}
+        paint_panels(painter, transform.to_pixels(design.panels(nodes)), turning, palette, trimmed)
+    painter.setPen(round_pen(palette.target, 1.2))  # no halo: in so small a picture it would hide the rim's panels
+    painter.setBrush(Qt.BrushStyle.NoBrush)
+    painter.drawPath(line_path(transform.to_pixels(target.points), closed=True))
     painter.end()
     return pixmap
 

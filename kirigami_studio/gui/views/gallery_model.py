@@ -166,7 +166,9 @@ class GalleryModel(QAbstractListModel):
 
     def _states(self, entry: Entry) -> tuple[str, ...]:
         """What it starts as and what it opens into, how large, and how well it matches both."""
-        return () if self._target is None else TwoStates.of(entry, self._target, self._width_mm).lines()
+        if self._target is None:
+            return ()
+        return TwoStates.of(entry.candidate, entry.design, self._target, self._width_mm).lines()
 
     def set_target(self, target: Outline | None) -> None:
         """Set what the designs open into, for their tooltips."""

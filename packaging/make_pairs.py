@@ -1,0 +1,126 @@
+"""Make the bundled pairs: finished designs from one shape to another, each out of one run with a kept seed.
+
+``python packaging/make_pairs.py`` writes ``resources/pairs/*.kiri`` and prints their numbers; ``make pairs`` calls it.
+The same program makes the same files.
+"""
+
+from __future__ import annotations
+
+import math
+import sys
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.generator.weights import digest_of
+from kirigami_studio.lattice.laying import start_error
+from kirigami_studio.outlines.read import read_target
+from kirigami_studio.outlines.starts import start_shape
+from kirigami_studio.pipeline.request import Request, provenance
+from kirigami_studio.pipeline.run import best_of
+from kirigami_studio.project.cutting import least_feature_mm
+from kirigami_studio.project.design_facts import with_run
+from kirigami_studio.project.document import Document
+from kirigami_studio.project.settings import DesignSettings, FabricationSettings
+from kirigami_studio.project.store import save
+
+FOLDER = Path(__file__).resolve().parents[1] / "resources" / "pairs"
+#: Even panels count more than the last percent of match: these are to be looked at.
+DESIGNS, POLISH, SEED, REGULAR = 32, 15, 0, 0.85
+#: A sheet that is turned by no more than this (degrees) stands upright.
+UPRIGHT = 1.0
+
+
+@dataclass(frozen=True, slots=True)
+class Pair:
+    """A start and a target.
+
+    Attributes
+    ----------
+    start, target : str
+        By their names.
+    upright : bool
+        A round target would let the sheet stand turned anyhow: the first design that stands upright is taken.
+    symmetry : str
+        What designs have to keep: a leaf is no mirror image of itself that counts.
+    """
+
+    start: str
+    target: str
+    upright: bool = False
+    symmetry: str = "auto"
+
+
+PAIRS = (
+    Pair("circle", "heart"),
+    Pair("circle", "square"),
+    Pair("triangle", "circle", upright=True),
+    Pair("hexagon", "star"),
+    Pair("square", "circle", upright=True),
+    Pair("ellipse:3:2", "shield"),
+    Pair("circle", "bell"),
+    Pair("square", "plus"),
+    Pair("circle", "flower"),
+    Pair("square", "triangle"),
+    Pair("square", "leaf", symmetry="none"),
+    Pair("egg", "bean"),
+)
+
+
+def made(pair: Pair) -> Document:
+    """Design a pair and keep the first design, without how it was sampled."""
+    cut = FabricationSettings()
+    request = Request(
+        read_target(pair.target),
+        None,
+        k=DESIGNS,
+        seed=SEED,
+        polish=POLISH,
+        regular=REGULAR,
+        symmetry=pair.symmetry,
+        start=start_shape(pair.start),
+        width_mm=cut.width_mm,
+        least_feature_mm=least_feature_mm(cut),
+    )
+    result = best_of(request)
+    chosen = next(one for one in result.candidates if not pair.upright or abs(turn_of(one)) < UPRIGHT)
+    source = provenance(result.request, digest_of(request.variant))
+    settings = DesignSettings(
+        result.request.chosen_grid,
+        k=DESIGNS,
+        seed=SEED,
+        polish=POLISH,
+        symmetry=pair.symmetry,
+        regular=REGULAR,
+        start=request.start,
+    )
+    candidates = tuple(with_run((replace(chosen, sampled_sheet=None),), source))
+    return Document(request.target, settings, candidates, 0, cut, source)
+
+
+def turn_of(candidate: Candidate) -> float:
+    """By how much the flat sheet stands turned over the target, degrees."""
+    return math.degrees(math.remainder(candidate.score.transform.angle, 2.0 * math.pi))
+
+
+def main() -> int:
+    """Write all pairs in the place of those that were there."""
+    FOLDER.mkdir(parents=True, exist_ok=True)
+    for old in FOLDER.glob("*.kiri"):
+        old.unlink()
+    for number, pair in enumerate(PAIRS, start=1):
+        document = made(pair)
+        path = FOLDER / f"{number:02d}-{pair.start.partition(':')[0]}-to-{pair.target}.kiri"
+        save(document, path)
+        (candidate,) = document.candidates
+        score = candidate.score
+        sys.stdout.write(
+            f"{path.stem}: IoU {score.iou_exact:.4f}, CV {score.evenness.area_cv:.2f}, start error "
+            f"{100 * start_error(candidate.sheet):.2f} %, feasible {score.feasible}, {path.stat().st_size} bytes\n"
+        )
+        sys.stdout.flush()
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
