@@ -53,6 +53,9 @@ class Places:
     def start(self) -> Path | None:
         return None
 
+    def artwork(self) -> Path | None:
+        return None
+
     def project(self) -> Path | None:
         return self.project_
 

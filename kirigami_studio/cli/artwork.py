@@ -4,15 +4,18 @@ from __future__ import annotations
 
 import argparse
 import math
+from dataclasses import replace
+from typing import Any
 
 from kirigami_studio.cli.console import print_json, say
 from kirigami_studio.cli.fabrication import chosen_candidate, design_job, overridden
-from kirigami_studio.export.artwork import Artwork, Fitting, Laid, State
+from kirigami_studio.export.artwork import ArtPicture, Artwork, Fitting, Laid, State
 from kirigami_studio.export.artwork_files import ArtworkJob, write_artwork
-from kirigami_studio.export.artwork_picture import ArtPicture, read_picture
+from kirigami_studio.export.artwork_picture import read_picture
 from kirigami_studio.foundation.errors import ExportError, UsageError
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.project.cutting import plan_of
+from kirigami_studio.project.document import Document
 from kirigami_studio.project.store import load
 
 #: Below this resolution (dpi) a print looks coarse at arm's length.
@@ -26,7 +29,7 @@ def artwork(arguments: argparse.Namespace) -> int:
     document = load(arguments.project)
     settings = overridden(document.fabrication, arguments)
     candidate = chosen_candidate(document)
-    laid = _laid(arguments)
+    laid = _laid(arguments, document)
     job = design_job(document, plan_of(candidate, settings), settings)
     try:
         work = ArtworkJob(Artwork(laid), job, arguments.dpi, arguments.bleed_mm, arguments.margin_mm)
@@ -72,17 +75,27 @@ def artwork(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _laid(arguments: argparse.Namespace) -> Laid:
-    """The picture that was named, and where it lies."""
+def _laid(arguments: argparse.Namespace, document: Document) -> Laid:
+    """The picture that was named, and where it lies; what was not named is the project's."""
+    stored = None if document.artwork is None else document.artwork.first
+    changes: dict[str, Any] = {}
+    if arguments.on is not None:
+        changes["state"] = State(arguments.on)
+    if arguments.place is not None:
+        changes["fitting"] = Fitting(arguments.place)
+    if arguments.scale is not None:
+        changes["scale"] = arguments.scale
+    if arguments.turn_deg is not None:
+        changes["turn"] = math.radians(arguments.turn_deg)
+    if arguments.shift is not None:
+        changes["shift"] = (arguments.shift[0], arguments.shift[1])
+    if arguments.picture is not None:
+        picture = _picture(arguments.picture)
+        stored = Laid(picture) if stored is None else replace(stored, picture=picture)
+    if stored is None:
+        raise UsageError("artwork.name_a_picture")
     try:
-        return Laid(
-            _picture(arguments.picture),
-            State(arguments.on),
-            Fitting(arguments.place),
-            arguments.scale,
-            math.radians(arguments.turn_deg),
-            (arguments.shift[0], arguments.shift[1]),
-        )
+        return replace(stored, **changes)
     except ExportError as error:
         raise UsageError(error.code, **error.fields) from error
 
@@ -91,7 +104,7 @@ def _picture(path: str) -> ArtPicture:
     """Read a picture; only for an SVG Qt is loaded, which draws it."""
 
     def draw(content: bytes, side: int) -> bytes:
-        from kirigami_studio.gui.files.svg_drawing import svg_to_png
+        from kirigami_studio.gui.jobs.artwork_jobs import svg_to_png
 
         return svg_to_png(content, side)
 

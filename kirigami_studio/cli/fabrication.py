@@ -333,7 +333,7 @@ def chosen_candidate(document: Document) -> Candidate:
 def design_job(document: Document, plan: CutPlan, settings: FabricationSettings) -> ExportJob:
     """What files of the chosen design are made of, cut by this plan."""
     return replace(_job(document), plan=plan, dxf_version=settings.dxf_version, profile=settings.profile,
-                   paper=settings.paper, markers=settings.markers)  # fmt: skip
+                   paper=settings.paper, markers=settings.markers, artwork=document.artwork)  # fmt: skip
 
 
 def _job(document: Document) -> ExportJob:

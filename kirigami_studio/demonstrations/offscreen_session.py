@@ -47,6 +47,9 @@ class PresetFiles:
     def start(self) -> Path | None:
         return None
 
+    def artwork(self) -> Path | None:
+        return None
+
     def project(self) -> Path | None:
         return self._out / "session.kiri"
 

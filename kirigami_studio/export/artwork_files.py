@@ -25,8 +25,8 @@ from reportlab.lib.utils import ImageReader
 from reportlab.pdfgen.canvas import Canvas
 
 from kirigami_studio import __version__
-from kirigami_studio.export.artwork import Artwork, Patch, PrintedSheet, opened_patches, printed_patches, rings_of
-from kirigami_studio.export.artwork_picture import ArtPicture
+from kirigami_studio.export.artwork import ArtPicture, Artwork
+from kirigami_studio.export.artwork_patches import Patch, PrintedSheet, opened_patches, printed_patches, rings_of
 from kirigami_studio.export.artwork_raster import Page, paint
 from kirigami_studio.export.exporter import ExportJob
 from kirigami_studio.export.pdf import SAME_SIZE_MM, page_boxes

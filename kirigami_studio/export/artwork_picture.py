@@ -6,82 +6,29 @@ import io
 import math
 import warnings
 from collections.abc import Callable
-from dataclasses import dataclass
-from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
 from PIL import Image, ImageOps, UnidentifiedImageError
 
+from kirigami_studio.export.artwork import ArtPicture
 from kirigami_studio.foundation.errors import TargetError
 from kirigami_studio.outlines.read_image import MOST_MEGABYTES, MOST_PIXELS
 from kirigami_studio.outlines.source_file import decoding, read_bytes
 from kirigami_studio.outlines.svg_safety import checked_svg
 
 FORMATS = ("PNG", "JPEG", "BMP", "TIFF", "WEBP")
-#: What a file dialog offers.
-EXTENSIONS = (".png", ".jpg", ".jpeg", ".bmp", ".tif", ".tiff", ".webp", ".svg")
 #: Larger pictures are averaged down: a sheet of 300 x 200 mm is printed at 500 dpi from so many pixels.
 KEPT_PIXELS = 24_000_000
 #: An SVG is drawn once, with so many pixels along its longer side.
 SVG_SIDE = 3000
-#: Larger pictures (bytes) without transparency are kept as JPEG, others refused above the second limit.
+#: Larger pictures (bytes) without transparency are kept as JPEG.
 LARGEST_PNG = 8 * 2**20
-LARGEST_PICTURE = 32 * 2**20
 JPEG_QUALITY = 95
 #: The EXIF entry that says which way is up; 1 is upright.
 ORIENTATION = 0x0112
 #: Draws an SVG document, with so many pixels along its longer side, as PNG.
 DrawSvg = Callable[[bytes, int], bytes]
-
-
-@dataclass(frozen=True, slots=True)
-class ArtPicture:
-    """A picture to be printed.
-
-    Attributes
-    ----------
-    name : str
-        Of the file it was read from.
-    content : bytes
-        PNG or JPEG, upright, 8 bits a channel, RGB or RGBA.
-    size : (width, height) int, pixels
-
-    Raises
-    ------
-    TargetError
-        Too many bytes for a project to keep, or no pixels.
-    """
-
-    name: str
-    content: bytes
-    size: tuple[int, int]
-
-    def __post_init__(self) -> None:
-        if len(self.content) > LARGEST_PICTURE or min(self.size) < 1:
-            megabytes, limit = len(self.content) / 2**20, LARGEST_PICTURE // 2**20
-            raise TargetError("artwork.picture_too_large", name=self.name, megabytes=megabytes, limit=limit)
-
-    @property
-    def is_jpeg(self) -> bool:
-        """Whether its bytes are a JPEG's; they are a PNG's else."""
-        return self.content.startswith(b"\xff\xd8")
-
-    @property
-    def extension(self) -> str:
-        """Of a file with these bytes, with the dot."""
-        return ".jpg" if self.is_jpeg else ".png"
-
-    @property
-    def image(self) -> Image.Image:
-        """Its pixels as RGBA, not to be written to."""
-        return _decoded(self.content)
-
-
-@lru_cache(maxsize=2)
-def _decoded(content: bytes) -> Image.Image:
-    with Image.open(io.BytesIO(content)) as image:
-        return image.convert("RGBA")
 
 
 def read_picture(path: str | Path, draw_svg: DrawSvg | None = None) -> ArtPicture:

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+import io
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 import shapely
 from PIL import Image, ImageDraw
 
-from kirigami_studio.export.artwork import Patch, rings_of
-from kirigami_studio.export.artwork_picture import ArtPicture
+from kirigami_studio.export.artwork import ArtPicture
+from kirigami_studio.export.artwork_patches import Patch, rings_of
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import ExportError
 from kirigami_studio.foundation.units import MM_PER_INCH
@@ -20,6 +22,8 @@ from kirigami_studio.foundation.units import MM_PER_INCH
 MOST_PIXELS = 100_000_000
 #: Edges of regions are drawn so many times larger and then reduced.
 SUPERSAMPLING = 4
+#: Patches whose pixels on a millimetre agree so well are made from one reduced picture.
+DENSITY_DECIMALS = 5
 Colour = tuple[int, int, int, int]
 NOTHING: Colour = (255, 255, 255, 0)
 
@@ -81,19 +85,30 @@ def paint(patches: Sequence[Patch], page: Page, ground: Colour = NOTHING) -> Ima
     canvas = Image.new("RGBA", page.pixels, ground)
     sources: dict[tuple[ArtPicture, float], Image.Image] = {}
     for patch in patches:
-        density = round(patch.dots_per_mm, 9)
+        density = round(patch.dots_per_mm, DENSITY_DECIMALS)
         if (patch.picture, density) not in sources:
             sources[patch.picture, density] = _reduced(patch.picture, page.dots_per_mm / patch.dots_per_mm)
         _paint_patch(canvas, patch, sources[patch.picture, density], page, keep_ground=ground[3] == 255)
     return canvas
 
 
+@lru_cache(maxsize=2)
+def image_of(content: bytes) -> Image.Image:
+    """The pixels of a picture file as RGBA, kept for the next time and not to be written to."""
+    with Image.open(io.BytesIO(content)) as image:
+        return image.convert("RGBA")
+
+
 def _reduced(picture: ArtPicture, share: float) -> Image.Image:
-    """The picture with as many pixels as the bitmap has for it, if that is fewer: sampling would skip some."""
-    if share >= 1.0:
-        return picture.image
-    width, height = (max(1, round(side * share)) for side in picture.size)
-    return picture.image.resize((width, height), Image.Resampling.LANCZOS)
+    """The picture with as many pixels as the bitmap has for it, if that is fewer: sampling would skip some.
+
+    Its colours are multiplied by its alpha, as all resampling needs them: Pillow would do that again for every patch.
+    """
+    image = image_of(picture.content)
+    if share < 1.0:
+        width, height = (max(1, round(side * share)) for side in picture.size)
+        image = image.resize((width, height), Image.Resampling.LANCZOS)
+    return image.convert("RGBa")
 
 
 def _paint_patch(canvas: Image.Image, patch: Patch, source: Image.Image, page: Page, keep_ground: bool) -> None:
@@ -114,7 +129,7 @@ def _paint_patch(canvas: Image.Image, patch: Patch, source: Image.Image, page: P
         across.real * shrunk[0], down.real * shrunk[0], start.real * shrunk[0],
         across.imag * shrunk[1], down.imag * shrunk[1], start.imag * shrunk[1],
     )  # fmt: skip
-    shown = source.transform(size, Image.Transform.AFFINE, matrix, Image.Resampling.BICUBIC)
+    shown = source.transform(size, Image.Transform.AFFINE, matrix, Image.Resampling.BICUBIC).convert("RGBA")
     mask = _mask(patch, page, (left, top), size)
     if keep_ground:
         shown = Image.alpha_composite(canvas.crop((left, top, right, bottom)), shown)

@@ -8,6 +8,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from kirigami_studio.export.artwork_files import ArtworkJob, write_artwork
 from kirigami_studio.export.dxf import write_reference
 from kirigami_studio.export.exporter import ExportJob
 from kirigami_studio.export.profile import find_profile
@@ -60,8 +61,9 @@ def export_all(
     """Write the whole set into a folder; each file appears whole or not at all.
 
     Cut file as DXF R2010 and R12, as SVG and as LightBurn project, PDF on the job's paper, layout and preview, the
-    record of the job and the reference drawing.  Layout and preview show the sheet that is cut.  What an earlier export
-    of the same name left, and this one does not have, is removed if that one's record names it and nobody changed it.
+    printed sheet if it has artwork, the record of the job and the reference drawing.  Layout and preview show the sheet
+    that is cut.  What an earlier export of the same name left, and this one does not have, is removed if that one's
+    record names it and nobody changed it.
 
     Parameters
     ----------
@@ -120,6 +122,9 @@ def _written(
         done(export(job, goal))
     write_layout_svg(job, home / "layout.svg", plan.size_mm[0])
     done(home / "layout.svg")
+    if job.artwork is not None:
+        for path in write_artwork(ArtworkJob(job.artwork, job), home):
+            done(path)
     done(write_reference(plan, home / "reference.dxf"))
     if sidecar:
         done(write_sidecar(job, sidecar_path(cut), written, None if judged is None else judged(verified)))

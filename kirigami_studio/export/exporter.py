@@ -12,6 +12,7 @@ from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.evaluate.trimming import Trim
+from kirigami_studio.export.artwork import Artwork
 from kirigami_studio.export.cut_motion import CutMotion
 from kirigami_studio.export.paper import NO_PAPER
 from kirigami_studio.export.profile import DEFAULT_PROFILE
@@ -50,6 +51,8 @@ class ExportJob:
         A LightBurn project also marks the connectors, on a layer that LightBurn does not cut.
     motion : CutMotion or None
         What an animation shows: the sheet as cut; None for its ideal motion.
+    artwork : Artwork or None
+        What is printed on the sheet; only a whole set of files has it.
     """
 
     deployment: Deployment
@@ -64,6 +67,7 @@ class ExportJob:
     trim: Trim | None = None
     markers: bool = False
     motion: CutMotion | None = None
+    artwork: Artwork | None = None
 
     @classmethod
     def of(cls, candidate: Candidate, target: FloatArray | None, plan: CutPlan | None = None) -> ExportJob:

@@ -17,6 +17,7 @@ from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.foundation.resources import resource_root
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.cutting import CutPlanner, FabricationEditor
+from kirigami_studio.gui.designs.artwork import ArtworkKeeper
 from kirigami_studio.gui.designs.as_cut import AsCutEstimates, AsCutReader
 from kirigami_studio.gui.designs.chosen_design import Refitter, SampledScores, TrimSwitch
 from kirigami_studio.gui.designs.collection import DesignMarks
@@ -67,6 +68,8 @@ class Controller(QObject):
         The target, the project's files, the preferences.
     start
         Reads start outlines from files and the library.
+    artwork
+        What is printed on the sheet.
     """
 
     saved = Signal(Path)
@@ -95,6 +98,7 @@ class Controller(QObject):
         self.verdict = VerdictKeeper(session, self.as_cut, self)
         self.targeting = Targeting(session, self)
         self.start = StartReader(session, self)
+        self.artwork = ArtworkKeeper(session, self)
         self.filing = Filing(session, self.targeting, self)
         self.preferences = UserPreferences(session)
         self._connect()
@@ -275,6 +279,14 @@ class Controller(QObject):
         if request is not None:
             self.cutting.export_all(self._with_as_cut(request), folder, name)
 
+    def export_artwork(self, folder: Path) -> None:
+        """Write the printed sheet into a folder."""
+        if self.hand.postpones(lambda: self.export_artwork(folder)):
+            return
+        request = self.cutting.request
+        if request is not None:
+            self.cutting.export_artwork(request, folder)
+
     def _with_as_cut(self, request: CutRequest) -> CutRequest:
         """The request with how the design does as cut, if that is known."""
         sheet = self.as_cut.state.sheet
@@ -358,6 +370,7 @@ class Controller(QObject):
         """Another document comes: what is on its way belongs to the old one."""
         self.targeting.stop()
         self.start.stop()
+        self.artwork.stop()
         self.hand.stop()
         self._stop_work_on_design()
         self.run.abandon()

@@ -25,6 +25,7 @@ from kirigami_studio.gui.jobs.cut_jobs import (
     Planned,
     exporting,
     exporting_all,
+    exporting_artwork,
     exporting_coupon,
     planning,
 )
@@ -74,7 +75,14 @@ class CutPlanner(QObject):
         if stage is None:
             return None
         facts = design_facts(document, stage.candidate)
-        return CutRequest(stage.candidate, stage.design.deployment, document.target, document.fabrication, facts)
+        return CutRequest(
+            stage.candidate,
+            stage.design.deployment,
+            document.target,
+            document.fabrication,
+            facts,
+            artwork=document.artwork,
+        )
 
     def plan_soon(self) -> None:
         """Plan the cuts of the design on the stage, unless something changes again before."""
@@ -120,6 +128,11 @@ class CutPlanner(QObject):
         steps = partial(exporting_all, request, folder, name, many_pages)
         again = partial(self.export_all, request, folder, name, True)
         self._write(tr("exporting to {name}", name=folder.name), steps, again)
+
+    def export_artwork(self, request: CutRequest, folder: Path) -> None:
+        """Write the printed sheet into a folder."""
+        self._session.set_status(tr("Exporting the artwork …"))
+        self._write(tr("exporting the artwork"), partial(exporting_artwork, request, folder))
 
     def export_coupon(self, material: Material, path: Path) -> None:
         """Write the calibration coupon of a material."""

@@ -15,6 +15,7 @@ from kirigami_studio.gui.jobs.cut_jobs import Exported
 from kirigami_studio.gui.look import theme
 
 if TYPE_CHECKING:
+    from kirigami_studio.gui.dialogs.artwork_editor import ArtworkEditor
     from kirigami_studio.gui.dialogs.export_report import ExportReport
     from kirigami_studio.gui.dialogs.help import GuideWindow, ShortcutSheet
     from kirigami_studio.gui.dialogs.history_list import HistoryList
@@ -40,6 +41,7 @@ class Dialogs(QObject):
         self.shortcuts: ShortcutSheet | None = None
         self.start_board: StartBoard | None = None
         self.pairs: PairGallery | None = None
+        self.artwork: ArtworkEditor | None = None
 
     def show_materials(self) -> None:
         """Open the material editor, or bring it to the front."""
@@ -122,6 +124,27 @@ class Dialogs(QObject):
         self.pairs.read()
         bring_to_front(self.pairs)
 
+    def show_artwork(self) -> None:
+        """Open the window that lays a picture on the sheet, or bring it to the front."""
+        from kirigami_studio.gui.dialogs.artwork_editor import ArtworkEditor
+
+        if self.artwork is None:
+            keeper = self._controller.artwork
+            self.artwork = ArtworkEditor(self._window)
+            self.artwork.picture_wanted.connect(self._window.files.ask_artwork)
+            self.artwork.removed.connect(keeper.remove)
+            self.artwork.changed.connect(lambda changes: keeper.place(**changes))
+            self.artwork.edited.connect(self._controller.end_drag)
+            self.artwork.export_wanted.connect(self._window.files.export_artwork)
+            self._controller.session.document_changed.connect(self._update_artwork)
+            self._controller.session.display.stage_changed.connect(self._update_artwork)
+        self._update_artwork()
+        bring_to_front(self.artwork)
+
+    def _update_artwork(self) -> None:
+        if self.artwork is not None:
+            self.artwork.show_artwork(self._controller.document.artwork, self._controller.stage is not None)
+
     def _colour(self, dialog: QWidget) -> None:
         """Give the parts of a new dialog the colours of the theme."""
         for part in theme.themed((dialog, *dialog.findChildren(QWidget))):
@@ -155,7 +178,8 @@ class Dialogs(QObject):
     def close(self) -> None:
         """The window is closing, and its dialogs with it."""
         self.close_report()
-        for dialog in (self.materials, self.guide, self.history, self.shortcuts, self.start_board, self.pairs):
+        tools = (self.materials, self.guide, self.history, self.shortcuts, self.start_board, self.pairs, self.artwork)
+        for dialog in tools:
             if dialog is not None:
                 dialog.close()
 

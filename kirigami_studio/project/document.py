@@ -8,6 +8,7 @@ from enum import Enum
 from types import MappingProxyType
 
 from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.export.artwork import Artwork
 from kirigami_studio.foundation.errors import ProjectError
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.settings import DesignSettings, FabricationSettings
@@ -48,6 +49,8 @@ class Document:
         One for each candidate, pinned, rejected or neither; left out, none of them has any.
     locked : frozenset of (row, column)
         Voids whose ratio a change by hand leaves as it is.
+    artwork : Artwork or None
+        What is printed on the sheet.
 
     Raises
     ------
@@ -64,6 +67,7 @@ class Document:
     provenance: Mapping[str, str] = field(default_factory=_nothing_known, hash=False)
     marks: tuple[Mark, ...] = ()
     locked: frozenset[Void] = frozenset()
+    artwork: Artwork | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "candidates", tuple(self.candidates))

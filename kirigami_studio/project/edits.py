@@ -7,7 +7,9 @@ from dataclasses import dataclass, replace
 from typing import TypedDict, Unpack
 
 from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.export.artwork import Artwork, Fitting, State
 from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions, CutOrder
+from kirigami_studio.foundation.errors import ProjectError
 from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.starts import StartShape
@@ -75,6 +77,16 @@ class OptionsChange(TypedDict, total=False):
     tab_mm: float
     copies: int
     copy_gap_mm: float
+
+
+class LaidChange(TypedDict, total=False):
+    """Fields of :class:`Laid` that an edit may replace, but the picture."""
+
+    state: State
+    fitting: Fitting
+    scale: float
+    turn: float
+    shift: tuple[float, float]
 
 
 #: Widths of single connectors are rounded to this many decimals of a millimetre.
@@ -169,6 +181,28 @@ def set_cut_options(document: Document, **changes: Unpack[OptionsChange]) -> Edi
     options = replace(document.fabrication.options, **changes)
     changed = replace(document, fabrication=replace(document.fabrication, options=options))
     return Edit(_label(changes), changed, merge_key=_merge_key("options", changes))
+
+
+def set_artwork(document: Document, artwork: Artwork | None) -> Edit:
+    """Print another picture on the sheet, or none."""
+    label = tr("Remove the artwork") if artwork is None else tr("Lay {name} on it", name=artwork.first.picture.name)
+    return Edit(label, replace(document, artwork=artwork))
+
+
+def place_artwork(document: Document, **changes: Unpack[LaidChange]) -> Edit:
+    """Lay the picture otherwise; dragging one number is one undo step.
+
+    Raises
+    ------
+    ExportError
+        A number that no placed picture has.
+    ProjectError
+        There is no picture.
+    """
+    if document.artwork is None:
+        raise ProjectError("artwork.none")
+    changed = replace(document, artwork=Artwork(replace(document.artwork.first, **changes)))
+    return Edit(tr("Place the artwork"), changed, merge_key=_merge_key("artwork", changes))
 
 
 def _label(changes: Mapping[str, object]) -> str:

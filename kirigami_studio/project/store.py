@@ -6,13 +6,14 @@ import io
 import json
 import zipfile
 import zlib
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from kirigami_studio import __version__
 from kirigami_studio.foundation.errors import KirigamiError, ProjectError
 from kirigami_studio.foundation.files import write_atomically
 from kirigami_studio.project import migrations
+from kirigami_studio.project.artwork_record import PICTURES, artwork_members, artwork_of
 from kirigami_studio.project.codec import decode, encode
 from kirigami_studio.project.cutting import with_stored_material
 from kirigami_studio.project.document import Document
@@ -64,12 +65,14 @@ def save(document: Document, path: Path | str, picture: TracedPicture | None = N
 def pack(document: Document, picture: TracedPicture | None = None) -> bytes:
     """Return the project file's bytes; equal documents and pictures give equal bytes."""
     manifest = {"format": FORMAT, "version": migrations.CURRENT_VERSION, "app_version": __version__}
-    members = {MANIFEST: json.dumps(manifest, indent=1).encode(), **encode(document), **picture_members(picture)}
+    members = {MANIFEST: json.dumps(manifest, indent=1).encode(), **encode(document)}
+    members |= {**artwork_members(document.artwork), **picture_members(picture)}
     stream = io.BytesIO()
     with zipfile.ZipFile(stream, "w") as archive:
         for name, content in members.items():
             entry = zipfile.ZipInfo(name, _FIXED_DATE)
-            packed = picture is not None and name == picture.member  # a PNG or JPEG does not get smaller
+            # A PNG or JPEG does not get smaller.
+            packed = name in PICTURES or (picture is not None and name == picture.member)
             entry.compress_type = zipfile.ZIP_STORED if packed else zipfile.ZIP_DEFLATED
             entry.create_system = 3
             entry.external_attr = 0o644 << 16
@@ -83,7 +86,7 @@ def load(path: Path | str) -> Document:
 
 
 def load_all(path: Path | str) -> Opened:
-    """Read a project file; a picture that cannot be read is left out, and a note says so.
+    """Read a project file; a picture or artwork that cannot be read is left out, and a note says so.
 
     Raises
     ------
@@ -102,10 +105,16 @@ def load_all(path: Path | str) -> Opened:
         document = decode(members)
     except KirigamiError as error:
         raise ProjectError("project.damaged", path=path, reason=error) from error
+    notes, picture = [], None
     try:
-        return Opened(document, picture_of(members))
+        document = replace(document, artwork=artwork_of(members))
     except ProjectError as error:
-        return Opened(document, notes=(str(error),))
+        notes.append(str(error))
+    try:
+        picture = picture_of(members)
+    except ProjectError as error:
+        notes.append(str(error))
+    return Opened(document, picture, tuple(notes))
 
 
 def _version(members: Members) -> int:

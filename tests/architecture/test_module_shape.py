@@ -14,7 +14,6 @@ STANDS_ALONE = {
     "__main__.py": "python -m needs it",
     "generator/libraries.py": "it is read before torch is imported, by a thread that must not import it",
     "gui/commands/help.py": "every menu has its module",
-    "gui/files/svg_drawing.py": "the command line draws SVGs with Qt and opens no window",
 }
 SAYS_NOTHING = {"utils", "util", "helpers", "helper", "manager", "misc", "common", "tools"}
 

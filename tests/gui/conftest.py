@@ -55,6 +55,9 @@ class PathAnswers:
     def start(self) -> Path | None:
         return self.answer
 
+    def artwork(self) -> Path | None:
+        return self.answer
+
     def project(self) -> Path | None:
         return self.answer
 

@@ -5,28 +5,46 @@ from __future__ import annotations
 import itertools
 import math
 import time
+from io import BytesIO
 
 import numpy as np
 import pytest
 from paint_counter import PaintCounter
+from PIL import Image
 from pytest_benchmark.fixture import BenchmarkFixture
 from pytestqt.qtbot import QtBot
 
 from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.evaluate.score import evaluate
+from kirigami_studio.export.artwork import Artwork, Laid
+from kirigami_studio.export.artwork_picture import picture_of
+from kirigami_studio.gui.jobs.artwork_jobs import painting_artwork
+from kirigami_studio.gui.scene.artwork_items import ShownArtwork
 from kirigami_studio.gui.views.layout_view import USUAL, LayoutView, Overlay
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.outlines import silhouettes
+from kirigami_studio.outlines.outline import Outline
 
 #: Milliseconds of processor time that a hand on the slider waits for a picture with everything shown.
 LONGEST_MS = 100.0
 
 
+def printed_sheet(design: PosedDesign, target: Outline) -> ShownArtwork:
+    """A sheet printed with a picture of noise."""
+    stream = BytesIO()
+    Image.fromarray(np.random.default_rng(0).integers(0, 255, (300, 300, 3), dtype=np.uint8)).save(stream, "PNG")
+    (shown,) = painting_artwork(
+        Artwork(Laid(picture_of("noise.png", stream.getvalue()))), design, target, lambda: False
+    )
+    return shown
+
+
+@pytest.mark.parametrize("printed", [False, True], ids=["plain panels", "artwork"])
 @pytest.mark.parametrize("overlays", [USUAL, frozenset(Overlay)], ids=["usual overlays", "all overlays"])
 @pytest.mark.parametrize(("first", "last"), [(math.pi, 0.3), (0.2, 0.0)], ids=["on the way", "near the target"])
 def test_that_every_slider_step_is_drawn(
-    qtbot: QtBot, benchmark: BenchmarkFixture, first: float, last: float, overlays: frozenset[Overlay]
+    qtbot: QtBot, benchmark: BenchmarkFixture, first: float, last: float, overlays: frozenset[Overlay], printed: bool
 ) -> None:
     field = RatioField.from_log10(np.random.default_rng(1).normal(size=(24, 24)) * 0.05)
     deployment, target = deploy(field), silhouettes.load("heart")
@@ -34,7 +52,11 @@ def test_that_every_slider_step_is_drawn(
     view = LayoutView()
     qtbot.addWidget(view)
     view.resize(800, 700)
-    view.show_design(PosedDesign(deployment, score.transform, 0.0), score, target)
+    design = PosedDesign(deployment, score.transform, 0.0)
+    view.show_design(design, score, target)
+    if printed:
+        overlays = overlays - {Overlay.RATIOS}  # colours of its own
+        view.show_artwork(printed_sheet(design, target))
     view.set_overlays(overlays)
     with qtbot.waitExposed(view):
         view.show()

@@ -60,6 +60,8 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "artwork.impossible_bleed": mark("The bleed must be 0 to {most:g} mm, got {bleed_mm:g} mm."),
     "artwork.impossible_margin": mark("The margin must be 0 to {most:g} mm, got {margin_mm:g} mm."),
     "artwork.impossible_dpi": mark("The resolution must be above 0 dpi, got {dpi:g}."),
+    "artwork.name_a_picture": mark("The project has no artwork. Name a picture with --picture."),
+    "artwork.none": mark("The project has no artwork. Choose a picture first."),
     "artwork.too_many_pixels": mark(
         "At {dpi:g} dpi the printed sheet would have {width} x {height} pixels. Choose {most_dpi} dpi or less."
     ),

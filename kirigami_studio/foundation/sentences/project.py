@@ -129,6 +129,7 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "picture.not_a_picture_name": mark("{name!r:.60} is not the name of a picture ({extensions})."),
     "picture.too_large": mark("{name} has {megabytes:.0f} MB; projects store pictures of at most {limit} MB."),
     "picture.impossible_number": mark("The picture {name:.60} has an impossible threshold, scale or size."),
+    "artwork.left_out": mark("The artwork in this project cannot be read and was left out. {reason}"),
     "picture.left_out": mark("The picture in this project cannot be read and was left out. {reason}"),
     # Preferences, recent files, recovery files
     "preferences.not_a_name": mark("The preference {name} must be a name, got {value!r:.40}."),

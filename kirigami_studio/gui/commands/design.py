@@ -116,6 +116,13 @@ def _changes(window: MainWindow) -> tuple[Command, ...]:
             enabled_when=_can_change,
         ),
         Command(
+            "artwork",
+            menu,
+            tr("Art&work …"),
+            tr("Lay a picture on the sheet, and print it in register with the cuts"),
+            window.dialogs.show_artwork,
+        ),
+        Command(
             "materials",
             menu,
             tr("&Materials …"),

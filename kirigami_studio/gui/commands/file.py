@@ -100,6 +100,21 @@ class FileCommands(QObject):
         if folder is not None:
             self._controller.export_all(folder, self._window.unsaved.name)
 
+    def ask_artwork(self) -> None:
+        """Lay a picture of the user's choice on the sheet."""
+        path = self._window.file_dialogs.artwork()
+        if path is not None:
+            self._controller.artwork.open(path)
+
+    def export_artwork(self) -> None:
+        """Write the printed sheet into a folder of the user's choice; without artwork, offer to choose a picture."""
+        if self._controller.document.artwork is None:
+            self._window.dialogs.show_artwork()
+            return
+        folder = self._window.file_dialogs.folder()
+        if folder is not None:
+            self._controller.export_artwork(folder)
+
     def export_coupon(self, material: Material) -> None:
         """Write the calibration coupon of a material in a place of the user's choice."""
         path = self._window.file_dialogs.export(f"coupon-{material.key}.dxf")
@@ -184,6 +199,14 @@ def commands(window: MainWindow) -> tuple[Command, ...]:
             tr("Export every file type to one folder"),
             files.export_all,
             shortcuts=("Ctrl+Shift+E",),
+            enabled_when=lambda now: now.shows_design,
+        ),
+        Command(
+            "export_artwork",
+            menu,
+            tr("Export art&work …"),
+            tr("Export the picture on the sheet, in register with the cuts"),
+            files.export_artwork,
             enabled_when=lambda now: now.shows_design,
         ),
         Command(

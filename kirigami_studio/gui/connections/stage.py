@@ -49,6 +49,7 @@ class StageConnections(QObject):
         controller.trimming.busy_changed.connect(stage.show_trimming)
         controller.as_cut.changed.connect(stage.show_as_cut)
         controller.grips.changed.connect(stage.view.show_grips)
+        controller.artwork.painted.connect(stage.view.show_artwork)
         stage.overlays_changed.connect(lambda shown: controller.grips.want(Overlay.GRIPS in shown))
         controller.curves.grown.connect(stage.plots.show_curves)
 
@@ -73,6 +74,7 @@ class StageConnections(QObject):
         panel.materials_wanted.connect(window.dialogs.show_materials)
         panel.export_wanted.connect(window.files.export)
         panel.exports.all_wanted.connect(window.files.export_all)
+        panel.exports.artwork_wanted.connect(window.files.export_artwork)
         panel.exports.ideal_wanted.connect(lambda: window.files.animate(Motion.IDEAL))
         panel.opened.link_wanted.connect(self._sizing.link)
         self._sizing.known.connect(panel.opened.show_size)

@@ -12,6 +12,7 @@ from kirigami_studio.gui.file_kinds import FILE_KINDS, kind_of
 
 TARGET_FILTER = tr("Targets (*.png *.jpg *.jpeg *.bmp *.svg *.dxf *.json);;All files (*)")
 START_FILTER = tr("Shapes (*.png *.jpg *.jpeg *.bmp *.svg *.dxf *.json);;All files (*)")
+ARTWORK_FILTER = tr("Pictures (*.png *.jpg *.jpeg *.svg *.bmp *.tif *.tiff *.webp);;All files (*)")
 PROJECT_FILTER = tr("Kirigami Studio projects (*.kiri)")
 
 
@@ -23,6 +24,9 @@ class FileDialogs(Protocol):
 
     def start(self) -> Path | None:
         """A shape to open as the start outline."""
+
+    def artwork(self) -> Path | None:
+        """A picture to print on the sheet."""
 
     def project(self) -> Path | None:
         """A project to open."""
@@ -55,6 +59,10 @@ class SystemFileDialogs:
         name, _ = QFileDialog.getOpenFileName(self._window, tr("Open start outline"), self._folder, START_FILTER)
         return self._remembered(name)
 
+    def artwork(self) -> Path | None:
+        name, _ = QFileDialog.getOpenFileName(self._window, tr("Choose picture"), self._folder, ARTWORK_FILTER)
+        return self._remembered(name)
+
     def project(self) -> Path | None:
         name, _ = QFileDialog.getOpenFileName(self._window, tr("Open project"), self._folder, PROJECT_FILTER)
         return self._remembered(name)
@@ -79,7 +87,7 @@ class SystemFileDialogs:
         return self._answer(dialog)
 
     def folder(self) -> Path | None:
-        name = QFileDialog.getExistingDirectory(self._window, tr("Export everything to a folder"), self._folder)
+        name = QFileDialog.getExistingDirectory(self._window, tr("Export to a folder"), self._folder)
         return self._remembered(name)
 
     def _saver(self, title: str, proposal: str, filters: list[str]) -> QFileDialog:

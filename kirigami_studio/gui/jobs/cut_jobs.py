@@ -9,7 +9,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from kirigami_studio.evaluate.candidate import Candidate
-from kirigami_studio.foundation.errors import Cancelled, ExportError, UsageError
+from kirigami_studio.export.artwork import Artwork
+from kirigami_studio.foundation.errors import Cancelled, ExportError, ProjectError, UsageError
 from kirigami_studio.gui.file_kinds import kind_of
 from kirigami_studio.gui.jobs import importing
 from kirigami_studio.gui.jobs.queue import Cancel
@@ -119,6 +120,8 @@ class CutRequest:
         Where the design comes from.
     as_cut : AsCut or None
         How it does as cut, if that is known already.
+    artwork : Artwork or None
+        What is printed on the sheet.
     """
 
     candidate: Candidate
@@ -127,6 +130,7 @@ class CutRequest:
     settings: FabricationSettings
     facts: Mapping[str, str] = field(default_factory=dict)
     as_cut: AsCut | None = None
+    artwork: Artwork | None = None
 
 
 def planning(request: CutRequest, cancel: Cancel) -> Iterator[Planned]:
@@ -254,7 +258,20 @@ def export_job(request: CutRequest, made: Planned | None) -> ExportJob:
         paper=request.settings.paper,
         markers=request.settings.markers,
         provenance=request.facts,
+        artwork=request.artwork,
     )
+
+
+def exporting_artwork(request: CutRequest, folder: Path, cancel: Cancel) -> Iterator[Exported]:
+    """Write the printed sheet into a folder: SVG, PDF and PNG in register with the cuts, and a picture of it opened."""
+    importing.import_exporters()
+    from kirigami_studio.export.artwork_files import ArtworkJob, write_artwork
+
+    if request.artwork is None:
+        raise ProjectError("artwork.none")
+    with importing.collecting_between():
+        write_artwork(ArtworkJob(request.artwork, export_job(request, planned(request))), folder)
+    yield Exported(folder, None)
 
 
 def exporting_coupon(

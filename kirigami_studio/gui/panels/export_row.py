@@ -18,6 +18,7 @@ class ExportRow(QWidget):
     export_wanted = Signal(str)  #: extension
     ideal_wanted = Signal()  #: an animation of the ideal motion
     all_wanted = Signal()
+    artwork_wanted = Signal()
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -44,6 +45,9 @@ class ExportRow(QWidget):
                 self.ideal = self.menu.addAction(tr("GIF animation, ideal …"))
                 self.ideal.setToolTip(tr("The ideal motion to the target angle, with connectors of no width"))
                 self.ideal.triggered.connect(lambda: self.ideal_wanted.emit())
+        self.artwork = self.menu.addAction(tr("Artwork to a folder …"))
+        self.artwork.setToolTip(tr("The picture on the sheet as SVG, PDF and PNG, in register with the cuts"))
+        self.artwork.triggered.connect(lambda: self.artwork_wanted.emit())
         self.menu.addSeparator()
         self.everything = self.menu.addAction(tr("Everything to a folder …"))
         self.everything.setToolTip(tr("Every cut file, pictures and a record of the job (Ctrl+Shift+E)"))
@@ -72,6 +76,7 @@ class ExportRow(QWidget):
         self.export.setEnabled(cuts)
         self.more.setEnabled(cuts or pictures)
         self.everything.setEnabled(cuts)
+        self.artwork.setEnabled(cuts)
         self.ideal.setEnabled(pictures)
         for kind in FILE_KINDS:
             self.kinds[kind.extension].setEnabled(cuts if kind.cuts else pictures)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from PySide6.QtCore import QEvent, QObject, QPointF, QRectF, Qt, Signal
-from PySide6.QtGui import QFontMetrics, QMouseEvent, QPainter
+from PySide6.QtGui import QFontMetrics, QMouseEvent, QPaintEngine, QPainter
 from PySide6.QtWidgets import QWidget
 
 from kirigami_studio.evaluate.posed_design import PosedDesign
@@ -19,6 +19,7 @@ from kirigami_studio.foundation.arrays import BoolArray, FloatArray
 from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.gui.designs.gripping import UNKNOWN as GRIPS_UNKNOWN
 from kirigami_studio.gui.designs.gripping import GripState
+from kirigami_studio.gui.scene.artwork_items import ShownArtwork, paint_artwork
 from kirigami_studio.gui.scene.colour_scale import (
     OPENING_TITLE,
     RATIO_TITLE,
@@ -86,6 +87,8 @@ SHORTEST_GAP = 6.0
 NARROW = 440
 #: Pixels from the top that the caption takes.
 CAPTION_HEIGHT = 44.0
+#: What panels look like below artwork that does not cover them.
+PAPER = "#ffffff"
 #: How much a fault is enlarged over the fitted picture.
 CLOSE_UP = 5.0
 #: Designs whose facts are kept: a step back in the history shows one of them again.
@@ -173,6 +176,7 @@ class LayoutView(Canvas):
         self._width_mm = USUAL_WIDTH_MM
         self._scales: list[ColourScale] = []
         self._cut: SimulatedSheet | None = None
+        self._artwork: ShownArtwork | None = None
         self._grips = GRIPS_UNKNOWN
         self._overstretched = 0
         self._areas: Mismatch | None = None
@@ -194,6 +198,11 @@ class LayoutView(Canvas):
     def design(self) -> PosedDesign | None:
         """The design that is drawn."""
         return self._design
+
+    @property
+    def artwork(self) -> ShownArtwork | None:
+        """The printed sheet of the last design that was painted."""
+        return self._artwork
 
     @property
     def areas(self) -> Mismatch | None:
@@ -238,6 +247,11 @@ class LayoutView(Canvas):
         if sheet is not self._cut:
             self._cut = sheet
             self.update()
+
+    def show_artwork(self, shown: ShownArtwork | None) -> None:
+        """Show the printed sheet of a design on its panels; None where nothing is printed."""
+        self._artwork = shown
+        self.update()
 
     def show_grips(self, state: GripState) -> None:
         """Show where to hold and to pull the design as cut."""
@@ -387,7 +401,12 @@ class LayoutView(Canvas):
         palette = self.palette_
         if Overlay.RATIOS in self._overlays:  # blue means a ratio there, not a panel
             palette = replace(palette, panel_even=palette.border, panel_odd=palette.grid, panel_line=palette.muted)
+        artwork = self._painted_artwork(painter)
+        if artwork is not None:
+            palette = replace(palette, panel_even=PAPER, panel_odd=PAPER, panel_line=palette.muted)
         paint_panels(painter, panels, turning_left(field.rows, field.columns), palette, trimmed)
+        if artwork is not None:
+            paint_artwork(painter, artwork, self._phi, panels, trimmed, transform)
         self._paint_voids(painter, transform, nodes)
         if self._target is not None:
             self._paint_comparison(painter, transform)
@@ -396,6 +415,13 @@ class LayoutView(Canvas):
         self._paint_grips(painter, transform)
         self._paint_faults(painter, transform)
         self.voids.paint(painter, self.palette_)
+
+    def _painted_artwork(self, painter: QPainter) -> ShownArtwork | None:
+        """The artwork, unless it belongs to another design, hides an overlay, or cannot be drawn as lines."""
+        shown = self._artwork
+        if shown is None or shown.sheet.design is not self._design or Overlay.RATIOS in self._overlays:
+            return None
+        return None if painter.paintEngine().type() is QPaintEngine.Type.SVG else shown
 
     def _paint_voids(self, painter: QPainter, transform: ViewTransform, nodes: FloatArray) -> None:
         """Colours of voids: by their ratio, by their area."""

@@ -6,6 +6,7 @@ import json
 import os
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -17,12 +18,15 @@ from PIL import Image
 from kirigami_studio.cli import main
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.score import evaluate
+from kirigami_studio.export.artwork import Artwork, Fitting, Laid, State
+from kirigami_studio.export.artwork_picture import read_picture
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.outlines.silhouettes import load
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.settings import FabricationSettings
+from kirigami_studio.project.store import load as load_project
 from kirigami_studio.project.store import save
 
 
@@ -82,6 +86,22 @@ def test_that_options_reach_the_files(
     assert main(["export", str(project), "--out", str(tmp_path / "cut.svg"), "--width-mm", "90", "--copies", "2"]) == 0
     roots = [ElementTree.parse(path).getroot() for path in (tmp_path / "cut.svg", tmp_path / "large" / "artwork.svg")]
     assert roots[0].get("viewBox") == roots[1].get("viewBox")
+
+
+def test_that_the_artwork_of_the_project_is_printed_and_options_change_it(
+    capsys: pytest.CaptureFixture[str], project: Path, photo: Path, tmp_path: Path
+) -> None:
+    words = ["artwork", project, "--dpi", 50, "--json", "--out", tmp_path / "out"]
+    code, said = refusal(capsys, *words)
+    assert code == 2 and "--picture" in said
+    laid = Laid(read_picture(photo), State.FLAT, Fitting.FIT, 0.5)
+    save(replace(load_project(project), artwork=Artwork(laid)), project)
+    own = answer(capsys, *words)
+    assert own["on"] == "flat" and own["covered"] < 0.5
+    other = answer(capsys, *words, "--on", "target", "--scale", 1, "--place", "fill")
+    assert other["on"] == "target" and other["covered"] == pytest.approx(1.0)
+    told = answer(capsys, "export", project, "--all", "--out", tmp_path / "all", "--json")
+    assert {"artwork.svg", "artwork.png"} < {Path(path).name for path in told["files"]}
 
 
 def test_that_an_svg_is_printed_without_a_display(project: Path, tmp_path: Path) -> None:

@@ -15,17 +15,10 @@ from skimage.transform import SimilarityTransform, estimate_transform, warp
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.evaluate.trimming import trim
-from kirigami_studio.export.artwork import (
-    Artwork,
-    Fitting,
-    Laid,
-    PrintedSheet,
-    State,
-    opened_patches,
-    printed_patches,
-)
-from kirigami_studio.export.artwork_picture import ArtPicture, picture_of
-from kirigami_studio.export.artwork_raster import Page, paint
+from kirigami_studio.export.artwork import ArtPicture, Artwork, Fitting, Laid, State
+from kirigami_studio.export.artwork_patches import PrintedSheet, opened_patches, printed_patches
+from kirigami_studio.export.artwork_picture import picture_of
+from kirigami_studio.export.artwork_raster import Page, image_of, paint
 from kirigami_studio.export.exporter import ExportJob
 from kirigami_studio.fabricate.cut_plan import plan_cuts
 from kirigami_studio.foundation.errors import ExportError
@@ -59,7 +52,7 @@ def job_of(trimmed: bool = False, seed: int = 3) -> ExportJob:
 
 def warped_by_skimage(laid: Laid, sheet: PrintedSheet, page: Page, panel: int) -> np.ndarray:
     """The printed page as scikit-image makes it from the panel's corners, as if it were all of that panel."""
-    picture = np.asarray(laid.picture.image.convert("RGB"), dtype=np.float64) / 255.0
+    picture = np.asarray(image_of(laid.picture.content).convert("RGB"), dtype=np.float64) / 255.0
     design = sheet.design
     there = (
         design.panels(design.nodes(design.phi_target))[panel] if laid.state is State.TARGET else sheet.corners[panel]

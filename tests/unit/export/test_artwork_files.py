@@ -16,9 +16,10 @@ from PIL import Image
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.score import evaluate
-from kirigami_studio.export.artwork import Artwork, Laid, State
+from kirigami_studio.export.artwork import ArtPicture, Artwork, Laid, State
 from kirigami_studio.export.artwork_files import ArtworkJob, write_artwork
-from kirigami_studio.export.artwork_picture import ArtPicture, picture_of
+from kirigami_studio.export.artwork_picture import picture_of
+from kirigami_studio.export.artwork_raster import image_of
 from kirigami_studio.export.exporter import ExportJob
 from kirigami_studio.export.profile import find_profile
 from kirigami_studio.export.svg import write_cut_svg
@@ -88,7 +89,7 @@ def test_that_the_svg_shows_what_the_bitmap_shows(picture: ArtPicture, job: Expo
     with Image.open(png) as opened:
         pixels = np.asarray(opened.convert("RGB"), dtype=int)
     left, top, _, _ = view_box(svg)
-    source = np.asarray(picture.image.convert("RGB"), dtype=int)
+    source = np.asarray(image_of(picture.content).convert("RGB"), dtype=int)
     uses = [use.get("transform", "") for use in root.iter(f"{SVG}use")]
     paths = [path.get("d", "") for path in root.iter(f"{SVG}path") if path.get("clip-rule")]
     assert len(uses) == len(paths) == 4 * 5

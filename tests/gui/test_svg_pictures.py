@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 from kirigami_studio.export.artwork_picture import read_picture
+from kirigami_studio.export.artwork_raster import image_of
 from kirigami_studio.foundation.errors import TargetError
-from kirigami_studio.gui.files.svg_drawing import svg_to_png
+from kirigami_studio.gui.jobs.artwork_jobs import svg_to_png
 
 
 def test_that_an_svg_is_drawn_with_its_text_and_its_transparency(tmp_path: Path, qapp: object) -> None:
@@ -20,9 +21,9 @@ def test_that_an_svg_is_drawn_with_its_text_and_its_transparency(tmp_path: Path,
     )
     picture = read_picture(drawing, svg_to_png)
     assert picture.size == (3000, 1500)
-    assert picture.image.getpixel((700, 700)) == (255, 0, 0, 255)
-    assert picture.image.getpixel((2900, 100))[3] == 0
-    assert np.asarray(picture.image)[:, 1600:, 3].any()
+    assert image_of(picture.content).getpixel((700, 700)) == (255, 0, 0, 255)
+    assert image_of(picture.content).getpixel((2900, 100))[3] == 0
+    assert np.asarray(image_of(picture.content))[:, 1600:, 3].any()
 
 
 @pytest.mark.parametrize(
