@@ -97,6 +97,9 @@ pictures: setup
 	QT_QPA_PLATFORM=offscreen $(BIN)/python -m kirigami_studio.demonstrations.offscreen_session --pairs --scale 2 --out out/pictures
 	cp out/pictures/pairs.png docs/pictures/pairs.png
 	cp out/pictures/pairs-small.png resources/guide/pairs.png
+	$(BIN)/python -m kirigami_studio.demonstrations.printed_states resources/pairs/02-circle-to-square.kiri \
+	  $$($(BIN)/python -c "import pathlib, skimage.data as d; print(pathlib.Path(d.__file__).parent / 'coffee.png')") \
+	  --out docs/pictures/artwork.png
 
 shapes: setup
 	@mkdir -p out

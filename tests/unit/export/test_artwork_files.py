@@ -14,6 +14,7 @@ import pypdf
 import pytest
 from PIL import Image
 
+from kirigami_studio.demonstrations import printed_states
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.export.artwork import ArtPicture, Artwork, Laid, State
@@ -30,6 +31,8 @@ from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.outlines import silhouettes
+from kirigami_studio.project.document import Document
+from kirigami_studio.project.store import save
 
 SVG = "{http://www.w3.org/2000/svg}"
 
@@ -117,6 +120,21 @@ def test_that_the_opened_sheet_shows_the_picture_as_it_was(picture: ArtPicture, 
             int((y - 0.02) * height) : int((y + 0.02) * height), int((x - 0.02) * width) : int((x + 0.02) * width)
         ]
         assert np.median(area.reshape(-1, 3), axis=0).tolist() == list(meant)
+
+
+def test_that_the_picture_for_the_readme_shows_three_states(
+    picture: ArtPicture, job: ExportJob, tmp_path: Path
+) -> None:
+    (tmp_path / picture.name).write_bytes(picture.content)
+    candidate = Candidate(job.deployment.sheet, evaluate(job.deployment, silhouettes.load("heart"), 0.0), 0, 0)
+    save(Document(silhouettes.load("heart"), candidates=(candidate,), chosen=0), tmp_path / "own.kiri")
+    words = [str(tmp_path / name) for name in ("own.kiri", picture.name)]
+    assert printed_states.main([*words, "--out", str(tmp_path / "three.png")]) == 0
+    with Image.open(tmp_path / "three.png") as image:
+        pixels = np.asarray(image.convert("RGB"), dtype=int)
+    printed = (pixels < 250).any(axis=2)
+    thirds = [third.mean() for third in np.array_split(printed, 3, axis=1)]
+    assert min(thirds) > 0.15
 
 
 def test_that_marks_point_at_the_corners_of_the_frame(picture: ArtPicture, job: ExportJob) -> None:
