@@ -25,6 +25,8 @@ LARGE = QSize(2560, 1440)
 LARGE_STATES = frozenset({"editor-points", "designs", "cuts", "half-open", "tour"})
 #: Size of the window at twice the scale: 2560 x 1440 device pixels.
 SCALED = QSize(1280, 720)
+#: A rectangle with a notch, mm.
+HOLLOW = ((-40.0, -30.0), (40.0, -30.0), (40.0, 30.0), (0.0, 0.0), (-40.0, 30.0))
 LONG_NAME = "a scanned drawing with the long name that scanners like to give, page 3 of 12"
 
 
@@ -111,3 +113,27 @@ class BoardStates(Session):
         if not controller.document.candidates:
             raise SessionError("The designs did not come back.")
         self.until(self.window.fabrication.export.isEnabled, "the designs came back without a plan")
+
+    def starts(self) -> None:
+        """The list of starts, a hollow shape on the start's board, the pairs, and one of them opened."""
+        window, tile = self.window, self.window.target.start
+        window.controller.history.mark_saved()
+        tile.open_menu()
+        self.picture("start-menu", tile.menu)
+        tile.menu.close()
+        window.dialogs.show_start_board()
+        window.dialogs.show_pairs()
+        board, gallery = window.dialogs.start_board, window.dialogs.pairs
+        if board is None or gallery is None:
+            raise SessionError("The board or the pairs did not open.")
+        board.view.context.changed.emit(Change("Draw polygon", lambda: Placed.from_ring(HOLLOW, "polygon")))
+        for palette in (DARK, LIGHT):
+            window.set_theme(palette)
+            self.until(lambda: gallery.complete, "the pairs were not drawn")
+            self.picture(f"start-board-{palette.name}", board)
+            self.picture(f"pairs-{palette.name}", gallery)
+        board.close()
+        gallery.list.itemActivated.emit(gallery.list.item(0))
+        self.until(lambda: window.target.start.name == "circle", "the pair did not open")
+        self.until(window.fabrication.export.isEnabled, "the pair has no plan")
+        self.all_sizes("pair")

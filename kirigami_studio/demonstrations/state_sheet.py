@@ -140,6 +140,7 @@ class StateSheet(BoardStates):
         if window.dialogs.guide is not None:
             self.picture("guide", window.dialogs.guide)
         self.first_steps()
+        self.starts()
         window.controller.history.mark_saved()
         window.close()
         self.files.extend(contact_sheets([file for file in self.files if file.suffix == ".png"], self.out))

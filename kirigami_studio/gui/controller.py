@@ -360,7 +360,11 @@ class Controller(QObject):
         bundled = path.is_relative_to(resource_root())
         self.session.restart(document, None if bundled else path)  # a bundled one is saved elsewhere
         self.opened.emit(path)
-        self.session.set_status(tr("Opened {path}.", path=path))
+        self.session.set_status(
+            tr("Opened the example {name}. Save keeps a copy of it.", name=path.stem)
+            if bundled
+            else tr("Opened {path}.", path=path)
+        )
 
     def _show_recovered(self, document: Document, path: Path | None) -> None:
         self._stop_all()

@@ -197,6 +197,26 @@ def test_that_a_design_keeps_its_own_start_whatever_the_settings_say(
     assert model.index(0, 0).data(START_ROLE) == ""  # nothing to tell apart
 
 
+@pytest.mark.torch
+def test_that_a_pinned_design_keeps_its_start_beside_those_of_the_next_run(heart: MainWindow, until: Until) -> None:
+    controller, model = heart.controller, heart.gallery.view.model_
+    for changes in ({"grid": (4, 5)}, {"k": 2}, {"polish": 0}):
+        controller.change_settings(**changes)
+    heart.target.start.entries["circle"].trigger()
+    heart.commands["generate"].trigger()
+    until(lambda: not controller.running and len(controller.document.candidates) == 2)
+    pinned = controller.document.candidates[0]
+    controller.marks.pin(pinned)
+    heart.target.start.entries["hexagon"].trigger()
+    heart.commands["generate"].trigger()
+    until(lambda: not controller.running and len(controller.document.candidates) == 3)
+    names = [model.index(row, 0).data(START_ROLE) for row in range(len(model.entries))]
+    assert sorted(names) == ["circle", "hexagon", "hexagon"]
+    controller.choose(pinned)
+    assert heart.stage.ends.start.accessibleName().startswith("circle  ·  ")
+    assert heart.target.start.name == "hexagon"
+
+
 @pytest.mark.parametrize("name", ["circle", "rectangle", "rectangle:2:1", "hexagon"])
 def test_that_designs_like_another_start_as_that_one(name: str) -> None:
     """They lie near its sheet, so that the settings' start would be a wrong name for theirs."""

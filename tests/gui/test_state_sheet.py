@@ -65,6 +65,16 @@ def test_that_the_photo_state_shows_a_threshold(sheet: StateSheet) -> None:
     assert sheet.window.target.threshold.isVisible()
 
 
+def test_that_the_start_states_show_the_board_the_pairs_and_an_opened_pair(
+    sheet: StateSheet, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("kirigami_studio.demonstrations.board_states.SIZES", SIZES[1:2])
+    sheet.starts()
+    for name in ("start-menu", "start-board-dark", "pairs-light", "pair-1280x720-dark"):
+        assert (tmp_path / f"{name}.png").exists()
+    assert sheet.window.target.start.name == "circle" and sheet.window.controller.document.candidates
+
+
 def test_that_the_message_states_leave_no_message(sheet: StateSheet, tmp_path: Path) -> None:
     sheet.picture_target()
     sheet.messages()

@@ -98,7 +98,7 @@ class State:
         return (
             tr("{name}  ·  {size}  ·  match {percent:.1f} %", name=self.name, size=self.size_text, percent=percent),
             tr("{name}  ·  {size}  ·  {percent:.1f} %", name=self.name, size=self.size_text, percent=percent),
-            tr("{name}  ·  {percent:.1f} %", name=self.name, percent=percent),
+            tr("{name} {percent:.1f} %", name=self.name, percent=percent),
             self.name,
         )
 

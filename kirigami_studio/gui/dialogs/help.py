@@ -62,6 +62,7 @@ def gestures() -> tuple[Gesture, ...]:
         Gesture(anywhere, tr("Wheel"), tr("Zoom at the pointer")),
         Gesture(anywhere, tr("Drag"), tr("Pan the view")),
         Gesture(anywhere, tr("Double-click"), tr("Fit view")),
+        Gesture(tr("Start tile"), tr("Drop a file"), tr("Start as the shape in it; Delete goes back to the rectangle")),
         Gesture(board, tr("Ctrl while drawing"), tr("Ignore the grid")),
         Gesture(board, tr("Shift while dragging a box"), tr("Keep the shape regular")),
         Gesture(board, tr("Drag a point"), tr("Move it; arrow keys nudge it (Shift: farther)")),

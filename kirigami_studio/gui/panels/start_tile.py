@@ -47,7 +47,7 @@ OTHER_STARTS = (
     (FILE_START, tr("File …"), tr("Open a file with a shape without hollows. PNG, JPG, BMP, SVG, DXF or JSON.")),
     (DRAWN_START, tr("Draw …"), tr("Draw a shape without hollows on a board of its own.")),
 )
-WIDTH = 100
+WIDTH = 108
 #: Edge of the button that goes back to the rectangle, and of the pictures in the menu, pixels.
 BACK_EDGE, MENU_EDGE = 20, 22
 #: Pixels around the picture, and that a line of text takes.

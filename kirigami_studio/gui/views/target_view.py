@@ -176,7 +176,7 @@ class TargetView(Canvas):
 
     def minimumSizeHint(self) -> QSize:  # noqa: N802 - Qt's name
         """Lower than other canvases: in a low window with a message the settings below need the room."""
-        return QSize(150, 56)
+        return QSize(140, 56)
 
     def scene_bounds(self) -> Bounds | None:
         if self._editing:
