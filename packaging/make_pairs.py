@@ -23,6 +23,7 @@ from kirigami_studio.project.design_facts import with_run
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.settings import DesignSettings, FabricationSettings
 from kirigami_studio.project.store import save
+from kirigami_studio.project.verdict import assess
 
 FOLDER = Path(__file__).resolve().parents[1] / "resources" / "pairs"
 #: Even panels count more than the last percent of match: these are to be looked at.
@@ -113,10 +114,10 @@ def main() -> int:
         path = FOLDER / f"{number:02d}-{pair.start.partition(':')[0]}-to-{pair.target}.kiri"
         save(document, path)
         (candidate,) = document.candidates
-        score = candidate.score
+        score, verdict = candidate.score, assess(candidate, document.fabrication, document.target).verdict
         sys.stdout.write(
             f"{path.stem}: IoU {score.iou_exact:.4f}, CV {score.evenness.area_cv:.2f}, start error "
-            f"{100 * start_error(candidate.sheet):.2f} %, feasible {score.feasible}, {path.stat().st_size} bytes\n"
+            f"{100 * start_error(candidate.sheet):.2f} %, verdict {verdict.level.value}, {path.stat().st_size} bytes\n"
         )
         sys.stdout.flush()
     return 0

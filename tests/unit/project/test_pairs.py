@@ -14,6 +14,7 @@ from kirigami_studio.lattice.laying import start_error, start_match
 from kirigami_studio.outlines.read import read_target
 from kirigami_studio.polish.flat_sheet import uniform_sheet
 from kirigami_studio.project.store import load
+from kirigami_studio.project.verdict import Level, assess
 
 PAIRS = sorted(resource("pairs").glob("*.kiri"))
 
@@ -43,3 +44,11 @@ def test_that_a_pair_is_exact_flat_close_when_open_even_and_free_on_the_way(path
     assert score.evenness.area_cv <= 0.7
     assert score.feasible and score.n_invalid == 0 and score.contact is None
     assert path_contact(motion, document.settings.phi) is None
+
+
+@pytest.mark.parametrize("name", ["square-to-circle", "square-to-triangle"])
+def test_that_a_pair_can_be_cut_and_closes_as_cut(name: str) -> None:
+    (path,) = (path for path in PAIRS if path.stem.endswith(name))
+    document = load(path)
+    assert document.candidate is not None
+    assert assess(document.candidate, document.fabrication, document.target).verdict.level is Level.READY
