@@ -18,7 +18,7 @@ from kirigami_studio.outlines.read import read_target
 from kirigami_studio.outlines.starts import start_shape
 from kirigami_studio.pipeline.request import Request, provenance
 from kirigami_studio.pipeline.run import best_of
-from kirigami_studio.project.cutting import least_feature_mm
+from kirigami_studio.project.cutting import least_feature_mm, room_mm
 from kirigami_studio.project.design_facts import with_run
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.settings import DesignSettings, FabricationSettings
@@ -41,7 +41,7 @@ class Pair:
     start, target : str
         By their names.
     upright : bool
-        A round target would let the sheet stand turned anyhow: the first design that stands upright is taken.
+        Whether the first design is taken that stands upright: over a round target, for one, it may stand anyhow.
     symmetry : str
         What designs have to keep: a leaf is no mirror image of itself that counts.
     """
@@ -62,7 +62,7 @@ PAIRS = (
     Pair("circle", "bell"),
     Pair("square", "plus"),
     Pair("circle", "flower"),
-    Pair("square", "triangle"),
+    Pair("square", "triangle", upright=True),
     Pair("square", "leaf", symmetry="none"),
     Pair("egg", "bean"),
 )
@@ -82,6 +82,7 @@ def made(pair: Pair) -> Document:
         start=start_shape(pair.start),
         width_mm=cut.width_mm,
         least_feature_mm=least_feature_mm(cut),
+        room_mm=room_mm(cut),
     )
     result = best_of(request)
     chosen = next(one for one in result.candidates if not pair.upright or abs(turn_of(one)) < UPRIGHT)
