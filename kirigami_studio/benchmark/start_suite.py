@@ -11,7 +11,7 @@ import numpy as np
 import shapely
 
 from kirigami_studio.evaluate.candidate import Candidate, Origin
-from kirigami_studio.evaluate.feasibility import UNION_GRID, path_contact
+from kirigami_studio.evaluate.feasibility import UNION_GRID, invalid_quads, path_contact
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.lattice.deployment import Deployment, deploy, rotate
 from kirigami_studio.lattice.laying import lost_to_chords, start_error
@@ -22,7 +22,8 @@ from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.starts import StartShape
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.pipeline.run import best_of
-from kirigami_studio.polish.flat_sheet import uniform_sheet
+from kirigami_studio.polish.flat_sheet import first_sheet
+from kirigami_studio.polish.unfolding import has_hollows
 
 Report = Callable[[int, int], None]
 
@@ -140,17 +141,21 @@ class RandomSheets:
     ----------
     start : str
     count : int
+    hollow : bool
+        Whether the start has hollows, around which panels may be turned over.
     inverted : int
-        Panels that are turned over in the flat sheet.
+        Panels that are turned over in the flat sheet, which then is not feasible.
     local_rule, zip, partition : float
         Largest misses of Eq. 2, of the rim edges that fold onto each other at phi = 0 (unit cells), and of the panels'
         areas to the sheet's, as a share.
     crossings, unreported : int
-        Sheets that are told to touch themselves on the way; those whose panels overlap though nothing was told.
+        Sheets that are told to touch themselves on the way; those whose panels overlap though neither that nor a
+        panel turned over was told.
     """
 
     start: str
     count: int
+    hollow: bool
     inverted: int
     local_rule: float
     zip: float
@@ -161,18 +166,23 @@ class RandomSheets:
     @property
     def ok(self) -> bool:
         """Whether all is as it has to be."""
-        return self.inverted == self.unreported == 0 and max(self.local_rule, self.zip, self.partition) < 1e-9
+        return (
+            (self.hollow or not self.inverted)
+            and not self.unreported
+            and max(self.local_rule, self.zip, self.partition) < 1e-9
+        )
 
 
 def random_sheets(start: StartShape, grid: tuple[int, int], count: int, seed: int, report: Report) -> RandomSheets:
-    """Measure ``count`` random sheets of a start and grid."""
-    random, flat = np.random.default_rng(seed), uniform_sheet(grid, start)
+    """Measure ``count`` random sheets of a start and grid, around the one where fits begin."""
+    random, flat = np.random.default_rng(seed), first_sheet(grid, start)
+    z, hollow = flat.field.log10, start.outline is not None and has_hollows(start.outline.points)
     held = RimPath(*grid, flat.start, flat.cell).held
     inverted = crossings = unreported = 0
     misses = np.zeros(3)
     for number in range(count):
         report(number, count)
-        field = RatioField.from_log10(random.uniform(-1.0, 1.0, grid))
+        field = RatioField.from_log10(np.clip(z + random.uniform(-1.0, 1.0, grid), -1.0, 1.0))
         offsets = np.where(held, 0.0, random.uniform(-MOVED, MOVED, held.size))
         sheet = Sheet(field, Rim.moved(*grid, offsets), flat.start, flat.cell)
         deployment = deploy(sheet)
@@ -183,9 +193,9 @@ def random_sheets(start: StartShape, grid: tuple[int, int], count: int, seed: in
         misses = np.maximum(misses, [local, _zip_gap(deployment), abs(areas.sum() - whole) / whole])
         told = path_contact(deployment, 0.0) is not None
         crossings += told
-        unreported += not told and _overlap(deployment) > OVERLAP
+        unreported += not told and not invalid_quads(deployment, 0.0) and _overlap(deployment) > OVERLAP
     rule, zipped, partition = (float(miss) for miss in misses)
-    return RandomSheets(start.name, count, inverted, rule, zipped, partition, crossings, unreported)
+    return RandomSheets(start.name, count, hollow, inverted, rule, zipped, partition, crossings, unreported)
 
 
 def _areas(panels: FloatArray) -> FloatArray:

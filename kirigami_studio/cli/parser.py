@@ -108,7 +108,7 @@ START = option(
     default="rectangle",
     metavar="SHAPE",
     help="shape of the flat sheet: rectangle, square, rectangle:W:H, circle, ellipse:W:H, triangle, hexagon, "
-    "polygon:N, a file or library name of a shape without hollows (default rectangle)",
+    "polygon:N, a file or library name of a shape, hollows and all (default rectangle)",
 )
 
 #: What sheets may be like, and which of them come first.

@@ -23,7 +23,7 @@ def laid_sheet(outline: FloatArray, rows: int, columns: int) -> Sheet:
     Parameters
     ----------
     outline : (P, 2) float
-        A convex polygon of any size, y up, either way round.
+        A simple polygon of any size, y up, either way round.
     rows, columns : int
 
     Returns
@@ -35,7 +35,7 @@ def laid_sheet(outline: FloatArray, rows: int, columns: int) -> Sheet:
     Raises
     ------
     GridError, SheetError
-        A grid out of range, an outline that is not convex.
+        A grid out of range, an outline that no sheet starts with.
     """
     check_grid(rows, columns)
     polygon = shapely.orient_polygons(shapely.Polygon(outline), exterior_cw=True)

@@ -8,6 +8,7 @@ compact node is a fixed combination of the rim's, all nodes are linear in them.
 
 Nor does the flat sheet have to be a rectangle: with mouths and corners on any convex outline and edge hinges halfway
 along the chords between them, the barycentric system of ``compact`` divides that polygon into panels all the same.
+Around hollows of an outline it does so for some ratios and mouths only: others turn panels over.
 ``start_outline`` decides which places along the rim the outline's points have.
 """
 
@@ -206,7 +207,7 @@ class Sheet:
     rim : Rim
         Evenly spaced unless given.
     start : (P, 2) float or None, unit cells
-        Outline of the flat sheet, convex, clockwise (y up) from the place of the top left corner panel's corner; the
+        Outline of the flat sheet, simple, clockwise (y up) from the place of the top left corner panel's corner; the
         other three corners and the even places of the mouths follow at the shares of its length that they have on the
         rectangle, moved so that its sharp corners are among them, see ``start_outline``.  None for the rectangle of
         (n + 1) x (m + 1) cells.
@@ -348,6 +349,23 @@ class RimPath:
         clockwise = np.where(table.side < 2, 1.0, -1.0)
         return np.asarray(clockwise[:, None] * slope[np.clip(part, 0, len(slope) - 1)] * self.cell)
 
+    def cut_off(self, positions: FloatArray) -> FloatArray:
+        """Areas (A,) between the parts of the outline from each anchor to the next and their chords: what chords cut
+        off is positive, what they add across hollows negative, in unit cells squared.
+        """
+        table = rim_table(self.rows, self.columns)
+        corners, corner_place = self._corners()
+        corners = corners * self.cell
+        place = table.anchor_place.copy()
+        place[table.mouths] = self._around(positions)
+        points = self._points(place)
+        # Twice the area swept by the ray from the origin, clockwise, up to each vertex, then up to each anchor.
+        swept = np.concatenate([[0.0], np.cumsum(_swept(corners[:-1], corners[1:]))])
+        part = np.clip(np.searchsorted(corner_place, place, side="right") - 1, 0, len(corners) - 2)
+        to_anchor = swept[part] + _swept(corners[part], points)
+        along = np.diff(np.append(to_anchor, swept[-1] + to_anchor[0]))
+        return np.asarray(0.5 * (along - _swept(points, np.roll(points, -1, axis=0))))
+
     def outline(self) -> FloatArray:
         """The path itself: (P, 2), unit cells, clockwise."""
         return np.asarray(self._corners()[0][:-1] * self.cell)
@@ -383,6 +401,11 @@ class RimPath:
         anchors = rim_table(self.rows, self.columns).anchor_place
         places, _ = vertex_places(self.start, self.rows, self.columns, anchors)
         return np.concatenate([self.start, self.start[:1]]), places
+
+
+def _swept(first: FloatArray, second: FloatArray) -> FloatArray:
+    """Twice the areas swept clockwise by the ray from the origin on its way from points (K, 2) to others."""
+    return np.asarray(first[:, 1] * second[:, 0] - first[:, 0] * second[:, 1])
 
 
 def _numbers(values: npt.ArrayLike) -> FloatArray:

@@ -25,8 +25,8 @@ from kirigami_studio.lattice.ratio_field import frozen
 START_SIDES = (0.5, 1000.0)
 FARTHEST_START = 1e4
 MOST_START_POINTS = 10_000
-#: A start outline is convex when its hull is larger by no more than this share of it.
-CONVEX = 1e-6
+#: A start outline covers more than this share of its hull.
+LEAST_OF_HULL = 0.5
 #: An outline that turns by more than this at a vertex has a sharp corner there.
 SHARP = math.radians(20.0)
 #: What it costs to leave out a corner of a right angle, and what it gains to have one at a corner panel that is at most
@@ -39,12 +39,12 @@ TIE = 1e-6
 
 
 def checked_start(start: npt.ArrayLike) -> FloatArray:
-    """A convex polygon, clockwise; its first vertex stays the first.
+    """A simple polygon, clockwise; its first vertex stays the first.
 
     Raises
     ------
     SheetError
-        Not a table of points, not convex, or of a size that no sheet has.
+        Not a table of points, hollow through and through, or of a size that no sheet has.
     """
     try:
         table = np.asarray(start)
@@ -65,8 +65,8 @@ def checked_start(start: npt.ArrayLike) -> FloatArray:
     polygon = shapely.Polygon(points)
     if not polygon.is_valid or polygon.area <= 0.0:
         raise SheetError("start.crosses_itself")
-    if polygon.convex_hull.area > (1.0 + CONVEX) * polygon.area:
-        raise SheetError("start.not_convex")
+    if polygon.area <= LEAST_OF_HULL * polygon.convex_hull.area:
+        raise SheetError("start.not_convex", percent=100.0 * (1.0 - polygon.area / polygon.convex_hull.area))
     if polygon.exterior.is_ccw:
         points = np.concatenate([points[:1], points[:0:-1]])
     return frozen(points)

@@ -1,4 +1,4 @@
-"""The shape that a sheet has while it is flat: a rectangle, a circle, a polygon, or any convex silhouette."""
+"""The shape that a sheet has while it is flat: a rectangle, a circle, a polygon, or a silhouette, hollows and all."""
 
 from __future__ import annotations
 
@@ -26,6 +26,9 @@ LONGEST = 5.0
 USUAL_ELLIPSE = 1.5
 #: Hollows of a loaded shape up to this share of its hull are filled: traced pictures have such edges.
 FILLED = 0.01
+#: A shape of which more than this share of its hull is missing is no start.  Of all other shapes of the library, an
+#: unfolded sheet was found at 11 x 11 and at 14 x 15 voids.
+MOST_HOLLOW = 0.35
 #: Points of a loaded shape may move by this (unit-area lengths).
 ACCURACY = 1e-4
 #: A mirror axis within this (radians) of upright or level stays where it is.
@@ -43,7 +46,7 @@ class StartShape:
     name : str
         As the command line takes it, e.g. "ellipse:3:2", or the name of a file or of a library silhouette.
     outline : Outline or None
-        A convex shape, its mirror axis upright if it has one; None for a rectangle.
+        Its mirror axis is upright if it has one; None for a rectangle.
     aspect : float or None
         Width over height of a rectangle; None for square cells, whatever the grid.
     """
@@ -86,7 +89,7 @@ def start_shape(text: str) -> StartShape:
     UsageError
         Numbers that no such shape has.
     SheetError
-        A shape with hollows.
+        A shape with hollows that are too large.
     TargetError
         Neither such a name nor a file or silhouette that can be read.
     """
@@ -113,7 +116,22 @@ def start_shape(text: str) -> StartShape:
         case ("rectangle" | "ellipse" | "polygon", _):
             raise UsageError("start.wrong_numbers", text=text, longest=LONGEST, most=MOST_SIDES)
         case _:
-            return convex_start(read_target(text.strip()))
+            return outline_start(read_target(text.strip()))
+
+
+def outline_start(outline: Outline) -> StartShape:
+    """A shape as a start, with its hollows unless they are small; :func:`convex_start` takes none.
+
+    Raises
+    ------
+    SheetError
+        Too much of its hull is missing; the sentence says where the deepest hollow is.
+    """
+    if outline.polygon.convex_hull.area <= 1.0 + FILLED:
+        return convex_start(outline)
+    _check_hollows(outline, MOST_HOLLOW)
+    points = shapely.get_coordinates(shapely.boundary(outline.polygon).simplify(ACCURACY))[:-1]
+    return StartShape(outline.name, _upright(Outline.from_points(points, outline.name)))
 
 
 def convex_start(outline: Outline) -> StartShape:
@@ -138,8 +156,13 @@ def check_convex(outline: Outline) -> None:
     SheetError
         The sentence says where the deepest one is.
     """
+    _check_hollows(outline, FILLED / (1.0 + FILLED))
+
+
+def _check_hollows(outline: Outline, most: float) -> None:
+    """Refuse a shape that is missing more than a share of its hull."""
     hull = outline.polygon.convex_hull
-    if hull.area > 1.0 + FILLED:
+    if 1.0 - 1.0 / hull.area > most:
         deepest = int(np.argmax(shapely.distance(shapely.boundary(hull), shapely.points(outline.points))))
         low, high = outline.points.min(axis=0), outline.points.max(axis=0)
         across, up = 100.0 * (outline.points[deepest] - low) / (high - low)

@@ -16,7 +16,7 @@ from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.starts import RECTANGLE, StartShape
 from kirigami_studio.polish.continuation import Wishes
 from kirigami_studio.polish.even_panels import even_weight
-from kirigami_studio.polish.flat_sheet import uniform_sheet, width_in_cells
+from kirigami_studio.polish.flat_sheet import first_sheet, width_in_cells
 from kirigami_studio.polish.panel_size import check_least, least_in_cells
 from kirigami_studio.polish.preferences import PREFERENCES
 from kirigami_studio.polish.symmetry import SYMMETRIES
@@ -220,8 +220,14 @@ class Request:
 
     @property
     def uniform(self) -> Sheet:
-        """The uniform sheet of the chosen grid and the start."""
-        return uniform_sheet(self.chosen_grid, self.start)
+        """The uniform sheet of the chosen grid and the start, unfolded where that has hollows.
+
+        Raises
+        ------
+        SheetError
+            Panels fold over around a hollow on this grid.
+        """
+        return first_sheet(self.chosen_grid, self.start, free_rim=self.rim == "free")
 
     def resolved(self, grid: tuple[int, int]) -> Request:
         """The same request on the grid that was chosen for it; a grid that it has already stays."""

@@ -10,7 +10,7 @@ from itertools import zip_longest
 
 from kirigami_studio.evaluate.candidate import Candidate, Origin
 from kirigami_studio.evaluate.score import evaluate
-from kirigami_studio.foundation.errors import Cancelled
+from kirigami_studio.foundation.errors import Cancelled, SheetError
 from kirigami_studio.foundation.words import mark, tr
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
@@ -44,6 +44,7 @@ from kirigami_studio.pipeline.variety import worth_a_fit
 from kirigami_studio.polish.continuation import Way, first_angles
 from kirigami_studio.polish.covering import notches_filled
 from kirigami_studio.polish.symmetry import SymmetricPose, shared_symmetries
+from kirigami_studio.polish.unfolding import unfolded
 
 #: Candidates scored in one batch.
 SCORED_TOGETHER = 32
@@ -218,9 +219,16 @@ def symmetric_shares(request: Request, count: int) -> list[tuple[SymmetricPose, 
 
 
 def on_sheet(request: Request, field: RatioField) -> Sheet:
-    """The sheet of a sample: that of the design that samples are near, with other ratios, else the uniform sheet."""
+    """The sheet of a sample: that of the design that samples are near, with other ratios, else the uniform sheet.
+
+    The model knows no hollows: where the start has some, the sheet is unfolded; one that stays folded is not feasible.
+    """
     flat = request.uniform if request.near is None or request.rim == "even" else request.near
-    return flat.with_field(field)
+    sheet = flat.with_field(field)
+    try:
+        return unfolded(sheet, free_rim=request.rim == "free")
+    except SheetError:
+        return sheet
 
 
 def rotation_of_target(sheet: Sheet, target: Outline, phi: float) -> float:

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 
-from kirigami_studio.evaluate.feasibility import is_clear
+from kirigami_studio.evaluate.feasibility import invalid_quads, is_clear
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray
 from kirigami_studio.foundation.paper import LOG_RATIO_LIMIT
 from kirigami_studio.lattice.deployment import Deployment
@@ -60,9 +61,13 @@ class Bounds:
         return np.clip(self.basis.nearest(shape), self.low, self.high)
 
     def is_clear(self, nodes: FloatArray, phi: float) -> bool:
-        """Whether the outline of the sheet with compact ``nodes`` (N, 2) is clear of itself all the way to ``phi``."""
+        """Whether the outline of the sheet with compact ``nodes`` (N, 2) is clear of itself all the way to ``phi``, and
+        no panel is turned over, which only starts with hollows allow.
+        """
         # Of the sheet only grid, start outline and cell matter here, the nodes being known.
-        return is_clear(Deployment.of(self.sheet, nodes), phi)
+        deployment = Deployment.of(self.sheet, nodes)
+        flat = self.sheet.start is None or invalid_quads(deployment, math.pi) == 0
+        return flat and is_clear(deployment, phi)
 
     def sheet_of(self, shape: FloatArray) -> Sheet:
         """The sheet of a shape, rounded so that files repeat it exactly; locked ratios keep every digit."""

@@ -1,4 +1,4 @@
-"""A round start kept round: what the chords between mouths cut off may not grow much when mouths move.
+"""A round start kept round: what the chords between mouths cut off, or add, may not grow much when mouths move.
 
 Evenly spaced mouths cut off least; a fit that gathers them would leave long chords elsewhere.  The term is the square
 of what is cut off beyond that and a little more, as a share of the start's area.
@@ -32,7 +32,7 @@ class Chords:
     area : float, unit cells squared
         Of the start outline.
     allowed : float
-        Share of it that may be cut off.
+        Share of it that may be cut off, or added across hollows.
     """
 
     path: RimPath
@@ -45,19 +45,21 @@ class Chords:
         if path.start is None:
             return None
         area = _area(path.outline())
-        even = 1.0 - _area(path.anchors(rim_table(path.rows, path.columns).even)) / area
+        even = float(np.abs(path.cut_off(rim_table(path.rows, path.columns).even)).sum()) / area
         return cls(path, area, max(ALLOWED_GROWTH * even, ALLOWED)) if even > STRAIGHT else None
 
     def excess(self, positions: FloatArray) -> float:
-        """Share of the area that is cut off beyond what is allowed, with the mouths at ``positions`` (R,)."""
-        return max(0.0, 1.0 - _area(self.path.anchors(positions)) / self.area - self.allowed)
+        """Share of the area that is cut off or added beyond what is allowed, with the mouths at ``positions`` (R,)."""
+        return max(0.0, float(np.abs(self.path.cut_off(positions)).sum()) / self.area - self.allowed)
 
     def slopes(self, positions: FloatArray) -> FloatArray:
-        """Derivative (R,) of the share that is cut off by the mouths' positions."""
-        points = self.path.anchors(positions)
-        across = (np.roll(points, -1, axis=0) - np.roll(points, 1, axis=0))[rim_table(*self.grid).mouths]
+        """Derivative (R,) of the share that is cut off or added by the mouths' positions."""
+        points, sign = self.path.anchors(positions), np.sign(self.path.cut_off(positions))
+        chord = np.roll(points, -1, axis=0) - points
+        mouths, weighed = rim_table(*self.grid).mouths, sign[:, None] * chord
+        across = (weighed + np.roll(weighed, 1, axis=0))[mouths]
         along = self.path.slopes(positions)
-        # Clockwise, the area grows by half of what each vertex moves to the left of the line between its neighbours.
+        # Clockwise, the area inside a chord grows by half of what its ends move to its left.
         grown = 0.5 * (across[:, 0] * along[:, 1] - across[:, 1] * along[:, 0])
         return np.asarray(-grown / self.area)
 

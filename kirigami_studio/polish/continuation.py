@@ -38,7 +38,7 @@ from kirigami_studio.outlines.rounding import rounded
 from kirigami_studio.outlines.starts import RECTANGLE, StartShape
 from kirigami_studio.outlines.turning import turn_back
 from kirigami_studio.polish.bounds import RIM_REACH
-from kirigami_studio.polish.flat_sheet import can_have, uniform_sheet
+from kirigami_studio.polish.flat_sheet import can_have, first_sheet, uniform_sheet
 from kirigami_studio.polish.guide import TransportMap
 from kirigami_studio.polish.junctions import junction_weight
 from kirigami_studio.polish.levenberg import Fit, check_fit, polish
@@ -235,7 +235,7 @@ def fit_from_uniform(
     """One fit from the uniform sheet, turned by ``angle`` (radians): stiff and even first, led by the transport map of
     the inside, growing out of a round shape, or shrinking from a thickened one.
     """
-    sheet, even = uniform_sheet(grid, wishes.start), wishes.even
+    sheet, even = first_sheet(grid, wishes.start, free_rim=wishes.free_rim), wishes.even
     pose, evaluations = _centred(sheet, phi, angle), 0
     route = _route(target, way, even)
     if route:
@@ -310,7 +310,7 @@ def fit_by_stages(
     start: StartShape = RECTANGLE,
 ) -> Fit:
     """One fit from the uniform sheet, turned by ``angle`` (radians), through ``stages`` that need no guide."""
-    sheet = uniform_sheet(grid, start)
+    sheet = first_sheet(grid, start, free_rim=free_rim)
     pose = _centred(sheet, phi, angle)
     return polish(sheet, target, phi, 0, pose=pose, stages=stages, free_rim=free_rim, symmetry=symmetry)
 
@@ -387,7 +387,7 @@ class _Search:
                 if found and self.cancel():
                     return found
                 found.append(self._from_uniform(grid, angle, way, symmetry))
-            sheet = uniform_sheet(grid, self.wishes.start)
+            sheet = first_sheet(grid, self.wishes.start, free_rim=self.wishes.free_rim)
             first = thick[0].frame.compose(_centred(sheet, self.phi, angle))
             if found and self.cancel():
                 return found
@@ -413,7 +413,7 @@ class _Search:
 
     def plain(self, grid: tuple[int, int]) -> _Found:
         """The fit without a search, so that a search never ends with less."""
-        sheet = uniform_sheet(grid, self.wishes.start)
+        sheet = first_sheet(grid, self.wishes.start, free_rim=self.wishes.free_rim)
         pose = align(deploy(sheet).outline(self.phi), self.target.points)
         return self._fit(sheet, pose, PLAIN_STEPS, FINE, None)
 

@@ -15,6 +15,7 @@ from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.lattice.topology import topology
+from kirigami_studio.polish.unfolding import unfolded
 
 #: Weight in fits that want match and evenness alike, and how many decades the slider spans around it.
 USUAL_WEIGHT, DECADES = 3e-4, 2.0
@@ -34,7 +35,7 @@ class EvenPanels:
     difference : (E, N) sparse
         Reads the panel edges off the compact nodes, scaled so that the squares' sum is their mean in uniform edges.
     uniform : (E, 2) float
-        The same of the uniform sheet.
+        The same of the uniform sheet, unfolded where its start has hollows.
     stiffness : (N, N) sparse
         Second derivative of the value by the nodes' x, and by their y.
     """
@@ -48,7 +49,7 @@ class EvenPanels:
         """The term for a sheet's grid, start outline and cell; its ratios and rim do not matter."""
         panels = topology(*sheet.grid).panel_nodes.reshape(-1, 4)
         start, end = panels.ravel(), np.roll(panels, -1, axis=1).ravel()
-        nodes = deploy(sheet.plain()).compact
+        nodes = deploy(unfolded(sheet.plain())).compact
         length = np.sqrt(np.square(nodes[end] - nodes[start]).sum(axis=1).mean() * start.size)
         rows = np.arange(start.size)
         sign = np.ones(start.size) / length

@@ -1,4 +1,4 @@
-"""The uniform sheet of a grid and a start shape: where fits begin, and what scores compare with."""
+"""The uniform sheet of a grid and a start shape: what scores compare with, and where fits begin but for hollows."""
 
 from __future__ import annotations
 
@@ -12,11 +12,14 @@ from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.sheet import Sheet, anchor_points
 from kirigami_studio.lattice.symmetry import Symmetry, has_symmetry
 from kirigami_studio.outlines.starts import RECTANGLE, StartShape
+from kirigami_studio.polish.unfolding import unfolded
 
 
 @lru_cache(maxsize=256)
 def uniform_sheet(grid: tuple[int, int], start: StartShape = RECTANGLE) -> Sheet:
     """The uniform sheet of a grid; its area is that of as many unit cells as it has panels.
+
+    Around hollows of the start its panels may be turned over.
 
     Raises
     ------
@@ -30,6 +33,17 @@ def uniform_sheet(grid: tuple[int, int], start: StartShape = RECTANGLE) -> Sheet
         return Sheet.uniform(rows, columns)
     stretch = math.sqrt(start.aspect * (rows + 1) / (columns + 1))
     return Sheet(RatioField.uniform(rows, columns), None, None, (stretch, 1.0 / stretch))
+
+
+def first_sheet(grid: tuple[int, int], start: StartShape = RECTANGLE, *, free_rim: bool = True) -> Sheet:
+    """The sheet where fits begin: the uniform one, unfolded where its start has hollows, by mouths too if they move.
+
+    Raises
+    ------
+    GridError, SheetError
+        A grid out of range, or hollows around which panels fold over on this grid.
+    """
+    return unfolded(uniform_sheet(grid, start), free_rim=free_rim)
 
 
 def width_in_cells(grid: tuple[int, int], start: StartShape = RECTANGLE) -> float:

@@ -20,6 +20,8 @@ from kirigami_studio.fabricate.material import find_material
 from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions
 from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.outlines.starts import start_shape
+from kirigami_studio.polish.flat_sheet import first_sheet
 
 Planner = Callable[[Sequence[Path]], list[dict[str, Any]]]
 #: MeerK40t's own coordinates are whole steps; the planned length may differ by this share.
@@ -35,11 +37,22 @@ def plan(rows: int, columns: int, seed: int, width_mm: float, material: str) -> 
     return plan_cuts(design_of(rows, columns, seed), width_mm, material=find_material(material))
 
 
+def started(start: str, rows: int, columns: int, seed: int, width_mm: float) -> CutPlan:
+    """A plan of a sheet that starts in another shape than a rectangle."""
+    flat = first_sheet((rows, columns), start_shape(start))
+    change = np.random.default_rng(seed).uniform(-0.1, 0.1, flat.grid)
+    sheet = flat.with_field(RatioField.from_log10(flat.field.log10 + change))
+    return plan_cuts(deploy(sheet), width_mm, material=find_material("film-uv"))
+
+
 PLANS = [
     plan(3, 4, 1, 80.0, "film-uv"),
     plan(6, 6, 2, 120.0, "card-co2"),
     plan(10, 10, 3, 150.0, "film-uv"),
     plan(12, 8, 4, 100.0, "film-uv"),
+    started("circle", 10, 10, 5, 120.0),
+    started("triangle", 8, 9, 6, 140.0),
+    started("bean", 9, 8, 7, 120.0),
 ]
 
 

@@ -52,7 +52,15 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     ),
     "start.not_points": mark("A start outline must be a list of at least three points [x, y] with finite numbers."),
     "start.crosses_itself": mark("The start outline crosses itself or has no area. Use one simple closed shape."),
-    "start.not_convex": mark("The start outline is not convex. Use a shape without hollows."),
+    "start.not_convex": mark(
+        "The start outline is not convex enough: {percent:.0f} % of its hull is missing. Use a shape with smaller "
+        "hollows."
+    ),
+    "start.folds": mark(
+        "No sheet of {rows} x {columns} voids was found that has this start: panels fold over around its hollow, "
+        "deepest at {across:.0f} % of its width from the left and {up:.0f} % of its height from below. Fill it, or use "
+        "another grid."
+    ),
     "start.too_many_points": mark("A start outline has at most {most} points, got {count}. Simplify it."),
     "start.size_out_of_range": mark(
         "A start outline must be {least:g} to {most:g} cells across, got {width:g} x {height:g}. Scale it."

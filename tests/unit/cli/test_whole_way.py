@@ -115,16 +115,19 @@ def test_that_a_grid_left_to_the_program_is_stored_as_such(tmp_path: Path, capsy
     assert project.provenance["grid_choice"] == "auto"
 
 
-@pytest.mark.parametrize(("start", "name", "grid"), [("circle", "square", "7x7"), ("triangle", "circle", "6x7")])
+@pytest.mark.parametrize(
+    ("start", "name", "grid"), [("circle", "square", "7x7"), ("triangle", "circle", "6x7"), ("heart", "circle", "7x7")]
+)
 def test_that_a_sheet_starts_in_the_shape_that_was_asked_for(
     capsys: pytest.CaptureFixture[str], tmp_path: Path, start: str, name: str, grid: str
 ) -> None:
     wish = ["design", name, "--start", start, "--grid", grid, "--k", "2", "--out", str(tmp_path), "--json"]
     assert main(wish) == 0
     design = json.loads(capsys.readouterr().out)
-    assert design["best"]["iou_exact"] > 0.97 and design["best"]["feasible"]
+    assert design["best"]["iou_exact"] > (0.94 if start == "heart" else 0.97) and design["best"]["feasible"]
     assert design["start"]["name"] == start and len(design["best"]["start"]) >= 3
-    assert design["start"]["error"] < 0.012 and design["start"]["lost_to_chords"] < 0.03
+    error, lost = (0.04, 0.05) if start == "heart" else (0.012, 0.03)  # the hollow takes chords on both sides
+    assert design["start"]["error"] < error and design["start"]["lost_to_chords"] < lost
     assert main(["check", str(tmp_path / "cut.dxf"), "--json"]) == 0
     report = json.loads(capsys.readouterr().out)
     assert report["ok"] and report["pieces"] == 1

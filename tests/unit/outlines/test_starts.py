@@ -13,7 +13,7 @@ import shapely
 from kirigami_studio.foundation.errors import KirigamiError, SheetError, TargetError, UsageError
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.silhouettes import load
-from kirigami_studio.outlines.starts import RECTANGLE, StartShape, convex_start, start_shape
+from kirigami_studio.outlines.starts import RECTANGLE, StartShape, convex_start, outline_start, start_shape
 from kirigami_studio.outlines.symmetry import turned
 
 
@@ -67,6 +67,15 @@ def test_that_a_hollow_shape_is_refused_with_the_place() -> None:
     assert "50 % of its width from the left and 50 % of its height" in str(refused.value)
     with pytest.raises(KirigamiError):
         start_shape("star")
+
+
+def test_that_hollows_stay_unless_they_are_small_or_too_much_is_missing() -> None:
+    heart = start_shape("heart").outline
+    assert heart is not None and heart.polygon.symmetric_difference(load("heart").polygon).area < 1e-3
+    assert outline_start(load("egg")) == convex_start(load("egg"))
+    with pytest.raises(SheetError) as refused:
+        start_shape("crescent")
+    assert refused.value.code == "start.hollow" and "40 % of its hull" in str(refused.value)
 
 
 def test_that_small_hollows_of_a_traced_edge_are_filled() -> None:
