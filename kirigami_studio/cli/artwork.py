@@ -29,10 +29,10 @@ def artwork(arguments: argparse.Namespace) -> int:
     document = load(arguments.project)
     settings = overridden(document.fabrication, arguments)
     candidate = chosen_candidate(document)
-    laid = _laid(arguments, document)
+    printed = _artwork(arguments, document)
     job = design_job(document, plan_of(candidate, settings), settings)
     try:
-        work = ArtworkJob(Artwork(laid), job, arguments.dpi, arguments.bleed_mm, arguments.margin_mm)
+        work = ArtworkJob(printed, job, arguments.dpi, arguments.bleed_mm, arguments.margin_mm)
         files = write_artwork(work, arguments.out)
     except ExportError as error:
         if error.code.startswith("artwork.impossible"):
@@ -49,7 +49,8 @@ def artwork(arguments: argparse.Namespace) -> int:
                 "dpi": work.dpi,
                 "bleed_mm": work.bleed_mm,
                 "margin_mm": work.margin_mm,
-                "on": laid.state.value,
+                "on": printed.first.state.value,
+                **({} if printed.second is None else {"stripes": printed.stripes}),
                 "picture_dpi": work.picture_dpi,
                 "covered": work.covered,
                 "copies": len(work.places),
@@ -75,8 +76,27 @@ def artwork(arguments: argparse.Namespace) -> int:
     return 0
 
 
+def _artwork(arguments: argparse.Namespace, document: Document) -> Artwork:
+    """The pictures that were named, and how they lie; what was not named is the project's."""
+    try:
+        found = Artwork(_laid(arguments, document))
+        if arguments.picture is None and document.artwork is not None:
+            found = replace(document.artwork, first=found.first)
+        if arguments.second is not None:
+            found = replace(found, second=_picture(arguments.second))
+        return found if arguments.stripes is None else replace(found, stripes=arguments.stripes)
+    except ExportError as error:
+        raise UsageError(error.code, **error.fields) from error
+
+
 def _laid(arguments: argparse.Namespace, document: Document) -> Laid:
-    """The picture that was named, and where it lies; what was not named is the project's."""
+    """The first picture, and where it lies.
+
+    Raises
+    ------
+    ExportError
+        Numbers that no placed picture has.
+    """
     stored = None if document.artwork is None else document.artwork.first
     changes: dict[str, Any] = {}
     if arguments.on is not None:
@@ -94,10 +114,7 @@ def _laid(arguments: argparse.Namespace, document: Document) -> Laid:
         stored = Laid(picture) if stored is None else replace(stored, picture=picture)
     if stored is None:
         raise UsageError("artwork.name_a_picture")
-    try:
-        return replace(stored, **changes)
-    except ExportError as error:
-        raise UsageError(error.code, **error.fields) from error
+    return replace(stored, **changes)
 
 
 def _picture(path: str) -> ArtPicture:

@@ -1,4 +1,4 @@
-"""What is printed on a sheet: a picture, and where it lies on the opened sheet or on the flat one.
+"""What is printed on a sheet: one picture or two, and where they lie, on the opened sheet or on the flat one.
 
 Points of the plane are complex numbers x + iy with y up, pixels are u + iv with v down from the picture's upper left
 corner; a picture with the map (a, b) shows its pixel p at a conj(p) + b.
@@ -21,8 +21,8 @@ LARGEST_PICTURE = 16 * 2**20
 #: A picture that fills the box also covers so much around it, in longer sides of the box: room for the bleed.
 BEYOND = 0.02
 SMALLEST_SCALE, LARGEST_SCALE = 0.01, 100.0
-#: What a file dialog offers.
-EXTENSIONS = (".png", ".jpg", ".jpeg", ".bmp", ".tif", ".tiff", ".webp", ".svg")
+#: Stripes across a sheet with two pictures: 0.6 mm each where it is 100 mm wide.
+USUAL_STRIPES, FEWEST_STRIPES, MOST_STRIPES = 160, 2, 1000
 
 
 @dataclass(frozen=True, slots=True)
@@ -135,6 +135,29 @@ class Artwork:
     Attributes
     ----------
     first : Laid
+    second : ArtPicture or None
+        Seen whole in the other state, in stripes between those of the first one.
+    stripes : int
+        Stripes of both across the width of the flat sheet.
+
+    Raises
+    ------
+    ExportError
+        Fewer than 2 stripes or more than 1000.
     """
 
     first: Laid
+    second: ArtPicture | None = None
+    stripes: int = USUAL_STRIPES
+
+    def __post_init__(self) -> None:
+        if not FEWEST_STRIPES <= self.stripes <= MOST_STRIPES:
+            raise ExportError("artwork.stripes", stripes=self.stripes, fewest=FEWEST_STRIPES, most=MOST_STRIPES)
+
+    @property
+    def laid(self) -> tuple[Laid, ...]:
+        """Both pictures as they lie; the second one is neither turned nor shifted."""
+        if self.second is None:
+            return (self.first,)
+        other = State.FLAT if self.first.state is State.TARGET else State.TARGET
+        return self.first, Laid(self.second, other, self.first.fitting)

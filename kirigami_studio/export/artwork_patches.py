@@ -7,6 +7,7 @@ patches: a region of the flat sheet, a picture, and the similarity that brings t
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -180,12 +181,26 @@ def opened_patches(artwork: Artwork, sheet: PrintedSheet, phi: float, overlap_mm
 
 
 def _patches(artwork: Artwork, sheet: PrintedSheet, regions: Sequence[BaseGeometry]) -> tuple[Patch, ...]:
-    maps = _maps(artwork.first, sheet)
-    return tuple(
-        Patch(number, region, artwork.first.picture, complex(maps.factor[number]), complex(maps.shift[number]))
-        for number, region in enumerate(regions)
-        if not region.is_empty
-    )
+    """The first picture in all regions, and over it the second one in every other stripe."""
+    bands = None if artwork.second is None else _bands(sheet, artwork.stripes)
+    shown = [(laid.picture, _maps(laid, sheet)) for laid in artwork.laid]
+    found = []
+    for number, region in enumerate(regions):
+        shares = [region] if bands is None else [region, _polygons(shapely.intersection(region, bands))]
+        for share, (picture, maps) in zip(shares, shown, strict=True):
+            if not share.is_empty:
+                found.append(Patch(number, share, picture, complex(maps.factor[number]), complex(maps.shift[number])))
+    return tuple(found)
+
+
+def _bands(sheet: PrintedSheet, stripes: int) -> BaseGeometry:
+    """Every other one of upright stripes of one width across the flat sheet and what lies around it."""
+    low, high = sheet.corners.min(axis=(0, 1)), sheet.corners.max(axis=(0, 1))
+    width = float(high[0] - low[0]) / stripes
+    beyond = 2 * math.ceil(MOST_BLEED_MM / (2.0 * width))
+    left = low[0] + width * np.arange(1 - beyond, stripes + beyond, 2)
+    room = MOST_BLEED_MM * MITRE
+    return MultiPolygon(list(shapely.box(left, low[1] - room, left + width, high[1] + room)))
 
 
 def _maps(laid: Laid, sheet: PrintedSheet) -> Motion:

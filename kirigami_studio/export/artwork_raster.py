@@ -88,7 +88,7 @@ def paint(patches: Sequence[Patch], page: Page, ground: Colour = NOTHING) -> Ima
         density = round(patch.dots_per_mm, DENSITY_DECIMALS)
         if (patch.picture, density) not in sources:
             sources[patch.picture, density] = _reduced(patch.picture, page.dots_per_mm / patch.dots_per_mm)
-        _paint_patch(canvas, patch, sources[patch.picture, density], page, keep_ground=ground[3] == 255)
+        _paint_patch(canvas, patch, sources[patch.picture, density], page)
     return canvas
 
 
@@ -111,7 +111,7 @@ def _reduced(picture: ArtPicture, share: float) -> Image.Image:
     return image.convert("RGBa")
 
 
-def _paint_patch(canvas: Image.Image, patch: Patch, source: Image.Image, page: Page, keep_ground: bool) -> None:
+def _paint_patch(canvas: Image.Image, patch: Patch, source: Image.Image, page: Page) -> None:
     low_x, low_y, high_x, high_y = patch.region.bounds
     near = page.to_pixels(np.array([[low_x, high_y], [high_x, low_y]]))
     left, top = (max(0, math.floor(value)) for value in near[0].tolist())
@@ -131,8 +131,7 @@ def _paint_patch(canvas: Image.Image, patch: Patch, source: Image.Image, page: P
     )  # fmt: skip
     shown = source.transform(size, Image.Transform.AFFINE, matrix, Image.Resampling.BICUBIC).convert("RGBA")
     mask = _mask(patch, page, (left, top), size)
-    if keep_ground:
-        shown = Image.alpha_composite(canvas.crop((left, top, right, bottom)), shown)
+    shown = Image.alpha_composite(canvas.crop((left, top, right, bottom)), shown)
     canvas.paste(shown, (left, top), mask)
 
 

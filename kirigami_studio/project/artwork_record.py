@@ -1,4 +1,4 @@
-"""The artwork of a document inside the project file: the bytes of its picture, once, and where it lies.
+"""The artwork of a document inside the project file: the bytes of its pictures, once, and how they lie.
 
 An artwork that cannot be read is left out with a note: the design is complete without it.
 """
@@ -16,8 +16,8 @@ from kirigami_studio.foundation.errors import KirigamiError, ProjectError
 from kirigami_studio.project.json_record import Record, one_of, read_json
 
 RECORD = "artwork.json"
-#: Members that the picture may be stored as.
-PICTURES = ("artwork.png", "artwork.jpg")
+#: Members that pictures may be stored as.
+PICTURES = ("artwork.png", "artwork.jpg", "artwork2.png", "artwork2.jpg")
 
 
 def artwork_members(artwork: Artwork | None) -> dict[str, bytes]:
@@ -25,7 +25,7 @@ def artwork_members(artwork: Artwork | None) -> dict[str, bytes]:
     if artwork is None:
         return {}
     laid = artwork.first
-    record = {
+    record: dict[str, object] = {
         "name": laid.picture.name,
         "picture": f"artwork{laid.picture.extension}",
         "state": laid.state.value,
@@ -34,7 +34,12 @@ def artwork_members(artwork: Artwork | None) -> dict[str, bytes]:
         "turn": laid.turn,
         "shift": list(laid.shift),
     }
-    return {RECORD: json.dumps(record, indent=1).encode(), f"artwork{laid.picture.extension}": laid.picture.content}
+    pictures = {f"artwork{laid.picture.extension}": laid.picture.content}
+    if artwork.second is not None:
+        member = f"artwork2{artwork.second.extension}"
+        record |= {"second": {"name": artwork.second.name, "picture": member}, "stripes": artwork.stripes}
+        pictures[member] = artwork.second.content
+    return {RECORD: json.dumps(record, indent=1).encode(), **pictures}
 
 
 def artwork_of(members: Mapping[str, bytes]) -> Artwork | None:
@@ -49,21 +54,25 @@ def artwork_of(members: Mapping[str, bytes]) -> Artwork | None:
         return None
     try:
         record = Record(read_json(members[RECORD], RECORD), RECORD)
-        member = record.text("picture")
-        if member not in PICTURES or member not in members:
-            raise ProjectError("project.member_missing", name=member)
-        content = members[member]
-        with Image.open(io.BytesIO(content), formats=("PNG", "JPEG")) as image:
-            size = image.size
-        picture = ArtPicture(record.text("name"), content, size)
         laid = Laid(
-            picture,
+            _picture(record, members),
             one_of(State, record.text("state")),
             one_of(Fitting, record.text("fitting")),
             record.number("scale"),
             record.number("turn"),
             record.pair("shift"),
         )
-        return Artwork(laid)
+        if not record.holds("second"):
+            return Artwork(laid)
+        return Artwork(laid, _picture(record.record("second"), members), record.whole("stripes"))
     except (KirigamiError, OSError, ValueError, SyntaxError, Image.DecompressionBombError) as error:
         raise ProjectError("artwork.left_out", reason=error) from error
+
+
+def _picture(record: Record, members: Mapping[str, bytes]) -> ArtPicture:
+    """The picture that a record names."""
+    member = record.text("picture")
+    if member not in PICTURES or member not in members:
+        raise ProjectError("project.member_missing", name=member)
+    with Image.open(io.BytesIO(members[member]), formats=("PNG", "JPEG")) as image:
+        return ArtPicture(record.text("name"), members[member], image.size)

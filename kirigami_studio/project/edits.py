@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from typing import TypedDict, Unpack
 
 from kirigami_studio.evaluate.candidate import Candidate
-from kirigami_studio.export.artwork import Artwork, Fitting, State
+from kirigami_studio.export.artwork import ArtPicture, Artwork, Fitting, State
 from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions, CutOrder
 from kirigami_studio.foundation.errors import ProjectError
 from kirigami_studio.foundation.words import tr, tr_n
@@ -201,8 +201,30 @@ def place_artwork(document: Document, **changes: Unpack[LaidChange]) -> Edit:
     """
     if document.artwork is None:
         raise ProjectError("artwork.none")
-    changed = replace(document, artwork=Artwork(replace(document.artwork.first, **changes)))
+    first = replace(document.artwork.first, **changes)
+    changed = replace(document, artwork=replace(document.artwork, first=first))
     return Edit(tr("Place the artwork"), changed, merge_key=_merge_key("artwork", changes))
+
+
+def share_artwork(document: Document, second: ArtPicture | None, stripes: int) -> Edit:
+    """Let a second picture share the sheet by stripes, or no longer; dragging their number is one undo step.
+
+    Raises
+    ------
+    ExportError
+        A number of stripes that no sheet has.
+    ProjectError
+        There is no first picture.
+    """
+    before = document.artwork
+    if before is None:
+        raise ProjectError("artwork.none")
+    changed = replace(document, artwork=replace(before, second=second, stripes=stripes))
+    if second is before.second:
+        return Edit(tr("Change the stripes"), changed, merge_key="artwork:stripes")
+    if second is None:
+        return Edit(tr("Remove the second picture"), changed)
+    return Edit(tr("Lay {name} between", name=second.name), changed)
 
 
 def _label(changes: Mapping[str, object]) -> str:

@@ -111,6 +111,29 @@ def test_that_every_change_is_a_step_that_can_be_undone(
     until(lambda: designed.stage.view.artwork is not None)
 
 
+def test_that_a_second_picture_shares_the_sheet_until_it_is_removed(
+    designed: MainWindow, editor: ArtworkEditor, files: Answers, tmp_path: Path, until: Until
+) -> None:
+    Image.new("RGB", (60, 60), (0, 0, 255)).save(tmp_path / "blue.png")
+    view, controller = designed.stage.view, designed.controller
+    assert not editor.stripes.isEnabled()
+    files.answer = tmp_path / "blue.png"
+    alone = view.artwork
+    editor.second.click()
+    until(lambda: view.artwork is not alone)
+    assert "blue.png" in editor.about_second.text()
+    designed.stage.deployment.set_phi(view.design.phi_target)
+    red, green, blue = np.moveaxis(colours(designed), 2, 0)
+    assert ((blue > 200) & (red < 60) & (green < 60)).mean() > 0.02
+    editor.stripes.setValue(40)
+    editor.stripes.setValue(30)
+    assert controller.document.artwork.stripes == 30 and controller.history.undo_label == "Change the stripes"
+    designed.commands["undo"].trigger()
+    assert editor.stripes.value() == 160
+    editor.remove_second.click()
+    assert controller.document.artwork.second is None and not editor.remove_second.isEnabled()
+
+
 def test_that_artwork_travels_with_the_project_and_with_another_design(
     designed: MainWindow, editor: ArtworkEditor, photo: Path, tmp_path: Path, until: Until
 ) -> None:

@@ -57,6 +57,7 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "A picture cannot be laid with the scale {scale:g}. Choose a scale from {smallest:g} to {largest:g}, and "
         "finite numbers for turn and shift."
     ),
+    "artwork.stripes": mark("Two pictures share a sheet by {fewest} to {most} stripes, got {stripes}."),
     "artwork.impossible_bleed": mark("The bleed must be 0 to {most:g} mm, got {bleed_mm:g} mm."),
     "artwork.impossible_margin": mark("The margin must be 0 to {most:g} mm, got {margin_mm:g} mm."),
     "artwork.impossible_dpi": mark("The resolution must be above 0 dpi, got {dpi:g}."),

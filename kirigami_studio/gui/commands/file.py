@@ -106,6 +106,12 @@ class FileCommands(QObject):
         if path is not None:
             self._controller.artwork.open(path)
 
+    def ask_second_artwork(self) -> None:
+        """Let a second picture of the user's choice share the sheet."""
+        path = self._window.file_dialogs.artwork()
+        if path is not None:
+            self._controller.artwork.open_second(path)
+
     def export_artwork(self) -> None:
         """Write the printed sheet into a folder of the user's choice; without artwork, offer to choose a picture."""
         if self._controller.document.artwork is None:

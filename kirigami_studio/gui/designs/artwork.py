@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Unpack
@@ -42,6 +43,24 @@ class ArtworkKeeper(QObject):
         callbacks = JobCallbacks(self._take, on_failed=self._refuse)
         self._reading.start(tr("reading {name}", name=path.name), partial(reading_artwork, path), callbacks)
 
+    def open_second(self, path: Path) -> None:
+        """Read a picture that shares the sheet with the first one by stripes."""
+        self._session.set_status(tr("Reading {name} …", name=path.name))
+        callbacks = JobCallbacks(self._take_second, on_failed=self._refuse)
+        self._reading.start(tr("reading {name}", name=path.name), partial(reading_artwork, path), callbacks)
+
+    def share(self, stripes: int) -> None:
+        """Change the number of stripes."""
+        artwork = self._session.document.artwork
+        if artwork is not None:
+            self._share(artwork.second, stripes)
+
+    def remove_second(self) -> None:
+        """Print the first picture alone."""
+        artwork = self._session.document.artwork
+        if artwork is not None:
+            self._share(None, artwork.stripes)
+
     def place(self, **changes: Unpack[LaidChange]) -> None:
         """Lay the picture otherwise."""
         try:
@@ -61,11 +80,21 @@ class ArtworkKeeper(QObject):
     def _take(self, picture: ArtPicture) -> None:
         before = self._session.document.artwork
         if before is None:
-            laid = Laid(picture)
+            artwork = Artwork(Laid(picture))
         else:
-            old = before.first
-            laid = Laid(picture, old.state, old.fitting, old.scale, old.turn, old.shift)
-        self._session.apply(edits.set_artwork(self._session.document, Artwork(laid)))
+            artwork = replace(before, first=replace(before.first, picture=picture))
+        self._session.apply(edits.set_artwork(self._session.document, artwork))
+
+    def _take_second(self, picture: ArtPicture) -> None:
+        artwork = self._session.document.artwork
+        if artwork is not None:
+            self._share(picture, artwork.stripes)
+
+    def _share(self, second: ArtPicture | None, stripes: int) -> None:
+        try:
+            self._session.apply(edits.share_artwork(self._session.document, second, stripes))
+        except KirigamiError as error:
+            self._session.refuse(error)
 
     def _refuse(self, sentence: str, trace: str) -> None:
         self._session.post(Message(sentence, Tone.ERROR, trace))

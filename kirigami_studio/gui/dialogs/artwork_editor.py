@@ -8,8 +8,18 @@ from pathlib import Path
 from PySide6.QtCore import QPoint, QSignalBlocker, Qt, Signal
 from PySide6.QtWidgets import QComboBox, QFormLayout, QHBoxLayout, QLabel, QPushButton, QVBoxLayout, QWidget
 
-from kirigami_studio.export.artwork import LARGEST_SCALE, SMALLEST_SCALE, Artwork, Fitting, Laid, State
+from kirigami_studio.export.artwork import (
+    FEWEST_STRIPES,
+    LARGEST_SCALE,
+    MOST_STRIPES,
+    SMALLEST_SCALE,
+    ArtPicture,
+    Artwork,
+    Fitting,
+    State,
+)
 from kirigami_studio.foundation.words import tr
+from kirigami_studio.gui.panels.card import muted_label
 from kirigami_studio.gui.panels.number_field import DecimalField, number_field
 
 #: Pixels.
@@ -32,6 +42,9 @@ class ArtworkEditor(QWidget):
 
     picture_wanted = Signal()
     removed = Signal()
+    second_wanted = Signal()
+    second_removed = Signal()
+    stripes_wanted = Signal(int)
     changed = Signal(dict)  #: fields of Laid with their new values
     edited = Signal()  #: the next change is an undo step of its own
     export_wanted = Signal()
@@ -46,6 +59,11 @@ class ArtworkEditor(QWidget):
         self.choose.setToolTip(tr("Lay a picture on the sheet: PNG, JPG, BMP, TIFF, WebP or SVG"))
         self.remove = QPushButton(tr("&Remove"))
         self.remove.setToolTip(tr("Print nothing on the sheet"))
+        self.second = QPushButton(tr("&Second picture …"))
+        self.second.setToolTip(tr("Seen in the other state, in stripes between those of the first picture"))
+        self.remove_second = QPushButton(tr("Re&move"))
+        self.remove_second.setToolTip(tr("Print the first picture alone"))
+        self.about_second = muted_label()
         self.export = QPushButton(tr("&Export artwork …"))
         self.export.setObjectName("primary")
         self.export.setToolTip(tr("SVG and PDF in true mm and PNG at 300 dpi, in register with the cut file"))
@@ -55,6 +73,8 @@ class ArtworkEditor(QWidget):
         self.turn = self._field(-360.0, 360.0, "°", 5.0)
         self.right = self._field(-100.0 * FARTHEST, 100.0 * FARTHEST, tr(" %"), 1.0)
         self.up = self._field(-100.0 * FARTHEST, 100.0 * FARTHEST, tr(" %"), 1.0)
+        self.stripes = self._field(FEWEST_STRIPES, MOST_STRIPES, "", 10.0)
+        self.stripes.setDecimals(0)
         self._fields = (self.state, self.fitting, self.scale, self.turn, self.right, self.up)
         self._lay_out()
         self._connect()
@@ -101,6 +121,16 @@ class ArtworkEditor(QWidget):
             label.setBuddy(field)
             form.addRow(label, field)
         column.addLayout(form)
+        sharing, stripes = QHBoxLayout(), QFormLayout()
+        sharing.addWidget(self.second, 1)
+        sharing.addWidget(self.remove_second)
+        column.addLayout(sharing)
+        column.addWidget(self.about_second)
+        self.stripes.setToolTip(tr("Stripes of both pictures across the flat sheet"))
+        label = QLabel(tr("Stri&pes"))
+        label.setBuddy(self.stripes)
+        stripes.addRow(label, self.stripes)
+        column.addLayout(stripes)
         below.addStretch(1)
         below.addWidget(self.export)
         column.addLayout(below)
@@ -110,6 +140,10 @@ class ArtworkEditor(QWidget):
         self.choose.clicked.connect(lambda: self.picture_wanted.emit())
         self.remove.clicked.connect(lambda: self.removed.emit())
         self.export.clicked.connect(lambda: self.export_wanted.emit())
+        self.second.clicked.connect(lambda: self.second_wanted.emit())
+        self.remove_second.clicked.connect(lambda: self.second_removed.emit())
+        self.stripes.valueChanged.connect(lambda value: self.stripes_wanted.emit(round(value)))
+        self.stripes.editingFinished.connect(self.edited)
         self.state.activated.connect(lambda: self._change({"state": self.state.currentData()}, whole=True))
         self.fitting.activated.connect(lambda: self._change({"fitting": self.fitting.currentData()}, whole=True))
         self.scale.valueChanged.connect(lambda value: self._change({"scale": value / 100.0}))
@@ -132,13 +166,17 @@ class ArtworkEditor(QWidget):
         for part in (*self._fields, self.remove):
             part.setEnabled(artwork is not None)
         self.export.setEnabled(artwork is not None and exportable)
+        self.second.setEnabled(artwork is not None)
+        second = None if artwork is None else artwork.second
+        for part in (self.remove_second, self.stripes):
+            part.setEnabled(second is not None)
+        self.about_second.setText("" if second is None else _described(second))
         if artwork is None:
             self.about.setText(NO_PICTURE)
             return
         laid = artwork.first
-        width, height = laid.picture.size
-        self.about.setText(tr("{name}, {width} x {height} pixels", name=_short(laid), width=width, height=height))
-        blockers = [QSignalBlocker(field) for field in self._fields]
+        self.about.setText(_described(laid.picture))
+        blockers = [QSignalBlocker(field) for field in (*self._fields, self.stripes)]
         self.state.setCurrentIndex(self.state.findData(laid.state))
         self.fitting.setCurrentIndex(self.fitting.findData(laid.fitting))
         for field, value in (
@@ -146,6 +184,7 @@ class ArtworkEditor(QWidget):
             (self.turn, math.degrees(laid.turn)),
             (self.right, 100.0 * laid.shift[0]),
             (self.up, 100.0 * laid.shift[1]),
+            (self.stripes, float(artwork.stripes)),
         ):
             if abs(field.value() - value) > 0.05:
                 field.setValue(value)
@@ -153,7 +192,8 @@ class ArtworkEditor(QWidget):
             blocker.unblock()
 
 
-def _short(laid: Laid) -> str:
-    """The picture's name, not too long for a line."""
-    name = Path(laid.picture.name)
-    return name.name if len(name.name) <= 40 else f"{name.stem[:32]}…{name.suffix}"
+def _described(picture: ArtPicture) -> str:
+    """The picture's name, not too long for a line, and its size."""
+    name, (width, height) = Path(picture.name), picture.size
+    short = name.name if len(name.name) <= 32 else f"{name.stem[:24]}…{name.suffix}"
+    return tr("{name}, {width} x {height} pixels", name=short, width=width, height=height)

@@ -120,6 +120,21 @@ def test_that_an_svg_is_printed_without_a_display(project: Path, tmp_path: Path)
     assert json.loads(said.stdout)["picture_dpi"] > 500
 
 
+def test_that_a_second_picture_shares_the_sheet(
+    capsys: pytest.CaptureFixture[str], project: Path, photo: Path, tmp_path: Path
+) -> None:
+    Image.new("RGB", (60, 60), "navy").save(tmp_path / "navy.png")
+    words = ["--picture", photo, "--second", tmp_path / "navy.png", "--dpi", 50, "--out", tmp_path / "out"]
+    told = answer(capsys, "artwork", project, *words, "--stripes", 30, "--json")
+    assert told["stripes"] == 30
+    with Image.open(tmp_path / "out" / "artwork.png") as image:
+        pixels = np.asarray(image)
+    opaque = pixels[pixels[..., 3] == 255]
+    assert 0.3 < (opaque == (0, 0, 128, 255)).all(axis=1).mean() < 0.6
+    code, said = refusal(capsys, "artwork", project, *words, "--stripes", 5000)
+    assert code == 2 and "2 to 1000 stripes" in said
+
+
 @pytest.mark.parametrize(
     ("options", "code", "words"),
     [

@@ -162,12 +162,54 @@ def test_that_fit_shows_all_of_the_picture_and_fill_leaves_nothing_bare() -> Non
     assert factor * complex(0, 0) + shift == pytest.approx(complex(7, 1))
 
 
+def test_that_two_pictures_share_every_panel_by_stripes_and_lie_in_both_states() -> None:
+    sheet = PrintedSheet.of(job_of())
+    first, second = chequered(600, 560), chequered(400, 400, seed=1)
+    artwork = Artwork(Laid(first, State.FLAT), second, stripes=40)
+    patches = printed_patches(artwork, sheet, 1.0, 0.2)
+    alone = printed_patches(Artwork(Laid(first, State.FLAT)), sheet, 1.0, 0.2)
+    over = [patch for patch in patches if patch.picture is second]
+    below = [patch for patch in patches if patch.picture is first]
+    assert [patch.region for patch in below] == [patch.region for patch in alone]
+    assert len(over) == len(below)
+    half = sum(patch.region.area for patch in over) / sum(patch.region.area for patch in below)
+    assert half == pytest.approx(0.5, abs=0.02)
+    low, high = sheet.corners.min(axis=(0, 1)), sheet.corners.max(axis=(0, 1))
+    width = float(high[0] - low[0]) / 40
+    for patch in over:
+        for part in shapely.get_parts(patch.region):
+            left, _, right, _ = part.bounds
+            number = math.floor((0.5 * (left + right) - low[0]) / width)
+            assert number % 2 == 1 and right - left < width + 1e-6
+    assert len({(patch.factor, patch.shift) for patch in below}) == 1
+    opened = opened_patches(artwork, sheet, sheet.design.phi_target)
+    turns = [patch.factor for patch in opened if patch.picture is second]
+    assert np.ptp([turn.real for turn in turns]) < 1e-9 and np.ptp([turn.imag for turn in turns]) < 1e-9
+
+
+def test_that_what_is_transparent_in_the_second_picture_shows_the_first() -> None:
+    sheet = PrintedSheet.of(job_of())
+    stream = BytesIO()
+    Image.new("RGBA", (50, 50), (0, 0, 0, 0)).save(stream, format="PNG")
+    first = Laid(chequered(200, 200))
+    page = Page((0.0, 0.0), (80.0, 100.0), 60.0)
+    alone, shared = (
+        np.asarray(paint(printed_patches(artwork, sheet, 1.0, 0.2), page), dtype=int)
+        for artwork in (Artwork(first), Artwork(first, picture_of("clear.png", stream.getvalue())))
+    )
+    assert np.abs(alone - shared).max() <= 2
+
+
 def test_that_impossible_numbers_are_refused() -> None:
     picture = chequered(40, 40)
     for wrong in ({"scale": 0.0}, {"scale": math.inf}, {"turn": math.nan}, {"shift": (0.0, math.inf)}):
         with pytest.raises(ExportError) as caught:
             Laid(picture, **wrong)
         assert caught.value.code == "artwork.impossible_place"
+    for stripes in (1, 1001):
+        with pytest.raises(ExportError) as caught:
+            Artwork(Laid(picture), picture, stripes)
+        assert caught.value.code == "artwork.stripes"
     sheet = PrintedSheet.of(job_of())
     for bleed in (-1.0, 21.0, math.nan):
         with pytest.raises(ExportError) as caught:

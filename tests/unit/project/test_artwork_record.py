@@ -41,6 +41,12 @@ def test_that_artwork_comes_back_as_it_was_and_is_stored_once(kind: str, tmp_pat
     assert len(pack(document)) < len(pack(Document())) + len(content) + 2000
 
 
+def test_that_a_second_picture_and_its_stripes_come_back(tmp_path: Path) -> None:
+    both = replace(artwork(), second=artwork("JPEG").first.picture, stripes=90)
+    save(Document(artwork=both), tmp_path / "own.kiri")
+    assert load(tmp_path / "own.kiri").artwork == both
+
+
 def test_that_projects_without_artwork_are_as_they_were() -> None:
     with zipfile.ZipFile(io.BytesIO(pack(Document()))) as archive:
         assert not [name for name in archive.namelist() if name.startswith("artwork")]
@@ -86,6 +92,26 @@ def test_that_damaged_artwork_is_left_out_with_a_note(
     assert opened.document == replace(document, artwork=None)
     (note,) = opened.notes
     assert "artwork" in note and "left out" in note
+
+
+def test_that_sharing_is_undone_step_by_step() -> None:
+    second = artwork("JPEG").first.picture
+    history = History(Document(artwork=artwork()))
+    history.apply(edits.share_artwork(history.document, second, 160))
+    for stripes in (150, 140):
+        history.apply(edits.share_artwork(history.document, second, stripes))
+    history.apply(edits.place_artwork(history.document, scale=2.0))
+    history.apply(edits.share_artwork(history.document, None, 140))
+    assert history.steps == (
+        "Lay sun rise.png between",
+        "Change the stripes",
+        "Place the artwork",
+        "Remove the second picture",
+    )
+    history.undo()
+    assert history.document.artwork is not None and history.document.artwork.second == second
+    with pytest.raises(ProjectError):
+        edits.share_artwork(Document(), second, 160)
 
 
 def test_that_placing_is_one_undo_step_for_one_drag() -> None:
