@@ -19,6 +19,7 @@ from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.export.artwork import ArtPicture, Artwork, Laid, State
 from kirigami_studio.export.artwork_files import ArtworkJob, write_artwork
+from kirigami_studio.export.artwork_patches import rings_of
 from kirigami_studio.export.artwork_picture import picture_of
 from kirigami_studio.export.artwork_raster import image_of
 from kirigami_studio.export.exporter import ExportJob
@@ -108,6 +109,42 @@ def test_that_the_svg_shows_what_the_bitmap_shows(picture: ArtPicture, job: Expo
         x, y = ((place - (left, top)) * 10.0).astype(int)
         agreeing += bool(np.abs(pixels[y, x] - meant).max() < 30)
     assert agreeing >= 17  # the middle of a panel may lie on an edge of the picture's squares
+
+
+def test_that_the_pdf_lays_every_panel_and_its_picture_where_they_belong(
+    picture: ArtPicture, job: ExportJob, tmp_path: Path
+) -> None:
+    work = ArtworkJob(Artwork(Laid(picture)), job, margin_mm=5.0)
+    reader = pypdf.PdfReader(write_artwork(work, tmp_path)[1])
+    page = reader.pages[0]
+    forms = {name: form.get_object() for name, form in page["/Resources"]["/XObject"].items()}
+    (sheet,) = [form for name, form in forms.items() if "sheet" in name]
+    found: list[tuple[np.ndarray, np.ndarray]] = []
+    ring: list[tuple[float, float]] = []
+    for operands, operator in pypdf.generic.ContentStream(sheet, reader).operations:
+        if operator in (b"m", b"l"):
+            ring = (
+                [*ring, (float(operands[0]), float(operands[1]))]
+                if operator == b"l"
+                else [(float(operands[0]), float(operands[1]))]
+            )
+        elif operator == b"cm" and ring:
+            found.append((np.array(ring), np.array([float(number) for number in operands])))
+    assert len(found) == len(work.patches) == 20
+    height = picture.size[1]
+    for (points, (a, b, c, d, e, f)), patch in zip(found, work.patches, strict=True):
+        assert np.allclose(points, rings_of(patch.region)[0], atol=1e-4)
+        for place in (complex(*points[0]), complex(*points[1])):
+            right, up = np.linalg.solve([[a, c], [b, d]], [place.real - e, place.imag - f])
+            pixel = ((place - patch.shift) / patch.factor).conjugate()
+            assert complex(right, height - up) == pytest.approx(pixel, abs=0.02)
+    drawn = pypdf.generic.ContentStream(page.get_contents(), reader).operations
+    steps = [[float(number) for number in operands] for operands, operator in drawn if operator == b"cm"]
+    frame = np.eye(3)
+    for a, b, c, d, e, f in steps[:4]:
+        frame = frame @ np.array([[a, c, e], [b, d, f], [0.0, 0.0, 1.0]])
+    assert frame[:2, 2] == pytest.approx([5.0 * 72.0 / 25.4] * 2, abs=1e-3)
+    assert frame[0, 0] == pytest.approx(72.0 / 25.4, abs=1e-4)
 
 
 def test_that_the_opened_sheet_shows_the_picture_as_it_was(picture: ArtPicture, job: ExportJob, tmp_path: Path) -> None:
