@@ -17,7 +17,7 @@ from PySide6.QtTest import QTest
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.gui.designs.generation import own_start
-from kirigami_studio.gui.designs.two_states import start_words
+from kirigami_studio.gui.designs.two_states import size_words, start_words
 from kirigami_studio.gui.dialogs.start_board import StartBoard
 from kirigami_studio.gui.look.readable import TIMES
 from kirigami_studio.gui.main_window import MainWindow
@@ -163,7 +163,7 @@ def test_that_the_ends_of_the_slider_name_both_states_with_size_and_match(
     match = 100.0 * flat.intersection(disk).area / flat.union(disk).area
     low_x, low_y, high_x, high_y = flat.bounds
     height = 100.0 * (high_y - low_y) / (high_x - low_x)
-    assert ends.start.drawn_text() == f"circle  ·  100 {TIMES} {height:.4g} mm  ·  match {match:.1f} %"
+    assert ends.start.drawn_text() == f"circle  ·  100 {TIMES} {height:.0f} mm  ·  match {match:.1f} %"
     opened = np.ptp(deployment.nodes(0.0), axis=0) * 100.0 / (high_x - low_x)
     said = ends.target.accessibleName()
     assert said.startswith("heart") and said.endswith(f"match {100 * score.iou_exact:.1f} %")
@@ -176,7 +176,7 @@ def test_that_the_ends_of_the_slider_name_both_states_with_size_and_match(
     ends.target.click()
     assert window.stage.deployment.slider.phi == 0.0
     controller.fabrication.change(width_mm=50.0)
-    assert f"50 {TIMES} {0.5 * height:.4g} mm" in ends.start.accessibleName()
+    assert f"50 {TIMES} {0.5 * height:.1f} mm" in ends.start.accessibleName()
 
 
 def test_that_a_design_keeps_its_own_start_whatever_the_settings_say(
@@ -232,6 +232,18 @@ def test_that_designs_like_another_start_as_that_one(name: str) -> None:
     if sheet.start is not None and again.start is not None:
         one, two = (shapely.Polygon(points - points.mean(axis=0)) for points in (sheet.start, again.start))
         assert one.symmetric_difference(two).area < 1e-3 * one.area
+
+
+@pytest.mark.parametrize(
+    ("size", "words"),
+    [
+        ((100.0, 93.75), f"100 {TIMES} 93.8 mm"),
+        ((130.31, 117.8), f"130 {TIMES} 118 mm"),
+        ((1e4, 4.0), f"10000 {TIMES} 4 mm"),
+    ],
+)
+def test_that_sizes_are_told_as_exactly_as_they_are_read(size: tuple[float, float], words: str) -> None:
+    assert size_words(*size) == words
 
 
 @pytest.mark.parametrize(

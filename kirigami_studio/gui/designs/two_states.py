@@ -44,6 +44,12 @@ def start_of(candidate: Candidate) -> str:
     return start_words(RECTANGLE.name) if sheet.start is None else tr("own shape")
 
 
+def size_words(width_mm: float, height_mm: float) -> str:
+    """A size as people read it: in whole millimetres from 100 on, below in tenths."""
+    width, height = (round(length, 0 if length >= 100.0 else 1) for length in (width_mm, height_mm))
+    return tr("{width:g} \N{MULTIPLICATION SIGN} {height:g} mm", width=width, height=height)
+
+
 @lru_cache(maxsize=1024)
 def match_of_start(sheet: Sheet) -> float:
     """IoU of a flat sheet with its start outline, kept: shown with every card."""
@@ -83,8 +89,7 @@ class State:
     @property
     def size_text(self) -> str:
         """Width and height in mm."""
-        width, height = self.size_mm
-        return tr("{width:.4g} \N{MULTIPLICATION SIGN} {height:.4g} mm", width=width, height=height)
+        return size_words(*self.size_mm)
 
     def texts(self) -> tuple[str, ...]:
         """What is known of it, longest text first."""

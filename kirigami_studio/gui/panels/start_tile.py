@@ -22,7 +22,7 @@ from PySide6.QtGui import (
 from PySide6.QtWidgets import QAbstractButton, QMenu, QSizePolicy, QToolButton, QWidget
 
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui.designs.two_states import start_outline, start_words
+from kirigami_studio.gui.designs.two_states import size_words, start_outline, start_words
 from kirigami_studio.gui.look import icons
 from kirigami_studio.gui.look.theme import LIGHT, Palette
 from kirigami_studio.gui.scene.target_items import paint_start_shape
@@ -124,11 +124,7 @@ class StartTile(QAbstractButton):
     def size_text(self) -> str:
         """Size of the flat sheet."""
         across, up = np.ptp(start_outline(self._start, self._grid), axis=0).tolist()
-        return tr(
-            "{width:.3g} \N{MULTIPLICATION SIGN} {height:.3g} mm",
-            width=self._width_mm,
-            height=self._width_mm * up / across,
-        )
+        return size_words(self._width_mm, self._width_mm * up / across)
 
     def open_menu(self) -> None:
         """Open the list of starts below the tile."""
