@@ -120,49 +120,30 @@ def start_shape(text: str) -> StartShape:
 
 
 def outline_start(outline: Outline) -> StartShape:
-    """A shape as a start, with its hollows unless they are small; :func:`convex_start` takes none.
+    """A shape that was drawn, loaded or taken from the library as a start; small hollows are filled.
 
     Raises
     ------
     SheetError
         Too much of its hull is missing; the sentence says where the deepest hollow is.
     """
-    if outline.polygon.convex_hull.area <= 1.0 + FILLED:
-        return convex_start(outline)
-    _check_hollows(outline, MOST_HOLLOW)
-    points = shapely.get_coordinates(shapely.boundary(outline.polygon).simplify(ACCURACY))[:-1]
-    return StartShape(outline.name, _upright(Outline.from_points(points, outline.name)))
-
-
-def convex_start(outline: Outline) -> StartShape:
-    """A shape that was drawn, loaded or taken from the library as a start; small hollows are filled.
-
-    Raises
-    ------
-    SheetError
-        It has larger hollows; the sentence says where the deepest one is.
-    """
-    check_convex(outline)
-    edge = shapely.boundary(outline.polygon.convex_hull)
-    points = shapely.get_coordinates(edge.simplify(ACCURACY))[:-1]
-    return StartShape(outline.name, _upright(Outline.from_points(points, outline.name)))
-
-
-def check_convex(outline: Outline) -> None:
-    """Refuse a shape with hollows that are too large to be filled.
-
-    Raises
-    ------
-    SheetError
-        The sentence says where the deepest one is.
-    """
-    _check_hollows(outline, FILLED / (1.0 + FILLED))
-
-
-def _check_hollows(outline: Outline, most: float) -> None:
-    """Refuse a shape that is missing more than a share of its hull."""
+    check_hollows(outline)
     hull = outline.polygon.convex_hull
-    if 1.0 - 1.0 / hull.area > most:
+    shape = hull if hull.area <= 1.0 + FILLED else outline.polygon
+    points = shapely.get_coordinates(shapely.boundary(shape).simplify(ACCURACY))[:-1]
+    return StartShape(outline.name, _upright(Outline.from_points(points, outline.name)))
+
+
+def check_hollows(outline: Outline) -> None:
+    """Refuse a shape that is missing too much of its hull.
+
+    Raises
+    ------
+    SheetError
+        The sentence says where the deepest hollow is.
+    """
+    hull = outline.polygon.convex_hull
+    if 1.0 - 1.0 / hull.area > MOST_HOLLOW:
         deepest = int(np.argmax(shapely.distance(shapely.boundary(hull), shapely.points(outline.points))))
         low, high = outline.points.min(axis=0), outline.points.max(axis=0)
         across, up = 100.0 * (outline.points[deepest] - low) / (high - low)

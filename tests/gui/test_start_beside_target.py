@@ -34,7 +34,8 @@ from kirigami_studio.project import edits
 from kirigami_studio.project.document import Document
 
 Until = Callable[[Callable[[], bool]], None]
-HOLLOW = [(-40.0, -30.0), (40.0, -30.0), (40.0, 30.0), (0.0, 0.0), (-40.0, 30.0)]
+HOLLOW = [(-40.0, -30.0), (40.0, -30.0), (40.0, 30.0), (0.0, -20.0), (-40.0, 30.0)]
+SHALLOW = [(-40.0, -30.0), (40.0, -30.0), (40.0, 30.0), (0.0, 0.0), (-40.0, 30.0)]
 HOUSE = [(-40.0, -30.0), (40.0, -30.0), (40.0, 30.0), (0.0, 50.0), (-40.0, 30.0)]
 
 
@@ -125,13 +126,17 @@ def test_that_a_start_is_drawn_on_its_own_board_which_says_where_it_is_hollow(wi
     assert board.view.tool is Tool.POLYGON and not board.tools.buttons[Tool.STAR].isVisible()
     draw(board, HOLLOW)
     assert not board.take.isEnabled()
-    assert "deepest at 50 % of its width from the left and 50 % of its height from below" in board.about.text()
+    assert "deepest at 50 % of its width from the left and 17 % of its height from below" in board.about.text()
     (hollow,) = board.view.hollows
-    assert shapely.Polygon(hollow).area == pytest.approx(1.0 / 3.0)  # of the area of what was drawn
+    assert shapely.Polygon(hollow).area == pytest.approx(2000.0 / 2800.0)  # of the area of what was drawn
+    draw(board, SHALLOW)
+    assert board.take.isEnabled() and board.view.hollows == ()
     draw(board, HOUSE)
     assert board.take.isEnabled() and board.view.hollows == ()
     board.undo.click()
+    board.undo.click()
     assert not board.take.isEnabled() and window.controller.history.steps == ()
+    board.redo.click()
     board.redo.click()
     board.take.click()
     until(lambda: window.target.start.name == "polygon")

@@ -1,4 +1,4 @@
-"""A drawing board for the start: a shape without hollows, drawn with the tools of the target's board."""
+"""A drawing board for the start, with the tools of the target's board; shapes that are too hollow are refused."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ from kirigami_studio.gui.sketching.sketch_context import Change
 from kirigami_studio.gui.views.target_view import TargetView, Tool
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.placed import Placed
-from kirigami_studio.outlines.starts import StartShape, check_convex, hollows
+from kirigami_studio.outlines.starts import StartShape, check_hollows, hollows
 
 SIZE = QSize(680, 560)
-#: Tools whose shapes have hollows.
+#: Tools whose shapes have large hollows.
 LEFT_OUT = (Tool.STAR, Tool.TEXT)
 #: Keys of the tools, as on the target's board.
 KEYS = {
@@ -36,8 +36,8 @@ KEYS = {
 }
 #: Starts of more points than this, such as circles, are not laid on the board: nobody drags 720 points.
 MOST_POINTS = 200
-EMPTY = tr("Draw a shape without hollows: what the sheet looks like while it is flat. Its size is the sheet's width.")
-READY = tr("No hollows. It can be the start; its size is the sheet's width.")
+EMPTY = tr("Draw what the sheet looks like while it is flat. Its size is the sheet's width.")
+READY = tr("It can be the start; its size is the sheet's width.")
 
 
 class StartBoard(QDialog):
@@ -158,10 +158,10 @@ class StartBoard(QDialog):
             self._show()
 
     def _show(self) -> None:
-        """Show the shape, its hollows, and whether it can be a start."""
+        """Show the shape, whether it can be a start, and where it is hollow if it cannot."""
         placed = self.placed
         self.view.show_outline(None if placed is None else placed.outline)
-        self.view.show_hollows(() if placed is None else hollows(placed.outline))
+        self.view.show_hollows(())
         self.tools.show_target(placed is not None)
         self.tools.options.pose.show_placed(placed)
         self.undo.setEnabled(self._at > 0)
@@ -171,8 +171,9 @@ class StartBoard(QDialog):
             self._say(EMPTY)
             return
         try:
-            check_convex(placed.outline)
+            check_hollows(placed.outline)
         except SheetError as error:
+            self.view.show_hollows(hollows(placed.outline))
             self._say(str(error), wrong=True)
         else:
             self._say(READY)

@@ -14,7 +14,7 @@ from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.jobs.queue import Cancel
 from kirigami_studio.outlines.outline import Outline
-from kirigami_studio.outlines.starts import StartShape, convex_start
+from kirigami_studio.outlines.starts import StartShape, outline_start
 from kirigami_studio.pipeline.request import Request
 
 if TYPE_CHECKING:
@@ -73,15 +73,15 @@ def reading_target(source: str, cancel: Cancel) -> Iterator[TargetRead]:
 
 
 def reading_start(source: str, cancel: Cancel) -> Iterator[StartShape]:
-    """Read a file or a library silhouette as a start outline; one with hollows is refused."""
+    """Read a file or a library silhouette as a start outline; one that is too hollow is refused."""
     from kirigami_studio.outlines.read import read_target
 
-    yield convex_start(read_target(source))
+    yield outline_start(read_target(source))
 
 
 def making_start(outline: Outline, cancel: Cancel) -> Iterator[StartShape]:
-    """Make a drawn shape a start outline; one with hollows is refused."""
-    yield convex_start(outline)
+    """Make a drawn shape a start outline; one that is too hollow is refused."""
+    yield outline_start(outline)
 
 
 def tracing(picture: Picture, cancel: Cancel) -> Iterator[Traced]:

@@ -43,9 +43,9 @@ listed_start = cache(start_shape)
 LIBRARY_START, FILE_START, DRAWN_START, PAIRS = "library", "file", "draw", "pairs"
 #: Entries below them: value, label, what it does.
 OTHER_STARTS = (
-    (LIBRARY_START, tr("Library …"), tr("Choose a library silhouette without hollows.")),
-    (FILE_START, tr("File …"), tr("Open a file with a shape without hollows. PNG, JPG, BMP, SVG, DXF or JSON.")),
-    (DRAWN_START, tr("Draw …"), tr("Draw a shape without hollows on a board of its own.")),
+    (LIBRARY_START, tr("Library …"), tr("Choose a library silhouette.")),
+    (FILE_START, tr("File …"), tr("Open a file with a shape. PNG, JPG, BMP, SVG, DXF or JSON.")),
+    (DRAWN_START, tr("Draw …"), tr("Draw a shape on a board of its own.")),
 )
 WIDTH = 108
 #: Edge of the button that goes back to the rectangle, and of the pictures in the menu, pixels.
