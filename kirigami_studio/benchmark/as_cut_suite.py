@@ -28,6 +28,7 @@ from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.pipeline.request import POLISH_STEPS, Request
 from kirigami_studio.pipeline.run import best_of
 from kirigami_studio.project.as_cut import simulate
+from kirigami_studio.project.best_as_cut import best_as_cut
 from kirigami_studio.project.cutting import least_feature_mm, plan_of, room_mm
 from kirigami_studio.project.settings import FabricationSettings
 
@@ -131,7 +132,7 @@ def measure_as_cut(
     seed: int = 0,
     report: Report = lambda done, total: None,
 ) -> AsCutFigures:
-    """Design every target for every width as ``design`` does, untrimmed in the usual material, and cut it.
+    """Design every target for every width as ``design --material`` does, untrimmed in the usual one, and cut the best.
 
     Parameters
     ----------
@@ -151,12 +152,13 @@ def measure_as_cut(
     with tempfile.TemporaryDirectory() as folder:
         for target, width in product(targets, connectors_mm):
             settings = FabricationSettings(connector_mm=width, options=CutOptions(style=style))
-            best = best_of(
+            designs = best_of(
                 Request(
                     target=target, grid=grid, k=k, seed=seed, polish=POLISH_STEPS, width_mm=settings.width_mm,
                     least_feature_mm=least_feature_mm(settings), room_mm=room_mm(settings),
                 )
-            ).best  # fmt: skip
+            )  # fmt: skip
+            best = result_of(best_as_cut(designs, settings)).best
             try:
                 sheets.append(cut_sheet(target, best, settings, width, Path(folder) / "cut.dxf"))
             except KirigamiError as error:

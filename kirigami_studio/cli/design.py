@@ -18,7 +18,6 @@ from kirigami_studio.export.exporter import ExportJob
 from kirigami_studio.export.picture import write_png
 from kirigami_studio.export.registry import export
 from kirigami_studio.export.svg import write_layout_svg
-from kirigami_studio.fabricate.findings import Note
 from kirigami_studio.foundation.errors import Cancelled, FabricationError, UsageError
 from kirigami_studio.foundation.files import check_folder, write_atomically
 from kirigami_studio.foundation.words import tr, tr_n
@@ -36,18 +35,16 @@ from kirigami_studio.pipeline.request import POLISH_STEPS, REGULAR, Request, pro
 from kirigami_studio.pipeline.run import run, with_grid
 from kirigami_studio.pipeline.variety import look_alikes
 from kirigami_studio.polish.flat_sheet import width_in_cells
-from kirigami_studio.project.as_cut import jam_angles
+from kirigami_studio.project.best_as_cut import best_as_cut
 from kirigami_studio.project.cutting import least_feature_mm, material_for, room_mm
 from kirigami_studio.project.design_facts import design_facts, with_run
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.settings import DesignSettings, FabricationSettings
 from kirigami_studio.project.store import save
-from kirigami_studio.project.verdict import Verdict, assess, refused, why_not_cut
+from kirigami_studio.project.verdict import Verdict, assess, refused
 
 #: Angle (degrees) and weight of a second target unless others are asked for.
 ALSO_DEG, ALSO_WEIGHT = 45.0, 0.3
-#: Designs that are looked at closely, cuts and all, for one that can be cut.
-MOST_LOOKED_AT = 32
 
 
 def design(arguments: argparse.Namespace) -> int:
@@ -93,7 +90,7 @@ def design(arguments: argparse.Namespace) -> int:
         result = _run(request, line)
         if arguments.material is not None:
             result = cuttable_first(result, fabrication, line)
-        if request.trim and result.best.trim is None:
+        if request.trim and all(one.trim is None for one in result.candidates):
             budget_ended = result.budget_ended
             raise FabricationError("design.trimming_cut_short" if budget_ended else "design.none_trimmed")
         folder = None if arguments.out is None else Path(arguments.out)
@@ -134,30 +131,16 @@ def second_target(arguments: argparse.Namespace) -> SecondTarget | None:
 
 
 def cuttable_first(result: Result, fabrication: FabricationSettings, line: ProgressLine) -> Result:
-    """Rank designs by how they do as cut, the best that can be cut in this material first.
-
-    Those that are estimated to jam are left out at once; of the others, best first, cuts are planned and checked and
-    the sheet is closed on its connectors, until one can be cut.
-    """
-    jams = jam_angles(result.candidates, fabrication)
-    known = result.ranked_as_cut(jams)
-    refusals = {
-        one: Note.of("rank.jams", own=math.degrees(jams[one])) for one in jams if known.ranking.missed(one) > 0.0
-    }
-    hopeful = [one for one in known.candidates if known.ranking.cuttable(one) and one not in refusals]
-    for number, candidate in enumerate(hopeful):
-        if number == MOST_LOOKED_AT:
-            refusals |= dict.fromkeys(hopeful[number:], Note.of("rank.not_looked_at", count=number))
-            break
-        line.show(
-            tr("Looking for a design that can be cut: {number} of {total}", number=number + 1, total=len(hopeful))
-        )
-        reason = why_not_cut(candidate, fabrication)
-        if reason is None:
-            break
-        refusals[candidate] = reason
-    line.clear()
-    return result.ranked_as_cut(jams, refusals)
+    """Rank designs by how they do as cut, the best that can be cut in this material first."""
+    steps = best_as_cut(result, fabrication)
+    while True:
+        try:
+            one = next(steps)
+        except StopIteration as end:
+            line.clear()
+            found: Result = end.value
+            return found
+        line.show(tr("Looking for a design that can be cut: {number} of {total}", number=one.number, total=one.total))
 
 
 def _verdict_on(result: Result, fabrication: FabricationSettings) -> Verdict:
@@ -371,6 +354,13 @@ def _say_result(target: Outline, result: Result, files: dict[str, str], verdict:
         feasible = tr("It is not feasible at {angle:.0f} degrees.", angle=angle)
     ended = [tr("The budget ended the run.")] if result.budget_ended else []
     say(" ".join((best, feasible, *ended)))
+    if result.request.trim and trim is None and result.ranking.cuttable(result.best):
+        say(
+            tr(
+                "{name}: no trimmed design can be cut in this material; the best design that can is not trimmed.",
+                name=target.name,
+            )
+        )
     (reason, *_) = result.ranking.reasons(result.candidates)
     say(f"{target.name}: {reason.text}")
     if trim is not None:

@@ -69,6 +69,8 @@ class Result:
         Angles at which they are estimated to jam as cut, where that was looked for.
     refusals : mapping of Candidate to Note
         Why those that were looked at closely cannot be cut.
+    losses : mapping of Candidate to float
+        Worth that those which were looked at closely lose by being cut.
     """
 
     request: Request
@@ -79,19 +81,23 @@ class Result:
     repeats: int = 0
     jam_phi: Mapping[Candidate, float] = field(default_factory=dict, hash=False)
     refusals: Mapping[Candidate, Note] = field(default_factory=dict, hash=False)
+    losses: Mapping[Candidate, float] = field(default_factory=dict, hash=False)
 
     @property
     def ranking(self) -> Ranking:
         """By which they are ranked."""
-        return replace(Ranking.of(self.request), jam_phi=self.jam_phi, refusals=self.refusals)
+        return replace(Ranking.of(self.request), jam_phi=self.jam_phi, refusals=self.refusals, losses=self.losses)
 
     def ranked_as_cut(
-        self, jam_phi: Mapping[Candidate, float], refusals: Mapping[Candidate, Note] = MappingProxyType({})
+        self,
+        jam_phi: Mapping[Candidate, float],
+        refusals: Mapping[Candidate, Note] = MappingProxyType({}),
+        losses: Mapping[Candidate, float] = MappingProxyType({}),
     ) -> Result:
-        """The same, ranked again now that it is known where designs jam (radians, 0 for those that close), and why
-        some cannot be cut.
+        """The same, ranked again now that it is known where designs jam (radians, 0 for those that close), why some
+        cannot be cut, and what worth others lose by that.
         """
-        known = replace(self, jam_phi=jam_phi, refusals=refusals)
+        known = replace(self, jam_phi=jam_phi, refusals=refusals, losses=losses)
         return replace(known, candidates=known.ranking.ranked(self.candidates))
 
     @property

@@ -3,6 +3,7 @@
 The *worth* of a design is its exact IoU less a price for what eyes and cutters mind:
 
     worth = IoU - JAMMING * share of its way that it misses as cut
+                - what it was found to lose as cut
                 - weight * (1 - IoU at the second target's angle)
                 - s * (EVENNESS * CV of panel areas + THIN * thinness + AT_LIMIT * share of ratios at a limit
                        - SYMMETRY if the sheet is symmetric),        s = (2 * regular) ** 2
@@ -66,6 +67,8 @@ class Ranking:
         Angles at which designs are expected to jam as cut, 0 for those that close; nothing is known of others.
     refusals : mapping of Candidate to Note
         Why designs that were looked at closely cannot be cut; they come after all others that are feasible.
+    losses : mapping of Candidate to float
+        Worth that designs which were looked at closely lose by being cut.
     """
 
     regular: float = 0.5
@@ -73,6 +76,7 @@ class Ranking:
     least_feature_mm: float = 0.0
     jam_phi: Mapping[Candidate, float] = field(default_factory=dict, hash=False)
     refusals: Mapping[Candidate, Note] = field(default_factory=dict, hash=False)
+    losses: Mapping[Candidate, float] = field(default_factory=dict, hash=False)
 
     @classmethod
     def of(cls, request: Request) -> Ranking:
@@ -107,6 +111,7 @@ class Ranking:
             "rank.more_at_limit": scale * AT_LIMIT * figures.at_limit,
             "rank.not_symmetric": scale * SYMMETRY * (candidate.symmetry is None),
             "rank.jams": JAMMING * self.missed(candidate),
+            "rank.less_as_cut": self.losses.get(candidate, 0.0),
             "rank.less_second": 0.0 if candidate.second is None else candidate.second.price,
         }
 
@@ -201,6 +206,7 @@ class Ranking:
             "rank.more_at_limit": (100 * even.at_limit, 100 * best.at_limit),
             "rank.not_symmetric": (0.0, 0.0),
             "rank.jams": (math.degrees(self.jam_phi.get(one, 0.0)), math.degrees(self.jam_phi.get(first, 0.0))),
+            "rank.less_as_cut": (100 * self.losses.get(one, 0.0), 100 * self.losses.get(first, 0.0)),
             "rank.less_second": (_second(one), _second(first)),
         }[code]
         return Note.of(code, own=mine, first=theirs)

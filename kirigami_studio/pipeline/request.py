@@ -193,17 +193,25 @@ class Request:
 
     @property
     def kept_size(self) -> float:
-        """Edges and necks (unit cells) that fits do not fall below: ``least_panel``, or more if the material or its
-        connectors need it.
-
-        Where one of these is nearly a cell or more, no design has it, and it does not count; while the grid is left to
-        the run, only ``least_panel`` does.
+        """Edges and necks (unit cells) that fits do not fall below: :attr:`kept_when_trimmed`, or more if connectors
+        need it.
         """
+        return max(self.kept_when_trimmed, self._in_cells(self.room_mm))
+
+    @property
+    def kept_when_trimmed(self) -> float:
+        """Edges and necks (unit cells) that sheets to be trimmed do not fall below: ``least_panel``, or more if the
+        material needs it.
+
+        These sheets cover the target, notches and all, and have no room to give away.
+        """
+        return max(self.least_panel, self._in_cells(self.least_feature_mm))
+
+    def _in_cells(self, size_mm: float) -> float:
+        """A size in unit cells; 0 where that is nearly a cell or more, for no design has it, or the grid is open."""
         if self.grid is None:
-            return self.least_panel
-        cells = width_in_cells(self.grid, self.start)
-        needed = (self.least_feature_mm, self.room_mm)
-        return max(self.least_panel, *(least_in_cells(size, self.width_mm, cells) for size in needed))
+            return 0.0
+        return least_in_cells(size_mm, self.width_mm, width_in_cells(self.grid, self.start))
 
     @property
     def wishes(self) -> Wishes:

@@ -164,7 +164,7 @@ class TrimTask:
     def carry_out(self, request: Request, stopped: Callable[[], bool]) -> Answer:
         """Trim, unless the design crosses itself."""
         try:
-            made = trimmed(self.candidate, request.target, request.keep, stopped, least_panel=request.kept_size)
+            made = trimmed(self.candidate, request.target, request.keep, stopped, least_panel=request.kept_when_trimmed)
         except KirigamiError:
             return Answer(None, 1)
         return Answer(made.candidate, made.evaluations)

@@ -192,23 +192,39 @@ def closed_as_cut(
         return str(error)
 
 
-def why_not_cut(candidate: Candidate, settings: FabricationSettings) -> Note | None:
-    """Why a design cannot be cut as these settings ask for, None where it can: its cuts can be planned, the sheet comes
-    to its angle, no connector breaks and no panel is too small.
+@dataclass(frozen=True, slots=True)
+class CloseLook:
+    """What a close look at a design found.
+
+    Attributes
+    ----------
+    refusal : Note or None
+        Why it cannot be cut; None where it can: its cuts can be planned, the sheet comes to its angle, no connector
+        breaks and no panel is too small.
+    as_cut : AsCut or None
+        How it does as cut; None where nobody had to look so far, or where that cannot be told.
     """
+
+    refusal: Note | None
+    as_cut: AsCut | None = None
+
+
+def look_at(candidate: Candidate, settings: FabricationSettings, target: Outline | None = None) -> CloseLook:
+    """Plan and check the cuts of a design as these settings ask for, and close it on its connectors."""
     try:
         motion = deploy(candidate.final_sheet)
         plan = plan_of(candidate, settings, motion)
     except KirigamiError as error:
-        return Note(error.code, error.fields)
+        return CloseLook(Note(error.code, error.fields))
     report = check_plan(plan, phi=candidate.final_phi)
     found = judge(candidate, plan, report, None)
     small = next((problem for problem in found.problems if problem.code in TOO_SMALL), None)
     if found.level is Level.FAILS or small is not None:
-        return small or found.problems[0]
-    closed = judge(candidate, plan, report, closed_as_cut(candidate, motion, plan, settings.width_mm))
-    new = (problem for problem in closed.problems if problem not in found.problems)
-    return next((problem for problem in new if problem.code != NEARLY), None)
+        return CloseLook(small or found.problems[0])
+    as_cut = closed_as_cut(candidate, motion, plan, settings.width_mm, target)
+    new = (one for one in judge(candidate, plan, report, as_cut).problems if one not in found.problems)
+    refusal = next((problem for problem in new if problem.code != NEARLY), None)
+    return CloseLook(refusal, None if isinstance(as_cut, str) else as_cut)
 
 
 def refused(error: KirigamiError) -> Verdict:

@@ -197,6 +197,9 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     ),
     "rank.equal": mark("As good as the first design."),
     "rank.jams": mark("As cut, it is estimated to jam at {own:.0f} degrees."),
+    "rank.less_as_cut": mark(
+        "As cut, it loses {own:.2f} % of its match and by stretched connectors, the first design {first:.2f} %."
+    ),
     "rank.less_even": mark("Panel sizes vary by {own:.0f} %, in the first design by {first:.0f} %."),
     "rank.less_match": mark("It matches {own:.1f} %, the first design {first:.1f} %."),
     "rank.less_second": mark("It matches the second target {own:.1f} %, the first design {first:.1f} %."),

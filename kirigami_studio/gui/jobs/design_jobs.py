@@ -195,8 +195,8 @@ def trimming(candidate: Candidate, target: Outline, settings: FabricationSetting
     from kirigami_studio.pipeline.redesign import trimmed
     from kirigami_studio.polish.panel_size import least_in_cells
 
-    cells = candidate.score.evenness.width
-    least = max(least_in_cells(size, settings.width_mm, cells) for size in sizes_of(settings))
+    least_mm, _ = sizes_of(settings)
+    least = least_in_cells(least_mm, settings.width_mm, candidate.score.evenness.width)
     found = trimmed(candidate, target, keep_for(candidate, settings), cancel, least_panel=least)
     if cancel():
         raise Cancelled("trim.stopped")

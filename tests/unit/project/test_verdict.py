@@ -26,7 +26,7 @@ from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.as_cut import AsCut, Outcome, StrainFigure
 from kirigami_studio.project.cutting import least_feature_mm, plan_of
 from kirigami_studio.project.settings import FabricationSettings
-from kirigami_studio.project.verdict import Assessment, Level, Verdict, assess, judge, refused, why_not_cut
+from kirigami_studio.project.verdict import Assessment, Level, Verdict, assess, judge, look_at, refused
 
 FILM = FabricationSettings(connector_mm=0.4)
 STRAIGHT = CutOptions(style=ConnectorStyle.STRAIGHT)
@@ -93,14 +93,15 @@ def test_that_a_sheet_which_nearly_closes_is_cut_with_care(
 
 
 def test_that_a_design_says_why_it_cannot_be_cut(design: Candidate) -> None:
-    assert why_not_cut(design, FILM) is None
+    good = look_at(design, FILM)
+    assert good.refusal is None and good.as_cut is not None and good.as_cut.closes
     reasons = {
         "as_cut.jams_while_flat": replace(FILM, options=STRAIGHT),
         "as_cut.breaks": FabricationSettings(material="card-co2", width_mm=250.0),
         "edge_cut.no_room": replace(FILM, connector_mm=30.0),
     }
     for code, settings in reasons.items():
-        reason = why_not_cut(design, settings)
+        reason = look_at(design, settings).refusal
         assert reason is not None and reason.code == code and reason.text
 
 

@@ -1,0 +1,110 @@
+"""Which design is best as cut: none that is left could pass the one that is taken, and no more are looked at."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from kirigami_studio.cli.design import _say_result
+from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.evaluate.score import evaluate
+from kirigami_studio.fabricate.findings import Note
+from kirigami_studio.foundation.steps import result_of
+from kirigami_studio.lattice.deployment import deploy
+from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.outlines.silhouettes import load
+from kirigami_studio.pipeline.events import Result
+from kirigami_studio.pipeline.request import Request
+from kirigami_studio.project import best_as_cut
+from kirigami_studio.project.as_cut import AsCut, Outcome, StrainFigure
+from kirigami_studio.project.settings import FabricationSettings
+from kirigami_studio.project.verdict import CloseLook
+
+REFUSED = CloseLook(Note.of("rank.not_feasible"))
+Looks = dict[Candidate, CloseLook]
+
+
+def closes(iou: float, ideal: float, stretch: float = 0.0) -> CloseLook:
+    found = AsCut(0.0, 0.0, Outcome.CLOSES, stretch, 0.01, StrainFigure.OUT_OF_PLANE, iou, ideal)
+    return CloseLook(None, found)
+
+
+@pytest.fixture
+def run() -> Result:
+    """Three uniform sheets that are said to match at 0.99, 0.98 and 0.90."""
+    target, sheet = load("square"), deploy(RatioField.uniform(3, 3))
+    score = evaluate(sheet, target)
+    candidates = tuple(
+        Candidate(sheet.sheet, replace(score, iou_exact=iou), seed=0, index=number)
+        for number, iou in enumerate((0.99, 0.98, 0.90))
+    )
+    return Result(Request(target, (3, 3), k=3, regular=0.0), candidates, 3, 0.0)
+
+
+def ranked(monkeypatch: pytest.MonkeyPatch, run: Result, looks: Looks) -> tuple[Result, list[int]]:
+    """The run ranked where these designs do so as cut, and the numbers of those that were looked at."""
+    seen: list[int] = []
+
+    def look_at(candidate: Candidate, *_: object) -> CloseLook:
+        seen.append(candidate.index)
+        return looks[candidate]
+
+    monkeypatch.setattr(best_as_cut, "look_at", look_at)
+    return result_of(best_as_cut.best_as_cut(run, FabricationSettings())), seen
+
+
+def test_that_a_design_that_loses_nothing_is_taken_at_once(monkeypatch: pytest.MonkeyPatch, run: Result) -> None:
+    found, seen = ranked(monkeypatch, run, {run.candidates[0]: closes(0.99, 0.99)})
+    assert found.best is run.candidates[0] and seen == [0]
+
+
+def test_that_a_design_that_loses_less_passes_one_that_matches_better(
+    monkeypatch: pytest.MonkeyPatch, run: Result
+) -> None:
+    first, second, third = run.candidates
+    found, seen = ranked(monkeypatch, run, {first: closes(0.96, 0.99), second: closes(0.979, 0.98)})
+    assert found.candidates == (second, first, third)
+    # The third could not be better if it lost nothing.
+    assert seen == [0, 1]
+    reasons = found.ranking.reasons(found.candidates)
+    assert [reason.code for reason in reasons[1:]] == ["rank.less_as_cut", "rank.less_match"]
+    assert "3.00 %" in reasons[1].text and "0.10 %" in reasons[1].text
+
+
+def test_that_calm_connectors_decide_between_designs_that_match_alike(
+    monkeypatch: pytest.MonkeyPatch, run: Result
+) -> None:
+    first, second, _ = run.candidates
+    found, _ = ranked(monkeypatch, run, {first: closes(0.99, 0.99, 0.5), second: closes(0.98, 0.98, 0.01)})
+    assert found.best is second
+    found, seen = ranked(monkeypatch, run, {first: closes(0.99, 0.99, 0.2), second: closes(0.98, 0.98, 0.0)})
+    assert found.best is first and seen == [0]
+
+
+def test_that_a_gain_by_cutting_does_not_count(monkeypatch: pytest.MonkeyPatch, run: Result) -> None:
+    first, second, _ = run.candidates
+    found, _ = ranked(monkeypatch, run, {first: closes(0.96, 0.99), second: closes(1.0, 0.98)})
+    assert found.best is second and found.losses[second] == 0.0
+
+
+def test_that_all_are_refused_where_none_can_be_cut(monkeypatch: pytest.MonkeyPatch, run: Result) -> None:
+    found, seen = ranked(monkeypatch, run, dict.fromkeys(run.candidates, REFUSED))
+    assert seen == [0, 1, 2] and set(found.refusals) == set(run.candidates)
+    assert not any(found.ranking.cuttable(one) for one in found.candidates)
+
+
+def test_that_no_more_than_the_most_are_looked_at(monkeypatch: pytest.MonkeyPatch, run: Result) -> None:
+    monkeypatch.setattr(best_as_cut, "MOST_LOOKED_AT", 1)
+    found, seen = ranked(monkeypatch, run, dict.fromkeys(run.candidates, REFUSED))
+    assert seen == [0]
+    assert [note.code for note in found.refusals.values()] == ["rank.not_feasible", *2 * ["rank.not_looked_at"]]
+
+
+def test_that_design_says_where_no_trimmed_design_can_be_cut(run: Result, capsys: pytest.CaptureFixture[str]) -> None:
+    asked = replace(run, request=replace(run.request, trim=True))
+    words = "no trimmed design can be cut in this material"
+    _say_result(run.request.target, asked, {}, None)
+    assert words in capsys.readouterr().out
+    _say_result(run.request.target, run, {}, None)
+    assert words not in capsys.readouterr().out
