@@ -28,6 +28,7 @@ from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.read import read_target
 from kirigami_studio.outlines.starts import start_shape
 from kirigami_studio.pipeline.auto_grid import chosen_for
+from kirigami_studio.pipeline.best_as_cut import best_as_cut
 from kirigami_studio.pipeline.events import Finished, Progress, Result
 from kirigami_studio.pipeline.rank import Ranking
 from kirigami_studio.pipeline.redesign import keep_for_connectors
@@ -35,13 +36,13 @@ from kirigami_studio.pipeline.request import POLISH_STEPS, REGULAR, Request, pro
 from kirigami_studio.pipeline.run import run, with_grid
 from kirigami_studio.pipeline.variety import look_alikes
 from kirigami_studio.polish.flat_sheet import width_in_cells
-from kirigami_studio.project.best_as_cut import best_as_cut
+from kirigami_studio.project.as_cut import jam_angles
 from kirigami_studio.project.cutting import least_feature_mm, material_for, room_mm
 from kirigami_studio.project.design_facts import design_facts, with_run
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.settings import DesignSettings, FabricationSettings
 from kirigami_studio.project.store import save
-from kirigami_studio.project.verdict import Verdict, assess, refused
+from kirigami_studio.project.verdict import Verdict, assess, look_at, refused
 
 #: Angle (degrees) and weight of a second target unless others are asked for.
 ALSO_DEG, ALSO_WEIGHT = 45.0, 0.3
@@ -132,7 +133,9 @@ def second_target(arguments: argparse.Namespace) -> SecondTarget | None:
 
 def cuttable_first(result: Result, fabrication: FabricationSettings, line: ProgressLine) -> Result:
     """Rank designs by how they do as cut, the best that can be cut in this material first."""
-    steps = best_as_cut(result, fabrication)
+    target = result.request.target
+    jams = jam_angles(result.candidates, fabrication)
+    steps = best_as_cut(result, jams, lambda one: look_at(one, fabrication, target))
     while True:
         try:
             one = next(steps)

@@ -46,6 +46,8 @@ SIGNS_OF_A_JAM = frozenset(
         "verify.sheet_jams",
     }
 )
+#: Worth that a connector which stretches by its whole width costs: where designs match alike, calm connectors decide.
+STRETCH = 0.03
 #: Of a sheet that comes within a few degrees of its angle.
 NEARLY = "as_cut.nearly"
 #: Warnings about a file that are about importing it, not about the sheet.
@@ -207,6 +209,15 @@ class CloseLook:
 
     refusal: Note | None
     as_cut: AsCut | None = None
+
+    @property
+    def loss(self) -> float:
+        """Worth (IoU) that the design loses by being cut: match, and for the stretch of its connectors."""
+        if self.as_cut is None:
+            return 0.0
+        iou, ideal = self.as_cut.iou, self.as_cut.ideal_iou
+        missed = 0.0 if iou is None or ideal is None else max(0.0, ideal - iou)
+        return missed + STRETCH * self.as_cut.stretch
 
 
 def look_at(candidate: Candidate, settings: FabricationSettings, target: Outline | None = None) -> CloseLook:

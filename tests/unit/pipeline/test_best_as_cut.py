@@ -14,11 +14,10 @@ from kirigami_studio.foundation.steps import result_of
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.outlines.silhouettes import load
+from kirigami_studio.pipeline import best_as_cut
 from kirigami_studio.pipeline.events import Result
 from kirigami_studio.pipeline.request import Request
-from kirigami_studio.project import best_as_cut
 from kirigami_studio.project.as_cut import AsCut, Outcome, StrainFigure
-from kirigami_studio.project.settings import FabricationSettings
 from kirigami_studio.project.verdict import CloseLook
 
 REFUSED = CloseLook(Note.of("rank.not_feasible"))
@@ -42,28 +41,26 @@ def run() -> Result:
     return Result(Request(target, (3, 3), k=3, regular=0.0), candidates, 3, 0.0)
 
 
-def ranked(monkeypatch: pytest.MonkeyPatch, run: Result, looks: Looks) -> tuple[Result, list[int]]:
+def ranked(run: Result, looks: Looks) -> tuple[Result, list[int]]:
     """The run ranked where these designs do so as cut, and the numbers of those that were looked at."""
     seen: list[int] = []
 
-    def look_at(candidate: Candidate, *_: object) -> CloseLook:
+    def look(candidate: Candidate) -> CloseLook:
         seen.append(candidate.index)
         return looks[candidate]
 
-    monkeypatch.setattr(best_as_cut, "look_at", look_at)
-    return result_of(best_as_cut.best_as_cut(run, FabricationSettings())), seen
+    closing = dict.fromkeys(run.candidates, 0.0)
+    return result_of(best_as_cut.best_as_cut(run, closing, look)), seen
 
 
-def test_that_a_design_that_loses_nothing_is_taken_at_once(monkeypatch: pytest.MonkeyPatch, run: Result) -> None:
-    found, seen = ranked(monkeypatch, run, {run.candidates[0]: closes(0.99, 0.99)})
+def test_that_a_design_that_loses_nothing_is_taken_at_once(run: Result) -> None:
+    found, seen = ranked(run, {run.candidates[0]: closes(0.99, 0.99)})
     assert found.best is run.candidates[0] and seen == [0]
 
 
-def test_that_a_design_that_loses_less_passes_one_that_matches_better(
-    monkeypatch: pytest.MonkeyPatch, run: Result
-) -> None:
+def test_that_a_design_that_loses_less_passes_one_that_matches_better(run: Result) -> None:
     first, second, third = run.candidates
-    found, seen = ranked(monkeypatch, run, {first: closes(0.96, 0.99), second: closes(0.979, 0.98)})
+    found, seen = ranked(run, {first: closes(0.96, 0.99), second: closes(0.979, 0.98)})
     assert found.candidates == (second, first, third)
     # The third could not be better if it lost nothing.
     assert seen == [0, 1]
@@ -72,31 +69,29 @@ def test_that_a_design_that_loses_less_passes_one_that_matches_better(
     assert "3.00 %" in reasons[1].text and "0.10 %" in reasons[1].text
 
 
-def test_that_calm_connectors_decide_between_designs_that_match_alike(
-    monkeypatch: pytest.MonkeyPatch, run: Result
-) -> None:
+def test_that_calm_connectors_decide_between_designs_that_match_alike(run: Result) -> None:
     first, second, _ = run.candidates
-    found, _ = ranked(monkeypatch, run, {first: closes(0.99, 0.99, 0.5), second: closes(0.98, 0.98, 0.01)})
+    found, _ = ranked(run, {first: closes(0.99, 0.99, 0.5), second: closes(0.98, 0.98, 0.01)})
     assert found.best is second
-    found, seen = ranked(monkeypatch, run, {first: closes(0.99, 0.99, 0.2), second: closes(0.98, 0.98, 0.0)})
+    found, seen = ranked(run, {first: closes(0.99, 0.99, 0.2), second: closes(0.98, 0.98, 0.0)})
     assert found.best is first and seen == [0]
 
 
-def test_that_a_gain_by_cutting_does_not_count(monkeypatch: pytest.MonkeyPatch, run: Result) -> None:
+def test_that_a_gain_by_cutting_does_not_count(run: Result) -> None:
     first, second, _ = run.candidates
-    found, _ = ranked(monkeypatch, run, {first: closes(0.96, 0.99), second: closes(1.0, 0.98)})
+    found, _ = ranked(run, {first: closes(0.96, 0.99), second: closes(1.0, 0.98)})
     assert found.best is second and found.losses[second] == 0.0
 
 
-def test_that_all_are_refused_where_none_can_be_cut(monkeypatch: pytest.MonkeyPatch, run: Result) -> None:
-    found, seen = ranked(monkeypatch, run, dict.fromkeys(run.candidates, REFUSED))
+def test_that_all_are_refused_where_none_can_be_cut(run: Result) -> None:
+    found, seen = ranked(run, dict.fromkeys(run.candidates, REFUSED))
     assert seen == [0, 1, 2] and set(found.refusals) == set(run.candidates)
     assert not any(found.ranking.cuttable(one) for one in found.candidates)
 
 
 def test_that_no_more_than_the_most_are_looked_at(monkeypatch: pytest.MonkeyPatch, run: Result) -> None:
     monkeypatch.setattr(best_as_cut, "MOST_LOOKED_AT", 1)
-    found, seen = ranked(monkeypatch, run, dict.fromkeys(run.candidates, REFUSED))
+    found, seen = ranked(run, dict.fromkeys(run.candidates, REFUSED))
     assert seen == [0]
     assert [note.code for note in found.refusals.values()] == ["rank.not_feasible", *2 * ["rank.not_looked_at"]]
 
