@@ -47,7 +47,7 @@ SIGNS_OF_A_JAM = frozenset(
     }
 )
 #: Worth that a connector which stretches by its whole width costs: where designs match alike, calm connectors decide.
-STRETCH = 0.03
+STRETCH = 0.05
 #: Of a sheet that comes within a few degrees of its angle.
 NEARLY = "as_cut.nearly"
 #: Warnings about a file that are about importing it, not about the sheet.

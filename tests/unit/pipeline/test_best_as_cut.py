@@ -73,7 +73,7 @@ def test_that_calm_connectors_decide_between_designs_that_match_alike(run: Resul
     first, second, _ = run.candidates
     found, _ = ranked(run, {first: closes(0.99, 0.99, 0.5), second: closes(0.98, 0.98, 0.01)})
     assert found.best is second
-    found, seen = ranked(run, {first: closes(0.99, 0.99, 0.2), second: closes(0.98, 0.98, 0.0)})
+    found, seen = ranked(run, {first: closes(0.99, 0.99, 0.1), second: closes(0.98, 0.98, 0.0)})
     assert found.best is first and seen == [0]
 
 
