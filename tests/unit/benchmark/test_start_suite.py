@@ -20,6 +20,12 @@ def test_that_random_sheets_of_any_start_are_exact(name: str) -> None:
     assert 0.0 < found.local_rule < 1e-11 and found.partition < 1e-12
 
 
+def test_that_random_sheets_of_a_hollow_start_tell_what_folds_or_touches() -> None:
+    found = random_sheets(start_shape("heart"), (7, 6), 20, 1, lambda done, total: None)
+    assert found.ok and found.hollow and found.inverted > 0 and found.unreported == 0
+    assert not replace(found, hollow=False).ok and not replace(found, unreported=1).ok
+
+
 def test_that_a_miss_is_told() -> None:
     found = random_sheets(RECTANGLE, (3, 4), 2, 0, lambda done, total: None)
     assert found.ok
