@@ -4,16 +4,15 @@ from __future__ import annotations
 
 import io
 import math
-import warnings
 from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
-from PIL import Image, ImageOps, UnidentifiedImageError
+from PIL import Image, ImageOps
 
 from kirigami_studio.export.artwork import ArtPicture
 from kirigami_studio.foundation.errors import TargetError
-from kirigami_studio.outlines.read_image import MOST_MEGABYTES, MOST_PIXELS
+from kirigami_studio.outlines.read_image import MOST_MEGABYTES, opened_image
 from kirigami_studio.outlines.source_file import decoding, read_bytes
 from kirigami_studio.outlines.svg_safety import checked_svg
 
@@ -76,20 +75,8 @@ def picture_of(name: str, content: bytes) -> ArtPicture:
     Exception
         Whatever Pillow raises on damaged files.
     """
-    with warnings.catch_warnings():
-        # Pillow warns from 89 Mpixel on; the limit here is the sentence below.
-        warnings.simplefilter("ignore", Image.DecompressionBombWarning)
-        try:
-            opened = Image.open(io.BytesIO(content), formats=FORMATS)
-        except Image.DecompressionBombError:
-            raise TargetError("image.far_too_many_pixels") from None
-        except UnidentifiedImageError:
-            # Pillow's own words name the object in memory and not the file.
-            raise ValueError("it does not begin like one") from None
-        width, height = opened.size
-        if width * height > MOST_PIXELS:
-            raise TargetError("image.too_many_pixels", width=width, height=height, limit=MOST_PIXELS // 10**6)
-        opened.load()
+    opened = opened_image(content, FORMATS)
+    width, height = opened.size
     upright = ImageOps.exif_transpose(opened)
     image = _eight_bits(upright)
     reduction = math.ceil(math.sqrt(width * height / KEPT_PIXELS))

@@ -158,13 +158,27 @@ def outline_of_mask(mask: BoolArray, name: str) -> Outline:
     return Outline.from_points(ring, name=name, notes=notes, unit="px")
 
 
-def _levels(content: bytes) -> Levels:
-    """Decode a picture, pick the channel that holds the shape and reduce it to the working size."""
+def opened_image(content: bytes, formats: tuple[str, ...] = FORMATS) -> Image.Image:
+    """Decode a picture, all of it.
+
+    Parameters
+    ----------
+    content : bytes
+    formats : tuple of str
+        Those that are read, as Pillow calls them.
+
+    Raises
+    ------
+    TargetError
+        Too many pixels.
+    Exception
+        Whatever Pillow raises on damaged files.
+    """
     with warnings.catch_warnings():
         # Pillow warns from 89 Mpixel on; the limit here is the sentence below.
         warnings.simplefilter("ignore", Image.DecompressionBombWarning)
         try:
-            image = Image.open(io.BytesIO(content), formats=FORMATS)
+            image = Image.open(io.BytesIO(content), formats=formats)
         except Image.DecompressionBombError:
             raise TargetError("image.far_too_many_pixels") from None
         except UnidentifiedImageError:
@@ -174,8 +188,14 @@ def _levels(content: bytes) -> Levels:
         if width * height > MOST_PIXELS:
             raise TargetError("image.too_many_pixels", width=width, height=height, limit=MOST_PIXELS // 10**6)
         image.load()
+    return image
+
+
+def _levels(content: bytes) -> Levels:
+    """Decode a picture, pick the channel that holds the shape and reduce it to the working size."""
+    image = opened_image(content)
     channel, is_alpha = _channel(ImageOps.exif_transpose(image))
-    reduction = math.ceil(max(width, height) / WORKING_SIDE)
+    reduction = math.ceil(max(image.size) / WORKING_SIDE)
     grey = np.asarray(channel.reduce(reduction) if reduction > 1 else channel, dtype=np.float64)
     if channel.mode == "L":
         return Levels(grey / 255.0, reduction, is_alpha, channel.size)
