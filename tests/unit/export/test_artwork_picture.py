@@ -9,10 +9,11 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from kirigami_studio.export import artwork, artwork_picture
+from kirigami_studio.export import artwork
 from kirigami_studio.export.artwork_picture import read_picture
 from kirigami_studio.export.artwork_raster import image_of
 from kirigami_studio.foundation.errors import TargetError
+from kirigami_studio.outlines import read_image
 
 
 def saved(image: Image.Image, path: Path, **options: object) -> Path:
@@ -105,6 +106,6 @@ def test_that_pictures_of_too_many_pixels_or_bytes_are_refused(tmp_path: Path, m
     monkeypatch.setattr(artwork, "LARGEST_PICTURE", 10)
     with pytest.raises(TargetError, match="Save it with fewer pixels"):
         read_picture(path)
-    monkeypatch.setattr(artwork_picture, "MOST_PIXELS", 1000)
+    monkeypatch.setattr(read_image, "MOST_PIXELS", 1000)
     with pytest.raises(TargetError, match="100 x 60 pixels"):
         read_picture(path)
