@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from kirigami_studio.export import artwork
+from kirigami_studio.export import artwork, artwork_picture
 from kirigami_studio.export.artwork_picture import read_picture
 from kirigami_studio.export.artwork_raster import image_of
 from kirigami_studio.foundation.errors import TargetError
