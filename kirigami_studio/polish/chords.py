@@ -13,11 +13,11 @@ import numpy as np
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.lattice.sheet import RimPath, rim_table
 
-#: Weight of the square of the share that is cut off beyond what is allowed: a thousandth of the area then weighs as
-#: much as the whole mismatch of a good fit.
-WEIGHT = 100.0
-#: What may be cut off, relative to even mouths, and in any case, as a share of the area.
-ALLOWED_GROWTH, ALLOWED = 1.05, 0.008
+#: Weight of the square of the share that is cut off beyond what is allowed: a thousandth of the area then weighs six
+#: times as much as the whole mismatch of a good fit, and round sheets stay within half a percent of their start.
+WEIGHT = 600.0
+#: What may be cut off in any case, as a share of the area; where even mouths cut off more, as much as they do.
+ALLOWED = 0.008
 #: A start that loses no more than this (share of its area) has straight sides and its corners at mouths.
 STRAIGHT = 1e-4
 
@@ -46,7 +46,7 @@ class Chords:
             return None
         area = _area(path.outline())
         even = float(np.abs(path.cut_off(rim_table(path.rows, path.columns).even)).sum()) / area
-        return cls(path, area, max(ALLOWED_GROWTH * even, ALLOWED)) if even > STRAIGHT else None
+        return cls(path, area, max(even, ALLOWED)) if even > STRAIGHT else None
 
     def excess(self, positions: FloatArray) -> float:
         """Share of the area that is cut off or added beyond what is allowed, with the mouths at ``positions`` (R,)."""

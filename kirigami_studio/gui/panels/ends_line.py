@@ -15,6 +15,8 @@ from kirigami_studio.gui.scene.view_transform import Bounds, ViewTransform
 
 #: Edge of a picture (pixels), and room between it and the words.
 PICTURE, GAP = 20, 9
+#: A panel lower than this leaves the line's room to the drawing; the status line tells both matches, too.
+LOW = 630
 
 
 class EndsLine(QWidget):
@@ -32,18 +34,25 @@ class EndsLine(QWidget):
         row.setSpacing(10)
         row.addWidget(self.start, 1)
         row.addWidget(self.target, 1)
+        self._named = self._low = False
         self.start.clicked.connect(self.flat_wanted)
         self.target.clicked.connect(self.open_wanted)
         self.show_states(None)
 
     def show_states(self, states: TwoStates | None) -> None:
         """Name both ends of a design; nothing without one."""
-        self.setVisible(states is not None)
+        self._named = states is not None
+        self.setVisible(self._named and not self._low)
         if states is None:
             return
         flat, opened = states.lines()
         self.start.show_state(states.start, tr("{state}. Click to close the sheet.", state=flat))
         self.target.show_state(states.target, tr("{state}. Click to open the sheet.", state=opened))
+
+    def set_panel_height(self, pixels: int) -> None:
+        """Leave room to the drawing in a low panel."""
+        self._low = pixels < LOW
+        self.setVisible(self._named and not self._low)
 
 
 class EndButton(QAbstractButton):

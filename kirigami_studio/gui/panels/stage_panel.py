@@ -406,6 +406,7 @@ class StagePanel(Card):
         super().resizeEvent(event)
         self._place_plots()
         self.verdict.set_panel_height(self.height())
+        self.ends.set_panel_height(self.height())
         self.body.activate()
 
     def set_overlay(self, overlay: Overlay, on: bool) -> None:
