@@ -30,7 +30,7 @@ from kirigami_studio.export.artwork_patches import Patch, PrintedSheet, opened_p
 from kirigami_studio.export.artwork_raster import Page, paint
 from kirigami_studio.export.exporter import ExportJob
 from kirigami_studio.export.pdf import SAME_SIZE_MM, page_boxes
-from kirigami_studio.export.picture import INK, PAPER, TARGET_EDGE, text_chunks
+from kirigami_studio.export.picture import INK, PAPER, TARGET_EDGE, write_image
 from kirigami_studio.export.profile import find_profile
 from kirigami_studio.export.provenance import facts_of
 from kirigami_studio.export.strokes import extent, frame_origin, strokes_of
@@ -54,8 +54,6 @@ OPENED_SIDE = 1200
 OPENED_MARGIN_MM = 3.0
 #: There panels grow by this share of the sheet's width, about half a pixel: no white shines through where they touch.
 OPENED_OVERLAP = 4e-4
-#: Bitmaps tell whole pixels a metre: 300 dpi become 299.9994.
-SAME_DPI = 0.02
 
 
 @dataclass(frozen=True, eq=False)
@@ -186,8 +184,8 @@ def write_artwork(work: ArtworkJob, folder: str | Path, name: str = "artwork") -
     svg, pdf, png, opened = (home / f"{name}{end}" for end in (".svg", ".pdf", ".png", "_opened.png"))
     write_atomically(svg, _svg_bytes(work), lambda written: _verify_svg(written, work))
     write_atomically(pdf, _pdf_bytes(work), lambda written: _verify_pdf(written, work))
-    _write_png(printed_image(work, page), png, work.facts, work.dpi)
-    _write_png(opened_image(work), opened, work.facts, None)
+    write_image(printed_image(work, page), png, work.facts, work.dpi)
+    write_image(opened_image(work), opened, work.facts, None)
     return svg, pdf, png, opened
 
 
@@ -221,27 +219,6 @@ def opened_image(work: ArtworkJob) -> Image.Image:
         ring = page.to_pixels(np.concatenate([target, target[:1]])) - 0.5
         ImageDraw.Draw(image).line([tuple(point) for point in ring.tolist()], fill=(*TARGET_EDGE, 255), width=2)
     return image.convert("RGB")
-
-
-def _write_png(image: Image.Image, path: Path, facts: Mapping[str, str], dpi: float | None) -> None:
-    stream = BytesIO()
-    resolution = {} if dpi is None else {"dpi": (dpi, dpi)}
-    image.save(stream, format="PNG", pnginfo=text_chunks(facts), **resolution)
-
-    def verify(written: Path) -> None:
-        with Image.open(written) as read:
-            read.load()
-            found = read.info.get("dpi", (0.0, 0.0))[0]
-            if read.size != image.size or (dpi is not None and abs(found - dpi) > SAME_DPI):
-                raise ExportError(
-                    "png.other_size",
-                    width=read.width,
-                    height=read.height,
-                    planned_width=image.width,
-                    planned_height=image.height,
-                )
-
-    write_atomically(path, stream.getvalue(), verify)
 
 
 def _pictures(work: ArtworkJob) -> dict[ArtPicture, str]:

@@ -36,6 +36,8 @@ LAYER_COLOUR: Mapping[Layer, Colour] = MappingProxyType(
 #: Pictures are drawn this many times larger and then reduced.
 SUPERSAMPLING = 3
 LONGEST_SIDE = 900
+#: Bitmaps tell whole pixels a metre: 300 dpi become 299.9994.
+SAME_DPI = 0.02
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,14 +60,39 @@ def write_png(job: ExportJob, path: str | Path, longest: int = LONGEST_SIDE) -> 
     ExportError
         The place cannot be written, or the file did not read back.
     """
-    image = preview(job, longest)
+    write_image(preview(job, longest), Path(path), origin_facts(job.provenance), optimize=True)
+
+
+def write_image(
+    image: Image.Image, path: Path, facts: Mapping[str, str], dpi: float | None = None, optimize: bool = False
+) -> None:
+    """Write a bitmap as PNG and read it back.
+
+    Parameters
+    ----------
+    image : Image
+    path : Path
+    facts : mapping of str to str
+        Written as text chunks.
+    dpi : float, optional
+        Resolution that the file tells; none without one.
+    optimize : bool
+        Whether time is taken for a smaller file.
+
+    Raises
+    ------
+    ExportError
+        The place cannot be written, or the file did not read back.
+    """
     stream = BytesIO()
-    image.save(stream, format="PNG", optimize=True, pnginfo=text_chunks(origin_facts(job.provenance)))
+    resolution = {} if dpi is None else {"dpi": (dpi, dpi)}
+    image.save(stream, format="PNG", optimize=optimize, pnginfo=text_chunks(facts), **resolution)
 
     def verify(written: Path) -> None:
         with Image.open(written) as read:
             read.load()
-            if read.size != image.size:
+            found = read.info.get("dpi", (0.0, 0.0))[0]
+            if read.size != image.size or (dpi is not None and abs(found - dpi) > SAME_DPI):
                 raise ExportError(
                     "png.other_size",
                     width=read.width,
@@ -74,7 +101,7 @@ def write_png(job: ExportJob, path: str | Path, longest: int = LONGEST_SIDE) -> 
                     planned_height=image.height,
                 )
 
-    write_atomically(Path(path), stream.getvalue(), verify)
+    write_atomically(path, stream.getvalue(), verify)
 
 
 def text_chunks(facts: Mapping[str, str]) -> PngInfo:

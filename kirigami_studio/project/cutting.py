@@ -87,8 +87,7 @@ def least_feature_mm(settings: FabricationSettings) -> float:
         No such material.
     """
     material = material_for(settings)
-    kerf = material.kerf_mm if settings.kerf_mm is None else settings.kerf_mm
-    return max(material.min_ligament_mm, material.min_panel_mm) + kerf
+    return max(material.min_ligament_mm, material.min_panel_mm) + _kerf_mm(settings, material)
 
 
 def room_mm(settings: FabricationSettings) -> float:
@@ -100,9 +99,12 @@ def room_mm(settings: FabricationSettings) -> float:
         No such material.
     """
     material = material_for(settings)
-    kerf = material.kerf_mm if settings.kerf_mm is None else settings.kerf_mm
     connector = material.connector_mm if settings.connector_mm is None else settings.connector_mm
-    return ROOM_IN_WIDTHS * connector + kerf
+    return ROOM_IN_WIDTHS * connector + _kerf_mm(settings, material)
+
+
+def _kerf_mm(settings: FabricationSettings, material: Material) -> float:
+    return material.kerf_mm if settings.kerf_mm is None else settings.kerf_mm
 
 
 def stored_material(settings: FabricationSettings) -> Material | None:
