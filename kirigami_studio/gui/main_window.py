@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from PySide6.QtCore import QByteArray, QEvent, QObject, QSettings, QSize, Qt
-from PySide6.QtGui import QCloseEvent, QDragEnterEvent, QDropEvent, QIcon, QKeyEvent, QResizeEvent, QShowEvent
+from PySide6.QtGui import QCloseEvent, QIcon, QKeyEvent, QResizeEvent, QShowEvent
 from PySide6.QtWidgets import (
     QAbstractButton,
     QAbstractSpinBox,
@@ -41,6 +41,7 @@ from kirigami_studio.gui.panels.stage_panel import StagePanel
 from kirigami_studio.gui.panels.target_panel import TargetPanel
 from kirigami_studio.gui.tour import Tour
 from kirigami_studio.gui.unsaved_work import UnsavedWork
+from kirigami_studio.gui.views.file_drops import FileDrops
 
 SMALLEST = QSize(1000, 640)
 FIRST = QSize(1440, 900)
@@ -67,7 +68,6 @@ class MainWindow(QMainWindow):
         self.setObjectName("studio")
         self.setWindowIcon(QIcon(str(resource("icons", "kirigami-studio.svg"))))
         self.setMinimumSize(SMALLEST)
-        self.setAcceptDrops(True)
         self.setContextMenuPolicy(Qt.ContextMenuPolicy.NoContextMenu)
         self.resize(FIRST.boundedTo(self.screen().availableSize() - FRAME))
         self.messages = MessageBar()
@@ -84,6 +84,8 @@ class MainWindow(QMainWindow):
         self.file_dialogs: FileDialogs = SystemFileDialogs(self)
         self.unsaved = UnsavedWork(self, controller)
         self.files = FileCommands(self, controller)
+        self.drops = FileDrops(self)
+        self.drops.file_dropped.connect(self.files.open)
         self.dialogs = Dialogs(self, controller)
         self.appearance = Appearance(self, controller.preferences)
         self.pasting = PasteReader(controller.session, self)
@@ -280,16 +282,6 @@ class MainWindow(QMainWindow):
         self.stage.remember(settings)
         self.fabrication.remember(settings)
         self.settings.remember(settings)
-
-    def dragEnterEvent(self, event: QDragEnterEvent) -> None:  # noqa: N802 - Qt's name
-        if any(url.isLocalFile() for url in event.mimeData().urls()):
-            event.acceptProposedAction()
-
-    def dropEvent(self, event: QDropEvent) -> None:  # noqa: N802 - Qt's name
-        files = [url.toLocalFile() for url in event.mimeData().urls() if url.isLocalFile()]
-        if files:
-            event.acceptProposedAction()
-            self.files.open(files[0])
 
     def closeEvent(self, event: QCloseEvent) -> None:  # noqa: N802 - Qt's name
         if not self.unsaved.may_close():

@@ -12,7 +12,8 @@ from pathlib import Path
 
 from PIL import Image
 from PySide6.QtCore import QMimeData, QPointF, Qt, QUrl
-from PySide6.QtGui import QDropEvent
+from PySide6.QtGui import QDragEnterEvent, QDropEvent
+from PySide6.QtWidgets import QApplication
 
 from kirigami_studio.gui.main_window import MainWindow
 from kirigami_studio.gui.messages import Tone
@@ -119,11 +120,13 @@ def drop(window: MainWindow, path: Path) -> None:
     """Let go of a file over the window."""
     content = QMimeData()
     content.setUrls([QUrl.fromLocalFile(str(path))])
-    left, none = Qt.MouseButton.LeftButton, Qt.KeyboardModifier.NoModifier
-    middle = QPointF(window.rect().center())
-    event = QDropEvent(middle, Qt.DropAction.CopyAction, content, left, none)
-    window.dropEvent(event)
-    assert event.isAccepted()
+    copy, left, none = Qt.DropAction.CopyAction, Qt.MouseButton.LeftButton, Qt.KeyboardModifier.NoModifier
+    middle = window.rect().center()
+    entered = QDragEnterEvent(middle, copy, content, left, none)
+    event = QDropEvent(QPointF(middle), copy, content, left, none)
+    QApplication.sendEvent(window, entered)
+    QApplication.sendEvent(window, event)
+    assert entered.isAccepted() and event.isAccepted()
 
 
 def test_that_each_bad_file_gets_one_clear_sentence_and_loses_nothing(

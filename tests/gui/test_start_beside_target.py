@@ -10,9 +10,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 import shapely
-from PySide6.QtCore import QMimeData, QPointF, Qt, QUrl
-from PySide6.QtGui import QDropEvent
+from PySide6.QtCore import QMimeData, QPoint, QPointF, Qt, QUrl
+from PySide6.QtGui import QDragEnterEvent, QDropEvent
 from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QApplication
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.score import evaluate
@@ -48,8 +49,12 @@ def drop(window: MainWindow, path: Path) -> None:
     """Let a file fall on the tile."""
     content = QMimeData()
     content.setUrls([QUrl.fromLocalFile(str(path))])
-    left, none = Qt.MouseButton.LeftButton, Qt.KeyboardModifier.NoModifier
-    window.target.start.dropEvent(QDropEvent(QPointF(20, 20), Qt.DropAction.CopyAction, content, left, none))
+    copy, left, none = Qt.DropAction.CopyAction, Qt.MouseButton.LeftButton, Qt.KeyboardModifier.NoModifier
+    tile = window.target.start
+    QApplication.sendEvent(tile, QDragEnterEvent(QPoint(20, 20), copy, content, left, none))
+    assert tile.drops.here
+    QApplication.sendEvent(tile, QDropEvent(QPointF(20, 20), copy, content, left, none))
+    assert not tile.drops.here
 
 
 @pytest.fixture(scope="module")

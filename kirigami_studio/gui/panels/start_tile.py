@@ -8,9 +8,6 @@ import numpy as np
 from PySide6.QtCore import QPoint, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import (
     QColor,
-    QDragEnterEvent,
-    QDragLeaveEvent,
-    QDropEvent,
     QIcon,
     QKeyEvent,
     QPainter,
@@ -27,6 +24,7 @@ from kirigami_studio.gui.look import icons
 from kirigami_studio.gui.look.theme import LIGHT, Palette
 from kirigami_studio.gui.scene.target_items import paint_start_shape
 from kirigami_studio.gui.scene.view_transform import Bounds, ViewTransform
+from kirigami_studio.gui.views.file_drops import FileDrops
 from kirigami_studio.outlines.starts import RECTANGLE, StartShape, start_shape
 
 #: Starts that are a click away: name, label, what it means.
@@ -69,12 +67,12 @@ class StartTile(QAbstractButton):
         self._grid = (10, 10)
         self._width_mm = 100.0
         self._palette: Palette = LIGHT
-        self._drop_here = False
         self.setFixedWidth(WIDTH)
         self.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Expanding)
         self.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         self.setCursor(Qt.CursorShape.PointingHandCursor)
-        self.setAcceptDrops(True)
+        self.drops = FileDrops(self)
+        self.drops.file_dropped.connect(self.file_dropped)
         self.back = QToolButton(self)
         self.back.setObjectName("plainStart")
         self.back.setFixedSize(BACK_EDGE, BACK_EDGE)
@@ -181,8 +179,8 @@ class StartTile(QAbstractButton):
     def paintEvent(self, event: QPaintEvent) -> None:  # noqa: N802 - Qt's name
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        palette, lit = self._palette, self.hasFocus() or self.underMouse() or self._drop_here
-        pen = QPen(QColor(palette.accent if lit else palette.border), 2.0 if self._drop_here else 1.0)
+        palette, lit = self._palette, self.hasFocus() or self.underMouse() or self.drops.here
+        pen = QPen(QColor(palette.accent if lit else palette.border), 2.0 if self.drops.here else 1.0)
         painter.setPen(pen)
         painter.setBrush(QColor(palette.canvas))
         painter.drawRoundedRect(QRectF(self.rect()).adjusted(0.5, 0.5, -0.5, -0.5), 7, 7)
@@ -202,23 +200,3 @@ class StartTile(QAbstractButton):
             elided = metrics.elidedText(text, Qt.TextElideMode.ElideRight, round(place.width()))
             painter.drawText(place, centred, elided)
         painter.end()
-
-    # files dropped from outside --------------------------------------------------------------------------------------
-
-    def dragEnterEvent(self, event: QDragEnterEvent) -> None:  # noqa: N802 - Qt's name
-        if any(url.isLocalFile() for url in event.mimeData().urls()):
-            event.acceptProposedAction()
-            self._drop_here = True
-            self.update()
-
-    def dragLeaveEvent(self, event: QDragLeaveEvent) -> None:  # noqa: N802 - Qt's name
-        self._drop_here = False
-        self.update()
-
-    def dropEvent(self, event: QDropEvent) -> None:  # noqa: N802 - Qt's name
-        self._drop_here = False
-        self.update()
-        files = [url.toLocalFile() for url in event.mimeData().urls() if url.isLocalFile()]
-        if files:
-            event.acceptProposedAction()
-            self.file_dropped.emit(files[0])

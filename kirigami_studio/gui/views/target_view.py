@@ -7,9 +7,6 @@ from enum import Enum
 from PySide6.QtCore import QMimeData, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import (
     QColor,
-    QDragEnterEvent,
-    QDragLeaveEvent,
-    QDropEvent,
     QKeyEvent,
     QMouseEvent,
     QPainter,
@@ -35,6 +32,7 @@ from kirigami_studio.gui.sketching.shape_tools import Corners, FigureTool, Freeh
 from kirigami_studio.gui.sketching.sketch_context import BOARD, PointerEvent, SketchContext, SketchTool
 from kirigami_studio.gui.sketching.underlay import Underlay
 from kirigami_studio.gui.views.canvas import Canvas
+from kirigami_studio.gui.views.file_drops import FileDrops
 from kirigami_studio.outlines.combining import Combine
 from kirigami_studio.outlines.figures import Figure
 from kirigami_studio.outlines.outline import Outline
@@ -77,13 +75,14 @@ class TargetView(Canvas):
         self.underlay: Underlay | None = None
         self._editing = False
         self._board = BOARD
-        self._drop_here = False
         self.context = SketchContext(self)
         self.context.repaint.connect(self.update)
         self.context.tool_done.connect(self.tool_left)
         self._tool = Tool.LOOK
         self._tools = _tools(self.context)
-        self.setAcceptDrops(True)
+        self.drops = FileDrops(self, with_content=True)
+        self.drops.file_dropped.connect(self.file_dropped)
+        self.drops.content_dropped.connect(self.content_dropped)
         self.setMouseTracking(True)
         self.setObjectName("targetView")
         self.setAccessibleName(tr("Target silhouette"))
@@ -220,7 +219,7 @@ class TargetView(Canvas):
         paint_reach(painter, arms, notches, self.palette_)
 
     def paint_notes(self, painter: QPainter) -> None:
-        if self._drop_here:
+        if self.drops.here:
             painter.setPen(QPen(QColor(self.palette_.accent), 2.0, Qt.PenStyle.DashLine))
             painter.setBrush(Qt.BrushStyle.NoBrush)
             painter.drawRoundedRect(self.rect().adjusted(6, 6, -6, -6), 8, 8)
@@ -270,29 +269,6 @@ class TargetView(Canvas):
             super().keyPressEvent(event)
         self.update()
 
-    # files and pictures dropped from outside -----------------------------------------------------------------------
-
-    def dragEnterEvent(self, event: QDragEnterEvent) -> None:  # noqa: N802 - Qt's name
-        if can_be_target(event.mimeData()):
-            event.acceptProposedAction()
-            self._drop_here = True
-            self.update()
-
-    def dragLeaveEvent(self, event: QDragLeaveEvent) -> None:  # noqa: N802 - Qt's name
-        self._drop_here = False
-        self.update()
-
-    def dropEvent(self, event: QDropEvent) -> None:  # noqa: N802 - Qt's name
-        self._drop_here = False
-        self.update()
-        files = [url.toLocalFile() for url in event.mimeData().urls() if url.isLocalFile()]
-        if files:
-            event.acceptProposedAction()
-            self.file_dropped.emit(files[0])
-        elif can_be_target(event.mimeData()):
-            event.acceptProposedAction()
-            self.content_dropped.emit(event.mimeData())
-
 
 #: Tools that make a new shape.
 DRAWING = frozenset(Tool) - {Tool.LOOK, Tool.POINTS, Tool.POSE}
@@ -313,8 +289,3 @@ def _tools(context: SketchContext) -> dict[Tool, SketchTool]:
         Tool.STAR: FigureTool(context, Figure.STAR),
         Tool.TEXT: TextTool(context),
     }
-
-
-def can_be_target(content: QMimeData) -> bool:
-    """Whether what is dragged or copied holds a local file, a picture or a text."""
-    return any(url.isLocalFile() for url in content.urls()) or content.hasImage() or content.hasText()
