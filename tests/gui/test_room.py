@@ -14,6 +14,7 @@ from kirigami_studio.gui.application import create_window
 from kirigami_studio.gui.look.theme import LIGHT
 from kirigami_studio.gui.main_window import MainWindow
 from kirigami_studio.gui.panels.fabrication_panel import Extent
+from kirigami_studio.gui.panels.stage_panel import LOW
 
 Until = Callable[[Callable[[], bool]], None]
 
@@ -118,3 +119,13 @@ def test_that_the_title_of_a_narrow_stage_is_never_cut_off(designed: MainWindow,
             title = designed.stage.title
             assert title.width() >= title.sizeHint().width(), (width, designed.stage.showing_cuts)
     assert designed.stage.whole.isVisible()
+
+
+def test_that_a_low_stage_gives_both_lines_below_the_drawing_up_at_once(designed: MainWindow) -> None:
+    resized(designed, 1440, 900)
+    stage = designed.stage
+    above, one_line = designed.height() - stage.height(), stage.verdict.sentence.fontMetrics().lineSpacing() + 2
+    resized(designed, 1000, LOW + above)  # so narrow that the verdict has two lines
+    assert stage.height() == LOW and stage.ends.isVisible() and stage.verdict.sentence.height() > one_line
+    resized(designed, 1000, LOW + above - 1)
+    assert not stage.ends.isVisible() and stage.verdict.sentence.height() == one_line

@@ -15,8 +15,6 @@ from kirigami_studio.gui.scene.view_transform import Bounds, ViewTransform
 
 #: Edge of a picture (pixels), and room between it and the words.
 PICTURE, GAP = 20, 9
-#: A panel lower than this leaves the line's room to the drawing; the status line tells both matches, too.
-LOW = 630
 
 
 class EndsLine(QWidget):
@@ -49,9 +47,9 @@ class EndsLine(QWidget):
         self.start.show_state(states.start, tr("{state}. Click to close the sheet.", state=flat))
         self.target.show_state(states.target, tr("{state}. Click to open the sheet.", state=opened))
 
-    def set_panel_height(self, pixels: int) -> None:
-        """Leave room to the drawing in a low panel."""
-        self._low = pixels < LOW
+    def set_low(self, low: bool) -> None:
+        """Leave room to the drawing in a low panel; the status line tells both matches, too."""
+        self._low = low
         self.setVisible(self._named and not self._low)
 
 

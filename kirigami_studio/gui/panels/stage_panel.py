@@ -28,6 +28,9 @@ from kirigami_studio.outlines.outline import Outline
 
 #: A stage at least this wide (pixels) has its plots at the side, a narrower one below.
 WIDE = 640
+#: A stage lower than this (pixels) leaves room to the drawing: one line for the worst problem, none for the slider's
+#: ends.
+LOW = 630
 #: Pixels between the title and the numbers at least.
 GAP = 12
 OVERLAYS = (
@@ -405,8 +408,8 @@ class StagePanel(Card):
         self._fit_numbers()
         super().resizeEvent(event)
         self._place_plots()
-        self.verdict.set_panel_height(self.height())
-        self.ends.set_panel_height(self.height())
+        for part in (self.verdict, self.ends):
+            part.set_low(self.height() < LOW)
         self.body.activate()
 
     def set_overlay(self, overlay: Overlay, on: bool) -> None:

@@ -20,8 +20,8 @@ if TYPE_CHECKING:
 SHARE = 0.62
 #: Pixels beside headline and fixes: margins, icon, gaps.
 BESIDE = 64
-#: A banner at least this wide (pixels) tells the worst problem in one line, and so does one in a panel lower than this.
-WIDE, LOW = 560, 600
+#: A banner at least this wide (pixels) tells the worst problem in one line, and so does one in a low panel.
+WIDE = 560
 LINE_USED = 0.9
 ICON_EDGE = 20
 #: Icon of each level, by its name in JSON, and of a verdict that is not known yet.
@@ -152,10 +152,10 @@ class VerdictBar(QFrame):
         self.more.setText(tr("Fixes") if len(hidden) == len(fixes) else tr("More fixes"))
         self.more.setVisible(bool(hidden))
 
-    def set_panel_height(self, pixels: int) -> None:
+    def set_low(self, low: bool) -> None:
         """Leave room to the drawing in a low panel: one line less, at once."""
-        if self._low != (pixels < LOW):
-            self._low = not self._low
+        if self._low != low:
+            self._low = low
             self._fit_sentence()
             self._grid.activate()
 
