@@ -102,3 +102,35 @@ def test_that_collections_leave_out_what_the_start_has_made() -> None:
     done = subprocess.run([sys.executable, "-c", script], env=environment, capture_output=True, text=True, check=True)
     before, frozen, looked_at = map(int, done.stdout.split())
     assert before == 0 and frozen > 50 * looked_at
+
+
+OPENED = """
+import sys, threading, time
+from PySide6.QtCore import QCoreApplication
+from kirigami_studio.foundation.resources import resource
+from kirigami_studio.gui.application import create_application, create_window
+
+class Finder:
+    def find_spec(self, name, path=None, target=None):
+        found[threading.current_thread() is threading.main_thread()].append(name)
+
+found = {True: [], False: []}
+create_application(["kirigami-studio"])
+window = create_window()
+window.show()
+sys.meta_path.insert(0, Finder())
+window.controller.open_project(resource("examples", "heart.kiri"))
+end = time.monotonic() + 30.0
+while not window.controller.verdict.state.known or window.controller.verdict.state.pending:
+    assert time.monotonic() < end
+    QCoreApplication.processEvents()
+    time.sleep(0.01)
+print("kirigami_studio.project.verdict" in found[False], found[True])
+window.close()
+"""
+
+
+def test_that_opening_the_first_project_imports_nothing_in_the_windows_thread() -> None:
+    environment = os.environ | {"QT_QPA_PLATFORM": "offscreen"}
+    done = subprocess.run([sys.executable, "-c", OPENED], env=environment, capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "True []"

@@ -125,10 +125,10 @@ class VerdictKeeper(QObject):
         self._look_for_fixes(request, Verdict((Problem.error("plan.refused", reason=sentence),)))
 
     def _judge(self) -> None:
-        from kirigami_studio.project.verdict import judge
-
         if self._planned is None:
             return
+        from kirigami_studio.project.verdict import judge  # which planning has imported: in the worker
+
         (request, made), state = self._planned, self._as_cut.state
         as_cut = state.problem or (None if state.sheet is None else state.sheet.as_cut)
         verdict = judge(request.candidate, made.plan, made.report, as_cut)
