@@ -24,13 +24,14 @@ GROUP_COUNT = 50
 
 def dataset(arguments: argparse.Namespace) -> int:
     """Generate, verify and write the splits of one family, or add to the fits of drawn shapes."""
-    from kirigami_studio.training.dataset import SPLITS, generate_split, verify
+    from kirigami_studio.training.dataset import SPLITS, Split, generate_split, verify
 
     grid = parse_grid(arguments.grid)
     if arguments.family == "drawn":
         return _drawn(arguments, grid)
     line = ProgressLine()
     files: dict[str, str] = {}
+    about: dict[str, dict[str, object]] = {}
     for name, (size, offset) in SPLITS.items():
         if arguments.split not in ("all", name):
             continue
@@ -42,15 +43,20 @@ def dataset(arguments: argparse.Namespace) -> int:
             grid,
             lambda done, name=name, count=count: line.show(f"{name}: {done} of {count}"),  # type: ignore[misc]
         )
-        worst = verify(split)
         path = Path(arguments.out) / f"{arguments.family}-{name}.npz"
         split.save(path)
+        # What the file says counts, not what was meant to be written.
+        written = Split.load(path)
+        worst = verify(written)
         line.clear()
         files[name] = str(path)
+        about[name] = {**written.about, "designs": len(written.ratios), "rendered_again_iou": worst}
         if not arguments.json:
-            say(f"{path}: {count} designs, re-rendered IoU >= {worst:.4f}, discarded {split.about['discarded']}")
+            discarded = written.about["discarded"] or "none"
+            say(f"{path}: {count} designs, re-rendered IoU >= {worst:.4f}, discarded {discarded}")
+            say(f"  content SHA-256 {written.about['sha256']}")
     if arguments.json:
-        print_json({"files": files})
+        print_json({"files": files, "splits": about})
     return 0
 
 

@@ -1,13 +1,19 @@
 """The paper's data protocol: draw fields, keep the feasible ones, render 128 x 128 masks, split, verify.
 
+Every candidate is decoded, laid out at phi = 0, recentred by the midpoint of its bounding box and filled into 128 x 128
+pixels (paper, Appendix "Dataset generation").  It is discarded if it has no layout, an invalid quad, an overlap ratio
+above 0.02, or a mask with holes, of several pieces, or that fills less than 3 % or more than 97 % of its image.
+
 A split is an .npz archive with ``ratios`` (N, m, n) float64, ``masks`` (N, 128, 128) bool (row 0 on top) and ``about``
-(a JSON string: family, seed, counts of discarded candidates by reason).
+(a JSON string: family, seed, counts of discarded candidates by reason, SHA-256 of the content).
 """
 
 from __future__ import annotations
 
+import hashlib
 import io
 import json
+import zipfile
 from collections import Counter
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -25,7 +31,7 @@ from kirigami_studio.foundation.errors import KirigamiError, UsageError
 from kirigami_studio.foundation.files import write_atomically
 from kirigami_studio.foundation.paper import MASK_SIZE
 from kirigami_studio.lattice.batched import BatchedLattice
-from kirigami_studio.lattice.deployment import deploy
+from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.training.corpus import zero_outline
 from kirigami_studio.training.fields import sobol_fields, structured_fields
@@ -38,6 +44,8 @@ FILL_RANGE = (0.03, 0.97)
 VERIFIED_SAMPLES = 128
 VERIFIED_IOU = 0.999
 BATCH = 256
+#: Decimals of the ratios that the content hash sees: processors differ in the last bits of a power of ten.
+HASHED_DECIMALS = 9
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,7 +57,7 @@ class Split:
     ratios : (N, m, n) float64
     masks : (N, 128, 128) bool
     about : dict
-        Provenance: family, seed, grid, how many candidates were discarded and why.
+        Provenance: family, seed, grid, how many candidates were discarded and why, ``sha256``.
     """
 
     ratios: FloatArray
@@ -61,6 +69,39 @@ class Split:
         buffer = io.BytesIO()
         np.savez_compressed(buffer, ratios=self.ratios, masks=self.masks, about=np.array(json.dumps(self.about)))
         write_atomically(path, buffer.getvalue())
+
+    @classmethod
+    def load(cls, path: Path) -> Split:
+        """Read an archive.
+
+        Raises
+        ------
+        KirigamiError
+            It is missing, damaged, or its content is not what its hash names.
+        """
+        try:
+            with np.load(path, allow_pickle=False) as archive:
+                split = cls(archive["ratios"], archive["masks"], json.loads(str(archive["about"])))
+        except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile) as error:
+            raise KirigamiError("training.split_unreadable", path=path) from error
+        if split.about.get("sha256") != content_hash(split.ratios, split.masks):
+            raise KirigamiError("training.split_altered", path=path)
+        return split
+
+
+def content_hash(ratios: FloatArray, masks: BoolArray) -> str:
+    """SHA-256 of designs and masks, in their order; the same on every machine.
+
+    Parameters
+    ----------
+    ratios : (N, m, n) float
+        They count to nine decimals.
+    masks : (N, H, W) bool
+    """
+    digest = hashlib.sha256(json.dumps([ratios.shape, masks.shape]).encode())
+    digest.update(np.rint(ratios * 10.0**HASHED_DECIMALS).astype("<i8").tobytes())
+    digest.update(np.packbits(masks).tobytes())
+    return digest.hexdigest()
 
 
 def generate_split(
@@ -74,7 +115,7 @@ def generate_split(
         ``sobol`` or ``structured``, see :mod:`kirigami_studio.training.fields`.
     count : int
     seed : int
-        Splits with different seeds are independent.
+        Splits with different seeds are independent; the same seed gives the same content.
     grid : (rows, columns)
     report : callable
         Told the number of designs kept so far.
@@ -93,17 +134,22 @@ def generate_split(
     for fields in _batches(family, grid, seed):
         outlines = zero_outline(lattice, torch.tensor(fields)).numpy()
         for z, outline in zip(fields, outlines, strict=True):
-            field = RatioField.from_log10(z)
-            mask = rasterise(outline, MASK_SIZE)
-            reason = _fault(field, mask)
+            try:
+                deployment = deploy(RatioField.from_log10(z))
+                mask = rasterise(outline, MASK_SIZE)
+            except KirigamiError:
+                discarded["no layout"] += 1
+                continue
+            reason = fault_of(deployment, mask)
             if reason is not None:
                 discarded[reason] += 1
                 continue
-            ratios.append(field.ratio)
+            ratios.append(deployment.field.ratio)
             masks.append(mask)
             if len(ratios) == count:
+                kept, shown = np.stack(ratios), np.stack(masks)
                 about = {"family": family, "seed": seed, "grid": list(grid), "phi": 0.0, "discarded": dict(discarded)}
-                return Split(np.stack(ratios), np.stack(masks), about)
+                return Split(kept, shown, {**about, "sha256": content_hash(kept, shown)})
         report(len(ratios))
     raise KirigamiError("training.fields_ended")
 
@@ -143,9 +189,8 @@ def _batches(family: str, grid: tuple[int, int], seed: int) -> Iterator[FloatArr
     raise UsageError("training.unknown_family", family=family, choices=", ".join(FAMILIES))
 
 
-def _fault(field: RatioField, mask: BoolArray) -> str | None:
-    """Why the protocol discards this design, or None."""
-    deployment = deploy(field)
+def fault_of(deployment: Deployment, mask: BoolArray) -> str | None:
+    """Why the protocol discards a design with this mask (H, W), or None: see the module's text."""
     if invalid_quads(deployment, 0.0):
         return "invalid quad"
     if overlap_ratio(deployment, 0.0) > TAU_OVERLAP:

@@ -12,6 +12,10 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "training.mask_differs": mark(
         "The data set is wrong: a stored mask agrees with its design to IoU {iou:.4f} only. Generate it again."
     ),
+    "training.split_unreadable": mark("Cannot read a data set from {path}. Make it with 'kirigami-studio dataset'."),
+    "training.split_altered": mark(
+        "The data set {path} is not what its content hash names. Make it again with 'kirigami-studio dataset'."
+    ),
     "training.shape_without_area": mark("The shape has no area."),
     "training.fits_unreadable": mark("Cannot read fits from {path}. Make them with 'kirigami-studio dataset drawn'."),
     "training.fits_differ": mark(

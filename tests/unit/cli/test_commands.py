@@ -305,6 +305,12 @@ def test_that_datasets_are_written_and_verified(capsys: pytest.CaptureFixture[st
     answered = answer(capsys, "dataset", "structured", "--out", tmp_path, "--split", "test", "--count", 4, "--json")
     with np.load(answered["files"]["test"]) as archive:
         assert archive["masks"].shape == (4, 128, 128)
+        stored = json.loads(str(archive["about"]))
+    about = answered["splits"]["test"]
+    assert about["designs"] == 4
+    assert about["rendered_again_iou"] >= 0.999
+    assert len(about["sha256"]) == 64
+    assert about["sha256"] == stored["sha256"]
 
 
 def test_that_one_field_is_scored_on_each_of_many_targets(
