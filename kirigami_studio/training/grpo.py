@@ -31,6 +31,7 @@ from pathlib import Path
 import torch
 from torch import Tensor
 
+from kirigami_studio.evaluate.paper_evaluator import Verdict, judge
 from kirigami_studio.foundation.errors import ModelError, UsageError
 from kirigami_studio.foundation.paper import LOG_RATIO_LIMIT
 from kirigami_studio.generator.conditioning import square_pose, turned
@@ -42,7 +43,7 @@ from kirigami_studio.training.corpus import Corpus
 from kirigami_studio.training.fields import mixed_fields
 from kirigami_studio.training.flow_path import ConditionalPath, PathSample, cfm_errors
 from kirigami_studio.training.learner import CHECKPOINT, Checkpoint, Learner, logged, opened
-from kirigami_studio.training.rewards import Reward, Verdict, judge
+from kirigami_studio.training.rewards import Reward
 
 #: The small constant of Eq. 4.
 EPSILON = 1e-6

@@ -32,6 +32,8 @@ TORCH = "Only generator, training, benchmark and lattice.batched import torch"
 BATCHED = "Only packages with torch import lattice.batched"
 EZDXF = "Only export.dxf, export.dxf_reading and outlines.read_dxf import ezdxf"
 WINDOW = "Layers of the window"
+COMPARED = "Only training, benchmark and cli know what the program is compared with"
+SOLVERS = "Solvers know a box and values, nothing of sheets"
 FAULTS = (
     Fault("lattice", "import kirigami_studio.evaluate", ONE_WAY, "kirigami_studio.evaluate"),
     Fault("lattice", "import kirigami_studio.outlines", ONE_WAY, "kirigami_studio.outlines"),
@@ -41,6 +43,9 @@ FAULTS = (
     Fault("polish", "import kirigami_studio.export", ONE_WAY, "kirigami_studio.export"),
     Fault("export", "import kirigami_studio.pipeline", ONE_WAY, "kirigami_studio.pipeline"),
     Fault("project", "import kirigami_studio.pipeline", ONE_WAY, "kirigami_studio.pipeline"),
+    Fault("pipeline", "import kirigami_studio.baselines", ONE_WAY, "kirigami_studio.baselines"),
+    Fault("gui", "import kirigami_studio.baselines", COMPARED, "kirigami_studio.baselines"),
+    Fault("baselines/solvers", "import kirigami_studio.evaluate", SOLVERS, "kirigami_studio.evaluate"),
     Fault("gui", "import kirigami_studio.training", ONE_WAY, "kirigami_studio.training"),
     Fault("foundation", "import kirigami_studio.lattice", ONE_WAY, "kirigami_studio.lattice"),
     Fault("gui/designs", "import kirigami_studio.gui.views", WINDOW, "kirigami_studio.gui.views"),

@@ -76,6 +76,9 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "No targets found to measure on. Name a file, a folder with shapes, or 'library'."
     ),
     "benchmark.no_targets": mark("This suite needs at least one target, got none."),
+    "benchmark.cma_missing": mark(
+        "CMA-ES needs the package cma. Install it with pip install 'kirigami-studio[benchmark]', or leave CMA-ES out."
+    ),
     "benchmark.too_few_to_time": mark(
         "Timings need at least one variant and two targets, got {variants} and {targets}."
     ),

@@ -9,13 +9,14 @@ import numpy as np
 import pytest
 
 from kirigami_studio.evaluate.feasibility import invalid_quads, overlap_ratio
+from kirigami_studio.evaluate.paper_evaluator import Verdict, judge, judge_sheets
 from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.lattice.deployment import Deployment, deploy, rotate
 from kirigami_studio.lattice.ratio_field import RatioField, frozen
 from kirigami_studio.outlines.outline import Outline
-from kirigami_studio.training.rewards import REWARDS, Reward, Verdict, judge, judge_sheets
+from kirigami_studio.training.rewards import REWARDS, Reward
 
 GOOD = Verdict(0.9, 0.8, 0, 0.0, has_layout=True, feasible=True)
 ACCURACY, REGULARITY = Reward("accuracy"), Reward("regularity")
