@@ -1,1 +1,1 @@
-"""What the paper compares with: searches of the ratio field, judged on the same evaluator as the program's own way."""
+"""What the paper compares with: searches of the ratio field, and conditional generators that draw it from a mask."""

@@ -133,18 +133,79 @@ def _shape(arguments: argparse.Namespace) -> Shape:
     from kirigami_studio.generator.unet import UNetShape
 
     if arguments.backbone != "unet":
-        if arguments.channels is not None:
+        if arguments.channels is not None or arguments.latent is not None or arguments.residuals is not None:
             raise UsageError("training.channels_without_unet")
         return NetworkShape(loop_points=0) if arguments.feedback is False else NetworkShape()
     if arguments.feedback:
         raise UsageError("training.feedback_with_unet")
-    if arguments.channels is None:
-        return UNetShape()
+    usual = UNetShape()
+    return UNetShape(
+        channels=usual.channels if arguments.channels is None else _channels(arguments.channels),
+        residuals=arguments.residuals or usual.residuals,
+        latent=arguments.latent or usual.latent,
+    )
+
+
+def _channels(text: str) -> tuple[int, ...]:
+    """Channels of each level, separated by commas."""
     try:
-        channels = tuple(int(word) for word in arguments.channels.split(","))
+        return tuple(int(word) for word in text.split(","))
     except ValueError:
-        raise UsageError("training.channels_not_whole", channels=arguments.channels) from None
-    return UNetShape(channels=channels)
+        raise UsageError("training.channels_not_whole", channels=text) from None
+
+
+def cvae(arguments: argparse.Namespace) -> int:
+    """Train the conditional autoencoder of the paper's comparison."""
+    return _baseline(arguments, "cvae", {})
+
+
+def cgan(arguments: argparse.Namespace) -> int:
+    """Train the conditional GAN of the paper's comparison."""
+    return _baseline(arguments, "cgan", {}, first_moment=0.5)
+
+
+def diffusion(arguments: argparse.Namespace) -> int:
+    """Train the diffusion model of the paper's comparison."""
+    return _baseline(arguments, "diffusion", {"residuals": arguments.residuals})
+
+
+def _baseline(arguments: argparse.Namespace, kind: str, network: dict[str, int], first_moment: float = 0.9) -> int:
+    """Train a baseline, or go on training it, and write its weights into the run folder."""
+    from kirigami_studio.baselines.stored import store_generator
+    from kirigami_studio.training.learner import training_device
+    from kirigami_studio.training.train_baseline import BaselineSettings, train_baseline, trained_baseline
+    from kirigami_studio.training.validation import baseline_validator
+
+    seconds = seconds_allowed(arguments)
+    device = training_device(arguments.device, arguments.threads)
+    settings = BaselineSettings(
+        kind,
+        {**network, "latent": arguments.latent, "channels": list(_channels(arguments.channels))},
+        steps=arguments.steps,
+        batch=arguments.batch,
+        learning_rate=arguments.learning_rate,
+        first_moment=first_moment,
+        seed=arguments.seed,
+    )
+    folder = Path(arguments.out)
+    record: dict[str, float] = {}
+    for record in train_baseline(
+        settings,
+        folder,
+        device,
+        baseline_validator(VALIDATION_COUNT, device),
+        seconds=seconds,
+        validate_every=arguments.validate_every,
+    ):
+        if not arguments.json:
+            say(" ".join(f"{key} {value:.4f}" for key, value in record.items()))
+    about = {"validation": record, "settings": settings.to_json()}
+    path = store_generator(kind, trained_baseline(settings, folder, device), folder / f"{kind}.safetensors", about)
+    if arguments.json:
+        print_json({"files": [str(path)], "record": record})
+    else:
+        say(f"Weights: {path}")
+    return 0
 
 
 def _sources(arguments: argparse.Namespace) -> Sources:

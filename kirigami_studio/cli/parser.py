@@ -175,6 +175,9 @@ def samples(usual: int) -> Option:
 RUN_FOLDER = option("--out", required=True, help="run folder for checkpoint, log and weights")
 
 
+RESIDUALS = option("--residuals", type=count, default=2, help="residual blocks of each level (default 2)")
+
+
 def run_of_training(validate_every: int) -> tuple[Option, ...]:
     """Options of every training run; ``validate_every`` is the default number of steps between validations."""
     return (
@@ -189,6 +192,25 @@ def run_of_training(validate_every: int) -> tuple[Option, ...]:
         option("--device", default="auto", help="auto, cpu or cuda (default auto)"),
         SEED,
         JSON,
+    )
+
+
+def training_of_a_baseline(learning_rate: float, channels: str, *more: Option) -> tuple[Option, ...]:
+    """Options of the generators that the paper compares with its own; its settings are the defaults."""
+    return (
+        RUN_FOLDER,
+        option("--steps", type=count, default=31_250, help="total optimiser steps (default 31250: 400 x 5000 designs)"),
+        option("--batch", type=count, default=64, help="designs in each step (default 64)"),
+        option(
+            "--learning-rate",
+            type=positive,
+            default=learning_rate,
+            help=f"peak learning rate, reached after 200 steps (default {learning_rate:g})",
+        ),
+        option("--channels", default=channels, metavar="LIST", help=f"channels of each level (default {channels})"),
+        option("--latent", type=count, default=32, help="pixels each way into which fields are drawn (default 32)"),
+        *more,
+        *run_of_training(500),
     )
 
 
@@ -429,6 +451,9 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
                help="network; unet is the paper's U-Net with a ControlNet branch (default perceptron)"),
         option("--channels", default=None, metavar="LIST",
                help="unet: channels of each level, separated by commas (default 64,128,256,384)"),
+        option("--latent", type=count, default=None,
+               help="unet: pixels each way into which fields are drawn (default 32)"),
+        option("--residuals", type=count, default=None, help="unet: residual blocks of each level (default 2)"),
         option("--batch", type=count, default=96, help="targets in each step (default 96)"),
         option("--noises", type=count, default=3, help="noise draws for each target (default 3)"),
         option("--learning-rate", type=positive, default=1e-3,
@@ -449,6 +474,14 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
         "the paper's network and settings, 400 epochs of 5000 targets (on a GPU):",
         "kirigami-studio train prior --backbone unet --coupling ot --batch 64 --noises 1 --learning-rate 2e-5 "
         "--weight-decay 0.05 --outline-weight 0 --steps 31250 --out runs/unet")),
+    SubCommand("train cvae", "train the paper's conditional autoencoder, to compare with", "learning:cvae",
+        training_of_a_baseline(2e-4, "32,64,64"), ("kirigami-studio train cvae --steps 4000 --out runs/cvae",)),
+    SubCommand("train cgan", "train the paper's conditional GAN, to compare with", "learning:cgan",
+        training_of_a_baseline(2e-4, "32,64"), ("kirigami-studio train cgan --steps 4000 --out runs/cgan",)),
+    SubCommand("train diffusion", "train the paper's diffusion model, to compare with", "learning:diffusion",
+        training_of_a_baseline(2e-5, "64,128,256,384", RESIDUALS),
+        ("kirigami-studio train diffusion --channels 32,48,64,96 --residuals 1 --latent 16 --learning-rate 5e-4 "
+         "--steps 4000 --out runs/diffusion",)),
     SubCommand("train align", "align a prior for match and regularity, by gradients through sampler and geometry",
         "learning:align", (
         RUN_FOLDER,

@@ -11,7 +11,7 @@ from numpy.random import Generator
 from torch import Tensor
 
 from kirigami_studio.foundation.arrays import FloatArray
-from kirigami_studio.generator.conditioning import normalised
+from kirigami_studio.generator.conditioning import normalised, square_pose, turned
 from kirigami_studio.generator.deployed_grid import DeployedGrid
 from kirigami_studio.lattice.batched import BatchedLattice
 
@@ -59,6 +59,60 @@ class Corpus:
         with torch.no_grad():
             polygons = torch.cat([zero_outline(self.lattice, part) for part in z.split(2048)])
         return Chunk(z.flatten(1), normalised(polygons))
+
+
+class ChunkBatches:
+    """Batches of a corpus by number of the step: a fixed permutation of the chunk for every pass.
+
+    Parameters
+    ----------
+    corpus : Corpus
+    batch : int
+        Designs of a step.
+    passes : int
+        How often each chunk is visited before the next.
+    """
+
+    def __init__(self, corpus: Corpus, batch: int, passes: int) -> None:
+        self.corpus, self.batch, self.passes = corpus, batch, passes
+        self._chunk: tuple[int, Chunk] | None = None
+
+    def at(self, step: int) -> Chunk:
+        """The designs of a step."""
+        size = self.corpus.chunk_size
+        sweep, place = divmod(step, size // self.batch)
+        number = sweep // self.passes
+        if self._chunk is None or self._chunk[0] != number:
+            self._chunk = number, self.corpus.chunk(number)
+        order = torch.Generator().manual_seed(1_000_003 * self.corpus.seed + sweep)
+        picked = torch.randperm(size, generator=order)[place * self.batch : (place + 1) * self.batch]
+        picked = picked.to(self.corpus.lattice.device)
+        chunk = self._chunk[1]
+        return Chunk(chunk.z[picked], chunk.polygons[picked])
+
+
+@dataclass(frozen=True, slots=True)
+class Disturbance:
+    """How targets arrive: a little turned and rasterised.
+
+    Attributes
+    ----------
+    vertex_noise : float
+        Standard deviation of outline vertices in unit-area lengths (a pixel of 128 is about 0.009).
+    turn_noise : float, radians
+        Standard deviation of the target's rotation against the sheet.
+    """
+
+    vertex_noise: float
+    turn_noise: float
+
+    def seen(self, polygons: Tensor, generator: torch.Generator, *, upright: bool = True) -> Tensor:
+        """Polygons (B, L, 2) disturbed and, unless they stay as they lie, stood in the pose that networks see."""
+        device = polygons.device
+        noise = torch.randn(polygons.shape, generator=generator, device=device)
+        turns = torch.randn(polygons.shape[:1], generator=generator, device=device)
+        moved = turned(polygons + self.vertex_noise * noise, self.turn_noise * turns)
+        return turned(moved, -square_pose(moved)) if upright else moved
 
 
 def zero_outline(lattice: BatchedLattice, z: Tensor) -> Tensor:

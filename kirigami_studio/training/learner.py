@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import io
 import json
+import time
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any, Generic, TypeVar
+from typing import Any, Generic, Protocol, TypeVar
 
 import torch
 from torch import Tensor, nn
@@ -88,6 +90,7 @@ class Checkpoint:
 CHECKPOINT = "checkpoint.pt"
 
 Learning = TypeVar("Learning", bound=nn.Module)
+Trained = TypeVar("Trained", covariant=True)
 
 
 class Learner(Generic[Learning]):
@@ -181,6 +184,74 @@ def logged(folder: Path, record: dict[str, float]) -> dict[str, float]:
     with (folder / "log.jsonl").open("a", encoding="utf-8") as log:
         log.write(json.dumps(record) + "\n")
     return record
+
+
+class Run(Protocol[Trained]):
+    """What a training loop asks of a run."""
+
+    @property
+    def step(self) -> int:
+        """Finished optimiser steps."""
+        ...
+
+    def advance(self) -> dict[str, float]:
+        """One optimiser step; returns the loss, and parts of it."""
+        ...
+
+    def averaged(self) -> Trained:
+        """A copy of the network with the averaged weights."""
+        ...
+
+    def save(self) -> None:
+        """Write a checkpoint."""
+        ...
+
+
+#: Part of the running means of losses that each step renews.
+RENEWED = 0.02
+
+
+def trained(
+    run: Run[Trained],
+    steps: int,
+    folder: Path,
+    validate: Callable[[Trained], dict[str, float]],
+    seconds: float,
+    validate_every: int,
+) -> Iterator[dict[str, float]]:
+    """Advance a run to its last step; yields one record per validation, and writes each with a checkpoint.
+
+    Parameters
+    ----------
+    run : Run
+    steps : int
+        Optimiser steps in all.
+    folder : Path
+        Of the log.
+    validate : callable
+        Maps the averaged network to figures for the log.
+    seconds : float
+        Stop with a checkpoint after this wall time even if steps remain.
+    validate_every : int
+        Steps between validations.
+
+    Yields
+    ------
+    record : dict
+        ``step``, ``seconds``, running means of what ``advance`` returns, and the figures of ``validate``.
+    """
+    began = time.perf_counter()
+    running: dict[str, float] = {}
+    while run.step < steps:
+        for name, value in run.advance().items():
+            running[name] = running.get(name, value) + RENEWED * (value - running.get(name, value))
+        out_of_time = time.perf_counter() - began > seconds
+        if run.step % validate_every == 0 or run.step == steps or out_of_time:
+            run.save()
+            record = {"step": float(run.step), "seconds": time.perf_counter() - began} | running
+            yield logged(folder, record | validate(run.averaged()))
+        if out_of_time:
+            break
 
 
 def training_device(name: str, threads: int = 1) -> torch.device:

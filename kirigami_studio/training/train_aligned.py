@@ -8,7 +8,6 @@ and regularity: the preference is an input, drawn anew for every row.  ``grpo`` 
 from __future__ import annotations
 
 import math
-import time
 from collections.abc import Callable, Iterator
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
@@ -27,7 +26,7 @@ from kirigami_studio.generator.weights import Model
 from kirigami_studio.lattice.batched import BatchedLattice
 from kirigami_studio.training.corpus import deployed_outline
 from kirigami_studio.training.fields import mixed_fields
-from kirigami_studio.training.learner import CHECKPOINT, Checkpoint, Learner, grown_state, logged, opened
+from kirigami_studio.training.learner import CHECKPOINT, Checkpoint, Learner, grown_state, opened, trained
 from kirigami_studio.training.preference_loss import EARLY_WEIGHT, PreferenceTerms, trail_gap
 from kirigami_studio.training.sampled_targets import TargetSource
 from kirigami_studio.training.train_flow import LARGEST_GRADIENT, schedule
@@ -143,19 +142,7 @@ def train_aligned(
     if (begin.digest if begin else "") != settings.begin:
         raise ModelError("training.other_start")
     run = AlignRun(settings, opened(folder), device, prior, begin)
-    began = time.perf_counter()
-    running: dict[str, float] = {}
-    while run.step < settings.steps:
-        for name, value in run.advance().items():
-            running[name] = running.get(name, value) + 0.02 * (value - running.get(name, value))
-        out_of_time = time.perf_counter() - began > seconds
-        if run.step % validate_every == 0 or run.step == settings.steps or out_of_time:
-            run.save()
-            record = {"step": float(run.step), "seconds": time.perf_counter() - began} | running
-            record |= validate(run.averaged())
-            yield logged(folder, record)
-        if out_of_time:
-            break
+    yield from trained(run, settings.steps, folder, validate, seconds, validate_every)
 
 
 def aligned_network(settings: AlignSettings, folder: Path, device: torch.device) -> VelocityNetwork:

@@ -7,7 +7,6 @@ One command for CPU and GPU, resumable: the run folder holds ``checkpoint.pt``, 
 from __future__ import annotations
 
 import math
-import time
 from collections.abc import Callable, Iterator
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
@@ -16,15 +15,15 @@ import torch
 from torch import Tensor
 
 from kirigami_studio.foundation.errors import ModelError
-from kirigami_studio.generator.conditioning import condition, square_pose, turned
+from kirigami_studio.generator.conditioning import condition
 from kirigami_studio.generator.network import NetworkShape
 from kirigami_studio.generator.velocity import Network, Shape, joined, network_of
 from kirigami_studio.generator.weights import Model
-from kirigami_studio.training.corpus import Chunk, Corpus, zero_outline
+from kirigami_studio.training.corpus import ChunkBatches, Corpus, Disturbance, zero_outline
 from kirigami_studio.training.fields import mixed_fields
 from kirigami_studio.training.fitted_fields import FittedBatches, FittedFields, Targets
 from kirigami_studio.training.flow_path import ConditionalPath, cfm_loss, pair_noise
-from kirigami_studio.training.learner import CHECKPOINT, Learner, grown_state, logged, opened
+from kirigami_studio.training.learner import CHECKPOINT, Learner, grown_state, opened, trained
 
 WARM_UP_STEPS = 200
 #: Gradients are scaled down to this norm.
@@ -162,19 +161,7 @@ def train_flow(
     sources = sources or Sources()
     sources.check(settings)
     run = FlowRun(settings, opened(folder), device, sources)
-    began = time.perf_counter()
-    running = math.nan
-    while run.step < settings.steps:
-        loss = run.advance()
-        running = loss if math.isnan(running) else running + 0.02 * (loss - running)
-        out_of_time = time.perf_counter() - began > seconds
-        if run.step % validate_every == 0 or run.step == settings.steps or out_of_time:
-            run.save()
-            record = {"step": float(run.step), "loss": running, "seconds": time.perf_counter() - began}
-            record |= validate(run.averaged())
-            yield logged(folder, record)
-        if out_of_time:
-            break
+    yield from trained(run, settings.steps, folder, validate, seconds, validate_every)
 
 
 def trained_network(settings: FlowSettings, folder: Path, device: torch.device) -> Network:
@@ -208,8 +195,8 @@ class FlowRun:
         self.corpus = Corpus(
             mixed_fields, settings.shape.rows, settings.shape.columns, settings.seed, settings.chunk, device
         )
+        self.random = ChunkBatches(self.corpus, settings.batch - settings.fitted_rows, settings.passes)
         self.fitted = FittedBatches(sources.fits, self.corpus.lattice, settings.seed) if sources.fits else None
-        self._chunk: tuple[int, Chunk] | None = None
         if path.exists():
             self.learner.resume(path, settings.to_json())
 
@@ -218,8 +205,8 @@ class FlowRun:
         """Finished optimiser steps."""
         return self.learner.step
 
-    def advance(self) -> float:
-        """One optimiser step; returns the flow-matching loss."""
+    def advance(self) -> dict[str, float]:
+        """One optimiser step; returns the loss."""
         for group in self.learner.optimiser.param_groups:
             group["lr"] = self.settings.learning_rate * schedule(self.step, self.settings.steps)
         # Dropout draws from torch's own generator: by the step, so that a resumed run draws the same.
@@ -231,7 +218,7 @@ class FlowRun:
             decay = min(decay, (2 + self.step) / (11 + self.step))
         self.learner.learn(loss, decay, LARGEST_GRADIENT)
         self.learner.step += 1
-        return float(loss.detach())
+        return {"loss": float(loss.detach())}
 
     def averaged(self) -> Network:
         """A copy of the network with the averaged weights."""
@@ -246,19 +233,8 @@ class FlowRun:
         return self.fitted.targets(self.step, self.settings.fitted_rows)
 
     def _random_targets(self) -> Targets:
-        """Random fields of this step: a fixed permutation of the chunk for every pass."""
-        settings = self.settings
-        batch = settings.batch - settings.fitted_rows
-        per_pass = settings.chunk // batch
-        sweep, place = divmod(self.step, per_pass)
-        number = sweep // settings.passes
-        if self._chunk is None or self._chunk[0] != number:
-            self._chunk = number, self.corpus.chunk(number)
-        order = torch.Generator().manual_seed(1_000_003 * settings.seed + sweep)
-        picked = torch.randperm(settings.chunk, generator=order)[place * batch : (place + 1) * batch]
-        chunk = self._chunk[1]
-        picked = picked.to(self.device)
-        return Targets(chunk.z[picked], chunk.polygons[picked], on_sheet=False)
+        chunk = self.random.at(self.step)
+        return Targets(chunk.z, chunk.polygons, on_sheet=False)
 
     def _loss(self, parts: list[Targets]) -> Tensor:
         settings, draws = self.settings, self.settings.noises
@@ -295,10 +271,8 @@ class FlowRun:
     def _as_seen(self, targets: Targets) -> tuple[Tensor, Tensor]:
         """Targets as they will arrive, a little turned and rasterised, and a shift of where their contour starts."""
         settings, polygons = self.settings, targets.polygons
-        moved = polygons + settings.vertex_noise * self._normal(polygons.shape)
-        moved = turned(moved, settings.turn_noise * self._normal(polygons.shape[:1]))
-        if not targets.on_sheet:
-            moved = turned(moved, -square_pose(moved))
+        disturbance = Disturbance(settings.vertex_noise, settings.turn_noise)
+        moved = disturbance.seen(polygons, self.generator, upright=not targets.on_sheet)
         return moved, settings.shift_noise * self._normal(polygons.shape[:1])
 
     def _normal(self, shape: torch.Size) -> Tensor:

@@ -9,6 +9,7 @@ import shapely
 import torch
 from torch import Tensor
 
+from kirigami_studio.baselines.conditional import ConditionalGenerator
 from kirigami_studio.evaluate.total_variation import total_variation
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.paper import LOG_RATIO_LIMIT
@@ -26,32 +27,53 @@ from kirigami_studio.training.sampled_targets import drawn_polygons
 VALIDATION_SEED = 20_001
 
 
-def own_pose_iou(network: Velocity, z: Tensor, lattice: BatchedLattice, steps: int, seed: int) -> FloatArray:
+#: One field for each target: polygons as a network sees them, (B, L, 2) -> z (B, m * n).
+Draw = Callable[[Tensor], Tensor]
+
+
+def own_pose_iou(draw: Draw, z: Tensor, lattice: BatchedLattice) -> FloatArray:
     """IoU of one sample for each target made by fields z (B, m, n), compared as they stand: (B,).
 
     A lower bound of sIoU, cheap enough to watch during training.
     """
     with torch.no_grad():
         targets = normalised(zero_outline(lattice, z))
-        return _ious(_sampled(network, turned(targets, -square_pose(targets)), lattice, steps, seed), targets)
+        return _ious(_sampled(draw, turned(targets, -square_pose(targets)), lattice), targets)
 
 
-def upright_iou(network: Velocity, targets: Tensor, lattice: BatchedLattice, steps: int, seed: int) -> FloatArray:
+def upright_iou(draw: Draw, targets: Tensor, lattice: BatchedLattice) -> FloatArray:
     """IoU of one sample for each of the outlines (B, L, 2), compared as the network sees them, stood upright: (B,)."""
     with torch.no_grad():
         seen = normalised(targets)
         seen = turned(seen, -square_pose(seen))
-        return _ious(_sampled(network, seen, lattice, steps, seed), seen)
+        return _ious(_sampled(draw, seen, lattice), seen)
 
 
-def _sampled(network: Velocity, seen: Tensor, lattice: BatchedLattice, steps: int, seed: int) -> Tensor:
+def flow_draw(network: Velocity, steps: int, seed: int) -> Draw:
+    """Samples of a flow in Euler steps."""
+
+    def draw(seen: Tensor) -> Tensor:
+        generator = torch.Generator().manual_seed(seed)
+        cells = network.shape.rows * network.shape.columns
+        noise = torch.randn((len(seen), cells), generator=generator) * network.shape.z_scale
+        return integrate(network, noise.to(seen.device), network.code(seen), steps)
+
+    return draw
+
+
+def baseline_draw(network: ConditionalGenerator, steps: int, seed: int) -> Draw:
+    """Samples of a generator that the paper compares with its own."""
+
+    def draw(seen: Tensor) -> Tensor:
+        return network.draw(network.pixels.masks(seen), torch.Generator(device=seen.device).manual_seed(seed), steps)
+
+    return draw
+
+
+def _sampled(draw: Draw, seen: Tensor, lattice: BatchedLattice) -> Tensor:
     """Outlines of one sample for each target as seen."""
-    generator = torch.Generator().manual_seed(seed)
-    noise = torch.randn((len(seen), lattice.rows * lattice.columns), generator=generator) * network.shape.z_scale
-    sampled = integrate(network, noise.to(seen.device), network.code(seen), steps).clamp(
-        -LOG_RATIO_LIMIT, LOG_RATIO_LIMIT
-    )
-    return normalised(zero_outline(lattice, sampled.view(-1, lattice.rows, lattice.columns)))
+    z = draw(seen).clamp(-LOG_RATIO_LIMIT, LOG_RATIO_LIMIT)
+    return normalised(zero_outline(lattice, z.view(-1, lattice.rows, lattice.columns)))
 
 
 def _ious(results: Tensor, targets: Tensor) -> FloatArray:
@@ -61,23 +83,39 @@ def _ious(results: Tensor, targets: Tensor) -> FloatArray:
     return np.asarray(common / (shapely.area(ours) + shapely.area(theirs) - common))
 
 
+def match_figures(draw: Draw, count: int, lattice: BatchedLattice) -> dict[str, float]:
+    """Mean IoU of one sample on ``count`` validation targets of each family and on as many drawn shapes."""
+    rows, columns, device = lattice.rows, lattice.columns, lattice.device
+    families = {
+        "structured": structured_fields(count, rows, columns, np.random.default_rng(VALIDATION_SEED)),
+        "sobol": sobol_fields(count, rows, columns, VALIDATION_SEED),
+    }
+    figures: dict[str, float] = {}
+    for name, fields in families.items():
+        z = torch.tensor(fields, dtype=torch.float32, device=device)
+        figures[f"{name}_iou"] = float(own_pose_iou(draw, z, lattice).mean())
+    figures["drawn_iou"] = float(upright_iou(draw, drawn_polygons(count, VALIDATION_SEED).to(device), lattice).mean())
+    return figures
+
+
 def validator(count: int, device: torch.device, steps: int = 4) -> Callable[[Network], dict[str, float]]:
-    """Make the function that training calls: mean IoU on ``count`` targets of each family."""
+    """Make the function that training of a flow calls: mean IoU on ``count`` targets of each family."""
 
     def measure(network: Network) -> dict[str, float]:
-        rows, columns = network.shape.rows, network.shape.columns
-        lattice = BatchedLattice(rows, columns, device)
-        families = {
-            "structured": structured_fields(count, rows, columns, np.random.default_rng(VALIDATION_SEED)),
-            "sobol": sobol_fields(count, rows, columns, VALIDATION_SEED),
-        }
-        figures: dict[str, float] = {}
-        for name, fields in families.items():
-            z = torch.tensor(fields, dtype=torch.float32, device=device)
-            figures[f"{name}_iou"] = float(own_pose_iou(network, z, lattice, steps, seed=0).mean())
-        drawn = drawn_polygons(count, VALIDATION_SEED).to(device)
-        figures["drawn_iou"] = float(upright_iou(network, drawn, lattice, steps, seed=0).mean())
-        return figures
+        lattice = BatchedLattice(network.shape.rows, network.shape.columns, device)
+        return match_figures(flow_draw(network, steps, seed=0), count, lattice)
+
+    return measure
+
+
+def baseline_validator(
+    count: int, device: torch.device, steps: int | None = None
+) -> Callable[[ConditionalGenerator], dict[str, float]]:
+    """The same for a baseline, in its usual number of steps unless told."""
+
+    def measure(network: ConditionalGenerator) -> dict[str, float]:
+        lattice = BatchedLattice(network.pixels.rows, network.pixels.columns, device)
+        return match_figures(baseline_draw(network, steps or network.usual_steps, seed=0), count, lattice)
 
     return measure
 

@@ -28,7 +28,7 @@ class Fault:
 
 
 ONE_WAY = "Data flows one way; packages on one line do not import each other"
-TORCH = "Only generator, training, benchmark and lattice.batched import torch"
+TORCH = "Only generator, baselines, training, benchmark and lattice.batched import torch"
 BATCHED = "Only packages with torch import lattice.batched"
 EZDXF = "Only export.dxf, export.dxf_reading and outlines.read_dxf import ezdxf"
 WINDOW = "Layers of the window"

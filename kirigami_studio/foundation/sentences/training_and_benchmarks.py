@@ -60,7 +60,7 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "training.unknown_device": mark("There is no device called '{device:.40}'. Use auto, cpu or cuda."),
     "training.fits_are_not_split": mark("Fits of drawn shapes are for training only. Leave out --split."),
     "training.channels_without_unet": mark(
-        "--channels belongs to --backbone unet. Leave it out, or choose that backbone."
+        "--channels, --latent and --residuals belong to --backbone unet. Leave them out, or choose that backbone."
     ),
     "training.feedback_with_unet": mark(
         "--feedback belongs to the perceptron: the U-Net sees only the target's mask. Leave it out."

@@ -57,7 +57,7 @@ def test_that_the_loss_falls(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) ->
     # The learning rate takes 200 steps to rise by default.
     monkeypatch.setattr("kirigami_studio.training.train_flow.WARM_UP_STEPS", 4)
     run = FlowRun(replace(TINY, steps=70, learning_rate=6e-3), tmp_path / "checkpoint.pt", CPU, Sources())
-    losses = [run.advance() for _ in range(70)]
+    losses = [run.advance()["loss"] for _ in range(70)]
     assert np.mean(losses[-10:]) < 0.85 * np.mean(losses[:10])
 
 

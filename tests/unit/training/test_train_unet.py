@@ -62,7 +62,7 @@ def test_that_the_loss_falls_and_the_control_branch_moves(monkeypatch: pytest.Mo
     monkeypatch.setattr("kirigami_studio.training.train_flow.WARM_UP_STEPS", 4)
     settings = replace(TINY, steps=24, learning_rate=1e-2, shape=replace(TINY.shape, z_scale=2.0))
     run = FlowRun(settings, tmp_path / "checkpoint.pt", CPU, Sources())
-    losses = [run.advance() for _ in range(settings.steps)]
+    losses = [run.advance()["loss"] for _ in range(settings.steps)]
     assert np.mean(losses[-8:]) < 0.75 * np.mean(losses[:8])
     network = run.averaged()
     assert isinstance(network, UNetVelocity)
