@@ -13,7 +13,7 @@ from kirigami_studio.cli.fabrication import checked_plan, material_settings, say
 from kirigami_studio.cli.inputs import are_many_targets, for_each, read_targets
 from kirigami_studio.cli.option_types import parse_grid_or_auto
 from kirigami_studio.evaluate.candidate import Candidate
-from kirigami_studio.evaluate.second_target import SecondTarget
+from kirigami_studio.evaluate.second_target import USUAL_PHI, USUAL_WEIGHT, SecondTarget
 from kirigami_studio.export.exporter import ExportJob
 from kirigami_studio.export.picture import write_png
 from kirigami_studio.export.registry import export
@@ -43,9 +43,6 @@ from kirigami_studio.project.document import Document
 from kirigami_studio.project.settings import DesignSettings, FabricationSettings
 from kirigami_studio.project.store import save
 from kirigami_studio.project.verdict import Verdict, assess, look_at, refused
-
-#: Angle (degrees) and weight of a second target unless others are asked for.
-ALSO_DEG, ALSO_WEIGHT = 45.0, 0.3
 
 
 def design(arguments: argparse.Namespace) -> int:
@@ -126,9 +123,9 @@ def second_target(arguments: argparse.Namespace) -> SecondTarget | None:
         if arguments.at_deg is not None or arguments.weight is not None:
             raise UsageError("second_target.not_named")
         return None
-    degrees = ALSO_DEG if arguments.at_deg is None else arguments.at_deg
-    weight = ALSO_WEIGHT if arguments.weight is None else arguments.weight
-    return SecondTarget(read_target(arguments.also), math.radians(degrees), weight)
+    phi = USUAL_PHI if arguments.at_deg is None else math.radians(arguments.at_deg)
+    weight = USUAL_WEIGHT if arguments.weight is None else arguments.weight
+    return SecondTarget(read_target(arguments.also), phi, weight)
 
 
 def cuttable_first(result: Result, fabrication: FabricationSettings, line: ProgressLine) -> Result:

@@ -141,6 +141,7 @@ class StateSheet(BoardStates):
             self.picture("guide", window.dialogs.guide)
         self.first_steps()
         self.starts()
+        self.second_target()
         window.controller.history.mark_saved()
         window.close()
         self.files.extend(contact_sheets([file for file in self.files if file.suffix == ".png"], self.out))
@@ -382,6 +383,28 @@ class StateSheet(BoardStates):
         window.controller.go_to(len(window.controller.history.steps))
         if dialogs.history is not None:
             dialogs.history.close()
+
+    def second_target(self) -> None:
+        """A run for a second target: its settings, and the best design at its angle; the board it is drawn on."""
+        window, controller = self.window, self.window.controller
+        controller.change_settings(grid=(8, 8))
+        controller.change_settings(k=2)
+        controller.change_settings(polish=5)
+        window.settings.more.setChecked(True)
+        controller.second.open("hexagon")
+        self.until(lambda: controller.document.settings.second is not None, "the second target was not read")
+        window.settings.second.angle.setValue(60.0)
+        click(window.run.generate)
+        self.until(lambda: not controller.running, "the run did not end")
+        self.until(window.fabrication.export.isEnabled, "no cut plan was made")
+        window.stage.deployment.set_phi(math.radians(60.0))
+        self.all_sizes("second-target-settings")
+        window.settings.more.setChecked(False)
+        self.all_sizes("second-target")
+        window.dialogs.show_second_board()
+        if window.dialogs.second_board is not None:
+            self.picture("second-board", window.dialogs.second_board)
+            window.dialogs.second_board.close()
 
     def messages(self) -> None:
         """An error with details, then a question."""

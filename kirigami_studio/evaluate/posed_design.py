@@ -91,10 +91,10 @@ class PosedDesign:
         boundary: FloatArray = nodes[tables.outline_at_zero if zipped else tables.outline_nodes]
         return boundary
 
-    def to_world(self, place: tuple[float, float], phi: float) -> FloatArray:
-        """Map one place of the layout frame at ``phi`` to the world: (2,)."""
+    def to_world(self, places: npt.ArrayLike, phi: float) -> FloatArray:
+        """Map places (..., 2) of the layout frame at ``phi`` to the world."""
         placed = self.pose.apply(self.deployment.nodes(phi)).mean(axis=0)
-        moved: FloatArray = self.pose.apply(np.asarray(place)) + (_placed_middle(self) - placed)
+        moved: FloatArray = self.pose.apply(places) + (_placed_middle(self) - placed)
         return moved
 
     def to_layout(self, place: tuple[float, float], phi: float) -> FloatArray:

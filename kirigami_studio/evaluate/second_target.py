@@ -18,6 +18,8 @@ from kirigami_studio.outlines.outline import Outline
 
 #: Largest weight: a second target that counts four times as much as the first.
 HEAVIEST = 4.0
+#: Angle (radians) and weight unless others are asked for.
+USUAL_PHI, USUAL_WEIGHT = math.radians(45.0), 0.3
 
 
 @dataclass(frozen=True, slots=True)

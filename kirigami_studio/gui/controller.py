@@ -37,7 +37,7 @@ from kirigami_studio.gui.jobs.cut_jobs import ANIMATION, CutRequest, Motion
 from kirigami_studio.gui.jobs.queue import JobCallbacks, JobQueue
 from kirigami_studio.gui.messages import Message, Tone
 from kirigami_studio.gui.session import Entry, Session
-from kirigami_studio.gui.targeting import StartReader, Targeting
+from kirigami_studio.gui.targeting import SecondReader, StartReader, Targeting
 from kirigami_studio.project import edits
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.edits import Edit, SettingsChange
@@ -66,8 +66,8 @@ class Controller(QObject):
         The numbers a design is cut with, its cut plan and files, and what is to be expected of the sheet.
     targeting, filing, preferences
         The target, the project's files, the preferences.
-    start
-        Reads start outlines from files and the library.
+    start, second
+        Read start outlines and second targets.
     artwork
         What is printed on the sheet.
     """
@@ -97,7 +97,8 @@ class Controller(QObject):
         self.estimates = AsCutEstimates(session, self)
         self.verdict = VerdictKeeper(session, self.as_cut, self)
         self.targeting = Targeting(session, self)
-        self.start = StartReader(session, self)
+        self.start = StartReader(session)
+        self.second = SecondReader(session)
         self.artwork = ArtworkKeeper(session, self)
         self.filing = Filing(session, self.targeting, self)
         self.preferences = UserPreferences(session)
@@ -185,6 +186,8 @@ class Controller(QObject):
         """Change how the next run searches."""
         if "start" in changes:
             self.start.stop()
+        if "second" in changes:
+            self.second.stop()
         try:
             self.session.apply(edits.set_settings(self.document, **changes))
         except KirigamiError as error:
@@ -374,6 +377,7 @@ class Controller(QObject):
         """Another document comes: what is on its way belongs to the old one."""
         self.targeting.stop()
         self.start.stop()
+        self.second.stop()
         self.artwork.stop()
         self.hand.stop()
         self._stop_work_on_design()

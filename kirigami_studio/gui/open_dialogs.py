@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from kirigami_studio.gui.dialogs.help import GuideWindow, ShortcutSheet
     from kirigami_studio.gui.dialogs.history_list import HistoryList
     from kirigami_studio.gui.dialogs.material_editor import MaterialEditor
+    from kirigami_studio.gui.dialogs.outline_board import OutlineBoard
     from kirigami_studio.gui.dialogs.pairs import PairGallery
     from kirigami_studio.gui.dialogs.silhouette_picker import SilhouettePicker
     from kirigami_studio.gui.dialogs.start_board import StartBoard
@@ -40,6 +41,7 @@ class Dialogs(QObject):
         self.history: HistoryList | None = None
         self.shortcuts: ShortcutSheet | None = None
         self.start_board: StartBoard | None = None
+        self.second_board: OutlineBoard | None = None
         self.pairs: PairGallery | None = None
         self.artwork: ArtworkEditor | None = None
 
@@ -110,8 +112,24 @@ class Dialogs(QObject):
             self.start_board = StartBoard(self._window)
             self.start_board.taken.connect(self._controller.start.draw)
             self._colour(self.start_board)
-        self.start_board.begin(self._controller.document.settings.start)
+        self.start_board.begin(self._controller.document.settings.start.outline)
         bring_to_front(self.start_board)
+
+    def show_second_library(self, below: QWidget) -> None:
+        """Open the popup with the library's silhouettes for the second target, below what was clicked."""
+        self._pick_silhouette(self._controller.second.open, below)
+
+    def show_second_board(self) -> None:
+        """Open the board that the second target is drawn on, with the present one."""
+        from kirigami_studio.gui.dialogs.outline_board import SECOND_WORDS, OutlineBoard
+
+        if self.second_board is None:
+            self.second_board = OutlineBoard(self._window, SECOND_WORDS)
+            self.second_board.taken.connect(self._controller.second.take)
+            self._colour(self.second_board)
+        second = self._controller.document.settings.second
+        self.second_board.begin(None if second is None else second.outline)
+        bring_to_front(self.second_board)
 
     def show_pairs(self) -> None:
         """Open the gallery of pairs, or bring it to the front."""
@@ -181,8 +199,8 @@ class Dialogs(QObject):
     def close(self) -> None:
         """The window is closing, and its dialogs with it."""
         self.close_report()
-        tools = (self.materials, self.guide, self.history, self.shortcuts, self.start_board, self.pairs, self.artwork)
-        for dialog in tools:
+        boards = (self.start_board, self.second_board)
+        for dialog in (self.materials, self.guide, self.history, self.shortcuts, *boards, self.pairs, self.artwork):
             if dialog is not None:
                 dialog.close()
 

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import math
 from collections import OrderedDict
+from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Generic, TypeVar
 
 from PySide6.QtCore import QObject, Signal
 
+from kirigami_studio.evaluate.second_target import USUAL_PHI, USUAL_WEIGHT, SecondTarget
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.jobs.queue import JobCallbacks, LatestJob, Steps
 from kirigami_studio.gui.jobs.target_jobs import (
@@ -27,10 +30,12 @@ from kirigami_studio.outlines.starts import StartShape
 from kirigami_studio.project import edits
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.edits import Edit
+from kirigami_studio.project.settings import DesignSettings
 
 if TYPE_CHECKING:
     from kirigami_studio.outlines.read_image import Traced
 
+T = TypeVar("T")
 #: Outlines whose picture is remembered, so that undo brings its threshold back too.
 CAPACITY = 256
 
@@ -131,24 +136,19 @@ class TargetReader(QObject):
         self.read.emit(found.outline, first)
 
 
-class StartReader(QObject):
-    """Reads the outline that sheets are to have while they are flat; the newest wish wins."""
+class Wish(Generic[T]):
+    """Reads one thing at a time that is chosen by a name, a file or a drawing; the newest wins.
 
-    def __init__(self, session: Session, parent: QObject) -> None:
-        super().__init__(parent)
-        self._session = session
-        self._job = LatestJob[StartShape](session.queue)
+    Why one was refused is said until another one is read, or chosen elsewhere.
+    """
+
+    def __init__(self, session: Session, take: Callable[[T], None]) -> None:
+        self._session, self._take = session, take
+        self._job = LatestJob[T](session.queue)
         self._refusal: Message | None = None
 
-    def open(self, source: str) -> None:
-        """Read a file, or a silhouette of the library by name; a shape that cannot be a start changes nothing."""
-        self._start(tr("reading {name}", name=Path(source).name), partial(reading_start, source))
-
-    def draw(self, outline: Outline) -> None:
-        """Take a shape that was drawn."""
-        self._start(tr("reading the start"), partial(making_start, outline))
-
-    def _start(self, name: str, steps: Steps[StartShape]) -> None:
+    def start(self, name: str, steps: Steps[T]) -> None:
+        """Read it in the worker; ``name`` follows the word "while" in messages."""
         self.stop()
         self._job.start(name, steps, JobCallbacks(self._take, on_failed=self._refuse))
 
@@ -163,10 +163,64 @@ class StartReader(QObject):
         self._refusal = Message(sentence, Tone.ERROR, trace)
         self._session.report_failure(sentence, trace)
 
+
+class StartReader:
+    """Reads the outline that sheets are to have while they are flat; a shape that cannot be one changes nothing."""
+
+    def __init__(self, session: Session) -> None:
+        self._session = session
+        self._wish = Wish[StartShape](session, self._take)
+
+    def open(self, source: str) -> None:
+        """Read a file, or a silhouette of the library by name."""
+        self._wish.start(tr("reading {name}", name=Path(source).name), partial(reading_start, source))
+
+    def draw(self, outline: Outline) -> None:
+        """Take a shape that was drawn."""
+        self._wish.start(tr("reading the start"), partial(making_start, outline))
+
+    def stop(self) -> None:
+        """Forget what is still being read: another start was chosen."""
+        self._wish.stop()
+
     def _take(self, start: StartShape) -> None:
         self._session.apply(edits.set_settings(self._session.document, start=start))
         self._session.history.end_drag()
         self._session.set_status(tr("Sheets start as {name}. Press Generate (Ctrl+G).", name=start.name))
+
+
+class SecondReader:
+    """Reads the second target; it is shown at the angle, and with the weight, of the one before."""
+
+    def __init__(self, session: Session) -> None:
+        self._session = session
+        self._wish = Wish[TargetRead](session, lambda found: self.take(found.outline))
+
+    def open(self, source: str) -> None:
+        """Read a file, or a silhouette of the library by name."""
+        self._wish.start(tr("reading {name}", name=Path(source).name), partial(reading_target, source))
+
+    def take(self, outline: Outline) -> None:
+        """Take a shape that was read or drawn."""
+        self.stop()
+        session, settings = self._session, self._session.document.settings
+        session.apply(edits.set_settings(session.document, second=second_for(settings, outline)))
+        session.history.end_drag()
+        session.set_status(tr("Sheets pass {name} on their way. Press Generate (Ctrl+G).", name=outline.name))
+
+    def stop(self) -> None:
+        """Forget what is still being read: another second target was chosen, or none."""
+        self._wish.stop()
+
+
+def second_for(settings: DesignSettings, outline: Outline) -> SecondTarget:
+    """A second target as the settings have it, with another outline; the first is shown at the usual angle, or halfway
+    to the target's where the sheet does not come so far.
+    """
+    if settings.second is not None:
+        return replace(settings.second, outline=outline)
+    phi = USUAL_PHI if settings.phi < USUAL_PHI else 0.5 * (settings.phi + math.pi)
+    return SecondTarget(outline, phi, USUAL_WEIGHT)
 
 
 class Targeting(QObject):

@@ -73,6 +73,8 @@ class PolishTask:
     def carry_out(self, request: Request, stopped: Callable[[], bool]) -> Answer:
         """Fit as preferred, and more mildly where that gives away too much match."""
         candidate, evaluations = self.candidate, 0
+        # A design of an earlier run keeps the second target that it was made for, or does without as it did.
+        request = replace(request, second=None if candidate.second is None else candidate.second.target)
         symmetry = kept_symmetry(candidate.sheet)
         prefer: str | None = request.prefer
         while prefer is not None:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from typing import TypedDict, Unpack
 
 from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.evaluate.second_target import SecondTarget
 from kirigami_studio.export.artwork import ArtPicture, Artwork, Fitting, State
 from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions, CutOrder
 from kirigami_studio.foundation.errors import ProjectError
@@ -44,6 +45,7 @@ class SettingsChange(TypedDict, total=False):
     rim: str
     regular: float
     start: StartShape
+    second: SecondTarget | None
     phi: float
     k: int
     seed: int
@@ -100,6 +102,7 @@ _LABELS = {
     "rim": tr("Change the rim"),
     "regular": tr("Change match or regular"),
     "start": tr("Change the start outline"),
+    "second": tr("Change the second target"),
     "phi": tr("Change the target angle"),
     "k": tr("Change the number of designs"),
     "seed": tr("Change the seed"),
@@ -149,9 +152,11 @@ def set_settings(document: Document, **changes: Unpack[SettingsChange]) -> Edit:
     Raises
     ------
     GridError, AngleError, UsageError
-        The number does not fit; see :class:`DesignSettings`.
+        The number does not fit; see :class:`DesignSettings`.  Or the sheet would not pass the second target on its way.
     """
     settings = replace(document.settings, **changes)
+    if settings.second is not None and changes.keys() & {"phi", "second"}:
+        settings.second.check_on_the_way_to(settings.phi)
     if "grid" in changes and "auto_grid" not in changes:
         settings = replace(settings, auto_grid=False)
     changed = replace(document, settings=settings)

@@ -75,6 +75,20 @@ def test_that_the_start_states_show_the_board_the_pairs_and_an_opened_pair(
     assert sheet.window.target.start.name == "circle" and sheet.window.controller.document.candidates
 
 
+@pytest.mark.torch
+def test_that_the_second_target_is_shown_at_its_angle(
+    sheet: StateSheet, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("kirigami_studio.demonstrations.board_states.SIZES", SIZES[2:])
+    sheet.window.resize(SIZES[2])
+    sheet.choose_heart()
+    sheet.second_target()
+    stage = sheet.window.stage
+    assert stage.view.second is not None and stage.view.phi == stage.view.second[0] and stage.ends.passed.isVisible()
+    for name in ("second-target-settings-1440x900-dark", "second-target-1440x900-light", "second-board"):
+        assert (tmp_path / f"{name}.png").exists()
+
+
 def test_that_the_message_states_leave_no_message(sheet: StateSheet, tmp_path: Path) -> None:
     sheet.picture_target()
     sheet.messages()

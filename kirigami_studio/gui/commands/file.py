@@ -55,6 +55,12 @@ class FileCommands(QObject):
         if path is not None:
             self._controller.start.open(str(path))
 
+    def ask_second(self) -> None:
+        """Read a file of the user's choice as the second target."""
+        path = self._window.file_dialogs.target()
+        if path is not None:
+            self._controller.second.open(str(path))
+
     def open(self, name: str) -> None:
         """Open a dropped, pasted or recent file: a project or a target."""
         if Path(name).suffix.lower() == ".kiri":

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject, QPoint
@@ -116,6 +117,14 @@ def _facts(entry: Entry) -> list[str]:
     if entry.candidate.sheet.start is not None and trim is None:
         share = 100 * match_of_start(entry.candidate.sheet)
         facts.append(tr("{start} {share:.1f} % when flat", start=start_of(entry.candidate), share=share))
+    second = entry.candidate.second
+    if second is not None:
+        shown, angle = second.target.outline.name, math.degrees(second.target.phi)
+        share = 100 * second.match.iou_exact
+        if trim is None:
+            facts.append(tr("{name} {share:.1f} % at {angle:.0f}°", name=shown, share=share, angle=angle))
+        else:
+            facts.append(tr("{name} {share:.1f} % at {angle:.0f}° untrimmed", name=shown, share=share, angle=angle))
     if entry.candidate.symmetry is not None:
         facts.insert(1, tr("symmetric"))
     if trim is not None:

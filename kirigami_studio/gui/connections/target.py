@@ -1,4 +1,6 @@
-"""The target: its sources, its drawing board, the designs that a change of it discards; and the start beside it."""
+"""The target: its sources, its drawing board, the designs that a change of it discards; the start beside it; and the
+second target.
+"""
 
 from __future__ import annotations
 
@@ -130,3 +132,18 @@ class StartConnections(QObject):
         settings = self._window.settings
         grid = (settings.rows.value(), settings.columns.value())  # the one that the next run will choose, too
         self._window.target.start.show_start(document.settings.start, grid, document.fabrication.width_mm)
+
+
+class SecondConnections(QObject):
+    """Connects the second target among the settings with the controller."""
+
+    def __init__(self, window: MainWindow, controller: Controller) -> None:
+        super().__init__(window)
+        row = window.settings.second
+        self._open = {
+            LIBRARY_START: lambda: window.dialogs.show_second_library(row.shape),
+            FILE_START: lambda: window.files.ask_second(),
+            DRAWN_START: lambda: window.dialogs.show_second_board(),
+        }
+        row.other_wanted.connect(lambda kind: self._open[kind]())
+        row.file_dropped.connect(controller.second.open)

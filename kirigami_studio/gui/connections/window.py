@@ -10,7 +10,7 @@ from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.connections.designs import DesignConnections
 from kirigami_studio.gui.connections.side_by_side import SideBySide
 from kirigami_studio.gui.connections.stage import StageConnections, VoidConnections
-from kirigami_studio.gui.connections.target import StartConnections, TargetConnections
+from kirigami_studio.gui.connections.target import SecondConnections, StartConnections, TargetConnections
 from kirigami_studio.gui.controller import Controller
 from kirigami_studio.gui.jobs.target_jobs import TargetReading
 from kirigami_studio.project.document import Document
@@ -32,6 +32,7 @@ class Connections(QObject):
         self.stage = StageConnections(window, controller)
         self._connect_settings()
         self.start = StartConnections(window, controller)
+        self.second = SecondConnections(window, controller)
         self._connect_messages()
         self.voids = VoidConnections(window, controller)
         self._show_title()

@@ -1,4 +1,6 @@
-"""The two states that a design runs between: what its sheet starts as while it is flat, and what it opens into."""
+"""The two states that a design runs between: what its sheet starts as while it is flat, and what it opens into; and
+the second target that it passes, if it was made for one.
+"""
 
 from __future__ import annotations
 
@@ -11,10 +13,11 @@ import numpy as np
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.opened_size import opened_size
 from kirigami_studio.evaluate.posed_design import PosedDesign
+from kirigami_studio.evaluate.second_target import SecondMatch
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.lattice.laying import start_match
-from kirigami_studio.lattice.sheet import RimPath, Sheet
+from kirigami_studio.lattice.sheet import RimPath, Sheet, anchor_points
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.starts import RECTANGLE, StartShape
 
@@ -109,6 +112,65 @@ class State:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class PassedState:
+    """A second target on the way of a design.
+
+    Attributes
+    ----------
+    name : str
+    outline : (P, 2) float
+    size_mm : (width, height) float, mm
+        As the sheet shows it.
+    match : float, 0..1
+        IoU of the sheet, untrimmed, with it.
+    phi : float, radians
+    trimmed : bool
+        Whether the design is trimmed: its match is still that of the whole sheet.
+    """
+
+    name: str
+    outline: FloatArray
+    size_mm: tuple[float, float]
+    match: float
+    phi: float
+    trimmed: bool
+
+    @classmethod
+    def of(cls, candidate: Candidate, second: SecondMatch, width_mm: float) -> PassedState:
+        """That of a design whose flat sheet is ``width_mm`` wide."""
+        outline = second.target.outline
+        unit = width_mm / (float(np.ptp(anchor_points(candidate.sheet)[:, 0])) * second.match.transform.scale)
+        width, height = (unit * np.ptp(outline.points, axis=0)).tolist()
+        match, phi = second.match.iou_exact, second.target.phi
+        return cls(outline.name, outline.points, (width, height), match, phi, candidate.trim is not None)
+
+    def texts(self) -> tuple[str, ...]:
+        """What is known of it, longest text first."""
+        values = {"name": self.name, "angle": math.degrees(self.phi), "percent": 100.0 * self.match}
+        size = size_words(*self.size_mm)
+        if self.trimmed:
+            return (
+                tr("{name} at {angle:.0f}°  ·  {percent:.1f} % untrimmed", **values),
+                tr("{name}  ·  {percent:.1f} % untrimmed", **values),
+                tr("{percent:.1f} % untrimmed", **values),
+            )
+        return (
+            tr("{name} at {angle:.0f}°  ·  {size}  ·  match {percent:.1f} %", size=size, **values),
+            tr("{name} at {angle:.0f}°  ·  {percent:.1f} %", **values),
+            tr("{name} {percent:.1f} %", **values),
+            tr("{angle:.0f}° {percent:.1f} %", **values),
+        )
+
+    def line(self) -> str:
+        """The same as a sentence, for tooltips."""
+        values = {"name": self.name, "angle": math.degrees(self.phi), "percent": 100.0 * self.match}
+        if self.trimmed:
+            return tr("On its way, at {angle:.0f}°: {name}; match {percent:.2f} %, untrimmed", **values)
+        size = size_words(*self.size_mm)
+        return tr("On its way, at {angle:.0f}°: {name}, {size}; match {percent:.2f} %", size=size, **values)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class TwoStates:
     """Both ends of a design's motion: the flat sheet, and the sheet at the target angle.
 
@@ -117,11 +179,14 @@ class TwoStates:
     start, target : State
     phi : float, radians
         The target angle.
+    passed : PassedState or None
+        The second target between them.
     """
 
     start: State
     target: State
     phi: float
+    passed: PassedState | None = None
 
     @classmethod
     def of(cls, candidate: Candidate, design: PosedDesign, target: Outline, width_mm: float) -> TwoStates:
@@ -135,22 +200,29 @@ class TwoStates:
             State(start_of(candidate), outline, flat, match_of_start(sheet) if trim is None else None),
             State(target.name, target.points, opened, candidate.score.iou_exact if trim is None else trim.iou),
             candidate.final_phi,
+            None if candidate.second is None else PassedState.of(candidate, candidate.second, width_mm),
         )
 
-    def lines(self) -> tuple[str, str]:
-        """Both in sentences, for tooltips."""
-        start, target = self.start, self.target
+    def lines(self) -> tuple[str, ...]:
+        """All of them as sentences, for tooltips, from flat to open."""
+        passed = () if self.passed is None else (self.passed.line(),)
+        return self.flat_line(), *passed, self.open_line()
+
+    def flat_line(self) -> str:
+        """The flat sheet as a sentence."""
+        start = self.start
         names = {"name": start.name, "size": start.size_text}
-        flat = (
-            tr("Flat: {name}, {size}; its edge is trimmed", **names)
-            if start.match is None
-            else tr("Flat: {name}, {size}; match {percent:.2f} %", percent=100.0 * start.match, **names)
-        )
-        opened = tr(
+        if start.match is None:
+            return tr("Flat: {name}, {size}; its edge is trimmed", **names)
+        return tr("Flat: {name}, {size}; match {percent:.2f} %", percent=100.0 * start.match, **names)
+
+    def open_line(self) -> str:
+        """The opened sheet as a sentence."""
+        target = self.target
+        return tr(
             "Open at {phi:.0f}°: {name}, {size}; match {percent:.2f} %",
             phi=math.degrees(self.phi),
             name=target.name,
             size=target.size_text,
             percent=100.0 * (target.match or 0.0),
         )
-        return flat, opened

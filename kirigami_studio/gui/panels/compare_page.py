@@ -173,7 +173,8 @@ class ComparePage(QWidget):
         if chosen is not None:
             contacts = [one[0].candidate.score.contact for one in pair if one is not None]
             first = max((contact.phi for contact in contacts if contact is not None), default=None)
-            self.bar.set_marks(chosen[0].design.phi_target, first)
+            second = chosen[0].candidate.second
+            self.bar.set_marks(chosen[0].design.phi_target, first, None if second is None else second.target.phi)
 
     def _show_side(self, side: Side, one: tuple[Entry, int] | None, target: Outline | None) -> None:
         if one is None:
@@ -186,9 +187,10 @@ class ComparePage(QWidget):
         alone = tr("Design {number}", number=number)
         side.name(*((tr("Design {number}, chosen", number=number), alone) if chosen else (alone,)))
         candidate = entry.candidate
-        # Contacts are known of the sheet that was scored; the one fitted for trimming is free of them.
+        # Contacts and the second target's pose are known of the sheet that was scored.
         scored = candidate.final_sheet == candidate.sheet
-        side.view.show_design(entry.design, candidate.score if scored else None, target)
+        known = (candidate.score, candidate.second) if scored else (None, None)
+        side.view.show_design(entry.design, known[0], target, known[1])
 
     def set_phi(self, phi: float) -> None:
         """Show both at another angle, radians."""

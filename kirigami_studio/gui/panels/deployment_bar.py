@@ -114,10 +114,10 @@ class DeploymentBar(QWidget):
         """Show another angle, radians."""
         self.slider.set_phi(phi)
 
-    def set_marks(self, target: float, contact: float | None) -> None:
-        """Mark the target angle and the first contact, radians."""
+    def set_marks(self, target: float, contact: float | None, second: float | None = None) -> None:
+        """Mark the target angle, the first contact and the angle of a second target, radians."""
         self._target = target
-        self.slider.set_marks(target, contact)
+        self.slider.set_marks(target, contact, second)
 
     def set_jam(self, jam: float | None) -> None:
         """Mark the angle (radians) at which the sheet jams as cut; None where it does not, or nothing is known."""

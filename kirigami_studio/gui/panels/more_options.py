@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 from PySide6.QtCore import QSignalBlocker, Qt, Signal
-from PySide6.QtWidgets import QCheckBox, QComboBox, QGridLayout, QSizePolicy, QSpinBox, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QCheckBox, QGridLayout, QSpinBox, QVBoxLayout, QWidget
 
 from kirigami_studio.export.paper import NO_PAPER
 from kirigami_studio.export.profile import PROFILES
 from kirigami_studio.fabricate.options import AS_MANY_AS_FIT, MOST_COPIES, MOST_TABS, ConnectorStyle, CutOrder
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.panels.card import ElidedLabel, ToolButton, captioned, compact
+from kirigami_studio.gui.panels.choice_box import ChoiceBox
 from kirigami_studio.gui.panels.number_field import LengthField
 from kirigami_studio.project.settings import FabricationSettings
 
-TOOLTIP = Qt.ItemDataRole.ToolTipRole
 #: Value, label, what it means.
 STYLES = (
     (
@@ -64,15 +64,15 @@ class MoreOptions(QWidget):
         self.fold.setText(tr("More options"))
         self.fold.setToolButtonStyle(Qt.ToolButtonStyle.ToolButtonTextBesideIcon)
         self.fold.setCheckable(True)
-        self.style_ = _choice("connectorStyle", tr("Connector style"), STYLES)
-        self.order = _choice("cutOrder", tr("Cutting order"), ORDERS)
-        self.profile = _choice(
+        self.style_ = ChoiceBox("connectorStyle", tr("Connector style"), STYLES)
+        self.order = ChoiceBox("cutOrder", tr("Cutting order"), ORDERS)
+        self.profile = ChoiceBox(
             "machineProfile",
             tr("Machine profile"),
             tuple((key, one.name, one.note.text if one.note else "") for key, one in PROFILES.items()),
         )
         self.profile.setToolTip(PROFILE_TIP)
-        self.dxf_version = _choice("dxfVersion", tr("DXF version"), VERSIONS)
+        self.dxf_version = ChoiceBox("dxfVersion", tr("DXF version"), VERSIONS)
         self.tabs = QSpinBox()
         self.tabs.setObjectName("tabs")
         self.tabs.setRange(0, MOST_TABS)
@@ -110,7 +110,7 @@ class MoreOptions(QWidget):
         self.copy_gap.setDecimals(1)
         self.copy_gap.setAccessibleName(tr("Gap between copies in millimetres"))
         self.copy_gap.setToolTip(tr("Gap between the cuts of neighbouring copies, mm (0.1 to 500)."))
-        self.paper = _choice("paper", tr("PDF pages"), PAPER_CHOICES)
+        self.paper = ChoiceBox("paper", tr("PDF pages"), PAPER_CHOICES)
         self.markers = QCheckBox(tr("Mark connectors"))
         self.markers.setObjectName("markers")
         self.markers.setToolTip(
@@ -177,7 +177,7 @@ class MoreOptions(QWidget):
             (self.paper, settings.paper),
         ):
             with QSignalBlocker(box):
-                _choose(box, value)
+                box.choose(value)
         with QSignalBlocker(self.tabs), QSignalBlocker(self.tab_mm):
             self.tabs.setValue(options.tabs)
             self.tab_mm.setValue(options.tab_mm)
@@ -191,25 +191,3 @@ class MoreOptions(QWidget):
     def _show_content(self, shown: bool) -> None:
         self.content.setVisible(shown)
         self.fold.show_icon("up" if shown else "down")
-
-
-def _choice(name: str, accessible: str, rows: tuple[tuple[object, str, str], ...]) -> QComboBox:
-    box = QComboBox()
-    box.setObjectName(name)
-    box.setAccessibleName(accessible)
-    box.setFocusPolicy(Qt.FocusPolicy.TabFocus)
-    box.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
-    for value, label, about in rows:
-        box.addItem(label, value)
-        box.setItemData(box.count() - 1, about or label, TOOLTIP)
-    box.setToolTip(f"{accessible}: {', '.join(label.lower() for _, label, _ in rows)}.")
-    return box
-
-
-def _choose(box: QComboBox, value: object) -> None:
-    """Choose a value; one that is not on offer, as from a newer project, is added under its own name."""
-    rows = [row for row in range(box.count()) if box.itemData(row) == value]
-    if not rows:
-        box.addItem(str(value), value)
-        rows = [box.count() - 1]
-    box.setCurrentIndex(rows[0])

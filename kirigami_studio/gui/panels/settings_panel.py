@@ -4,15 +4,12 @@ from __future__ import annotations
 
 import math
 import secrets
-from collections.abc import Sequence
 
 from PySide6.QtCore import QEvent, QObject, QSettings, QSignalBlocker, Qt, QTimer, Signal
 from PySide6.QtWidgets import (
     QCheckBox,
-    QComboBox,
     QHBoxLayout,
     QLabel,
-    QSizePolicy,
     QSlider,
     QSpinBox,
     QToolButton,
@@ -22,7 +19,9 @@ from PySide6.QtWidgets import (
 
 from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.gui.panels.card import Card, ScrolledWhenShort, ToolButton, captioned, compact
+from kirigami_studio.gui.panels.choice_box import ChoiceBox
 from kirigami_studio.gui.panels.number_field import DecimalField
+from kirigami_studio.gui.panels.second_target_row import SecondTargetRow
 from kirigami_studio.gui.panels.start_tile import OTHER_STARTS, STARTS, listed_start
 from kirigami_studio.lattice.ratio_field import LARGEST_GRID, SMALLEST_GRID
 from kirigami_studio.outlines.starts import RECTANGLE, StartShape
@@ -30,7 +29,6 @@ from kirigami_studio.pipeline.request import LARGEST_K
 from kirigami_studio.project.settings import DesignSettings
 
 LARGEST_SEED = 2**31 - 1
-TOOLTIP = Qt.ItemDataRole.ToolTipRole
 
 #: What is known about a generator by its name; others are listed by name alone.
 VARIANTS = {
@@ -104,6 +102,7 @@ class SettingsPanel(Card):
         self._symmetry_found = ""
         self._chosen_grid: tuple[int, int] | None = None
         self._start = RECTANGLE
+        self._has_second = False
         self.auto = QToolButton()
         self.auto.setObjectName("autoGrid")
         self.auto.setText(tr("Auto"))
@@ -165,14 +164,11 @@ class SettingsPanel(Card):
         self.keep.setChecked(True)
         self.keep.setFixedSize(29, 29)
         self.keep.toggled.connect(self.keep_changed)
-        self.symmetry = _choice("symmetry", tr("Symmetry of the designs"))
-        _fill(self.symmetry, SYMMETRIES)
-        self.rim = _choice("rim", tr("Rim: where cuts meet the sheet's sides"))
-        _fill(self.rim, RIMS)
-        self.start = _choice("start", tr("Start as: outline of the flat sheet"))
-        _fill(self.start, STARTS)
+        self.symmetry = ChoiceBox("symmetry", tr("Symmetry of the designs"), SYMMETRIES)
+        self.rim = ChoiceBox("rim", tr("Rim: where cuts meet the sheet's sides"), RIMS)
+        self.start = ChoiceBox("start", tr("Start as: outline of the flat sheet"), STARTS)
         self.start.insertSeparator(self.start.count())
-        _fill(self.start, OTHER_STARTS)
+        self.start.add_choices(OTHER_STARTS)
         self.regular = QSlider(Qt.Orientation.Horizontal)
         self.regular.setObjectName("regular")
         self.regular.setRange(0, POSITIONS)
@@ -183,21 +179,23 @@ class SettingsPanel(Card):
         self.regular.setToolTip(REGULAR)
         self._let_go = QTimer(self, singleShot=True, interval=LET_GO_MS)
         self.more = ToolButton(
-            "moreSettings", "down", tr("More settings: seed, model, polish, preference, rim, search."), checkable=True
+            "moreSettings",
+            "down",
+            tr("More settings: second target, seed, model, polish, preference, rim, search."),
+            checkable=True,
         )
         self.more.setText(tr("More"))
         self.more.setToolButtonStyle(Qt.ToolButtonStyle.ToolButtonTextBesideIcon)
-        self.variant = _choice("variant", tr("Generator variant"))
-        self.polish = _choice("polish", tr("Polish"))
-        _fill(self.polish, tuple((steps, title, about) for title, steps, about in POLISH))
-        self.prefer = _choice("prefer", tr("What polishing prefers"))
-        _fill(self.prefer, PREFER)
+        self.variant = ChoiceBox("variant", tr("Generator variant"))
+        self.polish = ChoiceBox("polish", tr("Polish"), [(steps, title, about) for title, steps, about in POLISH])
+        self.prefer = ChoiceBox("prefer", tr("What polishing prefers"), PREFER)
         self.search = QCheckBox(tr("Se&arch"))
         self.search.setObjectName("search")
         self.search.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         self.search.setAccessibleName(tr("Search beyond the samples"))
         self.search.setToolTip(SEARCH)
         self.search.setMinimumHeight(29)
+        self.second = SecondTargetRow()
         self._lay_out()
         self.set_variants(("balanced",))
         self._connect()
@@ -232,8 +230,10 @@ class SettingsPanel(Card):
         ):
             row.setSpacing(8)
             place.addLayout(row)
+        rows.addWidget(self.second)
         rows.addWidget(self.hidden)
         self.hidden.hide()
+        self.second.hide()
         first.addLayout(captioned(tr("&Grid (voids)"), self.rows, grid), 12)
         first.addLayout(captioned(tr("S&ymmetric"), self.symmetry, self.symmetry), 5)
         slider.addWidget(match)
@@ -264,8 +264,9 @@ class SettingsPanel(Card):
         self.regular.sliderReleased.connect(self._choose_regular)
         self._let_go.timeout.connect(self._choose_regular)
         self.more.toggled.connect(self._fold)
-        for widget in (self.regular, self.symmetry, self.rim, self.start):
-            widget.installEventFilter(_WheelStays(widget))
+        self.second.changed.connect(lambda second: self.changed.emit({"second": second}))
+        self.second.edited.connect(self.edited)
+        self.regular.installEventFilter(_WheelStays(self.regular))
         self.angle.valueChanged.connect(lambda value: self.changed.emit({"phi": math.radians(value)}))
         self.candidates.valueChanged.connect(lambda value: self.changed.emit({"k": value}))
         self.seed.valueChanged.connect(lambda value: self.changed.emit({"seed": value}))
@@ -276,7 +277,7 @@ class SettingsPanel(Card):
         self.dice.clicked.connect(lambda: self.seed.setValue(secrets.randbelow(1_000_000)))
         for box in (self.rows, self.columns, self.angle, self.candidates, self.seed):
             box.setKeyboardTracking(False)
-            compact(box, 50)
+            compact(box, 48)
             box.editingFinished.connect(self.edited)
 
     def _switch_auto(self, on: bool) -> None:
@@ -307,7 +308,12 @@ class SettingsPanel(Card):
 
     def _fold(self, shown: bool) -> None:
         self.hidden.setVisible(shown)
+        self._show_second()
         self.more.show_icon("up" if shown else "down")
+
+    def _show_second(self) -> None:
+        """A second target that is in force is in sight, whatever is folded away."""
+        self.second.setVisible(self.more.isChecked() or self._has_second)
 
     def restore(self, settings: QSettings) -> None:
         """Show more settings, or not, as the last time."""
@@ -336,8 +342,7 @@ class SettingsPanel(Card):
                 box.setValue(count)
 
     def _show_symmetry_tip(self) -> None:
-        about = self.symmetry.itemData(self.symmetry.currentIndex(), TOOLTIP) or ""
-        self.symmetry.setToolTip("\n".join(part for part in (about, self._symmetry_found) if part))
+        self.symmetry.setToolTip("\n".join(part for part in (self.symmetry.about, self._symmetry_found) if part))
         self.symmetry.setAccessibleDescription(self._symmetry_found)
 
     def set_variants(self, names: tuple[str, ...]) -> None:
@@ -347,8 +352,7 @@ class SettingsPanel(Card):
             self.variant.clear()
             for name in names:
                 title, about = VARIANTS.get(name, (name, ""))
-                self.variant.addItem(title, name)
-                self.variant.setItemData(self.variant.count() - 1, about, TOOLTIP)
+                self.variant.insert_choice(self.variant.count(), name, title, about)
             if chosen is not None:
                 self._choose_variant(chosen)
 
@@ -370,10 +374,13 @@ class SettingsPanel(Card):
                 self.regular.setValue(round(POSITIONS * settings.regular))
         for choice, name in ((self.symmetry, settings.symmetry), (self.rim, settings.rim)):
             with QSignalBlocker(choice):
-                _choose(choice, name)
+                choice.choose(name)
         self._show_start(settings.start)
+        self._has_second = settings.second is not None
+        self.second.show_second(settings.second, settings.phi)
+        self._show_second()
         self._show_symmetry_tip()
-        self.rim.setToolTip(self.rim.itemData(self.rim.currentIndex(), TOOLTIP))
+        self.rim.setToolTip(self.rim.about)
         with QSignalBlocker(self.variant):
             self._choose_variant(settings.variant)
         with QSignalBlocker(self.polish):
@@ -394,32 +401,22 @@ class SettingsPanel(Card):
                 self.start.removeItem(loaded)
             if not is_listed:
                 listed = len(STARTS)
-                self.start.insertItem(listed, start.name, LOADED_START)
-                self.start.setItemData(listed, start.name, TOOLTIP)
+                self.start.insert_choice(listed, LOADED_START, start.name, "")
             self.start.setCurrentIndex(listed)
-        self.start.setToolTip("\n".join((START, self.start.itemData(listed, TOOLTIP))))
+        self.start.setToolTip(f"{START}\n{self.start.about}")
 
     def _choose_polish(self, steps: int) -> None:
-        index = self.polish.findData(steps)
-        if index < 0:
-            self.polish.addItem(tr_n("{count} step", "{count} steps", steps), steps)
-            index = self.polish.count() - 1
-        self.polish.setCurrentIndex(index)
+        self.polish.choose(steps, tr_n("{count} step", "{count} steps", steps))
         self.polish.setToolTip(tr("How thoroughly designs are fitted to the target: up to {steps} steps.", steps=steps))
 
     def _choose_preference(self, name: str, fitted: bool) -> None:
-        _choose(self.prefer, name)
+        self.prefer.choose(name)
         self.prefer.setEnabled(fitted)
-        about = self.prefer.itemData(self.prefer.currentIndex(), TOOLTIP) or ""
-        tip = tr("What polishing prefers among nearly equal matches. {about}", about=about).strip()
+        tip = tr("What polishing prefers among nearly equal matches. {about}", about=self.prefer.about)
         self.prefer.setToolTip(tip if fitted else tr("What polishing prefers. Turn on Polish to use it."))
 
     def _choose_variant(self, name: str) -> None:
-        index = self.variant.findData(name)
-        if index < 0:
-            self.variant.addItem(VARIANTS.get(name, (name, ""))[0], name)
-            index = self.variant.count() - 1
-        self.variant.setCurrentIndex(index)
+        self.variant.choose(name, VARIANTS.get(name, (name, ""))[0])
         self.variant.setToolTip(
             tr("Model that generates the designs. {about}", about=VARIANTS.get(name, ("", ""))[1]).strip()
         )
@@ -433,31 +430,6 @@ class _WheelStays(QObject):
             event.ignore()
             return True
         return super().eventFilter(watched, event)
-
-
-def _fill(box: QComboBox, rows: Sequence[tuple[object, str, str]]) -> None:
-    """Offer values, each with its label and what it means."""
-    for value, label, about in rows:
-        box.addItem(label, value)
-        box.setItemData(box.count() - 1, about, TOOLTIP)
-
-
-def _choose(box: QComboBox, name: str) -> None:
-    """Choose a value; one that is not on offer, as from a newer project, is added under its own name."""
-    index = box.findData(name)
-    if index < 0:
-        box.addItem(name, name)
-        index = box.count() - 1
-    box.setCurrentIndex(index)
-
-
-def _choice(name: str, accessible: str) -> QComboBox:
-    box = QComboBox()
-    box.setObjectName(name)
-    box.setFocusPolicy(Qt.FocusPolicy.TabFocus)
-    box.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
-    box.setAccessibleName(accessible)
-    return box
 
 
 def _whole(name: str, accessible: str, low: int, high: int, tip: str) -> QSpinBox:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-
 from PySide6.QtCore import QByteArray, QSettings, QSignalBlocker, Qt, Signal
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QMenu, QSplitter, QStackedWidget, QToolButton, QVBoxLayout, QWidget
@@ -101,8 +99,7 @@ class StagePanel(Card):
         self._add_overlays()
         self._add_pages()
         self.deployment.phi_changed.connect(self.view.set_phi)
-        self.ends.flat_wanted.connect(lambda: self.deployment.set_phi(math.pi))
-        self.ends.open_wanted.connect(self._open)
+        self.ends.phi_wanted.connect(self.deployment.set_phi)
         self.deployment.ideal.toggled.connect(lambda _: self.switches_changed.emit())
         self.deployment.phi_changed.connect(self.plots.set_phi)
         self.plots.phi_wanted.connect(self.deployment.set_phi)
@@ -299,12 +296,6 @@ class StagePanel(Card):
         self.trim.setChecked(trimmed or self._trimming)
         self.switches_changed.emit()
 
-    def _open(self) -> None:
-        """Open the sheet to its target angle."""
-        entry = self._sample or self._entry
-        if entry is not None:
-            self.deployment.set_phi(entry.design.phi_target)
-
     def _show_ends(self) -> None:
         """Say what the design starts as and what it opens into, on a sheet as wide as it is cut."""
         entry, target = self._sample or self._entry, self._target
@@ -322,11 +313,17 @@ class StagePanel(Card):
             self.view.show_design(None, None, None)
             return
         shown = self._sample or entry
-        # Contacts are known of the sheet that was scored; the one fitted for trimming is free of them.
-        score = shown.candidate.score if shown.candidate.final_sheet == shown.candidate.sheet else None
+        # Contacts and the second target's pose are known of the sheet that was scored; the one that was fitted for
+        # trimming is free of contacts.
+        whole, second = shown.candidate.final_sheet == shown.candidate.sheet, shown.candidate.second
+        score = shown.candidate.score if whole else None
         contact = None if score is None else score.contact
-        self.view.show_design(shown.design, score, self._target)
-        self.deployment.set_marks(shown.design.phi_target, None if contact is None else contact.phi)
+        self.view.show_design(shown.design, score, self._target, second if whole else None)
+        self.deployment.set_marks(
+            shown.design.phi_target,
+            None if contact is None else contact.phi,
+            None if second is None else second.target.phi,
+        )
         self.plots.set_target(shown.design.phi_target)
         self._tell_as_cut()
 

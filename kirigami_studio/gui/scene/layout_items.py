@@ -133,12 +133,14 @@ def states_pixmap(design: PosedDesign, target: Outline, size: QSize, ratio: floa
     return pixmap
 
 
-def target_pixmap(target: Outline, size: QSize, ratio: float, palette: Palette) -> QPixmap:
-    """Return a target's picture for the library, ``size`` in logical pixels."""
+def target_pixmap(
+    target: Outline, size: QSize, ratio: float, palette: Palette, margin: float = MARGIN, line: float = 2.0
+) -> QPixmap:
+    """Return a target's picture for lists; ``size``, ``margin`` and width of the ``line`` in logical pixels."""
     pixmap = _blank(size, ratio)
     painter = _painter(pixmap)
-    transform = ViewTransform.fitting(Bounds.of(target.points), QRectF(0, 0, size.width(), size.height()), MARGIN)
-    paint_target_shape(painter, transform.to_pixels(target.points), palette)
+    transform = ViewTransform.fitting(Bounds.of(target.points), QRectF(0, 0, size.width(), size.height()), margin)
+    paint_target_shape(painter, transform.to_pixels(target.points), palette, line)
     painter.end()
     return pixmap
 

@@ -17,6 +17,9 @@ from kirigami_studio.gui.scene.paths import line_path, round_pen
 from kirigami_studio.gui.scene.view_transform import ViewTransform
 from kirigami_studio.outlines.mirroring import Axis, Mirror
 
+#: Dashes and gaps of a second target's outline, in widths of the line.
+DASHES = (3.5, 3.0)
+
 
 def paint_target_shape(painter: QPainter, points: FloatArray, palette: Palette, width: float = 2.0) -> None:
     """Fill the target: (L, 2) pixels."""
@@ -32,8 +35,13 @@ def paint_start_shape(painter: QPainter, points: FloatArray, palette: Palette, w
     painter.drawPath(line_path(points, closed=True))
 
 
-def paint_target_line(painter: QPainter, points: FloatArray, palette: Palette, width: float = 2.0) -> None:
-    """Draw the target's outline with a halo, so that it reads on panels and on the empty canvas: (L, 2) pixels."""
+def paint_target_line(
+    painter: QPainter, points: FloatArray, palette: Palette, width: float = 2.0, *, dashed: bool = False
+) -> None:
+    """Draw a target's outline with a halo, so that it reads on panels and on the empty canvas: (L, 2) pixels.
+
+    That of a second target is ``dashed``.
+    """
     path = line_path(points, closed=True)
     painter.setBrush(Qt.BrushStyle.NoBrush)
     halo = QColor(palette.canvas)
@@ -42,7 +50,10 @@ def paint_target_line(painter: QPainter, points: FloatArray, palette: Palette, w
     pen.setColor(halo)
     painter.setPen(pen)
     painter.drawPath(path)
-    painter.setPen(round_pen(palette.target, width))
+    pen = round_pen(palette.target, width)
+    if dashed:
+        pen.setDashPattern(DASHES)
+    painter.setPen(pen)
     painter.drawPath(path)
 
 

@@ -15,6 +15,7 @@ from PySide6.QtWidgets import QWidget
 
 from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.evaluate.score import Score
+from kirigami_studio.evaluate.second_target import SecondMatch
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray
 from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.gui.designs.gripping import UNKNOWN as GRIPS_UNKNOWN
@@ -169,6 +170,7 @@ class LayoutView(Canvas):
         self._contact: FloatArray | None = None
         self._contact_phi: float | None = None
         self._target: Outline | None = None
+        self._second: tuple[float, FloatArray] | None = None
         self._bounds: Bounds | None = None
         self._phi = math.pi
         self._overlays: frozenset[Overlay] = USUAL
@@ -200,6 +202,11 @@ class LayoutView(Canvas):
         return self._design
 
     @property
+    def second(self) -> tuple[float, FloatArray] | None:
+        """Angle (radians) of the second target, and its outline (P, 2) over the sheet there; None without one."""
+        return self._second
+
+    @property
     def artwork(self) -> ShownArtwork | None:
         """The printed sheet of the last design that was painted."""
         return self._artwork
@@ -218,9 +225,15 @@ class LayoutView(Canvas):
     def overlays(self) -> frozenset[Overlay]:
         return self._overlays
 
-    def show_design(self, design: PosedDesign | None, score: Score | None, target: Outline | None) -> None:
-        """Show another design; None shows the empty state."""
-        self._design, self._target, self._cut = design, target, None
+    def show_design(
+        self,
+        design: PosedDesign | None,
+        score: Score | None,
+        target: Outline | None,
+        second: SecondMatch | None = None,
+    ) -> None:
+        """Show another design; None shows the empty state.  ``second`` is how this very sheet shows a second target."""
+        self._design, self._target, self._cut, self._second = design, target, None, None
         self._areas, self._faults = None, ()
         before, self._bounds = self._bounds, None
         if design is not None:
@@ -230,6 +243,10 @@ class LayoutView(Canvas):
             self._contact_phi = None if score is None or score.contact is None else score.contact.phi
             if target is not None:
                 self._bounds = self._bounds.united(Bounds.of(target.points))
+            if second is not None:
+                line = second.match.transform.inverse().apply(second.target.outline.points)
+                self._second = second.target.phi, design.to_world(line, second.target.phi)
+                self._bounds = self._bounds.united(Bounds.of(self._second[1]))
             if self.voids.on and before is not None:
                 self._bounds = steady(before, self._bounds)
         self.voids.follow()
@@ -237,7 +254,7 @@ class LayoutView(Canvas):
 
     def show_draft(self, design: PosedDesign) -> None:
         """Show a design that is being edited by hand, without fitting the view again."""
-        self._design, self._cut = design, None
+        self._design, self._cut, self._second = design, None, None
         self._areas, self._faults, self._contact = None, (), None
         self._rigid = RigidFacts.of(design)
         self.update()
@@ -527,6 +544,15 @@ class LayoutView(Canvas):
         if Overlay.TARGET in self._overlays:
             painter.setOpacity(min(1.0, max(FAINT, 2.0 * nearness)))
             paint_target_line(painter, transform.to_pixels(self._target.points), self.palette_)
+            painter.setOpacity(1.0)
+            self._paint_second(painter, transform)
+
+    def _paint_second(self, painter: QPainter, transform: ViewTransform) -> None:
+        """The second target near its angle."""
+        nearness = 0.0 if self._second is None else 1.0 - abs(self._phi - self._second[0]) / COMPARED_WITHIN
+        if self._second is not None and nearness > 0.0:
+            painter.setOpacity(min(1.0, 2.0 * nearness))
+            paint_target_line(painter, transform.to_pixels(self._second[1]), self.palette_, dashed=True)
             painter.setOpacity(1.0)
 
     def _paint_faults(self, painter: QPainter, transform: ViewTransform) -> None:

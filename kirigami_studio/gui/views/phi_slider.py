@@ -39,6 +39,7 @@ class PhiSlider(QSlider):
         self.palette_: Palette = LIGHT
         self._target = 0.0
         self._contact: float | None = None
+        self._second: float | None = None
         self._jam: float | None = None
         self._ideal = False
         self.setRange(0, LAST)
@@ -65,9 +66,9 @@ class PhiSlider(QSlider):
         """Move to an angle, radians."""
         self.setValue(value_at(phi))
 
-    def set_marks(self, target: float, contact: float | None) -> None:
-        """Mark the target angle and the first contact, radians."""
-        self._target, self._contact = target, contact
+    def set_marks(self, target: float, contact: float | None, second: float | None = None) -> None:
+        """Mark the target angle, the first contact and the angle of a second target, radians."""
+        self._target, self._contact, self._second = target, contact, second
         self._update_tooltip()
         self.update()
 
@@ -102,6 +103,9 @@ class PhiSlider(QSlider):
         """All marks, the most important first."""
         degrees = f"{math.degrees(self._target):.0f}°"
         marks = [TrackMark(MarkKind.TARGET, self._target, tr("{angle} target", angle=degrees), degrees)]
+        if self._second is not None:
+            degrees = f"{math.degrees(self._second):.0f}°"
+            marks.append(TrackMark(MarkKind.SECOND, self._second, tr("{angle} second", angle=degrees), degrees))
         if self._contact is not None:
             degrees = f"{math.degrees(self._contact):.0f}°"
             marks.append(TrackMark(MarkKind.CONTACT, self._contact, tr("{angle} contact", angle=degrees), degrees))
@@ -126,6 +130,8 @@ class PhiSlider(QSlider):
                     angle=math.degrees(self._jam),
                 )
             )
+        if self._second is not None:
+            lines.append(tr("Second target at {angle:.1f}°.", angle=math.degrees(self._second)))
         lines.append(tr("Click a mark to go there. Arrow keys: 1°, Page keys: 10°, Home and End: the ends."))
         self.setToolTip("\n".join(lines))
 
@@ -271,6 +277,7 @@ class MarkKind(Enum):
     JAM = "jam"
     CONTACT = "contact"
     TARGET = "target"
+    SECOND = "second"
     TURNED = "turned"
 
 
@@ -353,15 +360,15 @@ def _paint_striped(painter: QPainter, bar: QRectF, palette: Palette) -> None:
 
 
 def paint_mark(painter: QPainter, kind: MarkKind, tip: QPointF, palette: Palette) -> None:
-    """Draw the sign of a mark below the track: an arrow to the target, a diamond at a contact, a bar at a jam, a tick
-    at the ends."""
+    """Draw the sign of a mark below the track: an arrow to the target, a hollow one to a second target, a diamond at a
+    contact, a bar at a jam, a tick at the ends."""
     if kind is MarkKind.JAM:
         painter.setPen(Qt.PenStyle.NoPen)
         painter.setBrush(QColor(palette.warning))
         painter.drawRoundedRect(QRectF(tip.x() - 1.75, tip.y() - 13.0, 3.5, 21.0), 1.5, 1.5)
         return
     path = QPainterPath(tip)
-    if kind is MarkKind.TARGET:
+    if kind in (MarkKind.TARGET, MarkKind.SECOND):
         path.lineTo(tip + QPointF(-5, 8))
         path.lineTo(tip + QPointF(5, 8))
     elif kind is MarkKind.CONTACT:
@@ -372,7 +379,14 @@ def paint_mark(painter: QPainter, kind: MarkKind, tip: QPointF, palette: Palette
         painter.drawLine(tip + QPointF(0, 2), tip + QPointF(0, 7))
         return
     path.closeSubpath()
-    contact = kind is MarkKind.CONTACT
-    painter.setPen(QPen(QColor(palette.fault_line), 1.2) if contact else QPen(Qt.PenStyle.NoPen))
-    painter.setBrush(QColor(palette.fault if contact else palette.target))
+    match kind:
+        case MarkKind.CONTACT:
+            painter.setPen(QPen(QColor(palette.fault_line), 1.2))
+            painter.setBrush(QColor(palette.fault))
+        case MarkKind.SECOND:
+            painter.setPen(QPen(QColor(palette.target), 1.4))
+            painter.setBrush(QColor(palette.surface))
+        case _:
+            painter.setPen(Qt.PenStyle.NoPen)
+            painter.setBrush(QColor(palette.target))
     painter.drawPath(path)

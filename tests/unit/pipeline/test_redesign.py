@@ -10,6 +10,7 @@ from uneven_sheets import uneven_sheet
 
 from kirigami_studio.evaluate.candidate import Candidate, Origin
 from kirigami_studio.evaluate.score import evaluate
+from kirigami_studio.evaluate.second_target import SecondTarget, second_matches
 from kirigami_studio.evaluate.trimming import KEEP
 from kirigami_studio.fabricate.material import find_material
 from kirigami_studio.foundation.errors import Cancelled, FabricationError
@@ -18,9 +19,12 @@ from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.silhouettes import load
+from kirigami_studio.pipeline.fit_again import fit_again
 from kirigami_studio.pipeline.redesign import keep_for_connectors, refitted, rescored, sampled, trimmed
+from kirigami_studio.pipeline.request import Request
 
 GRID = (6, 6)
+HALF = SecondTarget(load("ellipse"), 1.0, 0.5)
 
 
 def never() -> bool:
@@ -116,3 +120,15 @@ def test_that_wider_connectors_need_deeper_material_and_too_wide_ones_are_refuse
     assert keep_for_connectors(Sheet.uniform(*GRID), card, 100.0, 3.0, None) > KEEP
     with pytest.raises(FabricationError, match=r"Make the sheet at least \d+ mm wide"):
         keep_for_connectors(Sheet.uniform(*GRID), card, 20.0, 5.0, None)
+
+
+def test_that_designs_that_are_fitted_again_keep_the_second_target_that_they_were_made_for(
+    candidate: Candidate, heart: Outline
+) -> None:
+    for own, wanted in ((HALF, None), (None, HALF), (HALF, replace(HALF, weight=2.0))):
+        (match,) = second_matches([deploy(candidate.sheet)], own)
+        before = replace(candidate, second=match)
+        request = Request(heart, GRID, k=1, polish=2, second=wanted, guided=0)
+        (after,) = [one.after for one in fit_again(request, [before], never) if one.after is not None]
+        assert after.sheet != before.sheet
+        assert (None if after.second is None else after.second.target) == own

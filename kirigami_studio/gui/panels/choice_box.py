@@ -1,0 +1,61 @@
+"""A box with a short list to choose from, each entry with what it means."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from PySide6.QtCore import Qt
+from PySide6.QtGui import QWheelEvent
+from PySide6.QtWidgets import QComboBox, QSizePolicy
+
+TOOLTIP = Qt.ItemDataRole.ToolTipRole
+#: Value, label, what it means.
+Choices = Sequence[tuple[object, str, str]]
+
+
+class ChoiceBox(QComboBox):
+    """Leaves the wheel to the page that scrolls unless it has the focus."""
+
+    def __init__(self, name: str, accessible: str, choices: Choices = ()) -> None:
+        super().__init__()
+        self.setObjectName(name)
+        self.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+        self.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
+        self.setAccessibleName(accessible)
+        self.add_choices(choices)
+        self.setToolTip(f"{accessible}: {', '.join(label.lower() for _, label, _ in choices)}.")
+
+    def add_choices(self, choices: Choices) -> None:
+        """Offer values below those that are there."""
+        for value, label, about in choices:
+            self.insert_choice(self.count(), value, label, about)
+
+    def insert_choice(self, row: int, value: object, label: str, about: str) -> None:
+        """Offer one more value in a row."""
+        self.insertItem(row, label, value)
+        self.setItemData(row, about or label, TOOLTIP)
+
+    def choose(self, value: object, label: str = "") -> None:
+        """Choose a value; one that is not on offer, as from a newer project, is added, under its own name without
+        another label.
+        """
+        row = self.row_of(value)
+        if row < 0:
+            row = self.count()
+            self.insert_choice(row, value, label or str(value), "")
+        self.setCurrentIndex(row)
+
+    def row_of(self, value: object) -> int:
+        """The row of a value, -1 where it is not on offer."""
+        return next((row for row in range(self.count()) if self.itemData(row) == value), -1)
+
+    @property
+    def about(self) -> str:
+        """What the chosen entry means."""
+        return str(self.itemData(self.currentIndex(), TOOLTIP) or "")
+
+    def wheelEvent(self, event: QWheelEvent) -> None:  # noqa: N802 - Qt's name
+        if self.hasFocus():
+            super().wheelEvent(event)
+        else:
+            event.ignore()
