@@ -327,6 +327,22 @@ class RimPath:
     columns: int
     start: FloatArray | None = None
     cell: tuple[float, float] = (1.0, 1.0)
+    #: Vertices of the outline, the first again at the end, without the cell, and their places.
+    _corners: FloatArray = attribute(init=False, repr=False)
+    _corner_place: FloatArray = attribute(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        width, height = float(self.columns + 1), float(self.rows + 1)
+        if self.start is None:
+            place = np.array([0.0, width, width + height, 2 * width + height, 2.0 * (width + height)])
+            corners = np.array([[0.0, 0.0], [width, 0.0], [width, -height], [0.0, -height], [0.0, 0.0]])
+        else:
+            place, _ = vertex_places(
+                self.start, self.rows, self.columns, rim_table(self.rows, self.columns).anchor_place
+            )
+            corners = np.concatenate([self.start, self.start[:1]])
+        object.__setattr__(self, "_corners", corners)
+        object.__setattr__(self, "_corner_place", place)
 
     def anchors(self, positions: FloatArray) -> FloatArray:
         """Corners and mouths (A, 2), unit cells, from the mouths' ``positions`` (R,) along their sides."""
@@ -343,7 +359,7 @@ class RimPath:
         if self.start is None:
             along = np.array([[1.0, 0.0], [0.0, -1.0], [1.0, 0.0], [0.0, -1.0]])[table.side]
             return np.asarray(along * self.cell)
-        corners, corner_place = self._corners()
+        corners, corner_place = self._corners, self._corner_place
         part = np.searchsorted(corner_place, self._around(positions), side="right") - 1
         slope = np.diff(corners, axis=0) / np.diff(corner_place)[:, None]
         clockwise = np.where(table.side < 2, 1.0, -1.0)
@@ -354,7 +370,7 @@ class RimPath:
         off is positive, what they add across hollows negative, in unit cells squared.
         """
         table = rim_table(self.rows, self.columns)
-        corners, corner_place = self._corners()
+        corners, corner_place = self._corners, self._corner_place
         corners = corners * self.cell
         place = table.anchor_place.copy()
         place[table.mouths] = self._around(positions)
@@ -368,7 +384,7 @@ class RimPath:
 
     def outline(self) -> FloatArray:
         """The path itself: (P, 2), unit cells, clockwise."""
-        return np.asarray(self._corners()[0][:-1] * self.cell)
+        return np.asarray(self._corners[:-1] * self.cell)
 
     @property
     def held(self) -> BoolArray:
@@ -387,20 +403,9 @@ class RimPath:
 
     def _points(self, place: FloatArray) -> FloatArray:
         """Points of the outline at places along it, clockwise from the top left corner: (K, 2)."""
-        corners, corner_place = self._corners()
+        corners, corner_place = self._corners, self._corner_place
         points = np.stack([np.interp(place, corner_place, corners[:, axis]) for axis in (0, 1)], axis=1)
         return np.asarray(points * self.cell)
-
-    def _corners(self) -> tuple[FloatArray, FloatArray]:
-        """Vertices of the outline, the first again at the end, and their places."""
-        width, height = float(self.columns + 1), float(self.rows + 1)
-        if self.start is None:
-            corner_place = np.array([0.0, width, width + height, 2 * width + height, 2.0 * (width + height)])
-            corners = np.array([[0.0, 0.0], [width, 0.0], [width, -height], [0.0, -height], [0.0, 0.0]])
-            return corners, corner_place
-        anchors = rim_table(self.rows, self.columns).anchor_place
-        places, _ = vertex_places(self.start, self.rows, self.columns, anchors)
-        return np.concatenate([self.start, self.start[:1]]), places
 
 
 def _swept(first: FloatArray, second: FloatArray) -> FloatArray:

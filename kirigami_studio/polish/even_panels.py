@@ -15,6 +15,7 @@ from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.lattice.topology import topology
+from kirigami_studio.polish.large_panels import over_even, panel_areas
 from kirigami_studio.polish.unfolding import unfolded
 
 #: Weight in fits that want match and evenness alike, and how many decades the slider spans around it.
@@ -38,11 +39,17 @@ class EvenPanels:
         The same of the uniform sheet, unfolded where its start has hollows.
     stiffness : (N, N) sparse
         Second derivative of the value by the nodes' x, and by their y.
+    mean_area : float, unit cells squared
+        Of the panels of the uniform sheet.
+    large : float
+        Weight of large panels beside it, see ``large_panels``.
     """
 
     difference: csr_matrix
     uniform: FloatArray
     stiffness: csr_matrix
+    mean_area: float
+    large: float
 
     @classmethod
     def of(cls, sheet: Sheet) -> EvenPanels:
@@ -57,7 +64,9 @@ class EvenPanels:
             (np.concatenate([sign, -sign]), (np.concatenate([rows, rows]), np.concatenate([end, start]))),
             shape=(start.size, len(nodes)),
         )
-        return cls(difference, difference @ nodes, 2.0 * (difference.T @ difference).tocsr())
+        stiffness = 2.0 * (difference.T @ difference).tocsr()
+        mean = float(panel_areas(nodes, *sheet.grid).area.mean())
+        return cls(difference, difference @ nodes, stiffness, mean, over_even(sheet))
 
     def value(self, nodes: FloatArray) -> float:
         """Mean squared change of the panel edges of compact ``nodes`` (N, 2), in uniform edges squared."""

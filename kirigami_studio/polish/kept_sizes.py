@@ -207,7 +207,7 @@ class _Problem:
         motion = model.node_motion(here.decoded) if derivatives is None else derivatives.motion
         near = panel_sizes(here.decoded.nodes, model.rows, model.columns).distinct().below(descent.least + NEAR)
         slopes = np.zeros((len(near.size), basis.size + poses))
-        slopes[:, :-poses] = basis.reduced(motion.slopes(*near.reach(model.node_count)))
+        slopes[:, :-poses] = motion.slopes(*near.reach(model.node_count), basis)
         added = np.minimum(descent.least + AIM - near.size, MOST_ADDED)
         shape = here.state[:-poses]
         if derivatives is None:

@@ -7,9 +7,9 @@ Residuals, all in unit-area lengths and weighted by the boundary length that the
 
 down-weighted beyond a trusted distance so that their sum grows like an area and not like its square.  Beside them:
 terms on z, see ``preferences``; penalties on panels too small to cut, see ``panel_size``, and on long chords of a round
-start, see ``chords``; and, where a stage of the fit asks for them, even panels, see ``even_panels``, a guide for the
-inside, see ``guide``, and open junctions, see ``junctions``.  A second target has residuals of the same kind at its
-own angle, in a pose of its own, times its weight.
+start, see ``chords``; and, where a stage of the fit asks for them, even panels, see ``even_panels``, none large, see
+``large_panels``, a guide for the inside, see ``guide``, and open junctions, see ``junctions``.  A second target has
+residuals of the same kind at its own angle, in a pose of its own, times its weight.
 """
 
 from __future__ import annotations
@@ -30,6 +30,7 @@ from kirigami_studio.polish.chords import WEIGHT as CHORDS
 from kirigami_studio.polish.even_panels import EvenPanels
 from kirigami_studio.polish.guide import Guide
 from kirigami_studio.polish.junctions import OPEN, Junctions, junctions
+from kirigami_studio.polish.large_panels import LARGE, PanelAreas, panel_areas
 from kirigami_studio.polish.matching import Matching, OneSided, check_excess, matched, outer_hinges
 from kirigami_studio.polish.normal_equations import Quadratic
 from kirigami_studio.polish.panel_size import PENALTY, shortage
@@ -49,6 +50,7 @@ CONVERGED, SETTLED = 1e-4, 2e-3
 POSE = 4
 NO_SIZES = panel_sizes(topology(2, 2).uniform_nodes, 2, 2).below(0.0)
 NO_JUNCTIONS = junctions(topology(2, 2).uniform_nodes, 2, 2).shallower(0.0)
+NO_AREAS = panel_areas(topology(2, 2).uniform_nodes, 2, 2).larger(LARGE)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -147,6 +149,9 @@ class Objective:
         self.guide = guide if stage.guide else None
         self.second, self.poses = second, POSE if second is None else 2 * POSE
         self._each_junction = stage.junctions / (2 * model.voids)
+        self._each_large = 0.0
+        if self.even is not None:
+            self._each_large = stage.even * self.even.large / ((model.rows + 1) * (model.columns + 1))
         self.one_sided = None
         if check_excess(excess) < 1.0:
             self.one_sided = OneSided(excess, outer_hinges(model.rows, model.columns, model.phi))
@@ -169,8 +174,10 @@ class Objective:
         cost += self.terms.value(shape[: self.model.voids])
         if self.even is not None:
             cost += self.stage.even * self.even.value(nodes)
+        excess = 0.0
         if self.model.chords is not None:
-            cost += CHORDS * self.model.chords.excess(self.model.positions(shape)) ** 2
+            excess = self.model.chords.excess(self.model.positions(shape))
+            cost += CHORDS * excess**2
         gaps = None
         if self.guide is not None:
             gaps = self.guide.gaps(nodes, _similarity(pose))
@@ -183,7 +190,11 @@ class Objective:
         if self.stage.junctions:
             shallow = junctions(nodes, self.model.rows, self.model.columns).shallower(OPEN)
             cost += self._each_junction * float(np.square(shallow.sine - OPEN).sum())
-        return Look(state, decoded, outline, matching, second, small, shallow, gaps, cost)
+        large = NO_AREAS
+        if self.even is not None and self._each_large:
+            large = panel_areas(nodes, self.model.rows, self.model.columns, self.even.mean_area).larger(LARGE)
+            cost += self._each_large * float(np.square(large.area - LARGE).sum())
+        return Look(state, decoded, outline, matching, second, small, shallow, large, excess, gaps, cost)
 
     def _parts(self, state: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Shape, pose, and the second target's pose, empty where there is none."""
@@ -219,15 +230,12 @@ class Objective:
         own += basis.matrix(*self.terms.curvature(shape[: self.model.voids]))
         if self.even is not None and slopes.stiffness is not None:
             own += self.stage.even * slopes.stiffness
-        if len(look.small.size):
-            grown = basis.reduced(slopes.motion.slopes(*look.small.reach(self.model.node_count)))
-            own += 2.0 * PENALTY * (grown.T @ grown)
-        if len(look.shallow):
-            opened = basis.reduced(slopes.motion.slopes(*look.shallow.reach(self.model.node_count)))
-            own += 2.0 * self._each_junction * (opened.T @ opened)
-        cut = self._cut_by_chords(shape)
-        if cut is not None:
-            slope = basis.reduced(cut[1])
+        priced = self._priced(look)
+        if priced is not None:
+            grown = slopes.motion.slopes(*priced[1], basis)
+            own += 2.0 * (grown.T @ grown)
+        if look.excess:
+            slope = basis.reduced(self._cut_by_chords(shape))
             own += 2.0 * CHORDS * np.outer(slope, slope)
         if look.gaps is not None and slopes.centroids is not None:
             inner += 2.0 * self.stage.guide / len(look.gaps) * (slopes.centroids.T @ slopes.centroids)
@@ -248,19 +256,17 @@ class Objective:
         by_nodes = self._force(look)
         if by_nodes is not None:
             by_shape += slopes.motion.gradient(by_nodes)
-        cut = self._cut_by_chords(shape)
-        if cut is not None:
-            by_shape += 2.0 * CHORDS * cut[0] * cut[1]
+        if look.excess:
+            by_shape += 2.0 * CHORDS * look.excess * self._cut_by_chords(shape)
         gradient[: -self.poses] += slopes.basis.reduced(by_shape)
         return gradient
 
-    def _cut_by_chords(self, shape: FloatArray) -> tuple[float, FloatArray] | None:
-        """What chords cut off beyond what is allowed, and its derivative (S,) by the shape; None for nothing."""
-        model = self.model
-        excess = 0.0 if model.chords is None else model.chords.excess(model.positions(shape))
-        if model.chords is None or not excess:
-            return None
-        return excess, np.append(np.zeros(model.voids), model.chords.slopes(model.positions(shape)))
+    def _cut_by_chords(self, shape: FloatArray) -> FloatArray:
+        """Derivative (S,) by the shape of what chords cut off; 0 for a start that they do not cut."""
+        slopes = np.zeros(shape.size)
+        if self.model.chords is not None:
+            slopes[self.model.voids :] = self.model.chords.slopes(self.model.positions(shape))
+        return slopes
 
     def spread(self, look: Look) -> FloatArray:
         """Gauss-Newton approximation of the second derivative of the match by the outline's vertices: (2 L, 2 L); those
@@ -277,15 +283,30 @@ class Objective:
         """Derivative (N, 2) of the terms on panels by the compact nodes; None where there are none."""
         nodes = look.decoded.nodes
         force = self.stage.even * self.even.pull(nodes) if self.even is not None else None
-        if len(look.small.size):
-            lack = 2.0 * PENALTY * (look.small.size - self.least)
-            grown = np.stack([lack @ along for along in look.small.reach(len(nodes))], axis=1)
+        priced = self._priced(look)
+        if priced is not None:
+            grown = np.stack([2.0 * (priced[0] @ along) for along in priced[1]], axis=1)
             force = grown if force is None else force + grown
-        if len(look.shallow):
-            lack = 2.0 * self._each_junction * (look.shallow.sine - OPEN)
-            opened = np.stack([lack @ along for along in look.shallow.reach(len(nodes))], axis=1)
-            force = opened if force is None else force + opened
         return force
+
+    def _priced(self, look: Look) -> tuple[FloatArray, tuple[FloatArray, FloatArray]] | None:
+        """By how much sizes, junctions and areas are beyond what is asked of them, times the root of their weight (F,),
+        and matrices (F, N) that read changes of these off motions of the nodes in x and in y; None where none are.
+        """
+        count = self.model.node_count
+        terms = [
+            (weight**0.5, beyond, reach(count))
+            for weight, beyond, reach in (
+                (PENALTY, look.small.size - self.least, look.small.reach),
+                (self._each_junction, look.shallow.sine - OPEN, look.shallow.reach),
+                (self._each_large, look.large.area - LARGE, look.large.reach),
+            )
+            if len(beyond)
+        ]
+        if not terms:
+            return None
+        along_x, along_y = (np.concatenate([root * reach[axis] for root, _, reach in terms]) for axis in (0, 1))
+        return np.concatenate([root * beyond for root, beyond, _ in terms]), (along_x, along_y)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -339,6 +360,10 @@ class Look:
         Edges and necks below the least size.
     shallow : Junctions
         Where cuts meet at shallow angles, if the stage asks for open junctions.
+    large : PanelAreas
+        Panels that are large, if the stage asks for even ones.
+    excess : float
+        Share of a round start's area that chords cut off beyond what is allowed.
     gaps : (P, 2) float or None
         From each panel centroid's image to the centroid, where there is a guide.
     cost : float
@@ -351,6 +376,8 @@ class Look:
     second: SecondLook | None
     small: PanelSizes
     shallow: Junctions
+    large: PanelAreas
+    excess: float
     gaps: FloatArray | None
     cost: float
 

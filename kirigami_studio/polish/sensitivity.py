@@ -415,9 +415,12 @@ class NodeMotion:
         slopes[model.voids :] = (followed * self.along).sum(axis=1)
         return slopes
 
-    def slopes(self, along_x: FloatArray, along_y: FloatArray) -> FloatArray:
-        """Derivative (F, S) of ``along_x @ x + along_y @ y`` of the nodes, both matrices (F, N)."""
+    def slopes(self, along_x: FloatArray, along_y: FloatArray, basis: Basis) -> FloatArray:
+        """Derivative (F, V) of ``along_x @ x + along_y @ y`` of the nodes, both matrices (F, N), by the variables."""
         model = self.model
+        if basis.size < len(along_x):
+            moved_x, moved_y = self.derivative(basis)
+            return np.asarray(csr_matrix(along_x) @ moved_x + csr_matrix(along_y) @ moved_y)
         slopes = np.zeros((len(along_x), model.size))
         for axis, reach in enumerate((along_x, along_y)):
             through = model._adjoint(reach, self.system)
@@ -425,7 +428,7 @@ class NodeMotion:
             if len(self.along):
                 followed = reach[:, model._table.node] @ self.share + through @ self.known
                 slopes[:, model.voids :] += followed * self.along[:, axis]
-        return slopes
+        return basis.reduced(slopes)
 
     def curvature(self, stiffness: csr_matrix, basis: Basis) -> FloatArray:
         """Second derivative (V, V) by the variables of P^T ``stiffness`` P / 2, summed over x and y.

@@ -23,12 +23,15 @@ STEP = 1e-6
 
 
 @settings(max_examples=15)
-@given(ratio_fields(grids(6)), st.sampled_from([0.0, 0.7, 2.2]), st.integers(0, 999), st.booleans())
-def test_that_the_gradient_is_the_slope_of_the_cost(field: RatioField, phi: float, seed: int, twice: bool) -> None:
-    model = OutlineModel(field.rows, field.columns, phi, free_rim=True)
+@given(ratio_fields(grids(6)), st.sampled_from([0.0, 0.7, 2.2]), st.integers(0, 999), st.booleans(), st.booleans())
+def test_that_the_gradient_is_the_slope_of_the_cost(
+    field: RatioField, phi: float, seed: int, twice: bool, wide: bool
+) -> None:
+    sheet = Sheet(field, None, None, (1.5, 0.8) if wide else (1.0, 1.0))
+    model = OutlineModel.of(sheet, phi, free_rim=True)
     z = field.log10.ravel()
     terms = PreferenceTerms(Preference(1e-3, 1e-3, 1e-3), np.zeros_like(z), field.rows, field.columns)
-    stage, even = Stage(0, even=1e-2), EvenPanels.of(Sheet(field))
+    stage, even = Stage(0, even=1e-2), EvenPanels.of(sheet)
     second = SecondTerm(model.at(phi + 0.4), BoundaryTarget.of(load("star"), SAMPLES), 0.7) if twice else None
     heart = BoundaryTarget.of(load("heart"), SAMPLES)
     objective = Objective(model, heart, terms, stage, 0.1, even=even, second=second)

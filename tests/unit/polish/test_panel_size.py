@@ -14,6 +14,7 @@ from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.outlines.silhouettes import load
+from kirigami_studio.polish.basis import Basis
 from kirigami_studio.polish.levenberg import polish
 from kirigami_studio.polish.sensitivity import OutlineModel
 
@@ -40,7 +41,7 @@ def test_that_slopes_of_the_sizes_are_differences_of_the_sizes() -> None:
     model = OutlineModel(rows, columns, 0.0)
     z = random_field(rows, columns).log10.ravel()
     sizes = panel_sizes(model.nodes(z), rows, columns)
-    slopes = model.node_motion(model.decoded(z)).slopes(*sizes.reach(model.node_count))
+    slopes = model.node_motion(model.decoded(z)).slopes(*sizes.reach(model.node_count), Basis.of(z.size, None))
     direction = np.random.default_rng(1).normal(size=z.size)
     ahead, behind = (panel_sizes(model.nodes(z + s * step * direction), rows, columns).size for s in (1, -1))
     assert (ahead - behind) / (2 * step) == pytest.approx(slopes @ direction, abs=1e-6)

@@ -101,16 +101,13 @@ def test_that_derivatives_by_ratios_and_mouths_are_central_differences(
     outline = np.stack([(model.outline(shape + one) - model.outline(shape - one)) / (2 * step) for one in steps], -1)
     nodes = np.stack([(model.nodes(shape + one) - model.nodes(shape - one)) / (2 * step) for one in steps], -1)
     assert np.abs(model.linearised(shape)[1] - outline).max() < 1e-6
-    assert (
-        np.abs(
-            model.node_motion(model.decoded(shape)).derivative(Basis.of(shape.size, None)) - np.moveaxis(nodes, 1, 0)
-        ).max()
-        < 1e-6
-    )
+    motion, basis = model.node_motion(model.decoded(shape)), Basis.of(shape.size, None)
+    assert np.abs(motion.derivative(basis) - np.moveaxis(nodes, 1, 0)).max() < 1e-6
     draw = np.random.default_rng(2)
-    along = draw.normal(size=(2, 3, model.node_count))
-    expected = along[0] @ nodes[:, 0] + along[1] @ nodes[:, 1]
-    assert np.abs(model.node_motion(model.decoded(shape)).slopes(*along) - expected).max() < 1e-5
+    for few_or_many in (3, shape.size + 1):
+        along = draw.normal(size=(2, few_or_many, model.node_count))
+        expected = along[0] @ nodes[:, 0] + along[1] @ nodes[:, 1]
+        assert np.abs(motion.slopes(*along, basis) - expected).max() < 1e-5
 
 
 @pytest.mark.parametrize("grid", [(5, 5), (13, 14)], ids=["dense", "by rows"])
