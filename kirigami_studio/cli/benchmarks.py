@@ -159,6 +159,36 @@ def regularity(arguments: argparse.Namespace) -> int:
     )
 
 
+def solvers(arguments: argparse.Namespace) -> int:
+    """The paper's solvers beside the program's own fit and samples; goes on where an earlier call ended."""
+    from kirigami_studio.baselines.search import Stopping
+    from kirigami_studio.benchmark.run_store import RunStore
+    from kirigami_studio.benchmark.solver_suite import METHODS, SolverSettings, measure_solvers
+
+    line = ProgressLine()
+    settings = SolverSettings(
+        parse_grid(arguments.grid),
+        arguments.space,
+        Stopping(arguments.evaluations),
+        arguments.variant,
+        arguments.polish,
+    )
+    targets = _target_sets(arguments, arguments.exact)
+    folder = None if arguments.out is None else Path(arguments.out)
+    with RunStore.opened(settings.to_json(), None if folder is None else folder / "solvers.jsonl") as store:
+        figures = measure_solvers(
+            targets,
+            METHODS if arguments.methods is None else tuple(dict.fromkeys(arguments.methods.split(","))),
+            tuple(dict.fromkeys(arguments.seeds)),
+            settings,
+            store,
+            arguments.processes,
+            _shown_on(line, "Runs"),
+        )
+    arguments.out = None if folder is None else folder / "solvers.json"
+    return _print_figures(arguments, line, asdict(figures), figures.sentences())
+
+
 def designs(arguments: argparse.Namespace) -> int:
     """The whole program on targets, shape by shape, with pictures where asked for."""
     from kirigami_studio.benchmark.design_suite import design_figures, make_designs, worst_of, write_contact_sheet

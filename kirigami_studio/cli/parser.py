@@ -593,6 +593,24 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
                     "(default 0)"),
         SEED, *FIGURES,
     ), ("kirigami-studio benchmark starts --fields 1000",)),
+    SubCommand("benchmark solvers", "compare the paper's solvers with fits and samples (its Table 1)",
+               "benchmarks:solvers", (
+        *targets_of_a_suite(20), EXACT, GRID, SEEDS,
+        option("--methods", default=None, metavar="NAMES",
+               help="of cma-es, swarm, local-search, powell, fit, sample, sample-fit, separated by commas "
+                    "(default: all)"),
+        option("--space", choices=("log", "ratio"), default="log",
+               help="what solvers search, in the same box: log10 of the ratios, or the ratios (default log)"),
+        option("--evaluations", type=count, default=1000, help="most evaluations of a solver (default 1000)"),
+        option("--variant", default="prior", help="generator variant of the samples (default prior)"),
+        option("--polish", type=whole, default=15, help="polishing steps after a sample (default 15)"),
+        option("--processes", type=count, default=2, help="number of runs at the same time (default 2)"),
+        option("--out", default=None,
+               help="folder for solvers.json and solvers.jsonl, a line for each finished run; an earlier call may "
+                    "have begun it"),
+        JSON,
+    ), ("kirigami-studio benchmark solvers --out runs/solvers",
+        "kirigami-studio benchmark solvers --count 5 --methods cma-es,fit --seeds 0 --processes 1")),
     SubCommand("benchmark generation-speed", "time loading and sampling", "benchmarks:generation_speed", (
         VARIANTS, GRID, STEPS, *FIGURES,
     ), ("kirigami-studio benchmark generation-speed",)),

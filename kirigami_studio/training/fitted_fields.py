@@ -13,9 +13,7 @@ import hashlib
 import io
 import json
 import math
-import multiprocessing
-from collections.abc import Callable, Generator, Iterator
-from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import count as count_from
@@ -35,6 +33,7 @@ from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import KirigamiError, UsageError
 from kirigami_studio.foundation.files import write_atomically
 from kirigami_studio.foundation.paper import LOG_RATIO_LIMIT
+from kirigami_studio.foundation.processes import results_of
 from kirigami_studio.generator.conditioning import normalised, square_pose
 from kirigami_studio.generator.sampler import BATCH, pose_angle, sample_fields
 from kirigami_studio.generator.weights import load_model
@@ -161,31 +160,13 @@ def fit_shapes(
         raise KirigamiError("training.fits_differ", path=path, settings=", ".join(other))
     done = {int(number) for number in fits.about["blocks"]}  # type: ignore[attr-defined]
     work = partial(fitted_block, seed=seed, grid=grid, size=block_size)
-    blocks = _each(work, (number for number in count_from(0) if number not in done), processes)
+    blocks = results_of(work, (number for number in count_from(0) if number not in done), processes)
     while len(fits.z) < count:
         number, new = next(blocks)
         fits = _joined(fits, new, number)
         fits.save(path)
         yield len(fits.z)
     blocks.close()
-
-
-def _each(
-    work: Callable[[int], FittedFields], numbers: Iterator[int], processes: int
-) -> Generator[tuple[int, FittedFields], None, None]:
-    """Numbers and their results, as they become ready; endless as the numbers are."""
-    if processes == 1:
-        for number in numbers:
-            yield number, work(number)
-    # Fresh interpreters: torch and BLAS do not survive a fork with their threads.
-    with ProcessPoolExecutor(processes, multiprocessing.get_context("spawn")) as pool:
-        running: dict[Future[FittedFields], int] = {}
-        while True:
-            while len(running) < processes:
-                number = next(numbers)
-                running[pool.submit(work, number)] = number
-            for future in wait(running, return_when=FIRST_COMPLETED).done:
-                yield running.pop(future), future.result()
 
 
 def fitted_block(block: int, seed: int, grid: tuple[int, int], size: int = BLOCK) -> FittedFields:

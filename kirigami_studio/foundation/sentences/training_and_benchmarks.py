@@ -76,6 +76,11 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "No targets found to measure on. Name a file, a folder with shapes, or 'library'."
     ),
     "benchmark.no_targets": mark("This suite needs at least one target, got none."),
+    "benchmark.unknown_method": mark("There is no method called '{method:.40}'. Choose among {choices}."),
+    "benchmark.runs_differ": mark(
+        "The runs in {path} were made with other settings or another version. Choose another folder."
+    ),
+    "benchmark.runs_unreadable": mark("Cannot read the runs in {path}. Delete the file, or choose another folder."),
     "benchmark.cma_missing": mark(
         "CMA-ES needs the package cma. Install it with pip install 'kirigami-studio[benchmark]', or leave CMA-ES out."
     ),

@@ -45,6 +45,21 @@ def test_that_spread_and_robustness_take_named_targets(capsys: pytest.CaptureFix
     assert robust["targets"]["prior"]["together_64"]["siou_difference"] != 0.0
 
 
+def test_that_solvers_go_on_in_their_folder(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    words = ["solvers", "--targets", "circle", "--grid", "4x4", "--evaluations", "26", "--seeds", "0"]
+    words += ["--processes", "1", "--out", str(tmp_path / "runs")]
+    first = figures(capsys, *words, "--methods", "swarm")
+    assert first["families"]["targets"]["rows"]["swarm"]["evaluations"] == 24.0
+    both = figures(capsys, *words, "--methods", "fit,swarm")
+    assert both["families"]["targets"]["rows"]["swarm"] == first["families"]["targets"]["rows"]["swarm"]
+    assert json.loads((tmp_path / "runs" / "solvers.json").read_text()) == both
+    assert len((tmp_path / "runs" / "solvers.jsonl").read_text().splitlines()) == 3
+    assert main(["benchmark", *words, "--methods", "swarm"]) == 0
+    assert "(92.6)" in capsys.readouterr().out
+    for wrong, code in ((["--methods", "annealing"], 2), (["--evaluations", "27"], 1)):
+        assert main(["benchmark", *words, *wrong]) == code
+
+
 def test_that_a_picture_can_show_the_worst_only(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
     sizes = []
     for worst in ((), ("--worst", "1")):
@@ -73,6 +88,7 @@ def test_that_an_unknown_variant_is_wrong_usage_before_anything_is_measured(
         (["nearness", "--seeds", "0", "1"], "--seeds"), (["polish", "--trim"], "--trim"),
         (["regularity", "--k", "2"], "--k"), (["designs", "--variants", "prior"], "--variants"),
         (["generation-speed", "--count", "1"], "--count"), (["speed", "--grid", "4x4"], "--grid"),
+        (["solvers", "--k", "2"], "--k"),
         (["lattice", "--seed", "1"], "--seed"), (["fabrication", "--targets", "heart"], "--targets"),
         (["cut-files", "--grid", "4x4"], "--grid"), (["as-cut", "--count", "1"], "--count"),
         (["everything"], "everything"), ([], "COMMAND"),

@@ -1,0 +1,88 @@
+"""Finished runs of a suite, one JSON line each, so that a suite that was stopped goes on where it ended."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+
+from kirigami_studio.foundation.errors import ExportError, KirigamiError
+from kirigami_studio.foundation.files import folder_of_one_writer
+
+#: What a suite tells its runs by, such as method, family, seed and target.
+Key = tuple[str | int, ...]
+Record = dict[str, object]
+
+
+class RunStore:
+    """Records of finished runs by key.
+
+    The first line of the file has the settings that all of them share.  What a killed process left half written at the
+    end is dropped: that run is done again.
+
+    Parameters
+    ----------
+    settings : dict
+        Plain values.
+    path : Path, optional
+        The file; without one, records last as long as the process.
+    """
+
+    def __init__(self, settings: Mapping[str, object], path: Path | None = None) -> None:
+        self.records: dict[Key, Record] = {}
+        self._path = path
+        # As they come back from a file: lists for tuples.
+        self._settings: object = json.loads(json.dumps(dict(settings)))
+
+    @classmethod
+    @contextmanager
+    def opened(cls, settings: Mapping[str, object], path: Path | None = None) -> Iterator[RunStore]:
+        """The store at ``path``, which nobody else may write meanwhile.
+
+        Raises
+        ------
+        KirigamiError
+            The file there has runs with other settings, or cannot be read.
+        ExportError
+            Somebody else is writing in that folder, or it cannot be written.
+        """
+        store = cls(settings, path)
+        if path is None:
+            yield store
+            return
+        with folder_of_one_writer(path.parent):
+            store._read(path)
+            yield store
+
+    def add(self, key: Key, record: Record) -> None:
+        """Keep one finished run, on disk before this returns."""
+        if self._path is not None:
+            self._append(self._path, {"key": list(key), **record})
+        self.records[key] = record
+
+    def _read(self, path: Path) -> None:
+        try:
+            content = path.read_bytes() if path.exists() else b""
+            whole = content[: content.rfind(b"\n") + 1]
+            if len(whole) < len(content):
+                os.truncate(path, len(whole))
+            lines = [json.loads(line) for line in whole.splitlines()]
+            if lines and lines[0]["settings"] != self._settings:
+                raise KirigamiError("benchmark.runs_differ", path=path)
+            for line in lines[1:]:
+                self.records[tuple(line.pop("key"))] = line
+        except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
+            raise KirigamiError("benchmark.runs_unreadable", path=path) from error
+        if not lines:
+            self._append(path, {"settings": self._settings})
+
+    def _append(self, path: Path, line: Record) -> None:
+        try:
+            with path.open("a", encoding="utf-8") as stream:
+                stream.write(json.dumps(line) + "\n")
+                stream.flush()
+                os.fsync(stream.fileno())
+        except OSError as error:
+            raise ExportError("file.not_written", path=path, reason=error.strerror or str(error)) from error
