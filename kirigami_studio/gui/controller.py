@@ -97,7 +97,7 @@ class Controller(QObject):
         self.estimates = AsCutEstimates(session, self)
         self.verdict = VerdictKeeper(session, self.as_cut, self)
         self.targeting = Targeting(session, self)
-        self.start = StartReader(session)
+        self.start = StartReader(session, self)
         self.second = SecondReader(session)
         self.artwork = ArtworkKeeper(session, self)
         self.filing = Filing(session, self.targeting, self)

@@ -111,6 +111,8 @@ class Dialogs(QObject):
         if self.start_board is None:
             self.start_board = StartBoard(self._window)
             self.start_board.taken.connect(self._controller.start.draw)
+            self.start_board.check_wanted.connect(self._controller.start.check)
+            self._controller.start.checked.connect(self.start_board.show_check)
             self._colour(self.start_board)
         self.start_board.begin(self._controller.document.settings.start.outline)
         bring_to_front(self.start_board)

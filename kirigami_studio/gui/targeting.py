@@ -14,10 +14,12 @@ from PySide6.QtCore import QObject, Signal
 
 from kirigami_studio.evaluate.second_target import USUAL_PHI, USUAL_WEIGHT, SecondTarget
 from kirigami_studio.foundation.words import tr
+from kirigami_studio.gui.designs.target_reader import next_run
 from kirigami_studio.gui.jobs.queue import JobCallbacks, LatestJob, Steps
 from kirigami_studio.gui.jobs.target_jobs import (
     Picture,
     TargetRead,
+    checking_start,
     making_start,
     reading_start,
     reading_target,
@@ -164,16 +166,27 @@ class Wish(Generic[T]):
         self._session.report_failure(sentence, trace)
 
 
-class StartReader:
+class StartReader(QObject):
     """Reads the outline that sheets are to have while they are flat; a shape that cannot be one changes nothing."""
 
-    def __init__(self, session: Session) -> None:
+    checked = Signal(Outline, str)  #: a shape that is being drawn, and why the next run would refuse it, or ""
+
+    def __init__(self, session: Session, parent: QObject) -> None:
+        super().__init__(parent)
         self._session = session
         self._wish = Wish[StartShape](session, self._take)
+        self._check = LatestJob[str](session.queue)
 
     def open(self, source: str) -> None:
         """Read a file, or a silhouette of the library by name."""
         self._wish.start(tr("reading {name}", name=Path(source).name), partial(reading_start, source))
+
+    def check(self, outline: Outline) -> None:
+        """Find out whether the next run would refuse a shape that is being drawn."""
+        document = self._session.document
+        steps = partial(checking_start, outline, document.settings, next_run(document))
+        callbacks: JobCallbacks[str] = JobCallbacks(partial(self.checked.emit, outline))
+        self._check.start(tr("checking the start"), steps, callbacks)
 
     def draw(self, outline: Outline) -> None:
         """Take a shape that was drawn."""

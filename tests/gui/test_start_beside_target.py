@@ -17,6 +17,7 @@ from PySide6.QtWidgets import QApplication
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.score import evaluate
+from kirigami_studio.foundation.errors import SheetError
 from kirigami_studio.gui.designs.generation import own_start
 from kirigami_studio.gui.designs.two_states import size_words, start_words
 from kirigami_studio.gui.dialogs.start_board import StartBoard
@@ -28,15 +29,18 @@ from kirigami_studio.gui.views.gallery_model import START_ROLE
 from kirigami_studio.gui.views.target_view import Tool
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.outlines import silhouettes
+from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.placed import Placed
-from kirigami_studio.outlines.starts import RECTANGLE, start_shape
-from kirigami_studio.polish.flat_sheet import uniform_sheet
+from kirigami_studio.outlines.starts import RECTANGLE, outline_start, start_shape
+from kirigami_studio.polish.flat_sheet import first_sheet, uniform_sheet
 from kirigami_studio.project import edits
 from kirigami_studio.project.document import Document
 
 Until = Callable[[Callable[[], bool]], None]
 HOLLOW = [(-40.0, -30.0), (40.0, -30.0), (40.0, 30.0), (0.0, -20.0), (-40.0, 30.0)]
 SHALLOW = [(-40.0, -30.0), (40.0, -30.0), (40.0, 30.0), (0.0, 0.0), (-40.0, 30.0)]
+#: A square with a slit from above, as wide as a twentieth of a side: 8 x 8 voids unfold around it, 6 x 6 do not.
+SLOTTED = [(0.0, 0.0), (40.0, 0.0), (40.0, 40.0), (21.0, 40.0), (21.0, 10.0), (19.0, 10.0), (19.0, 40.0), (0.0, 40.0)]
 HOUSE = [(-40.0, -30.0), (40.0, -30.0), (40.0, 30.0), (0.0, 50.0), (-40.0, 30.0)]
 
 
@@ -148,13 +152,51 @@ def test_that_a_start_is_drawn_on_its_own_board_which_says_where_it_is_hollow(wi
     assert window.target.start.size_text == f"100 {TIMES} 100 mm" and not board.isVisible()
     assert window.controller.history.steps == ("Change the start outline",)
     assert window.controller.document.target is None  # the target's board is another one
-
     window.settings.other_start_wanted.emit("draw")
     assert board.placed is not None and len(board.placed.outline.points) == 5  # to go on from
     board.cancel.click()
     assert window.target.start.name == "polygon"
     window.commands["undo"].trigger()
     assert window.target.start.name == "rectangle"
+
+
+def test_that_board_and_panel_say_what_the_next_run_would_refuse(heart: MainWindow, until: Until) -> None:
+    controller = heart.controller
+    controller.change_settings(grid=(6, 6))
+    heart.target.start.entries["draw"].trigger()
+    board = heart.dialogs.start_board
+    assert board is not None
+    draw(board, SLOTTED)
+    assert board.about.text().startswith("Checking") and board.take.isEnabled()
+    until(lambda: not board.about.text().startswith("Checking"))
+    with pytest.raises(SheetError) as problem:
+        first_sheet((6, 6), outline_start(Outline.from_points(SLOTTED, "polygon")))
+    refusal = str(problem.value)
+    assert board.about.text() == refusal and board.about.objectName() == "warning"
+    assert "25 % of its height from below" in refusal and len(board.view.hollows) == 1
+    assert board.take.isEnabled()  # another grid may do
+    board.take.click()
+    until(lambda: heart.target.start_refusal.isVisible())
+    assert heart.target.start_refusal.text() == refusal
+    assert heart.target.start_refusal.drawn_text() == "The start folds on this grid"
+    controller.change_settings(grid=(8, 8))
+    until(lambda: heart.settings.auto.accessibleDescription() != "")  # it was read anew
+    assert not heart.target.start_refusal.isVisible()
+    heart.target.start.entries["draw"].trigger()
+    until(lambda: board.about.text().startswith("It can be the start"))
+    assert board.about.objectName() == "muted" and board.view.hollows == ()
+    board.reject()
+
+
+@pytest.mark.torch
+def test_that_the_run_refuses_it_in_the_same_words(heart: MainWindow, until: Until) -> None:
+    controller = heart.controller
+    controller.change_settings(grid=(4, 4))
+    controller.start.draw(Outline.from_points(SLOTTED, "polygon"))
+    until(lambda: heart.target.start_refusal.isVisible())
+    heart.commands["generate"].trigger()
+    until(lambda: bool(heart.messages.messages) and not controller.running)
+    assert heart.messages.messages[-1].sentence == heart.target.start_refusal.text()
 
 
 def test_that_the_ends_of_the_slider_name_both_states_with_size_and_match(

@@ -68,6 +68,7 @@ class Connections(QObject):
         window.settings.show_grid_choice(
             None if reading is None else reading.grid, "" if reading is None else reading.reason
         )
+        window.target.show_start_refusal("" if reading is None else reading.start_refusal)
         if reading is not None and reading.grid is not None and settings.auto_grid:
             window.target.show_reach(reading.grid)
 

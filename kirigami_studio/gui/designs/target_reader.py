@@ -40,11 +40,12 @@ class TargetReader(QObject):
         self._job.stop()
 
     def _follow(self, document: Document) -> None:
-        request = _request(document)
+        request = next_run(document)
         asked = None
         if request is not None:
             sheet = (request.width_mm, request.least_feature_mm)
-            asked = (request.target, request.phi, request.symmetry, request.start, *sheet)
+            unfolding = () if request.start.is_plain else (request.grid, request.rim)
+            asked = (request.target, request.phi, request.symmetry, request.start, *sheet, *unfolding)
         if asked == self._asked:
             return
         self._asked, self._request = asked, request
@@ -61,7 +62,7 @@ class TargetReader(QObject):
             self._job.start(tr("reading the target's shape"), partial(reading_shape, self._request), callbacks)
 
 
-def _request(document: Document) -> Request | None:
+def next_run(document: Document) -> Request | None:
     """The run that the settings ask for, None where they ask for none."""
     if document.target is None:
         return None

@@ -168,7 +168,7 @@ class OutlineBoard(QDialog):
         try:
             made = change.make()
         except KirigamiError as error:
-            self._say(str(error), wrong=True)
+            self.say(str(error), wrong=True)
             return
         self.view.context.remember(made)
         self._steps = [*self._steps[: self._at + 1], made]
@@ -191,13 +191,21 @@ class OutlineBoard(QDialog):
         self.redo.setEnabled(self._at + 1 < len(self._steps))
         refusal = None if placed is None else self.refusal(placed.outline)
         self.take.setEnabled(placed is not None and refusal is None)
-        self._say(self._words.empty if placed is None else refusal or self._words.ready, wrong=refusal is not None)
+        if placed is None:
+            self.say(self._words.empty)
+        else:
+            self.say(refusal or self.ready(placed.outline), wrong=refusal is not None)
 
     def refusal(self, outline: Outline) -> str | None:
         """Why a shape cannot be taken, one sentence; None where it can."""
         return None
 
-    def _say(self, sentence: str, wrong: bool = False) -> None:
+    def ready(self, outline: Outline) -> str:
+        """What is said of a shape that can be taken."""
+        return self._words.ready
+
+    def say(self, sentence: str, wrong: bool = False) -> None:
+        """Show a sentence below the board."""
         self.about.setObjectName("warning" if wrong else "muted")
         self.about.style().polish(self.about)
         self.about.setText(sentence)

@@ -1,7 +1,8 @@
-"""The drawing board for the start: it says where a shape is too hollow to be one."""
+"""The drawing board for the start: it says where a shape is too hollow to be one, or folds on the grid."""
 
 from __future__ import annotations
 
+from PySide6.QtCore import Signal
 from PySide6.QtGui import QPainter
 from PySide6.QtWidgets import QWidget
 
@@ -27,8 +28,9 @@ WORDS = BoardWords(
 
 
 class StartBoard(OutlineBoard):
-    """Refuses shapes that are too hollow, and marks what is missing to them."""
+    """Refuses shapes that are too hollow, warns of those that the next run would refuse, and marks what is missing."""
 
+    check_wanted = Signal(Outline)  #: a shape with hollows, which :meth:`show_check` is to be told about
     view: StartView
 
     def __init__(self, parent: QWidget) -> None:
@@ -45,6 +47,19 @@ class StartBoard(OutlineBoard):
             return str(error)
         self.view.show_hollows(())
         return None
+
+    def ready(self, outline: Outline) -> str:
+        if not hollows(outline):
+            return super().ready(outline)
+        self.check_wanted.emit(outline)
+        return tr("Checking whether a sheet unfolds around the hollow …")
+
+    def show_check(self, outline: Outline, refusal: str) -> None:
+        """Say why the next run would refuse what is on the board, one sentence, or that it would not."""
+        if self.placed is None or self.placed.outline != outline:
+            return
+        self.view.show_hollows(hollows(outline) if refusal else ())
+        self.say(refusal or super().ready(outline), wrong=bool(refusal))
 
 
 class StartView(TargetView):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -16,6 +16,7 @@ from kirigami_studio.gui.jobs.queue import Cancel
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.starts import StartShape, outline_start
 from kirigami_studio.pipeline.request import Request
+from kirigami_studio.project.settings import DesignSettings
 
 if TYPE_CHECKING:
     from kirigami_studio.outlines.read_image import Traced
@@ -84,6 +85,37 @@ def making_start(outline: Outline, cancel: Cancel) -> Iterator[StartShape]:
     yield outline_start(outline)
 
 
+def checking_start(
+    outline: Outline, settings: DesignSettings, request: Request | None, cancel: Cancel
+) -> Iterator[str]:
+    """Find out why the next run would refuse a drawn start, one sentence, or "" where it would not.
+
+    The run is the ``request`` with another start; without one, as there is no target yet, its grid is the settings'.
+    """
+    from kirigami_studio.pipeline.auto_grid import predicted_for
+
+    start, grid = outline_start(outline), settings.grid
+    try:
+        if request is not None:
+            asked = replace(request, start=start)
+            grid = predicted_for(asked).grid if asked.grid is None else asked.grid
+    except KirigamiError as error:  # such as a symmetry that the start cannot have
+        yield str(error)
+    else:
+        yield start_refusal(start, grid, settings.rim)
+
+
+def start_refusal(start: StartShape, grid: tuple[int, int], rim: str) -> str:
+    """Why a run on a grid would refuse a start, one sentence; "" where it would not."""
+    from kirigami_studio.polish.flat_sheet import first_sheet
+
+    try:
+        first_sheet(grid, start, free_rim=rim == "free")
+    except KirigamiError as error:
+        return str(error)
+    return ""
+
+
 def tracing(picture: Picture, cancel: Cancel) -> Iterator[Traced]:
     """Trace a picture at its threshold."""
     from kirigami_studio.outlines.read_image import trace_image
@@ -117,11 +149,14 @@ class TargetReading:
         What a run would choose; None where the settings ask for a symmetry that the target is far from.
     reason : str
         Why, in one sentence.
+    start_refusal : str
+        Why the run would refuse the start on that grid, in one sentence; "" where it would not.
     """
 
     symmetry: str
     grid: tuple[int, int] | None
     reason: str
+    start_refusal: str = ""
 
 
 def reading_shape(request: Request, cancel: Cancel) -> Iterator[TargetReading]:
@@ -135,7 +170,8 @@ def reading_shape(request: Request, cancel: Cancel) -> Iterator[TargetReading]:
     except KirigamiError as error:
         yield TargetReading(found, None, str(error))
     else:
-        yield TargetReading(found, choice.grid, choice.reason)
+        grid = choice.grid if request.grid is None else request.grid
+        yield TargetReading(found, choice.grid, choice.reason, start_refusal(request.start, grid, request.rim))
 
 
 def _symmetry_sentence(found: TargetSymmetry) -> str:

@@ -35,6 +35,7 @@ class EndsLine(QWidget):
         for button in (self.start, self.passed, self.target):
             row.addWidget(button, 1)
             button.clicked.connect(lambda _=False, button=button: self.phi_wanted.emit(button.phi))
+        self.passed.hide()
         self._named = self._low = False
         self.show_states(None)
 

@@ -79,6 +79,10 @@ class TargetPanel(Card):
         self.reach.setObjectName("warning")
         self.reach.setAccessibleName(tr("Details that the grid may miss"))
         self.reach.setVisible(False)
+        self.start_refusal = ElidedLabel()
+        self.start_refusal.setObjectName("warning")
+        self.start_refusal.setAccessibleName(tr("Why the next run would refuse the start"))
+        self.start_refusal.setVisible(False)
         self.threshold = ThresholdBar()
         self.body.addWidget(self.tools)
         self.start = StartTile()
@@ -88,6 +92,7 @@ class TargetPanel(Card):
         boards.addWidget(self.view, 1)
         self.body.addLayout(boards, 1)
         self.body.addLayout(line)
+        self.body.addWidget(self.start_refusal)
         self.body.addWidget(self.reach)
         self.body.addWidget(self.refine)
         self.body.addWidget(self.threshold)
@@ -173,6 +178,11 @@ class TargetPanel(Card):
         if placed is not None and reach is not None:
             self._reach_texts = reach_texts(reach, placed.outline, placed.scale if known else None)
         self._show_reach_text()
+
+    def show_start_refusal(self, sentence: str) -> None:
+        """Say why the next run would refuse the start; nothing where it would not, or that is not known."""
+        self.start_refusal.setText(sentence, tr("The start folds on this grid"))
+        self.start_refusal.setVisible(bool(sentence))
 
     def _show_reach_text(self) -> None:
         whole, brief = self._reach_texts
