@@ -8,6 +8,8 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import asdict
 from pathlib import Path
 
+import numpy as np
+
 from kirigami_studio.cli.console import ProgressLine, plain, print_json, say
 from kirigami_studio.cli.inputs import read_targets
 from kirigami_studio.cli.option_types import parse_grid, parse_grid_or_auto
@@ -187,6 +189,48 @@ def solvers(arguments: argparse.Namespace) -> int:
         )
     arguments.out = None if folder is None else folder / "solvers.json"
     return _print_figures(arguments, line, asdict(figures), figures.sentences())
+
+
+#: Numbers of steps of a sweep: Euler steps of flows, DDIM steps of the diffusion model (paper, step sensitivity).
+FLOW_STEPS, DDIM_STEPS = (1, 2, 4, 8, 16, 32), (10, 25, 50, 100)
+#: Seed of the fields whose classes the Inception-style score is made of.
+REFERENCE_FIELDS, REFERENCE_SEED = 4096, 30_001
+
+
+def generators(arguments: argparse.Namespace) -> int:
+    """Conditional generators side by side; goes on where an earlier call ended."""
+    from kirigami_studio.benchmark.generator_table import (
+        TableSettings,
+        generator_lines,
+        generator_named,
+        measure_generators,
+    )
+    from kirigami_studio.benchmark.run_store import RunStore
+    from kirigami_studio.training.fields import mixed_fields
+
+    line = ProgressLine()
+    settings = TableSettings(arguments.k)
+    sources = tuple(dict.fromkeys(arguments.generators))
+    steps: dict[str, tuple[int, ...]] = {generator_named(one).name: FLOW_STEPS for one in sources}
+    steps |= {"diffusion": DDIM_STEPS, "cvae": (), "cgan": ()}
+    fields = mixed_fields(REFERENCE_FIELDS, 10, 10, np.random.default_rng(REFERENCE_SEED))
+    reference = fields.reshape(REFERENCE_FIELDS, -1)
+    targets = _target_sets(arguments, arguments.exact)
+    folder = None if arguments.out is None else Path(arguments.out)
+    with RunStore.opened(settings.to_json(), None if folder is None else folder / "generators.jsonl") as store:
+        figures = measure_generators(
+            targets,
+            sources,
+            tuple(dict.fromkeys(arguments.seeds)),
+            settings,
+            reference,
+            store,
+            steps if arguments.sweep else None,
+            arguments.processes,
+            _shown_on(line, "Runs"),
+        )
+    arguments.out = None if folder is None else folder / "generators.json"
+    return _print_figures(arguments, line, figures, generator_lines(figures["families"]))  # type: ignore[arg-type]
 
 
 def designs(arguments: argparse.Namespace) -> int:

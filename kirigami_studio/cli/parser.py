@@ -611,6 +611,20 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
         JSON,
     ), ("kirigami-studio benchmark solvers --out runs/solvers",
         "kirigami-studio benchmark solvers --count 5 --methods cma-es,fit --seeds 0 --processes 1")),
+    SubCommand("benchmark generators", "compare conditional generators, one sample a target (the paper's Table 2)",
+               "benchmarks:generators", (
+        *targets_of_a_suite(50), EXACT,
+        option("--generators", nargs="+", default=["prior"], metavar="GENERATOR",
+               help="bundled variants, and .safetensors files of training runs (default: prior)"),
+        samples(16), SEEDS,
+        option("--sweep", action="store_true",
+               help="also other numbers of steps: flows 1 to 32, diffusion 10 to 100"),
+        option("--processes", type=count, default=2, help="number of runs at the same time (default 2)"),
+        option("--out", default=None,
+               help="folder for generators.json and generators.jsonl, which has a line for each finished run; an "
+                    "earlier call may have begun it"),
+        JSON,
+    ), ("kirigami-studio benchmark generators --generators prior runs/cvae/cvae.safetensors --out runs/table-2",)),
     SubCommand("benchmark generation-speed", "time loading and sampling", "benchmarks:generation_speed", (
         VARIANTS, GRID, STEPS, *FIGURES,
     ), ("kirigami-studio benchmark generation-speed",)),

@@ -1,0 +1,419 @@
+"""Table 2 of the paper: one sample a target from every conditional generator, by the same geometry and evaluator.
+
+Generators are bundled variants, flow priors that were trained here, and the baselines (``baselines.stored``).  Each sees
+the target upright, draws one field for the table, and ``k`` fields for what is said about their variety.
+
+The paper's Inception-style score does not name its features.  Here a field's class is how near it lies to each of
+``CLASSES`` centres of training fields, in the space of their main components; the score of a target is
+exp(mean KL(p(class | sample) || mean of these)) over its samples (Salimans et al. 2016), and its mean over targets is
+told.  It compares the rows of one table, not ours with the paper's.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import time
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass
+from functools import cache, partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import torch
+from scipy.cluster.vq import kmeans2
+from scipy.special import rel_entr, softmax
+
+from kirigami_studio import __version__
+from kirigami_studio.baselines.conditional import ConditionalGenerator
+from kirigami_studio.baselines.stored import load_generator
+from kirigami_studio.benchmark.generator_suite import SUCCESS_SIOU, bootstrap_interval
+from kirigami_studio.benchmark.run_store import Key, Record, RunStore
+from kirigami_studio.evaluate.score import evaluate_many
+from kirigami_studio.foundation.arrays import FloatArray
+from kirigami_studio.foundation.errors import ModelError, UsageError
+from kirigami_studio.foundation.paper import LOG_RATIO_LIMIT
+from kirigami_studio.foundation.processes import results_of
+from kirigami_studio.generator.sampler import one_pose, one_torch_thread, posed, sample_fields
+from kirigami_studio.generator.weights import Model, load_model, load_weights
+from kirigami_studio.lattice.deployment import deploy
+from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.outlines.silhouettes import load
+
+#: Fields of a target by (target, count, seed, steps).
+Draw = Callable[[Outline, int, int, int], Sequence[RatioField]]
+
+CLASSES = 32
+COMPONENTS = 8
+
+
+@dataclass(frozen=True, slots=True)
+class PaperRow:
+    """A row of the paper's Table 2; shares from 0 to 1, milliseconds a sample."""
+
+    siou: float
+    siou_sd: float
+    success: float
+    milliseconds: float
+    inception: float
+
+
+PAPER = {
+    "cvae": PaperRow(0.836, 0.060, 0.510, 14.06, 1.62),
+    "cgan": PaperRow(0.876, 0.003, 0.778, 20.62, 1.74),
+    "diffusion": PaperRow(0.855, 0.003, 0.762, 473.30, 2.05),
+    "ot-cfm": PaperRow(0.942, 0.007, 0.987, 159.64, 1.89),
+}
+#: Steps of the flow in the paper, and of the bundled variants as the program uses them.
+PAPER_FLOW_STEPS, BUNDLED_STEPS = 8, 4
+
+
+@dataclass(frozen=True, slots=True)
+class Generator:
+    """A row of the table.
+
+    Attributes
+    ----------
+    name : str
+        A bundled variant's; else ``ot-cfm``, ``cvae``, ``cgan`` or ``diffusion``.
+    steps : int
+        Network evaluations of a sample.
+    digest : str
+        SHA-256 of the weights.
+    draw : callable
+    """
+
+    name: str
+    steps: int
+    digest: str
+    draw: Draw
+
+
+@cache
+def generator_named(source: str) -> Generator:
+    """Load a bundled variant, or weights of a training run (``.safetensors``).
+
+    Raises
+    ------
+    UsageError
+        No such variant.
+    ModelError
+        Weights that cannot be read.
+    """
+    if not source.endswith(".safetensors"):
+        model = load_model(source)
+        return Generator(source, BUNDLED_STEPS, model.digest, partial(_flow_fields, model))
+    path = Path(source)
+    try:
+        stored = load_generator(path)
+    except ModelError:
+        # Weights of a flow lie beside a manifest that names their network.
+        model = load_weights(path)
+        return Generator("ot-cfm", PAPER_FLOW_STEPS, model.digest, partial(_flow_fields, model))
+    digest = hashlib.sha256(path.read_bytes()).hexdigest()
+    return Generator(stored.kind, stored.network.usual_steps, digest, partial(_baseline_fields, stored.network))
+
+
+def _flow_fields(model: Model, target: Outline, count: int, seed: int, steps: int) -> Sequence[RatioField]:
+    shape = model.network.shape
+    return sample_fields(model, target, (shape.rows, shape.columns), count, seed, steps, poses=one_pose)
+
+
+def _baseline_fields(
+    network: ConditionalGenerator, target: Outline, count: int, seed: int, steps: int
+) -> Sequence[RatioField]:
+    pixels = network.pixels
+    with torch.inference_mode(), one_torch_thread():
+        masks = pixels.masks(posed(target, range(1), one_pose)).expand(count, -1, -1, -1)
+        z = network.draw(masks, torch.Generator().manual_seed(seed), steps).clamp(-LOG_RATIO_LIMIT, LOG_RATIO_LIMIT)
+    return [RatioField.from_log10(field) for field in z.double().numpy().reshape(count, pixels.rows, pixels.columns)]
+
+
+@dataclass(frozen=True, slots=True)
+class TableSettings:
+    """What all runs of a table share.
+
+    Attributes
+    ----------
+    k : int
+        Samples of a target by which variety is measured; with the first seed only.
+    """
+
+    k: int = 16
+
+    def to_json(self) -> dict[str, object]:
+        """Plain values, with the version and the constants that figures depend on."""
+        classes = {"classes": CLASSES, "components": COMPONENTS}
+        return {**asdict(self), **classes, "version": __version__}
+
+
+@dataclass(frozen=True, slots=True)
+class SampleRun:
+    """One sample of one generator for one target; with ``k`` samples for variety where that is above 1."""
+
+    source: str
+    digest: str
+    steps: int
+    family: str
+    seed: int
+    number: int
+    k: int
+    target: Outline
+
+    @property
+    def key(self) -> Key:
+        """What the run is found by again; other weights, and another target in the same place, are other runs."""
+        target = hashlib.sha256(np.round(self.target.points, 9).tobytes()).hexdigest()
+        return self.digest[:16], self.source, self.steps, self.family, self.seed, self.number, self.k, target[:16]
+
+
+def measure_generators(
+    targets: Mapping[str, Sequence[Outline]],
+    sources: Sequence[str],
+    seeds: Sequence[int],
+    settings: TableSettings,
+    reference: FloatArray,
+    store: RunStore,
+    sweep: Mapping[str, Sequence[int]] | None = None,
+    processes: int = 1,
+    report: Callable[[int, int], None] = lambda done, total: None,
+) -> dict[str, object]:
+    """Do the runs that ``store`` does not have yet, and make the table of all that were asked for.
+
+    Parameters
+    ----------
+    targets : mapping of str to sequence of Outline
+        By family.
+    sources : sequence of str
+        Bundled variants, or weight files.
+    seeds : sequence of int
+    settings : TableSettings
+    reference : (N, m n) float
+        z of training fields, which the classes are made of.
+    store : RunStore
+        With ``settings.to_json()``.
+    sweep : mapping of str to sequence of int, optional
+        Further numbers of steps of generators by their name, measured with the first seed.
+    processes : int
+        Runs at a time.
+    report : callable
+        Told (done, total) runs.
+
+    Returns
+    -------
+    figures : dict
+        The settings, and by family and generator: mean ``siou`` with its standard deviation over runs and over the
+        seeds' means and its bootstrap 95 % interval over targets; ``iou_exact``, ``success`` (sIoU >= 0.85 and
+        feasible), ``tv``, ``milliseconds`` a sample (processor time), ``distance`` between two samples (root mean
+        square of z), ``inception``, ``steps``, the ``paper``'s row; and ``sweep``: by number of steps ``siou`` and
+        ``success``.
+
+    Raises
+    ------
+    UsageError
+        No targets.
+    """
+    if not targets or not all(targets.values()):
+        raise UsageError("benchmark.no_targets")
+    sweep = sweep or {}
+    runs = list(_runs(targets, sources, seeds, settings, sweep))
+    waiting = [run for run in runs if run.key not in store.records]
+    done = len(runs) - len(waiting)
+    report(done, len(runs))
+    work = partial(sampled, classes=FieldClasses.of(reference))
+    for run, record in results_of(work, iter(waiting), processes):
+        store.add(run.key, record)
+        done += 1
+        report(done, len(runs))
+    families = {}
+    for family, outlines in targets.items():
+        of_family = [run for run in runs if run.family == family]
+        first = [store.records[run.key] for run in of_family if run.source == sources[0] and run.seed == seeds[0]]
+        families[family] = {
+            "targets": len(outlines),
+            "uniform": {"siou": _mean(first, "uniform_siou"), "iou_exact": _mean(first, "uniform_iou")},
+            **{
+                generator_named(source).name: _row([run for run in of_family if run.source == source], source, store)
+                for source in sources
+            },
+        }
+    return {"settings": settings.to_json(), "seeds": list(seeds), "families": families}
+
+
+def sampled(run: SampleRun, classes: FieldClasses) -> Record:
+    """Carry out one run; the same run gives the same record but for the milliseconds."""
+    generator = generator_named(run.source)
+    _warmed_up(run.source, run.steps)
+    began = time.process_time()
+    fields = generator.draw(run.target, 1, run.seed, run.steps)
+    milliseconds = 1e3 * (time.process_time() - began)
+    (score,) = evaluate_many([deploy(field) for field in fields], run.target)
+    record: Record = {
+        "siou": score.siou,
+        "iou_exact": score.iou_exact,
+        "uniform_siou": score.uniform_siou,
+        "uniform_iou": score.uniform_iou,
+        "feasible": score.feasible,
+        "tv": score.tv,
+        "milliseconds": milliseconds,
+    }
+    if run.k > 1:
+        z = np.array([field.log10.ravel() for field in generator.draw(run.target, run.k, run.seed, run.steps)])
+        record |= {"distance": mean_distance(z), "inception": classes.inception_score(z)}
+    return record
+
+
+def mean_distance(z: FloatArray) -> float:
+    """Root mean square difference of two fields, mean over all pairs of the rows of z (K, m n)."""
+    first, second = np.triu_indices(len(z), 1)
+    return float(np.sqrt(np.square(z[first] - z[second]).mean(axis=1)).mean())
+
+
+@dataclass(frozen=True, slots=True)
+class FieldClasses:
+    """Centres of training fields in the space of their main components.
+
+    Attributes
+    ----------
+    mean : (m n,) float
+        Of the training fields.
+    components : (COMPONENTS, m n) float
+    centres : (CLASSES, COMPONENTS) float
+    variance : float
+        Of the fields about their centres, mean over components.
+    """
+
+    mean: FloatArray
+    components: FloatArray
+    centres: FloatArray
+    variance: float
+
+    @classmethod
+    def of(cls, z: FloatArray) -> FieldClasses:
+        """Classes of training fields z (N, m n)."""
+        mean = z.mean(axis=0)
+        _, _, directions = np.linalg.svd(z - mean, full_matrices=False)
+        components = directions[:COMPONENTS]
+        seen = (z - mean) @ components.T
+        centres, nearest = kmeans2(seen, CLASSES, minit="++", seed=0)
+        variance = float(np.square(seen - centres[nearest]).sum(axis=1).mean() / COMPONENTS)
+        return cls(mean, components, centres, variance)
+
+    def inception_score(self, z: FloatArray) -> float:
+        """exp(mean KL(p(class | row) || mean over rows)) of z (K, m n): from 1, all alike, to min(K, CLASSES)."""
+        seen = (z - self.mean) @ self.components.T
+        exponent = -0.5 * np.square(seen[:, None] - self.centres[None]).sum(axis=2) / self.variance
+        likely = softmax(exponent, axis=1)
+        return float(np.exp(rel_entr(likely, likely.mean(axis=0)).sum(axis=1).mean()))
+
+
+@cache
+def _warmed_up(source: str, steps: int) -> Sequence[RatioField]:
+    """One sample for nothing: what a process loads and tabulates once belongs to no run."""
+    return generator_named(source).draw(load("circle"), 1, 0, steps)
+
+
+def _runs(
+    targets: Mapping[str, Sequence[Outline]],
+    sources: Sequence[str],
+    seeds: Sequence[int],
+    settings: TableSettings,
+    sweep: Mapping[str, Sequence[int]],
+) -> Iterator[SampleRun]:
+    """Target by target, so that what is there after a while is a table of fewer targets."""
+    for number in range(max(len(outlines) for outlines in targets.values())):
+        for family, outlines in targets.items():
+            if number >= len(outlines):
+                continue
+            for source in sources:
+                one = generator_named(source)
+                for seed in seeds:
+                    k = settings.k if seed == seeds[0] else 1
+                    yield SampleRun(source, one.digest, one.steps, family, seed, number, k, outlines[number])
+                for steps in sweep.get(one.name, ()):
+                    if steps != one.steps:
+                        yield SampleRun(source, one.digest, steps, family, seeds[0], number, 1, outlines[number])
+
+
+def _row(runs: Sequence[SampleRun], source: str, store: RunStore) -> dict[str, object]:
+    """Figures of one generator on one family."""
+    generator = generator_named(source)
+    usual = [run for run in runs if run.steps == generator.steps]
+    records = [store.records[run.key] for run in usual]
+    siou, exact = _values(records, "siou"), _values(records, "iou_exact")
+    varied = [record for run, record in zip(usual, records, strict=True) if run.k > 1]
+    row: dict[str, object] = {
+        "runs": len(records),
+        "steps": generator.steps,
+        "siou": float(siou.mean()),
+        "siou_sd": float(siou.std()),
+        "siou_sd_of_seeds": float(np.std(_means(siou, [run.seed for run in usual]))),
+        "siou_interval": bootstrap_interval(_means(siou, [run.number for run in usual])),
+        "iou_exact": float(exact.mean()),
+        "iou_exact_interval": bootstrap_interval(_means(exact, [run.number for run in usual])),
+        "success": _success(records),
+        "tv": _mean(records, "tv"),
+        "milliseconds": _mean(records, "milliseconds"),
+        "distance": _mean(varied, "distance") if varied else None,
+        "inception": _mean(varied, "inception") if varied else None,
+    }
+    counts = sorted({run.steps for run in runs})
+    if len(counts) > 1:
+        first = runs[0].seed
+        by_steps = {
+            steps: [store.records[run.key] for run in runs if run.steps == steps and run.seed == first]
+            for steps in counts
+        }
+        row["sweep"] = {
+            str(steps): {"siou": _mean(found, "siou"), "success": _success(found)} for steps, found in by_steps.items()
+        }
+    if generator.name in PAPER:
+        row["paper"] = asdict(PAPER[generator.name])
+    return row
+
+
+def _success(records: Sequence[Record]) -> float:
+    return float(np.mean([float(str(one["siou"])) >= SUCCESS_SIOU and bool(one["feasible"]) for one in records]))
+
+
+def _values(records: Sequence[Record], name: str) -> FloatArray:
+    return np.array([record[name] for record in records], dtype=np.float64)
+
+
+def _mean(records: Sequence[Record], name: str) -> float:
+    return float(_values(records, name).mean())
+
+
+def _means(values: FloatArray, groups: Sequence[int]) -> FloatArray:
+    """Mean of each group, in the order of their first members."""
+    of = np.array(groups)
+    return np.array([values[of == group].mean() for group in dict.fromkeys(groups)])
+
+
+def generator_lines(figures: Mapping[str, dict[str, dict[str, Any]]]) -> Iterator[str]:
+    """The table for people, by family: percentages, the paper's number in brackets."""
+    for family, rows in figures.items():
+        yield f"{family}: {rows['targets']} targets"
+        yield (
+            f"  {'':13}{'sIoU %':>22}{'exact %':>9}{'success %':>16}{'ms a sample':>18}{'TV':>7}{'distance':>10}"
+            f"{'IS (ours)':>11}"
+        )
+        uniform = rows["uniform"]
+        yield f"  {'uniform sheet':13}{100 * uniform['siou']:9.1f}{'':13}{100 * uniform['iou_exact']:9.1f}"
+        for name, row in rows.items():
+            if name in ("targets", "uniform"):
+                continue
+            paper = PAPER.get(name)
+            siou, success, time_of_one = ("", "", "")
+            if paper is not None:
+                siou, success = f"({100 * paper.siou:.1f})", f"({100 * paper.success:.1f})"
+                time_of_one = f"({paper.milliseconds:.0f})"
+            distance, inception = row["distance"] or 0.0, row["inception"] or 0.0
+            yield (
+                f"  {name:13}{100 * row['siou']:9.1f} +- {100 * row['siou_sd']:4.1f} {siou:6}"
+                f"{100 * row['iou_exact']:8.1f}{100 * row['success']:9.1f} {success:7}{row['milliseconds']:10.1f} "
+                f"{time_of_one:7}{row['tv']:7.2f}{distance:10.3f}{inception:11.2f}"
+            )
+            for steps, at in row.get("sweep", {}).items():
+                yield f"    {steps + ' steps':>11}{100 * at['siou']:9.1f}{'':29}{100 * at['success']:9.1f}"

@@ -1,0 +1,99 @@
+"""Table 2: rows, variety, storage, resumed tables."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import torch
+
+from kirigami_studio.baselines.cgan import Cgan
+from kirigami_studio.baselines.conditional import FieldPixels
+from kirigami_studio.baselines.stored import store_generator
+from kirigami_studio.benchmark.generator_table import (
+    CLASSES,
+    FieldClasses,
+    TableSettings,
+    generator_lines,
+    generator_named,
+    mean_distance,
+    measure_generators,
+)
+from kirigami_studio.benchmark.run_store import RunStore
+from kirigami_studio.foundation.errors import ModelError, UsageError
+from kirigami_studio.outlines.silhouettes import load
+from kirigami_studio.training.fields import mixed_fields
+
+pytestmark = pytest.mark.torch
+SETTINGS = TableSettings(k=4)
+
+
+@pytest.fixture(scope="module")
+def reference() -> np.ndarray:
+    return mixed_fields(256, 10, 10, np.random.default_rng(0)).reshape(256, -1)
+
+
+@pytest.fixture(scope="module")
+def weights(tmp_path_factory: pytest.TempPathFactory) -> str:
+    torch.manual_seed(0)
+    network = Cgan(FieldPixels(latent=8, mask=32), (8, 8), 8)
+    return str(store_generator("cgan", network, tmp_path_factory.mktemp("weights") / "cgan.safetensors", {}))
+
+
+def table(sources: list[str], reference: np.ndarray, store: RunStore, **options: object) -> dict:
+    targets = {"library": [load("circle"), load("heart")]}
+    figures = measure_generators(targets, sources, (0, 1), SETTINGS, reference, store, **options)  # type: ignore[arg-type]
+    return figures["families"]["library"]  # type: ignore[index, return-value]
+
+
+def test_that_the_bundled_prior_is_ahead_of_random_weights_in_every_column(reference: np.ndarray, weights: str) -> None:
+    rows = table(["prior", weights], reference, RunStore(SETTINGS.to_json()))
+    assert set(rows) == {"targets", "uniform", "prior", "cgan"}
+    prior, random = rows["prior"], rows["cgan"]
+    assert prior["siou"] > random["siou"] and prior["siou"] > rows["uniform"]["siou"]
+    assert prior["success"] >= random["success"] and prior["runs"] == random["runs"] == 4
+    assert random["paper"]["siou"] == 0.876 and "paper" not in prior
+    assert prior["siou_interval"][0] <= prior["siou"] <= prior["siou_interval"][1]
+    lines = list(generator_lines({"library": rows}))
+    assert lines[0] == "library: 2 targets" and any("(87.6)" in line for line in lines)
+
+
+def test_that_a_table_goes_on_where_it_ended_and_repeats(reference: np.ndarray, weights: str, tmp_path: Path) -> None:
+    path = tmp_path / "runs.jsonl"
+    with RunStore.opened(SETTINGS.to_json(), path) as store:
+        first = table([weights], reference, store)
+    done: list[tuple[int, int]] = []
+    with RunStore.opened(SETTINGS.to_json(), path) as store:
+        again = table([weights], reference, store, report=lambda one, all_of: done.append((one, all_of)))
+    assert done == [(4, 4)] and again == first
+    fresh = table([weights], reference, RunStore(SETTINGS.to_json()))
+    for rows in (first, fresh):
+        rows["cgan"].pop("milliseconds")
+    assert fresh == first
+
+
+def test_that_a_sweep_measures_other_numbers_of_steps(reference: np.ndarray) -> None:
+    rows = table(["prior"], reference, RunStore(SETTINGS.to_json()), sweep={"prior": (1, 4)})
+    assert set(rows["prior"]["sweep"]) == {"1", "4"}
+    assert rows["prior"]["sweep"]["1"]["siou"] <= rows["prior"]["sweep"]["4"]["siou"] + 0.02
+
+
+def test_that_like_samples_score_1_and_unlike_ones_more(reference: np.ndarray) -> None:
+    classes = FieldClasses.of(reference)
+    same = np.repeat(reference[:1], 8, axis=0)
+    assert classes.inception_score(same) == pytest.approx(1.0)
+    assert 1.5 < classes.inception_score(reference[:64]) <= CLASSES
+    assert mean_distance(same) == 0.0 < mean_distance(reference[:8])
+
+
+def test_that_unknown_generators_are_refused(tmp_path: Path) -> None:
+    with pytest.raises(UsageError) as variant:
+        generator_named("no-such-variant")
+    assert variant.value.code == "model.unknown_variant"
+    (tmp_path / "broken.safetensors").write_bytes(b"no weights")
+    with pytest.raises(ModelError):
+        generator_named(str(tmp_path / "broken.safetensors"))
+    with pytest.raises(UsageError) as targets:
+        measure_generators({}, ["prior"], (0,), SETTINGS, np.zeros((2, 4)), RunStore({}))
+    assert targets.value.code == "benchmark.no_targets"
