@@ -76,7 +76,7 @@ class Generator:
     Attributes
     ----------
     name : str
-        A bundled variant's; else ``ot-cfm``, ``cvae``, ``cgan`` or ``diffusion``.
+        A bundled variant's; of a training run ``ot-cfm`` for a prior, the aligned variant's, or a baseline's kind.
     steps : int
         Network evaluations of a sample.
     digest : str
@@ -110,7 +110,8 @@ def generator_named(source: str) -> Generator:
     except ModelError:
         # Weights of a flow lie beside a manifest that names their network.
         model = load_weights(path)
-        return Generator("ot-cfm", PAPER_FLOW_STEPS, model.digest, partial(_flow_fields, model))
+        name = "ot-cfm" if model.variant == "prior" else model.variant
+        return Generator(name, PAPER_FLOW_STEPS, model.digest, partial(_flow_fields, model))
     digest = hashlib.sha256(path.read_bytes()).hexdigest()
     return Generator(stored.kind, stored.network.usual_steps, digest, partial(_baseline_fields, stored.network))
 
@@ -212,10 +213,13 @@ def measure_generators(
     Raises
     ------
     UsageError
-        No targets.
+        No targets, or two generators of one name.
     """
     if not targets or not all(targets.values()):
         raise UsageError("benchmark.no_targets")
+    names = [generator_named(source).name for source in sources]
+    if len(set(names)) < len(names):
+        raise UsageError("benchmark.generators_alike", names=", ".join(names))
     sweep = sweep or {}
     runs = list(_runs(targets, sources, seeds, settings, sweep))
     waiting = [run for run in runs if run.key not in store.records]

@@ -75,6 +75,7 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "benchmark.no_targets_found": mark(
         "No targets found to measure on. Name a file, a folder with shapes, or 'library'."
     ),
+    "benchmark.generators_alike": mark("Two of these generators have one name: {names}. Compare them in two calls."),
     "benchmark.no_targets": mark("This suite needs at least one target, got none."),
     "benchmark.unknown_method": mark("There is no method called '{method:.40}'. Choose among {choices}."),
     "benchmark.runs_differ": mark(

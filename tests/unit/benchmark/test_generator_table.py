@@ -97,3 +97,11 @@ def test_that_unknown_generators_are_refused(tmp_path: Path) -> None:
     with pytest.raises(UsageError) as targets:
         measure_generators({}, ["prior"], (0,), SETTINGS, np.zeros((2, 4)), RunStore({}))
     assert targets.value.code == "benchmark.no_targets"
+
+
+def test_that_two_rows_of_one_name_are_refused(reference: np.ndarray, weights: str) -> None:
+    other = str(Path(weights).with_name("other.safetensors"))
+    Path(other).write_bytes(Path(weights).read_bytes())
+    with pytest.raises(UsageError) as caught:
+        table([weights, other], reference, RunStore(SETTINGS.to_json()))
+    assert caught.value.code == "benchmark.generators_alike"
