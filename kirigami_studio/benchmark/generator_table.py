@@ -1,7 +1,7 @@
 """Table 2 of the paper: one sample a target from every conditional generator, by the same geometry and evaluator.
 
-Generators are bundled variants, flow priors that were trained here, and the baselines (``baselines.stored``).  Each sees
-the target upright, draws one field for the table, and ``k`` fields for what is said about their variety.
+Generators are bundled variants, flow priors trained here, and the baselines (``baselines.stored``).  Each sees the
+target upright, draws one field for the table, and ``k`` fields for what is said about their variety.
 
 The paper's Inception-style score does not name its features.  Here a field's class is how near it lies to each of
 ``CLASSES`` centres of training fields, in the space of their main components; the score of a target is
@@ -28,7 +28,7 @@ from kirigami_studio import __version__
 from kirigami_studio.baselines.conditional import ConditionalGenerator
 from kirigami_studio.baselines.stored import load_generator
 from kirigami_studio.benchmark.generator_suite import SUCCESS_SIOU, bootstrap_interval
-from kirigami_studio.benchmark.run_store import Key, Record, RunStore
+from kirigami_studio.benchmark.run_store import Key, Record, RunStore, group_means, mean_of, target_key, values_of
 from kirigami_studio.evaluate.score import evaluate_many
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import ModelError, UsageError
@@ -165,8 +165,8 @@ class SampleRun:
     @property
     def key(self) -> Key:
         """What the run is found by again; other weights, and another target in the same place, are other runs."""
-        target = hashlib.sha256(np.round(self.target.points, 9).tobytes()).hexdigest()
-        return self.digest[:16], self.source, self.steps, self.family, self.seed, self.number, self.k, target[:16]
+        own = self.digest[:16], self.source, self.steps
+        return *own, self.family, self.seed, self.number, self.k, target_key(self.target)
 
 
 def measure_generators(
@@ -236,7 +236,7 @@ def measure_generators(
         first = [store.records[run.key] for run in of_family if run.source == sources[0] and run.seed == seeds[0]]
         families[family] = {
             "targets": len(outlines),
-            "uniform": {"siou": _mean(first, "uniform_siou"), "iou_exact": _mean(first, "uniform_iou")},
+            "uniform": {"siou": mean_of(first, "uniform_siou"), "iou_exact": mean_of(first, "uniform_iou")},
             **{
                 generator_named(source).name: _row([run for run in of_family if run.source == source], source, store)
                 for source in sources
@@ -345,22 +345,22 @@ def _row(runs: Sequence[SampleRun], source: str, store: RunStore) -> dict[str, o
     generator = generator_named(source)
     usual = [run for run in runs if run.steps == generator.steps]
     records = [store.records[run.key] for run in usual]
-    siou, exact = _values(records, "siou"), _values(records, "iou_exact")
+    siou, exact = values_of(records, "siou"), values_of(records, "iou_exact")
     varied = [record for run, record in zip(usual, records, strict=True) if run.k > 1]
     row: dict[str, object] = {
         "runs": len(records),
         "steps": generator.steps,
         "siou": float(siou.mean()),
         "siou_sd": float(siou.std()),
-        "siou_sd_of_seeds": float(np.std(_means(siou, [run.seed for run in usual]))),
-        "siou_interval": bootstrap_interval(_means(siou, [run.number for run in usual])),
+        "siou_sd_of_seeds": float(np.std(group_means(siou, [run.seed for run in usual]))),
+        "siou_interval": bootstrap_interval(group_means(siou, [run.number for run in usual])),
         "iou_exact": float(exact.mean()),
-        "iou_exact_interval": bootstrap_interval(_means(exact, [run.number for run in usual])),
+        "iou_exact_interval": bootstrap_interval(group_means(exact, [run.number for run in usual])),
         "success": _success(records),
-        "tv": _mean(records, "tv"),
-        "milliseconds": _mean(records, "milliseconds"),
-        "distance": _mean(varied, "distance") if varied else None,
-        "inception": _mean(varied, "inception") if varied else None,
+        "tv": mean_of(records, "tv"),
+        "milliseconds": mean_of(records, "milliseconds"),
+        "distance": mean_of(varied, "distance") if varied else None,
+        "inception": mean_of(varied, "inception") if varied else None,
     }
     counts = sorted({run.steps for run in runs})
     if len(counts) > 1:
@@ -370,7 +370,8 @@ def _row(runs: Sequence[SampleRun], source: str, store: RunStore) -> dict[str, o
             for steps in counts
         }
         row["sweep"] = {
-            str(steps): {"siou": _mean(found, "siou"), "success": _success(found)} for steps, found in by_steps.items()
+            str(steps): {"siou": mean_of(found, "siou"), "success": _success(found)}
+            for steps, found in by_steps.items()
         }
     if generator.name in PAPER:
         row["paper"] = asdict(PAPER[generator.name])
@@ -379,20 +380,6 @@ def _row(runs: Sequence[SampleRun], source: str, store: RunStore) -> dict[str, o
 
 def _success(records: Sequence[Record]) -> float:
     return float(np.mean([float(str(one["siou"])) >= SUCCESS_SIOU and bool(one["feasible"]) for one in records]))
-
-
-def _values(records: Sequence[Record], name: str) -> FloatArray:
-    return np.array([record[name] for record in records], dtype=np.float64)
-
-
-def _mean(records: Sequence[Record], name: str) -> float:
-    return float(_values(records, name).mean())
-
-
-def _means(values: FloatArray, groups: Sequence[int]) -> FloatArray:
-    """Mean of each group, in the order of their first members."""
-    of = np.array(groups)
-    return np.array([values[of == group].mean() for group in dict.fromkeys(groups)])
 
 
 def generator_lines(figures: Mapping[str, dict[str, dict[str, Any]]]) -> Iterator[str]:

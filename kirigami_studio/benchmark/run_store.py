@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
+import numpy as np
+
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import ExportError, KirigamiError
 from kirigami_studio.foundation.files import folder_of_one_writer
+from kirigami_studio.outlines.outline import Outline
 
 #: What a suite tells its runs by, such as method, family, seed and target.
 Key = tuple[str | int, ...]
@@ -86,3 +91,24 @@ class RunStore:
                 os.fsync(stream.fileno())
         except OSError as error:
             raise ExportError("file.not_written", path=path, reason=error.strerror or str(error)) from error
+
+
+def target_key(target: Outline) -> str:
+    """Short name of a target's polygon, so that runs of another target in the same place are other runs."""
+    return hashlib.sha256(np.round(target.points, 9).tobytes()).hexdigest()[:16]
+
+
+def values_of(records: Sequence[Record], name: str) -> FloatArray:
+    """One number of every record: (N,)."""
+    return np.array([record[name] for record in records], dtype=np.float64)
+
+
+def mean_of(records: Sequence[Record], name: str) -> float:
+    """Mean of one number over records."""
+    return float(values_of(records, name).mean())
+
+
+def group_means(values: FloatArray, groups: Sequence[int]) -> FloatArray:
+    """Mean of the values of each group, in the order of the groups' first members."""
+    of = np.array(groups)
+    return np.array([values[of == group].mean() for group in dict.fromkeys(groups)])

@@ -11,7 +11,6 @@ The paper gives the box, ratios from 0.1 to 10, and not the variable.  The solve
 
 from __future__ import annotations
 
-import hashlib
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
@@ -23,7 +22,7 @@ from kirigami_studio import __version__
 from kirigami_studio.baselines.search import Box, Judge, Stopping, search
 from kirigami_studio.baselines.solvers import SOLVERS
 from kirigami_studio.benchmark.generator_suite import SUCCESS_SIOU, bootstrap_interval
-from kirigami_studio.benchmark.run_store import Key, Record, RunStore
+from kirigami_studio.benchmark.run_store import Key, Record, RunStore, group_means, mean_of, target_key, values_of
 from kirigami_studio.evaluate.mask_siou import mask_siou
 from kirigami_studio.evaluate.paper_evaluator import judge
 from kirigami_studio.evaluate.score import Score, evaluate, evaluate_many
@@ -113,8 +112,7 @@ class SolverRun:
     @property
     def key(self) -> Key:
         """What the run is found by again; another target in the same place is another run."""
-        target = hashlib.sha256(np.round(self.target.points, 9).tobytes()).hexdigest()
-        return self.method, self.family, self.seed, self.number, target[:16]
+        return self.method, self.family, self.seed, self.number, target_key(self.target)
 
 
 @dataclass(frozen=True, slots=True)
@@ -350,45 +348,31 @@ def _table(runs: Sequence[SolverRun], methods: Sequence[str], store: RunStore) -
     records = [store.records[run.key] for run in runs]
     return FamilyTable(
         len({run.number for run in runs}),
-        _mean(records, "uniform_siou"),
-        _mean(records, "uniform_iou"),
+        mean_of(records, "uniform_siou"),
+        mean_of(records, "uniform_iou"),
         {method: _row(method, [run for run in runs if run.method == method], store) for method in methods},
     )
 
 
 def _row(method: str, runs: Sequence[SolverRun], store: RunStore) -> Row:
     records = [store.records[run.key] for run in runs]
-    siou, exact, counted = (_values(records, name) for name in ("siou", "iou_exact", "evaluations"))
+    siou, exact, counted = (values_of(records, name) for name in ("siou", "iou_exact", "evaluations"))
     numbers, seeds = [run.number for run in runs], [run.seed for run in runs]
     feasible = np.array([bool(record["feasible"]) for record in records])
     return Row(
         runs=len(records),
         siou=float(siou.mean()),
         siou_sd=float(siou.std()),
-        siou_sd_of_seeds=float(np.std(_means(siou, seeds))),
-        siou_interval=bootstrap_interval(_means(siou, numbers)),
+        siou_sd_of_seeds=float(np.std(group_means(siou, seeds))),
+        siou_interval=bootstrap_interval(group_means(siou, numbers)),
         iou_exact=float(exact.mean()),
-        iou_exact_interval=bootstrap_interval(_means(exact, numbers)),
-        siou_masks=_mean(records, "siou_masks"),
+        iou_exact_interval=bootstrap_interval(group_means(exact, numbers)),
+        siou_masks=mean_of(records, "siou_masks"),
         success=float(((siou >= SUCCESS_SIOU) & feasible).mean()),
         no_candidate=sum(record["candidates"] == 0 for record in records),
-        tv=_mean(records, "tv"),
+        tv=mean_of(records, "tv"),
         evaluations=float(counted.mean()),
         most_evaluations=int(counted.max()),
-        seconds=_mean(records, "seconds"),
+        seconds=mean_of(records, "seconds"),
         paper=PAPER.get(method),
     )
-
-
-def _values(records: Sequence[Record], name: str) -> FloatArray:
-    return np.array([record[name] for record in records], dtype=np.float64)
-
-
-def _mean(records: Sequence[Record], name: str) -> float:
-    return float(_values(records, name).mean())
-
-
-def _means(values: FloatArray, groups: Sequence[int]) -> FloatArray:
-    """Mean of each group, in the order of their first members."""
-    of = np.array(groups)
-    return np.array([values[of == group].mean() for group in dict.fromkeys(groups)])
