@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import json
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 
 import numpy as np
@@ -278,7 +278,7 @@ def starts(arguments: argparse.Namespace) -> int:
     from kirigami_studio.benchmark.start_suite import design_pairs, pair_figures, random_sheets
 
     line = ProgressLine()
-    shapes = [start_shape(name) for name in arguments.starts]
+    shapes = [replace(start_shape(name), weight=arguments.start_weight) for name in arguments.starts]
     outlines = [target.read() for target in read_targets(arguments.targets)]
     report = _shown_on(line, "Pairs")
     grid = parse_grid_or_auto(arguments.grid)

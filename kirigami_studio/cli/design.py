@@ -21,7 +21,7 @@ from kirigami_studio.export.svg import write_layout_svg
 from kirigami_studio.foundation.errors import Cancelled, FabricationError, UsageError
 from kirigami_studio.foundation.files import check_folder, write_atomically
 from kirigami_studio.foundation.words import tr, tr_n
-from kirigami_studio.lattice.laying import lost_to_chords, start_error
+from kirigami_studio.lattice.laying import lost_to_chords, start_error, start_match
 from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.lattice.sheet_files import sheet_json
 from kirigami_studio.outlines.outline import Outline
@@ -48,7 +48,7 @@ from kirigami_studio.project.verdict import Verdict, assess, look_at, refused
 def design(arguments: argparse.Namespace) -> int:
     """Design every target; one JSON object a line for many, files only where --out is given."""
     grid = parse_grid_or_auto(arguments.grid)
-    start = start_shape(arguments.start)
+    start = replace(start_shape(arguments.start), weight=arguments.start_weight)
     second = second_target(arguments)
     fabrication = material_settings(arguments)
     regular = REGULAR[arguments.prefer] if arguments.regular is None else arguments.regular
@@ -169,6 +169,8 @@ def summary(result: Result) -> dict[str, object]:
             "name": result.request.start.name,
             "lost_to_chords": lost_to_chords(sheet),
             "error": start_error(sheet),
+            "iou": start_match(sheet),
+            "weight": result.request.start.weight,
         }
     second = result.request.second
     if second is not None and result.best.second is not None:

@@ -11,6 +11,7 @@ from typing import Any
 from kirigami_studio import __version__
 from kirigami_studio.cli.option_types import amount, angle, copies, count, number, positive, share, whole
 from kirigami_studio.fabricate.options import ConnectorStyle, CutOrder
+from kirigami_studio.outlines.starts import USUAL_WEIGHT
 from kirigami_studio.pipeline.request import RIMS
 from kirigami_studio.polish.preferences import PREFERENCES
 from kirigami_studio.polish.symmetry import SYMMETRIES
@@ -109,6 +110,15 @@ START = option(
     metavar="SHAPE",
     help="shape of the flat sheet: rectangle, square, rectangle:W:H, circle, ellipse:W:H, triangle, hexagon, "
     "polygon:N, a file or library name of a shape, hollows and all (default rectangle)",
+)
+#: How firmly they keep that.
+START_WEIGHT = option(
+    "--start-weight",
+    type=positive,
+    default=USUAL_WEIGHT,
+    metavar="WEIGHT",
+    help="how firmly round parts and hollows of the start are held: at 0.01, say, the flat sheet may be a little off "
+    "for a better match (default 1)",
 )
 
 #: What sheets may be like, and which of them come first.
@@ -227,6 +237,7 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
                help="voids, ROWSxCOLUMNS, or auto: as coarse as the shape allows (default auto)"),
         PHI,
         START,
+        START_WEIGHT,
         option("--also", default=None, metavar="TARGET",
                help="second target, a file or library name, that the sheet should show on its way from flat"),
         option("--at-deg", type=positive, default=None, metavar="DEGREES",
@@ -585,6 +596,7 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
                     "(default: circle triangle hexagon ellipse square)"),
         option("--targets", nargs="+", default=["square", "circle", "heart", "star", "drop"],
                help="silhouettes, files or folders (default: square circle heart star drop)"),
+        START_WEIGHT,
         option("--grid", default="auto", help="voids, ROWSxCOLUMNS or auto (default auto)"),
         samples(32),
         option("--polish", type=whole, default=15, help="polishing steps (default 15)"),

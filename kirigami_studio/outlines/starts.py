@@ -33,6 +33,8 @@ MOST_HOLLOW = 0.35
 ACCURACY = 1e-4
 #: A mirror axis within this (radians) of upright or level stays where it is.
 UPRIGHT = 1e-3
+#: Weight of a start unless another is asked for, and the largest.
+USUAL_WEIGHT, HEAVIEST = 1.0, 10.0
 #: What :func:`start_shape` reads beside files and library names.
 KINDS = ("rectangle", "square", "circle", "ellipse", "triangle", "hexagon")
 
@@ -49,11 +51,24 @@ class StartShape:
         Its mirror axis is upright if it has one; None for a rectangle.
     aspect : float or None
         Width over height of a rectangle; None for square cells, whatever the grid.
+    weight : float, above 0, up to :data:`HEAVIEST`
+        How firmly fits hold round parts and hollows of the outline, see ``polish.chords``: below 1 the flat sheet may
+        be a little off its start for a better match.  Straight sides between sharp corners are met at any weight.
+
+    Raises
+    ------
+    UsageError
+        A weight out of range.
     """
 
     name: str = "rectangle"
     outline: Outline | None = None
     aspect: float | None = None
+    weight: float = USUAL_WEIGHT
+
+    def __post_init__(self) -> None:
+        if not 0.0 < self.weight <= HEAVIEST:
+            raise UsageError("start.weight_out_of_range", weight=self.weight, most=HEAVIEST)
 
     @property
     def is_plain(self) -> bool:

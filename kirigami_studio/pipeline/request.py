@@ -14,6 +14,7 @@ from kirigami_studio.lattice.ratio_field import check_grid
 from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.starts import RECTANGLE, StartShape
+from kirigami_studio.outlines.starts import USUAL_WEIGHT as USUAL_START_WEIGHT
 from kirigami_studio.polish.continuation import Wishes
 from kirigami_studio.polish.even_panels import even_weight
 from kirigami_studio.polish.flat_sheet import first_sheet, width_in_cells
@@ -285,6 +286,8 @@ def provenance(request: Request, digest: str) -> dict[str, str]:
     known |= {"symmetry": request.symmetry, "rim": request.rim, "regular": f"{request.regular:g}"}
     if not request.start.is_plain:
         known["start"] = request.start.name
+    if request.start.weight != USUAL_START_WEIGHT:
+        known["start_weight"] = f"{request.start.weight:g}"
     if request.start.outline is not None:
         known["start_sha256"] = request.start.digest
     if request.second is not None:

@@ -92,6 +92,7 @@ class PolishTask:
                     free_rim=request.rim == "free",
                     symmetry=symmetry,
                     second=request.second,
+                    start_weight=request.start.weight,
                 )
             (better,) = scored(request, [fit.sheet], candidate.index, candidate.origin, fitted=True)
             evaluations += fit.evaluations + 1

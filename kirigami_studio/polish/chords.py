@@ -1,7 +1,8 @@
 """A round start kept round: what the chords between mouths cut off, or add, may not grow much when mouths move.
 
 Evenly spaced mouths cut off least; a fit that gathers them would leave long chords elsewhere.  The term is the square
-of what is cut off beyond that and a little more, as a share of the start's area.
+of what is cut off beyond that and a little more, as a share of the start's area.  Its weight is the user's wish, see
+``outlines.starts.StartShape``: a softer start gives way where that helps the match.
 """
 
 from __future__ import annotations
@@ -13,8 +14,9 @@ import numpy as np
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.lattice.sheet import RimPath, rim_table
 
-#: Weight of the square of the share that is cut off beyond what is allowed: a thousandth of the area then weighs six
-#: times as much as the whole mismatch of a good fit, and round sheets stay within half a percent of their start.
+#: Weight of the square of the share that is cut off beyond what is allowed, for a start of weight 1: a thousandth of
+#: the area then weighs six times as much as the whole mismatch of a good fit, and round sheets stay within half a
+#: percent of their start.
 WEIGHT = 600.0
 #: What may be cut off in any case, as a share of the area; where even mouths cut off more, as much as they do.
 ALLOWED = 0.008
@@ -33,20 +35,23 @@ class Chords:
         Of the start outline.
     allowed : float
         Share of it that may be cut off, or added across hollows.
+    weight : float
+        Of the square of what is cut off beyond that.
     """
 
     path: RimPath
     area: float
     allowed: float
+    weight: float
 
     @classmethod
-    def of(cls, path: RimPath) -> Chords | None:
-        """The term; None for a start that chords do not cut, such as a rectangle."""
+    def of(cls, path: RimPath, start_weight: float = 1.0) -> Chords | None:
+        """The term, for a start of some weight; None for a start that chords do not cut, such as a rectangle."""
         if path.start is None:
             return None
         area = _area(path.outline())
         even = float(np.abs(path.cut_off(rim_table(path.rows, path.columns).even)).sum()) / area
-        return cls(path, area, max(even, ALLOWED)) if even > STRAIGHT else None
+        return cls(path, area, max(even, ALLOWED), start_weight * WEIGHT) if even > STRAIGHT else None
 
     def excess(self, positions: FloatArray) -> float:
         """Share of the area that is cut off or added beyond what is allowed, with the mouths at ``positions`` (R,)."""

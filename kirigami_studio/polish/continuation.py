@@ -252,6 +252,7 @@ def fit_from_uniform(
             stages=[Stage(EASY_STEPS, FAR, weight)],
             free_rim=wishes.free_rim,
             symmetry=symmetry,
+            start_weight=wishes.start.weight,
         )
         sheet, pose, evaluations = fit.sheet, easy.frame.compose(fit.pose), evaluations + fit.evaluations
     match way:
@@ -280,6 +281,7 @@ def fit_from_uniform(
         free_rim=wishes.free_rim,
         symmetry=symmetry,
         second=wishes.second,
+        start_weight=wishes.start.weight,
     )
     return replace(fit, evaluations=evaluations + fit.evaluations)
 
@@ -312,7 +314,17 @@ def fit_by_stages(
     """One fit from the uniform sheet, turned by ``angle`` (radians), through ``stages`` that need no guide."""
     sheet = first_sheet(grid, start, free_rim=free_rim)
     pose = _centred(sheet, phi, angle)
-    return polish(sheet, target, phi, 0, pose=pose, stages=stages, free_rim=free_rim, symmetry=symmetry)
+    return polish(
+        sheet,
+        target,
+        phi,
+        0,
+        pose=pose,
+        stages=stages,
+        free_rim=free_rim,
+        symmetry=symmetry,
+        start_weight=start.weight,
+    )
 
 
 def first_angles(
@@ -484,6 +496,7 @@ class _Search:
             free_rim=wishes.free_rim,
             symmetry=symmetry,
             second=wishes.second,
+            start_weight=wishes.start.weight,
         )
         self.evaluations += fit.evaluations
         return fit

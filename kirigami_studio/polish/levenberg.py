@@ -103,6 +103,7 @@ def polish(
     excess: float = 1.0,
     locked: BoolArray | None = None,
     second: SecondTarget | None = None,
+    start_weight: float = 1.0,
 ) -> Fit:
     """Fit a sheet to ``target`` by at most ``steps`` accepted steps.
 
@@ -136,6 +137,9 @@ def polish(
         Voids whose ratio stays exactly as it is, even outside [0.1, 10].
     second : SecondTarget, optional
         What the sheet should also show on its way to ``phi``; it begins in the pose that suits the sheet best.
+    start_weight : float, > 0
+        How firmly a round start is held where the rim is free, see
+        :class:`~kirigami_studio.outlines.starts.StartShape`.
 
     Raises
     ------
@@ -151,7 +155,7 @@ def polish(
     locked = check_locked(locked, sheet.field)
     if symmetry is not None and locked.any():
         raise UsageError("fit.locks_and_symmetry")
-    model = OutlineModel.of(sheet, phi, free_rim)
+    model = OutlineModel.of(sheet, phi, free_rim, start_weight)
     bounds = Bounds.of(sheet, model, symmetry.on(*sheet.grid) if symmetry else None, locked)
     start = bounds.allowed(bounds.start)
     pose = pose or align(model.outline(start), target.points)

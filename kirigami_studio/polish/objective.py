@@ -26,7 +26,7 @@ from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.lattice.topology import topology
 from kirigami_studio.polish.basis import Basis
 from kirigami_studio.polish.boundary_target import BoundaryTarget
-from kirigami_studio.polish.chords import WEIGHT as CHORDS
+from kirigami_studio.polish.chords import Chords
 from kirigami_studio.polish.even_panels import EvenPanels
 from kirigami_studio.polish.guide import Guide
 from kirigami_studio.polish.junctions import OPEN, Junctions, junctions
@@ -177,7 +177,7 @@ class Objective:
         excess = 0.0
         if self.model.chords is not None:
             excess = self.model.chords.excess(self.model.positions(shape))
-            cost += CHORDS * excess**2
+            cost += self.model.chords.weight * excess**2
         gaps = None
         if self.guide is not None:
             gaps = self.guide.gaps(nodes, _similarity(pose))
@@ -234,9 +234,9 @@ class Objective:
         if priced is not None:
             grown = slopes.motion.slopes(*priced[1], basis)
             own += 2.0 * (grown.T @ grown)
-        if look.excess:
-            slope = basis.reduced(self._cut_by_chords(shape))
-            own += 2.0 * CHORDS * np.outer(slope, slope)
+        if look.excess and self.model.chords is not None:
+            slope = basis.reduced(self._cut_by_chords(self.model.chords, shape))
+            own += 2.0 * self.model.chords.weight * np.outer(slope, slope)
         if look.gaps is not None and slopes.centroids is not None:
             inner += 2.0 * self.stage.guide / len(look.gaps) * (slopes.centroids.T @ slopes.centroids)
         return Quadratic(self.gradient(look, slopes), inner, slopes.outline, self.spread(look))
@@ -256,17 +256,14 @@ class Objective:
         by_nodes = self._force(look)
         if by_nodes is not None:
             by_shape += slopes.motion.gradient(by_nodes)
-        if look.excess:
-            by_shape += 2.0 * CHORDS * look.excess * self._cut_by_chords(shape)
+        if look.excess and self.model.chords is not None:
+            by_shape += 2.0 * self.model.chords.weight * look.excess * self._cut_by_chords(self.model.chords, shape)
         gradient[: -self.poses] += slopes.basis.reduced(by_shape)
         return gradient
 
-    def _cut_by_chords(self, shape: FloatArray) -> FloatArray:
-        """Derivative (S,) by the shape of what chords cut off; 0 for a start that they do not cut."""
-        slopes = np.zeros(shape.size)
-        if self.model.chords is not None:
-            slopes[self.model.voids :] = self.model.chords.slopes(self.model.positions(shape))
-        return slopes
+    def _cut_by_chords(self, chords: Chords, shape: FloatArray) -> FloatArray:
+        """Derivative (S,) by the shape of what chords cut off."""
+        return np.append(np.zeros(self.model.voids), chords.slopes(self.model.positions(shape)))
 
     def spread(self, look: Look) -> FloatArray:
         """Gauss-Newton approximation of the second derivative of the match by the outline's vertices: (2 L, 2 L); those

@@ -182,6 +182,8 @@ class OutlineModel:
         As for :class:`~kirigami_studio.lattice.sheet.Sheet`.
     free_rim : bool
         Whether the mouths belong to the shape.
+    start_weight : float
+        How firmly a round start is held where they do, see ``chords``.
     """
 
     def __init__(
@@ -193,6 +195,7 @@ class OutlineModel:
         start: FloatArray | None = None,
         cell: tuple[float, float] = (1.0, 1.0),
         free_rim: bool = False,
+        start_weight: float = 1.0,
     ) -> None:
         self.rows, self.columns, self.phi, self.free_rim = rows, columns, phi, free_rim
         self._start, self._cell = start, cell
@@ -204,12 +207,12 @@ class OutlineModel:
         self.size = self.voids + (self._table.even.size if free_rim else 0)
         self._given = self._given_nodes(self._rim.positions)
         #: What long chords of a round start cost, where the rim is free.
-        self.chords = Chords.of(self._path) if free_rim else None
+        self.chords = Chords.of(self._path, start_weight) if free_rim else None
 
     @classmethod
-    def of(cls, sheet: Sheet, phi: float, free_rim: bool = False) -> OutlineModel:
+    def of(cls, sheet: Sheet, phi: float, free_rim: bool = False, start_weight: float = 1.0) -> OutlineModel:
         """The model in which a sheet moves."""
-        return cls(sheet.rows, sheet.columns, phi, sheet.rim, sheet.start, sheet.cell, free_rim)
+        return cls(sheet.rows, sheet.columns, phi, sheet.rim, sheet.start, sheet.cell, free_rim, start_weight)
 
     def at(self, phi: float) -> OutlineModel:
         """The model of the same sheets at another angle, radians."""

@@ -29,7 +29,7 @@ from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.lattice.sheet_files import rim_json, sheet_json, sheet_of_json
 from kirigami_studio.outlines.nodes import Kind, Nodes
 from kirigami_studio.outlines.outline import Outline
-from kirigami_studio.outlines.starts import RECTANGLE, StartShape
+from kirigami_studio.outlines.starts import RECTANGLE, USUAL_WEIGHT, StartShape
 from kirigami_studio.project.document import Document, Mark, Void
 from kirigami_studio.project.json_record import Record, one_of, read_json
 from kirigami_studio.project.migrations import Members
@@ -124,7 +124,8 @@ def _settings_json(settings: DesignSettings, seconds: list[SecondTarget]) -> dic
         entries["second"] = {"number": seconds.index(settings.second)}
     if not start.is_plain:
         outline = None if start.outline is None else _outline_json(start.outline)
-        entries["start"] = {"name": start.name, "aspect": start.aspect, "outline": outline}
+        softer = {} if start.weight == USUAL_WEIGHT else {"weight": start.weight}
+        entries["start"] = {"name": start.name, "aspect": start.aspect, "outline": outline, **softer}
     return entries
 
 
@@ -136,6 +137,7 @@ def _start(settings: Record) -> StartShape:
         record.text("name"),
         _outline(record.record("outline")) if record.holds("outline") else None,
         record.number("aspect") if record.holds("aspect") else None,
+        record.number("weight") if record.holds("weight") else USUAL_WEIGHT,
     )
 
 

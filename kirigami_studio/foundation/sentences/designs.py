@@ -69,6 +69,9 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "Got the start '{text:.60}'. Give rectangle:W:H or ellipse:W:H with sides that differ by at most {longest:g} "
         "times, as in ellipse:3:2, or polygon:N with 3 to {most} sides."
     ),
+    "start.weight_out_of_range": mark(
+        "Got a weight of {weight:g} for the start. Give one above 0 and up to {most:g}; 1 holds the start firmly."
+    ),
     "start.hollow": mark(
         "The start '{name:.60}' is hollow: {percent:.0f} % of its hull is missing, deepest at {across:.0f} % of its "
         "width from the left and {up:.0f} % of its height from below. Fill the hollow, or start from another shape."

@@ -126,6 +126,7 @@ def test_that_a_sheet_starts_in_the_shape_that_was_asked_for(
     design = json.loads(capsys.readouterr().out)
     assert design["best"]["iou_exact"] > (0.94 if start == "heart" else 0.97) and design["best"]["feasible"]
     assert design["start"]["name"] == start and len(design["best"]["start"]) >= 3
+    assert design["start"]["weight"] == 1.0 and 0.95 < design["start"]["iou"] < 1.0 + 1e-9
     error, lost = (0.04, 0.05) if start == "heart" else (0.012, 0.03)  # the hollow takes chords on both sides
     assert design["start"]["error"] < error and design["start"]["lost_to_chords"] < lost
     assert main(["check", str(tmp_path / "cut.dxf"), "--json"]) == 0

@@ -72,6 +72,13 @@ def test_that_a_hollow_shape_is_refused_with_the_place() -> None:
         start_shape("star")
 
 
+@pytest.mark.parametrize("weight", [0.0, -1.0, 10.1, math.nan])
+def test_that_a_weight_out_of_range_is_refused(weight: float) -> None:
+    with pytest.raises(UsageError) as refused:
+        StartShape("circle", load("circle"), weight=weight)
+    assert refused.value.code == "start.weight_out_of_range"
+
+
 def test_that_hollows_stay_unless_they_are_small_or_too_much_is_missing() -> None:
     heart = start_shape("heart").outline
     assert heart is not None and heart.polygon.symmetric_difference(load("heart").polygon).area < 1e-3

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.foundation.errors import UsageError
+from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.laying import lost_to_chords, start_error
 from kirigami_studio.lattice.sheet import Rim, RimPath, Sheet, anchor_points, rim_table
 from kirigami_studio.lattice.symmetry import Symmetry, symmetry_of
@@ -82,6 +86,20 @@ def test_that_a_fit_keeps_start_and_symmetry(name: str, start: StartShape) -> No
     assert start_error(fit.sheet) < 1.3 * start_error(uniform) + 1e-7
     held = RimPath(*grid, uniform.start).held
     assert np.array_equal(fit.sheet.rim.positions[held], rim_table(*grid).even[held])
+
+
+def test_that_a_softer_start_gives_way_for_a_better_match() -> None:
+    grid, target = (8, 9), load("heart")
+    angle, symmetry = first_angles(target, grid, 1, "auto", CIRCLE)[0]
+
+    def made(weight: float) -> tuple[float, float]:
+        wishes = Wishes(free_rim=True, even=3e-4, start=replace(CIRCLE, weight=weight))
+        sheet = fit_from_uniform(target, grid, 0.0, angle, Way.COOLED, wishes, symmetry).sheet
+        return start_error(sheet), evaluate(deploy(sheet), target).iou_exact
+
+    (firm_error, firm), (soft_error, soft) = made(1.0), made(0.01)
+    assert firm_error < soft_error < 2.0 * firm_error
+    assert soft > firm + 0.005
 
 
 def test_that_symmetries_are_those_of_target_grid_and_start() -> None:

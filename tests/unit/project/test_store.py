@@ -453,9 +453,11 @@ def test_that_every_design_setting_and_score_field_survives(document: Document, 
         assert np.array_equal(after.sheet.field.ratio, before.sheet.field.ratio)
 
 
-@pytest.mark.parametrize("name", ["circle", "rectangle:3:2", "egg"])
-def test_that_the_start_of_the_settings_comes_back(name: str, document: Document, tmp_path: Path) -> None:
-    settings = replace(document.settings, start=start_shape(name))
+@pytest.mark.parametrize(("name", "weight"), [("circle", 1.0), ("rectangle:3:2", 1.0), ("egg", 1.0), ("egg", 0.03)])
+def test_that_the_start_of_the_settings_comes_back(
+    name: str, weight: float, document: Document, tmp_path: Path
+) -> None:
+    settings = replace(document.settings, start=replace(start_shape(name), weight=weight))
     store.save(replace(document, settings=settings), tmp_path / "start.kiri")
     again = store.load(tmp_path / "start.kiri").settings
     assert again == settings and again.start.digest == settings.start.digest
