@@ -17,7 +17,6 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from functools import cache, partial
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import torch
@@ -137,11 +136,20 @@ class TableSettings:
 
     Attributes
     ----------
-    k : int
+    k : int, 2 or more
         Samples of a target by which variety is measured; with the first seed only.
+
+    Raises
+    ------
+    UsageError
+        Fewer than two.
     """
 
     k: int = 16
+
+    def __post_init__(self) -> None:
+        if self.k < 2:
+            raise UsageError("benchmark.spread_of_one", k=self.k)
 
     def to_json(self) -> dict[str, object]:
         """Plain values, with the version and the constants that figures depend on."""
@@ -169,6 +177,111 @@ class SampleRun:
         return *own, self.family, self.seed, self.number, self.k, target_key(self.target)
 
 
+@dataclass(frozen=True, slots=True)
+class StepsRow:
+    """Figures of a generator at another number of steps, with the first seed; shares from 0 to 1."""
+
+    siou: float
+    success: float
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """A generator's figures on one family; shares from 0 to 1.
+
+    Attributes
+    ----------
+    runs, steps : int
+        Samples, and network evaluations of each.
+    siou, siou_sd : float
+        Mean and standard deviation over samples.
+    siou_sd_of_seeds : float
+        Standard deviation of the seeds' means.
+    siou_interval, iou_exact_interval : (float, float)
+        Bootstrap 95 % interval over targets.
+    iou_exact : float
+        On the polygons.
+    success : float
+        Share of samples with sIoU >= 0.85 and a feasible design.
+    tv : float
+    milliseconds : float
+        Mean processor time of a sample.
+    distance : float
+        Root mean square difference of z of two samples for one target.
+    inception : float
+        The Inception-style score.
+    by_steps : dict of int to StepsRow
+        Empty unless other numbers of steps were measured.
+    paper : PaperRow or None
+    """
+
+    runs: int
+    steps: int
+    siou: float
+    siou_sd: float
+    siou_sd_of_seeds: float
+    siou_interval: tuple[float, float]
+    iou_exact: float
+    iou_exact_interval: tuple[float, float]
+    success: float
+    tv: float
+    milliseconds: float
+    distance: float
+    inception: float
+    by_steps: dict[int, StepsRow]
+    paper: PaperRow | None
+
+    def sentences(self, name: str) -> Iterator[str]:
+        """The row for people: percentages, the paper's number in brackets."""
+        siou, success, time_of_one = ("", "", "")
+        if self.paper is not None:
+            siou, success = f"({100 * self.paper.siou:.1f})", f"({100 * self.paper.success:.1f})"
+            time_of_one = f"({self.paper.milliseconds:.0f})"
+        yield (
+            f"  {name:15}{100 * self.siou:7.1f} +- {100 * self.siou_sd:4.1f} {siou:6}{100 * self.iou_exact:8.1f}"
+            f"{100 * self.success:9.1f} {success:7}{self.milliseconds:10.1f} {time_of_one:7}"
+            f"{self.tv:7.2f}{self.distance:10.3f}{self.inception:11.2f}"
+        )
+        for steps, row in self.by_steps.items():
+            yield f"    {steps:4} steps   {100 * row.siou:7.1f}{'':21}{100 * row.success:9.1f}"
+
+
+@dataclass(frozen=True, slots=True)
+class FamilyTable:
+    """The rows of one family of targets, and how well the uniform sheet matches them."""
+
+    targets: int
+    uniform_siou: float
+    uniform_iou: float
+    rows: dict[str, Row]
+
+    def sentences(self) -> Iterator[str]:
+        """The table for people."""
+        yield (
+            f"  {'':15}{'sIoU %':>21}{'exact %':>8}{'success %':>17}{'ms a sample':>18}{'TV':>7}{'distance':>10}"
+            f"{'IS (ours)':>11}"
+        )
+        yield f"  {'uniform sheet':15}{100 * self.uniform_siou:7.1f}{'':15}{100 * self.uniform_iou:8.1f}"
+        for name, row in self.rows.items():
+            yield from row.sentences(name)
+
+
+@dataclass(frozen=True, slots=True)
+class GeneratorFigures:
+    """The tables by family, and what their runs share; ``weights`` are SHA-256 by generator."""
+
+    settings: dict[str, object]
+    seeds: tuple[int, ...]
+    weights: dict[str, str]
+    families: dict[str, FamilyTable]
+
+    def sentences(self) -> Iterator[str]:
+        """The tables for people."""
+        for family, table in self.families.items():
+            yield f"{family}: {table.targets} targets, {len(self.seeds)} seeds"
+            yield from table.sentences()
+
+
 def measure_generators(
     targets: Mapping[str, Sequence[Outline]],
     sources: Sequence[str],
@@ -179,7 +292,7 @@ def measure_generators(
     sweep: Mapping[str, Sequence[int]] | None = None,
     processes: int = 1,
     report: Callable[[int, int], None] = lambda done, total: None,
-) -> dict[str, object]:
+) -> GeneratorFigures:
     """Do the runs that ``store`` does not have yet, and make the table of all that were asked for.
 
     Parameters
@@ -201,15 +314,6 @@ def measure_generators(
     report : callable
         Told (done, total) runs.
 
-    Returns
-    -------
-    figures : dict
-        The settings, and by family and generator: mean ``siou`` with its standard deviation over runs and over the
-        seeds' means and its bootstrap 95 % interval over targets; ``iou_exact``, ``success`` (sIoU >= 0.85 and
-        feasible), ``tv``, ``milliseconds`` a sample (processor time), ``distance`` between two samples (root mean
-        square of z), ``inception``, ``steps``, the ``paper``'s row; and ``sweep``: by number of steps ``siou`` and
-        ``success``.
-
     Raises
     ------
     UsageError
@@ -230,19 +334,9 @@ def measure_generators(
         store.add(run.key, record)
         done += 1
         report(done, len(runs))
-    families = {}
-    for family, outlines in targets.items():
-        of_family = [run for run in runs if run.family == family]
-        first = [store.records[run.key] for run in of_family if run.source == sources[0] and run.seed == seeds[0]]
-        families[family] = {
-            "targets": len(outlines),
-            "uniform": {"siou": mean_of(first, "uniform_siou"), "iou_exact": mean_of(first, "uniform_iou")},
-            **{
-                generator_named(source).name: _row([run for run in of_family if run.source == source], source, store)
-                for source in sources
-            },
-        }
-    return {"settings": settings.to_json(), "seeds": list(seeds), "families": families}
+    families = {family: _table([run for run in runs if run.family == family], sources, store) for family in targets}
+    weights = {one.name: one.digest for one in map(generator_named, sources)}
+    return GeneratorFigures(settings.to_json(), tuple(seeds), weights, families)
 
 
 def sampled(run: SampleRun, classes: FieldClasses) -> Record:
@@ -340,71 +434,49 @@ def _runs(
                         yield SampleRun(source, one.digest, steps, family, seeds[0], number, 1, outlines[number])
 
 
-def _row(runs: Sequence[SampleRun], source: str, store: RunStore) -> dict[str, object]:
-    """Figures of one generator on one family."""
-    generator = generator_named(source)
+def _table(runs: Sequence[SampleRun], sources: Sequence[str], store: RunStore) -> FamilyTable:
+    records = [store.records[run.key] for run in runs]
+    rows = {generator_named(one).name: _row([run for run in runs if run.source == one], store) for one in sources}
+    return FamilyTable(
+        len({run.number for run in runs}), mean_of(records, "uniform_siou"), mean_of(records, "uniform_iou"), rows
+    )
+
+
+def _row(runs: Sequence[SampleRun], store: RunStore) -> Row:
+    generator = generator_named(runs[0].source)
     usual = [run for run in runs if run.steps == generator.steps]
     records = [store.records[run.key] for run in usual]
-    siou, exact = values_of(records, "siou"), values_of(records, "iou_exact")
     varied = [record for run, record in zip(usual, records, strict=True) if run.k > 1]
-    row: dict[str, object] = {
-        "runs": len(records),
-        "steps": generator.steps,
-        "siou": float(siou.mean()),
-        "siou_sd": float(siou.std()),
-        "siou_sd_of_seeds": float(np.std(group_means(siou, [run.seed for run in usual]))),
-        "siou_interval": bootstrap_interval(group_means(siou, [run.number for run in usual])),
-        "iou_exact": float(exact.mean()),
-        "iou_exact_interval": bootstrap_interval(group_means(exact, [run.number for run in usual])),
-        "success": _success(records),
-        "tv": mean_of(records, "tv"),
-        "milliseconds": mean_of(records, "milliseconds"),
-        "distance": mean_of(varied, "distance") if varied else None,
-        "inception": mean_of(varied, "inception") if varied else None,
-    }
-    counts = sorted({run.steps for run in runs})
-    if len(counts) > 1:
-        first = runs[0].seed
-        by_steps = {
-            steps: [store.records[run.key] for run in runs if run.steps == steps and run.seed == first]
-            for steps in counts
-        }
-        row["sweep"] = {
-            str(steps): {"siou": mean_of(found, "siou"), "success": _success(found)}
-            for steps, found in by_steps.items()
-        }
-    if generator.name in PAPER:
-        row["paper"] = asdict(PAPER[generator.name])
-    return row
+    siou, exact = values_of(records, "siou"), values_of(records, "iou_exact")
+    numbers, seeds = [run.number for run in usual], [run.seed for run in usual]
+    return Row(
+        runs=len(records),
+        steps=generator.steps,
+        siou=float(siou.mean()),
+        siou_sd=float(siou.std()),
+        siou_sd_of_seeds=float(np.std(group_means(siou, seeds))),
+        siou_interval=bootstrap_interval(group_means(siou, numbers)),
+        iou_exact=float(exact.mean()),
+        iou_exact_interval=bootstrap_interval(group_means(exact, numbers)),
+        success=_success(records),
+        tv=mean_of(records, "tv"),
+        milliseconds=mean_of(records, "milliseconds"),
+        distance=mean_of(varied, "distance"),
+        inception=mean_of(varied, "inception"),
+        by_steps=_by_steps([run for run in runs if run.seed == seeds[0]], store),
+        paper=PAPER.get(generator.name),
+    )
+
+
+def _by_steps(runs: Sequence[SampleRun], store: RunStore) -> dict[int, StepsRow]:
+    """Figures by number of steps, where there is more than one."""
+    found: dict[int, list[Record]] = {}
+    for run in sorted(runs, key=lambda one: one.steps):
+        found.setdefault(run.steps, []).append(store.records[run.key])
+    if len(found) == 1:
+        return {}
+    return {steps: StepsRow(mean_of(records, "siou"), _success(records)) for steps, records in found.items()}
 
 
 def _success(records: Sequence[Record]) -> float:
     return float(np.mean([float(str(one["siou"])) >= SUCCESS_SIOU and bool(one["feasible"]) for one in records]))
-
-
-def generator_lines(figures: Mapping[str, dict[str, dict[str, Any]]]) -> Iterator[str]:
-    """The table for people, by family: percentages, the paper's number in brackets."""
-    for family, rows in figures.items():
-        yield f"{family}: {rows['targets']} targets"
-        yield (
-            f"  {'':13}{'sIoU %':>22}{'exact %':>9}{'success %':>16}{'ms a sample':>18}{'TV':>7}{'distance':>10}"
-            f"{'IS (ours)':>11}"
-        )
-        uniform = rows["uniform"]
-        yield f"  {'uniform sheet':13}{100 * uniform['siou']:9.1f}{'':13}{100 * uniform['iou_exact']:9.1f}"
-        for name, row in rows.items():
-            if name in ("targets", "uniform"):
-                continue
-            paper = PAPER.get(name)
-            siou, success, time_of_one = ("", "", "")
-            if paper is not None:
-                siou, success = f"({100 * paper.siou:.1f})", f"({100 * paper.success:.1f})"
-                time_of_one = f"({paper.milliseconds:.0f})"
-            distance, inception = row["distance"] or 0.0, row["inception"] or 0.0
-            yield (
-                f"  {name:13}{100 * row['siou']:9.1f} +- {100 * row['siou_sd']:4.1f} {siou:6}"
-                f"{100 * row['iou_exact']:8.1f}{100 * row['success']:9.1f} {success:7}{row['milliseconds']:10.1f} "
-                f"{time_of_one:7}{row['tv']:7.2f}{distance:10.3f}{inception:11.2f}"
-            )
-            for steps, at in row.get("sweep", {}).items():
-                yield f"    {steps + ' steps':>11}{100 * at['siou']:9.1f}{'':29}{100 * at['success']:9.1f}"

@@ -201,7 +201,6 @@ def generators(arguments: argparse.Namespace) -> int:
     """Conditional generators side by side; goes on where an earlier call ended."""
     from kirigami_studio.benchmark.generator_table import (
         TableSettings,
-        generator_lines,
         generator_named,
         measure_generators,
     )
@@ -230,7 +229,7 @@ def generators(arguments: argparse.Namespace) -> int:
             _shown_on(line, "Runs"),
         )
     arguments.out = None if folder is None else folder / "generators.json"
-    return _print_figures(arguments, line, figures, generator_lines(figures["families"]))  # type: ignore[arg-type]
+    return _print_figures(arguments, line, asdict(figures), figures.sentences())
 
 
 def designs(arguments: argparse.Namespace) -> int:
