@@ -101,18 +101,19 @@ class SolverSettings:
 
 @dataclass(frozen=True, slots=True)
 class SolverRun:
-    """One row's method on one target with one seed."""
+    """One row's method on one target with one seed; of a sample and its fit, the best of ``k``."""
 
     method: str
     family: str
     seed: int
     number: int
     target: Outline
+    k: int = 1
 
     @property
     def key(self) -> Key:
         """What the run is found by again; another target in the same place is another run."""
-        return self.method, self.family, self.seed, self.number, target_key(self.target)
+        return self.method, self.family, self.seed, self.number, target_key(self.target), self.k
 
 
 @dataclass(frozen=True, slots=True)
@@ -236,12 +237,36 @@ def measure_solvers(
     UsageError
         No targets, or an unknown method.
     """
+    check_methods(targets, methods, METHODS)
+    runs = list(_runs(targets, methods, seeds))
+    do_missing(runs, settings, store, processes, report)
+    families = {family: _table([run for run in runs if run.family == family], methods, store) for family in targets}
+    return SolverFigures(settings.to_json(), tuple(seeds), families)
+
+
+def check_methods(targets: Mapping[str, Sequence[Outline]], methods: Sequence[str], known: Sequence[str]) -> None:
+    """Refuse families without targets and methods that are not ``known``.
+
+    Raises
+    ------
+    UsageError
+        One of these.
+    """
     if not targets or not all(targets.values()):
         raise UsageError("benchmark.no_targets")
     for method in methods:
-        if method not in METHODS:
-            raise UsageError("benchmark.unknown_method", method=method, choices=", ".join(METHODS))
-    runs = list(_runs(targets, methods, seeds))
+        if method not in known:
+            raise UsageError("benchmark.unknown_method", method=method, choices=", ".join(known))
+
+
+def do_missing(
+    runs: Sequence[SolverRun],
+    settings: SolverSettings,
+    store: RunStore,
+    processes: int,
+    report: Callable[[int, int], None],
+) -> None:
+    """Do the runs that ``store`` does not have yet."""
     waiting = [run for run in runs if run.key not in store.records]
     done = len(runs) - len(waiting)
     report(done, len(runs))
@@ -249,8 +274,6 @@ def measure_solvers(
         store.add(run.key, record)
         done += 1
         report(done, len(runs))
-    families = {family: _table([run for run in runs if run.family == family], methods, store) for family in targets}
-    return SolverFigures(settings.to_json(), tuple(seeds), families)
 
 
 def solved(run: SolverRun, settings: SolverSettings) -> Record:
@@ -307,7 +330,7 @@ def _designs(run: SolverRun, settings: SolverSettings) -> tuple[list[Deployment]
         return [deploy(fit.sheet)], fit.evaluations
     if run.method in OWN_METHODS:
         steps = settings.polish if run.method == "sample-fit" else 0
-        request = Request(run.target, grid, k=1, seed=run.seed, variant=settings.variant, polish=steps)
+        request = Request(run.target, grid, k=run.k, seed=run.seed, variant=settings.variant, polish=steps)
         result = best_of(as_in_paper(request))
         return [deploy(result.best.final_sheet)], result.forward_evaluations
     low, high = SPACES[settings.space]

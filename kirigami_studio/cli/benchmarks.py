@@ -5,8 +5,10 @@ from __future__ import annotations
 import argparse
 import json
 from collections.abc import Callable, Iterable, Sequence
+from contextlib import AbstractContextManager
 from dataclasses import asdict, replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -22,6 +24,11 @@ from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.read_image import outline_of_mask
 from kirigami_studio.outlines.silhouettes import load, names
 from kirigami_studio.outlines.starts import start_shape
+
+if TYPE_CHECKING:
+    from kirigami_studio.benchmark.best_of_k_suite import BestOfKFigures
+    from kirigami_studio.benchmark.run_store import RunStore
+    from kirigami_studio.benchmark.solver_suite import SolverFigures, SolverSettings
 
 Report = Callable[[int, int], None]
 
@@ -163,31 +170,68 @@ def regularity(arguments: argparse.Namespace) -> int:
 
 def solvers(arguments: argparse.Namespace) -> int:
     """The paper's solvers beside the program's own fit and samples; goes on where an earlier call ended."""
-    from kirigami_studio.baselines.search import Stopping
-    from kirigami_studio.benchmark.run_store import RunStore
-    from kirigami_studio.benchmark.solver_suite import METHODS, SolverSettings, measure_solvers
+    from kirigami_studio.benchmark.solver_suite import METHODS, measure_solvers
 
-    line = ProgressLine()
-    settings = SolverSettings(
-        parse_grid(arguments.grid),
-        arguments.space,
-        Stopping(arguments.evaluations),
-        arguments.variant,
-        arguments.polish,
-    )
-    targets = _target_sets(arguments, arguments.exact)
-    folder = None if arguments.out is None else Path(arguments.out)
-    with RunStore.opened(settings.to_json(), None if folder is None else folder / "solvers.jsonl") as store:
+    line, targets, settings = ProgressLine(), _target_sets(arguments, arguments.exact), _solver_settings(arguments)
+    with _solver_runs(arguments, settings) as store:
         figures = measure_solvers(
             targets,
-            METHODS if arguments.methods is None else tuple(dict.fromkeys(arguments.methods.split(","))),
+            _methods(arguments, METHODS),
             tuple(dict.fromkeys(arguments.seeds)),
             settings,
             store,
             arguments.processes,
             _shown_on(line, "Runs"),
         )
-    arguments.out = None if folder is None else folder / "solvers.json"
+    return _print_in_folder(arguments, line, "solvers.json", figures)
+
+
+def best_of_k(arguments: argparse.Namespace) -> int:
+    """Quality and time against the number of candidates; goes on where an earlier call ended."""
+    from kirigami_studio.benchmark.best_of_k_suite import METHODS, measure_best_of_k
+
+    line, targets, settings = ProgressLine(), _target_sets(arguments, arguments.exact), _solver_settings(arguments)
+    with _solver_runs(arguments, settings) as store:
+        figures = measure_best_of_k(
+            targets,
+            _methods(arguments, METHODS),
+            arguments.k,
+            settings,
+            store,
+            arguments.processes,
+            _shown_on(line, "Runs"),
+        )
+    return _print_in_folder(arguments, line, "best-of-k.json", figures)
+
+
+def _solver_settings(arguments: argparse.Namespace) -> SolverSettings:
+    from kirigami_studio.baselines.search import Stopping
+    from kirigami_studio.benchmark.solver_suite import SolverSettings
+
+    stopping = Stopping(arguments.evaluations)
+    return SolverSettings(parse_grid(arguments.grid), arguments.space, stopping, arguments.variant, arguments.polish)
+
+
+def _solver_runs(arguments: argparse.Namespace, settings: SolverSettings) -> AbstractContextManager[RunStore]:
+    """Runs of solvers in the folder ``--out``, or for this call only: suites in one folder share them."""
+    from kirigami_studio.benchmark.run_store import RunStore
+
+    path = None if arguments.out is None else Path(arguments.out) / "solvers.jsonl"
+    return RunStore.opened(settings.to_json(), path)
+
+
+def _methods(arguments: argparse.Namespace, known: tuple[str, ...]) -> tuple[str, ...]:
+    """Those of ``--methods``, each once; the suite refuses unknown ones."""
+    if arguments.methods is None:
+        return known
+    return tuple(dict.fromkeys(name.strip() for name in arguments.methods.split(",")))
+
+
+def _print_in_folder(
+    arguments: argparse.Namespace, line: ProgressLine, name: str, figures: SolverFigures | BestOfKFigures
+) -> int:
+    """Print figures, and write them as ``name`` into the folder where there is one."""
+    arguments.out = None if arguments.out is None else Path(arguments.out) / name
     return _print_figures(arguments, line, asdict(figures), figures.sentences())
 
 

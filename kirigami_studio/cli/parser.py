@@ -161,6 +161,28 @@ RANDOM_DESIGNS = option("--count", type=count, default=200, help="number of rand
 FIGURES = (option("--out", default=None, help="also write the results to this .json file"), JSON)
 
 
+#: Options of suites that run solvers and samples.
+SOLVING = (
+    option(
+        "--space",
+        choices=("log", "ratio"),
+        default="log",
+        help="what solvers search, in the same box: log10 of the ratios, or the ratios (default log)",
+    ),
+    option("--evaluations", type=count, default=1000, help="most evaluations of a solver (default 1000)"),
+    option("--variant", default="prior", help="generator variant of the samples (default prior)"),
+    option("--polish", type=whole, default=15, help="polishing steps after a sample (default 15)"),
+    option("--processes", type=count, default=2, help="number of runs at the same time (default 2)"),
+    option(
+        "--out",
+        default=None,
+        help="folder for the figures (.json) and for solvers.jsonl, a line for each finished run: an earlier call, of "
+        "this suite or of another one with solvers, may have begun it",
+    ),
+    JSON,
+)
+
+
 def targets_of_a_suite(usual: int) -> tuple[Option, ...]:
     """Options that choose a suite's targets; ``usual`` is the default number for each family."""
     return (
@@ -611,16 +633,7 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
         option("--methods", default=None, metavar="NAMES",
                help="of cma-es, swarm, local-search, powell, fit, sample, sample-fit, separated by commas "
                     "(default: all)"),
-        option("--space", choices=("log", "ratio"), default="log",
-               help="what solvers search, in the same box: log10 of the ratios, or the ratios (default log)"),
-        option("--evaluations", type=count, default=1000, help="most evaluations of a solver (default 1000)"),
-        option("--variant", default="prior", help="generator variant of the samples (default prior)"),
-        option("--polish", type=whole, default=15, help="polishing steps after a sample (default 15)"),
-        option("--processes", type=count, default=2, help="number of runs at the same time (default 2)"),
-        option("--out", default=None,
-               help="folder for solvers.json and solvers.jsonl, a line for each finished run; an earlier call may "
-                    "have begun it"),
-        JSON,
+        *SOLVING,
     ), ("kirigami-studio benchmark solvers --out runs/solvers",
         "kirigami-studio benchmark solvers --count 5 --methods cma-es,fit --seeds 0 --processes 1")),
     SubCommand("benchmark generators", "compare conditional generators, one sample a target (the paper's Table 2)",
@@ -637,6 +650,14 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
                     "earlier call may have begun it"),
         JSON,
     ), ("kirigami-studio benchmark generators --generators prior runs/cvae/cvae.safetensors --out runs/table-2",)),
+    SubCommand("benchmark best-of-k", "measure what more candidates or runs give and cost", "benchmarks:best_of_k", (
+        *targets_of_a_suite(5), EXACT, GRID,
+        option("--methods", default=None, metavar="NAMES",
+               help="of sample, sample-fit, swarm, cma-es, separated by commas (default: all)"),
+        option("--k", type=count, default=32, help="most candidates or runs; halves of it, too (default 32)"),
+        *SOLVING,
+    ), ("kirigami-studio benchmark best-of-k --out runs/solvers",
+        "kirigami-studio benchmark best-of-k --methods sample,sample-fit --count 50")),
     SubCommand("benchmark generation-speed", "time loading and sampling", "benchmarks:generation_speed", (
         VARIANTS, GRID, STEPS, *FIGURES,
     ), ("kirigami-studio benchmark generation-speed",)),

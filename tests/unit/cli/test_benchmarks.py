@@ -46,16 +46,20 @@ def test_that_spread_and_robustness_take_named_targets(capsys: pytest.CaptureFix
 
 
 def test_that_solvers_go_on_in_their_folder(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
-    words = ["solvers", "--targets", "circle", "--grid", "4x4", "--evaluations", "26", "--seeds", "0"]
+    words = ["solvers", "--targets", "circle", "--grid", "4x4", "--evaluations", "26"]
     words += ["--processes", "1", "--out", str(tmp_path / "runs")]
-    first = figures(capsys, *words, "--methods", "swarm")
+    first = figures(capsys, *words, "--methods", "swarm", "--seeds", "0")
     assert first["families"]["targets"]["rows"]["swarm"]["evaluations"] == 24.0
-    both = figures(capsys, *words, "--methods", "fit,swarm")
+    both = figures(capsys, *words, "--methods", "fit,swarm", "--seeds", "0")
     assert both["families"]["targets"]["rows"]["swarm"] == first["families"]["targets"]["rows"]["swarm"]
     assert json.loads((tmp_path / "runs" / "solvers.json").read_text()) == both
     assert len((tmp_path / "runs" / "solvers.jsonl").read_text().splitlines()) == 3
-    assert main(["benchmark", *words, "--methods", "swarm"]) == 0
+    assert main(["benchmark", *words, "--methods", "swarm", "--seeds", "0"]) == 0
     assert "(92.6)" in capsys.readouterr().out
+    more = figures(capsys, "best-of-k", *words[1:], "--methods", "swarm", "--k", "2")
+    curve = more["families"]["targets"]["swarm"]
+    assert (curve[0]["k"], curve[0]["siou"]) == (1, first["families"]["targets"]["rows"]["swarm"]["siou"])
+    assert len((tmp_path / "runs" / "solvers.jsonl").read_text().splitlines()) == 4
     for wrong, code in ((["--methods", "annealing"], 2), (["--evaluations", "27"], 1)):
         assert main(["benchmark", *words, *wrong]) == code
 
