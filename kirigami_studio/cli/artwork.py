@@ -12,6 +12,7 @@ from kirigami_studio.cli.fabrication import chosen_candidate, design_job, overri
 from kirigami_studio.export.artwork import ArtPicture, Artwork, Fitting, Laid, State
 from kirigami_studio.export.artwork_files import ArtworkJob, write_artwork
 from kirigami_studio.export.artwork_picture import read_picture
+from kirigami_studio.export.paper import page_notes
 from kirigami_studio.foundation.errors import ExportError, UsageError
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.project.cutting import plan_of
@@ -45,6 +46,7 @@ def artwork(arguments: argparse.Namespace) -> int:
                 "files": [str(path) for path in files],
                 "frame_mm": work.frame_mm,
                 "page_mm": work.page_mm,
+                "pages": 1 if work.tiling is None else len(work.tiling.tiles),
                 "pixels": work.page.pixels,
                 "dpi": work.dpi,
                 "bleed_mm": work.bleed_mm,
@@ -129,7 +131,8 @@ def _picture(path: str) -> ArtPicture:
 
 
 def _warnings(work: ArtworkJob) -> list[str]:
-    found = [note.text for note in work.job.required_plan.copies.notes]
+    notes = (*work.job.required_plan.copies.notes, *page_notes(work.page_mm, work.job.paper))
+    found = [note.text for note in notes]
     if work.picture_dpi < COARSE_DPI:
         found.append(
             tr("The picture has only {dpi:.0f} dpi on the sheet: use one with more pixels.", dpi=work.picture_dpi)

@@ -63,6 +63,12 @@ STYLE = option(
     default=ConnectorStyle.CENTRED.value,
     help="how slits end at their connectors (default: centred)",
 )
+PAPER = option(
+    "--paper",
+    default=None,
+    choices=("none", "a4", "letter"),
+    help="spread a PDF over pages of this size (default: the project's, or none)",
+)
 CUTS = (
     option(
         "--style",
@@ -338,8 +344,7 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
         option("--profile", default=None,
                help="machine profile: any, lightburn, k40, single, layers or slots (default: the project's)"),
         option("--dxf-version", default=None, choices=("R2010", "R12"), help="DXF version (default: the project's)"),
-        option("--paper", default=None, choices=("none", "a4", "letter"),
-               help="spread a PDF over pages of this size (default: the project's, or none)"),
+        PAPER,
         option("--sidecar", action=argparse.BooleanOptionalAction, default=None,
                help="also write all settings as .json beside the cut file (default: only with --all)"),
         option("--fixes", action="store_true",
@@ -429,6 +434,7 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
         *CUTS,
         *COPIES,
         option("--profile", default=None, help="machine profile of the cut file (default: the project's)"),
+        PAPER,
         JSON,
     ), ("kirigami-studio artwork heart.kiri --picture photo.jpg --out out/print",
         "kirigami-studio artwork heart.kiri --out out/print --dpi 600   # the artwork that the project has",

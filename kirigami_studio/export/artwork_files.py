@@ -2,7 +2,7 @@
 
 All three files have the frame of the cut file of the same plan and profile: the same origin and unit, a margin around
 it, and marks in the margin on the lines of the frame's edges.  In SVG and PDF the picture keeps its own pixels; in PNG
-it has the resolution asked for.
+it has the resolution asked for.  The PDF is one page, or spread over pages of the job's paper as that of the cuts is.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from __future__ import annotations
 import base64
 import io
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from io import BytesIO
 from pathlib import Path
@@ -27,9 +27,10 @@ from reportlab.pdfgen.canvas import Canvas
 from kirigami_studio import __version__
 from kirigami_studio.export.artwork import ArtPicture, Artwork
 from kirigami_studio.export.artwork_patches import Patch, PrintedSheet, opened_patches, printed_patches, rings_of
-from kirigami_studio.export.artwork_raster import Page, paint
+from kirigami_studio.export.artwork_raster import Page, most_dpi, paint
 from kirigami_studio.export.exporter import ExportJob
-from kirigami_studio.export.pdf import SAME_SIZE_MM, page_boxes
+from kirigami_studio.export.paper import Tile, Tiling, find_paper, tile
+from kirigami_studio.export.pdf_pages import LINE_MM, check_pages, draw_pages, page_boxes, to_page
 from kirigami_studio.export.picture import INK, PAPER, TARGET_EDGE, write_image
 from kirigami_studio.export.profile import find_profile
 from kirigami_studio.export.provenance import facts_of
@@ -88,6 +89,12 @@ class ArtworkJob:
         if not 0.0 <= self.margin_mm <= MOST_MARGIN_MM:
             raise ExportError("artwork.impossible_margin", margin_mm=self.margin_mm, most=MOST_MARGIN_MM)
 
+    @classmethod
+    def usual(cls, artwork: Artwork, job: ExportJob) -> ArtworkJob:
+        """That of somebody who asks for no numbers: 300 dpi, or as many as a bitmap of its size may have."""
+        made = cls(artwork, job)
+        return replace(made, dpi=min(made.dpi, most_dpi(*made.page_mm)))
+
     @cached_property
     def sheet(self) -> PrintedSheet:
         return PrintedSheet.of(self.job)
@@ -114,6 +121,17 @@ class ArtworkJob:
     def page_mm(self) -> tuple[float, float]:
         """Width and height of the printed page."""
         return self.frame_mm[0] + 2.0 * self.margin_mm, self.frame_mm[1] + 2.0 * self.margin_mm
+
+    @cached_property
+    def tiling(self) -> Tiling | None:
+        """The pages of paper that the PDF is spread over; None for the printed page itself.
+
+        Raises
+        ------
+        ExportError
+            Unknown paper, or too many pages.
+        """
+        return None if find_paper(self.job.paper) is None else tile(self.page_mm, self.job.paper)
 
     @property
     def page(self) -> Page:
@@ -180,7 +198,7 @@ def write_artwork(work: ArtworkJob, folder: str | Path, name: str = "artwork") -
         No plan, too many pixels, an unwritable place, or a file that did not read back as it was meant.
     """
     home = Path(folder)
-    page = work.page  # too many pixels are refused before anything is written
+    page, _ = work.page, work.tiling  # too many pixels or pages are refused before anything is written
     svg, pdf, png, opened = (home / f"{name}{end}" for end in (".svg", ".pdf", ".png", "_opened.png"))
     write_atomically(svg, _svg_bytes(work), lambda written: _verify_svg(written, work))
     write_atomically(pdf, _pdf_bytes(work), lambda written: _verify_pdf(written, work))
@@ -273,7 +291,9 @@ def _pdf_bytes(work: ArtworkJob) -> bytes:
     # reportlab carries no types; invariant: the same plan gives the same bytes.
     make_canvas: Any = Canvas
     make_reader: Any = ImageReader
-    canvas = make_canvas(stream, pagesize=tuple(side * mm for side in work.page_mm), invariant=1)
+    tiling = work.tiling
+    size = work.page_mm if tiling is None else tiling.page
+    canvas = make_canvas(stream, pagesize=tuple(side * mm for side in size), invariant=1)
     canvas.setTitle(f"Kirigami artwork {work.job.required_plan.design_hash}")
     canvas.setCreator(f"Kirigami Studio {__version__}")
     canvas.setSubject("; ".join(f"{key} {value}" for key, value in work.facts.items()))
@@ -293,6 +313,31 @@ def _pdf_bytes(work: ArtworkJob) -> bytes:
         canvas.doForm(names[patch.picture])
         canvas.restoreState()
     canvas.endForm()
+    if tiling is None:
+        _draw_print(canvas, work)
+        canvas.showPage()
+    else:
+        across, up = work.page_mm
+        about = f"Print {across:.1f} x {up:.1f} mm" + (f", {len(work.places)} copies" if len(work.places) > 1 else "")
+        draw_pages(canvas, tiling, work.page_mm, about, lambda part: _draw_part(canvas, work, part))
+    canvas.save()
+    return stream.getvalue()
+
+
+def _draw_part(canvas: Any, work: ArtworkJob, part: Tile) -> None:
+    """Draw what of the print a page of paper shows."""
+    canvas.saveState()
+    x, y = to_page(part).tolist()
+    canvas.translate(x * mm, y * mm)
+    low_x, low_y, high_x, high_y = part.window
+    _clip(canvas, [mm * np.array([[low_x, low_y], [high_x, low_y], [high_x, high_y], [low_x, high_y]])])
+    _draw_print(canvas, work)
+    canvas.restoreState()
+    canvas.setLineWidth(LINE_MM * mm)
+
+
+def _draw_print(canvas: Any, work: ArtworkJob) -> None:
+    """Draw all copies and the marks, the lower left corner of the printed page being the origin."""
     canvas.scale(mm, mm)
     canvas.translate(work.margin_mm, work.margin_mm)
     for x, y in work.places.tolist():
@@ -303,9 +348,6 @@ def _pdf_bytes(work: ArtworkJob) -> bytes:
     canvas.setLineWidth(MARK_LINE_MM)
     for (x, y), (end_x, end_y) in work.marks.tolist():
         canvas.line(x, y, end_x, end_y)
-    canvas.showPage()
-    canvas.save()
-    return stream.getvalue()
 
 
 def _clip(canvas: Any, rings: Sequence[FloatArray]) -> None:
@@ -319,15 +361,6 @@ def _clip(canvas: Any, rings: Sequence[FloatArray]) -> None:
 
 
 def _verify_pdf(path: Path, work: ArtworkJob) -> None:
-    boxes = page_boxes(path.read_bytes())
-    for box in boxes:
-        if max(abs(a - b) for a, b in zip(box, work.page_mm, strict=True)) > SAME_SIZE_MM:
-            raise ExportError(
-                "pdf.other_page_size",
-                width_mm=box[0],
-                height_mm=box[1],
-                planned_width_mm=work.page_mm[0],
-                planned_height_mm=work.page_mm[1],
-            )
-    if len(boxes) != 1:
-        raise ExportError("pdf.other_page_count", pages=len(boxes), parts=1)
+    tiling = work.tiling
+    page, parts = (work.page_mm, 1) if tiling is None else (tiling.page, len(tiling.tiles))
+    check_pages(page_boxes(path.read_bytes()), page, parts)

@@ -28,6 +28,12 @@ Colour = tuple[int, int, int, int]
 NOTHING: Colour = (255, 255, 255, 0)
 
 
+def most_dpi(width_mm: float, height_mm: float) -> int:
+    """The finest whole resolution that a bitmap of a size may have."""
+    dots_per_mm = math.sqrt(MOST_PIXELS / (width_mm * height_mm))
+    return math.floor(dots_per_mm * MM_PER_INCH - 0.5)  # half a dot less: rows and columns are rounded up
+
+
 @dataclass(frozen=True, slots=True)
 class Page:
     """A rectangle of the plane as a bitmap; its upper left corner is that of pixel (0, 0).

@@ -123,7 +123,7 @@ def _written(
     write_layout_svg(job, home / "layout.svg", plan.size_mm[0])
     done(home / "layout.svg")
     if job.artwork is not None:
-        for path in write_artwork(ArtworkJob(job.artwork, job), home):
+        for path in write_artwork(ArtworkJob.usual(job.artwork, job), home):
             done(path)
     done(write_reference(plan, home / "reference.dxf"))
     if sidecar:

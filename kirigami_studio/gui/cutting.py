@@ -129,10 +129,11 @@ class CutPlanner(QObject):
         again = partial(self.export_all, request, folder, name, True)
         self._write(tr("exporting to {name}", name=folder.name), steps, again)
 
-    def export_artwork(self, request: CutRequest, folder: Path) -> None:
-        """Write the printed sheet into a folder."""
+    def export_artwork(self, request: CutRequest, folder: Path, many_pages: bool = False) -> None:
+        """Write the printed sheet into a folder; a PDF of many pages only after asking."""
         self._session.set_status(tr("Exporting the artwork …"))
-        self._write(tr("exporting the artwork"), partial(exporting_artwork, request, folder))
+        steps = partial(exporting_artwork, request, folder, many_pages)
+        self._write(tr("exporting the artwork"), steps, partial(self.export_artwork, request, folder, True))
 
     def export_coupon(self, material: Material, path: Path) -> None:
         """Write the calibration coupon of a material."""

@@ -13,6 +13,7 @@ from PIL import Image
 from PySide6.QtGui import QImage
 
 from kirigami_studio.export.artwork import Fitting, State
+from kirigami_studio.export.pdf_pages import page_boxes
 from kirigami_studio.gui.dialogs.artwork_editor import ArtworkEditor
 from kirigami_studio.gui.main_window import MainWindow
 from kirigami_studio.project import store
@@ -165,6 +166,22 @@ def test_that_artwork_is_exported_alone_and_with_everything(
     designed.commands["export_all"].trigger()
     until(lambda: any((tmp_path / "all").glob("*.json")))
     assert names < {path.name for path in (tmp_path / "all").iterdir()}
+
+
+def test_that_a_print_of_many_pages_is_written_only_after_asking(
+    designed: MainWindow, editor: ArtworkEditor, files: Answers, tmp_path: Path, until: Until
+) -> None:
+    designed.controller.fabrication.change(width_mm=1200.0, paper="a4")
+    until(lambda: not designed.controller.queue.busy and designed.fabrication.export.isEnabled())
+    files.answer = tmp_path / "print"
+    editor.export.click()
+    until(lambda: any(message.actions for message in designed.messages.messages))
+    (message,) = [message for message in designed.messages.messages if message.actions]
+    assert "pages of a4" in message.sentence and not (tmp_path / "print").exists()
+    designed.controller.fabrication.change(width_mm=240.0)
+    editor.export.click()
+    until(lambda: (tmp_path / "print" / "artwork_opened.png").exists())
+    assert 2 < len(page_boxes((tmp_path / "print" / "artwork.pdf").read_bytes())) < 10
 
 
 def test_that_a_file_that_is_no_picture_is_refused_and_nothing_changes(

@@ -66,7 +66,12 @@ class ArtworkEditor(QWidget):
         self.about_second = muted_label()
         self.export = QPushButton(tr("&Export artwork …"))
         self.export.setObjectName("primary")
-        self.export.setToolTip(tr("SVG and PDF in true mm and PNG at 300 dpi, in register with the cut file"))
+        self.export.setToolTip(
+            tr(
+                "SVG and PDF in true mm and PNG at 300 dpi, in register with the cut file. The PDF has the pages that "
+                "are chosen for cuts."
+            )
+        )
         self.state = self._choices(STATES)
         self.fitting = self._choices(FITTINGS)
         self.scale = self._field(100.0 * SMALLEST_SCALE, 100.0 * LARGEST_SCALE, tr(" %"), 5.0)

@@ -181,7 +181,8 @@ def exporting(request: CutRequest, path: Path, many_pages: bool, cancel: Cancel)
         yield Exported(export(export_job(request, None), path), None)
         return
     made = planned(request)
-    if path.suffix.lower() == ".pdf" and not many_pages and (many := _many_pages(request, made)):
+    size, paper = made.plan.copies.spread_mm, request.settings.paper
+    if path.suffix.lower() == ".pdf" and not many_pages and (many := _many_pages(size, paper)):
         yield many
         return
     job = export_job(request, made)
@@ -193,13 +194,12 @@ def exporting(request: CutRequest, path: Path, many_pages: bool, cancel: Cancel)
     yield Exported(written, made, found, verdict=_judging(request, made)(found))
 
 
-def _many_pages(request: CutRequest, made: Planned) -> ManyPages | None:
-    """What to know before a PDF of many pages is written; None for one of few."""
+def _many_pages(size: tuple[float, float], paper: str) -> ManyPages | None:
+    """What to know before a PDF (width, height; mm) of many pages is written; None for one of few."""
     from kirigami_studio.export.paper import page_notes, tile
 
-    notes = page_notes(made.plan.copies.spread_mm, request.settings.paper)
-    pages = len(tile(made.plan.copies.spread_mm, request.settings.paper).tiles) if notes else 0
-    return ManyPages(pages, notes[0].text) if notes else None
+    notes = page_notes(size, paper)
+    return ManyPages(len(tile(size, paper).tiles), notes[0].text) if notes else None
 
 
 def exporting_all(
@@ -218,7 +218,7 @@ def exporting_all(
             raise Cancelled("export.stopped", folder=folder)
 
     made = planned(request)
-    if not many_pages and (many := _many_pages(request, made)):
+    if not many_pages and (many := _many_pages(made.plan.copies.spread_mm, request.settings.paper)):
         yield many
         return
     judge = _judging(request, made)
@@ -262,15 +262,24 @@ def export_job(request: CutRequest, made: Planned | None) -> ExportJob:
     )
 
 
-def exporting_artwork(request: CutRequest, folder: Path, cancel: Cancel) -> Iterator[Exported]:
-    """Write the printed sheet into a folder: SVG, PDF and PNG in register with the cuts, and a picture of it opened."""
+def exporting_artwork(
+    request: CutRequest, folder: Path, many_pages: bool, cancel: Cancel
+) -> Iterator[Exported | ManyPages]:
+    """Write the printed sheet into a folder: SVG, PDF and PNG in register with the cuts, and a picture of it opened.
+
+    Where the PDF has many pages, nothing is written unless ``many_pages`` are wanted.
+    """
     importing.import_exporters()
     from kirigami_studio.export.artwork_files import ArtworkJob, write_artwork
 
     if request.artwork is None:
         raise ProjectError("artwork.none")
+    work = ArtworkJob.usual(request.artwork, export_job(request, planned(request)))
+    if not many_pages and (many := _many_pages(work.page_mm, request.settings.paper)):
+        yield many
+        return
     with importing.collecting_between():
-        write_artwork(ArtworkJob(request.artwork, export_job(request, planned(request))), folder)
+        write_artwork(work, folder)
     yield Exported(folder, None)
 
 

@@ -59,7 +59,7 @@ def test_that_files_and_numbers_are_told(
         "artwork.png",
         "artwork_opened.png",
     ]
-    assert told["page_mm"] == [side + 16.0 for side in told["frame_mm"]]
+    assert told["page_mm"] == [side + 16.0 for side in told["frame_mm"]] and told["pages"] == 1
     with Image.open(tmp_path / "out" / "artwork.png") as image:
         assert list(image.size) == told["pixels"]
     assert told["covered"] == pytest.approx(1.0)
@@ -118,6 +118,17 @@ def test_that_an_svg_is_printed_without_a_display(project: Path, tmp_path: Path)
     )
     assert said.returncode == 0, said.stderr
     assert json.loads(said.stdout)["picture_dpi"] > 500
+
+
+def test_that_a_large_print_is_spread_over_paper(
+    capsys: pytest.CaptureFixture[str], project: Path, photo: Path, tmp_path: Path
+) -> None:
+    words = ["artwork", project, "--picture", photo, "--dpi", 10, "--json", "--width-mm", 400, "--out"]
+    told = answer(capsys, *words, tmp_path / "many", "--paper", "a4", "--width-mm", 1200)
+    assert told["pages"] >= 20 and any(f"{told['pages']} pages" in warning for warning in told["warnings"])
+    document = load_project(project)
+    save(replace(document, fabrication=replace(document.fabrication, paper="a4")), project)
+    assert answer(capsys, *words, tmp_path / "own")["pages"] == 4
 
 
 def test_that_a_second_picture_shares_the_sheet(

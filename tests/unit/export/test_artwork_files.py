@@ -21,8 +21,9 @@ from kirigami_studio.export.artwork import ArtPicture, Artwork, Laid, State
 from kirigami_studio.export.artwork_files import ArtworkJob, write_artwork
 from kirigami_studio.export.artwork_patches import rings_of
 from kirigami_studio.export.artwork_picture import picture_of
-from kirigami_studio.export.artwork_raster import image_of
+from kirigami_studio.export.artwork_raster import MOST_PIXELS, image_of
 from kirigami_studio.export.exporter import ExportJob
+from kirigami_studio.export.paper import tile
 from kirigami_studio.export.profile import find_profile
 from kirigami_studio.export.svg import write_cut_svg
 from kirigami_studio.fabricate.cut_plan import plan_cuts
@@ -147,6 +148,56 @@ def test_that_the_pdf_lays_every_panel_and_its_picture_where_they_belong(
     assert frame[0, 0] == pytest.approx(72.0 / 25.4, abs=1e-4)
 
 
+def place_of_print(page: pypdf.PageObject, reader: pypdf.PdfReader) -> tuple[np.ndarray, np.ndarray]:
+    """Where the frame of the cut file lies on a page, and the box that the print is cut off at: (2,), (2, 2) mm."""
+    frame, steps, corners = np.eye(3), 0, []
+    for operands, operator in pypdf.generic.ContentStream(page.get_contents(), reader).operations:
+        values = [float(number) for number in operands] if operator in (b"cm", b"m", b"l") else []
+        if operator == b"cm" and steps < 4:
+            a, b, c, d, e, f = values
+            frame, steps = frame @ np.array([[a, c, e], [b, d, f], [0.0, 0.0, 1.0]]), steps + 1
+        elif operator in (b"m", b"l") and 0 < steps < 4:
+            corners.append((frame @ [*values, 1.0])[:2])
+    mm = 25.4 / 72.0
+    assert frame[0, 0] == pytest.approx(1.0 / mm, abs=1e-4)
+    return frame[:2, 2] * mm, np.array([np.min(corners, axis=0), np.max(corners, axis=0)]) * mm
+
+
+@pytest.mark.parametrize(("width_mm", "copies"), [(230.0, 1), (120.0, 4)])
+def test_that_a_print_larger_than_the_paper_is_spread_over_pages(
+    width_mm: float, copies: int, picture: ArtPicture, job: ExportJob, tmp_path: Path
+) -> None:
+    plan = plan_cuts(job.deployment, width_mm=width_mm, options=CutOptions(copies=copies))
+    work = ArtworkJob(Artwork(Laid(picture)), replace(job, plan=plan, paper="a4"), 20.0)
+    assert len(work.places) == copies
+    pdf = write_artwork(work, tmp_path)[1]
+    reader, meant = pypdf.PdfReader(pdf), tile(work.page_mm, "a4")
+    assert len(meant.tiles) >= 2 and len(reader.pages) == len(meant.tiles) + 1
+    assert f"Map of {len(meant.tiles)} pages" in reader.pages[0].extract_text()
+    low, high = np.full(2, np.inf), np.full(2, -np.inf)
+    for page, part in zip(reader.pages[1:], meant.tiles, strict=True):
+        sides = [float(page.mediabox.width), float(page.mediabox.height)]
+        assert np.array(sides) * 25.4 / 72.0 == pytest.approx(meant.page, abs=1e-3)
+        origin, box = place_of_print(page, reader)
+        corner = np.array(part.window[:2])
+        assert origin == pytest.approx(np.array([10.0, 24.0]) - corner + work.margin_mm, abs=1e-3)
+        assert box == pytest.approx(np.array(part.window).reshape(2, 2) - corner + [10.0, 24.0], abs=1e-3)
+        low, high = np.minimum(low, part.window[:2]), np.maximum(high, part.window[2:])
+        drawn = [operator for _, operator in pypdf.generic.ContentStream(page.get_contents(), reader).operations]
+        assert drawn.count(b"Do") == copies and b"W*" in drawn
+        assert "This ruler is 50 mm long" in page.extract_text()
+    assert np.all(low <= 1e-9) and np.all(high >= np.array(work.page_mm) - 1e-9)
+    assert pdf.read_bytes().count(b"/Subtype /Image") == 1  # however many pages show it
+
+
+def test_that_a_print_that_fits_takes_one_page_of_the_paper(
+    picture: ArtPicture, job: ExportJob, tmp_path: Path
+) -> None:
+    pdf = write_artwork(ArtworkJob(Artwork(Laid(picture)), replace(job, paper="letter"), 20.0), tmp_path)[1]
+    (page,) = pypdf.PdfReader(pdf).pages
+    assert sorted([float(page.mediabox.width), float(page.mediabox.height)]) == pytest.approx([612.0, 792.0], abs=1e-2)
+
+
 def test_that_the_opened_sheet_shows_the_picture_as_it_was(picture: ArtPicture, job: ExportJob, tmp_path: Path) -> None:
     opened = write_artwork(ArtworkJob(Artwork(Laid(picture)), job), tmp_path)[3]
     with Image.open(opened) as image:
@@ -199,7 +250,7 @@ def test_that_the_same_picture_gives_the_same_bytes_and_names_its_design(
         assert image.info["DESIGN"] == job.required_plan.design_hash
 
 
-def test_that_too_many_pixels_and_odd_margins_are_refused_before_anything_is_written(
+def test_that_too_many_pixels_unknown_paper_and_odd_margins_are_refused_before_anything_is_written(
     picture: ArtPicture, job: ExportJob, tmp_path: Path
 ) -> None:
     with pytest.raises(ExportError) as caught:
@@ -207,5 +258,20 @@ def test_that_too_many_pixels_and_odd_margins_are_refused_before_anything_is_wri
     assert caught.value.code == "artwork.too_many_pixels"
     assert not (tmp_path / "none").exists()
     with pytest.raises(ExportError) as caught:
+        write_artwork(ArtworkJob(Artwork(Laid(picture)), replace(job, paper="a9")), tmp_path / "none")
+    assert caught.value.code == "paper.unknown"
+    assert not (tmp_path / "none").exists()
+    with pytest.raises(ExportError) as caught:
         ArtworkJob(Artwork(Laid(picture)), job, margin_mm=-1.0)
     assert caught.value.code == "artwork.impossible_margin"
+
+
+@pytest.mark.parametrize(("width_mm", "dpi"), [(50.0, 300.0), (1200.0, 232.0), (2999.0, 93.0)])
+def test_that_a_print_of_no_asked_resolution_gets_what_a_bitmap_may_have(
+    width_mm: float, dpi: float, picture: ArtPicture, job: ExportJob
+) -> None:
+    large = replace(job, plan=plan_cuts(job.deployment, width_mm=width_mm))
+    work = ArtworkJob.usual(Artwork(Laid(picture)), large)
+    assert work.dpi == pytest.approx(dpi, abs=8.0)
+    width, height = work.page.pixels  # refused where these are too many
+    assert dpi == 300.0 or width * height > 0.97 * MOST_PIXELS

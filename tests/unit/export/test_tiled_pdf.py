@@ -144,14 +144,14 @@ def test_that_a_missing_cut_is_noticed(
     make_design: MakeDesign, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     plan = plan_cuts(make_design(5, 6, seed=2), 330.0)
-    draw, drawn = pdf._draw, []
+    draw, drawn = pdf.draw_line, []
 
     def forgetful(canvas: object, points: np.ndarray, closed: bool) -> None:
         drawn.append(points)
         if len(drawn) % 7:
             draw(canvas, points, closed)
 
-    monkeypatch.setattr(pdf, "_draw", forgetful)
+    monkeypatch.setattr(pdf, "draw_line", forgetful)
     with pytest.raises(ExportError, match="did not read back"):
         pdf.write_pdf(plan, tmp_path / "sheet.pdf", "a4")
     assert sum(path.layer is Layer.SLITS for path in plan.paths) == 30
