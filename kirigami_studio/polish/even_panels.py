@@ -1,7 +1,13 @@
-"""Even panels: every panel edge of the flat sheet pulled towards the one it has in the uniform sheet.
+"""Even panels: every panel edge and every panel's area of the flat sheet pulled towards those of the uniform sheet.
 
-The term is like an elastic energy, ``w / E * sum over panel edges |e - e0|^2``, quadratic in the compact nodes.  It is
-a taste, and a guide as well: a fit that begins stiff and softens takes the whole sheet along.
+The term is ``w (a / E * sum over panel edges |e - e0|^2 + b / P * sum over panels (A - A0)^2)``, in uniform edges and
+areas.  The first sum is like an elastic energy, quadratic in the compact nodes.  It is a taste, and a guide as well: a
+fit that begins stiff and softens takes the whole sheet along.  The second is the square of what sheets are judged by,
+the coefficient of variation of panel areas, and asks for no shape of the panels.
+
+First designs of the 36 drawn shapes (grid auto): with halves of both instead of edges alone, that coefficient falls
+from 0.45 to 0.40 at a mean exact IoU of 0.9850 instead of 0.9852.  Of 7 shapes, 8 instead of 9 % of the cuts meet at
+shallow angles.
 """
 
 from __future__ import annotations
@@ -9,17 +15,20 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import csr_matrix
+from scipy.sparse import block_diag, csr_matrix
 
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.lattice.topology import topology
-from kirigami_studio.polish.large_panels import over_even, panel_areas
+from kirigami_studio.polish.large_panels import PanelAreas, over_even, panel_areas
 from kirigami_studio.polish.unfolding import unfolded
 
 #: Weight in fits that want match and evenness alike, and how many decades the slider spans around it.
 USUAL_WEIGHT, DECADES = 3e-4, 2.0
+#: Shares of edges and of areas in it.  More for areas leaves splinters: with 0.3 and 1 more than twice as many cuts of a heart
+#: meet at shallow angles.
+EDGES, AREAS = 0.5, 0.5
 
 
 def even_weight(regular: float) -> float:
@@ -33,27 +42,37 @@ class EvenPanels:
 
     Attributes
     ----------
+    grid : (rows, columns) voids
     difference : (E, N) sparse
         Reads the panel edges off the compact nodes, scaled so that the squares' sum is their mean in uniform edges.
     uniform : (E, 2) float
         The same of the uniform sheet, unfolded where its start has hollows.
-    stiffness : (N, N) sparse
-        Second derivative of the value by the nodes' x, and by their y.
+    stiffness : (2 N, 2 N) sparse
+        Second derivative of the edges' part by the nodes' x, then their y.
+    edges, areas : float
+        Shares of edges and areas.
     mean_area : float, unit cells squared
         Of the panels of the uniform sheet.
     large : float
         Weight of large panels beside it, see ``large_panels``.
     """
 
+    grid: tuple[int, int]
     difference: csr_matrix
     uniform: FloatArray
     stiffness: csr_matrix
+    edges: float
+    areas: float
     mean_area: float
     large: float
 
     @classmethod
     def of(cls, sheet: Sheet) -> EvenPanels:
-        """The term for a sheet's grid, start outline and cell; its ratios and rim do not matter."""
+        """The term for a sheet's grid, start outline and cell; its ratios and rim do not matter.
+
+        Areas count in the paper's rectangle alone, where uniform panels have one area; in other starts
+        ``large_panels`` looks after them.
+        """
         panels = topology(*sheet.grid).panel_nodes.reshape(-1, 4)
         start, end = panels.ravel(), np.roll(panels, -1, axis=1).ravel()
         nodes = deploy(unfolded(sheet.plain())).compact
@@ -64,15 +83,35 @@ class EvenPanels:
             (np.concatenate([sign, -sign]), (np.concatenate([rows, rows]), np.concatenate([end, start]))),
             shape=(start.size, len(nodes)),
         )
-        stiffness = 2.0 * (difference.T @ difference).tocsr()
-        mean = float(panel_areas(nodes, *sheet.grid).area.mean())
-        return cls(difference, difference @ nodes, stiffness, mean, over_even(sheet))
+        mean, large = float(panel_areas(nodes, *sheet.grid).area.mean()), over_even(sheet)
+        edges, areas = (1.0, 0.0) if large else (EDGES, AREAS)
+        along = 2.0 * edges * (difference.T @ difference)
+        stiffness = csr_matrix(block_diag((along, along)))
+        return cls(sheet.grid, difference, difference @ nodes, stiffness, edges, areas, mean, large)
 
     def value(self, nodes: FloatArray) -> float:
-        """Mean squared change of the panel edges of compact ``nodes`` (N, 2), in uniform edges squared."""
-        return float(np.square(self.difference @ nodes - self.uniform).sum())
+        """The shares' sum for compact ``nodes`` (N, 2): mean squares, in uniform edges and areas."""
+        value = self.edges * float(np.square(self.difference @ nodes - self.uniform).sum())
+        if self.areas:
+            value += self.areas * float(np.square(self._panels(nodes).area - 1.0).mean())
+        return value
 
     def pull(self, nodes: FloatArray) -> FloatArray:
         """Derivative (N, 2) of the value by the nodes."""
-        pull: FloatArray = 2.0 * (self.difference.T @ (self.difference @ nodes - self.uniform))
+        pull: FloatArray = 2.0 * self.edges * (self.difference.T @ (self.difference @ nodes - self.uniform))
+        if self.areas:
+            panels = self._panels(nodes)
+            by_area = 2.0 * self.areas / len(panels) * (panels.area - 1.0)
+            pull += (by_area @ panels.growth(len(nodes))).reshape(2, len(nodes)).T
         return pull
+
+    def curvature(self, nodes: FloatArray) -> csr_matrix:
+        """Gauss-Newton approximation of the second derivative by the nodes' x, then their y: (2 N, 2 N)."""
+        if not self.areas:
+            return self.stiffness
+        panels = self._panels(nodes)
+        growth = panels.growth(len(nodes))
+        return self.stiffness + 2.0 * self.areas / len(panels) * (growth.T @ growth)
+
+    def _panels(self, nodes: FloatArray) -> PanelAreas:
+        return panel_areas(nodes, *self.grid, self.mean_area)

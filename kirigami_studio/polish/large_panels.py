@@ -14,6 +14,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.sparse import csr_matrix
 
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray, IntArray
 from kirigami_studio.lattice.sheet import Sheet
@@ -62,6 +63,13 @@ class PanelAreas:
         rows = np.arange(len(self))[:, None]
         along[:, rows, self.corners] = np.moveaxis(self.slope, 2, 0)
         return along[0], along[1]
+
+    def growth(self, node_count: int) -> csr_matrix:
+        """The same matrices side by side, (P, 2 N), sparse."""
+        entries = np.concatenate([self.slope[..., 0], self.slope[..., 1]], axis=1)
+        places = np.concatenate([self.corners, self.corners + node_count], axis=1)
+        first = np.arange(0, entries.size + 1, entries.shape[1])
+        return csr_matrix((entries.ravel(), places.ravel(), first), shape=(len(self), 2 * node_count))
 
 
 def panel_areas(nodes: FloatArray, rows: int, columns: int, mean: float = 1.0) -> PanelAreas:

@@ -210,7 +210,7 @@ class Objective:
         _, pose, second_pose = self._parts(look.state)
         motion = self.model.node_motion(look.decoded)
         if self.even is not None and stiffness is None:
-            stiffness = motion.curvature(self.even.stiffness, basis)
+            stiffness = motion.curvature(self.even.curvature(look.decoded.nodes), basis)
         centroids = None
         if self.guide is not None:
             posed = _posed(self.guide.centroids(look.decoded.nodes), pose)

@@ -434,25 +434,28 @@ class NodeMotion:
         return basis.reduced(slopes)
 
     def curvature(self, stiffness: csr_matrix, basis: Basis) -> FloatArray:
-        """Second derivative (V, V) by the variables of P^T ``stiffness`` P / 2, summed over x and y.
+        """Second derivative (V, V) by the variables of p^T ``stiffness`` p / 2, where p (2 N,) is all nodes' x, then y.
 
         Two solves for each axis take the place of the product of two full derivatives.
         """
         model, free, given = self.model, self.model._plan.free, self.model._table.node
         first, second = model._plan.pair
-        rows, edges = stiffness[free], stiffness[given]
-        inside, across, outside, rim = rows[:, free], rows[:, given], edges[:, free], edges[:, given]
+        right = [self._right(axis, basis) for axis in (0, 1)]
+        mouths = [self.share * self.along[:, axis] for axis in (0, 1)]
+        known = [csr_matrix((self.known * self.along[:, axis]).T) for axis in (0, 1)]
+        follow = [basis.reduced(self._wide(each)) for each in mouths]
         by_shape = np.zeros((model.size, basis.size))
-        for axis in (0, 1):
-            right, mouths = self._right(axis, basis), self.share * self.along[:, axis]
-            follow, known = basis.reduced(self._wide(mouths)), csr_matrix((self.known * self.along[:, axis]).T)
-            pull = self.pull[:, axis, None]
-            for start in range(0, basis.size, BLOCK):
-                block = slice(start, start + BLOCK)
-                moved, edge = model._forward(right[:, block].toarray(), self.system), follow[:, block]
-                back = model._backward(inside @ moved + across @ edge, self.system)
-                by_shape[model.voids :, block] += mouths.T @ (outside @ moved + rim @ edge) + known @ back
-                back *= pull
+        for start in range(0, basis.size, BLOCK):
+            block = slice(start, start + BLOCK)
+            moved = np.empty((2, model.node_count, follow[0][:, block].shape[1]))
+            for axis in (0, 1):
+                moved[axis, free] = model._forward(right[axis][:, block].toarray(), self.system)
+                moved[axis, given] = follow[axis][:, block]
+            force = (stiffness @ moved.reshape(2 * model.node_count, -1)).reshape(moved.shape)
+            for axis in (0, 1):
+                back = model._backward(force[axis, free], self.system)
+                by_shape[model.voids :, block] += mouths[axis].T @ force[axis, given] + known[axis] @ back
+                back *= self.pull[:, axis, None]
                 by_shape[: model.voids, block] += back[first] + back[second]
         return basis.reduced_rows(by_shape)
 

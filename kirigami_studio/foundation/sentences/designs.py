@@ -134,6 +134,10 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "grid.best_tried": mark(
         "{rows} x {columns}: matched best in short fits on {count} grids. Expected match: {percent:.1f} %."
     ),
+    "grid.finer_tried": mark(
+        "{rows} x {columns}: in short fits on {count} grids, coarser ones matched noticeably less. "
+        "Expected match: {percent:.1f} %."
+    ),
     "grid.panels_would_be_too_small": mark(
         "{rows} x {columns}: on a finer grid, panels of a sheet {width_mm:.0f} mm wide would be smaller than "
         "{least_mm:.2g} mm. Expected match: {percent:.1f} %."

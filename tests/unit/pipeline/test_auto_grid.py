@@ -193,3 +193,41 @@ def test_that_easy_shapes_and_shapes_without_an_axis_take_the_predicted_grid(mon
     for name in ("heart", "hexagon", "letter-l"):
         request = Request(load(name), None)
         assert chosen_for(request) == predicted_for(request)
+
+
+def test_that_finer_grids_are_tried_where_none_of_the_others_will_do(monkeypatch) -> None:
+    butterfly = load("butterfly")
+    tried: list[tuple[int, int]] = []
+    gain = auto_grid.FINER_GAIN
+
+    def trial(target, grid, phi, symmetry, free_rim, start) -> float:
+        tried.append(grid)
+        return 0.96 + (gain if max(grid) > auto_grid.FINEST else 0.0) + 1e-5 * grid[1]
+
+    monkeypatch.setattr(auto_grid, "_trial", trial)
+    auto_grid._tried.cache_clear()
+    choice = chosen_for(Request(butterfly, None))
+    finer = [grid for grid in tried if max(grid) > auto_grid.FINEST]
+    coarser = [grid for grid in tried if grid not in finer]
+    assert 1 <= len(finer) <= 3 and choice.grid == max(finer, key=lambda grid: grid[1])
+    assert choice.code == "grid.finer_tried" and str(len(tried)) in choice.reason
+    assert all(max(grid) <= auto_grid.FINER_LIMIT for grid in finer)
+    assert all((rows + 1) * (columns + 1) <= auto_grid.FINER_PANELS for rows, columns in finer)
+    # A cut in the middle of the sheet's upper and lower edge, in one of them, or in none: each kind once.
+    kinds = [(rows % 2, columns % 4 if rows % 2 else 0) for rows, columns in finer]
+    assert len(set(kinds)) == len(kinds)
+    monkeypatch.setattr(auto_grid, "FINER_GAIN", 2 * gain)
+    auto_grid._tried.cache_clear()
+    kept = chosen_for(Request(butterfly, None))
+    auto_grid._tried.cache_clear()
+    assert kept.code == "grid.best_tried" and kept.grid in coarser, "a finer grid has to be worth its cuts"
+
+
+@pytest.mark.parametrize("worth", [0.9, 0.98])
+def test_that_no_finer_grid_is_tried_where_one_would_not_help_or_is_not_needed(worth: float, monkeypatch) -> None:
+    tried: list[tuple[int, int]] = []
+    monkeypatch.setattr(auto_grid, "_trial", lambda target, grid, *given: tried.append(grid) or worth)
+    auto_grid._tried.cache_clear()
+    chosen_for(Request(load("butterfly"), None))
+    auto_grid._tried.cache_clear()
+    assert tried and max(max(grid) for grid in tried) <= auto_grid.FINEST
