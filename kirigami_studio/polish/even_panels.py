@@ -26,8 +26,8 @@ from kirigami_studio.polish.unfolding import unfolded
 
 #: Weight in fits that want match and evenness alike, and how many decades the slider spans around it.
 USUAL_WEIGHT, DECADES = 3e-4, 2.0
-#: Shares of edges and of areas in it.  More for areas leaves splinters: with 0.3 and 1 more than twice as many cuts of a heart
-#: meet at shallow angles.
+#: Shares of edges and of areas in it.  More for areas leaves splinters: with 0.3 and 1 more than
+#: twice as many cuts of a heart meet at shallow angles.
 EDGES, AREAS = 0.5, 0.5
 
 
