@@ -83,11 +83,12 @@ class EvenPanels:
             (np.concatenate([sign, -sign]), (np.concatenate([rows, rows]), np.concatenate([end, start]))),
             shape=(start.size, len(nodes)),
         )
-        mean, large = float(panel_areas(nodes, *sheet.grid).area.mean()), over_even(sheet)
-        edges, areas = (1.0, 0.0) if large else (EDGES, AREAS)
+        mean = float(panel_areas(nodes, *sheet.grid).area.mean())
+        square = sheet.start is None and sheet.cell == (1.0, 1.0)
+        edges, areas = (EDGES, AREAS) if square else (1.0, 0.0)
         along = 2.0 * edges * (difference.T @ difference)
         stiffness = csr_matrix(block_diag((along, along)))
-        return cls(sheet.grid, difference, difference @ nodes, stiffness, edges, areas, mean, large)
+        return cls(sheet.grid, difference, difference @ nodes, stiffness, edges, areas, mean, over_even(sheet))
 
     def value(self, nodes: FloatArray) -> float:
         """The shares' sum for compact ``nodes`` (N, 2): mean squares, in uniform edges and areas."""
@@ -111,7 +112,7 @@ class EvenPanels:
             return self.stiffness
         panels = self._panels(nodes)
         growth = panels.growth(len(nodes))
-        return self.stiffness + 2.0 * self.areas / len(panels) * (growth.T @ growth)
+        return csr_matrix(self.stiffness + 2.0 * self.areas / len(panels) * (growth.T @ growth))
 
     def _panels(self, nodes: FloatArray) -> PanelAreas:
         return panel_areas(nodes, *self.grid, self.mean_area)
