@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
+import io
 import json
 from collections.abc import Callable, Iterable, Sequence
 from contextlib import AbstractContextManager
@@ -233,6 +235,30 @@ def _print_in_folder(
     """Print figures, and write them as ``name`` into the folder where there is one."""
     arguments.out = None if arguments.out is None else Path(arguments.out) / name
     return _print_figures(arguments, line, asdict(figures), figures.sentences())
+
+
+def report(arguments: argparse.Namespace) -> int:
+    """The report of finished suites; with ``--quick``, tiny suites are run first."""
+    from kirigami_studio.benchmark.report import GENERATORS, SOLVERS, made_from
+    from kirigami_studio.cli.parser import build_parser
+
+    folder = Path(arguments.runs)
+    if arguments.quick:
+        small = ["--count", "2", "--seeds", "0", "--processes", "1"]
+        for suite, place, more in (
+            ("solvers", SOLVERS, ["--evaluations", "40", "--polish", "5"]),
+            ("generators", GENERATORS, ["--k", "4", "--sweep"]),
+        ):
+            words = ["benchmark", suite, *small, *more, "--out", str((folder / place).parent)]
+            asked = build_parser().parse_args(words)
+            with contextlib.redirect_stdout(io.StringIO()):
+                asked.run(asked)
+    files = [str(path) for path in made_from(folder).save(Path(arguments.out))]
+    if arguments.json:
+        print_json({"files": files})
+    else:
+        say("\n".join(files))
+    return 0
 
 
 #: Numbers of steps of a sweep: Euler steps of flows, DDIM steps of the diffusion model (paper, step sensitivity).

@@ -664,6 +664,16 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
         *SOLVING,
     ), ("kirigami-studio benchmark best-of-k --out runs/solvers",
         "kirigami-studio benchmark best-of-k --methods sample,sample-fit --count 50")),
+    SubCommand("benchmark report", "write tables and plots of finished suites beside the paper's numbers",
+               "benchmarks:report", (
+        option("--runs", required=True, metavar="FOLDER",
+               help="folder with solvers/ and generators/ (--out of these suites) and training/, one run in each "
+                    "folder there"),
+        option("--quick", action="store_true", help="run both suites first, on two targets of each family"),
+        option("--out", required=True, help="Markdown file to write; pictures come beside it"),
+        JSON,
+    ), ("kirigami-studio benchmark report --runs runs --out report.md",
+        "kirigami-studio benchmark report --quick --runs quick --out quick/report.md")),
     SubCommand("benchmark generation-speed", "time loading and sampling", "benchmarks:generation_speed", (
         VARIANTS, GRID, STEPS, *FIGURES,
     ), ("kirigami-studio benchmark generation-speed",)),

@@ -75,6 +75,12 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "benchmark.no_targets_found": mark(
         "No targets found to measure on. Name a file, a folder with shapes, or 'library'."
     ),
+    "benchmark.nothing_to_report": mark(
+        "{path} has no figures to report. Run 'kirigami-studio benchmark solvers' or 'generators' with --out there."
+    ),
+    "benchmark.report_unreadable": mark(
+        "Cannot make a report of {path}: a file there is not what this version's suites write. Run them again."
+    ),
     "benchmark.generators_alike": mark("Two of these generators have one name: {names}. Compare them in two calls."),
     "benchmark.no_targets": mark("This suite needs at least one target, got none."),
     "benchmark.unknown_method": mark("There is no method called '{method:.40}'. Choose among {choices}."),

@@ -1,0 +1,75 @@
+"""The report: whole from small runs, the same from the same files, refused from broken ones."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from xml.etree import ElementTree
+
+import pytest
+from command_line import answer
+
+from kirigami_studio.benchmark.line_chart import Curve, LineChart
+from kirigami_studio.benchmark.report import made_from
+from kirigami_studio.foundation.errors import KirigamiError
+
+SVG = "{http://www.w3.org/2000/svg}"
+
+
+@pytest.fixture(scope="module")
+def runs(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Both suites on two targets of each family, and the log of a training run."""
+    folder = tmp_path_factory.mktemp("runs")
+    log = folder / "training" / "cgan" / "log.jsonl"
+    log.parent.mkdir(parents=True)
+    lines = [
+        {"step": step, "seconds": step, "loss": 9.0 / step, "structured_iou": match, "sobol_iou": 0.8, "drawn_iou": 0.7}
+        for step, match in ((10.0, 0.6), (20.0, 0.7))
+    ]
+    log.write_text("".join(json.dumps(line) + "\n" for line in lines))
+    return folder
+
+
+@pytest.mark.torch
+@pytest.mark.slow
+def test_that_a_quick_report_has_every_table_with_numbers_that_hold(
+    runs: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = runs / "report.md"
+    files = answer(capsys, "benchmark", "report", "--quick", "--runs", runs, "--out", out, "--json")["files"]
+    text = out.read_text()
+    assert "## Table 1: solvers" in text and "## Table 2: conditional generators" in text and "## Training" in text
+    assert all(f"]({Path(picture).name})" in text for picture in files[1:]) and len(files) == 5
+    solvers = json.loads((runs / "solvers" / "solvers.json").read_text())["families"]
+    generators = json.loads((runs / "generators" / "generators.json").read_text())["families"]
+    for family in ("structured", "sobol"):
+        rows, uniform = solvers[family]["rows"], solvers[family]["uniform_siou"]
+        assert rows["sample-fit"]["siou"] >= rows["sample"]["siou"] > 0.9
+        assert rows["fit"]["siou"] > uniform
+        assert max(rows[name]["most_evaluations"] for name in ("cma-es", "swarm", "local-search", "powell")) <= 40
+        assert rows["sample-fit"]["siou"] > rows["cma-es"]["siou"]
+        assert generators[family]["rows"]["prior"]["success"] == 1.0
+        assert f"**{100 * rows['fit']['siou']:.1f}**" in text
+    assert "(93.8)" in text and "| cgan | 20 |" in text
+    assert made_from(runs) == made_from(runs)
+
+
+def test_that_a_chart_shows_every_curve_with_its_name() -> None:
+    curves = [Curve("one", ((1.0, 90.0), (2.0, 95.0))), Curve("two", ((1.0, 80.0), (2.0, 85.0)))]
+    root = ElementTree.fromstring(LineChart("steps", "match (%)", curves, logarithmic=True).svg())
+    words = [text.text for text in root.iter(f"{SVG}text")]
+    assert {"one", "two", "steps", "match (%)"} <= set(words)
+    lines = [line for line in root.iter(f"{SVG}polyline") if "fill: none" in line.get("style", "")]
+    assert len(lines) >= 2
+
+
+def test_that_an_empty_folder_and_broken_files_are_refused(tmp_path: Path) -> None:
+    with pytest.raises(KirigamiError) as empty:
+        made_from(tmp_path)
+    assert empty.value.code == "benchmark.nothing_to_report"
+    (tmp_path / "solvers").mkdir()
+    for content in ("[1]", "{}", '{"families": {"a": 3}}', "no json"):
+        (tmp_path / "solvers" / "solvers.json").write_text(content)
+        with pytest.raises(KirigamiError) as broken:
+            made_from(tmp_path)
+        assert broken.value.code == "benchmark.report_unreadable"
