@@ -27,7 +27,7 @@ from kirigami_studio.project.verdict import assess
 
 FOLDER = Path(__file__).resolve().parents[1] / "resources" / "pairs"
 #: Even panels count more than the last percent of match: these are to be looked at.
-DESIGNS, POLISH, SEED, REGULAR = 32, 15, 0, 0.85
+DESIGNS, POLISH, SEED, REGULAR = 32, 15, 0, 0.75
 #: A sheet that is turned by no more than this (degrees) stands upright.
 UPRIGHT = 1.0
 
@@ -56,7 +56,7 @@ PAIRS = (
     Pair("circle", "heart"),
     Pair("circle", "square"),
     Pair("triangle", "circle", upright=True),
-    Pair("hexagon", "star"),
+    Pair("hexagon", "star", symmetry="mirror"),
     Pair("square", "circle", upright=True),
     Pair("ellipse:3:2", "shield"),
     Pair("circle", "bell"),

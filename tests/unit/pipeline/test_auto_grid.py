@@ -15,6 +15,7 @@ from kirigami_studio.lattice.symmetry import Symmetry
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.proportions import Proportions
 from kirigami_studio.outlines.silhouettes import load, names
+from kirigami_studio.outlines.starts import start_shape
 from kirigami_studio.outlines.symmetry import turned
 from kirigami_studio.pipeline import auto_grid
 from kirigami_studio.pipeline.auto_grid import (
@@ -223,11 +224,13 @@ def test_that_finer_grids_are_tried_where_none_of_the_others_will_do(monkeypatch
     assert kept.code == "grid.best_tried" and kept.grid in coarser, "a finer grid has to be worth its cuts"
 
 
-@pytest.mark.parametrize("worth", [0.9, 0.98])
-def test_that_no_finer_grid_is_tried_where_one_would_not_help_or_is_not_needed(worth: float, monkeypatch) -> None:
+@pytest.mark.parametrize(("worth", "start"), [(0.9, "rectangle"), (0.98, "rectangle"), (0.96, "circle")])
+def test_that_no_finer_grid_is_tried_where_one_would_not_help_or_is_not_needed(
+    worth: float, start: str, monkeypatch
+) -> None:
     tried: list[tuple[int, int]] = []
     monkeypatch.setattr(auto_grid, "_trial", lambda target, grid, *given: tried.append(grid) or worth)
     auto_grid._tried.cache_clear()
-    chosen_for(Request(load("butterfly"), None))
+    chosen_for(Request(load("butterfly"), None, start=start_shape(start)))
     auto_grid._tried.cache_clear()
     assert tried and max(max(grid) for grid in tried) <= auto_grid.FINEST
