@@ -1,4 +1,4 @@
-"""How long the program takes: loading a variant, drawing and scoring 32 candidates, one step and whole fits."""
+"""How long the program takes: loading a variant, drawing and scoring 32 candidates, one step, whole fits and runs."""
 
 from __future__ import annotations
 
@@ -10,16 +10,17 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from kirigami_studio.evaluate.candidate import Candidate
-from kirigami_studio.foundation.errors import UsageError
+from kirigami_studio.foundation.errors import Cancelled, UsageError
 from kirigami_studio.foundation.threads import one_blas_thread
 from kirigami_studio.generator.weights import load_model
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.silhouettes import load, names
+from kirigami_studio.pipeline.events import CandidateFound, CandidateImproved, Finished
 from kirigami_studio.pipeline.pool import Pool, worker_count
 from kirigami_studio.pipeline.request import POLISH_STEPS, Request, as_in_paper
-from kirigami_studio.pipeline.run import best_of, run, sample
+from kirigami_studio.pipeline.run import best_of, run, sample, with_grid
 from kirigami_studio.pipeline.tasks import scored
 from kirigami_studio.polish.boundary_target import BoundaryTarget
 from kirigami_studio.polish.even_panels import USUAL_WEIGHT
@@ -28,6 +29,8 @@ from kirigami_studio.polish.objective import Objective
 from kirigami_studio.polish.preferences import Preference, PreferenceTerms
 from kirigami_studio.polish.sensitivity import OutlineModel
 
+#: Silhouettes whose runs at grid auto are timed, after that of another one, and workers that do them.
+RUNS, WARMING, RUN_WORKERS = ("heart", "star", "butterfly", "drop", "hexagon"), "egg", 2
 #: Candidates of the timed runs, and steps of the timed fits.
 K, STEPS = 32, 10
 #: Runs of what is short, of which the fastest counts.
@@ -141,6 +144,58 @@ def polish_timings() -> dict[str, object]:
             "sheet_fit_48_s": _sheet_fit_seconds(target, 48),
         }
     return {**figures, "polish_32_s": _run_seconds(request), "workers": worker_count()}
+
+
+def run_timings(
+    shapes: Sequence[str] = RUNS, *, k: int = K, workers: int = RUN_WORKERS
+) -> dict[str, dict[str, object]]:
+    """Time whole runs as the window starts them: grid auto, every design polished, no search, the program being warm.
+
+    Parameters
+    ----------
+    shapes : sequence of str
+        Silhouettes of the library.
+    k : int
+    workers : int
+        Worker processes; with 0 or 1 the run does its fits itself.
+
+    Returns
+    -------
+    figures : dict
+        By silhouette: the ``grid`` that was chosen, wall seconds from the start of the run to the choice of the grid
+        (``grid_s``), to the first polished symmetric design (``first_s``; None where no design is symmetric) and to its
+        end (``all_s``), and the ``iou_exact`` and ``panel_area_cv`` of the design that came first.
+    """
+    pool = Pool(workers)
+    try:
+        best_of(Request(load(WARMING), k=K, polish=POLISH_STEPS), pool=pool)
+        return {shape: _timed_run(Request(load(shape), None, k=k, polish=POLISH_STEPS), pool) for shape in shapes}
+    finally:
+        pool.close()
+
+
+def _timed_run(request: Request, pool: Pool) -> dict[str, object]:
+    first: float | None = None
+    began = time.perf_counter()
+    request = with_grid(request)
+    chosen = time.perf_counter() - began
+    for event in run(request, pool=pool):
+        passed = time.perf_counter() - began
+        match event:
+            case CandidateFound(candidate=found) | CandidateImproved(candidate=found):
+                if first is None and found.polished and found.symmetry is not None:
+                    first = passed
+            case Finished(result=result):
+                score, (rows, columns) = result.best.score, request.chosen_grid
+                return {
+                    "grid": f"{rows}x{columns}",
+                    "grid_s": chosen,
+                    "first_s": first,
+                    "all_s": passed,
+                    "iou_exact": score.iou_exact,
+                    "panel_area_cv": score.evenness.area_cv,
+                }
+    raise Cancelled("run.no_result")
 
 
 def _step_seconds(candidate: Candidate, target: Outline) -> float:

@@ -378,12 +378,12 @@ def generation_speed(arguments: argparse.Namespace) -> int:
 
 
 def speed(arguments: argparse.Namespace) -> int:
-    """Timings of scoring and polishing."""
-    from kirigami_studio.benchmark.speed_suite import polish_timings
+    """Timings of whole runs, of scoring and of polishing."""
+    from kirigami_studio.benchmark.speed_suite import polish_timings, run_timings
 
     line = ProgressLine()
-    line.show("Timing scores and fits")
-    return _print_figures(arguments, line, polish_timings())
+    line.show("Timing runs, scores and fits")
+    return _print_figures(arguments, line, {"runs": run_timings(), **polish_timings()})
 
 
 def lattice(arguments: argparse.Namespace) -> int:
