@@ -9,12 +9,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
 from kirigami_studio.benchmark.generator_suite import SUCCESS_SIOU, bootstrap_interval
 from kirigami_studio.benchmark.run_store import Record, RunStore
-from kirigami_studio.benchmark.solver_suite import SolverRun, SolverSettings, check_methods, do_missing
+from kirigami_studio.benchmark.solver_suite import SolverRun, SolverSettings, check_methods, solved
 from kirigami_studio.outlines.outline import Outline
 
 SAMPLING = ("sample", "sample-fit")
@@ -115,7 +116,7 @@ def measure_best_of_k(
         for method in methods
         for run in _runs(method, family, number, outlines[number], sizes)
     ]
-    do_missing(runs, settings, store, processes, report)
+    store.complete(runs, partial(solved, settings=settings), processes, report)
     families = {
         family: {
             method: tuple(

@@ -32,7 +32,6 @@ from kirigami_studio.evaluate.score import evaluate_many
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import ModelError, UsageError
 from kirigami_studio.foundation.paper import LOG_RATIO_LIMIT
-from kirigami_studio.foundation.processes import results_of
 from kirigami_studio.generator.sampler import one_pose, one_torch_thread, posed, sample_fields
 from kirigami_studio.generator.weights import Model, load_model, load_weights
 from kirigami_studio.lattice.deployment import deploy
@@ -326,14 +325,7 @@ def measure_generators(
         raise UsageError("benchmark.generators_alike", names=", ".join(names))
     sweep = sweep or {}
     runs = list(_runs(targets, sources, seeds, settings, sweep))
-    waiting = [run for run in runs if run.key not in store.records]
-    done = len(runs) - len(waiting)
-    report(done, len(runs))
-    work = partial(sampled, classes=FieldClasses.of(reference))
-    for run, record in results_of(work, iter(waiting), processes):
-        store.add(run.key, record)
-        done += 1
-        report(done, len(runs))
+    store.complete(runs, partial(sampled, classes=FieldClasses.of(reference)), processes, report)
     families = {family: _table([run for run in runs if run.family == family], sources, store) for family in targets}
     weights = {one.name: one.digest for one in map(generator_named, sources)}
     return GeneratorFigures(settings.to_json(), tuple(seeds), weights, families)

@@ -5,20 +5,33 @@ from __future__ import annotations
 import hashlib
 import json
 import os
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Protocol, TypeVar
 
 import numpy as np
 
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import ExportError, KirigamiError
 from kirigami_studio.foundation.files import folder_of_one_writer
+from kirigami_studio.foundation.processes import results_of
 from kirigami_studio.outlines.outline import Outline
 
 #: What a suite tells its runs by, such as method, family, seed and target.
 Key = tuple[str | int, ...]
 Record = dict[str, object]
+
+
+class Keyed(Protocol):
+    """A run that a suite wants done."""
+
+    @property
+    def key(self) -> Key:
+        """What it is found by again."""
+
+
+Run = TypeVar("Run", bound=Keyed)
 
 
 class RunStore:
@@ -66,6 +79,18 @@ class RunStore:
         if self._path is not None:
             self._append(self._path, {"key": list(key), **record})
         self.records[key] = record
+
+    def complete(
+        self, runs: Sequence[Run], work: Callable[[Run], Record], processes: int, report: Callable[[int, int], None]
+    ) -> None:
+        """Do the runs that are missing, ``processes`` at a time; ``report`` is told (done, total)."""
+        waiting = [run for run in runs if run.key not in self.records]
+        done = len(runs) - len(waiting)
+        report(done, len(runs))
+        for run, record in results_of(work, iter(waiting), processes):
+            self.add(run.key, record)
+            done += 1
+            report(done, len(runs))
 
     def _read(self, path: Path) -> None:
         try:

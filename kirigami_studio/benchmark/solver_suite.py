@@ -30,7 +30,6 @@ from kirigami_studio.evaluate.silhouette import rasterise
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray
 from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.foundation.paper import LOG_RATIO_LIMIT
-from kirigami_studio.foundation.processes import results_of
 from kirigami_studio.foundation.threads import one_blas_thread
 from kirigami_studio.generator.weights import digest_of
 from kirigami_studio.lattice.deployment import Deployment, deploy
@@ -239,7 +238,7 @@ def measure_solvers(
     """
     check_methods(targets, methods, METHODS)
     runs = list(_runs(targets, methods, seeds))
-    do_missing(runs, settings, store, processes, report)
+    store.complete(runs, partial(solved, settings=settings), processes, report)
     families = {family: _table([run for run in runs if run.family == family], methods, store) for family in targets}
     return SolverFigures(settings.to_json(), tuple(seeds), families)
 
@@ -257,23 +256,6 @@ def check_methods(targets: Mapping[str, Sequence[Outline]], methods: Sequence[st
     for method in methods:
         if method not in known:
             raise UsageError("benchmark.unknown_method", method=method, choices=", ".join(known))
-
-
-def do_missing(
-    runs: Sequence[SolverRun],
-    settings: SolverSettings,
-    store: RunStore,
-    processes: int,
-    report: Callable[[int, int], None],
-) -> None:
-    """Do the runs that ``store`` does not have yet."""
-    waiting = [run for run in runs if run.key not in store.records]
-    done = len(runs) - len(waiting)
-    report(done, len(runs))
-    for run, record in results_of(partial(solved, settings=settings), iter(waiting), processes):
-        store.add(run.key, record)
-        done += 1
-        report(done, len(runs))
 
 
 def solved(run: SolverRun, settings: SolverSettings) -> Record:

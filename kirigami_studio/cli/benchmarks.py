@@ -29,6 +29,7 @@ from kirigami_studio.outlines.starts import start_shape
 
 if TYPE_CHECKING:
     from kirigami_studio.benchmark.best_of_k_suite import BestOfKFigures
+    from kirigami_studio.benchmark.grid_sweep_suite import SweepFigures
     from kirigami_studio.benchmark.run_store import RunStore
     from kirigami_studio.benchmark.solver_suite import SolverFigures, SolverSettings
 
@@ -206,19 +207,43 @@ def best_of_k(arguments: argparse.Namespace) -> int:
     return _print_in_folder(arguments, line, "best-of-k.json", figures)
 
 
+def grid_sweep(arguments: argparse.Namespace) -> int:
+    """Time and quality against the size of the grid, and where marching ends; goes on where an earlier call ended."""
+    from kirigami_studio.benchmark.grid_sweep_suite import measure_grid_sweep
+    from kirigami_studio.benchmark.solver_suite import METHODS
+
+    line, settings = ProgressLine(), _solver_settings(arguments)
+    targets = [named.read() for named in read_targets(arguments.targets)]
+    with _solver_runs(arguments, settings, "grid-sweep.jsonl") as store:
+        figures = measure_grid_sweep(
+            targets,
+            arguments.sizes,
+            _methods(arguments, METHODS),
+            settings,
+            store,
+            arguments.processes,
+            _shown_on(line, "Runs"),
+        )
+    return _print_in_folder(arguments, line, "grid-sweep.json", figures)
+
+
 def _solver_settings(arguments: argparse.Namespace) -> SolverSettings:
     from kirigami_studio.baselines.search import Stopping
     from kirigami_studio.benchmark.solver_suite import SolverSettings
 
     stopping = Stopping(arguments.evaluations)
-    return SolverSettings(parse_grid(arguments.grid), arguments.space, stopping, arguments.variant, arguments.polish)
+    # A sweep has no grid of its own.
+    grid = parse_grid(arguments.grid) if "grid" in arguments else (10, 10)
+    return SolverSettings(grid, arguments.space, stopping, arguments.variant, arguments.polish)
 
 
-def _solver_runs(arguments: argparse.Namespace, settings: SolverSettings) -> AbstractContextManager[RunStore]:
-    """Runs of solvers in the folder ``--out``, or for this call only: suites in one folder share them."""
+def _solver_runs(
+    arguments: argparse.Namespace, settings: SolverSettings, name: str = "solvers.jsonl"
+) -> AbstractContextManager[RunStore]:
+    """Runs of solvers in the folder ``--out``, or for this call only; suites with one ``name`` share them."""
     from kirigami_studio.benchmark.run_store import RunStore
 
-    path = None if arguments.out is None else Path(arguments.out) / "solvers.jsonl"
+    path = None if arguments.out is None else Path(arguments.out) / name
     return RunStore.opened(settings.to_json(), path)
 
 
@@ -230,7 +255,7 @@ def _methods(arguments: argparse.Namespace, known: tuple[str, ...]) -> tuple[str
 
 
 def _print_in_folder(
-    arguments: argparse.Namespace, line: ProgressLine, name: str, figures: SolverFigures | BestOfKFigures
+    arguments: argparse.Namespace, line: ProgressLine, name: str, figures: SolverFigures | BestOfKFigures | SweepFigures
 ) -> int:
     """Print figures, and write them as ``name`` into the folder where there is one."""
     arguments.out = None if arguments.out is None else Path(arguments.out) / name

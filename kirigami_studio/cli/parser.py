@@ -664,6 +664,15 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
         *SOLVING,
     ), ("kirigami-studio benchmark best-of-k --out runs/solvers",
         "kirigami-studio benchmark best-of-k --methods sample,sample-fit --count 50")),
+    SubCommand("benchmark grid-sweep", "measure solvers, fits and samples on growing grids", "benchmarks:grid_sweep", (
+        option("--targets", nargs="+", default=["heart", "circle", "hexagon"],
+               help="silhouettes, files or folders (default: heart circle hexagon)"),
+        option("--sizes", type=count, nargs="+", default=[6, 8, 10, 12, 16, 20, 24, 32, 48], metavar="N",
+               help="rows and columns; solvers up to 24 (default 6 8 10 12 16 20 24 32 48)"),
+        option("--methods", default=None, metavar="NAMES", help="as for 'benchmark solvers' (default: all)"),
+        *SOLVING,
+    ), ("kirigami-studio benchmark grid-sweep --out runs/sweep",
+        "kirigami-studio benchmark grid-sweep --methods fit,sample --sizes 10 24 48")),
     SubCommand("benchmark report", "write tables and plots of finished suites beside the paper's numbers",
                "benchmarks:report", (
         option("--runs", required=True, metavar="FOLDER",

@@ -60,6 +60,9 @@ def test_that_solvers_go_on_in_their_folder(capsys: pytest.CaptureFixture[str], 
     curve = more["families"]["targets"]["swarm"]
     assert (curve[0]["k"], curve[0]["siou"]) == (1, first["families"]["targets"]["rows"]["swarm"]["siou"])
     assert len((tmp_path / "runs" / "solvers.jsonl").read_text().splitlines()) == 4
+    sweep = figures(capsys, "grid-sweep", "--sizes", "3", "--methods", "fit", *words[1:3], *words[-4:])
+    assert sweep["sizes"][0]["points"][0]["evaluations"] > 5
+    assert (tmp_path / "runs" / "grid-sweep.jsonl").exists()
     for wrong, code in ((["--methods", "annealing"], 2), (["--evaluations", "27"], 1)):
         assert main(["benchmark", *words, *wrong]) == code
 
