@@ -73,6 +73,10 @@ class WatchedTools(WatchedSession):
         """128 designs, undone and redone."""
         self.step("choose a target in a large window", lambda: self.window.controller.targeting.open("star"))
         self.until(lambda: self.window.run.generate.isEnabled() and not self.window.controller.queue.busy)
+        controller, row = self.window.controller, self.window.settings.second
+        self.step("choose a second target", lambda: controller.second.open("hexagon"))
+        self.until(lambda: controller.document.settings.second is not None and not controller.queue.busy)
+        self.step("do without it", row.remove.click)
         self.set_up(DESIGNS, 0, search=False)
         self.step(f"generate {DESIGNS} designs", self.generate, self.generated)
         for _ in range(10):

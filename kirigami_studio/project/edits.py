@@ -160,7 +160,9 @@ def set_settings(document: Document, **changes: Unpack[SettingsChange]) -> Edit:
     if "grid" in changes and "auto_grid" not in changes:
         settings = replace(settings, auto_grid=False)
     changed = replace(document, settings=settings)
-    return Edit(_label(changes), changed, merge_key=_merge_key("settings", changes))
+    removes = "second" in changes and changes["second"] is None
+    label = tr("Remove the second target") if removes else _label(changes)
+    return Edit(label, changed, merge_key=_merge_key("settings", changes))
 
 
 def set_fabrication(document: Document, **changes: Unpack[FabricationChange]) -> Edit:

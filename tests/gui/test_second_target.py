@@ -97,6 +97,7 @@ def test_that_it_lies_under_more_until_there_is_one(window: MainWindow, until: U
     assert row.isVisible()  # what is asked for stays in sight
     qtbot.mouseClick(row.remove, Qt.MouseButton.LeftButton)
     assert window.controller.document.settings.second is None and not row.isVisible()
+    assert window.controller.history.undo_label == "Remove the second target"
 
 
 def test_that_shape_angle_and_weight_are_one_undo_step_each(window: MainWindow, until: Until) -> None:

@@ -11,6 +11,7 @@ import pytest
 from PIL import Image
 from PySide6.QtCore import QMimeData, QPoint, QPointF, Qt, QUrl
 from PySide6.QtGui import QDragEnterEvent, QDropEvent
+from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
@@ -50,6 +51,20 @@ def test_that_the_library_prefers_the_title_that_fits_best(window: MainWindow, q
     qtbot.keyClick(picker.search, Qt.Key.Key_Return)
     until(lambda: window.controller.document.target is not None)
     assert window.controller.document.target == silhouettes.load("star")
+
+
+def test_that_the_key_that_opens_the_library_chooses_nothing_in_it(window: MainWindow, until: Until) -> None:
+    window.dialogs.show_start_library(window.settings.start)
+    picker = window.dialogs.picker
+    assert picker is not None
+    chosen: list[str] = []
+    picker.chosen.connect(chosen.append)
+    QTest.keyClick(picker, Qt.Key.Key_Return)  # on its way since the list of starts
+    assert chosen == [] and picker.isVisible()
+    QApplication.processEvents()
+    QTest.keyClick(picker, Qt.Key.Key_Return)
+    assert len(chosen) == 1
+    until(lambda: not window.controller.queue.busy)
 
 
 def test_that_the_first_target_is_no_unsaved_change(window: MainWindow, until: Until) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import QPoint, QSize, Qt, Signal
+from PySide6.QtCore import QPoint, QSize, Qt, QTimer, Signal
 from PySide6.QtGui import QGuiApplication, QIcon, QKeyEvent
 from PySide6.QtWidgets import QFrame, QLabel, QLineEdit, QListView, QListWidget, QListWidgetItem, QVBoxLayout, QWidget
 
@@ -23,6 +23,7 @@ class SilhouettePicker(QFrame):
     def __init__(self, parent: QWidget, palette: Palette) -> None:
         super().__init__(parent, Qt.WindowType.Popup)
         self.setObjectName("popup")
+        self._listens = False
         self.search = QLineEdit()
         self.search.setPlaceholderText(tr("Search the library"))
         self.search.setClearButtonEnabled(True)
@@ -49,6 +50,7 @@ class SilhouettePicker(QFrame):
         self.list.itemActivated.connect(self._take)
         self.list.currentItemChanged.connect(self._describe)
         self.search.textChanged.connect(self._filter)
+        self.search.textChanged.connect(self._listen)
         self.resize(560, 470)
 
     def _fill(self, palette: Palette) -> None:
@@ -71,9 +73,16 @@ class SilhouettePicker(QFrame):
         self.move(max(x, area.left()), max(y, area.top()))
         self.show()
         self.search.setFocus()
+        QTimer.singleShot(0, self, self._listen)
+
+    def _listen(self) -> None:
+        """Take keys from now on: until then the key that chose "Library" in a list is still on its way."""
+        self._listens = True
 
     def keyPressEvent(self, event: QKeyEvent) -> None:  # noqa: N802 - Qt's name
-        if event.key() in (Qt.Key.Key_Down, Qt.Key.Key_Up) and self.search.hasFocus():
+        if not self._listens:
+            event.accept()
+        elif event.key() in (Qt.Key.Key_Down, Qt.Key.Key_Up) and self.search.hasFocus():
             self.list.setFocus()
             self.list.setCurrentRow(next((row for row in range(self.list.count()) if self._shown(row)), 0))
         elif event.key() in (Qt.Key.Key_Return, Qt.Key.Key_Enter):
