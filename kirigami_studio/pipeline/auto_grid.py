@@ -52,6 +52,8 @@ WORTHWHILE, WORTHWHILE_FREE = 0.96, 0.88
 #: lie within the third of the square's and the shape's own.  Nine short steps rank the grids of a star, a butterfly, a
 #: vase, a cross and a leaf as the whole fits do.
 TRIED_MISSING, TRIED_APART, TRIED_ROOM, MOST_TRIED, TRIED_BELOW = 1.6, 0.09, 0.25, 4, 0.989
+#: Where the best of them is worth less than this, short fits were lost and tell nothing about grids: those of a bone.
+TELLING = 0.8
 #: Where the best of them is worth (exact IoU less the price of uneven panels) something between the first two, some
 #: finer grids are tried: longer ones of at most so many rows, columns and panels.  The best of these is taken where it
 #: is worth more by this.  A butterfly gains 0.010 of IoU by it, a crescent 0.009; a cross and an airplane, which are
@@ -307,6 +309,8 @@ def _tried(
         return choice
     worth = {one: _trial(target, one.grid, phi, symmetry, free_rim, start) for one in picked}
     best, code = max(worth, key=worth.__getitem__), "grid.best_tried"
+    if worth[best] < TELLING:
+        return choice
     least, most = FINER_BETWEEN
     if start.is_plain and least <= worth[best] < most:
         finer = {one: _trial(target, one.grid, phi, symmetry, free_rim, start) for one in _finer(near, best)}

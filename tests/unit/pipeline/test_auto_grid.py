@@ -234,3 +234,11 @@ def test_that_no_finer_grid_is_tried_where_one_would_not_help_or_is_not_needed(
     chosen_for(Request(load("butterfly"), None, start=start_shape(start)))
     auto_grid._tried.cache_clear()
     assert tried and max(max(grid) for grid in tried) <= auto_grid.FINEST
+
+
+def test_that_the_predicted_grid_is_taken_where_all_short_fits_are_lost(monkeypatch) -> None:
+    monkeypatch.setattr(auto_grid, "_trial", lambda target, grid, *given: 0.3 + 0.01 * grid[0])
+    auto_grid._tried.cache_clear()
+    request = Request(load("bone"), None)
+    assert chosen_for(request) == predicted_for(request)
+    auto_grid._tried.cache_clear()
