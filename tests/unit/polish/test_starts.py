@@ -17,7 +17,7 @@ from kirigami_studio.outlines.silhouettes import load
 from kirigami_studio.outlines.starts import RECTANGLE, StartShape, start_shape
 from kirigami_studio.polish.basis import Basis
 from kirigami_studio.polish.boundary_target import BoundaryTarget
-from kirigami_studio.polish.chords import Chords
+from kirigami_studio.polish.chords import HOLLOW_WEIGHT, WEIGHT, Chords
 from kirigami_studio.polish.continuation import Way, Wishes, first_angles, fit_from_uniform, lifted
 from kirigami_studio.polish.flat_sheet import can_have, uniform_sheet, width_in_cells
 from kirigami_studio.polish.objective import Objective
@@ -48,6 +48,17 @@ def test_that_only_rounded_starts_have_the_term_and_its_slopes_are_differences()
     steps = 1e-5 * np.eye(13)
     change = [(chords.excess(positions + one) - chords.excess(positions - one)) / 2e-5 for one in steps]
     assert np.abs(np.array(change) - chords.slopes(positions)).max() < 1e-6
+
+
+def test_that_starts_with_hollows_are_held_more_softly_and_a_weight_scales_both() -> None:
+    def weight(name: str, start_weight: float) -> float:
+        sheet = uniform_sheet((9, 10), start_shape(name))
+        chords = Chords.of(RimPath(9, 10, sheet.start), start_weight)
+        assert chords is not None
+        return chords.weight
+
+    assert [weight(name, 1.0) for name in ("circle", "egg", "ellipse")] == [WEIGHT] * 3
+    assert [weight(name, 0.5) for name in ("heart", "bean", "leaf", "vase")] == [0.5 * HOLLOW_WEIGHT] * 4
 
 
 def test_that_the_objective_has_its_exact_slopes() -> None:
