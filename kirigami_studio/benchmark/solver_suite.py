@@ -292,6 +292,16 @@ def solved(run: SolverRun, settings: SolverSettings) -> Record:
     }
 
 
+def best_found(run: SolverRun, settings: SolverSettings) -> Deployment | None:
+    """The design that a run comes to; None where its solver met nothing feasible."""
+    with one_blas_thread():
+        designs, _ = _designs(run, settings)
+        scores = evaluate_many(designs, run.target)
+    if not designs:
+        return None
+    return designs[max(range(len(scores)), key=lambda index: _worth(scores[index]))]
+
+
 def ratio_judge(target: Outline, grid: tuple[int, int], space: str) -> Judge:
     """The paper's reward of ratio fields for one target, for points (P, m n) of a search space."""
 

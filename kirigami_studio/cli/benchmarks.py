@@ -6,24 +6,24 @@ import argparse
 import contextlib
 import io
 import json
+import sys
 from collections.abc import Callable, Iterable, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import asdict, replace
+from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
+import numpy.typing as npt
 
 from kirigami_studio.cli.console import ProgressLine, plain, print_json, say
 from kirigami_studio.cli.inputs import read_targets
 from kirigami_studio.cli.option_types import parse_grid, parse_grid_or_auto
 from kirigami_studio.fabricate.options import ConnectorStyle
-from kirigami_studio.foundation.errors import UsageError
+from kirigami_studio.foundation.errors import KirigamiError, UsageError
 from kirigami_studio.foundation.files import write_atomically
-from kirigami_studio.lattice.deployment import deploy
-from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.outlines.outline import Outline
-from kirigami_studio.outlines.read_image import outline_of_mask
 from kirigami_studio.outlines.silhouettes import load, names
 from kirigami_studio.outlines.starts import start_shape
 
@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from kirigami_studio.benchmark.grid_sweep_suite import SweepFigures
     from kirigami_studio.benchmark.run_store import RunStore
     from kirigami_studio.benchmark.solver_suite import SolverFigures, SolverSettings
+    from kirigami_studio.problem import Generator
 
 Report = Callable[[int, int], None]
 
@@ -327,6 +328,54 @@ def generators(arguments: argparse.Namespace) -> int:
     return _print_figures(arguments, line, asdict(figures), figures.sentences())
 
 
+def judge(arguments: argparse.Namespace) -> int:
+    """Somebody else's generators, or baselines by name, on one set of targets."""
+    from kirigami_studio import problem
+
+    line, grid = ProgressLine(), parse_grid(arguments.grid)
+    targets = _target_sets(arguments, arguments.exact)
+    figures: dict[str, dict[str, object]] = {family: {} for family in targets}
+    sentences = []
+    for source in dict.fromkeys(arguments.generators):
+        called = _imported(source) if ":" in source else problem.baseline(source, arguments.seed, grid)
+        for family, outlines in targets.items():
+            line.show(f"{family}: {source}")
+            judged = problem.judge(called, outlines, grid)
+            figures[family][source] = judged.to_json()
+            sentences.append(f"{family}, {source}: {judged.sentence}")
+    return _print_figures(arguments, line, {"grid": list(grid), "families": figures}, sentences)
+
+
+def _imported(source: str) -> Generator:
+    """The callable that ``module:name`` names, from the folder of the call or from what is installed.
+
+    Raises
+    ------
+    UsageError
+        There is none.
+    """
+    module, _, name = source.partition(":")
+    folder = str(Path.cwd())
+    if folder not in sys.path:
+        sys.path.insert(0, folder)
+    try:
+        found: Generator = getattr(import_module(module), name)
+    except (ImportError, AttributeError, ValueError) as error:
+        raise UsageError("problem.no_such_callable", source=source, reason=error) from error
+
+    def called(targets: Sequence[Outline]) -> Sequence[npt.ArrayLike | None]:
+        try:
+            return found(targets)
+        except KirigamiError:
+            raise
+        except Exception as error:  # whatever somebody else's code raises
+            raise KirigamiError(
+                "problem.generator_failed", source=source, kind=type(error).__name__, reason=error
+            ) from error
+
+    return called
+
+
 def designs(arguments: argparse.Namespace) -> int:
     """The whole program on targets, shape by shape, with pictures where asked for."""
     from kirigami_studio.benchmark.design_suite import design_figures, make_designs, worst_of, write_contact_sheet
@@ -528,7 +577,7 @@ def _variants(arguments: argparse.Namespace) -> tuple[str, ...]:
 
 
 def _target_sets(arguments: argparse.Namespace, exact: bool) -> dict[str, list[Outline]]:
-    """Named lists of targets: those of ``--targets``, or ``--count`` of a split of both families."""
+    """Named lists of targets: those of ``--targets``, or ``--count`` of a split of every family."""
     if arguments.targets == ["library"]:
         return {"library": [load(name) for name in names()]}
     if arguments.targets:
@@ -536,15 +585,8 @@ def _target_sets(arguments: argparse.Namespace, exact: bool) -> dict[str, list[O
         if not found:
             raise UsageError("benchmark.no_targets_found")
         return {"targets": found}
-    from kirigami_studio.training.dataset import SPLITS, generate_split
+    from kirigami_studio import problem
 
-    _, offset = SPLITS[arguments.split]
-    sets = {}
-    for family in ("structured", "sobol"):
-        split = generate_split(family, arguments.count, arguments.data_seed * len(SPLITS) + offset)
-        if exact:
-            layouts = [deploy(RatioField(ratio)).outline(0.0) for ratio in split.ratios]
-            sets[family] = [Outline.from_points(layout, f"{family} {k}") for k, layout in enumerate(layouts)]
-        else:
-            sets[family] = [outline_of_mask(mask, f"{family} {number}") for number, mask in enumerate(split.masks)]
-    return sets
+    families = dict.fromkeys(arguments.families if "families" in arguments else ("structured", "sobol"))
+    asked = arguments.split, arguments.count, arguments.data_seed
+    return {family: list(problem.targets(family, *asked, exact=exact)) for family in families}

@@ -656,6 +656,16 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
                     "earlier call may have begun it"),
         JSON,
     ), ("kirigami-studio benchmark generators --generators prior runs/cvae/cvae.safetensors --out runs/table-2",)),
+    SubCommand("benchmark judge", "judge your own generator beside baselines", "benchmarks:judge", (
+        option("generators", nargs="+", metavar="GENERATOR",
+               help="MODULE:CALLABLE (targets -> tables of ratios), a baseline (uniform, cma-es, swarm, local-search, "
+                    "powell, fit, sample, sample-fit, a bundled variant), or a .safetensors file of a training run"),
+        *targets_of_a_suite(50),
+        option("--families", nargs="+", choices=("structured", "sobol", "drawn"), default=["structured", "sobol"],
+               help="families of targets (default: structured sobol)"),
+        EXACT, GRID, SEED, *FIGURES,
+    ), ("kirigami-studio benchmark judge mine:generate prior",
+        "kirigami-studio benchmark judge swarm uniform --count 5 --families drawn --json")),
     SubCommand("benchmark best-of-k", "measure what more candidates or runs give and cost", "benchmarks:best_of_k", (
         *targets_of_a_suite(5), EXACT, GRID,
         option("--methods", default=None, metavar="NAMES",

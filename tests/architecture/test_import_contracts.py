@@ -33,6 +33,7 @@ BATCHED = "Only packages with torch import lattice.batched"
 EZDXF = "Only export.dxf, export.dxf_reading and outlines.read_dxf import ezdxf"
 WINDOW = "Layers of the window"
 COMPARED = "Only training, benchmark and cli know what the program is compared with"
+JUDGED = "What others are judged by knows nothing of the window"
 SOLVERS = "Solvers know a box and values, nothing of sheets"
 FAULTS = (
     Fault("lattice", "import kirigami_studio.evaluate", ONE_WAY, "kirigami_studio.evaluate"),
@@ -45,6 +46,8 @@ FAULTS = (
     Fault("project", "import kirigami_studio.pipeline", ONE_WAY, "kirigami_studio.pipeline"),
     Fault("pipeline", "import kirigami_studio.baselines", ONE_WAY, "kirigami_studio.baselines"),
     Fault("gui", "import kirigami_studio.baselines", COMPARED, "kirigami_studio.baselines"),
+    Fault("benchmark", "import kirigami_studio.problem", ONE_WAY, "kirigami_studio.problem"),
+    Fault("problem", "import kirigami_studio.gui", JUDGED, "kirigami_studio.gui"),
     Fault("baselines/solvers", "import kirigami_studio.evaluate", SOLVERS, "kirigami_studio.evaluate"),
     Fault("gui", "import kirigami_studio.training", ONE_WAY, "kirigami_studio.training"),
     Fault("foundation", "import kirigami_studio.lattice", ONE_WAY, "kirigami_studio.lattice"),

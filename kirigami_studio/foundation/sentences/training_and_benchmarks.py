@@ -1,4 +1,4 @@
-"""Sentences of ``training`` and ``benchmark``, by the code of the problem."""
+"""Sentences of ``training``, ``benchmark`` and ``problem``, by the code of the problem."""
 
 from __future__ import annotations
 
@@ -95,4 +95,20 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "Timings need at least one variant and two targets, got {variants} and {targets}."
     ),
     "benchmark.spread_of_one": mark("A spread needs at least 2 samples of each target, got {k}."),
+    # problem
+    "problem.unknown_split": mark("There is no split called '{split:.40}'. Choose one of {choices}."),
+    "problem.unknown_baseline": mark(
+        "There is no baseline called '{name:.80}'. Choose one of {choices}, or name a .safetensors file."
+    ),
+    "problem.fields_missing": mark(
+        "The generator gave {got} ratio fields for {wanted} targets. It has to give one for each, or None."
+    ),
+    "problem.other_grid": mark("Fields of {rows} x {columns} ratios are asked for, got an array of shape {shape}."),
+    "problem.ratio_outside": mark(
+        "The ratio in row {row}, column {column} is {ratio:.6g}. Ratios of this problem lie from {least:g} to {most:g}."
+    ),
+    "problem.no_such_callable": mark(
+        "There is no generator '{source:.80}': {reason}. Name it MODULE:CALLABLE, in the folder of this call."
+    ),
+    "problem.generator_failed": mark("The generator '{source:.80}' failed with {kind}: {reason}"),
 }
