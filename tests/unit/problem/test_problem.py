@@ -11,8 +11,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-
 from command_line import answer, refusal
+
 from kirigami_studio import problem
 from kirigami_studio.foundation.errors import RatioError, UsageError
 from kirigami_studio.outlines.outline import Outline
