@@ -338,20 +338,25 @@ def sampled(run: SampleRun, classes: FieldClasses) -> Record:
     began = time.process_time()
     fields = generator.draw(run.target, 1, run.seed, run.steps)
     milliseconds = 1e3 * (time.process_time() - began)
-    (score,) = evaluate_many([deploy(field) for field in fields], run.target)
-    record: Record = {
+    record: Record = {**score_record(fields[0], run.target), "milliseconds": milliseconds}
+    if run.k > 1:
+        z = np.array([field.log10.ravel() for field in generator.draw(run.target, run.k, run.seed, run.steps)])
+        record |= {"distance": mean_distance(z), "inception": classes.inception_score(z)}
+    return record
+
+
+def score_record(field: RatioField, target: Outline) -> Record:
+    """What a table keeps of the score of one sample."""
+    (score,) = evaluate_many([deploy(field)], target)
+    return {
         "siou": score.siou,
         "iou_exact": score.iou_exact,
         "uniform_siou": score.uniform_siou,
         "uniform_iou": score.uniform_iou,
         "feasible": score.feasible,
         "tv": score.tv,
-        "milliseconds": milliseconds,
+        "tv_log10": score.tv_log10,
     }
-    if run.k > 1:
-        z = np.array([field.log10.ravel() for field in generator.draw(run.target, run.k, run.seed, run.steps)])
-        record |= {"distance": mean_distance(z), "inception": classes.inception_score(z)}
-    return record
 
 
 def mean_distance(z: FloatArray) -> float:
@@ -450,7 +455,7 @@ def _row(runs: Sequence[SampleRun], store: RunStore) -> Row:
         siou_interval=bootstrap_interval(group_means(siou, numbers)),
         iou_exact=float(exact.mean()),
         iou_exact_interval=bootstrap_interval(group_means(exact, numbers)),
-        success=_success(records),
+        success=success_share(records),
         tv=mean_of(records, "tv"),
         milliseconds=mean_of(records, "milliseconds"),
         distance=mean_of(varied, "distance"),
@@ -467,8 +472,9 @@ def _by_steps(runs: Sequence[SampleRun], store: RunStore) -> dict[int, StepsRow]
         found.setdefault(run.steps, []).append(store.records[run.key])
     if len(found) == 1:
         return {}
-    return {steps: StepsRow(mean_of(records, "siou"), _success(records)) for steps, records in found.items()}
+    return {steps: StepsRow(mean_of(records, "siou"), success_share(records)) for steps, records in found.items()}
 
 
-def _success(records: Sequence[Record]) -> float:
+def success_share(records: Sequence[Record]) -> float:
+    """Share of samples with sIoU >= 0.85 and a feasible design (paper, Sec. 3.1)."""
     return float(np.mean([float(str(one["siou"])) >= SUCCESS_SIOU and bool(one["feasible"]) for one in records]))

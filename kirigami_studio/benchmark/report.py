@@ -20,6 +20,7 @@ from kirigami_studio.foundation.files import write_atomically
 Figures = dict[str, Any]
 
 SOLVERS, GENERATORS = Path("solvers/solvers.json"), Path("generators/generators.json")
+GRPO = Path("grpo/grpo.json")
 #: Folder of training runs; each has a ``log.jsonl``.
 TRAINING = Path("training")
 
@@ -65,9 +66,9 @@ def made_from(folder: Path) -> Report:
         Nothing is there, or a file is not what a suite wrote.
     """
     try:
-        solvers, generators = _read(folder / SOLVERS), _read(folder / GENERATORS)
+        solvers, generators, grpo = (_read(folder / path) for path in (SOLVERS, GENERATORS, GRPO))
         logs = {path.parent.name: _log(path) for path in sorted((folder / TRAINING).glob("*/log.jsonl"))}
-        if solvers is None and generators is None and not logs:
+        if solvers is None and generators is None and grpo is None and not logs:
             raise KirigamiError("benchmark.nothing_to_report", path=folder)
         pictures: dict[str, bytes] = {}
         lines = list(OPENING)
@@ -75,6 +76,8 @@ def made_from(folder: Path) -> Report:
             lines += _solver_section(solvers)
         if generators is not None:
             lines += _generator_section(generators, pictures)
+        if grpo is not None:
+            lines += _grpo_section(grpo, pictures)
         if logs:
             lines += _training_section(logs, pictures)
     except (KeyError, TypeError, ValueError, AttributeError) as error:
@@ -161,6 +164,87 @@ def _generator_section(figures: Figures, pictures: dict[str, bytes]) -> Iterator
     yield ""
 
 
+def _grpo_section(figures: Figures, pictures: dict[str, bytes]) -> Iterator[str]:
+    settings = figures["settings"]
+    yield "## Table 3: GRPO"
+    yield ""
+    yield (
+        "What `train grpo` made of a prior, one sample a target in eight steps; seeds "
+        f"{', '.join(map(str, figures['seeds']))}. *none* is the control: every design weighs the same, no reward. "
+        "Differences are in points of sIoU, paired by target and noise; TV is the paper's sum / (m n), *log* the mean "
+        f"|d log10 x| of neighbours, *distance* as in Table 2 with {settings['k']} samples. "
+        "`kirigami-studio benchmark grpo`"
+    )
+    for family, table in figures["families"].items():
+        for start, rewards in table["starts"].items():
+            yield ""
+            yield f"{family.capitalize()}, {table['targets']} targets, from the {start}"
+            yield ""
+            yield (
+                "| reward | calls | sIoU | 95 % | over start | over none | exact IoU | success | TV | TV over none | "
+                "log | distance |"
+            )
+            yield "|---|---|---|---|---|---|---|---|---|---|---|---|"
+            first = next(iter(rewards.values()))[0]
+            yield _grpo_row("start", first)
+            for reward, rows in rewards.items():
+                yield _grpo_row(reward, rows[-1])
+    yield from _made_table(figures)
+    for place, start in enumerate(next(iter(figures["families"].values()))["starts"], 1):
+        for family, table in figures["families"].items():
+            for title, name, factor in (("sIoU (%)", "siou", 100.0), ("TV", "tv", 1.0)):
+                curves = tuple(
+                    Curve(reward, tuple((float(row["calls"]), factor * row[name]) for row in rows))
+                    for reward, rows in table["starts"][start].items()
+                )
+                picture = f"benchmark-grpo-{place}-{family}-{name}.svg"
+                pictures[picture] = LineChart("environment calls", title, curves).svg()
+                yield f"![{title} against environment calls, {family}, from the {start}]({picture})"
+                yield ""
+
+
+def _grpo_row(name: str, row: Figures) -> str:
+    paper = row["paper"] or {}
+    over_start, over_control = row["over_start"], row["over_control"]
+    return (
+        f"| {name} | {row['calls']} | {_spread(row, 2)}{_beside(paper, 'siou', digits=2)} | "
+        f"{_interval(row['siou_interval'])} | {_points(over_start, 'siou')} | {_points(over_control, 'siou')} | "
+        f"{_share(row['iou_exact'], 2)} | {_share(row['success'])} | {row['tv']:.2f}{_beside(paper, 'tv', 1.0, 2)} | "
+        f"{_points(over_control, 'tv', 1.0)} | {row['tv_log10']:.3f} | {row['distance']:.3f} |"
+    )
+
+
+def _made_table(figures: Figures) -> Iterator[str]:
+    settings = figures["settings"]
+    yield ""
+    yield (
+        f"Can the samples be made? On {settings['width_mm']:g} mm of {settings['material']}, before any fit, in "
+        "percent of samples: *cuttable*, every panel as large as the material needs; *closes*, estimated to come "
+        "within 10 degrees of phi = 0; *even*, CV of panel areas of 0.6 at most; *good*, all three at an exact IoU "
+        f"that lacks no more than {settings['may_lack']:g} of that of the start's sample from the same noise."
+    )
+    yield ""
+    yield "| family | start | reward | CV | cuttable | closes | even | good | good over start |"
+    yield "|---|---|---|---|---|---|---|---|---|"
+    for family, table in figures["families"].items():
+        for start, rewards in table["starts"].items():
+            named = [("start", next(iter(rewards.values()))[0]), *((name, rows[-1]) for name, rows in rewards.items())]
+            for name, row in named:
+                shares = " | ".join(_share(row[share]) for share in ("cuttable", "closes", "even", "good"))
+                over = _points(row["over_start"], "good", digits=1)
+                yield f"| {family} | {start} | {name} | {row['area_cv']:.3f} | {shares} | {over} |"
+    yield ""
+
+
+def _points(beside: Figures | None, name: str, factor: float = 100.0, digits: int = 2) -> str:
+    """A paired difference with its interval; nothing where there is none."""
+    if beside is None:
+        return ""
+    found = beside[name]
+    low, high = (f"{factor * value:+.{digits}f}" for value in found["interval"])
+    return f"{factor * found['mean']:+.{digits}f} ({low} .. {high})"
+
+
 def _training_section(logs: Mapping[str, Sequence[Mapping[str, float]]], pictures: dict[str, bytes]) -> Iterator[str]:
     yield "## Training"
     yield ""
@@ -203,12 +287,12 @@ def _log(path: Path) -> list[dict[str, float]]:
     return [json.loads(line) for line in path.read_text(encoding="utf-8").splitlines()]
 
 
-def _share(value: float) -> str:
-    return f"{100.0 * value:.1f}"
+def _share(value: float, digits: int = 1) -> str:
+    return f"{100.0 * value:.{digits}f}"
 
 
-def _spread(row: Figures) -> str:
-    return f"**{_share(row['siou'])}** +- {_share(row['siou_sd'])}"
+def _spread(row: Figures, digits: int = 1) -> str:
+    return f"**{_share(row['siou'], digits)}** +- {_share(row['siou_sd'], digits)}"
 
 
 def _interval(interval: Sequence[float]) -> str:

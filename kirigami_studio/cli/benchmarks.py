@@ -30,6 +30,7 @@ from kirigami_studio.outlines.starts import start_shape
 if TYPE_CHECKING:
     from kirigami_studio.benchmark.best_of_k_suite import BestOfKFigures
     from kirigami_studio.benchmark.grid_sweep_suite import SweepFigures
+    from kirigami_studio.benchmark.grpo_suite import GrpoFigures
     from kirigami_studio.benchmark.run_store import RunStore
     from kirigami_studio.benchmark.solver_suite import SolverFigures, SolverSettings
     from kirigami_studio.problem import Generator
@@ -256,7 +257,10 @@ def _methods(arguments: argparse.Namespace, known: tuple[str, ...]) -> tuple[str
 
 
 def _print_in_folder(
-    arguments: argparse.Namespace, line: ProgressLine, name: str, figures: SolverFigures | BestOfKFigures | SweepFigures
+    arguments: argparse.Namespace,
+    line: ProgressLine,
+    name: str,
+    figures: SolverFigures | BestOfKFigures | SweepFigures | GrpoFigures,
 ) -> int:
     """Print figures, and write them as ``name`` into the folder where there is one."""
     arguments.out = None if arguments.out is None else Path(arguments.out) / name
@@ -374,6 +378,26 @@ def _imported(source: str) -> Generator:
             ) from error
 
     return called
+
+
+def grpo(arguments: argparse.Namespace) -> int:
+    """What GRPO made of priors, after 0 to 10000 calls; goes on where an earlier call ended."""
+    from kirigami_studio.benchmark.grpo_suite import AlignedRun, measure_grpo, suite_settings
+    from kirigami_studio.benchmark.run_store import RunStore
+
+    line, folder = ProgressLine(), None if arguments.out is None else Path(arguments.out)
+    runs = [AlignedRun.read(Path(run)) for run in dict.fromkeys(arguments.runs)]
+    targets = _target_sets(arguments, arguments.exact)
+    with RunStore.opened(suite_settings(), None if folder is None else folder / "grpo.jsonl") as store:
+        figures = measure_grpo(
+            targets,
+            runs,
+            tuple(dict.fromkeys(arguments.seeds)),
+            store,
+            arguments.processes,
+            _shown_on(line, "Samples"),
+        )
+    return _print_in_folder(arguments, line, "grpo.json", figures)
 
 
 def designs(arguments: argparse.Namespace) -> int:

@@ -254,7 +254,14 @@ def grpo(arguments: argparse.Namespace) -> int:
     folder = Path(arguments.out)
     record: dict[str, float] = {}
     for record in train_grpo(
-        settings, folder, device, validate, start, seconds=seconds, validate_every=arguments.validate_every
+        settings,
+        folder,
+        device,
+        validate,
+        start,
+        seconds=seconds,
+        validate_every=arguments.validate_every,
+        keep_at=arguments.keep_at,
     ):
         if not arguments.json:
             say(" ".join(f"{key} {value:.4f}" for key, value in record.items()))

@@ -547,8 +547,9 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
     SubCommand("train grpo", "align a generator with a reward, by the paper's GRPO; resumes from its checkpoint",
         "learning:grpo", (
         RUN_FOLDER,
-        option("--reward", choices=("accuracy", "regularity", "balanced"), default="accuracy",
-               help="what the reward prefers (default accuracy)"),
+        option("--reward", choices=("accuracy", "regularity", "balanced", "none", "fabrication"), default="accuracy",
+               help="what the reward prefers; none: nothing, to compare with; fabrication: even sheets that can be cut "
+                    "and close, at no loss of match (default accuracy)"),
         option("--start", default="bundled", metavar="WEIGHTS",
                help="weights to align: 'bundled' (default), or the .safetensors of a run"),
         option("--calls", type=count, default=10_000,
@@ -569,9 +570,12 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
                help="skip groups whose rewards have a smaller standard deviation (default 0)"),
         option("--average-decay", type=amount, default=0.0,
                help="decay of the averaged weights to write (default 0: write the last weights)"),
+        option("--keep-at", type=whole, nargs="+", default=[], metavar="CALLS",
+               help="also write the weights after so many calls, 0 for the start, for 'benchmark grpo'"),
         *run_of_training(50),
     ), ("kirigami-studio train grpo --reward accuracy --start bundled --calls 10000 --out runs/accuracy",
-        "kirigami-studio train grpo --reward balanced --start runs/prior/prior.safetensors --out runs/both")),
+        "kirigami-studio train grpo --reward balanced --start runs/prior/prior.safetensors --out runs/both",
+        "kirigami-studio train grpo --reward none --keep-at 0 1000 2500 5000 10000 --out runs/none")),
     SubCommand("benchmark generator", "score one bundled variant on a set of targets", "benchmarks:generator", (
         *targets_of_a_suite(500), EXACT, GRID, VARIANT, samples(1), STEPS, POLISH, SEEDS, *FIGURES,
     ), ("kirigami-studio benchmark generator --count 100 --json",
@@ -666,6 +670,16 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
         EXACT, GRID, SEED, *FIGURES,
     ), ("kirigami-studio benchmark judge mine:generate prior",
         "kirigami-studio benchmark judge swarm uniform --count 5 --families drawn --json")),
+    SubCommand("benchmark grpo", "judge what GRPO made of a prior, one sample a target (the paper's Table 3)",
+               "benchmarks:grpo", (
+        option("runs", nargs="+", metavar="RUN", help="folders of 'train grpo --keep-at 0 ...'"),
+        *targets_of_a_suite(20), EXACT, SEEDS,
+        option("--processes", type=count, default=2, help="number of samples at the same time (default 2)"),
+        option("--out", default=None,
+               help="folder for grpo.json and grpo.jsonl, which has a line for each finished sample; an earlier call "
+                    "may have begun it"),
+        JSON,
+    ), ("kirigami-studio benchmark grpo runs/accuracy runs/none --out runs/grpo",)),
     SubCommand("benchmark best-of-k", "measure what more candidates or runs give and cost", "benchmarks:best_of_k", (
         *targets_of_a_suite(5), EXACT, GRID,
         option("--methods", default=None, metavar="NAMES",
@@ -686,9 +700,9 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
     SubCommand("benchmark report", "write tables and plots of finished suites beside the paper's numbers",
                "benchmarks:report", (
         option("--runs", required=True, metavar="FOLDER",
-               help="folder with solvers/ and generators/ (--out of these suites) and training/, one run in each "
-                    "folder there"),
-        option("--quick", action="store_true", help="run both suites first, on two targets of each family"),
+               help="folder with solvers/, generators/ and grpo/ (--out of these suites) and training/, one run in "
+                    "each folder there"),
+        option("--quick", action="store_true", help="run solvers and generators first, on two targets of each family"),
         option("--out", required=True, help="Markdown file to write; pictures come beside it"),
         JSON,
     ), ("kirigami-studio benchmark report --runs runs --out report.md",

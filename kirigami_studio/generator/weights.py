@@ -76,6 +76,19 @@ def variants(folder: Path | None = None) -> tuple[str, ...]:
     return tuple(_manifest(folder or model_folder())["variants"])
 
 
+def variants_about(folder: Path) -> dict[str, dict[str, Any]]:
+    """What is recorded of the variants in a folder, by name: how each was trained; nothing where no manifest is.
+
+    Raises
+    ------
+    ModelError
+        The manifest is damaged.
+    """
+    if not (folder / MANIFEST).exists():
+        return {}
+    return {variant: entry["about"] for variant, entry in _manifest(folder)["variants"].items()}
+
+
 def digest_of(variant: str, folder: Path | None = None) -> str:
     """SHA-256 that the manifest promises for a variant."""
     return str(_entry(variant, folder or model_folder())["sha256"])

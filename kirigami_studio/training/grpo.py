@@ -15,7 +15,8 @@ Readings, where the text leaves room: std divides by G; the squared error is the
 x in [0.1, 10] before it is rewarded and regressed to, as the studio does; targets are silhouettes of the training
 distribution, seen in the pose in which the studio shows them; one update for each rollout, by Adam.
 
-The run folder holds ``checkpoint.pt`` and ``log.jsonl`` as that of ``train_flow`` does.
+The run folder holds ``checkpoint.pt`` and ``log.jsonl`` as that of ``train_flow`` does, and the weights as they were
+after the environment calls that were asked for, which ``benchmark grpo`` judges.
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ import copy
 import math
 import time
 from collections import Counter
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
@@ -32,18 +33,19 @@ import torch
 from torch import Tensor
 
 from kirigami_studio.evaluate.paper_evaluator import Verdict, judge
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import ModelError, UsageError
 from kirigami_studio.foundation.paper import LOG_RATIO_LIMIT
 from kirigami_studio.generator.conditioning import square_pose, turned
 from kirigami_studio.generator.flow import integrate
 from kirigami_studio.generator.velocity import Code, Network
-from kirigami_studio.generator.weights import Model
+from kirigami_studio.generator.weights import Model, store_model, variants_about
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.training.corpus import Corpus
 from kirigami_studio.training.fields import mixed_fields
 from kirigami_studio.training.flow_path import ConditionalPath, PathSample, cfm_errors
 from kirigami_studio.training.learner import CHECKPOINT, Checkpoint, Learner, logged, opened
-from kirigami_studio.training.rewards import Reward
+from kirigami_studio.training.rewards import Group, GroupReward, Reward, reward_named
 
 #: The small constant of Eq. 4.
 EPSILON = 1e-6
@@ -63,7 +65,8 @@ class GrpoSettings:
     start : str
         SHA-256 of the weights that the run begins with.
     calls : int
-        Environment calls in all (one call: one design decoded, checked and scored).
+        Environment calls in all (one call: one design decoded, checked and scored).  A reward that compares with the
+        start spends half of them on the start's own designs.
     group, batch : int
         Designs of a target, targets of a step; the last step takes as many targets as calls are left for.
     temperature : float
@@ -102,7 +105,7 @@ class GrpoSettings:
     seed: int = 0
 
     def __post_init__(self) -> None:
-        Reward(self.reward)
+        reward_named(self.reward)
         if self.advantages not in ADVANTAGES:
             raise UsageError("training.unknown_advantages", advantages=self.advantages, choices=", ".join(ADVANTAGES))
         if self.group < 2:
@@ -122,7 +125,7 @@ class GrpoSettings:
                 reference=self.reference,
                 least_spread=self.least_spread,
             )
-        needed = self.scaling_calls + self.group
+        needed = self.scaling_calls + self.calls_of_target
         if self.calls < needed:
             raise UsageError("training.too_few_calls", needed=needed, calls=self.calls)
 
@@ -130,6 +133,11 @@ class GrpoSettings:
     def scaling_calls(self) -> int:
         """Environment calls that measure the scales of the balanced reward."""
         return SCALING_STEPS * self.batch * self.group if self.reward == "balanced" else 0
+
+    @property
+    def calls_of_target(self) -> int:
+        """Environment calls that each target of a step costs."""
+        return self.group * (2 if reward_named(self.reward).compares_with_start else 1)
 
     def to_json(self) -> dict[str, object]:
         return asdict(self)
@@ -176,6 +184,7 @@ def train_grpo(
     *,
     seconds: float = math.inf,
     validate_every: int = 50,
+    keep_at: Sequence[int] = (),
 ) -> Iterator[dict[str, float]]:
     """Align, or go on aligning, in ``folder``; yields a record before the first step and one per validation.
 
@@ -194,6 +203,8 @@ def train_grpo(
         Stop with a checkpoint after this wall time even if calls remain.
     validate_every : int
         Steps between validations; each also writes a checkpoint.  A run that was finished before is validated again.
+    keep_at : sequence of int
+        Environment calls; as soon as a run has made so many, its weights are kept, see :func:`kept_name`.
 
     Yields
     ------
@@ -208,10 +219,15 @@ def train_grpo(
         The folder cannot be made or written.
     ModelError
         The checkpoint belongs to other settings, or ``start`` does, or training diverged.
+    UsageError
+        Weights are to be kept after more calls than there are, or a resumed run has passed them.
     """
+    if max(keep_at, default=0) > settings.calls:
+        raise UsageError("training.kept_after_end", kept=max(keep_at), calls=settings.calls)
     if start.digest != settings.start:
         raise ModelError("training.other_start")
     run = GrpoRun(settings, opened(folder), device, start)
+    waiting = _to_keep(folder, run, keep_at)
     began = time.perf_counter()
 
     def record() -> dict[str, float]:
@@ -224,11 +240,37 @@ def train_grpo(
         yield record()
     while run.targets_left:
         run.advance()
+        # Before the checkpoint: a run that is resumed from one made earlier keeps the same weights again.
+        while waiting and (run.calls >= waiting[0] or not run.targets_left):
+            _keep(folder, run, waiting.pop(0), run.averaged())
         out_of_time = time.perf_counter() - began > seconds
         if run.step % validate_every == 0 or not run.targets_left or out_of_time:
             yield record()
         if out_of_time:
             break
+
+
+def kept_name(calls: int) -> str:
+    """Variant, and name of the file without its ending, of weights that are kept after so many environment calls."""
+    return f"calls-{calls}"
+
+
+def _keep(folder: Path, run: GrpoRun, wanted: int, network: Network) -> None:
+    about = {"calls": run.calls if wanted else 0, "settings": run.settings.to_json()}
+    store_model(kept_name(wanted), network, folder, about)
+
+
+def _to_keep(folder: Path, run: GrpoRun, keep_at: Sequence[int]) -> list[int]:
+    """Calls after which weights are still to be kept, rising; those before the first call are kept at once."""
+    known = variants_about(folder)
+    waiting = [calls for calls in sorted(set(keep_at)) if run.step == 0 or kept_name(calls) not in known]
+    if 0 in waiting:
+        _keep(folder, run, 0, run.prior)
+        waiting.remove(0)
+    passed = [calls for calls in waiting if calls <= run.calls and run.step > 0]
+    if passed:
+        raise UsageError("training.kept_too_late", folder=folder, kept=passed[0], calls=run.calls)
+    return waiting
 
 
 def aligned_network(folder: Path, start: Model) -> Network:
@@ -251,7 +293,7 @@ class GrpoRun:
         shape = start.network.shape
         self.grid, self.z_scale = (shape.rows, shape.columns), shape.z_scale
         self.corpus = Corpus(mixed_fields, *self.grid, settings.seed, settings.batch, device)
-        self.reward = Reward(settings.reward)
+        self.reward: GroupReward = reward_named(settings.reward)
         self.calls = 0
         self._totals: Counter[str] = Counter()
         if path.exists():
@@ -267,14 +309,15 @@ class GrpoRun:
     @property
     def targets_left(self) -> int:
         """Targets of the next step: as many as the remaining environment calls allow, 0 at the end."""
-        return min(self.settings.batch, (self.settings.calls - self.calls) // self.settings.group)
+        return min(self.settings.batch, (self.settings.calls - self.calls) // self.settings.calls_of_target)
 
     def advance(self) -> None:
         """One step: roll out, reward, regress."""
         seen, outlines = self._targets(self.step, self.targets_left)
-        designs = self._rollout(seen)
+        noise = self._noise(len(seen))
+        designs = self._rollout(self.network, seen, noise)
         verdicts = self._judged(designs, outlines)
-        rewards = torch.tensor([[self.reward(verdict) for verdict in group] for group in verdicts], dtype=torch.float64)
+        rewards = torch.tensor(self._rewards(seen, noise, designs, outlines, verdicts), dtype=torch.float64)
         used = rewards.std(dim=1, correction=0) >= self.settings.least_spread
         loss = math.nan
         if used.any() or self.settings.reference:
@@ -294,21 +337,20 @@ class GrpoRun:
         return found | {name: totals[name] / totals["designs"] for name in names if totals["designs"]}
 
     def save(self) -> None:
-        more = {"calls": self.calls, "siou_scale": self.reward.siou_scale, "tv_scale": self.reward.tv_scale}
-        self.learner.save(self.path, self.settings.to_json(), more)
+        self.learner.save(self.path, self.settings.to_json(), {"calls": self.calls, **self.reward.state()})
 
     def _resume(self) -> None:
         more = self.learner.resume(self.path, self.settings.to_json())
         self.calls = int(more["calls"])
-        self.reward = Reward(self.settings.reward, more["siou_scale"], more["tv_scale"])
+        self.reward = self.reward.restored(more)
 
     def _measure_scales(self) -> None:
         """Scales of the balanced reward from the prior's own samples."""
         groups: list[list[Verdict]] = []
         for number in range(SCALING_STEPS):
             seen, outlines = self._targets(number, self.settings.batch)
-            groups += self._judged(self._rollout(seen), outlines)
-        self.reward = self.reward.scaled(groups)
+            groups += self._judged(self._rollout(self.network, seen, self._noise(len(seen))), outlines)
+        self.reward = Reward(self.settings.reward).scaled(groups)
 
     def _targets(self, number: int, count: int) -> tuple[Tensor, list[Outline]]:
         """Training silhouettes of step ``number``: as the network sees them (B, L, 2), and for the evaluator."""
@@ -316,20 +358,37 @@ class GrpoRun:
         outlines = [Outline.from_points(polygon) for polygon in polygons.cpu().double().numpy()]
         return turned(polygons, -square_pose(polygons)), outlines
 
-    def _rollout(self, seen: Tensor) -> Tensor:
-        """G designs of each target by the current network: (B, G, m * n), z = log10 x."""
-        group = self.settings.group
+    def _noise(self, targets: int) -> Tensor:
+        """Where the flow starts for G designs of each target: (B * G, m * n)."""
+        return self._normal((targets * self.settings.group, math.prod(self.grid))) * self.z_scale
+
+    def _rollout(self, network: Network, seen: Tensor, noise: Tensor) -> Tensor:
+        """G designs of each target by a network: (B, G, m * n), z = log10 x."""
         with torch.no_grad():
-            code = self.network.code(seen).repeated(group)
-            noise = self._normal((len(seen) * group, math.prod(self.grid))) * self.z_scale
-            z = integrate(self.network, noise, code, self.settings.rollout_steps)
-        return z.clamp(-LOG_RATIO_LIMIT, LOG_RATIO_LIMIT).view(len(seen), group, -1)
+            code = network.code(seen).repeated(self.settings.group)
+            z = integrate(network, noise, code, self.settings.rollout_steps)
+        return z.clamp(-LOG_RATIO_LIMIT, LOG_RATIO_LIMIT).view(len(seen), self.settings.group, -1)
 
     def _judged(self, designs: Tensor, outlines: list[Outline]) -> list[list[Verdict]]:
         """The evaluator's word on every design; each counts as one environment call."""
-        fields = designs.cpu().double().numpy().reshape(*designs.shape[:2], *self.grid)
         self.calls += designs.shape[0] * designs.shape[1]
-        return [judge(group, outline) for group, outline in zip(fields, outlines, strict=True)]
+        return [judge(group, outline) for group, outline in zip(self._fields(designs), outlines, strict=True)]
+
+    def _fields(self, designs: Tensor) -> FloatArray:
+        """Designs (B, G, m * n) as the evaluator takes them: (B, G, m, n)."""
+        fields: FloatArray = designs.cpu().double().numpy().reshape(*designs.shape[:2], *self.grid)
+        return fields
+
+    def _rewards(
+        self, seen: Tensor, noise: Tensor, designs: Tensor, outlines: list[Outline], verdicts: list[list[Verdict]]
+    ) -> list[list[float]]:
+        """R of every design; where the start is asked, it draws its own designs from the same noise."""
+        usual = [math.nan] * len(outlines)
+        if self.reward.compares_with_start:
+            start = self._judged(self._rollout(self.prior, seen, noise), outlines)
+            usual = [math.fsum(verdict.siou for verdict in group) / len(group) for group in start]
+        groups = zip(self._fields(designs), verdicts, usual, strict=True)
+        return [self.reward.of(Group(*group)) for group in groups]
 
     def _weights(self, rewards: Tensor) -> Tensor:
         advantage = advantages(rewards, self.settings.advantages)

@@ -40,6 +40,13 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "{least_spread:g}."
     ),
     "training.too_few_calls": mark("These settings need at least {needed} environment calls, got {calls}."),
+    "training.kept_after_end": mark(
+        "Weights cannot be kept after {kept} environment calls in a run of {calls}. Choose fewer."
+    ),
+    "training.kept_too_late": mark(
+        "The run in {folder} has made {calls} environment calls, its weights after {kept} are gone. "
+        "Choose more calls, or another folder."
+    ),
     "training.unknown_reward": mark("There is no reward called '{reward:.40}'. Choose one of {choices}."),
     "training.other_start": mark(
         "These are not the weights or fits that the settings name. Start with those, or in another folder."
@@ -76,12 +83,20 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "No targets found to measure on. Name a file, a folder with shapes, or 'library'."
     ),
     "benchmark.nothing_to_report": mark(
-        "{path} has no figures to report. Run 'kirigami-studio benchmark solvers' or 'generators' with --out there."
+        "{path} has no figures to report. Run 'kirigami-studio benchmark solvers', 'generators' or 'grpo' with --out "
+        "there."
     ),
     "benchmark.report_unreadable": mark(
         "Cannot make a report of {path}: a file there is not what this version's suites write. Run them again."
     ),
     "benchmark.generators_alike": mark("Two of these generators have one name: {names}. Compare them in two calls."),
+    "benchmark.no_weights_kept": mark(
+        "{path} has no weights from before and after calls. Run 'kirigami-studio train grpo' there with "
+        "--keep-at 0 10000."
+    ),
+    "benchmark.grpo_runs_alike": mark(
+        "Two of these runs have the same start and reward: {names}. Compare them in two calls."
+    ),
     "benchmark.no_targets": mark("This suite needs at least one target, got none."),
     "benchmark.unknown_method": mark("There is no method called '{method:.40}'. Choose among {choices}."),
     "benchmark.runs_differ": mark(

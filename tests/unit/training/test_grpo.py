@@ -12,8 +12,10 @@ import pytest
 import torch
 
 from kirigami_studio.foundation.errors import ExportError, ModelError, UsageError
-from kirigami_studio.generator.network import NetworkShape, VelocityNetwork
-from kirigami_studio.generator.weights import Model, load_model, store_model
+from kirigami_studio.generator.network import NetworkShape
+from kirigami_studio.generator.unet import UNetShape, UNetVelocity
+from kirigami_studio.generator.velocity import Network
+from kirigami_studio.generator.weights import Model, load_model, load_weights, store_model, variants_about
 from kirigami_studio.training.corpus import Corpus
 from kirigami_studio.training.fields import mixed_fields, structured_fields
 from kirigami_studio.training.grpo import GrpoSettings, advantages, aligned_network, group_weights, train_grpo
@@ -45,11 +47,11 @@ def tiny(start: Model) -> GrpoSettings:
     )
 
 
-def align(settings: GrpoSettings, folder: Path, start: Model, **options: float) -> list[dict[str, float]]:
-    return list(train_grpo(settings, folder, CPU, lambda network: {}, start, validate_every=2, **options))
+def align(settings: GrpoSettings, folder: Path, start: Model, **options: object) -> list[dict[str, float]]:
+    return list(train_grpo(settings, folder, CPU, lambda network: {}, start, validate_every=2, **options))  # type: ignore[arg-type]
 
 
-def same(first: VelocityNetwork, second: VelocityNetwork) -> bool:
+def same(first: Network, second: Network) -> bool:
     other = second.state_dict()
     return all(torch.equal(value, other[name]) for name, value in first.state_dict().items())
 
@@ -208,3 +210,65 @@ def test_that_a_network_that_diverged_says_so(tmp_path: Path, start: Model, tiny
 def test_that_impossible_settings_are_refused(change: dict[str, object], said: str) -> None:
     with pytest.raises(UsageError, match=said):
         GrpoSettings(**change)  # type: ignore[arg-type]
+
+
+def test_that_weights_are_kept_at_chosen_calls_and_the_same_after_a_break(
+    tmp_path: Path, start: Model, tiny: GrpoSettings
+) -> None:
+    kept_at = (0, 12, 20, 34)
+    align(tiny, tmp_path / "whole", start, keep_at=kept_at)
+    align(tiny, tmp_path / "parts", start, keep_at=kept_at, seconds=0.0)
+    align(tiny, tmp_path / "parts", start, keep_at=kept_at)
+    about = variants_about(tmp_path / "whole")
+    # 12 is the end of a step, 20 within one, 34 is one call more than there are.
+    assert {name: one["calls"] for name, one in about.items()} == {
+        "calls-0": 0, "calls-12": 12, "calls-20": 24, "calls-34": 33,
+    }  # fmt: skip
+    assert about["calls-12"]["settings"] == tiny.to_json()
+    for name in about:
+        whole, parts = (load_weights(tmp_path / run / f"{name}.safetensors") for run in ("whole", "parts"))
+        assert whole.digest == parts.digest
+    first, last = (load_weights(tmp_path / "whole" / f"calls-{calls}.safetensors").network for calls in (0, 34))
+    assert same(first, start.network) and not same(last, first)
+    with pytest.raises(UsageError) as late:
+        align(tiny, tmp_path / "whole", start, keep_at=(16,))
+    assert late.value.code == "training.kept_too_late"
+    with pytest.raises(UsageError) as after:
+        align(tiny, tmp_path / "whole", start, keep_at=(35,))
+    assert after.value.code == "training.kept_after_end"
+
+
+def test_that_the_control_sees_the_same_designs_and_weighs_them_alike(
+    tmp_path: Path, start: Model, tiny: GrpoSettings, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    rewarded, control = (align(replace(tiny, calls=6, reward=reward), tmp_path / reward, start)[-1]
+                         for reward in ("accuracy", "none"))  # fmt: skip
+    assert all(rewarded[name] == control[name] for name in ("siou", "tv", "spread", "infeasible"))
+    assert control["reward"] == 0.0 < rewarded["reward"] and control["loss"] != rewarded["loss"]
+    # With the weights of a control, a run with a reward is the control.
+    monkeypatch.setattr(
+        "kirigami_studio.training.grpo.group_weights", lambda advantage, *options: torch.ones_like(advantage)
+    )
+    equal = align(replace(tiny, calls=6), tmp_path / "equal", start)[-1]
+    assert equal["loss"] == control["loss"]
+    assert same(aligned_network(tmp_path / "equal", start), aligned_network(tmp_path / "none", start))
+
+
+def test_that_the_start_is_asked_by_counted_calls_where_a_reward_compares(
+    tmp_path: Path, start: Model, tiny: GrpoSettings
+) -> None:
+    records = align(replace(tiny, reward="fabrication"), tmp_path, start)
+    # Two targets of three designs and the start's three cost 12 calls a step; one target takes 6 of the last 10.
+    assert [record["calls"] for record in records] == [0.0, 24.0, 30.0]
+    assert records[-1]["reward"] < 0.0
+
+
+def test_that_a_unet_prior_can_be_aligned(tmp_path: Path, tiny: GrpoSettings) -> None:
+    torch.manual_seed(0)
+    shape = UNetShape(4, 4, channels=(8, 8), residuals=1, latent=8, mask=32)
+    store_model("prior", UNetVelocity(shape), tmp_path, {})
+    prior = load_weights(tmp_path / "prior.safetensors")
+    record = align(replace(tiny, start=prior.digest, calls=12), tmp_path / "run", prior)[-1]
+    aligned = aligned_network(tmp_path / "run", prior)
+    assert record["calls"] == 12.0 and 0.3 < record["siou"] <= 1.0
+    assert isinstance(aligned, UNetVelocity) and not same(aligned, prior.network)

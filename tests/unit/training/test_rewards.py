@@ -16,7 +16,8 @@ from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.lattice.deployment import Deployment, deploy, rotate
 from kirigami_studio.lattice.ratio_field import RatioField, frozen
 from kirigami_studio.outlines.outline import Outline
-from kirigami_studio.training.rewards import REWARDS, Reward
+from kirigami_studio.project.fabricability import Fabricability, fabricability
+from kirigami_studio.training.rewards import PAPER_REWARDS, FabricationReward, Group, Reward
 
 GOOD = Verdict(0.9, 0.8, 0, 0.0, has_layout=True, feasible=True)
 ACCURACY, REGULARITY = Reward("accuracy"), Reward("regularity")
@@ -62,7 +63,7 @@ def test_that_rewards_are_their_formulas() -> None:
     both = Reward("balanced", siou_scale=0.1, tv_scale=0.4)
     assert [both(GOOD), both(bad)] == pytest.approx([4.5 - 1.0, 4.5 - 1.0 - 2.0])
     lost = dataclasses.replace(GOOD, has_layout=False)
-    assert [Reward(name)(lost) for name in REWARDS] == [-5.0] * 3
+    assert [Reward(name)(lost) for name in PAPER_REWARDS] == [-5.0] * 3
 
 
 def test_that_ratios_that_cannot_be_decoded_are_judged_in_their_place(outline: Outline) -> None:
@@ -120,3 +121,40 @@ def test_that_scales_are_deviations_within_groups() -> None:
 def test_that_an_unknown_reward_is_refused() -> None:
     with pytest.raises(UsageError, match="balanced"):
         Reward("beauty")
+
+
+def test_that_no_reward_tells_no_design_from_another() -> None:
+    lost = dataclasses.replace(GOOD, has_layout=False)
+    assert Reward("none").of(Group(noise(3), [GOOD, lost, dataclasses.replace(GOOD, n_invalid=4)])) == [0.0] * 3
+
+
+SHEET = Fabricability(area_cv=0.5, least_mm=2.0, needed_mm=1.0, jam_phi=0.0)
+
+
+def test_that_the_fabrication_reward_is_its_formula() -> None:
+    reward = FabricationReward()
+    assert reward(GOOD, SHEET, 0.9) == pytest.approx(-0.5)
+    tenth = [
+        (GOOD, dataclasses.replace(SHEET, area_cv=0.6), 0.9),
+        (GOOD, dataclasses.replace(SHEET, jam_phi=math.radians(18.0)), 0.9),
+        (GOOD, dataclasses.replace(SHEET, least_mm=0.9), 0.9),
+        (dataclasses.replace(GOOD, siou=0.895), SHEET, 0.9),
+    ]
+    assert [reward(*case) for case in tenth] == pytest.approx([-0.6] * 4)
+    # A better match than the start's earns nothing, and more room than needed neither.
+    assert reward(dataclasses.replace(GOOD, siou=0.99), dataclasses.replace(SHEET, least_mm=9.0), 0.9) == -0.5
+    assert reward(dataclasses.replace(GOOD, has_layout=False), None, 0.9) == -5.0
+    assert reward(dataclasses.replace(GOOD, n_invalid=1), SHEET, 0.9) == pytest.approx(-2.5)
+
+
+def test_that_a_groups_fabrication_rewards_are_those_of_its_sheets(outline: Outline) -> None:
+    fields = noise(3)
+    fields[1, 0, 0] = np.nan
+    verdicts = judge(fields, outline)
+    rewards = FabricationReward().of(Group(fields, verdicts, 0.9))
+    assert rewards[1] == -5.0
+    (last,) = fabricability([deploy(RatioField.from_log10(fields[2]))])
+    assert rewards[2] == FabricationReward()(verdicts[2], last, 0.9)
+    even, uneven = np.zeros((4, 4)), noise(1)[0]
+    calm, rough = FabricationReward().of(Group(np.stack([even, uneven]), [GOOD, GOOD], 0.9))
+    assert calm == pytest.approx(0.0, abs=1e-9) and rough < -0.1
