@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import shapely
+from scipy.sparse import csr_array
 from scipy.spatial import cKDTree
 
 from kirigami_studio.fabricate.centres import BULGE_SPANS
@@ -26,6 +27,53 @@ NEAR_SPANS = 1.5
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class Falls:
+    """By how much lengths fall, or angles, as nodes move: each is a sum of shares of what a few nodes move.
+
+    Attributes
+    ----------
+    nodes : (K, M) int
+    shares : (K, M, 2) float
+        Of the moves of those nodes in x and y.
+    """
+
+    nodes: IntArray
+    shares: FloatArray
+
+    def along(self, slopes: FloatArray) -> FloatArray:
+        """The falls (K, V) where the nodes move by ``slopes`` (2, N, V)."""
+        (count, width), (_, total, columns) = self.nodes.shape, slopes.shape
+        rows = np.repeat(np.arange(count), 2 * width)
+        places = (self.nodes[:, :, None] + [0, total]).ravel()
+        table = csr_array((self.shares.ravel(), (rows, places)), shape=(count, 2 * total))
+        falls: FloatArray = table @ slopes.reshape(2 * total, columns)
+        return falls
+
+    def times(self, factor: FloatArray) -> Falls:
+        """Every fall times its factor (K,)."""
+        return Falls(self.nodes, factor[:, None, None] * self.shares)
+
+    def taken(self, which: IntArray) -> Falls:
+        """Those of these numbers."""
+        return Falls(self.nodes[which], self.shares[which])
+
+    def beside(self, other: Falls) -> Falls:
+        """The sums of as many falls and these."""
+        return Falls(np.hstack([self.nodes, other.nodes]), np.hstack([self.shares, other.shares]))
+
+    def then(self, other: Falls) -> Falls:
+        """These falls and others after them."""
+        width = max(self.nodes.shape[1], other.nodes.shape[1])
+        one, two = self._as_wide(width), other._as_wide(width)
+        return Falls(np.concatenate([one.nodes, two.nodes]), np.concatenate([one.shares, two.shares]))
+
+    def _as_wide(self, width: int) -> Falls:
+        """The same falls with nodes without a share, (K, width)."""
+        more = width - self.nodes.shape[1]
+        return Falls(np.pad(self.nodes, ((0, 0), (0, more))), np.pad(self.shares, ((0, 0), (0, more), (0, 0))))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class Clearances:
     """The distances of one design that are short or nearly so.
 
@@ -33,19 +81,12 @@ class Clearances:
     ----------
     missing : (K,) float, mm
         By how much each is too short; negative where there is room.
+    falls : Falls
+        By how much that falls (K,) as nodes move.
     """
 
     missing: FloatArray
-    _nodes: IntArray
-    _shares: FloatArray
-
-    def falls(self, slopes: FloatArray) -> FloatArray:
-        """The fall (K, V) of what is missing, where the nodes move by ``slopes`` (2, N, V), mm."""
-        fall = np.zeros((self.missing.size, slopes.shape[2]))
-        for node, share in zip(self._nodes.T, self._shares.transpose(1, 2, 0), strict=True):
-            for axis in (0, 1):
-                fall += share[axis][:, None] * slopes[axis, node]
-        return fall
+    falls: Falls
 
 
 class _Features:
@@ -107,11 +148,11 @@ def clearances(
     """
     features = _Features(nodes, table, spans, rim)
     if not features.hinge.size:
-        return Clearances(np.empty(0), np.empty((0, 6), dtype=np.intp), np.empty((0, 6, 2)))
+        return Clearances(np.empty(0), Falls(np.empty((0, 6), dtype=np.intp), np.empty((0, 6, 2))))
     least = float(spans[spans > 0.0].min())
     parts = [_pairs(features, least, spare_mm), _lines(features, nodes, table, outline, least, spare_mm)]
     missing, numbers, shares = (np.concatenate(column) for column in zip(*parts, strict=True))
-    return Clearances(missing, numbers, shares)
+    return Clearances(missing, Falls(numbers, shares))
 
 
 #: What is missing (K,), nodes (K, 6) and the shares (K, 6, 2) of their moves in the distance.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from types import MappingProxyType
@@ -41,7 +41,7 @@ from kirigami_studio.fabricate.trimmed_sheet import (
     trimmed_cuts,
 )
 from kirigami_studio.foundation.arrays import FloatArray
-from kirigami_studio.foundation.errors import FabricationError
+from kirigami_studio.foundation.errors import Cancelled, FabricationError
 from kirigami_studio.lattice.deployment import Deployment
 
 SMALLEST_SHEET_MM = 5.0
@@ -173,6 +173,7 @@ def plan_cuts(
     options: CutOptions | None = None,
     overcut_mm: float = OVERCUT_MM,
     kept: Sequence[FloatArray | None] | None = None,
+    cancel: Callable[[], bool] = lambda: False,
 ) -> CutPlan:
     """Turn a design into a job for the cutter.
 
@@ -192,13 +193,22 @@ def plan_cuts(
     kept : sequence of (P, 2) float or None, unit cells, optional
         What stays of every trimmed panel, row by row, in the compact sheet's frame; None for a whole one.  The width
         stays that of the untrimmed sheet.
+    cancel : function
+        Asked between the steps of planning, and while room is made for centred connectors.
 
     Raises
     ------
+    Cancelled
+        ``cancel`` returned true.
     FabricationError
         A size, width or kerf that makes no sense, a cut without room for its connectors, or too little material kept
         at a hinge.
     """
+
+    def go_on() -> None:
+        if cancel():
+            raise Cancelled("plan.stopped")
+
     material, options = material or default_material(), options or CutOptions()
     width = check_length("sheet.width_not_positive", width_mm)
     asked = material.connector_mm if connector_mm is None else connector_mm
@@ -218,10 +228,11 @@ def plan_cuts(
         # What stays of the panels is that of the design's.
         crowded = not has_room(design, width, widths + kerf, table, left.removed)
     elif options.style is ConnectorStyle.CENTRED:
-        deployment = with_room(design, width, widths + kerf, table, options.removed)
+        deployment = with_room(design, width, widths + kerf, table, options.removed, go_on)
         made = None if deployment is design else deployment
     lines, size = sheet_lines(deployment, width)
     sides = edge_sides(deployment, width)
+    go_on()
     shortened = shorten(lines, table, sides, widths, kerf)
     trimming = _trimming(deployment, parts, table, width, size, kerf, overcut, lost)
     arranged = None
@@ -251,6 +262,7 @@ def plan_cuts(
     ring = CutPath(_on_grid(arranged.ring - origin), Layer.OUTLINE, True, bulges=arranged.ring_bulges)
     boundary = Polygon(measured_line(ring.points, ring.bulges, True))
     planned = widths if arranged.widths is None else arranged.widths
+    go_on()
     hinges = _hinges(cuts, table, widths, planned, cuts.widths(table, left.removed, boundary, kerf), lost)
     plan = CutPlan(
         paths=in_cutting_order(

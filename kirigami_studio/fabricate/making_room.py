@@ -18,15 +18,16 @@ the design: a small quadratic programme, made linear a few times.  The sheet tha
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import cholesky, solve_triangular
+from scipy.linalg import cho_factor, cho_solve, cholesky, solve_triangular
 from scipy.sparse import csc_matrix
 from scipy.sparse.linalg import splu
 
 from kirigami_studio.fabricate.centres import BULGE_SPANS, void_hinges
-from kirigami_studio.fabricate.clearances import Clearances, clearances
+from kirigami_studio.fabricate.clearances import Clearances, Falls, clearances
 from kirigami_studio.fabricate.connectors import directions
 from kirigami_studio.fabricate.detours import shortest_turn
 from kirigami_studio.fabricate.slits import SHEET_EDGE, CutTable, edge_sides
@@ -70,7 +71,12 @@ AT_ONCE = 32
 
 
 def with_room(
-    deployment: Deployment, width_mm: float, spans: FloatArray, table: CutTable, removed: tuple[int, ...] = ()
+    deployment: Deployment,
+    width_mm: float,
+    spans: FloatArray,
+    table: CutTable,
+    removed: tuple[int, ...] = (),
+    go_on: Callable[[], None] = lambda: None,
 ) -> Deployment:
     """Make room for the connectors of a design.
 
@@ -84,6 +90,8 @@ def with_room(
     table : CutTable
     removed : tuple of int
         Hinges without a connector.
+    go_on : function
+        Called before every round; what it raises ends the search.
 
     Returns
     -------
@@ -93,7 +101,7 @@ def with_room(
     with one_blas_thread():
         programme = _programme(deployment, width_mm, spans, table, removed)
         for share in SHARES:
-            found = programme.solve(share)
+            found = programme.solve(share, go_on)
             if found is None or programme.changed_share(found) <= CHANGED_SHARE:
                 return deployment if found is None else found
     return deployment
@@ -164,11 +172,12 @@ class _Programme:
         moves += [np.sum(self._normal * part, axis=0) for part in (turned, away / size)]
         self._similar = np.stack(moves, axis=1)
 
-    def solve(self, share: float) -> Deployment | None:
+    def solve(self, share: float, go_on: Callable[[], None]) -> Deployment | None:
         """The sheet with this share of the room that is wanted; None where the design has it."""
         design, z = self._design, self._z
         similar = np.zeros(self._similar.shape[1])
         for turn in range(ROUNDS):
+            go_on()
             near = self._near(design, share)
             missing = np.concatenate([self._missing(design, z, share), near.missing])
             if missing.max(initial=0.0) <= MET_MM:
@@ -223,24 +232,24 @@ class _Programme:
         room = share * self._spans * needed + SPARE_MM - 0.5 * length * (1.0 - apart)
         return np.concatenate([wanted - length * apart, room, self._hinge_spans[self._there] * (lean - MOST_SLANTED)])
 
-    def _falls(self, design: Deployment, z: FloatArray, slopes: FloatArray, share: float) -> FloatArray:
-        """The fall (N, V) of what is missing by the logarithms of ratios."""
+    def _falls(self, design: Deployment, z: FloatArray, share: float) -> tuple[Falls, FloatArray]:
+        """How what is missing (N,) falls as nodes move, and, of what slits need, as their own ratios grow (2 S,)."""
         run = self._run(design)
         length = np.linalg.norm(run, axis=1)
-        change = slopes[:, self._last] - slopes[:, self._first]
-        longer = self._scale * np.einsum("dv,dvz->vz", (run / length[:, None]).T, change)
+        along = self._scale * run / length[:, None]
+        longer = Falls(np.stack([self._last, self._first], axis=1), np.stack([along, -along], axis=1))
         apart, slope = self._side * np.tanh(0.5 * z), 0.5 * self._side / np.cosh(0.5 * z) ** 2
-        own = np.arange(z.size)
-        facing, end = longer * apart[:, None], 0.5 * longer * (1.0 - apart)[:, None]
-        facing[own, own] += length * slope
-        end[own, own] -= 0.5 * length * slope
-        lean, slanting = self._lean(design), self._slanting(design, slopes)
+        lean, slanting = self._lean(design), self._slanting(design)
         slits, ends = self._worst_ends(lean)
         leaning = np.minimum(lean[ends], MOST_SLANTED)
         turning = (shortest_turn(leaning + LITTLE) - shortest_turn(leaning - LITTLE)) / (2.0 * LITTLE)
         turning[lean[ends] >= MOST_SLANTED] = 0.0
-        end[slits] -= (share * self._spans[slits] * turning)[:, None] * slanting[ends]
-        return np.concatenate([facing, end, -self._hinge_spans[self._there, None] * slanting])
+        nodes, shares = np.zeros((length.size, 4), dtype=np.intp), np.zeros((length.size, 4, 2))
+        nodes[slits] = slanting.nodes[ends]
+        shares[slits] = -(share * self._spans[slits] * turning)[:, None, None] * slanting.shares[ends]
+        end = longer.times(0.5 * (1.0 - apart)).beside(Falls(nodes, shares))
+        slants = slanting.times(-self._hinge_spans[self._there])
+        return longer.times(apart).then(end).then(slants), np.concatenate([length * slope, -0.5 * length * slope])
 
     def _run(self, design: Deployment) -> FloatArray:
         """Slits (S, 2), mm, from end to end."""
@@ -283,21 +292,21 @@ class _Programme:
         lean: FloatArray = np.arccos(np.minimum(np.abs(_crossed(*self._headings(design))), 1.0))
         return lean
 
-    def _slanting(self, design: Deployment, slopes: FloatArray) -> FloatArray:
-        """Their change (K, V) by the logarithms of ratios."""
+    def _slanting(self, design: Deployment) -> Falls:
+        """How they (K,) change as nodes move."""
         nodes, table, there = design.compact, self._table, self._there
         length = np.linalg.norm(nodes[table.ends[:, 1]] - nodes[table.ends[:, 0]], axis=1)
         own, through = self._headings(design)
         sine = _crossed(own, through)
-        squarer = np.zeros((there.size, slopes.shape[2]))
+        flatter = -np.sign(sine) / np.maximum(np.sin(self._lean(design)), SQUARE)
         rests = table.hinge_through[there] != SHEET_EDGE
+        parts = []
         for cut, here, other, sign in ((table.hinge_cut[there], own, through, np.ones(there.size)),
                                        (table.hinge_through[there], through, own, -1.0 * rests)):  # fmt: skip
-            change = slopes[:, table.ends[cut, 1]] - slopes[:, table.ends[cut, 0]]
             normal = np.stack([-here[:, 1], here[:, 0]], axis=1)
-            turned = np.einsum("kd,dkz->kz", normal, change) / length[cut, None]
-            squarer += (sign * np.sign(sine) * _crossed(normal, other))[:, None] * turned
-        return -squarer / np.maximum(np.sin(self._lean(design)), SQUARE)[:, None]
+            turned = (sign * flatter * _crossed(normal, other) / length[cut])[:, None] * normal
+            parts.append(Falls(table.ends[cut], np.stack([-turned, turned], axis=1)))
+        return parts[0].beside(parts[1])
 
     def _step(
         self,
@@ -316,8 +325,12 @@ class _Programme:
         pull = table.T @ (self._off(design) + self._similar @ similar)
         pull[: z.size] += RATIO_WEIGHT * (z - self._z)
         close = missing > -CLOSE_SPANS * float(np.max(self._spans))
-        falls = np.concatenate([self._falls(design, z, slopes, share), near.falls(self._scale * slopes)])[close]
-        falls = np.hstack([falls, np.zeros((len(falls), similar.size))])
+        moving, own = self._falls(design, z, share)
+        moving = moving.then(near.falls.times(np.full(near.missing.size, self._scale)))
+        falls = np.zeros((int(close.sum()), z.size + similar.size))
+        falls[:, : z.size] = moving.taken(np.flatnonzero(close)).along(slopes)
+        of_slits = np.flatnonzero(close[: own.size])
+        falls[np.arange(of_slits.size), of_slits % z.size] += own[of_slits]
         return _least(table.T @ table + np.diag(weights), pull, falls, missing[close])
 
 
@@ -355,7 +368,7 @@ def shortest(rows: FloatArray, wanted: FloatArray) -> FloatArray:
     for _ in range(MOST_STEPS):
         short = wanted - rows @ u
         own = rows[short > 0.0]
-        step = np.linalg.solve(np.eye(u.size) + UNMET**2 * (own.T @ own), UNMET**2 * (own.T @ wanted[short > 0.0])) - u
+        step = _balance(own, wanted[short > 0.0]) - u
         line = _Line(u, step, short, rows @ step)
         if line.slope(0.0) >= -NO_FALL * line.cost(0.0):
             break
@@ -364,6 +377,16 @@ def shortest(rows: FloatArray, wanted: FloatArray) -> FloatArray:
         else:
             u = u + brentq(line.slope, 0.0, 1.0) * step
     return u
+
+
+def _balance(rows: FloatArray, wanted: FloatArray) -> FloatArray:
+    """The u (V,) with the least |u|^2 + UNMET^2 |wanted - rows u|^2, from the smaller of two systems."""
+    count, size = rows.shape
+    table = rows @ rows.T if count < size else rows.T @ rows
+    table[np.diag_indices(len(table))] += UNMET**-2
+    factor = cho_factor(table, overwrite_a=True)
+    found: FloatArray = rows.T @ cho_solve(factor, wanted) if count < size else cho_solve(factor, rows.T @ wanted)
+    return found
 
 
 @dataclass(frozen=True, slots=True, eq=False)

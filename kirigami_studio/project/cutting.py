@@ -5,7 +5,7 @@ A person's own material is stored in the project with its numbers, for machines 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 from kirigami_studio.evaluate.candidate import Candidate
@@ -17,7 +17,12 @@ from kirigami_studio.project.document import Document
 from kirigami_studio.project.settings import FabricationSettings
 
 
-def plan_of(candidate: Candidate, settings: FabricationSettings, deployment: Deployment | None = None) -> CutPlan:
+def plan_of(
+    candidate: Candidate,
+    settings: FabricationSettings,
+    deployment: Deployment | None = None,
+    cancel: Callable[[], bool] = lambda: False,
+) -> CutPlan:
     """Plan the cuts of a design; a trimmed one gets its trimmed outline.
 
     Parameters
@@ -26,24 +31,33 @@ def plan_of(candidate: Candidate, settings: FabricationSettings, deployment: Dep
     settings : FabricationSettings
     deployment : Deployment, optional
         Of the candidate's final sheet, if it is known already.
+    cancel : function
+        Asked between the steps of planning.
 
     Raises
     ------
+    Cancelled
+        ``cancel`` returned true.
     FabricationError
         No such material, or a plan that cannot be made.
     """
     trim = candidate.trim
     kept = None if trim is None else trim.kept
-    return plan_sheet(deployment or deploy(candidate.final_sheet), settings, kept)
+    return plan_sheet(deployment or deploy(candidate.final_sheet), settings, kept, cancel)
 
 
 def plan_sheet(
-    deployment: Deployment, settings: FabricationSettings, kept: Sequence[FloatArray | None] | None = None
+    deployment: Deployment,
+    settings: FabricationSettings,
+    kept: Sequence[FloatArray | None] | None = None,
+    cancel: Callable[[], bool] = lambda: False,
 ) -> CutPlan:
     """Plan the cuts of any sheet; ``kept`` is what stays of every panel of a trimmed one, as in a trim.
 
     Raises
     ------
+    Cancelled
+        ``cancel``, which is asked between the steps of planning, returned true.
     FabricationError
         No such material, or a plan that cannot be made.
     """
@@ -55,6 +69,7 @@ def plan_sheet(
         material=material_for(settings),
         options=settings.options,
         kept=kept,
+        cancel=cancel,
     )
 
 

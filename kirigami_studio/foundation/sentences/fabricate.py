@@ -143,6 +143,7 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "columns); from bottom to top the flaps are {flaps} mm wide (short cuts at the left edge count the rows)."
     ),
     # What to know before cutting
+    "plan.stopped": mark("Planning the cuts was stopped."),
     "plan.material_uncalibrated": mark("The material {material!r} is uncalibrated: cut a test piece first."),
     "plan.connectors_may_tear": mark(
         "Connectors of {width_mm:g} mm may tear: {material!r} needs {least_mm:g} mm or more."

@@ -83,7 +83,7 @@ def animating(
     why = ""
     if motion is Motion.AS_CUT and sheet is None:
         try:
-            for found in simulating(request, planned(request), cancel):
+            for found in simulating(request, planned(request, cancel), cancel):
                 sheet = found
                 yield None
         except Cancelled:
@@ -108,7 +108,9 @@ def fixing(
     from kirigami_studio.project.verdict import refused
 
     try:
-        plan_of(request.candidate, request.settings, request.deployment)
+        plan_of(request.candidate, request.settings, request.deployment, cancel)
+    except Cancelled:
+        raise
     except KirigamiError as error:
         verdict = refused(error)  # with its numbers, which lead to the first changes
     coarser = () if run is None else coarser_designs(request.candidate, run)

@@ -136,16 +136,16 @@ class CutRequest:
 def planning(request: CutRequest, cancel: Cancel) -> Iterator[Planned]:
     """Plan the cuts and check them."""
     importing.import_as_cut()  # the plan is judged in the window's thread, which is not to wait for imports
-    yield planned(request)
+    yield planned(request, cancel)
 
 
-def planned(request: CutRequest) -> Planned:
+def planned(request: CutRequest, cancel: Cancel) -> Planned:
     """Plan the cuts and check them, in one go; a trimmed design gets its trimmed outline."""
     from kirigami_studio.fabricate.checks import check_plan
     from kirigami_studio.project.cutting import plan_of
 
     trim = request.candidate.trim
-    plan = plan_of(request.candidate, request.settings, request.deployment)
+    plan = plan_of(request.candidate, request.settings, request.deployment, cancel)
     report = check_plan(plan, phi=request.candidate.final_phi)
     _ = plan.times  # worked out once and kept: here, so that the window need not
     removed = 0.0 if trim is None else trim.removed_share
@@ -180,7 +180,7 @@ def exporting(request: CutRequest, path: Path, many_pages: bool, cancel: Cancel)
     if not kind_of(path.suffix).cuts:
         yield Exported(export(export_job(request, None), path), None)
         return
-    made = planned(request)
+    made = planned(request, cancel)
     size, paper = made.plan.copies.spread_mm, request.settings.paper
     if path.suffix.lower() == ".pdf" and not many_pages and (many := _many_pages(size, paper)):
         yield many
@@ -217,7 +217,7 @@ def exporting_all(
         if cancel():
             raise Cancelled("export.stopped", folder=folder)
 
-    made = planned(request)
+    made = planned(request, cancel)
     if not many_pages and (many := _many_pages(made.plan.copies.spread_mm, request.settings.paper)):
         yield many
         return
@@ -274,7 +274,7 @@ def exporting_artwork(
 
     if request.artwork is None:
         raise ProjectError("artwork.none")
-    work = ArtworkJob.usual(request.artwork, export_job(request, planned(request)))
+    work = ArtworkJob.usual(request.artwork, export_job(request, planned(request, cancel)))
     if not many_pages and (many := _many_pages(work.page_mm, request.settings.paper)):
         yield many
         return

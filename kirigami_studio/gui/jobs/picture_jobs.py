@@ -95,4 +95,4 @@ def drawing_cuts(request: CutRequest, cancel: Cancel) -> Iterator[bytes]:
     """Plan the cuts and yield them as SVG in mm, the very bytes of an exported file."""
     from kirigami_studio.export.svg import cut_svg_bytes
 
-    yield cut_svg_bytes(export_job(request, planned(request)))
+    yield cut_svg_bytes(export_job(request, planned(request, cancel)))

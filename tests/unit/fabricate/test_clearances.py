@@ -39,7 +39,7 @@ def test_that_derivatives_are_exact(make_design: MakeDesign) -> None:
     move[topology(8, 8).fixed] = 0.0
     ahead, behind = (found_in(design, 1.2, nodes + sign * step * move).missing for sign in (1.0, -1.0))
     assert found.missing.size > 10
-    fall = found.falls(move.T[:, :, None])[:, 0]
+    fall = found.falls.along(move.T[:, :, None])[:, 0]
     np.testing.assert_allclose(fall, (behind - ahead) / (2.0 * step), atol=1e-5)
 
 

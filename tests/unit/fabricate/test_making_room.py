@@ -18,6 +18,7 @@ from kirigami_studio.fabricate.cut_plan import CutPlan, largest_move, plan_cuts
 from kirigami_studio.fabricate.making_room import FACING_SPANS, UNMET, shortest, with_room
 from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions
 from kirigami_studio.fabricate.slits import cut_table
+from kirigami_studio.foundation.errors import Cancelled
 from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.mechanics.closing import closing
@@ -136,3 +137,19 @@ def test_that_the_least_change_is_that_of_non_negative_least_squares(seed: int) 
     left = table @ nnls(table, target)[0] - target
     expected = -left[: rows.shape[1]] / left[-1]
     assert shortest(rows, wanted) == pytest.approx(expected, rel=1e-5, abs=1e-6)
+
+
+@pytest.mark.parametrize("asked", [1, 3, 5])
+def test_that_planning_stops_when_it_is_asked_to_even_while_room_is_made(make_design: MakeDesign, asked: int) -> None:
+    """The first questions are asked while ratios are looked for."""
+    questions = iter([False] * (asked - 1) + [True])
+    with pytest.raises(Cancelled) as caught:
+        plan_cuts(
+            make_design(6, 6, seed=1, spread=0.25),
+            WIDTH,
+            0.8,
+            options=CutOptions(style=ConnectorStyle.CENTRED),
+            cancel=lambda: next(questions),
+        )
+    assert caught.value.code == "plan.stopped"
+    assert next(questions, None) is None
